@@ -1,0 +1,104 @@
+import createModule from '#glue';
+import { compile } from '#wasm';
+import { CagecastError } from './error.js';
+import type { CheckedMesh } from './mesh.js';
+
+/** How a call into the core ended: numbers of `Code` and `Argument` in core/include/cagecast/mesh.hpp; 0 is success. */
+export interface Answer {
+  code: number;
+  argument: number;
+  at: number;
+}
+
+/** What bindings.cpp adds to an answer for steps 1 to 4. `segmentStats`: points, A, E, C of each segment. */
+export interface ProjectAnswer extends Answer {
+  uvs: Float32Array;
+  zones: Uint8Array;
+  triangles: Uint32Array;
+  distances: Float32Array;
+  segments: Uint32Array;
+  segmentStats: Float64Array;
+  timings: Float64Array;
+  peakBytes: number;
+}
+
+/** What bindings.cpp adds to an answer for step 5. */
+export interface ClassifyAnswer extends Answer {
+  zones: Uint8Array;
+  cosmeticTriangles: Uint8Array;
+  culledSegments: Uint8Array;
+}
+
+/** The functions of bindings.cpp. All arrays they return are copies. */
+export interface Bindings {
+  project(cage: CheckedMesh, target: CheckedMesh, projection: number, weldTolerance: number): ProjectAnswer;
+  transfer(cage: CheckedMesh, target: CheckedMesh, projection: number, weldTolerance: number, threshold: number): ProjectAnswer & ClassifyAnswer;
+  classify(zones: Uint8Array, segments: Uint32Array, segmentStats: Float64Array, indices: Uint32Array, threshold: number): ClassifyAnswer;
+}
+
+let starting: Promise<void> | undefined;
+let compiled: WebAssembly.Module | undefined;
+let instance: Bindings | undefined;
+
+/** Makes a fresh instance of the compiled module: about a millisecond. */
+function instantiate(module: WebAssembly.Module): Bindings {
+  const bindings: Partial<Bindings> = {};
+  // The glue takes the instance and registers the functions at once; what it returns is a promise for the same object.
+  void createModule(
+    Object.assign(bindings, {
+      instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
+        const made = new WebAssembly.Instance(module, imports);
+        receive(made);
+        return made.exports;
+      },
+    }),
+  );
+  if (bindings.transfer === undefined) throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
+  return bindings as Bindings;
+}
+
+/**
+ * Makes Cagecast ready: compiles the WebAssembly module. Nothing starts before it is called.
+ * It may be called any number of times, also at once: all calls share one start.
+ * @throws {CagecastError} `unsupported` if the host cannot run WebAssembly with SIMD; the next call tries again.
+ */
+export function init(): Promise<void> {
+  starting ??= start().catch((cause: unknown) => {
+    starting = undefined;
+    if (cause instanceof CagecastError) throw cause;
+    throw new CagecastError('unsupported', `init: this host cannot run the WebAssembly module (${String(cause)})`, 0, { cause });
+  });
+  return starting;
+}
+
+async function start(): Promise<void> {
+  const module = await compile();
+  instance = instantiate(module);
+  compiled = module;
+}
+
+/**
+ * Calls the core, and outlives its end: a call that runs out of memory or traps costs its instance, not the next call.
+ * @throws {CagecastError} `notInitialised`, `outOfMemory`, `internal`
+ */
+export function callCore<A extends Answer>(fn: string, call: (bindings: Bindings) => A): A {
+  if (compiled === undefined) {
+    throw new CagecastError('notInitialised', `${fn}: Cagecast is not ready; await init() once before the first call`);
+  }
+  try {
+    instance ??= instantiate(compiled);
+    return call(instance);
+  } catch (cause) {
+    dropInstance();
+    // RangeError: an array for JavaScript could not be had. "Aborted": C++ could not allocate where it cannot say so.
+    const memory = cause instanceof RangeError || String(cause).includes('Aborted');
+    throw memory
+      ? new CagecastError('outOfMemory', `${fn}: not enough memory for this target and cage`, 0, { cause })
+      : new CagecastError('internal', `${fn}: the WebAssembly module failed (${String(cause)})`, 0, { cause });
+  }
+}
+
+/** Gives the instance's memory back; the next call makes a new one. WebAssembly memory grows but never shrinks. */
+export function dropInstance(): void {
+  instance = undefined;
+}

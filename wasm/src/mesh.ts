@@ -1,0 +1,54 @@
+import { CagecastError, show } from './error.js';
+
+/** A triangle mesh. Its arrays stay the caller's: they are only read, and copied. */
+export interface Mesh {
+  /** 3 numbers per vertex (x, y, z), finite; cage and target share space and unit. */
+  positions: Float32Array;
+  /** 3 per triangle, counter-clockwise seen from outside. */
+  indices: Uint32Array | Uint16Array | Uint8Array;
+  /** 2 numbers per vertex, finite. A cage must have them, a target need not. */
+  uvs?: Float32Array | undefined;
+  /** 1 per vertex or none, usually the mesh or material it belongs to: vertices of different groups are never welded. */
+  groups?: Uint32Array | undefined;
+}
+
+/** A mesh whose arrays are of the right types, with empty ones in place of those that it lacks. */
+export interface CheckedMesh {
+  positions: Float32Array;
+  indices: Uint32Array | Uint16Array | Uint8Array;
+  uvs: Float32Array;
+  groups: Uint32Array;
+}
+
+const noUvs = new Float32Array(0);
+const noGroups = new Uint32Array(0);
+
+/**
+ * Checks the types of a mesh's arrays and fills in the missing ones, empty. The core checks what is in them.
+ * @throws {CagecastError} `badArgument`
+ */
+export function checkMesh(fn: string, name: 'cage' | 'target', mesh: unknown): CheckedMesh {
+  if (typeof mesh !== 'object' || mesh === null) {
+    throw new CagecastError('badArgument', `${fn}: ${name} is ${show(mesh)}, not a mesh { positions, indices, … }`);
+  }
+  const { positions, indices, uvs, groups } = mesh as Partial<Mesh>;
+  const wrong = (field: string, value: unknown, type: string) =>
+    new CagecastError('badArgument', `${fn}: ${name}.${field} is ${show(value)}, not a ${type}`);
+  if (!(positions instanceof Float32Array)) throw wrong('positions', positions, 'Float32Array');
+  if (!(indices instanceof Uint32Array || indices instanceof Uint16Array || indices instanceof Uint8Array)) {
+    throw wrong('indices', indices, 'Uint32Array, Uint16Array or Uint8Array');
+  }
+  if (uvs !== undefined && uvs !== null && !(uvs instanceof Float32Array)) throw wrong('uvs', uvs, 'Float32Array');
+  if (groups !== undefined && groups !== null && !(groups instanceof Uint32Array)) throw wrong('groups', groups, 'Uint32Array');
+  // An empty array of UVs or groups with vertices there is a mistake of the caller that the core would take for "none".
+  if (groups?.length === 0 && positions.length > 0) {
+    throw new CagecastError('groupCountMismatch', `${fn}: ${name}.groups has 0 entries, not 1 for each of ${count(positions.length / 3, 'vertex')}`);
+  }
+  return { positions, indices, uvs: uvs ?? noUvs, groups: groups ?? noGroups };
+}
+
+/** "1 vertex", "900 vertices". */
+export function count(n: number, one: 'vertex' | 'triangle'): string {
+  const many = one === 'vertex' ? 'vertices' : 'triangles';
+  return `${Math.floor(n)} ${Math.floor(n) === 1 ? one : many}`;
+}

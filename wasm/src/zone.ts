@@ -1,0 +1,14 @@
+/** Why a vertex may, or may not, be painted. All but `Cosmetic` are Non-Cosmetic Zones. */
+export const Zone = {
+  /** May be painted. */
+  Cosmetic: 0,
+  /** The target itself lies over it. */
+  Occluded: 1,
+  /** The cage has a hole over it, or it lies outside the cage. */
+  Uncovered: 2,
+  /** Too little of its segment is covered. */
+  Culled: 3,
+} as const;
+
+/** A value of {@link Zone}. */
+export type Zone = (typeof Zone)[keyof typeof Zone];

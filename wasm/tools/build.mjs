@@ -1,0 +1,145 @@
+// Builds the npm package into dist/: the core as WebAssembly, the TypeScript around it, its types, the CLI.
+//   node wasm/tools/build.mjs                        all of it; does nothing if nothing changed
+//   node wasm/tools/build.mjs --preset wasm-scalar   only build/wasm-scalar/package/index.js, which tests compare with
+
+import { execFileSync, spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { chmodSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, realpathSync, renameSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { delimiter, dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+
+const root = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
+const at = (...parts) => join(root, ...parts);
+
+const { values } = parseArgs({ options: { preset: { type: 'string', default: 'wasm' } } });
+const { preset } = values;
+if (preset !== 'wasm' && preset !== 'wasm-scalar') fail(`--preset ${preset} is unknown; there are wasm and wasm-scalar`);
+
+const shipped = preset === 'wasm';
+const out = shipped ? at('dist') : at('build', preset, 'package');
+const stamp = at('build', preset, 'package.stamp');
+
+const hash = hashOf(['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'], preset);
+if (existsSync(stamp) && readFileSync(stamp, 'utf8') === hash && existsSync(join(out, 'index.js'))) {
+  linkCommand();
+  process.exit(0);
+}
+
+console.log(`Building ${shipped ? 'the package' : `the package (${preset})`} …`);
+rmSync(stamp, { force: true });
+buildWasm();
+await buildPackage();
+linkCommand();
+writeFileSync(stamp, hash);
+
+/** The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}. */
+function buildWasm() {
+  const emscripten = findEmscripten();
+  const env = {
+    ...process.env,
+    CAGECAST_EMSCRIPTEN: emscripten,
+    PATH: [process.env.PATH, emscripten].join(delimiter),
+    // Debian's Emscripten finds its copy of acorn only so.
+    NODE_PATH: [process.env.NODE_PATH, '/usr/share/nodejs'].filter(Boolean).join(delimiter),
+  };
+  run('cmake', ['--preset', preset], env);
+  run('cmake', ['--build', '--preset', preset], env);
+}
+
+/** The folder that holds Emscripten's CMake toolchain: of emsdk where its environment is set, else of the emcc in PATH. */
+function findEmscripten() {
+  const folders = [process.env.CAGECAST_EMSCRIPTEN, process.env.EMSDK && join(process.env.EMSDK, 'upstream/emscripten')];
+  const emcc = (process.env.PATH ?? '').split(delimiter).map((folder) => join(folder, 'emcc')).find((file) => existsSync(file));
+  if (emcc) folders.push(dirname(realpathSync(emcc)));
+  const found = folders.find((folder) => folder && existsSync(join(folder, 'cmake/Modules/Platform/Emscripten.cmake')));
+  return found ?? fail('Emscripten is missing: emcc is not in PATH. Debian: apt install emscripten; elsewhere: https://emscripten.org (emsdk)');
+}
+
+async function buildPackage() {
+  const esbuild = await import('esbuild');
+  const fresh = at('build', preset, 'package.new');
+  rmSync(fresh, { recursive: true, force: true });
+  mkdirSync(fresh, { recursive: true });
+
+  const common = {
+    bundle: true,
+    format: 'esm',
+    target: 'es2022',
+    minify: true,
+    legalComments: 'none',
+    logLevel: 'warning',
+    absWorkingDir: root,
+    define: { CAGECAST_VERSION: JSON.stringify(JSON.parse(readFileSync(at('package.json'), 'utf8')).version) },
+  };
+  await esbuild.build({
+    ...common,
+    entryPoints: [at('wasm/src/index.ts')],
+    outfile: join(fresh, 'index.js'),
+    platform: 'neutral',
+    plugins: [wasmModules('wasm-inline.ts')],
+  });
+  if (shipped) {
+    run(process.execPath, [at('node_modules/typescript/bin/tsc'), '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
+  }
+  rmSync(out, { recursive: true, force: true });
+  renameSync(fresh, out);
+
+  /** Resolves the names that stand for what the C++ build makes. */
+  function wasmModules(wasm) {
+    const files = {
+      '#glue': at('build', preset, 'wasm/cagecast.js'),
+      '#wasm-base64': at('build', preset, 'wasm/cagecast.wasm'),
+      '#wasm': at('wasm/src', wasm),
+    };
+    return {
+      name: 'wasm-modules',
+      setup(build) {
+        build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
+        build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({ contents: readFileSync(path), loader: 'base64' }));
+      },
+    };
+  }
+}
+
+/** Makes `npx cagecast` work in this checkout as it does where the package is installed. */
+function linkCommand() {
+  const bin = at('node_modules/.bin');
+  const cli = at('dist/cli.js');
+  if (!shipped || !existsSync(bin) || !existsSync(cli)) return;
+  chmodSync(cli, 0o755);
+  const link = join(bin, 'cagecast');
+  if (existsSync(link)) return;
+  rmSync(link, { force: true });
+  symlinkSync('../../dist/cli.js', link);
+}
+
+/** A hash of every file that the build reads, by name and content. */
+function hashOf(paths, salt) {
+  const sum = createHash('sha256').update(salt);
+  const visit = (path) => {
+    const full = at(path);
+    try {
+      for (const name of readdirSync(full).sort()) visit(join(path, name));
+    } catch (error) {
+      if (error.code !== 'ENOTDIR') throw error;
+      sum.update(path).update('\0').update(readFileSync(full)).update('\0');
+    }
+  };
+  paths.forEach(visit);
+  return sum.digest('hex');
+}
+
+function run(command, args, env = process.env) {
+  const result = spawnSync(command, args, { cwd: root, env, encoding: 'utf8' });
+  if (result.error?.code === 'ENOENT') fail(`${command} is missing; Debian: apt install ${command}`);
+  if (result.status !== 0) {
+    process.stderr.write(`${result.stdout ?? ''}${result.stderr ?? ''}`);
+    fail(`${command} ${args.join(' ')} failed`);
+  }
+}
+
+function fail(message) {
+  console.error(`build: ${message}`);
+  process.exit(1);
+}
