@@ -30,7 +30,7 @@ enum class Code : std::uint8_t {
   tooLarge,              ///< More than `kMaxVertices` or `kMaxTriangles` (`at` says how many), or coordinates out of
                          ///< all proportion to the target (`at` is the place in `positions`).
   badThreshold,          ///< The threshold is not within 0..1.
-  badWeldTolerance,      ///< The weld tolerance is not within 0..0.1.
+  badWeldTolerance,      ///< The weld tolerance is not within 0..0.01.
   outOfMemory,           ///< The work or its result does not fit into memory; nothing was computed.
 };
 

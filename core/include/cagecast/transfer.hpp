@@ -31,7 +31,7 @@ enum class ProjectionMode : std::uint8_t {
 /// Options of the costly part. The defaults are the method of the poster.
 struct ProjectOptions {
   ProjectionMode projection = ProjectionMode::nearestPoint;
-  float weldTolerance = 0.0f;  ///< Vertices nearer than this share of the target's diagonal are one point; 0..0.1.
+  float weldTolerance = 0.0f;  ///< Vertices nearer than this share of the target's diagonal are one point; 0..0.01.
 };
 
 /// Options of the decision per segment.

@@ -1,0 +1,54 @@
+#include "cage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "triangle.hpp"
+
+namespace cagecast {
+
+RayDirection RayDirection::along(Vec3 unit) noexcept {
+  const float d[3] = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
+  RayDirection ray{};
+  ray.exact = unit;
+  for (int k = 0; k < 3; ++k) {
+    // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
+    ray.inverse[k] = std::copysign(1.0f / std::max(std::abs(d[k]), 1e-20f), d[k]);
+  }
+  ray.z = 0;
+  for (std::uint32_t k = 1; k < 3; ++k) {
+    if (std::abs(d[k]) > std::abs(d[ray.z])) ray.z = k;
+  }
+  ray.x = (ray.z + 1) % 3;
+  ray.y = (ray.z + 2) % 3;
+  ray.shearX = d[ray.x] / d[ray.z];
+  ray.shearY = d[ray.y] / d[ray.z];
+  ray.scaleZ = 1.0f / d[ray.z];
+  return ray;
+}
+
+bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage& out) noexcept {
+  const std::size_t all = cage.indices.size() / 3;
+  auto* triangles = scratch.take<CageTriangle>(all);
+  if (scratch.failed()) return false;
+  std::uint32_t count = 0;
+  for (std::size_t t = 0; t < all; ++t) {
+    CageTriangle& triangle = triangles[count];
+    float* corners[3] = {triangle.a, triangle.b, triangle.c};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t v = cage.indices[3 * t + i];
+      for (std::size_t k = 0; k < 3; ++k) corners[i][k] = cage.positions[3 * v + k] * units.scale;
+      for (std::size_t k = 0; k < 2; ++k) triangle.uvs[2 * i + k] = cage.uvs[2 * v + k];
+    }
+    const Vec3 normal = areaNormal(triangle.a, triangle.b, triangle.c);
+    const double doubleArea = length(normal);
+    if (!(doubleArea > 0)) continue;
+    triangle.index = static_cast<std::uint32_t>(t);
+    triangle.normal = RayDirection::along(1 / doubleArea * normal);
+    ++count;
+  }
+  out = {count, triangles};
+  return true;
+}
+
+}  // namespace cagecast

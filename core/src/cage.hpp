@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+
+#include "cagecast/mesh.hpp"
+#include "check.hpp"
+#include "scratch.hpp"
+#include "vec3.hpp"
+
+namespace cagecast {
+
+/// A direction, prepared for intersection: the axis it points along most becomes z, and a shear makes it the z-axis
+/// (Woop, Benthin, Wald, "Watertight ray/triangle intersection", JCGT 2013). No reciprocal is infinite.
+struct RayDirection {
+  float inverse[3];        ///< 1 / component, of at most 1e20.
+  float shearX, shearY;    ///< x/z and y/z of the direction.
+  float scaleZ;            ///< 1/z.
+  std::uint32_t x, y, z;   ///< Which axis serves as which.
+  Vec3 exact;              ///< Unit length.
+
+  static RayDirection along(Vec3 unit) noexcept;
+};
+
+/// A triangle of the cage that has an area.
+struct CageTriangle {
+  float a[3], b[3], c[3];  ///< Corners, scaled.
+  float uvs[6];            ///< Of the corners.
+  std::uint32_t index;     ///< In the caller's mesh.
+  RayDirection normal;     ///< Outward; the direction of the rays of the points that project here.
+};
+
+/// The cage without its degenerate triangles, in the caller's order.
+struct Cage {
+  std::uint32_t count = 0;
+  const CageTriangle* triangles = nullptr;
+};
+
+/// Collects the triangles of the cage that have an area.
+/// @return false if memory ran out. `out.count` is 0 if there is none.
+bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage& out) noexcept;
+
+}  // namespace cagecast

@@ -1,0 +1,129 @@
+#include "check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cagecast {
+namespace {
+
+/// Farthest a coordinate may be from the origin, in diagonals of the target: fourth powers of it still fit a float with
+/// room to spare, and at this distance a float no longer resolves the target anyway.
+constexpr float kMaxProportion = 1e8f;
+/// Largest weld tolerance, as a share of the diagonal: beyond it a head is a handful of points.
+constexpr float kMaxWeldTolerance = 0.01f;
+
+struct Box {
+  float low[3] = {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+                  std::numeric_limits<float>::infinity()};
+  float high[3] = {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+                   -std::numeric_limits<float>::infinity()};
+
+  [[nodiscard]] double diagonal() const {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double side = static_cast<double>(high[k]) - static_cast<double>(low[k]);
+      sum += side * side;
+    }
+    return std::sqrt(sum);
+  }
+};
+
+/// The place of the first value that is not finite, or the size.
+std::size_t firstNonFinite(std::span<const float> values) {
+  // x · 0 is 0 for finite x and NaN otherwise: one sum tells whether there is anything to look for.
+  float sum = 0;
+  for (const float x : values) sum += x * 0.0f;
+  if (sum == 0.0f) return values.size();
+  return static_cast<std::size_t>(
+      std::find_if(values.begin(), values.end(), [](float x) { return !std::isfinite(x); }) - values.begin());
+}
+
+Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
+  const auto fault = [argument](Code code, std::size_t at = 0) {
+    return Status{code, argument, static_cast<std::uint32_t>(std::min<std::size_t>(at, UINT32_MAX))};
+  };
+  if (mesh.positions.empty()) return fault(Code::emptyMesh);
+  if (mesh.positions.size() % 3 != 0) return fault(Code::positionsNotTriples, mesh.positions.size());
+  const std::size_t vertices = mesh.positions.size() / 3;
+  if (mesh.indices.empty()) return fault(Code::emptyMesh);
+  if (mesh.indices.size() % 3 != 0) return fault(Code::indicesNotTriples, mesh.indices.size());
+  if (vertices > kMaxVertices) return fault(Code::tooLarge, vertices);
+  if (mesh.indices.size() / 3 > kMaxTriangles) return fault(Code::tooLarge, mesh.indices.size() / 3);
+  if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * vertices) return fault(Code::uvCountMismatch, mesh.uvs.size());
+  if (argument == Argument::cage && mesh.uvs.empty()) return fault(Code::missingUvs);
+  if (!mesh.groups.empty() && mesh.groups.size() != vertices) return fault(Code::groupCountMismatch, mesh.groups.size());
+
+  if (const std::size_t at = firstNonFinite(mesh.positions); at < mesh.positions.size()) {
+    return fault(Code::nonFinitePosition, at);
+  }
+  if (const std::size_t at = firstNonFinite(mesh.uvs); at < mesh.uvs.size()) return fault(Code::nonFiniteUv, at);
+  std::uint32_t highest = 0;
+  for (const std::uint32_t index : mesh.indices) highest = std::max(highest, index);
+  if (highest >= vertices) {
+    const auto first = std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t i) { return i >= vertices; });
+    return fault(Code::indexOutOfRange, static_cast<std::size_t>(first - mesh.indices.begin()));
+  }
+
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], mesh.positions[3 * v + k]);
+      box.high[k] = std::max(box.high[k], mesh.positions[3 * v + k]);
+    }
+  }
+  return {};
+}
+
+/// The place of the first coordinate that is out of proportion, or the size.
+std::size_t firstTooLarge(std::span<const float> positions, double scale) {
+  const auto found = std::find_if(positions.begin(), positions.end(), [&](float x) {
+    return std::abs(static_cast<double>(x) * scale) > static_cast<double>(kMaxProportion);
+  });
+  return static_cast<std::size_t>(found - positions.begin());
+}
+
+}  // namespace
+
+Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOptions& options, Units& units) noexcept {
+  Box cageBox;
+  Box targetBox;
+  if (const Status status = checkMesh(cage, Argument::cage, cageBox); !status.ok()) return status;
+  if (const Status status = checkMesh(target, Argument::target, targetBox); !status.ok()) return status;
+  if (!(options.weldTolerance >= 0.0f && options.weldTolerance <= kMaxWeldTolerance)) {
+    return {Code::badWeldTolerance, Argument::options};
+  }
+
+  // A target that is a single point has no size; then the cage's serves.
+  const double size = targetBox.diagonal() > 0 ? targetBox.diagonal() : cageBox.diagonal();
+  int exponent = 0;
+  if (size > 0) std::frexp(size, &exponent);
+  const double scale = std::ldexp(1.0, std::clamp(1 - exponent, -126, 127));
+  float reach = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto scaled = [scale](float x) { return static_cast<float>(static_cast<double>(x) * scale); };
+    for (const float x : {cageBox.low[k], cageBox.high[k]}) {
+      if (std::abs(scaled(x)) > kMaxProportion) {
+        return {Code::tooLarge, Argument::cage, static_cast<std::uint32_t>(firstTooLarge(cage.positions, scale))};
+      }
+    }
+    for (const float x : {targetBox.low[k], targetBox.high[k]}) {
+      if (std::abs(scaled(x)) > kMaxProportion) {
+        return {Code::tooLarge, Argument::target, static_cast<std::uint32_t>(firstTooLarge(target.positions, scale))};
+      }
+    }
+    units.low[k] = scaled(targetBox.low[k]);
+    units.high[k] = scaled(targetBox.high[k]);
+    reach = std::max(reach, std::max(units.high[k], scaled(cageBox.high[k])) - std::min(units.low[k], scaled(cageBox.low[k])));
+  }
+  units.scale = static_cast<float>(scale);
+  units.diagonal = targetBox.diagonal() * scale;
+  units.reach = reach;
+  return {};
+}
+
+Status checkClassifyOptions(const ClassifyOptions& options) noexcept {
+  if (!(options.threshold >= 0.0f && options.threshold <= 1.0f)) return {Code::badThreshold, Argument::options};
+  return {};
+}
+
+}  // namespace cagecast

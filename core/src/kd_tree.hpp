@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+
+#include "cage.hpp"
+#include "scratch.hpp"
+#include "simd.hpp"
+#include "weld.hpp"
+
+/// The search trees: every node has four children, whose boxes lie side by side so that one SIMD instruction looks at all
+/// of them; every leaf has up to four triangles, side by side too.
+namespace cagecast {
+
+/// A node's child: the index of a node, or of a leaf with the high bit set. Unused children are empty boxes.
+inline constexpr std::uint32_t kLeafBit = 0x8000'0000u;
+
+/// Four boxes: low[axis][child], high[axis][child]. Each is a little larger than what it holds, by more than the
+/// rounding of the kernels that use it, so that no box hides a triangle that its kernel would hit.
+struct alignas(16) Node {
+  float low[3][4];
+  float high[3][4];
+  std::uint32_t child[4];
+};
+
+/// Four triangles for rays: corner[a, b, c][axis][lane]. Unused lanes hold a triangle without area, which nothing hits.
+struct alignas(16) RayLeaf {
+  float corner[3][3][4];
+};
+
+/// Four triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
+/// edge, x along that edge to B, z along the normal; so C is above the edge, and the angles at A and B are acute.
+/// Unused lanes are infinitely far away.
+struct alignas(16) NearLeaf {
+  float origin[3][4];
+  float axes[3][3][4];     ///< axes[x, y, z][component]: unit vectors.
+  float base[4];           ///< B = (base, 0).
+  float toC[2][4];         ///< Unit vector from A to C.
+  float lengthC[4];        ///< Its length.
+  float fromB[2][4];       ///< Unit vector from B to C.
+  float lengthB[4];
+  std::uint32_t slot[4];   ///< The place in `Cage::triangles`.
+};
+
+/// A tree over the target's triangles: cheap to build, because each of its triangles sees less than one ray.
+struct RayTree {
+  const Node* nodes = nullptr;     ///< The root is node 0.
+  const RayLeaf* leaves = nullptr;
+};
+
+/// A tree over the cage's triangles: well built, because each of its triangles sees many queries.
+struct CageTree {
+  RayTree rays;
+  const NearLeaf* near = nullptr;  ///< Leaf by leaf the triangles of `rays.leaves`.
+  double extent = 0;               ///< Longest side of its box, scaled.
+};
+
+/// Most nodes a path to a leaf can have times three siblings: the size of a traversal's stack.
+inline constexpr int kStackSize = 256;
+
+/// @return false if memory ran out.
+bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch, RayTree& out) noexcept;
+bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageTree& out) noexcept;
+
+/// SPEC §1: a cage triangle can be the answer if its distance is within this share of the diagonal of the least.
+inline constexpr double kTieDistance = 1e-6;
+
+/// Collects the cage triangles that could be the nearest to p by SPEC's tie rule: all whose distance is within
+/// `kTieDistance` of the least, and some that rounding cannot tell from them.
+/// @param[out] found  Room for every cage triangle.
+/// @return How many were found: at least 1.
+std::uint32_t nearTriangles(const CageTree& tree, const float* p, double diagonal, std::uint32_t* found) noexcept;
+
+/// Whether a ray from `origin` hits a triangle at a distance greater than `from`, from either side. Watertight: a ray
+/// through an edge or a corner that triangles share hits at least one of them. A triangle that holds the origin as a
+/// corner is hit at distance 0, exactly; one that holds the whole ray in its plane is not hit.
+bool hits(const RayTree& tree, const float* origin, const RayDirection& direction, double from) noexcept;
+
+}  // namespace cagecast

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+
+/// Searches among points, not surfaces: what nanoflann is made for.
+namespace cagecast {
+
+/// Joins points of equal group that are nearer to each other than `radius`, chains of them too, and moves them to the
+/// position that is smallest in x, then y, then z. Joined points keep the order of their first members.
+/// @param[in,out] positions  3 per point; on return those of the joined points.
+/// @param groups             1 per point.
+/// @param[out] joined        The joined point of each point.
+/// @param[out] joinedCount  the number of joined points.
+/// @return false if memory ran out.
+bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius, std::uint32_t* joined,
+               std::uint32_t& joinedCount) noexcept;
+
+/// Finds the nearest of `sites` for each of `points`; of equally near ones the first.
+/// @param sites,points  3 floats each.
+/// @param[out] nearest  1 per point.
+/// @return false if memory ran out.
+bool nearestSites(const float* sites, std::uint32_t siteCount, const float* points, std::uint32_t pointCount,
+                  std::uint32_t* nearest) noexcept;
+
+}  // namespace cagecast

@@ -1,0 +1,152 @@
+#include "weld.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "curve.hpp"
+#include "point_search.hpp"
+#include "triangle.hpp"
+
+namespace cagecast {
+namespace {
+
+/// A vertex and the place of its cell on the curve.
+struct Placed {
+  std::uint32_t key;
+  std::uint32_t vertex;
+};
+
+/// Sorts by key, stably: least significant digit first.
+/// @return The one of the two arrays that holds the result.
+Placed* sortByKey(Placed* items, Placed* other, std::uint32_t count, int keyBits) {
+  constexpr int kDigitBits = 11;
+  for (int shift = 0; shift < keyBits; shift += kDigitBits) {
+    std::uint32_t starts[1 << kDigitBits] = {};
+    for (std::uint32_t i = 0; i < count; ++i) ++starts[items[i].key >> shift & ((1 << kDigitBits) - 1)];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : starts) sum += std::exchange(start, sum);
+    for (std::uint32_t i = 0; i < count; ++i) other[starts[items[i].key >> shift & ((1 << kDigitBits) - 1)]++] = items[i];
+    std::swap(items, other);
+  }
+  return items;
+}
+
+/// One vertex as weld sees it: equal if position and group are.
+struct Site {
+  float x, y, z;
+  std::uint32_t group;
+
+  friend bool operator==(const Site& a, const Site& b) { return a.x == b.x && a.y == b.y && a.z == b.z && a.group == b.group; }
+  friend bool operator<(const Site& a, const Site& b) {
+    if (a.x != b.x) return a.x < b.x;
+    if (a.y != b.y) return a.y < b.y;
+    if (a.z != b.z) return a.z < b.z;
+    return a.group < b.group;
+  }
+};
+
+class Welder {
+ public:
+  Welder(const MeshView& target, const Units& units) : target_(target), units_(units) {}
+
+  /// Adding 0 makes 0 of −0.
+  [[nodiscard]] Site site(std::uint32_t v) const {
+    const float* p = target_.positions.data() + std::size_t{3} * v;
+    return {p[0] * units_.scale + 0.0f, p[1] * units_.scale + 0.0f, p[2] * units_.scale + 0.0f,
+            target_.groups.empty() ? 0 : target_.groups[v]};
+  }
+
+ private:
+  const MeshView& target_;
+  const Units& units_;
+};
+
+}  // namespace
+
+bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& scratch, Points& out) noexcept {
+  const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
+  const auto allTriangles = static_cast<std::uint32_t>(target.indices.size() / 3);
+  auto* ofVertex = scratch.take<std::uint32_t>(vertexCount);
+  auto* positions = scratch.take<float>(std::size_t{3} * vertexCount);
+  auto* triangles = scratch.take<std::uint32_t>(std::size_t{3} * allTriangles);
+  const bool tolerant = tolerance > 0;
+  auto* groups = scratch.take<std::uint32_t>(tolerant ? vertexCount : 0);
+  const Scratch::Mark mark = scratch.mark();
+  auto* placed = scratch.take<Placed>(vertexCount);
+  auto* spare = scratch.take<Placed>(vertexCount);
+  if (scratch.failed()) return false;
+
+  // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
+  const Welder welder(target, units);
+  const int levels = vertexCount < (1u << 16) ? 7 : 10;
+  float side = 0;
+  for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
+  const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
+  for (std::uint32_t v = 0; v < vertexCount; ++v) {
+    const Site s = welder.site(v);
+    const auto cell = [cells](float x, float low) { return static_cast<std::uint32_t>((x - low) * cells); };
+    placed[v] = {HilbertCurve::key(cell(s.x, units.low[0]), cell(s.y, units.low[1]), cell(s.z, units.low[2]), levels), v};
+  }
+  if (Placed* sorted = sortByKey(placed, spare, vertexCount, 3 * levels); sorted != placed) std::swap(placed, spare);
+
+  // Within a cell, compare each with each while they are few; sort a crowded one, so that no input makes this quadratic.
+  constexpr std::uint32_t kFew = 16;
+  std::uint32_t pointCount = 0;
+  for (std::uint32_t begin = 0, end = 0; begin < vertexCount; begin = end) {
+    while (end < vertexCount && placed[end].key == placed[begin].key) ++end;
+    const bool crowded = end - begin > kFew;
+    if (crowded) {
+      std::sort(placed + begin, placed + end, [&](const Placed& a, const Placed& b) {
+        const Site sa = welder.site(a.vertex);
+        const Site sb = welder.site(b.vertex);
+        return sa == sb ? a.vertex < b.vertex : sa < sb;
+      });
+    }
+    const std::uint32_t firstPoint = pointCount;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t v = placed[i].vertex;
+      const Site s = welder.site(v);
+      std::uint32_t point = pointCount;
+      // The spare array remembers the vertex that each point was made from.
+      for (std::uint32_t q = crowded && pointCount > firstPoint ? pointCount - 1 : firstPoint; q < pointCount; ++q) {
+        if (welder.site(spare[q].vertex) == s) {
+          point = q;
+          break;
+        }
+      }
+      if (point == pointCount) {
+        spare[pointCount++].vertex = v;
+        float* p = positions + std::size_t{3} * point;
+        p[0] = s.x;
+        p[1] = s.y;
+        p[2] = s.z;
+        if (tolerant) groups[point] = s.group;
+      }
+      ofVertex[v] = point;
+    }
+  }
+  scratch.rewind(mark);
+
+  if (tolerant) {
+    auto* merged = scratch.take<std::uint32_t>(pointCount);
+    if (scratch.failed()) return false;
+    const double radius = static_cast<double>(tolerance) * units.diagonal;
+    if (!mergeNear(positions, groups, pointCount, radius, merged, pointCount)) return false;
+    for (std::uint32_t v = 0; v < vertexCount; ++v) ofVertex[v] = merged[ofVertex[v]];
+    scratch.rewind(mark);
+  }
+
+  std::uint32_t kept = 0;
+  for (std::uint32_t t = 0; t < allTriangles; ++t) {
+    const std::uint32_t* index = target.indices.data() + std::size_t{3} * t;
+    const std::uint32_t corner[3] = {ofVertex[index[0]], ofVertex[index[1]], ofVertex[index[2]]};
+    const auto position = [&](int i) { return positions + std::size_t{3} * corner[i]; };
+    if (!hasArea(position(0), position(1), position(2))) continue;
+    std::copy(corner, corner + 3, triangles + std::size_t{3} * kept++);
+  }
+
+  out = {pointCount, positions, ofVertex, kept, triangles};
+  return true;
+}
+
+}  // namespace cagecast

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "cagecast/mesh.hpp"
+#include "check.hpp"
+#include "scratch.hpp"
+
+namespace cagecast {
+
+/// The target, welded: what every later step works on.
+struct Points {
+  std::uint32_t count = 0;
+  const float* positions = nullptr;          ///< 3 per point, scaled, in the order of a space-filling curve.
+  const std::uint32_t* ofVertex = nullptr;   ///< The point of each vertex.
+  std::uint32_t triangleCount = 0;           ///< Triangles with an area; the others take no part in anything.
+  const std::uint32_t* triangles = nullptr;  ///< 3 points per triangle with an area.
+
+  [[nodiscard]] const float* at(std::uint32_t point) const { return positions + std::size_t{3} * point; }
+};
+
+/// Welds the vertices that have equal positions (−0 is 0) and equal groups into points, and drops triangles without area.
+/// With `tolerance` > 0 (a share of the diagonal), points of a group that are nearer than it become one as well, chains of
+/// them too, at the position that is smallest in x, then y, then z.
+/// @return false if memory ran out.
+bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& scratch, Points& out) noexcept;
+
+}  // namespace cagecast
