@@ -1,0 +1,89 @@
+// Builds everything and runs all tests; ends with how many of each suite passed.
+//
+//   node tests/run.mjs [suite …]        suites: core, package, browser
+
+import { spawn } from 'node:child_process';
+import { readdirSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+
+const root = fileURLToPath(new URL('..', import.meta.url));
+
+/** Runs a command, shows its output, and returns it. */
+function run(program, args, env = {}) {
+  console.log(`\n$ ${[program, ...args].join(' ')}`);
+  return new Promise((resolve, reject) => {
+    const child = spawn(program, args, { cwd: root, env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'inherit'] });
+    let output = '';
+    child.stdout.on('data', (data) => {
+      output += data;
+      process.stdout.write(data);
+    });
+    child.on('error', reject);
+    child.on('close', (status) => resolve({ status, output }));
+  });
+}
+
+async function mustRun(...args) {
+  const { status } = await run(...args);
+  if (status !== 0) throw new Error(`${args[0]} ${args[1].join(' ')} failed (exit ${status})`);
+}
+
+async function ctest(preset) {
+  await mustRun('cmake', ['--preset', preset, '-Wno-dev', '--log-level=WARNING']);
+  await mustRun('cmake', ['--build', '--preset', preset]);
+  const { status, output } = await run('ctest', ['--preset', preset, '--progress', '-j2']);
+  const [, failed, all] = /(\d+) tests failed out of (\d+)/.exec(output) ?? [, 1, 1];
+  return { passed: all - failed, failed: Number(failed) || Number(status !== 0) };
+}
+
+async function nodeTests(folder) {
+  const files = readdirSync(new URL(folder, import.meta.url)).filter((name) => name.endsWith('.test.ts'));
+  const { status, output } = await run(process.execPath, [
+    '--import', 'tsx', '--test', '--test-reporter=spec', '--test-concurrency=1', ...files.map((name) => `tests/${folder}/${name}`),
+  ]);
+  const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
+  return { passed: count('pass'), failed: (count('fail') + count('cancelled')) || Number(status !== 0), skipped: count('skipped') };
+}
+
+/** Each suite builds what it needs. In the order in which a mistake is cheapest to find. */
+const kSuites = {
+  core: async () => {
+    const lanes = [await ctest('release'), await ctest('scalar'), await ctest('dev')];
+    return { passed: lanes.reduce((sum, lane) => sum + lane.passed, 0), failed: lanes.reduce((sum, lane) => sum + lane.failed, 0) };
+  },
+  package: async () => {
+    await mustRun('npm', ['run', '--silent', 'assets']);
+    await mustRun('npm', ['run', '--silent', 'build']);
+    const js = await nodeTests('js');
+    const packed = await nodeTests('package');
+    return { passed: js.passed + packed.passed, failed: js.failed + packed.failed, skipped: js.skipped + packed.skipped };
+  },
+  browser: async () => {
+    await mustRun('npm', ['run', '--silent', 'assets']);
+    await mustRun('npm', ['run', '--silent', 'build']);
+    return nodeTests('browser');
+  },
+};
+
+const chosen = process.argv.length > 2 ? process.argv.slice(2) : Object.keys(kSuites);
+const unknown = chosen.find((name) => !(name in kSuites));
+if (unknown) {
+  console.error(`no suite "${unknown}"; there are: ${Object.keys(kSuites).join(', ')}`);
+  process.exit(2);
+}
+const rows = [];
+for (const name of chosen) {
+  try {
+    rows.push({ name, skipped: 0, ...(await kSuites[name]()) });
+  } catch (error) {
+    console.error(error.message);
+    rows.push({ name, passed: 0, failed: 1, skipped: 0 });
+  }
+}
+console.log('');
+// A suite that ran nothing has not passed.
+for (const row of rows) if (row.passed === 0 && row.failed === 0) row.failed = 1;
+for (const { name, passed, failed, skipped } of rows) console.log(`${name.padEnd(8)} ${passed} passed, ${failed} failed, ${skipped} skipped`);
+const sum = (field) => rows.reduce((total, row) => total + row[field], 0);
+console.log(`\nall: ${sum('passed')} passed, ${sum('failed')} failed, ${sum('skipped')} skipped`);
+process.exit(sum('failed') === 0 ? 0 : 1);

@@ -1,0 +1,79 @@
+// Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
+// Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
+//
+//   node wasm/tools/setup.mjs start | test | bench
+
+import { execFileSync, spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+const kOldestNode = 20;
+
+const command = (name) => () => spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
+const header = (path) => () => ['/usr/include', '/usr/local/include', '/opt/homebrew/include'].some((folder) => existsSync(`${folder}/${path}`));
+
+/** What is needed beyond Node: how to see that it is there, and the Debian package that brings it. */
+const kNeeds = {
+  emscripten: { what: 'Emscripten 3.1.6 or newer (emcc)', there: command('emcc') },
+  cmake: { what: 'CMake 3.25 or newer', there: command('cmake') },
+  'ninja-build': { what: 'Ninja', there: command('ninja') },
+  'libnanoflann-dev': { what: 'nanoflann 1.4 or newer (nanoflann.hpp)', there: header('nanoflann.hpp') },
+  'g++': { what: 'a C++20 compiler', there: () => Boolean(process.env.CXX) || command('c++')() },
+  'libtinygltf-dev': { what: 'tinygltf 2.7 or newer (tiny_gltf.h)', there: header('tiny_gltf.h') },
+  'nlohmann-json3-dev': { what: 'nlohmann/json 3 (nlohmann/json.hpp)', there: header('nlohmann/json.hpp') },
+  catch2: { what: 'Catch2 2.13 (catch2/catch.hpp)', there: header('catch2/catch.hpp') },
+  chromium: { what: 'Chromium', there: () => Boolean(process.env.CHROMIUM) || command('chromium')() },
+  'libembree-dev': { what: 'Embree 3 (embree3/rtcore.h)', there: header('embree3/rtcore.h') },
+  valgrind: { what: 'Valgrind', there: command('valgrind') },
+  'qemu-user': { what: 'QEMU user emulation (qemu-aarch64)', there: command('qemu-aarch64') },
+  'g++-aarch64-linux-gnu': { what: 'a C++20 cross compiler for aarch64', there: command('aarch64-linux-gnu-g++') },
+};
+const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev'];
+const kTests = [...kPage, 'g++', 'libtinygltf-dev', 'nlohmann-json3-dev', 'catch2', 'chromium'];
+const kPurposes = {
+  start: kPage,
+  test: kTests,
+  bench: [...kTests, 'libembree-dev', 'valgrind', 'qemu-user', 'g++-aarch64-linux-gnu'],
+};
+
+function fail(message) {
+  console.error(message);
+  process.exit(1);
+}
+
+function installSystemPackages(names) {
+  const missing = names.filter((name) => !kNeeds[name].there());
+  if (missing.length === 0) return;
+  const list = missing.map((name) => `  ${kNeeds[name].what}  (Debian: ${name})`).join('\n');
+  const asRoot = process.getuid?.() === 0 ? [] : command('sudo')() ? ['sudo'] : null;
+  if (!command('apt-get')() || asRoot === null) {
+    fail(`Cagecast needs, and this machine lacks:\n${list}\nPlease install them (apt-get, which would do it, ${asRoot === null ? 'needs root or sudo' : 'is not here'}), then run this again.`);
+  }
+  console.log(`Installing:\n${list}`);
+  const apt = (...args) => {
+    const [program, ...rest] = [...asRoot, 'env', 'DEBIAN_FRONTEND=noninteractive', 'apt-get', ...args];
+    return spawnSync(program, rest, { stdio: ['ignore', 'inherit', 'inherit'] }).status === 0;
+  };
+  if (!apt('update', '-qq') || !apt('install', '-y', '-qq', '--no-install-recommends', ...missing)) {
+    fail(`apt-get could not install: ${missing.join(' ')}`);
+  }
+  const still = missing.filter((name) => !kNeeds[name].there());
+  if (still.length > 0) fail(`Installed, but still not found: ${still.map((name) => kNeeds[name].what).join(', ')}`);
+}
+
+function installNpmPackages() {
+  const lock = createHash('sha256').update(readFileSync(`${root}package-lock.json`)).digest('hex');
+  const stamp = `${root}node_modules/.installed-lock`;
+  if (existsSync(stamp) && readFileSync(stamp, 'utf8') === lock) return;
+  console.log('Installing npm packages…');
+  execFileSync('npm', ['ci', '--no-audit', '--no-fund', '--loglevel=error'], { cwd: root, stdio: ['ignore', 'inherit', 'inherit'] });
+  writeFileSync(stamp, lock);
+}
+
+const purpose = process.argv[2];
+if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
+if (Number(process.versions.node.split('.')[0]) < kOldestNode) fail(`Cagecast needs Node ${kOldestNode} or newer; this is ${process.versions.node}.`);
+installSystemPackages(kPurposes[purpose]);
+installNpmPackages();
