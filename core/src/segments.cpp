@@ -12,7 +12,7 @@ namespace {
 /// A triangle inside the box of a target of diagonal < 2 has an area < 2; the sum of all stays within 63 bits.
 class AreaUnit {
  public:
-  explicit AreaUnit(std::uint32_t triangleCount) : perArea_(std::ldexp(1.0, 60 - std::bit_width(triangleCount))) {}
+  explicit AreaUnit(std::uint32_t triangleCount) : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)))) {}
   [[nodiscard]] std::int64_t third(double doubleArea) const { return static_cast<std::int64_t>(doubleArea / 6 * perArea_); }
   [[nodiscard]] double area(std::int64_t units) const { return static_cast<double>(units) / perArea_; }
 

@@ -12,21 +12,21 @@ export interface Answer {
 
 /** What bindings.cpp adds to an answer for steps 1 to 4. `segmentStats`: points, A, E, C of each segment. */
 export interface ProjectAnswer extends Answer {
-  uvs: Float32Array;
-  zones: Uint8Array;
-  triangles: Uint32Array;
-  distances: Float32Array;
-  segments: Uint32Array;
-  segmentStats: Float64Array;
-  timings: Float64Array;
+  uvs: Float32Array<ArrayBuffer>;
+  zones: Uint8Array<ArrayBuffer>;
+  triangles: Uint32Array<ArrayBuffer>;
+  distances: Float32Array<ArrayBuffer>;
+  segments: Uint32Array<ArrayBuffer>;
+  segmentStats: Float64Array<ArrayBuffer>;
+  timings: Float64Array<ArrayBuffer>;
   peakBytes: number;
 }
 
 /** What bindings.cpp adds to an answer for step 5. */
 export interface ClassifyAnswer extends Answer {
-  zones: Uint8Array;
-  cosmeticTriangles: Uint8Array;
-  culledSegments: Uint8Array;
+  zones: Uint8Array<ArrayBuffer>;
+  cosmeticTriangles: Uint8Array<ArrayBuffer>;
+  culledSegments: Uint8Array<ArrayBuffer>;
 }
 
 /** The functions of bindings.cpp. All arrays they return are copies. */
@@ -90,8 +90,9 @@ export function callCore<A extends Answer>(fn: string, call: (bindings: Bindings
     return call(instance);
   } catch (cause) {
     dropInstance();
-    // RangeError: an array for JavaScript could not be had. "Aborted": C++ could not allocate where it cannot say so.
-    const memory = cause instanceof RangeError || String(cause).includes('Aborted');
+    // RangeError: an array for JavaScript could not be had. "Aborted", or a number (an exception of C++): C++ could not
+    // allocate where it cannot say so.
+    const memory = cause instanceof RangeError || typeof cause === 'number' || String(cause).includes('Aborted');
     throw memory
       ? new CagecastError('outOfMemory', `${fn}: not enough memory for this target and cage`, 0, { cause })
       : new CagecastError('internal', `${fn}: the WebAssembly module failed (${String(cause)})`, 0, { cause });

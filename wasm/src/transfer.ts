@@ -42,15 +42,15 @@ export interface SegmentStats {
 /** What `project` and `transfer` both find out. Every array is the caller's own. */
 export interface Projected {
   /** 2 per target vertex: its place in the cage's texture, NCZ or not. */
-  uvs: Float32Array;
+  uvs: Float32Array<ArrayBuffer>;
   /** 1 per vertex, a `Zone`. After `project` nothing is `Culled` yet. */
-  zones: Uint8Array;
+  zones: Uint8Array<ArrayBuffer>;
   /** 1 per vertex: the nearest triangle of the cage. */
-  triangles: Uint32Array;
+  triangles: Uint32Array<ArrayBuffer>;
   /** 1 per vertex: the distance to it, in units of the input. */
-  distances: Float32Array;
+  distances: Float32Array<ArrayBuffer>;
   /** 1 per vertex: its segment. Segments are numbered by their first vertex. */
-  segments: Uint32Array;
+  segments: Uint32Array<ArrayBuffer>;
   /** 1 per segment. */
   segmentStats: SegmentStats[];
   /** How long each step took. */
@@ -62,15 +62,15 @@ export interface Projected {
 /** The part of the answer that does not depend on the threshold; plain data that can be kept, sent or stored. */
 export interface Projection extends Projected {
   /** The target's, 3 per triangle: what `classify` needs to decide per triangle. */
-  indices: Uint32Array;
+  indices: Uint32Array<ArrayBuffer>;
 }
 
 /** The part of the answer that depends on the threshold. Every array is the caller's own. */
 export interface Classification {
   /** 1 per target vertex, a `Zone`. */
-  zones: Uint8Array;
+  zones: Uint8Array<ArrayBuffer>;
   /** 1 per target triangle: 1 if all three corners may be painted. */
-  cosmeticTriangles: Uint8Array;
+  cosmeticTriangles: Uint8Array<ArrayBuffer>;
   /** 1 per segment, with `culled` decided. */
   segmentStats: SegmentStats[];
 }
@@ -116,7 +116,7 @@ export function project(cage: Mesh, target: Mesh, options?: ProjectOptions): Pro
   const targetMesh = checkMesh('project', 'target', target);
   const answer = callCore('project', (core) => core.project(cageMesh, targetMesh, resolved.projection, resolved.weldTolerance));
   check('project', answer, cageMesh, targetMesh, resolved);
-  return { ...projected(answer), indices: Uint32Array.from(targetMesh.indices) };
+  return { ...projected(answer), indices: Uint32Array.from<number>(targetMesh.indices) };
 }
 
 /**

@@ -10,3 +10,16 @@ declare module '#wasm-base64' {
   const base64: string;
   export default base64;
 }
+
+/** Google's Draco decoder; its package has types for its main module only. */
+declare module 'draco3dgltf/draco_decoder_gltf_nodejs.js' {
+  export default function createDecoderModule(module: { wasmBinary: Uint8Array }): Promise<unknown>;
+}
+
+declare module 'draco3dgltf/draco_decoder_gltf.wasm' {
+  const bytes: Uint8Array;
+  export default bytes;
+}
+
+/** The package's version, from package.json. */
+declare const CAGECAST_VERSION: string;

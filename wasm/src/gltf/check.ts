@@ -1,0 +1,138 @@
+import type { GLTF } from '@gltf-transform/core';
+import { InputError } from './input-error.js';
+
+const componentBytes: Record<number, number> = { 5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4 };
+const typeComponents: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 };
+/** The most elements of an accessor: beyond it a few bytes of JSON could ask for all of the memory. */
+const maxCount = 2 ** 28;
+
+/** The JSON of extensions that compress a buffer view; both have the same shape. */
+export const meshoptExtensions = ['EXT_meshopt_compression', 'KHR_meshopt_compression'];
+
+/** Where a compressed buffer view has its bytes. */
+export interface MeshoptView {
+  buffer: number;
+  byteOffset?: number;
+  byteLength: number;
+  byteStride: number;
+  count: number;
+}
+
+/** The compressed form of a buffer view, if it has one. */
+export function meshoptView(view: GLTF.IBufferView): MeshoptView | undefined {
+  const extensions = view.extensions as Record<string, MeshoptView> | undefined;
+  return meshoptExtensions.map((name) => extensions?.[name]).find((found) => found !== undefined);
+}
+
+/**
+ * Checks what reading the geometry of a glTF relies on: that every reference leads somewhere and every range of bytes
+ * is there, so that a damaged file ends in one sentence about it and not in the depths of a decoder.
+ * @param bytes  The size of each buffer, `undefined` for one without bytes (a fallback for compressed views).
+ * @throws {InputError}
+ */
+export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): void {
+  for (const list of ['bufferViews', 'accessors', 'meshes', 'nodes', 'scenes', 'skins', 'materials'] as const) {
+    const value: unknown = json[list];
+    if (value !== undefined && !(Array.isArray(value) && value.every((item) => typeof item === 'object' && item !== null))) {
+      throw new InputError(`${list} is not a list of objects`);
+    }
+  }
+  const { bufferViews = [], accessors = [], meshes = [], nodes = [], scenes = [], skins = [], materials = [] } = json;
+
+  bufferViews.forEach((view, v) => {
+    const name = `bufferViews[${v}]`;
+    const compressed = meshoptView(view);
+    range(name, index(`${name}.buffer`, view.buffer, bytes.length, 'buffers'), view.byteOffset ?? 0, view.byteLength, compressed !== undefined);
+    if (compressed) range(`${name} (compressed)`, index(`${name}.buffer`, compressed.buffer, bytes.length, 'buffers'), compressed.byteOffset ?? 0, compressed.byteLength, false);
+  });
+
+  function range(name: string, buffer: number, offset: number, length: number, mayLack: boolean): void {
+    whole(`${name}.byteOffset`, offset);
+    whole(`${name}.byteLength`, length);
+    const size = bytes[buffer];
+    if (size === undefined ? !mayLack : offset + length > size && !mayLack) {
+      throw new InputError(`${name} ends at byte ${offset + length} of buffers[${buffer}], which has ${size ?? 0}`);
+    }
+  }
+
+  accessors.forEach((accessor, a) => {
+    const name = `accessors[${a}]`;
+    const component = componentBytes[accessor.componentType];
+    const components = typeComponents[accessor.type];
+    if (component === undefined) throw new InputError(`${name}.componentType = ${accessor.componentType} is unknown`);
+    if (components === undefined) throw new InputError(`${name}.type = ${accessor.type} is unknown`);
+    if (whole(`${name}.count`, accessor.count) > maxCount) throw new InputError(`${name}.count = ${accessor.count} is more than ${maxCount}`);
+    if (accessor.bufferView !== undefined) within(name, accessor.bufferView, accessor.byteOffset ?? 0, component * components, accessor.count);
+    if (accessor.sparse) {
+      const { count, indices, values } = accessor.sparse;
+      if (whole(`${name}.sparse.count`, count) > accessor.count) throw new InputError(`${name}.sparse.count = ${count} is more than its count ${accessor.count}`);
+      within(`${name}.sparse.indices`, indices?.bufferView, indices?.byteOffset ?? 0, componentBytes[indices?.componentType] ?? 4, count);
+      within(`${name}.sparse.values`, values?.bufferView, values?.byteOffset ?? 0, component * components, count);
+    }
+  });
+
+  function within(name: string, at: unknown, offset: number, elementBytes: number, count: number): void {
+    const view = bufferViews[index(`${name}.bufferView`, at, bufferViews.length, 'bufferViews')]!;
+    whole(`${name}.byteOffset`, offset);
+    const stride = view.byteStride ?? elementBytes;
+    const end = count === 0 ? 0 : offset + stride * (count - 1) + elementBytes;
+    if (end > view.byteLength) throw new InputError(`${name} ends at byte ${end} of bufferViews[${at}], which has ${view.byteLength}`);
+  }
+
+  meshes.forEach((mesh, m) => {
+    if (!Array.isArray(mesh.primitives) || mesh.primitives.length === 0) throw new InputError(`meshes[${m}] has no primitives`);
+    mesh.primitives.forEach((primitive, p) => {
+      const name = `meshes[${m}].primitives[${p}]`;
+      if (typeof primitive?.attributes !== 'object' || primitive.attributes === null) throw new InputError(`${name} has no attributes`);
+      for (const [semantic, accessor] of Object.entries(primitive.attributes)) {
+        index(`${name}.attributes.${semantic}`, accessor, accessors.length, 'accessors');
+      }
+      if (primitive.indices !== undefined) index(`${name}.indices`, primitive.indices, accessors.length, 'accessors');
+      if (primitive.material !== undefined) index(`${name}.material`, primitive.material, materials.length, 'materials');
+      const draco = dracoOf(primitive);
+      if (draco) index(`${name} (compressed).bufferView`, draco.bufferView, bufferViews.length, 'bufferViews');
+    });
+  });
+
+  const parents = new Array<number | undefined>(nodes.length);
+  nodes.forEach((node, n) => {
+    if (node.mesh !== undefined) index(`nodes[${n}].mesh`, node.mesh, meshes.length, 'meshes');
+    if (node.skin !== undefined) index(`nodes[${n}].skin`, node.skin, skins.length, 'skins');
+    for (const [name, length] of [['matrix', 16], ['translation', 3], ['rotation', 4], ['scale', 3]] as const) {
+      const value: unknown = node[name];
+      if (value !== undefined && !(Array.isArray(value) && value.length === length && value.every(Number.isFinite))) {
+        throw new InputError(`nodes[${n}].${name} is not ${length} finite numbers`);
+      }
+    }
+    for (const child of node.children ?? []) {
+      index(`nodes[${n}].children`, child, nodes.length, 'nodes');
+      if (parents[child] !== undefined) throw new InputError(`nodes[${child}] has two parents, nodes[${parents[child]}] and nodes[${n}]`);
+      parents[child] = n;
+    }
+  });
+  if (json.scene !== undefined) index('scene', json.scene, scenes.length, 'scenes');
+  scenes.forEach((scene, s) => {
+    for (const node of scene.nodes ?? []) {
+      index(`scenes[${s}].nodes`, node, nodes.length, 'nodes');
+      // With one parent at most for every node, a root cannot be in a cycle.
+      if (parents[node] !== undefined) throw new InputError(`nodes[${node}] is a root of scenes[${s}] and a child of nodes[${parents[node]}]`);
+    }
+  });
+}
+
+/** The Draco form of a primitive, if it has one. */
+export function dracoOf(primitive: GLTF.IMeshPrimitive): { bufferView: number; attributes: Record<string, number> } | undefined {
+  return primitive.extensions?.['KHR_draco_mesh_compression'] as ReturnType<typeof dracoOf>;
+}
+
+function index(name: string, value: unknown, count: number, list: string): number {
+  if (!Number.isInteger(value) || (value as number) < 0 || (value as number) >= count) {
+    throw new InputError(`${name} = ${value} is out of range (${count} ${list})`);
+  }
+  return value as number;
+}
+
+function whole(name: string, value: unknown): number {
+  if (!Number.isSafeInteger(value) || (value as number) < 0) throw new InputError(`${name} = ${value} is not a whole number`);
+  return value as number;
+}

@@ -1,0 +1,171 @@
+import { readFile } from 'node:fs/promises';
+import { dirname, resolve } from 'node:path';
+import { Logger, NodeIO, type Document, type GLTF, type JSONDocument } from '@gltf-transform/core';
+import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
+import { MeshoptDecoder } from 'meshoptimizer/decoder';
+import { createDracoDecoder } from './draco.js';
+import { checkGeometry, dracoOf, meshoptView } from './check.js';
+import { InputError, firstLine } from './input-error.js';
+
+/** A glTF file as it is, and its geometry decoded. */
+export interface GltfFile {
+  /** As the caller named it, for messages. */
+  path: string;
+  /** The JSON as it stands in the file. Not to be changed. */
+  json: GLTF.IGLTF;
+  /** The bytes of each buffer; `undefined` for one that has none (a fallback for compressed views). */
+  buffers: (Uint8Array | undefined)[];
+  /** The meshes and accessors, in the file's order, decompressed and decoded. */
+  geometry: Document;
+}
+
+const geometryExtensions = [KHRMeshQuantization, EXTMeshoptCompression, KHRDracoMeshCompression];
+const geometryExtensionNames: string[] = geometryExtensions.map((extension) => extension.EXTENSION_NAME);
+
+/**
+ * Reads a GLB or glTF file, with external or embedded buffers, quantised, sparse, or compressed by Draco or meshopt.
+ * Only geometry is decoded; images and materials stay as they are.
+ * @throws {InputError} that names the file and what is wrong with it.
+ */
+export async function readGltf(path: string): Promise<GltfFile> {
+  try {
+    const bytes = await readBytes(path);
+    const { json, binary } = parse(bytes);
+    const buffers = await readBuffers(json, binary, dirname(path));
+    checkGeometry(json, buffers.map((buffer) => buffer?.byteLength));
+    return { path, json, buffers, geometry: await decode(json, buffers) };
+  } catch (error) {
+    if (error instanceof InputError) throw error.in(path);
+    throw new InputError(`${path}: cannot be decoded (${firstLine(error)})`, { cause: error });
+  }
+}
+
+/**
+ * Reads a whole file.
+ * @throws {InputError} in words, without the file's name.
+ */
+export async function readBytes(path: string): Promise<Uint8Array> {
+  try {
+    return await readFile(path);
+  } catch (error) {
+    const { code } = error as NodeJS.ErrnoException;
+    if (code === 'ENOENT') throw new InputError('no such file');
+    if (code === 'EISDIR') throw new InputError('is a folder, not a file');
+    if (code === 'EACCES') throw new InputError('may not be read');
+    throw new InputError(`cannot be read (${firstLine(error)})`, { cause: error });
+  }
+}
+
+function parse(bytes: Uint8Array): { json: GLTF.IGLTF; binary: Uint8Array | undefined } {
+  if (bytes.byteLength === 0) throw new InputError('the file is empty');
+  const isGlb = bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 && bytes[3] === 0x46; // "glTF"
+  const { text, binary } = isGlb ? chunks(bytes) : { text: bytes, binary: undefined };
+  let json: GLTF.IGLTF | null;
+  try {
+    json = JSON.parse(new TextDecoder().decode(text)) as GLTF.IGLTF | null;
+  } catch (cause) {
+    throw new InputError(isGlb ? 'its JSON is damaged' : 'is neither a GLB nor a glTF file', { cause });
+  }
+  const version = typeof json === 'object' ? json?.asset?.version : undefined;
+  if (typeof json !== 'object' || json === null || version === undefined) {
+    throw new InputError('is JSON but no glTF: it has no asset.version');
+  }
+  if (!/^2\./.test(String(version))) throw new InputError(`is glTF ${version}; only 2.x can be read`);
+  return { json, binary };
+}
+
+/** The two chunks of a GLB. */
+function chunks(bytes: Uint8Array): { text: Uint8Array; binary: Uint8Array | undefined } {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const have = bytes.byteLength;
+  if (have < 20) throw new InputError(`is truncated: a GLB has at least 20 bytes, this one ${have}`);
+  const version = view.getUint32(4, true);
+  if (version !== 2) throw new InputError(`is a GLB of version ${version}; only version 2 can be read`);
+  const length = view.getUint32(8, true);
+  if (length > have) throw new InputError(`is truncated: its header says ${length} bytes, there are ${have}`);
+  const found: Record<number, Uint8Array> = {};
+  for (let at = 12; at + 8 <= length; ) {
+    const size = view.getUint32(at, true);
+    const type = view.getUint32(at + 4, true);
+    if (at + 8 + size > length) throw new InputError(`is damaged: the chunk at byte ${at} has ${size} bytes, ${length - at - 8} are left`);
+    found[type] ??= bytes.subarray(at + 8, at + 8 + size);
+    at += 8 + size;
+  }
+  const text = found[0x4e4f534a]; // "JSON"
+  if (text === undefined) throw new InputError('is damaged: it has no JSON chunk');
+  return { text, binary: found[0x004e4942] }; // "BIN\0"
+}
+
+async function readBuffers(json: GLTF.IGLTF, binary: Uint8Array | undefined, folder: string): Promise<(Uint8Array | undefined)[]> {
+  const { buffers = [] } = json;
+  if (!Array.isArray(buffers)) throw new InputError('buffers is not a list');
+  return Promise.all(
+    buffers.map(async (buffer, b) => {
+      const bytes = buffer.uri === undefined ? (b === 0 ? binary : undefined) : await readUri(`buffers[${b}]`, buffer.uri, folder);
+      if (bytes !== undefined && bytes.byteLength < buffer.byteLength) {
+        throw new InputError(`buffers[${b}] is truncated: it should have ${buffer.byteLength} bytes, there are ${bytes.byteLength}`);
+      }
+      return bytes;
+    }),
+  );
+}
+
+/**
+ * Reads what a glTF refers to: a data URI, or a file relative to it.
+ * @throws {InputError} that begins with `name`.
+ */
+export async function readUri(name: string, uri: string, folder: string): Promise<Uint8Array> {
+  const data = /^data:[^,]*?(;base64)?,/.exec(uri);
+  if (data) {
+    const text = uri.slice(data[0].length);
+    return data[1] ? Buffer.from(text, 'base64') : Buffer.from(decodeURIComponent(text));
+  }
+  if (/^[a-z][a-z0-9+.-]+:/i.test(uri)) throw new InputError(`${name} is at ${uri.slice(0, 60)}; only files are read`);
+  try {
+    return await readBytes(resolve(folder, decodeURIComponent(uri)));
+  } catch (error) {
+    throw error instanceof InputError ? new InputError(`${name} is in ${uri}: ${error.message}`) : error;
+  }
+}
+
+/** Decodes meshes and accessors by glTF-Transform, which sees the file without all else: nothing else can fail it. */
+async function decode(json: GLTF.IGLTF, buffers: (Uint8Array | undefined)[]): Promise<Document> {
+  const { asset, bufferViews = [], accessors = [], meshes = [] } = json;
+  const names = (list: string[] | undefined) => list?.filter((name) => geometryExtensionNames.includes(name)) ?? [];
+  const used = new Set(names(json.extensionsUsed));
+  const usesDraco = meshes.some((mesh) => mesh.primitives.some(dracoOf));
+  if (usesDraco) used.add('KHR_draco_mesh_compression');
+  if (bufferViews.some(meshoptView)) used.add('EXT_meshopt_compression');
+
+  const resources: Record<string, Uint8Array> = {};
+  const bufferDefs = (json.buffers ?? []).map((buffer, b) => {
+    resources[`buffer${b}`] = buffers[b] ?? new Uint8Array(0);
+    return { ...buffer, uri: `buffer${b}` };
+  });
+  const io = new NodeIO().setLogger(new Logger(Logger.Verbosity.SILENT)).registerExtensions([...geometryExtensions]);
+  io.registerDependencies({ 'meshopt.decoder': MeshoptDecoder });
+  if (usesDraco) io.registerDependencies({ 'draco3d.decoder': await createDracoDecoder() });
+  await MeshoptDecoder.ready;
+  return io.readJSON({
+    json: {
+      asset: { ...asset, version: '2.0' },
+      buffers: bufferDefs,
+      bufferViews: bufferViews.map((view) => {
+        const compressed = meshoptView(view); // both extensions that it may come from have the same shape
+        return compressed ? { ...view, extensions: { EXT_meshopt_compression: compressed } } : view;
+      }),
+      accessors,
+      meshes: meshes.map((mesh) => ({
+        primitives: mesh.primitives.map(({ attributes, indices, mode, extensions }) => ({
+          attributes,
+          ...(indices !== undefined && { indices }),
+          ...(mode !== undefined && { mode }),
+          ...(extensions && { extensions }),
+        })),
+      })),
+      extensionsUsed: [...used],
+      extensionsRequired: [...used],
+    } as GLTF.IGLTF,
+    resources,
+  } as JSONDocument);
+}
