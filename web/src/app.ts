@@ -1,0 +1,301 @@
+import { CagecastError, classify, init, type Mesh, type Projection } from 'cagecast'
+import { setUpDivider } from './compare'
+import { setUpFiles, type Intake } from './files'
+import { loadModel, type Model } from './load'
+import { announce, clearError, element, showError, showNotice, showStatus } from './page'
+import { loadPaint, makeChecker, type Paint } from './paint'
+import { offerPaints } from './paints'
+import { showCounts, showTimings } from './results'
+import { fetchFile, loadSamples, type Sample } from './samples'
+import { Superseded, TransferClient } from './transfer-client'
+import { Viewer, type View } from './viewer'
+
+/** What is wanted, or shown: a target, its cage, and what to paint it with. */
+interface Scene {
+  target: Model
+  cage: Model
+  paint: Paint
+}
+
+/** The same while it is still being read. */
+type Wanted = { [Slot in keyof Scene]?: Promise<Scene[Slot]> }
+
+const kOwn = 'own'
+
+/** Wires the page: inputs on one side, one worker and one viewer on the other. */
+class App {
+  readonly #client = new TransferClient()
+  readonly #viewer: Viewer | undefined
+  readonly #checker = makeChecker()
+  readonly #select = element('sample-select', HTMLSelectElement)
+  readonly #threshold = element('threshold', HTMLInputElement)
+  readonly #divider: { show(visible: boolean): void }
+  #samples: Sample[] = []
+  #view: View = { mode: 'compare', split: 0.5, paint: true, zones: false, cage: false }
+  #wanted: Wanted = {}
+  #shown: (Scene & { projection: Projection }) | undefined
+  /** Which of the wanted files are the sample's. */
+  #fromSample = { target: true, cage: true, paint: true }
+  #runs = 0
+
+  constructor() {
+    this.#viewer = startViewer()
+    this.#divider = setUpDivider((split) => this.#show({ split }))
+    this.#setUpView()
+    setUpFiles((intake) => this.#take(intake))
+    this.#select.addEventListener('change', () => this.#openSample(this.#select.value))
+    this.#threshold.addEventListener('input', () => this.#onThreshold())
+    element('swap', HTMLButtonElement).addEventListener('click', () => this.#swap())
+  }
+
+  /** Opens the first sample. */
+  async start(): Promise<void> {
+    try {
+      this.#samples = await loadSamples()
+      this.#select.replaceChildren(...this.#samples.map(({ name, title }) => new Option(title, name)))
+      // Files of one's own may have come in while the list was on its way.
+      if (this.#runs === 0) this.#openSample(this.#samples[0]!.name)
+    } catch (error) {
+      this.#fail(error)
+    }
+  }
+
+  #setUpView(): void {
+    for (const input of document.querySelectorAll<HTMLInputElement>('#view-mode input')) {
+      input.addEventListener('change', () => this.#show({ mode: input.value as View['mode'] }))
+    }
+    for (const layer of ['paint', 'zones', 'cage'] as const) {
+      const input = element(`show-${layer}`, HTMLInputElement)
+      input.addEventListener('change', () => this.#show({ [layer]: input.checked }))
+      this.#view[layer] = input.checked // a reloaded page keeps its boxes as they were
+    }
+    const mode = document.querySelector<HTMLInputElement>('#view-mode input:checked')?.value as View['mode']
+    const still = matchMedia('(prefers-reduced-motion: reduce)')
+    this.#viewer?.turn(!still.matches)
+    still.addEventListener('change', () => still.matches && this.#viewer?.turn(false))
+    this.#show({ mode })
+  }
+
+  #show(change: Partial<View>): void {
+    this.#view = { ...this.#view, ...change }
+    this.#viewer?.setView(this.#view)
+    this.#divider?.show(this.#viewer !== undefined && this.#view.mode === 'compare')
+  }
+
+  #openSample(name: string): void {
+    const sample = this.#samples.find((candidate) => candidate.name === name)
+    if (!sample) return
+    this.#select.value = name
+    this.#fromSample = { target: true, cage: true, paint: true }
+    const model = (address: string): Promise<Model> => fetchFile(address).then((file) => loadModel(file))
+    const first = sample.paints[0]
+    this.#want({ target: model(sample.target), cage: model(sample.cage), paint: first ? this.#fetchPaint(first.file) : this.#ownPaint(this.#checker) })
+    this.#offerPaints(sample)
+  }
+
+  #offerPaints(sample?: Sample): void {
+    const paints = sample?.paints ?? []
+    const choices = [...paints.map(({ title, file }) => ({ title, picture: file })), { title: this.#checker.name }]
+    offerPaints(choices, 0, (index) => {
+      const chosen = paints[index]
+      this.#want({ paint: chosen ? this.#fetchPaint(chosen.file) : this.#ownPaint(this.#checker) })
+    })
+  }
+
+  async #fetchPaint(address: string): Promise<Paint> {
+    return loadPaint(await fetchFile(address))
+  }
+
+  async #ownPaint(paint: Paint): Promise<Paint> {
+    return paint
+  }
+
+  /** Takes in files of the visitor's own. */
+  #take({ target, cage, texture, unclear, all }: Intake): void {
+    const wanted: Wanted = {}
+    if (target) wanted.target = loadModel(target, all)
+    if (cage) wanted.cage = loadModel(cage, all)
+    if (texture) wanted.paint = loadPaint(texture)
+    const [one, other] = unclear
+    if (!target && one && other) {
+      // Nothing in their names tells: the cage is the one with fewer triangles.
+      const pair = Promise.all([loadModel(one, all), loadModel(other, all)]).then((models) =>
+        models.sort((a, b) => b.mesh.indices.length - a.mesh.indices.length),
+      )
+      wanted.target = pair.then(([larger]) => larger!)
+      wanted.cage = pair.then(([, smaller]) => smaller!)
+    }
+
+    if (wanted.target) this.#fromSample.target = false
+    if (wanted.cage) this.#fromSample.cage = false
+    if (wanted.paint) this.#fromSample.paint = false
+    else if (wanted.target || wanted.cage) {
+      // A sample's paint means nothing on another cage.
+      if (this.#fromSample.paint) wanted.paint = this.#ownPaint(this.#checker)
+      this.#offerPaints()
+    }
+    this.#want(wanted)
+  }
+
+  #swap(): void {
+    const { target, cage } = this.#wanted
+    if (target && cage) this.#want({ target: cage, cage: target })
+  }
+
+  /** Asks for other input; whatever was under way and is replaced by it no longer counts. */
+  #want(change: Wanted): void {
+    for (const slot of Object.values(change)) slot.catch(() => {}) // told when it is waited for
+    this.#wanted = { ...this.#wanted, ...change }
+    void this.#run()
+  }
+
+  async #run(): Promise<void> {
+    const run = ++this.#runs
+    const superseded = (): boolean => run !== this.#runs
+    clearError()
+    showStatus('working')
+    this.#client.cancel()
+    try {
+      const scene = await this.#read(superseded)
+      if (superseded()) return
+      if (!scene) return this.#askForRest()
+      const same = scene.target === this.#shown?.target && scene.cage === this.#shown.cage
+      const projection = same ? this.#shown!.projection : await this.#project(scene, superseded)
+      if (superseded()) return
+      this.#shown = { ...scene, projection }
+      if (same) this.#viewer?.setPaint(scene.paint.texture)
+      else this.#showProjection()
+      this.#describe(scene)
+      showStatus('ready')
+    } catch (error) {
+      if (superseded() || error instanceof Superseded) return
+      this.#fail(error)
+    }
+  }
+
+  /** Waits for the wanted files. One that cannot be read gives way to the one shown before it. */
+  async #read(superseded: () => boolean): Promise<Scene | undefined> {
+    const { target, cage, paint } = this.#wanted
+    const results = await Promise.allSettled([target, cage, paint])
+    const failed = results.find((result) => result.status === 'rejected')
+    if (failed && !superseded()) {
+      ;(['target', 'cage', 'paint'] as const).forEach((slot, index) => {
+        if (results[index]!.status === 'rejected') this.#giveUp(slot)
+      })
+      throw failed.reason
+    }
+    const [t, c, p] = results.map((result) => (result.status === 'fulfilled' ? result.value : undefined)) as [Model?, Model?, Paint?]
+    return t && c && p ? { target: t, cage: c, paint: p } : undefined
+  }
+
+  async #project({ target, cage }: Scene, superseded: () => boolean): Promise<Projection> {
+    try {
+      // The threshold is decided here on the page, the rest in the worker: both start at once.
+      const [projection] = await Promise.all([this.#client.project(cageArrays(cage), targetArrays(target)), init()])
+      return projection
+    } catch (error) {
+      if (!(error instanceof CagecastError) || superseded()) throw error
+      const blamed = /\b(cage|target)\b/.exec(error.message)?.[0] as 'cage' | 'target' | undefined
+      // One that was accepted before stays: then it is the other that does not go with it, and a third file may come.
+      const files = { target, cage }
+      if (blamed && files[blamed] !== this.#shown?.[blamed]) this.#giveUp(blamed)
+      const name = blamed ? files[blamed].name : `${target.name} with ${cage.name}`
+      throw new Error(`${name}: ${error.message.replace(/^\w+: /, '')}`, { cause: error })
+    }
+  }
+
+  #showProjection(): void {
+    const { target, cage, paint, projection } = this.#shown!
+    this.#viewer?.setTarget(target, projection.uvs, paint.texture)
+    this.#viewer?.setCage(cage)
+    const spent = this.#classify()
+    const { timings } = projection
+    showTimings({ ...timings, classify: spent, total: timings.total + spent })
+  }
+
+  /** Decides by the threshold as it stands, and returns the milliseconds it took. */
+  #classify(): number {
+    const { projection } = this.#shown!
+    const started = performance.now()
+    const classification = classify(projection, { threshold: Number(this.#threshold.value) })
+    const spent = performance.now() - started
+    this.#viewer?.classify(classification)
+    showCounts(classification)
+    return spent
+  }
+
+  /** Goes back to what is shown, where what was wanted proved unusable. */
+  #giveUp(slot: keyof Scene): void {
+    const { [slot]: _, ...rest } = this.#wanted
+    this.#wanted = rest
+    if (this.#shown) this.#wanted = { ...rest, [slot]: Promise.resolve(this.#shown[slot]) }
+  }
+
+  #onThreshold(): void {
+    const threshold = Number(this.#threshold.value)
+    element('threshold-value', HTMLOutputElement).value = threshold.toFixed(2)
+    if (this.#shown) this.#classify()
+  }
+
+  #askForRest(): void {
+    const missing = (['target', 'cage'] as const).filter((slot) => !this.#wanted[slot])
+    showNotice('stage-notice', `Now add a ${missing.join(' and a ')}.`)
+    showStatus('loading')
+  }
+
+  #describe({ target, cage, paint }: Scene): void {
+    element('target-name', HTMLElement).textContent = target.name
+    element('cage-name', HTMLElement).textContent = cage.name
+    element('texture-name', HTMLElement).textContent = paint.name
+    const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`
+    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`
+    this.#describeOrigin()
+    if (this.#viewer) showNotice('stage-notice', '')
+    announce(`${target.name} is shown.`)
+  }
+
+  /** Tells where the files come from, and what is still a sample's among one's own. */
+  #describeOrigin(): void {
+    const { target, cage } = this.#fromSample
+    const own = this.#select.querySelector<HTMLOptionElement>(`option[value=${kOwn}]`)
+    if (target && cage) own?.remove()
+    else {
+      if (!own) this.#select.append(new Option('Your own files', kOwn))
+      this.#select.value = kOwn
+    }
+    element('swap', HTMLButtonElement).hidden = target || cage
+    element('hint', HTMLElement).textContent =
+      target === cage
+        ? 'Choose your own, or drop files anywhere on the page. They stay on this device.'
+        : target
+          ? 'The cage is yours, the target is still the sample’s: add the target this cage was made for.'
+          : 'The target is yours, the cage is still the sample’s: add the cage made for it.'
+  }
+
+  #fail(error: unknown): void {
+    showError(error instanceof Error ? error.message : String(error))
+    showStatus('error')
+  }
+}
+
+function cageArrays({ mesh: { positions, indices, uvs } }: Model): Mesh {
+  return { positions, indices, uvs }
+}
+
+function targetArrays({ mesh: { positions, indices, groups } }: Model): Mesh {
+  return { positions, indices, groups }
+}
+
+/** Without WebGL the page still transfers; it then says why there is no picture. */
+function startViewer(): Viewer | undefined {
+  try {
+    return new Viewer(element('view', HTMLCanvasElement))
+  } catch {
+    element('view', HTMLCanvasElement).hidden = true
+    element('stage', HTMLElement).classList.add('blind')
+    showNotice('stage-notice', 'This browser draws no 3D here (WebGL 2 is missing or switched off). The transfer works all the same: its numbers are in the panel.')
+    return undefined
+  }
+}
+
+void new App().start()

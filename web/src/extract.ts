@@ -1,0 +1,121 @@
+import { Matrix4, Mesh, Vector3, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three'
+
+/** One triangle mesh of the scene, and where its elements lie in the concatenated arrays. */
+export interface Part {
+  /** The mesh these elements were read from. */
+  mesh: Mesh
+  /** Its name, for messages. */
+  name: string
+  firstVertex: number
+  vertexCount: number
+  firstTriangle: number
+  triangleCount: number
+}
+
+/** All triangles of a scene as raw arrays in world space, in the shape the transfer takes. */
+export interface ExtractedMesh {
+  /** 3 per vertex, in the scene's space. */
+  positions: Float32Array
+  /** 3 per triangle, counter-clockwise seen from outside. */
+  indices: Uint32Array
+  /** 2 per vertex, from the first UV set; absent unless every part has one. */
+  uvs?: Float32Array
+  /** 1 per vertex: the number of its part, so that only vertices of one part are welded. */
+  groups: Uint32Array
+  parts: Part[]
+}
+
+type Attribute = BufferAttribute | InterleavedBufferAttribute
+
+/**
+ * Reads all triangle meshes below `root`, depth first, into one set of arrays.
+ * Vertices keep their number and order; world matrices are applied in double precision and rounded last; the winding of
+ * mirrored parts is flipped, so that every triangle keeps its outside.
+ * @param root A scene that has not been moved since it was loaded.
+ * @throws Error that names the part and the element, where a part cannot be read on its own.
+ */
+export function extractMesh(root: Object3D): ExtractedMesh {
+  root.updateMatrixWorld(true)
+  const parts = listParts(root)
+  const last = parts.at(-1)
+  const vertexCount = last ? last.firstVertex + last.vertexCount : 0
+  const triangleCount = last ? last.firstTriangle + last.triangleCount : 0
+
+  const positions = new Float32Array(3 * vertexCount)
+  const indices = new Uint32Array(3 * triangleCount)
+  const groups = new Uint32Array(vertexCount)
+  parts.forEach((part, group) => {
+    copyPositions(part, positions)
+    copyIndices(part, indices)
+    groups.fill(group, part.firstVertex, part.firstVertex + part.vertexCount)
+  })
+
+  const hasUvs = parts.length > 0 && parts.every((part) => part.mesh.geometry.hasAttribute('uv'))
+  return { positions, indices, groups, parts, ...(hasUvs && { uvs: copyUvs(parts, vertexCount) }) }
+}
+
+function listParts(root: Object3D): Part[] {
+  const parts: Part[] = []
+  let firstVertex = 0
+  let firstTriangle = 0
+  root.traverse((object) => {
+    if (!(object instanceof Mesh)) return
+    const name = object.name || object.parent?.name || `part ${parts.length}`
+    const { index, attributes } = object.geometry as Mesh['geometry']
+    const vertexCount = attributes.position?.count ?? 0
+    const cornerCount = index ? index.count : vertexCount
+    if (cornerCount % 3 !== 0) {
+      throw new Error(`“${name}” has ${cornerCount} triangle corners, which is not a multiple of three`)
+    }
+    const triangleCount = cornerCount / 3
+    parts.push({ mesh: object, name, firstVertex, vertexCount, firstTriangle, triangleCount })
+    firstVertex += vertexCount
+    firstTriangle += triangleCount
+  })
+  return parts
+}
+
+function copyPositions({ mesh, firstVertex, vertexCount }: Part, out: Float32Array): void {
+  if (vertexCount === 0) return
+  const position = mesh.geometry.attributes.position as Attribute
+  const point = new Vector3()
+  const identity = mesh.matrixWorld.equals(new Matrix4())
+  for (let i = 0; i < vertexCount; i++) {
+    // A quantised position decodes to a float before the matrix is applied, as every glTF reader stores it.
+    point.set(Math.fround(position.getX(i)), Math.fround(position.getY(i)), Math.fround(position.getZ(i)))
+    if (!identity) point.applyMatrix4(mesh.matrixWorld)
+    point.toArray(out, 3 * (firstVertex + i))
+  }
+}
+
+function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, triangleCount }: Part, out: Uint32Array): void {
+  const { index } = mesh.geometry
+  const mirrored = mesh.matrixWorld.determinant() < 0
+  const base = 3 * firstTriangle
+  for (let corner = 0; corner < 3 * triangleCount; corner++) {
+    const vertex = index ? index.getX(corner) : corner
+    // Checked per part: once concatenated, an index too large would point into the next part.
+    if (vertex >= vertexCount) {
+      throw new Error(`indices[${corner}] = ${vertex} of “${name}” is out of range (${vertexCount} vertices)`)
+    }
+    out[base + corner] = firstVertex + vertex
+  }
+  if (!mirrored) return
+  for (let at = base; at < base + 3 * triangleCount; at += 3) {
+    const second = out[at + 1]!
+    out[at + 1] = out[at + 2]!
+    out[at + 2] = second
+  }
+}
+
+function copyUvs(parts: Part[], vertexCount: number): Float32Array {
+  const uvs = new Float32Array(2 * vertexCount)
+  for (const { mesh, firstVertex } of parts) {
+    const uv = mesh.geometry.attributes.uv as Attribute
+    for (let i = 0; i < uv.count; i++) {
+      uvs[2 * (firstVertex + i)] = uv.getX(i)
+      uvs[2 * (firstVertex + i) + 1] = uv.getY(i)
+    }
+  }
+  return uvs
+}

@@ -1,0 +1,80 @@
+import { LoadingManager, type Object3D } from 'three'
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
+import { extractMesh, type ExtractedMesh } from './extract'
+import { readGltfHead } from './gltf-file'
+
+/** A model that was read: the scene to show, and its triangles to transfer with. */
+export interface Model {
+  /** The file's name, for people. */
+  name: string
+  scene: Object3D
+  mesh: ExtractedMesh
+}
+
+/**
+ * Reads a GLB or glTF model, Draco, meshopt and quantised data included.
+ * @param file       The model.
+ * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
+ * @throws Error of one sentence that begins with the file's name.
+ */
+export async function loadModel(file: File, companions: readonly File[] = []): Promise<Model> {
+  const urls = new Map<string, string>()
+  try {
+    const bytes = await file.arrayBuffer()
+    const head = readGltfHead(bytes)
+    for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions)))
+
+    const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url)
+    const loader = new GLTFLoader(manager)
+    const release = await addDecoders(loader, manager, head.extensions)
+    try {
+      const { scene } = await loader.parseAsync(bytes, '')
+      return { name: file.name, scene, mesh: extractMesh(scene) }
+    } finally {
+      release()
+    }
+  } catch (error) {
+    throw new Error(`${file.name}: ${plainWords(error)}`, { cause: error })
+  } finally {
+    for (const url of urls.values()) URL.revokeObjectURL(url)
+  }
+}
+
+/** Frees the graphics memory of a model that is no longer shown. */
+export function disposeModel({ mesh }: Model): void {
+  for (const part of mesh.parts) {
+    part.mesh.geometry.dispose()
+    for (const material of [part.mesh.material].flat()) {
+      for (const value of Object.values(material)) if (value?.isTexture) value.dispose()
+      material.dispose()
+    }
+  }
+}
+
+function findCompanion(uri: string, companions: readonly File[]): File {
+  const name = uri.split('/').at(-1)
+  const found = companions.find((file) => file.name === name)
+  if (!found) throw new Error(`the model needs the file ${uri}; choose or drop it together with the model`)
+  return found
+}
+
+/** Gives the loader the decoders this file asks for; they are fetched only then. Returns what frees them. */
+async function addDecoders(loader: GLTFLoader, manager: LoadingManager, extensions: string[]): Promise<() => void> {
+  if (extensions.includes('EXT_meshopt_compression') || extensions.includes('KHR_meshopt_compression')) {
+    const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js')
+    loader.setMeshoptDecoder(MeshoptDecoder)
+  }
+  if (!extensions.includes('KHR_draco_mesh_compression')) return () => {}
+  const { makeDracoLoader } = await import('./draco')
+  const draco = makeDracoLoader(manager)
+  loader.setDRACOLoader(draco)
+  return () => draco.dispose()
+}
+
+function plainWords(error: unknown): string {
+  // What reading past the end of a buffer looks like from inside the loader.
+  if (error instanceof RangeError || error instanceof TypeError) return 'the file is damaged: it refers to data it does not hold'
+  if (error instanceof Error) return error.message.replace(/^THREE\.\w+: /, '')
+  // Decoders reject with a bare message or event.
+  return (error as { error?: string })?.error ?? 'the file cannot be decoded'
+}

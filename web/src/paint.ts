@@ -1,0 +1,67 @@
+import { CanvasTexture, RepeatWrapping, SRGBColorSpace, Texture } from 'three'
+
+/** A texture in the cage's UV space. */
+export interface Paint {
+  /** The file's name, for people. */
+  name: string
+  texture: Texture
+}
+
+const kLargest = 4096 // texels a side: what every WebGL 2 phone can hold with its mipmaps
+
+/** Reads an image to paint with. @throws Error that names the file. */
+export async function loadPaint(file: File): Promise<Paint> {
+  const bitmap = await decode(file)
+  const texture = new Texture(bitmap)
+  // glTF puts the origin of UVs at the image's upper left corner.
+  texture.flipY = false
+  texture.needsUpdate = true
+  return { name: file.name, texture: prepare(texture) }
+}
+
+async function decode(file: File): Promise<ImageBitmap> {
+  let bitmap: ImageBitmap
+  try {
+    bitmap = await createImageBitmap(file, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' })
+  } catch {
+    throw new Error(`${file.name}: this is no image the browser can read; a PNG or JPEG is wanted`)
+  }
+  const shrink = kLargest / Math.max(bitmap.width, bitmap.height)
+  if (shrink >= 1) return bitmap
+  const resizeWidth = Math.max(1, Math.round(bitmap.width * shrink))
+  const resizeHeight = Math.max(1, Math.round(bitmap.height * shrink))
+  return createImageBitmap(bitmap, { resizeWidth, resizeHeight, resizeQuality: 'high' })
+}
+
+/** Draws a lettered checker, which shows where each place of the texture lands and how it is stretched. */
+export function makeChecker(): Paint {
+  const cells = 8
+  const size = 1024
+  const cell = size / cells
+  const canvas = document.createElement('canvas')
+  canvas.width = canvas.height = size
+  const context = canvas.getContext('2d')!
+  context.font = `600 ${cell * 0.36}px system-ui, sans-serif`
+  context.textAlign = 'center'
+  context.textBaseline = 'middle'
+  for (let row = 0; row < cells; row++) {
+    for (let column = 0; column < cells; column++) {
+      const hue = (360 * (row * cells + column)) / cells ** 2
+      const dark = (row + column) % 2 === 0
+      context.fillStyle = `hsl(${hue} 62% ${dark ? 42 : 76}%)`
+      context.fillRect(column * cell, row * cell, cell, cell)
+      context.fillStyle = dark ? '#fff' : '#1b1b1b'
+      context.fillText('ABCDEFGH'[column]! + (row + 1), (column + 0.5) * cell, (row + 0.52) * cell)
+    }
+  }
+  const texture = new CanvasTexture(canvas)
+  texture.flipY = false
+  return { name: 'UV checker', texture: prepare(texture) }
+}
+
+function prepare(texture: Texture): Texture {
+  texture.colorSpace = SRGBColorSpace
+  texture.wrapS = texture.wrapT = RepeatWrapping
+  texture.anisotropy = 8
+  return texture
+}

@@ -1,0 +1,44 @@
+import type { Classification, Timings } from 'cagecast'
+import { announce, element } from './page'
+
+const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const
+const kSteps = ['weld', 'build', 'project', 'occluded', 'covered', 'segments', 'classify'] as const
+
+/** Writes how many vertices fall into each zone. */
+export function showCounts({ zones, segmentStats }: Classification): void {
+  const counts = [0, 0, 0, 0]
+  for (const zone of zones) counts[zone]!++
+  element('count-total', HTMLElement).textContent = zones.length.toLocaleString('en')
+  kZones.forEach((zone, number) => {
+    element(`count-${zone}`, HTMLElement).textContent = String(counts[number])
+    const share = zones.length > 0 ? counts[number]! / zones.length : 0
+    document.querySelector<HTMLElement>(`#bar [data-zone=${zone}]`)!.style.flexGrow = String(share)
+  })
+  const culled = segmentStats.filter((segment) => segment.culled).length
+  announce(
+    `Done: ${counts[0]} of ${zones.length} vertices may be painted, ${counts[1]} are occluded, ${counts[2]} uncovered, ` +
+      `${counts[3]} culled; ${culled} of ${segmentStats.length} parts are culled.`,
+  )
+}
+
+/** Writes how long the transfer took, step by step. */
+export function showTimings(timings: Timings): void {
+  element('time-total', HTMLElement).textContent = round(timings.total)
+  const longest = Math.max(...kSteps.map((step) => timings[step]), Number.MIN_VALUE)
+  element('timings', HTMLElement).replaceChildren(
+    ...kSteps.map((step) => {
+      const row = document.createElement('div')
+      const name = document.createElement('dt')
+      const time = document.createElement('dd')
+      name.textContent = step
+      time.textContent = round(timings[step])
+      row.style.setProperty('--share', String(timings[step] / longest))
+      row.append(name, time)
+      return row
+    }),
+  )
+}
+
+function round(milliseconds: number): string {
+  return milliseconds.toFixed(milliseconds < 0.1 ? 3 : milliseconds < 10 ? 2 : 1)
+}

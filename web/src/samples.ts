@@ -1,0 +1,38 @@
+/** A model that comes with the page. Files are addresses. */
+export interface Sample {
+  name: string
+  title: string
+  target: string
+  cage: string
+  paints: { title: string; file: string }[]
+}
+
+const kFolder = new URL('samples/', document.baseURI)
+
+/**
+ * Reads the list of samples.
+ * @throws Error in plain words if there is none.
+ */
+export async function loadSamples(): Promise<Sample[]> {
+  const response = await fetch(new URL('index.json', kFolder)).catch(() => undefined)
+  const list: Sample[] | undefined = response?.ok ? await response.json().catch(() => undefined) : undefined
+  if (!Array.isArray(list) || list.length === 0) {
+    throw new Error('The samples are missing from this page. You can still drop a target and a cage of your own.')
+  }
+  const address = (path: string): string => new URL(path, kFolder).href
+  return list.map(({ name, title, target, cage, paints }) => ({
+    name,
+    title,
+    target: address(target),
+    cage: address(cage),
+    paints: paints.map((paint) => ({ title: paint.title, file: address(paint.file) })),
+  }))
+}
+
+/** Fetches one file of a sample. @throws Error that names it. */
+export async function fetchFile(address: string): Promise<File> {
+  const name = new URL(address).pathname.split('/').slice(-2).join('/')
+  const response = await fetch(address).catch(() => undefined)
+  if (!response?.ok) throw new Error(`${name}: the file cannot be fetched`)
+  return new File([await response.blob()], name.split('/').at(-1)!)
+}

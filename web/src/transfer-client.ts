@@ -1,0 +1,54 @@
+import { CagecastError, type Mesh, type Projection } from 'cagecast'
+import type { Reply, Request } from './transfer-messages'
+
+/** A request that a later one made pointless. Not a failure: nothing is to be told. */
+export class Superseded extends Error {}
+
+/**
+ * Runs the costly part of transfers in a worker, off the main thread.
+ * The latest request wins: it ends the one under way at once.
+ */
+export class TransferClient {
+  #worker = this.#start()
+  #lastId = 0
+  #pending: { id: number; resolve(projection: Projection): void; reject(error: Error): void } | undefined
+
+  /** Finds each target vertex's place on the cage. @throws CagecastError, or Superseded if another request came. */
+  project(cage: Mesh, target: Mesh): Promise<Projection> {
+    this.cancel()
+    return new Promise((resolve, reject) => {
+      const id = ++this.#lastId
+      this.#pending = { id, resolve, reject }
+      this.#worker.postMessage({ id, cage, target } satisfies Request)
+    })
+  }
+
+  /** Ends the request under way, if any. */
+  cancel(): void {
+    if (!this.#pending) return
+    // A call into WebAssembly cannot be interrupted from outside; its worker can.
+    this.#worker.terminate()
+    this.#worker = this.#start()
+    this.#fail(new Superseded())
+  }
+
+  #start(): Worker {
+    const worker = new Worker(new URL('./transfer-worker.ts', import.meta.url), { type: 'module' })
+    worker.onmessage = ({ data }: MessageEvent<Reply>) => {
+      if (data.id !== this.#pending?.id) return
+      if ('code' in data) return this.#fail(new CagecastError(data.code, data.message))
+      this.#pending.resolve(data.projection)
+      this.#pending = undefined
+    }
+    worker.onerror = (event) => {
+      event.preventDefault()
+      this.#fail(new Error(`the transfer could not be started${event.message ? `: ${event.message}` : ''}`))
+    }
+    return worker
+  }
+
+  #fail(error: Error): void {
+    this.#pending?.reject(error)
+    this.#pending = undefined
+  }
+}

@@ -1,0 +1,220 @@
+import type { Classification } from 'cagecast'
+import { Box3, MathUtils, Mesh, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Spherical, Vector3, WebGLRenderer, type Texture } from 'three'
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
+import { CageLines } from './cage-lines'
+import { disposeModel, type Model } from './load'
+import { Overlay, type Look } from './overlay'
+import { Studio } from './studio'
+
+/** What of the result is shown. */
+export interface View {
+  /** One look over the whole picture, or both with a line between them. */
+  mode: 'compare' | 'result' | 'naive'
+  /** Where that line is: 0 at the left edge, 1 at the right. */
+  split: number
+  paint: boolean
+  zones: boolean
+  cage: boolean
+}
+
+const kFieldOfView = 28 // degrees
+const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(24))
+const kFill = 0.86 // below 1, as models seldom reach into the corners of their box
+const kToolbar = 96 // pixels of the picture's lower edge that controls lie on
+const kSway = MathUtils.degToRad(40) // how far the model turns to either side
+const kSwaySeconds = 16 // there and back
+const kKeyStep = MathUtils.degToRad(6)
+
+/** Shows one target with its paint and its cage on a canvas, and lets people turn it. Draws only when something changed. */
+export class Viewer {
+  readonly #renderer: WebGLRenderer
+  readonly #canvas: HTMLCanvasElement
+  readonly #studio: Studio
+  readonly #camera = new PerspectiveCamera(kFieldOfView, 1, 0.05, 50)
+  readonly #controls: OrbitControls
+  #view: View = { mode: 'compare', split: 0.5, paint: true, zones: false, cage: false }
+  #model: Model | undefined
+  #overlay: Overlay | undefined
+  #cage: CageLines | undefined
+  #frame = 0
+  #stale = true
+  #turnStarted: number | undefined
+
+  /** @throws Error where the browser has no WebGL 2. */
+  constructor(canvas: HTMLCanvasElement) {
+    this.#canvas = canvas
+    this.#renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true })
+    this.#renderer.toneMapping = NeutralToneMapping
+    this.#renderer.toneMappingExposure = 1.05
+    this.#renderer.shadowMap.enabled = true
+    this.#renderer.shadowMap.type = PCFShadowMap
+    this.#renderer.shadowMap.autoUpdate = false
+    this.#studio = new Studio(this.#renderer)
+
+    this.#controls = new OrbitControls(this.#camera, canvas)
+    this.#controls.enableDamping = true
+    this.#controls.dampingFactor = 0.12
+    this.#controls.enablePan = false
+    this.#controls.minDistance = 0.8
+    this.#controls.maxDistance = 12
+    this.#controls.maxPolarAngle = MathUtils.degToRad(150)
+    this.#controls.addEventListener('change', () => this.#invalidate())
+    this.#controls.addEventListener('start', () => this.turn(false))
+    canvas.addEventListener('keydown', (event) => this.#onKey(event))
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.#studio.light(this.#renderer)
+      this.#invalidate()
+    })
+    new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!)
+    this.#resize()
+    this.home()
+  }
+
+  /**
+   * Shows another target; call `classify` for its zones. The one before it is freed, unless it is the same.
+   * @param uvs 2 per vertex, in the paint.
+   */
+  setTarget(model: Model, uvs: Float32Array, paint: Texture): void {
+    this.#overlay?.dispose()
+    if (model !== this.#model) this.#place(model)
+    this.#overlay = new Overlay(model.mesh.parts, uvs, paint)
+    this.#invalidate()
+  }
+
+  /** Shows another cage, in the space of the target. */
+  setCage(model: Model): void {
+    this.#cage?.dispose()
+    this.#cage = new CageLines(model.mesh)
+    this.#studio.stage.add(this.#cage.object)
+    this.#invalidate()
+  }
+
+  setPaint(paint: Texture): void {
+    this.#overlay?.setPaint(paint)
+    this.#invalidate()
+  }
+
+  /** Shows the decision for another threshold. */
+  classify(classification: Classification): void {
+    this.#overlay?.classify(classification)
+    this.#invalidate()
+  }
+
+  setView(view: View): void {
+    this.#view = view
+    this.#invalidate()
+  }
+
+  /** Turns the model slowly to and fro, until it is touched. */
+  turn(on: boolean): void {
+    if (on === (this.#turnStarted !== undefined)) return
+    this.#turnStarted = on ? performance.now() : undefined
+    this.#invalidate()
+  }
+
+  /** Looks at the model from where it is seen best, all of it. */
+  home(): void {
+    // A tall picture is narrow: there the width decides how far away all of it is seen.
+    const half = MathUtils.degToRad(kFieldOfView / 2)
+    const { clientWidth: width, clientHeight: height } = this.#canvas
+    const free = Math.max(1, height - kToolbar)
+    const narrow = Math.atan((Math.tan(half) * Math.min(free, width)) / Math.max(1, height))
+    this.#look({ ...kHome, radius: kFill / Math.sin(narrow) })
+  }
+
+  #place(model: Model): void {
+    if (this.#model) {
+      this.#model.scene.removeFromParent()
+      disposeModel(this.#model)
+    }
+    this.#model = model
+    const { stage } = this.#studio
+    // Bounds of the arrays, not of the scene: those of a skinned mesh or of a NaN would mislead.
+    const box = new Box3().setFromArray(model.mesh.positions)
+    const size = box.getSize(new Vector3())
+    const scale = 2 / Math.max(size.length(), Number.MIN_VALUE)
+    stage.scale.setScalar(scale)
+    box.getCenter(stage.position).multiplyScalar(-scale)
+    stage.add(model.scene)
+    model.scene.traverse((object) => {
+      if (object instanceof Mesh) object.castShadow = object.receiveShadow = true
+    })
+    this.#studio.setFloor((-size.y * scale) / 2)
+    this.home()
+  }
+
+  #look({ radius, phi, theta }: Pick<Spherical, 'radius' | 'phi' | 'theta'>): void {
+    this.#camera.position.setFromSphericalCoords(radius, phi, theta)
+    this.#controls.update()
+    this.#invalidate()
+  }
+
+  #onKey(event: KeyboardEvent): void {
+    const actions: Record<string, () => void> = {
+      ArrowLeft: () => this.#controls.rotateLeft(kKeyStep),
+      ArrowRight: () => this.#controls.rotateLeft(-kKeyStep),
+      ArrowUp: () => this.#controls.rotateUp(kKeyStep),
+      ArrowDown: () => this.#controls.rotateUp(-kKeyStep),
+      '+': () => this.#controls.dollyIn(1.1),
+      '=': () => this.#controls.dollyIn(1.1),
+      '-': () => this.#controls.dollyOut(1.1),
+      Home: () => this.home(),
+    }
+    const action = actions[event.key]
+    if (!action || event.ctrlKey || event.metaKey || event.altKey) return
+    event.preventDefault()
+    this.turn(false)
+    action()
+    this.#invalidate()
+  }
+
+  #resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.#canvas.parentElement!
+    if (width === 0 || height === 0) return
+    const before = this.#camera.aspect
+    this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2))
+    this.#renderer.setSize(width, height, false)
+    this.#camera.aspect = width / height
+    // The model stands in the middle of what the toolbar leaves free.
+    this.#camera.setViewOffset(width, height, 0, kToolbar / 2, width, height)
+    if (before !== this.#camera.aspect) this.home()
+    // At once: the canvas was cleared, and a frame's wait would flicker.
+    this.#draw()
+  }
+
+  #invalidate(): void {
+    this.#stale = true
+    this.#frame ||= requestAnimationFrame((now) => this.#onFrame(now))
+  }
+
+  #onFrame(now: number): void {
+    this.#frame = 0
+    if (this.#turnStarted !== undefined) {
+      const phase = Math.sin(((now - this.#turnStarted) / 1000) * ((2 * Math.PI) / kSwaySeconds))
+      const { radius, phi } = new Spherical().setFromVector3(this.#camera.position)
+      this.#look({ radius, phi, theta: kHome.theta - kSway * phase })
+    }
+    // Glides on for a few frames after a drag; each change asks for the next frame.
+    this.#controls.update()
+    if (this.#stale) this.#draw()
+  }
+
+  #draw(): void {
+    this.#stale = false
+    const { mode, split, paint, zones, cage } = this.#view
+    this.#studio.follow(this.#camera)
+    this.#cage?.show(cage)
+    const draw = (look: Look, from: number, to: number): void => {
+      const { clientWidth: width, clientHeight: height } = this.#canvas
+      this.#renderer.setScissor(from * width, 0, (to - from) * width, height)
+      this.#overlay?.show(look, paint, zones)
+      this.#renderer.render(this.#studio.scene, this.#camera)
+    }
+    // The light moved with the camera; its shadow is the same on both sides of the line.
+    this.#renderer.shadowMap.needsUpdate = true
+    this.#renderer.setScissorTest(true)
+    const line = mode === 'compare' ? split : mode === 'naive' ? 1 : 0
+    if (line > 0) draw('naive', 0, line)
+    if (line < 1) draw('filtered', line, 1)
+  }
+}

@@ -1,0 +1,47 @@
+import { cp, readFile } from 'node:fs/promises'
+import { existsSync } from 'node:fs'
+import path from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { defineConfig, type Plugin } from 'vite'
+
+const kRepository = fileURLToPath(new URL('..', import.meta.url))
+const kSamples = path.join(kRepository, 'build/assets')
+
+/** Makes the sample models, which code generates, part of the page: under samples/, in development and in the build. */
+function samples(): Plugin {
+  let outDir: string
+  return {
+    name: 'cagecast-samples',
+    configResolved: (config) => void (outDir = path.resolve(config.root, config.build.outDir)),
+    configureServer(server) {
+      server.middlewares.use('/samples', async (request, response, next) => {
+        const name = decodeURIComponent(new URL(request.url ?? '/', 'http://localhost').pathname)
+        const file = path.join(kSamples, path.normalize(name))
+        try {
+          response.end(await readFile(file))
+        } catch {
+          next()
+        }
+      })
+    },
+    async closeBundle() {
+      if (!existsSync(path.join(kSamples, 'index.json'))) {
+        throw new Error('build/assets/index.json is missing: make the sample models first (npm run assets)')
+      }
+      await cp(kSamples, path.join(outDir, 'samples'), {
+        recursive: true,
+        filter: (source) => path.extname(source) === '' || /\.(glb|png)$/.test(source) || path.basename(source) === 'index.json',
+      })
+    },
+  }
+}
+
+export default defineConfig({
+  root: fileURLToPath(new URL('.', import.meta.url)),
+  // Relative, so that the built page can lie in any folder of any host.
+  base: './',
+  plugins: [samples()],
+  build: { outDir: path.join(kRepository, 'build/web'), emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 800 },
+  worker: { format: 'es' },
+  preview: { headers: { 'X-Content-Type-Options': 'nosniff' } },
+})
