@@ -1,0 +1,88 @@
+import { type Bounds, type Mesh, clip, corners, largestPart, mirror, point, simplify, surface, vertexCount, withMeshNormals } from './mesh.ts'
+import { type Sdf } from './sdf.ts'
+import { borderLoops } from './unwrap.ts'
+import { spaceOf } from './space.ts'
+import type { Vec3 } from './vec.ts'
+
+export interface CagePlan {
+  solid: Sdf // the model's outer skin, symmetric in x, with everything bridged over that the cage shall bridge
+  bounds: Bounds // of the solid and the distance around it
+  edge: number // edge length of the fine surface the cage is made from
+  distance: number // from the skin
+  keep: (p: Vec3) => number // negative where the cage has a hole or ends
+  triangles: number // at most this many
+  wrap: Mesh // the outside of this must lie within
+  seen: (vertex: number) => boolean // which vertices of `wrap` are outside
+}
+
+/** Makes a cage: the offset of the outer skin, holes cut, one half simplified and mirrored, then pushed out where it dips into the skin. */
+export const makeCage = (plan: CagePlan): Mesh => {
+  const skin = surface(plan.solid, plan.bounds, plan.edge)
+  const space = spaceOf(skin)
+  // The solid's own field is only nearly a distance; the distance to its surface is.
+  const grown: Sdf = (x, y, z) => {
+    const rough = plan.solid(x, y, z)
+    const distance = space.nearest([x, y, z]).distance
+    return (rough < 0 ? -distance : distance) - plan.distance
+  }
+  const fine = surface(grown, plan.bounds, plan.edge)
+  const half = largestPart(clip(clip(fine, (p) => p[0]), plan.keep))
+  const cage = mirror(simplify(half, Math.floor(plan.triangles / 2), rimKeeper(half)))
+  return pushOut(cage, plan)
+}
+
+const kRimCorners = 12
+
+/** Holds on to some vertices all around each hole that lies on one side: small holes would lose their shape. */
+const rimKeeper = (half: Mesh): ((p: Vec3) => boolean) => {
+  const kept = new Set<string>()
+  for (const loop of borderLoops(half)) {
+    if (loop.some((v) => Math.abs(point(half, v)[0]) < 1e-6)) continue
+    const step = loop.length / Math.min(kRimCorners, loop.length)
+    for (let i = 0; i < loop.length; i += step) kept.add(point(half, loop[Math.floor(i)]!).join())
+  }
+  return (p) => kept.has(p.join())
+}
+
+const kRounds = 60
+
+/** Moves corners of the cage along their normals until every seen vertex of the skin lies at least a fifth of the distance beneath it. */
+const pushOut = (cage: Mesh, plan: CagePlan): Mesh => {
+  const least = plan.distance * 0.2
+  let current = cage
+  for (let round = 0; round < kRounds; round++) {
+    const space = spaceOf(current)
+    const { normals } = withMeshNormals(current)
+    const push = new Float64Array(vertexCount(current))
+    for (let v = 0; v < vertexCount(plan.wrap); v++) {
+      if (!plan.seen(v)) continue
+      const p = point(plan.wrap, v)
+      const near = space.nearest(p)
+      // Off the border the nearest point is straight above: only there does "beneath" mean anything.
+      const lateral = Math.sqrt(Math.max(near.distance ** 2 - near.side ** 2, 0))
+      const missing = near.side + least
+      if (missing <= 0 || lateral > 0.1 * plan.distance) continue
+      for (const c of corners(current, near.triangle)) push[c] = Math.max(push[c]!, missing)
+    }
+    if (push.every((d) => d === 0)) return current
+    const positions = current.positions.map((x, i) => {
+      const v = Math.floor(i / 3)
+      const moved = x + push[v]! * normals![i]!
+      return i % 3 === 0 && Math.abs(x) < 1e-6 ? 0 : moved
+    })
+    current = { positions, indices: current.indices }
+  }
+  return current
+}
+
+/** How many seen vertices of the skin lie outside the cage, borders aside: of a good cage none. */
+export const outsideCage = (cage: Mesh, wrap: Mesh, seen: (vertex: number) => boolean, onBorder: (p: Vec3) => boolean): number => {
+  const space = spaceOf(cage)
+  let outside = 0
+  for (let v = 0; v < vertexCount(wrap); v++) {
+    if (!seen(v)) continue
+    const near = space.nearest(point(wrap, v))
+    if (near.side > 0 && !onBorder(near.point)) outside++
+  }
+  return outside
+}

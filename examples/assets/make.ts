@@ -1,0 +1,97 @@
+/**
+ * Makes the sample models into build/assets: `npm run assets [-- --force] [model …]`.
+ *
+ * Nothing is made twice: a model is skipped while the sources it comes from are unchanged, unless --force is given.
+ */
+import { createHash } from 'node:crypto'
+import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs'
+import { dirname, join } from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { writeGlb } from './glb.ts'
+import { drawTexture } from './image.ts'
+import { triangleCount, withMeshNormals } from './mesh.ts'
+import type { Model } from './model.ts'
+import { lizard } from './models/lizard.ts'
+import { truthOf } from './truth.ts'
+
+const here = dirname(fileURLToPath(import.meta.url))
+const root = join(here, '../..')
+const out = join(root, 'build/assets')
+const kPaintSize = 1024
+
+const models: Record<string, () => Model> = { lizard }
+
+/** One entry of build/assets/index.json; paths are relative to build/assets. */
+interface Entry {
+  name: string
+  title: string
+  target: string
+  cage: string
+  truth: string
+  paints: { name: string; title: string; file: string }[]
+}
+
+/** A number of everything a model's bytes depend on: these sources, and the versions of the libraries they call. */
+const fingerprint = (): string => {
+  const hash = createHash('sha256')
+  for (const folder of [here, join(here, 'models')])
+    for (const file of readdirSync(folder).filter((f) => f.endsWith('.ts')).sort()) hash.update(file).update(readFileSync(join(folder, file)))
+  for (const name of ['manifold-3d', 'meshoptimizer', '@gltf-transform/core', 'pngjs', 'three', 'three-mesh-bvh'])
+    hash.update(JSON.parse(readFileSync(join(root, 'node_modules', name, 'package.json'), 'utf8')).version)
+  return hash.digest('hex')
+}
+
+const write = async (model: Model, folder: string): Promise<Entry> => {
+  writeFileSync(join(folder, 'target.glb'), await writeGlb(model.title, model.parts))
+  const cage = { name: 'cage', mesh: withMeshNormals(model.cage), colour: [0.8, 0.8, 0.8, 1] as const, roughness: 0.9, ncz: false }
+  writeFileSync(join(folder, 'cage.glb'), await writeGlb(`${model.title}: cage`, [cage]))
+  writeFileSync(join(folder, 'truth.json'), JSON.stringify(truthOf(model.parts, model.cage, model.inside)))
+  for (const paint of model.paints)
+    writeFileSync(join(folder, `paint-${paint.name}.png`), drawTexture(cage.mesh, kPaintSize, paint.shade, paint.far))
+  return {
+    name: model.name,
+    title: model.title,
+    target: `${model.name}/target.glb`,
+    cage: `${model.name}/cage.glb`,
+    truth: `${model.name}/truth.json`,
+    paints: model.paints.map(({ name, title }) => ({ name, title, file: `${model.name}/paint-${name}.png` })),
+  }
+}
+
+const wanted = process.argv.slice(2).filter((a) => a !== '--force')
+const force = process.argv.includes('--force')
+const unknown = wanted.find((name) => !(name in models))
+if (unknown !== undefined) {
+  console.error(`assets: no model is called "${unknown}"; there are ${Object.keys(models).join(', ')}`)
+  process.exit(2)
+}
+
+mkdirSync(out, { recursive: true })
+const print = fingerprint()
+const index: Entry[] = []
+for (const [name, make] of Object.entries(models)) {
+  const folder = join(out, name)
+  const stamp = join(folder, 'made.json')
+  const made = existsSync(stamp) ? (JSON.parse(readFileSync(stamp, 'utf8')) as { print: string; entry: Entry }) : undefined
+  if (made?.print === print && !(force && (wanted.length === 0 || wanted.includes(name)))) {
+    index.push(made.entry)
+    continue
+  }
+  if (wanted.length > 0 && !wanted.includes(name)) {
+    if (made) index.push(made.entry)
+    continue
+  }
+  const started = performance.now()
+  // Made aside and moved into place whole, so that nobody finds half a model.
+  const aside = join(out, `.${name}-${process.pid}`)
+  mkdirSync(aside, { recursive: true })
+  const model = make()
+  const entry = await write(model, aside)
+  writeFileSync(join(aside, 'made.json'), JSON.stringify({ print, entry }))
+  rmSync(folder, { recursive: true, force: true })
+  renameSync(aside, folder)
+  index.push(entry)
+  const triangles = model.parts.reduce((n, p) => n + triangleCount(p.mesh), 0)
+  console.log(`${name}: ${triangles} triangles, cage ${triangleCount(model.cage)}, ${((performance.now() - started) / 1000).toFixed(1)} s`)
+}
+writeFileSync(join(out, 'index.json'), JSON.stringify(index, null, 2) + '\n')

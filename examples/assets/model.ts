@@ -1,0 +1,14 @@
+import type { Part } from './glb.ts'
+import type { Mesh } from './mesh.ts'
+import type { Rgba, Shade } from './image.ts'
+import type { Vec3 } from './vec.ts'
+
+/** A sample: a target in parts, the cage around it, and textures drawn for the cage. */
+export interface Model {
+  name: string // its folder
+  title: string // for people
+  parts: Part[]
+  cage: Mesh // with UVs
+  inside: (p: Vec3) => boolean // points of paintable parts that count as the inside of the model: not scored
+  paints: { name: string; title: string; shade: Shade; far: Rgba }[]
+}

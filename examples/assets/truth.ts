@@ -1,0 +1,79 @@
+import { type Part } from './glb.ts'
+import { type Mesh, diagonalOf, join, point, triangleCount, vertexCount } from './mesh.ts'
+import { onOpenEdge, spaceOf } from './space.ts'
+import { type Vec3, add, dot, scale } from './vec.ts'
+
+/** What a perfect transfer would do, per vertex of the target, its parts one after the other. */
+export interface Truth {
+  vertexCount: number
+  ncz: number[] // 1 = must not be painted
+  ignore: number[] // 1 = not scored: hidden, ambiguous, or exposed to less than a quarter of the hemisphere about its normal
+  hidden: number[] // 1 = part of the skin that nothing outside sees
+  offCage: number[] // 1 = the nearest cage point is on an open border: the cage says nothing about it
+  parts: { name: string; firstVertex: number; vertexCount: number; triangleCount: number; ncz: boolean; ambiguous: boolean }[]
+}
+
+const kRays = 512 // over the whole sphere; half of them on a vertex's own side
+const kGolden = Math.PI * (3 - Math.sqrt(5))
+
+/** Directions spread evenly over the sphere. */
+const directions: Vec3[] = Array.from({ length: kRays }, (_, k) => {
+  const z = 1 - (2 * (k + 0.5)) / kRays
+  const r = Math.sqrt(1 - z * z)
+  return [r * Math.cos(k * kGolden), r * Math.sin(k * kGolden), z]
+})
+
+/**
+ * Finds the truth about a model from what each part is for and from what of it can be seen.
+ * @param inside  Says of a point of an otherwise paintable part that it belongs to the inside of the model (a mouth's lining), where
+ *                painting it or not is a matter of taste.
+ */
+export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) => boolean): Truth => {
+  const whole = join(...parts.map((p) => p.mesh))
+  const count = vertexCount(whole)
+  const space = spaceOf(whole)
+  const cageSpace = spaceOf(cage)
+  const onBorder = onOpenEdge(weldPositions(cage))
+  const lift = 1e-4 * diagonalOf(whole.positions)
+  const truth: Truth = { vertexCount: count, ncz: [], ignore: [], hidden: [], offCage: [], parts: [] }
+  for (const part of parts) {
+    truth.parts.push({
+      name: part.name,
+      firstVertex: truth.ncz.length,
+      vertexCount: vertexCount(part.mesh),
+      triangleCount: triangleCount(part.mesh),
+      ncz: part.ncz,
+      ambiguous: part.ambiguous ?? false,
+    })
+    for (let v = 0; v < vertexCount(part.mesh); v++) {
+      const p = point(part.mesh, v)
+      const n: Vec3 = [part.mesh.normals![3 * v]!, part.mesh.normals![3 * v + 1]!, part.mesh.normals![3 * v + 2]!]
+      const from = add(p, scale(n, lift))
+      const free = directions.filter((d) => dot(d, n) > 0 && !space.hits(from, d)).length
+      const hidden = !part.ncz && free === 0
+      const exposed = free >= kRays / 8 // a quarter of the half that is on its side
+      truth.ncz.push(part.ncz ? 1 : 0)
+      truth.hidden.push(hidden ? 1 : 0)
+      truth.ignore.push(!part.ncz && (!exposed || inside(p)) || part.ambiguous ? 1 : 0)
+      truth.offCage.push(onBorder(cageSpace.nearest(p).point) ? 1 : 0)
+    }
+  }
+  return truth
+}
+
+/** The same triangles over vertices that differ in position, so that a cut in the UVs is no border. */
+export const weldPositions = (mesh: Mesh): Mesh => {
+  const place = new Map<string, number>()
+  const positions: number[] = []
+  const indices = mesh.indices.map((v) => {
+    const p = point(mesh, v)
+    const key = p.join()
+    let at = place.get(key)
+    if (at === undefined) {
+      place.set(key, (at = positions.length / 3))
+      positions.push(...p)
+    }
+    return at
+  })
+  return { positions: Float32Array.from(positions), indices }
+}

@@ -1,0 +1,399 @@
+import { type Mesh, boundsOf, corners, faceNormal, openEdges, point, triangleCount, vertexCount } from './mesh.ts'
+import { type Vec3, cross, dot, length, sub, unit } from './vec.ts'
+
+type Uv = readonly [number, number]
+
+/**
+ * Gives each vertex a copy for each group of its triangles that `joined` edges hold together.
+ * @param joined  Says of an edge (two vertices) and its two triangles whether they stay together.
+ */
+const splitAlong = (
+  mesh: Mesh,
+  joined: (a: number, b: number, left: number, right: number) => boolean,
+): { mesh: Mesh; source: number[] } => {
+  const parent = Array.from(mesh.indices, (_, i) => i)
+  const find = (i: number): number => {
+    while (parent[i] !== i) i = parent[i] = parent[parent[i]!]!
+    return i
+  }
+  const unite = (a: number, b: number): void => {
+    const [x, y] = [find(a), find(b)]
+    parent[Math.max(x, y)] = Math.min(x, y)
+  }
+  const count = vertexCount(mesh)
+  const edges = new Map<number, number>()
+  const nextCorner = (i: number): number => i - (i % 3) + ((i + 1) % 3)
+  mesh.indices.forEach((a, i) => edges.set(a * count + mesh.indices[nextCorner(i)]!, i))
+  mesh.indices.forEach((a, i) => {
+    const b = mesh.indices[nextCorner(i)]!
+    const twin = edges.get(b * count + a)
+    if (twin === undefined || !joined(a, b, Math.floor(i / 3), Math.floor(twin / 3))) return
+    unite(i, nextCorner(twin))
+    unite(nextCorner(i), twin)
+  })
+  const place = new Map<number, number>()
+  const source: number[] = []
+  const indices = mesh.indices.map((v, i) => {
+    const root = find(i)
+    let vertex = place.get(root)
+    if (vertex === undefined) {
+      place.set(root, (vertex = source.length))
+      source.push(v)
+    }
+    return vertex
+  })
+  const spread = (a: Float32Array): Float32Array => Float32Array.from(source.flatMap((v) => [a[3 * v]!, a[3 * v + 1]!, a[3 * v + 2]!]))
+  return {
+    mesh: { positions: spread(mesh.positions), indices, ...(mesh.normals ? { normals: spread(mesh.normals) } : {}) },
+    source,
+  }
+}
+
+/** A grid of cells a chart's triangles may each take once: tells when a flattened patch begins to lie over itself. */
+class Occupancy {
+  private readonly taken = new Set<number>()
+  private readonly cell: number
+  constructor(cell: number) {
+    this.cell = cell
+  }
+  /** Takes the cells whose centres lie inside the triangle, unless one is taken already. */
+  take(a: Uv, b: Uv, c: Uv): boolean {
+    const inside: number[] = []
+    const low = (k: 0 | 1): number => Math.floor(Math.min(a[k], b[k], c[k]) / this.cell)
+    const high = (k: 0 | 1): number => Math.ceil(Math.max(a[k], b[k], c[k]) / this.cell)
+    for (let j = low(1); j <= high(1); j++)
+      for (let i = low(0); i <= high(0); i++) {
+        const p: Uv = [(i + 0.5) * this.cell, (j + 0.5) * this.cell]
+        if (area(a, b, p) < 0 || area(b, c, p) < 0 || area(c, a, p) < 0) continue
+        const key = (i + 4096) * 8192 + j + 4096
+        if (this.taken.has(key)) return false
+        inside.push(key)
+      }
+    for (const key of inside) this.taken.add(key)
+    return true
+  }
+}
+
+/** Twice the signed area of a flat triangle. */
+const area = (a: Uv, b: Uv, c: Uv): number => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+const kSides: { normal: Vec3; u: Vec3; v: Vec3 }[] = [
+  { normal: [0, 0, 1], u: [1, 0, 0], v: [0, 1, 0] },
+  { normal: [0, 0, -1], u: [-1, 0, 0], v: [0, 1, 0] },
+  { normal: [1, 0, 0], u: [0, 0, -1], v: [0, 1, 0] },
+  { normal: [-1, 0, 0], u: [0, 0, 1], v: [0, 1, 0] },
+  { normal: [0, 1, 0], u: [1, 0, 0], v: [0, 0, -1] },
+  { normal: [0, -1, 0], u: [1, 0, 0], v: [0, 0, 1] },
+]
+
+/**
+ * Unwraps a mesh onto the six sides of a box: each side's triangles, as far as they are connected and do not lie over one
+ * another, are a chart, drawn flat and to one scale; the charts are packed into 0..1.
+ * @param margin  Free space around each chart, in UV.
+ */
+export const boxAtlas = (mesh: Mesh, margin = 0.006): Mesh => {
+  const count = triangleCount(mesh)
+  const normals = Array.from({ length: count }, (_, t) => unit(faceNormal(mesh, t)))
+  let side = normals.map((n) => kSides.map((s) => dot(n, s.normal)).reduce((best, d, k, all) => (d > all[best]! ? k : best), 0))
+  const around = neighbours(mesh)
+  // Straighten the borders of the charts: a triangle follows its neighbours if it still faces their side well enough.
+  for (let pass = 0; pass < 4; pass++)
+    side = side.map((own, t) => {
+      const votes = around[t]!.map((n) => side[n]!)
+      const other = votes.find((s, i) => s !== own && votes.indexOf(s) !== i)
+      return other !== undefined && dot(normals[t]!, kSides[other]!.normal) > 0.3 ? other : own
+    })
+  const flat = (v: number, s: number): Uv => [dot(point(mesh, v), kSides[s]!.u), dot(point(mesh, v), kSides[s]!.v)]
+  const bounds = boundsOf(mesh.positions)
+  const cell = length(sub(bounds.max, bounds.min)) / 1500
+  const chart = new Int32Array(count).fill(-1)
+  const charts: number[] = [] // the side of each
+  for (let seed = 0; seed < count; seed++) {
+    if (chart[seed] !== -1) continue
+    const id = charts.push(side[seed]!) - 1
+    const grid = new Occupancy(cell)
+    const queue = [seed]
+    while (queue.length > 0) {
+      const t = queue.shift()!
+      if (chart[t] !== -1 || side[t] !== charts[id]) continue
+      const [a, b, c] = corners(mesh, t).map((v) => flat(v, charts[id]!)) as [Uv, Uv, Uv]
+      if (t !== seed && !grid.take(a, b, c)) continue
+      if (t === seed) grid.take(a, b, c)
+      chart[t] = id
+      queue.push(...around[t]!)
+    }
+  }
+  const split = splitAlong(mesh, (_a, _b, left, right) => chart[left] === chart[right])
+  const owner = new Int32Array(vertexCount(split.mesh))
+  split.mesh.indices.forEach((v, i) => (owner[v] = chart[Math.floor(i / 3)]!))
+  const uv = split.source.map((v, i) => flat(v, charts[owner[i]!]!))
+  return { ...split.mesh, uvs: pack(uv, owner, charts.length, margin) }
+}
+
+/** For each triangle the triangles it shares an edge with. */
+const neighbours = (mesh: Mesh): number[][] => {
+  const count = vertexCount(mesh)
+  const edges = new Map<number, number>()
+  const next = (i: number): number => mesh.indices[i - (i % 3) + ((i + 1) % 3)]!
+  mesh.indices.forEach((a, i) => edges.set(a * count + next(i), Math.floor(i / 3)))
+  const out: number[][] = Array.from({ length: triangleCount(mesh) }, () => [])
+  mesh.indices.forEach((a, i) => {
+    const twin = edges.get(next(i) * count + a)
+    if (twin !== undefined) out[Math.floor(i / 3)]!.push(twin)
+  })
+  return out
+}
+
+/** Moves charts side by side into 0..1 on shelves, tallest first, all scaled alike and as large as they fit; turns v downwards. */
+const pack = (uv: Uv[], owner: Int32Array, charts: number, margin: number): Float32Array => {
+  const boxes = Array.from({ length: charts }, () => ({ low: [Infinity, Infinity], high: [-Infinity, -Infinity] }))
+  uv.forEach((p, v) => {
+    const box = boxes[owner[v]!]!
+    for (const k of [0, 1] as const) {
+      box.low[k] = Math.min(box.low[k]!, p[k])
+      box.high[k] = Math.max(box.high[k]!, p[k])
+    }
+  })
+  const sizes = boxes.map((b) => [b.high[0]! - b.low[0]!, b.high[1]! - b.low[1]!] as const)
+  const order = sizes.map((_, i) => i).sort((a, b) => sizes[b]![1] - sizes[a]![1] || a - b)
+  const place = (s: number): Uv[] | undefined => {
+    const at: Uv[] = []
+    let [x, y, shelf] = [margin, margin, 0]
+    for (const i of order) {
+      const [w, h] = [sizes[i]![0] * s, sizes[i]![1] * s]
+      if (x + w + margin > 1) [x, y, shelf] = [margin, y + shelf + margin, 0]
+      if (x + w + margin > 1 || y + h + margin > 1) return undefined
+      at[i] = [x, y]
+      x += w + margin
+      shelf = Math.max(shelf, h)
+    }
+    return at
+  }
+  let low = 0
+  let high = 1 / Math.max(...sizes.flat())
+  for (let i = 0; i < 30; i++) {
+    const middle = (low + high) / 2
+    if (place(middle)) low = middle
+    else high = middle
+  }
+  const at = place(low)!
+  return Float32Array.from(
+    uv.flatMap((p, v) => {
+      const i = owner[v]!
+      return [at[i]![0] + (p[0] - boxes[i]!.low[0]!) * low, 1 - (at[i]![1] + (p[1] - boxes[i]!.low[1]!) * low)]
+    }),
+  )
+}
+
+/**
+ * Unwraps a mesh with holes into one chart, as rigidly as possible: cut open along the edges that `seam` names, laid out
+ * without overlaps on a disc (Tutte 1963), then relaxed (Liu et al. 2008, A Local/Global Approach to Mesh Parameterization),
+ * each step only as far as no triangle, and no filled hole, turns over. +x of the model points to the right of the image.
+ * @param seam  Says of an edge's two ends whether it is cut. Cut open, the mesh must be a disc with holes.
+ */
+export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, margin = 0.01): Mesh => {
+  const { mesh: cut } = splitAlong(mesh, (a, b) => !seam(point(mesh, a), point(mesh, b)))
+  const count = vertexCount(cut)
+  const loops = borderLoops(cut)
+  const perimeter = (loop: number[]): number => loop.reduce((s, v, i) => s + length(sub(point(cut, v), point(cut, loop[(i + 1) % loop.length]!))), 0)
+  loops.sort((a, b) => perimeter(b) - perimeter(a))
+  const [outer, ...holes] = loops
+  if (!outer) throw new Error('pelt: the mesh is closed; it needs a seam or a hole')
+
+  // Tutte: the outer loop on a circle, everything else at the mean of its neighbours; holes get a hub that holds them open.
+  const triangles = Array.from({ length: triangleCount(cut) }, (_, t) => corners(cut, t))
+  const filled = [...triangles, ...holes.flatMap((loop, h) => loop.map((v, i) => [v, count + h, loop[(i + 1) % loop.length]!] as [number, number, number]))]
+  const total = count + holes.length
+  const links = new Map<number, Set<number>>()
+  for (const t of filled)
+    for (let k = 0; k < 3; k++) {
+      const [a, b] = [t[k]!, t[(k + 1) % 3]!]
+      links.set(a, (links.get(a) ?? new Set()).add(b))
+      links.set(b, (links.get(b) ?? new Set()).add(a))
+    }
+  const onCircle = new Map<number, Uv>()
+  const round = perimeter(outer)
+  let walked = 0
+  outer.forEach((v, i) => {
+    const angle = (2 * Math.PI * walked) / round
+    onCircle.set(v, [Math.cos(angle), Math.sin(angle)])
+    walked += length(sub(point(cut, v), point(cut, outer[(i + 1) % outer.length]!)))
+  })
+  const matrix = new Float64Array(total * total)
+  const right = [new Float64Array(total), new Float64Array(total)]
+  for (let v = 0; v < total; v++) {
+    matrix[v * total + v] = 1
+    const fixed = onCircle.get(v)
+    if (fixed) {
+      right[0]![v] = fixed[0]
+      right[1]![v] = fixed[1]
+      continue
+    }
+    const around = [...links.get(v)!]
+    matrix[v * total + v] = around.length
+    for (const n of around) {
+      const p = onCircle.get(n)
+      if (!p) matrix[v * total + n] = -1
+      else for (const k of [0, 1] as const) right[k]![v]! += p[k]
+    }
+  }
+  const solveTutte = cholesky(matrix, total)
+  let uv = [solveTutte(right[0]!), solveTutte(right[1]!)] as const
+
+  // As rigid as possible: fit a rotation to each triangle, then solve for the positions that follow them best.
+  const rest = triangles.map((_, t) => flatTriangle(cut, t))
+  const weights = rest.map((p) => p.map((a, k) => cotangent(p[(k + 2) % 3]!, a, p[(k + 1) % 3]!)))
+  const laplace = new Float64Array(total * total)
+  triangles.forEach((t, i) => {
+    for (let k = 0; k < 3; k++) {
+      const [a, b, w] = [t[k]!, t[(k + 1) % 3]!, weights[i]![k]!]
+      laplace[a * total + a]! += w
+      laplace[b * total + b]! += w
+      laplace[a * total + b]! -= w
+      laplace[b * total + a]! -= w
+    }
+  })
+  for (let v = 0; v < total; v++) laplace[v * total + v]! += v < count ? 1e-9 : 1
+  laplace[0]! += 1
+  const solveRigid = cholesky(laplace, total)
+  // Begin at the scale of the model.
+  const worldArea = rest.reduce((s, p) => s + area(p[0], p[1], p[2]), 0)
+  const flatArea = triangles.reduce((s, t) => s + area(...(t.map((v) => [uv[0][v]!, uv[1][v]!]) as unknown as [Uv, Uv, Uv])), 0)
+  const grow = Math.sqrt(worldArea / flatArea)
+  uv = [uv[0].map((x) => x * grow), uv[1].map((x) => x * grow)] as const
+  for (let round = 0; round < 200; round++) {
+    const b = [new Float64Array(total), new Float64Array(total)] as const
+    triangles.forEach((t, i) => {
+      let [c, s] = [0, 0]
+      const p = rest[i]!
+      for (let k = 0; k < 3; k++) {
+        const [from, to, w] = [t[k]!, t[(k + 1) % 3]!, weights[i]![k]!]
+        const [ex, ey] = [p[(k + 1) % 3]![0] - p[k]![0], p[(k + 1) % 3]![1] - p[k]![1]]
+        const [dx, dy] = [uv[0][to]! - uv[0][from]!, uv[1][to]! - uv[1][from]!]
+        c += w * (ex * dx + ey * dy)
+        s += w * (ex * dy - ey * dx)
+      }
+      const norm = Math.sqrt(c * c + s * s) || 1
+      c /= norm
+      s /= norm
+      for (let k = 0; k < 3; k++) {
+        const [from, to, w] = [t[k]!, t[(k + 1) % 3]!, weights[i]![k]!]
+        const [ex, ey] = [p[(k + 1) % 3]![0] - p[k]![0], p[(k + 1) % 3]![1] - p[k]![1]]
+        const [rx, ry] = [w * (c * ex - s * ey), w * (s * ex + c * ey)]
+        b[0][to]! += rx
+        b[1][to]! += ry
+        b[0][from]! -= rx
+        b[1][from]! -= ry
+      }
+    })
+    b[0][0]! += uv[0][0]!
+    b[1][0]! += uv[1][0]!
+    holes.forEach((_, h) => {
+      b[0][count + h] = uv[0][count + h]!
+      b[1][count + h] = uv[1][count + h]!
+    })
+    const goal = [solveRigid(b[0]), solveRigid(b[1])] as const
+    // A hub stays in the middle of its hole.
+    holes.forEach((loop, h) => {
+      for (const k of [0, 1] as const) goal[k][count + h] = loop.reduce((s, v) => s + goal[k][v]!, 0) / loop.length
+    })
+    let step = 1
+    const blended = (s: number): readonly [Float64Array, Float64Array] => [
+      uv[0].map((x, v) => x + s * (goal[0][v]! - x)),
+      uv[1].map((x, v) => x + s * (goal[1][v]! - x)),
+    ]
+    const upright = (p: readonly [Float64Array, Float64Array]): boolean =>
+      triangles.every((t, i) => {
+        const a = area(...(t.map((v) => [p[0][v]!, p[1][v]!]) as unknown as [Uv, Uv, Uv]))
+        return a > 0.02 * area(...rest[i]!)  || a > area(...(t.map((v) => [uv[0][v]!, uv[1][v]!]) as unknown as [Uv, Uv, Uv]))
+      })
+    while (step > 1e-4 && !upright(blended(step))) step /= 2
+    if (step <= 1e-4) break
+    uv = blended(step)
+  }
+  // Turn it upright.
+  let [c, s] = [0, 0]
+  const mean = [0, 1].map((k) => uv[k as 0 | 1].slice(0, count).reduce((a, x) => a + x, 0) / count)
+  for (let v = 0; v < count; v++) {
+    c += point(cut, v)[0] * (uv[0][v]! - mean[0]!)
+    s += point(cut, v)[0] * (uv[1][v]! - mean[1]!)
+  }
+  const norm = Math.hypot(c, s) || 1
+  c /= norm
+  s /= norm
+  const turned = Array.from({ length: count }, (_, v): Uv => [c * uv[0][v]! + s * uv[1][v]!, c * uv[1][v]! - s * uv[0][v]!])
+  const chart: Mesh = { ...cut, uvs: pack(turned, new Int32Array(count), 1, margin) }
+  return chart
+}
+
+/** The open edges of a mesh as closed loops of vertices, in the direction of their triangles. */
+export const borderLoops = (mesh: Mesh): number[][] => {
+  const next = new Map(openEdges(mesh))
+  const loops: number[][] = []
+  while (next.size > 0) {
+    const loop: number[] = []
+    let v = next.keys().next().value!
+    while (next.has(v)) {
+      loop.push(v)
+      const to = next.get(v)!
+      next.delete(v)
+      v = to
+    }
+    loops.push(loop)
+  }
+  return loops
+}
+
+const flatTriangle = (mesh: Mesh, triangle: number): [Uv, Uv, Uv] => {
+  const [a, b, c] = corners(mesh, triangle).map((v) => point(mesh, v)) as [Vec3, Vec3, Vec3]
+  const [u, w] = [sub(b, a), sub(c, a)]
+  const l = length(u)
+  return [[0, 0], [l, 0], [dot(u, w) / l, length(cross(u, w)) / l]]
+}
+
+/** Half the cotangent of the angle at `apex`, kept from zero and below: obtuse triangles would make the system indefinite. */
+const cotangent = (apex: Uv, a: Uv, b: Uv): number => {
+  const d = (a[0] - apex[0]) * (b[0] - apex[0]) + (a[1] - apex[1]) * (b[1] - apex[1])
+  return Math.max(d / Math.abs(area(apex, a, b)), 0.02) / 2
+}
+
+/** Factors a symmetric positive definite matrix (n × n, dense: cages are small) and returns its solver. */
+const cholesky = (matrix: Float64Array, n: number): ((b: Float64Array) => Float64Array) => {
+  const l = matrix.slice()
+  for (let j = 0; j < n; j++) {
+    for (let k = 0; k < j; k++) {
+      const f = l[j * n + k]!
+      if (f !== 0) for (let i = j; i < n; i++) l[i * n + j]! -= l[i * n + k]! * f
+    }
+    const d = Math.sqrt(l[j * n + j]!)
+    for (let i = j; i < n; i++) l[i * n + j]! /= d
+  }
+  return (b) => {
+    const x = b.slice()
+    for (let i = 0; i < n; i++) {
+      for (let k = 0; k < i; k++) x[i]! -= l[i * n + k]! * x[k]!
+      x[i]! /= l[i * n + i]!
+    }
+    for (let i = n - 1; i >= 0; i--) {
+      for (let k = i + 1; k < n; k++) x[i]! -= l[k * n + i]! * x[k]!
+      x[i]! /= l[i * n + i]!
+    }
+    return x
+  }
+}
+
+/** The share of the covered UV area that more than one triangle covers, found on a grid of `size` × `size`. */
+export const uvOverlap = (mesh: Mesh, size = 1024): number => {
+  const hits = new Uint8Array(size * size)
+  for (let t = 0; t < triangleCount(mesh); t++) {
+    let [a, b, c] = corners(mesh, t).map((v): Uv => [mesh.uvs![2 * v]! * size, mesh.uvs![2 * v + 1]! * size]) as [Uv, Uv, Uv]
+    if (area(a, b, c) < 0) [b, c] = [c, b]
+    for (let j = Math.floor(Math.min(a[1], b[1], c[1])); j < Math.max(a[1], b[1], c[1]); j++)
+      for (let i = Math.floor(Math.min(a[0], b[0], c[0])); i < Math.max(a[0], b[0], c[0]); i++) {
+        const p: Uv = [i + 0.5, j + 0.5]
+        if (area(a, b, p) > 0 && area(b, c, p) > 0 && area(c, a, p) > 0) hits[j * size + i]!++
+      }
+  }
+  const covered = hits.reduce((n, h) => n + (h > 0 ? 1 : 0), 0)
+  return covered === 0 ? 0 : hits.reduce((n, h) => n + (h > 1 ? 1 : 0), 0) / covered
+}
