@@ -80,6 +80,25 @@ async function buildPackage() {
     plugins: [wasmModules('wasm-inline.ts')],
   });
   if (shipped) {
+    await esbuild.build({
+      ...common,
+      entryPoints: [at('wasm/src/cli/main.ts')],
+      outfile: join(fresh, 'cli.js'),
+      platform: 'node',
+      target: 'node20',
+      // Some of what is bundled is CommonJS and asks for these.
+      banner: {
+        js: [
+          '#!/usr/bin/env node',
+          "import { createRequire as cagecastRequire } from 'node:module';",
+          "import { dirname as cagecastDirname } from 'node:path';",
+          "import { fileURLToPath as cagecastPath } from 'node:url';",
+          'const require = cagecastRequire(import.meta.url), __filename = cagecastPath(import.meta.url), __dirname = cagecastDirname(__filename);',
+        ].join('\n'),
+      },
+      loader: { '.wasm': 'binary' },
+      plugins: [wasmModules('wasm-inline.ts')],
+    });
     run(process.execPath, [at('node_modules/typescript/bin/tsc'), '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
   }
   rmSync(out, { recursive: true, force: true });

@@ -1,0 +1,119 @@
+import { resolve } from 'node:path';
+import { Command, CommanderError, InvalidArgumentError, Option } from 'commander';
+import { CagecastError } from '../index.js';
+import { InputError, firstLine } from '../gltf/input-error.js';
+import { inspectCommand } from './inspect-command.js';
+import { Progress } from './progress.js';
+import { transferCommand } from './transfer-command.js';
+
+/** Exit codes. */
+const unusable = 1;
+const wrongUsage = 2;
+
+const progress = new Progress();
+
+function numberWithin(least: number, most: number): (text: string) => number {
+  return (text) => {
+    const value = Number(text);
+    if (text.trim() === '' || !(value >= least && value <= most)) throw new InvalidArgumentError(`It is not a number within ${least}..${most}.`);
+    return value;
+  };
+}
+
+function endingIn(ending: string): (text: string) => string {
+  return (text) => {
+    if (!text.toLowerCase().endsWith(ending)) throw new InvalidArgumentError(`Its name must end in ${ending}.`);
+    return text;
+  };
+}
+
+interface CommonFlags {
+  cage: string;
+  threshold: number;
+  weldTolerance: number;
+  preset: 'paper';
+}
+
+function common(command: Command): Command {
+  return command
+    .argument('<TARGET>', 'GLB or glTF that receives the texture')
+    .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it needs UVs')
+    .addOption(new Option('--threshold <SHARE>', 'a segment is painted if at least this share of its exposed area is covered').default(0.5).argParser(numberWithin(0, 1)))
+    .addOption(new Option('--preset <NAME>', 'the set of rules').choices(['paper']).default('paper'))
+    .addOption(new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").default(0).argParser(numberWithin(0, 0.1)))
+    .allowExcessArguments(false);
+}
+
+const optionsOf = ({ threshold, weldTolerance, preset }: CommonFlags) => ({ preset, threshold, weldTolerance });
+
+const program = new Command('cagecast')
+  .description('Carries a texture drawn once for a cage onto any mesh, and keeps it off what must not be painted.')
+  .version(CAGECAST_VERSION, '--version', 'print the version')
+  .helpOption('-h, --help', 'print help')
+  .helpCommand(false)
+  .exitOverride()
+  .configureOutput({ outputError: (text, write) => write(`cagecast: ${text.replace(/^error: /, '').replace(/\s*\n\s*/g, ' ').trim()}\n`) })
+  .addHelpText(
+    'after',
+    `
+Examples:
+  cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
+  cagecast transfer head.glb --cage cage.glb -o head-with-uvs.glb --report report.json
+  cagecast inspect head.glb --cage cage.glb
+
+Exit codes: 0 done, 1 an input is unusable, 2 wrong usage.`,
+  );
+
+common(program.command('transfer'))
+  .description('write TARGET with a new UV set and the _NCZ attribute, all else as it was')
+  .option('--texture <PAINT>', "PNG or JPEG in the cage's UVs: show it as an overlay of the cosmetic triangles")
+  .addOption(new Option('-o, --output <OUT.glb>', 'where to write the GLB').argParser(endingIn('.glb')))
+  .option('--report <R.json>', 'where to write counts, areas, segments and timings as JSON')
+  .addHelpText(
+    'after',
+    `
+_NCZ is 0 for a vertex that may be painted, else the reason why not: 1 the target lies over it, 2 the cage has a hole
+over it, 3 too little of its segment is covered.
+
+Examples:
+  cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
+  cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json`,
+  )
+  .action(async (target: string, flags: CommonFlags & { texture?: string; output?: string; report?: string }, command: Command) => {
+    const { cage, texture, output, report } = flags;
+    if (texture !== undefined && output === undefined) command.error('--texture needs -o OUT.glb to show it in', { exitCode: wrongUsage });
+    const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => resolve(path));
+    const outputs = [output, report].filter((path) => path !== undefined).map((path) => resolve(path));
+    const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
+    if (clash !== undefined) command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
+    const text = await transferCommand({ target, cage, texture, output, report, options: optionsOf(flags) }, progress);
+    progress.clear();
+    console.log(text);
+  });
+
+common(program.command('inspect'))
+  .description('is this cage fit for this target? numbers, causes, what to do')
+  .option('--json', 'print JSON', false)
+  .addHelpText('after', '\nExample:\n  cagecast inspect head.glb --cage cage.glb --json')
+  .action(async (target: string, flags: CommonFlags & { json: boolean }) => {
+    const text = await inspectCommand({ target, cage: flags.cage, json: flags.json, options: optionsOf(flags) }, progress);
+    progress.clear();
+    console.log(text);
+  });
+
+// A reader that has seen enough, as `head` has, is no failure.
+process.stdout.on('error', (error: NodeJS.ErrnoException) => process.exit(error.code === 'EPIPE' ? 0 : unusable));
+
+try {
+  await program.parseAsync();
+} catch (error) {
+  progress.clear();
+  if (error instanceof CommanderError) {
+    // Help that was not asked for, as without a command, is wrong usage.
+    process.exitCode = error.exitCode === 0 && error.code !== 'commander.help' ? 0 : wrongUsage;
+  } else {
+    const known = error instanceof InputError || error instanceof CagecastError;
+    process.stderr.write(`cagecast: ${known ? firstLine(error) : `failed unexpectedly (${firstLine(error)}); please report it`}\n`);
+    process.exitCode = unusable;
+  }
+}

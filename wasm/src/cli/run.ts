@@ -1,0 +1,58 @@
+import { CagecastError, init, transfer, type TransferOptions, type TransferResult } from '../index.js';
+import { extract, partOf, placeOf, type Extracted } from '../gltf/extract.js';
+import { InputError } from '../gltf/input-error.js';
+import { readGltf, type GltfFile } from '../gltf/read.js';
+import type { Progress } from './progress.js';
+
+/** Two files, read and transferred. */
+export interface Run {
+  targetFile: GltfFile;
+  target: Extracted;
+  cageFile: GltfFile;
+  cage: Extracted;
+  result: TransferResult;
+}
+
+/**
+ * Reads target and cage and runs the transfer.
+ * @throws {InputError} that names the file at fault.
+ */
+export async function run(targetPath: string, cagePath: string, options: TransferOptions, progress: Progress): Promise<Run> {
+  progress.step(`reading ${targetPath}`);
+  const targetFile = await readGltf(targetPath);
+  const target = usable(targetFile, extract(targetFile));
+  progress.step(`reading ${cagePath}`);
+  const cageFile = await readGltf(cagePath);
+  const cage = usable(cageFile, extract(cageFile));
+  if (cage.mesh.uvs === undefined) {
+    const part = cage.parts.find(({ mesh, primitive }) => cageFile.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined)!;
+    throw new InputError(`${placeOf(part)} ("${part.name}") has no TEXCOORD_0: the texture is drawn in the cage's UVs`).in(cagePath);
+  }
+  const vertices = target.mesh.positions.length / 3;
+  progress.step(`transferring to ${vertices.toLocaleString('en')} vertices`);
+  await init();
+  try {
+    return { targetFile, target, cageFile, cage, result: transfer(cage.mesh, target.mesh, options) };
+  } catch (error) {
+    throw error instanceof CagecastError ? inFile(error, targetFile, target, cageFile, cage) : error;
+  }
+}
+
+function usable(file: GltfFile, extracted: Extracted): Extracted {
+  if (extracted.mesh.indices.length === 0) {
+    throw new InputError(`has no ${(file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene'}; at least one triangle is needed`).in(file.path);
+  }
+  return extracted;
+}
+
+/** Says in which file, and where in it, lies what the core found. */
+function inFile({ message, code, at }: CagecastError, targetFile: GltfFile, target: Extracted, cageFile: GltfFile, cage: Extracted): Error {
+  const text = message.replace(/^transfer: /, '');
+  const isCage = text.startsWith('cage');
+  if (!isCage && !text.startsWith('target')) return new InputError(text).in(targetFile.path);
+  const { parts } = isCage ? cage : target;
+  const perVertex = { nonFinitePosition: 3, tooLarge: 3, nonFiniteUv: 2 }[code as string];
+  const part = perVertex === undefined ? undefined : partOf(parts, Math.floor(at / perVertex));
+  const where = part ? ` (${placeOf(part)}, "${part.name}")` : '';
+  return new InputError(`${text}${where}`).in((isCage ? cageFile : targetFile).path);
+}

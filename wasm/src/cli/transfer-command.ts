@@ -1,0 +1,144 @@
+import { basename } from 'node:path';
+import type { TransferOptions } from '../index.js';
+import { placeOf } from '../gltf/extract.js';
+import { imageIsWhole, imageType } from '../gltf/image.js';
+import { InputError } from '../gltf/input-error.js';
+import { readBytes } from '../gltf/read.js';
+import { diagonal, writeTransfer, zoneAttribute, type Added, type Paint } from '../gltf/write.js';
+import { perZone, vertexAreas, type PerZone } from './analysis.js';
+import { writeFiles } from './output.js';
+import type { Progress } from './progress.js';
+import { run, type Run } from './run.js';
+import { integer, percent, table } from './table.js';
+
+/** What `cagecast transfer` was asked for. */
+export interface TransferCommand {
+  target: string;
+  cage: string;
+  texture?: string | undefined;
+  output?: string | undefined;
+  report?: string | undefined;
+  options: Required<Pick<TransferOptions, 'preset' | 'threshold' | 'weldTolerance'>>;
+}
+
+/**
+ * Transfers, and writes what was asked for.
+ * @returns a summary for people.
+ * @throws {InputError} that names the file at fault; then no file is written.
+ */
+export async function transferCommand(command: TransferCommand, progress: Progress): Promise<string> {
+  const paint = command.texture === undefined ? undefined : await readPaint(command.texture);
+  const done = await run(command.target, command.cage, command.options, progress);
+  let added: Added[] | undefined;
+  const files: { path: string; data: Uint8Array | string }[] = [];
+  if (command.output !== undefined) {
+    progress.step(`writing ${command.output}`);
+    const written = await writeTransfer(done.targetFile, done.target, done.result, paint).catch((error: unknown) => {
+      throw error instanceof InputError ? error.in(command.target) : error;
+    });
+    added = written.added;
+    files.push({ path: command.output, data: written.glb });
+  }
+  const report = makeReport(command, done, added);
+  if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
+  writeFiles(files);
+  return summary(command, report);
+}
+
+async function readPaint(path: string): Promise<Paint> {
+  try {
+    const bytes = await readBytes(path);
+    const mimeType = imageType(bytes);
+    if (mimeType !== 'image/png' && mimeType !== 'image/jpeg') throw new InputError('is neither a PNG nor a JPEG image');
+    if (!imageIsWhole(bytes)) throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image has no end`);
+    return { name: basename(path), mimeType, bytes };
+  } catch (error) {
+    throw error instanceof InputError ? error.in(path) : error;
+  }
+}
+
+/** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
+export interface Report {
+  versions: { cagecast: string; node: string };
+  target: { file: string; vertices: number; triangles: number; diagonal: number };
+  cage: { file: string; vertices: number; triangles: number };
+  texture: string | null;
+  output: string | null;
+  options: TransferCommand['options'];
+  /** Vertices of the target in each zone. */
+  counts: PerZone;
+  /** Area of the target in each zone: a third of each triangle for each of its corners. */
+  areas: PerZone & { total: number };
+  triangles: { total: number; cosmetic: number };
+  /** E, C and F of every connected component, in the order of their first vertices. */
+  segments: { part: string; vertices: number; points: number; area: number; exposedArea: number; coveredArea: number; coverage: number; culled: boolean }[];
+  /** Every primitive of every node, in scene order. `uvSet` is the attribute added, `null` without output. */
+  parts: { name: string; place: string; vertices: number; triangles: number; counts: PerZone; uvSet: string | null; overlayTriangles: number }[];
+  /** Milliseconds of CPU time. */
+  timings: Run['result']['timings'];
+  peakBytes: number;
+}
+
+function makeReport(command: TransferCommand, { target, cage, result }: Run, added: Added[] | undefined): Report {
+  const { mesh, parts } = target;
+  const areas = vertexAreas(mesh);
+  const partOfVertex = new Uint32Array(mesh.positions.length / 3);
+  parts.forEach((part, p) => partOfVertex.fill(p, part.firstVertex, part.firstVertex + part.vertexCount));
+  const segmentVertices = new Uint32Array(result.segmentStats.length);
+  const segmentPart = new Uint32Array(result.segmentStats.length);
+  for (let v = partOfVertex.length - 1; v >= 0; --v) {
+    ++segmentVertices[result.segments[v]!]!;
+    segmentPart[result.segments[v]!] = partOfVertex[v]!;
+  }
+  return {
+    versions: { cagecast: CAGECAST_VERSION, node: process.versions.node },
+    target: { file: command.target, vertices: mesh.positions.length / 3, triangles: mesh.indices.length / 3, diagonal: diagonal(mesh.positions) },
+    cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
+    texture: command.texture ?? null,
+    output: command.output ?? null,
+    options: command.options,
+    counts: perZone(result.zones),
+    areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
+    triangles: { total: mesh.indices.length / 3, cosmetic: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0) },
+    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, culled }, s) => ({
+      part: parts[segmentPart[s]!]!.name,
+      vertices: segmentVertices[s]!,
+      points,
+      area,
+      exposedArea,
+      coveredArea,
+      coverage,
+      culled,
+    })),
+    parts: parts.map((part, p) => ({
+      name: part.name,
+      place: placeOf(part),
+      vertices: part.vertexCount,
+      triangles: part.triangleCount,
+      counts: perZone(result.zones, undefined, part.firstVertex, part.firstVertex + part.vertexCount),
+      uvSet: added?.[p]?.uvSet ?? null,
+      overlayTriangles: added?.[p]?.overlayTriangles ?? 0,
+    })),
+    timings: result.timings,
+    peakBytes: result.peakBytes,
+  };
+}
+
+function summary(command: TransferCommand, { target, counts, areas, triangles, segments, parts, timings, output }: Report): string {
+  const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
+  const rows = [
+    ['', 'vertices', 'area'],
+    ...zones.map((zone) => [zone, integer(counts[zone]), percent(areas.total > 0 ? areas[zone] / areas.total : 0)]),
+  ];
+  const sets = [...new Set(parts.map((part) => part.uvSet))].join(', ');
+  const culled = segments.filter((segment) => segment.culled).length;
+  const lines = [
+    `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
+    table(rows),
+    `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted; ${timings.total.toFixed(1)} ms`,
+    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}`,
+    command.report === undefined ? '' : `wrote ${command.report}`,
+    output === null && command.report === undefined ? 'nothing written; -o OUT.glb and --report R.json keep the result' : '',
+  ];
+  return lines.filter(Boolean).join('\n');
+}

@@ -1,0 +1,152 @@
+import { dirname } from 'node:path';
+import type { GLTF } from '@gltf-transform/core';
+import { meshoptView } from './check.js';
+import { readUri, type GltfFile } from './read.js';
+import { InputError } from './input-error.js';
+import { imageType } from './image.js';
+
+const arrayBuffer = 34962;
+const elementArrayBuffer = 34963;
+const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
+
+/**
+ * A glTF file about to become a GLB with something added to it.
+ *
+ * It works on the file's JSON and bytes as they are, not on a decoded document: whatever the file has, also what no
+ * library knows of (extensions of avatars, extras, compressed data), stays as it was, byte for byte.
+ */
+export class GlbWriter {
+  /** The JSON of the file to be written; add to it freely. */
+  readonly json: GLTF.IGLTF;
+  readonly #chunks: Uint8Array[] = [];
+  #length = 0;
+
+  private constructor(json: GLTF.IGLTF) {
+    this.json = structuredClone(json);
+  }
+
+  /**
+   * Starts from a file: all its buffers become one, and images that lie beside it move in.
+   * @throws {InputError} if such an image cannot be read.
+   */
+  static async from(file: GltfFile): Promise<GlbWriter> {
+    const writer = new GlbWriter(file.json);
+    writer.#mergeBuffers(file.buffers);
+    await writer.#embedImages(dirname(file.path));
+    return writer;
+  }
+
+  #mergeBuffers(buffers: (Uint8Array | undefined)[]): void {
+    const { json } = this;
+    const offsets = buffers.map((bytes, b) => (bytes ? this.#append(bytes.subarray(0, json.buffers![b]!.byteLength)) : 0));
+    // Buffers without bytes only stand for compressed views; they keep doing so, after the one that has them all.
+    const kept = buffers.flatMap((bytes, b) => (bytes ? [] : [b]));
+    const numbers = buffers.map((bytes, b) => (bytes ? 0 : 1 + kept.indexOf(b)));
+    const move = (view: { buffer: number; byteOffset?: number }) => {
+      const offset = (view.byteOffset ?? 0) + offsets[view.buffer]!;
+      if (offset > 0) view.byteOffset = offset;
+      view.buffer = numbers[view.buffer]!;
+    };
+    for (const view of json.bufferViews ?? []) {
+      move(view);
+      const compressed = meshoptView(view);
+      if (compressed) move(compressed);
+    }
+    const fallbacks = kept.map((b) => json.buffers![b]!);
+    const first = buffers[0] ? json.buffers![0]! : { byteLength: 0 };
+    delete first.uri;
+    json.buffers = [first, ...fallbacks];
+  }
+
+  async #embedImages(folder: string): Promise<void> {
+    for (const [i, image] of (this.json.images ?? []).entries()) {
+      if (image.uri === undefined) continue;
+      const bytes = await readUri(`images[${i}]`, image.uri, folder);
+      const mimeType = image.mimeType ?? imageType(bytes) ?? /^data:([^;,]+)/.exec(image.uri)?.[1];
+      if (mimeType === undefined) throw new InputError(`images[${i}] is no image that a GLB can hold`);
+      delete image.uri;
+      image.mimeType = mimeType;
+      image.bufferView = this.#addView(bytes);
+    }
+  }
+
+  #append(bytes: Uint8Array): number {
+    const padding = (4 - (this.#length % 4)) % 4;
+    if (padding > 0) this.#chunks.push(new Uint8Array(padding));
+    const offset = this.#length + padding;
+    this.#chunks.push(bytes);
+    this.#length = offset + bytes.byteLength;
+    return offset;
+  }
+
+  #addView(bytes: Uint8Array, target?: number): number {
+    const byteOffset = this.#append(bytes);
+    const view = { buffer: 0, byteOffset, byteLength: bytes.byteLength, ...(target !== undefined && { target }) };
+    return (this.json.bufferViews ??= []).push(view as GLTF.IBufferView) - 1;
+  }
+
+  /** Adds a vertex attribute of `size` numbers per vertex. @returns the number of its accessor. */
+  addAttribute(values: Float32Array | Uint8Array | Uint16Array, size: 1 | 2 | 3 | 4, more: Partial<GLTF.IAccessor> = {}): number {
+    return this.#addAccessor(values, arrayBuffer, {
+      componentType: values instanceof Float32Array ? 5126 : values instanceof Uint8Array ? 5121 : 5123,
+      count: values.length / size,
+      type: types[size],
+      ...more,
+    });
+  }
+
+  /** Adds the indices of triangles, as small as they can be. @returns the number of their accessor. */
+  addIndices(indices: Uint32Array, vertexCount: number): number {
+    // The largest value of a type is reserved.
+    const small = vertexCount < 65536;
+    return this.#addAccessor(small ? Uint16Array.from(indices) : indices, elementArrayBuffer, {
+      componentType: small ? 5123 : 5125,
+      count: indices.length,
+      type: 'SCALAR',
+    });
+  }
+
+  #addAccessor(values: Float32Array | Uint8Array | Uint16Array | Uint32Array, target: number, accessor: Omit<GLTF.IAccessor, 'bufferView'>): number {
+    const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+    return (this.json.accessors ??= []).push({ bufferView: this.#addView(bytes, target), ...accessor } as GLTF.IAccessor) - 1;
+  }
+
+  /** Adds a texture of a PNG or JPEG file's bytes. @returns the number of the texture. */
+  addTexture(image: Uint8Array, mimeType: string, name: string): number {
+    const { json } = this;
+    const source = (json.images ??= []).push({ bufferView: this.#addView(image), mimeType, name }) - 1;
+    return (json.textures ??= []).push({ source, name }) - 1;
+  }
+
+  /** The bytes of the GLB. */
+  finish(): Uint8Array {
+    const { json } = this;
+    const padding = (4 - (this.#length % 4)) % 4;
+    const binLength = this.#length + padding;
+    if (this.#length > 0) json.buffers![0]!.byteLength = this.#length;
+    else json.buffers!.shift();
+    if (json.buffers!.length === 0) delete json.buffers;
+    const text = new TextEncoder().encode(JSON.stringify(json));
+    const textPadding = (4 - (text.byteLength % 4)) % 4;
+    const textLength = text.byteLength + textPadding;
+
+    const total = 12 + 8 + textLength + (binLength > 0 ? 8 + binLength : 0);
+    const out = new Uint8Array(total);
+    const view = new DataView(out.buffer);
+    const words = [0x46546c67, 2, total, textLength, 0x4e4f534a]; // "glTF", its version, "JSON"
+    words.forEach((word, i) => view.setUint32(4 * i, word, true));
+    out.set(text, 20);
+    out.fill(0x20, 20 + text.byteLength, 20 + textLength);
+    if (binLength > 0) {
+      let at = 20 + textLength;
+      view.setUint32(at, binLength, true);
+      view.setUint32(at + 4, 0x004e4942, true); // "BIN\0"
+      at += 8;
+      for (const chunk of this.#chunks) {
+        out.set(chunk, at);
+        at += chunk.byteLength;
+      }
+    }
+    return out;
+  }
+}
