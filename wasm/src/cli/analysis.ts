@@ -40,18 +40,54 @@ function length([x, y, z]: readonly [number, number, number]): number {
   return Math.sqrt(x * x + y * y + z * z);
 }
 
-/**
- * How far each target vertex lies on the outer side of its nearest cage triangle's plane, in units of the input;
- * negative on the inner side, where a target belongs.
- */
-export function signedDistances(cage: Mesh, target: Mesh, { triangles, distances }: Pick<TransferResult, 'triangles' | 'distances'>): Float64Array {
-  return Float64Array.from(distances, (distance, v) => {
+/** Where a vertex lies as the cage sees it. */
+export interface Sides {
+  /** Distance to the cage, negative on the inner side of the nearest triangle's plane, where a target belongs. */
+  signedDistances: Float64Array;
+  /** 1 where the nearest point of the cage is on an open border, so that the cage says nothing about the vertex. */
+  onBorder: Uint8Array;
+}
+
+/** Finds on which side of the cage each target vertex lies, and whether beside it. */
+export function sidesOf(cage: Mesh, target: Mesh, { triangles, distances }: Pick<TransferResult, 'triangles' | 'distances'>): Sides {
+  const { place, openEdges } = edges(cage);
+  const openEnds = new Set([...openEdges].flatMap((key) => key.split(' ').map(Number)));
+  const signedDistances = new Float64Array(distances.length);
+  const onBorder = new Uint8Array(distances.length);
+  for (let v = 0; v < distances.length; ++v) {
     const corner = 3 * triangles[v]!;
-    const [a, b, c] = [cage.indices[corner]!, cage.indices[corner + 1]!, cage.indices[corner + 2]!];
-    const [nx, ny, nz] = doubleAreaNormal(cage.positions, a, b, c);
-    const from = (k: number) => target.positions[3 * v + k]! - cage.positions[3 * a + k]!;
-    return Math.sign(nx * from(0) + ny * from(1) + nz * from(2)) * distance;
-  });
+    const corners = [cage.indices[corner]!, cage.indices[corner + 1]!, cage.indices[corner + 2]!] as const;
+    const p = pointAt(target.positions, v);
+    const points = corners.map((c) => pointAt(cage.positions, c)) as [Point, Point, Point];
+    signedDistances[v] = Math.sign(dot(doubleAreaNormal(cage.positions, ...corners), minus(p, points[0]))) * distances[v]!;
+    const touched = nearestFeature(p, ...points).map((k) => place[corners[k]!]!);
+    if (touched.length === 1) onBorder[v] = openEnds.has(touched[0]!) ? 1 : 0;
+    if (touched.length === 2) onBorder[v] = openEdges.has(edgeKey(touched[0]!, touched[1]!)) ? 1 : 0;
+  }
+  return { signedDistances, onBorder };
+}
+
+type Point = readonly [number, number, number];
+const pointAt = (positions: Float32Array, v: number): Point => [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!];
+const minus = (a: Point, b: Point): Point => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const dot = (a: Point, b: Point): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+/** The corners of the feature of triangle abc that is nearest to p: one for a corner, two for an edge, three inside. */
+function nearestFeature(p: Point, a: Point, b: Point, c: Point): number[] {
+  // Ericson, Real-Time Collision Detection, 5.1.5: the Voronoi regions of corners, edges and face.
+  const [ab, ac, ap] = [minus(b, a), minus(c, a), minus(p, a)];
+  const [d1, d2] = [dot(ab, ap), dot(ac, ap)];
+  if (d1 <= 0 && d2 <= 0) return [0];
+  const bp = minus(p, b);
+  const [d3, d4] = [dot(ab, bp), dot(ac, bp)];
+  if (d3 >= 0 && d4 <= d3) return [1];
+  if (d1 * d4 - d3 * d2 <= 0 && d1 >= 0 && d3 <= 0) return [0, 1];
+  const cp = minus(p, c);
+  const [d5, d6] = [dot(ab, cp), dot(ac, cp)];
+  if (d6 >= 0 && d5 <= d6) return [2];
+  if (d5 * d2 - d1 * d6 <= 0 && d2 >= 0 && d6 <= 0) return [0, 2];
+  if (d3 * d6 - d5 * d4 <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return [1, 2];
+  return [0, 1, 2];
 }
 
 /** Values that given shares of a list do not exceed. */
@@ -73,10 +109,32 @@ export interface CageShape {
 }
 
 /** Looks at a cage's edges and UVs; vertices in one place count as one. */
-export function cageShape({ positions, indices, uvs }: Mesh): CageShape {
+export function cageShape(cage: Mesh): CageShape {
+  const { openEdges, nonManifoldEdges, degenerateTriangles } = edges(cage);
+  const parents = new Map<number, number>();
+  const root = (v: number): number => {
+    let at = v;
+    for (let up = parents.get(at) ?? at; up !== at; up = parents.get(at) ?? at) at = up;
+    parents.set(v, at);
+    return at;
+  };
+  for (const key of openEdges) {
+    const [a, b] = key.split(' ').map(Number) as [number, number];
+    parents.set(root(a), root(b));
+  }
+  let uvsOutside = 0;
+  const { uvs = new Float32Array(0) } = cage;
+  for (let v = 0; v < uvs.length; v += 2) if ([uvs[v]!, uvs[v + 1]!].some((value) => value < 0 || value > 1)) ++uvsOutside;
+  return { degenerateTriangles, openLoops: new Set([...parents.keys()].map(root)).size, nonManifoldEdges, uvsOutside };
+}
+
+const edgeKey = (a: number, b: number): string => (a < b ? `${a} ${b}` : `${b} ${a}`);
+
+/** The edges of a mesh between places: `place` is the first vertex in the same place as each. */
+function edges({ positions, indices }: Mesh) {
   const places = new Map<string, number>();
   const place = Uint32Array.from({ length: positions.length / 3 }, (_, v) => {
-    const key = `${positions[3 * v]} ${positions[3 * v + 1]} ${positions[3 * v + 2]}`;
+    const key = pointAt(positions, v).join(' ');
     if (!places.has(key)) places.set(key, v);
     return places.get(key)!;
   });
@@ -89,27 +147,15 @@ export function cageShape({ positions, indices, uvs }: Mesh): CageShape {
       continue;
     }
     for (let k = 0; k < 3; ++k) {
-      const [a, b] = [place[corners[k]!]!, place[corners[(k + 1) % 3]!]!];
-      const key = a < b ? `${a} ${b}` : `${b} ${a}`;
+      const key = edgeKey(place[corners[k]!]!, place[corners[(k + 1) % 3]!]!);
       trianglesOfEdge.set(key, (trianglesOfEdge.get(key) ?? 0) + 1);
     }
   }
-  const parents = new Map<number, number>();
-  const root = (v: number): number => {
-    let at = v;
-    for (let up = parents.get(at) ?? at; up !== at; up = parents.get(at) ?? at) at = up;
-    parents.set(v, at);
-    return at;
+  const counts = [...trianglesOfEdge];
+  return {
+    place,
+    openEdges: new Set(counts.filter(([, count]) => count === 1).map(([key]) => key)),
+    nonManifoldEdges: counts.filter(([, count]) => count > 2).length,
+    degenerateTriangles,
   };
-  let nonManifoldEdges = 0;
-  for (const [key, count] of trianglesOfEdge) {
-    if (count > 2) ++nonManifoldEdges;
-    if (count !== 1) continue;
-    const [a, b] = key.split(' ').map(Number) as [number, number];
-    parents.set(root(a), root(b));
-  }
-  const openLoops = new Set([...parents.keys()].map(root)).size;
-  let uvsOutside = 0;
-  for (let v = 0; v < (uvs?.length ?? 0) / 2; ++v) if ([uvs![2 * v]!, uvs![2 * v + 1]!].some((value) => value < 0 || value > 1)) ++uvsOutside;
-  return { degenerateTriangles, openLoops, nonManifoldEdges, uvsOutside };
 }

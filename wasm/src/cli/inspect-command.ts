@@ -1,5 +1,5 @@
 import { diagonal } from '../gltf/write.js';
-import { cageShape, perZone, quantiles, signedDistances, vertexAreas, type CageShape, type PerZone } from './analysis.js';
+import { cageShape, perZone, quantiles, sidesOf, vertexAreas, type CageShape, type PerZone } from './analysis.js';
 import type { Progress } from './progress.js';
 import { run } from './run.js';
 import { cut, integer, percent, short, table } from './table.js';
@@ -41,7 +41,10 @@ export interface Inspection {
   counts: PerZone;
   /** Share of the target's area in each zone. */
   coverage: PerZone;
-  /** Share of the target that lies on the outer side of the cage: of its vertices, of its area, and of the area that nothing occludes and that is farther outside than `pokeThrough`. */
+  /**
+   * Share of the target that lies on the outer side of the cage: of its vertices, of its area, and, farther out than
+   * `pokeThrough`, of the area that nothing occludes and that lies over the cage, not beside its open borders.
+   */
   outside: { vertices: number; area: number; exposedArea: number };
   /** Distance from target to cage: quantiles over the vertices. */
   distances: { p50: number; p90: number; p99: number; max: number };
@@ -72,14 +75,14 @@ async function inspect(command: InspectCommand, progress: Progress): Promise<Ins
     culled: sums.culled / total,
   });
 
-  const signed = signedDistances(cage.mesh, mesh, result);
+  const { signedDistances, onBorder } = sidesOf(cage.mesh, mesh, result);
   let [outsideVertices, outsideArea, exposed, exposedOutside] = [0, 0, 0, 0];
-  signed.forEach((distance, v) => {
+  signedDistances.forEach((distance, v) => {
     if (distance > 0) {
       ++outsideVertices;
       outsideArea += areas[v]!;
     }
-    if (result.zones[v] === 1) return;
+    if (result.zones[v] === 1 || onBorder[v] === 1) return;
     exposed += areas[v]!;
     if (distance > pokeThrough * size) exposedOutside += areas[v]!;
   });
