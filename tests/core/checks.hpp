@@ -1,0 +1,52 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "reference.hpp"
+#include "scenes.hpp"
+
+/// What several tests ask.
+namespace cagecast {
+
+/// Transfers valid meshes.
+inline TransferResult transferred(const MeshView& cage, const MeshView& target, const TransferOptions& options = {}) {
+  TransferResult result;
+  const Status status = transfer(cage, target, options, result);
+  INFO(describe(status, cage, target));
+  REQUIRE(status.ok());
+  return result;
+}
+
+/// Requires the library to give the reference's answer at every vertex where that is stable.
+/// @return How the two compare, for the share of unstable vertices.
+inline reference::Differences requireSameAsReference(const std::string& name, const MeshView& cage, const MeshView& target,
+                                                     const TransferOptions& options = {}) {
+  const TransferResult product = transferred(cage, target, options);
+  const reference::Differences found = compare(reference::transfer(cage, target, options), product, target);
+  INFO(name << ": " << found.vertices << " vertices, " << found.unstable << " unstable\n" << found.details);
+  CHECK(found.zones == 0);
+  CHECK(found.triangles == 0);
+  CHECK(found.uvs == 0);
+  CHECK(found.distances == 0);
+  CHECK(found.segments == 0);
+  CHECK(found.stats == 0);
+  return found;
+}
+
+/// The first of the seeds that a test tries: 1, or CAGECAST_SEED.
+inline std::uint64_t firstSeed() {
+  const char* given = std::getenv("CAGECAST_SEED");
+  return given == nullptr ? 1 : std::strtoull(given, nullptr, 0);
+}
+
+/// A copy as a vector, which Catch can print and compare.
+template <typename T>
+std::vector<T> copied(const Array<T>& values) {
+  return {values.begin(), values.end()};
+}
+
+}  // namespace cagecast

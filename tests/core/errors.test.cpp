@@ -1,0 +1,218 @@
+#include <cmath>
+#include <limits>
+
+#include "checks.hpp"
+
+using namespace cagecast;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+
+struct Case {
+  scenes::Mesh cage = scenes::box({}, {2, 2, 2}, 1), target = scenes::box({}, {1, 1, 1}, 1);
+  TransferOptions options;
+
+  Status run() const {
+    TransferResult result;
+    return transfer(cage.view(), target.view(), options, result);
+  }
+  std::string text(const Status& status) const { return describe(status, cage.view(), target.view()); }
+};
+
+/// Runs the call and checks its status and that the sentence names all of `words`.
+void requireError(const Case& call, Code code, Argument argument, std::uint32_t at, std::initializer_list<const char*> words) {
+  const Status status = call.run();
+  CHECK(status.code == code);
+  CHECK(status.argument == argument);
+  CHECK(status.at == at);
+  const std::string text = call.text(status);
+  for (const char* word : words) CHECK_THAT(text, Contains(word));
+}
+
+}  // namespace
+
+TEST_CASE("an empty mesh is an error", "[errors]") {
+  Case call;
+  SECTION("no vertices") {
+    call.target = {};
+    requireError(call, Code::emptyMesh, Argument::target, 0, {"target", "no vertices"});
+  }
+  SECTION("no triangles") {
+    call.cage.indices.clear();
+    requireError(call, Code::emptyMesh, Argument::cage, 0, {"cage", "no triangles"});
+  }
+  SECTION("neither, both meshes: the cage comes first") {
+    call.cage = call.target = {};
+    requireError(call, Code::emptyMesh, Argument::cage, 0, {"cage"});
+  }
+}
+
+TEST_CASE("array lengths that do not fit are errors", "[errors]") {
+  Case call;
+  SECTION("positions") {
+    call.target.positions.pop_back();
+    CHECK(call.run().code == Code::positionsNotTriples);
+    CHECK(call.run().argument == Argument::target);
+    CHECK_THAT(call.text(call.run()), Contains("target.positions") && Contains("71"));
+  }
+  SECTION("indices") {
+    call.cage.indices.pop_back();
+    CHECK(call.run().code == Code::indicesNotTriples);
+    CHECK(call.run().argument == Argument::cage);
+    CHECK_THAT(call.text(call.run()), Contains("cage.indices") && Contains("35"));
+  }
+  SECTION("no UVs on the cage") {
+    call.cage.uvs.clear();
+    requireError(call, Code::missingUvs, Argument::cage, 0, {"cage.uvs"});
+  }
+  SECTION("no UVs on the target is fine") {
+    call.target.uvs.clear();
+    CHECK(call.run().ok());
+  }
+  SECTION("too few UVs") {
+    for (const bool onCage : {true, false}) {
+      Case each;
+      (onCage ? each.cage : each.target).uvs.pop_back();
+      CHECK(each.run().code == Code::uvCountMismatch);
+      CHECK(each.run().argument == (onCage ? Argument::cage : Argument::target));
+      CHECK_THAT(each.text(each.run()), Contains(".uvs") && Contains("47") && Contains("24 vertices"));
+    }
+  }
+  SECTION("too many groups") {
+    call.target.groups.push_back(0);
+    CHECK(call.run().code == Code::groupCountMismatch);
+    CHECK(call.run().argument == Argument::target);
+    CHECK_THAT(call.text(call.run()), Contains("target.groups") && Contains("25") && Contains("24 vertices"));
+  }
+}
+
+TEST_CASE("the first index out of range is named", "[errors]") {
+  for (const std::uint32_t bad : {24u, 1000u, UINT32_MAX}) {
+    Case call;
+    call.target.indices[17] = bad;
+    call.target.indices[20] = UINT32_MAX;
+    requireError(call, Code::indexOutOfRange, Argument::target, 17,
+                 {"target.indices[17] = ", std::to_string(bad).c_str(), "is out of range (24 vertices)"});
+    call = {};
+    call.cage.indices[35] = bad;
+    requireError(call, Code::indexOutOfRange, Argument::cage, 35, {"cage.indices[35]"});
+  }
+}
+
+TEST_CASE("a number that is not finite is named, wherever it is", "[errors]") {
+  for (const float bad : {kNaN, -kNaN, kInfinity, -kInfinity}) {
+    for (std::uint32_t i = 0; i < 72; ++i) {
+      Case call;
+      call.target.positions[i] = bad;
+      requireError(call, Code::nonFinitePosition, Argument::target, i, {"target.positions[", "not a finite number"});
+      call = {};
+      call.cage.positions[i] = bad;
+      requireError(call, Code::nonFinitePosition, Argument::cage, i, {"cage.positions["});
+    }
+    for (std::uint32_t i = 0; i < 48; ++i) {
+      Case call;
+      call.target.uvs[i] = bad;
+      requireError(call, Code::nonFiniteUv, Argument::target, i, {"target.uvs["});
+      call = {};
+      call.cage.uvs[i] = bad;
+      requireError(call, Code::nonFiniteUv, Argument::cage, i, {"cage.uvs["});
+    }
+  }
+}
+
+TEST_CASE("a cage whose triangles all have no area is an error", "[errors]") {
+  Case call;
+  for (float& x : call.cage.positions) x = 1;
+  requireError(call, Code::noUsableCageTriangle, Argument::cage, 0, {"cage", "area"});
+}
+
+TEST_CASE("a target whose triangles all have no area is not", "[errors]") {
+  Case call;
+  SECTION("all in one place") {
+    for (float& x : call.target.positions) x = 1;
+  }
+  SECTION("all in a row") {
+    for (std::size_t i = 0; i < call.target.positions.size(); ++i)
+      if (i % 3 != 0) call.target.positions[i] = 0;
+  }
+  SECTION("one corner only") {
+    for (std::uint32_t& index : call.target.indices) index = 0;
+  }
+  TransferResult result;
+  REQUIRE(transfer(call.cage.view(), call.target.view(), {}, result).ok());
+  CHECK(result.zones.zones.size() == 24);
+  requireSameAsReference("flat", call.cage.view(), call.target.view());
+}
+
+TEST_CASE("sizes beyond the limits are errors before anything is read", "[errors]") {
+  // Views of arrays that are not there: only their lengths may be looked at.
+  const Case call;
+  TransferResult result;
+  MeshView huge = call.target.view();
+  huge.uvs = {};
+  huge.groups = {};
+  SECTION("vertices") {
+    huge.positions = {call.target.positions.data(), (std::size_t{kMaxVertices} + 1) * 3};
+    const Status status = transfer(call.cage.view(), huge, {}, result);
+    CHECK(status.code == Code::tooLarge);
+    CHECK(status.argument == Argument::target);
+    CHECK(status.at == kMaxVertices + 1);
+    CHECK_THAT(describe(status, call.cage.view(), huge), Contains("268435457") && Contains("268435456"));
+  }
+  SECTION("triangles") {
+    huge.indices = {call.target.indices.data(), (std::size_t{kMaxTriangles} + 1) * 3};
+    const Status status = transfer(call.cage.view(), huge, {}, result);
+    CHECK(status.code == Code::tooLarge);
+    CHECK(status.at == kMaxTriangles + 1);
+    CHECK_THAT(describe(status, call.cage.view(), huge), Contains("triangles"));
+  }
+}
+
+TEST_CASE("coordinates out of all proportion are an error, in proportion they may be huge or tiny", "[errors]") {
+  for (const float far : {3e30f, -3e38f, 1e12f}) {
+    Case call;
+    call.cage.positions[30] = far;
+    const Status status = call.run();
+    CHECK(status.code == Code::tooLarge);
+    CHECK(status.argument == Argument::cage);
+    CHECK(status.at == 30);
+    CHECK_THAT(call.text(status), Contains("cage.positions[30]"));
+  }
+  for (const float factor : {1e-36f, 1e-30f, 1e-10f, 1e10f, 1e30f, 1e38f}) {
+    Case call;
+    for (scenes::Mesh* mesh : {&call.cage, &call.target})
+      for (float& x : mesh->positions) x *= factor;
+    TransferResult result;
+    INFO("factor " << factor);
+    REQUIRE(transfer(call.cage.view(), call.target.view(), {}, result).ok());
+    for (const Zone zone : result.zones.zones) CHECK(zone == Zone::cosmetic);
+  }
+}
+
+TEST_CASE("options out of range are errors", "[errors]") {
+  for (const float bad : {-0.01f, 1.01f, 2.0f, kNaN, kInfinity}) {
+    Case call;
+    call.options.threshold = bad;
+    requireError(call, Code::badThreshold, Argument::options, 0, {"threshold", "0..1"});
+    Zones zones;
+    ClassifyOptions options;
+    options.threshold = bad;
+    CHECK(classify({}, {}, {}, {}, options, zones).code == Code::badThreshold);
+  }
+  for (const float bad : {-0.01f, 0.011f, kNaN, kInfinity}) {
+    Case call;
+    call.options.weldTolerance = bad;
+    requireError(call, Code::badWeldTolerance, Argument::options, 0, {"weldTolerance", "0..0.01"});
+  }
+}
+
+TEST_CASE("every code has a name of its own", "[errors]") {
+  std::vector<std::string> names;
+  for (int code = 0; code <= static_cast<int>(Code::outOfMemory); ++code) names.emplace_back(codeName(static_cast<Code>(code)));
+  CHECK(names.front() == "ok");
+  CHECK(names.back() == "outOfMemory");
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) CHECK(names[i] != names[j]);
+}

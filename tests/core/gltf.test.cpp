@@ -1,0 +1,565 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "checks.hpp"
+#include "gltf/gltf.hpp"
+
+using namespace cagecast;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using Bytes = std::vector<std::uint8_t>;
+
+namespace {
+
+template <typename T>
+void put(Bytes& bytes, std::initializer_list<T> values) {
+  for (const T value : values) {
+    bytes.resize(bytes.size() + sizeof(T));
+    std::memcpy(&bytes[bytes.size() - sizeof(T)], &value, sizeof(T));
+  }
+}
+
+Bytes glb(std::string json, Bytes bin = {}) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  bin.resize((bin.size() + 3) / 4 * 4, 0);
+  Bytes out;
+  const auto jsonSize = static_cast<std::uint32_t>(json.size()), binSize = static_cast<std::uint32_t>(bin.size());
+  put<std::uint32_t>(out, {0x46546C67, 2, 20 + jsonSize + (bin.empty() ? 0 : 8 + binSize), jsonSize, 0x4E4F534A});
+  out.insert(out.end(), json.begin(), json.end());
+  if (!bin.empty()) put<std::uint32_t>(out, {binSize, 0x004E4942});
+  out.insert(out.end(), bin.begin(), bin.end());
+  return out;
+}
+
+/// A glTF file put together piece by piece: accessors over one buffer, one mesh of one primitive, nodes.
+struct File {
+  Bytes bin;
+  std::string views, accessors, primitive = R"("attributes":{"POSITION":0})", nodes = R"({"mesh":0,"name":"thing"})";
+  std::string sceneNodes = "0", extra, buffer;  // extra: further members of the root.
+  int viewCount = 0;
+
+  /// Adds values as a buffer view; returns its number.
+  template <typename T>
+  int view(std::initializer_list<T> values, int stride = 0) {
+    const std::size_t offset = (bin.size() + 3) / 4 * 4;
+    bin.resize(offset, 0);
+    put<T>(bin, values);
+    views += (views.empty() ? "" : ",") + std::string(R"({"buffer":0,"byteOffset":)") + std::to_string(offset) +
+             R"(,"byteLength":)" + std::to_string(bin.size() - offset) +
+             (stride > 0 ? R"(,"byteStride":)" + std::to_string(stride) : "") + "}";
+    return viewCount++;
+  }
+  void accessor(int viewIndex, int componentType, const char* type, std::size_t count, const std::string& more = "") {
+    accessors += (accessors.empty() ? "" : ",") + std::string("{") +
+                 (viewIndex >= 0 ? R"("bufferView":)" + std::to_string(viewIndex) + "," : "") + R"("componentType":)" +
+                 std::to_string(componentType) + R"(,"type":")" + type + R"(","count":)" + std::to_string(count) + more + "}";
+  }
+  std::string json() const {
+    const std::string held = buffer.empty() ? R"({"byteLength":)" + std::to_string(bin.size()) + "}" : buffer;
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + sceneNodes + R"(]}],"nodes":[)" + nodes +
+           R"(],"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[)" + accessors + R"(],"bufferViews":[)" +
+           views + R"(],"buffers":[)" + held + "]" + extra + "}";
+  }
+  Bytes bytes() const { return glb(json(), bin); }
+};
+
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+
+/// Five points, as floats.
+File points() {
+  File file;
+  file.accessor(file.view<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1}), kFloat, "VEC3", 5);
+  return file;
+}
+
+/// The same with the triangle 0 1 2.
+File triangle() {
+  File file = points();
+  file.accessor(file.view<std::uint16_t>({0, 1, 2}), kUnsignedShort, "SCALAR", 3);
+  file.primitive = R"("attributes":{"POSITION":0},"indices":1)";
+  return file;
+}
+
+gltf::Model readable(const Bytes& bytes) {
+  gltf::Model model;
+  const gltf::Result result = gltf::readMemory(bytes, "file", "", model);
+  INFO(result.error);
+  REQUIRE(result.ok());
+  return model;
+}
+
+std::string errorOf(const Bytes& bytes) {
+  gltf::Model model;
+  const gltf::Result result = gltf::readMemory(bytes, "thing.glb", "", model);
+  CHECK_FALSE(result.ok());
+  CHECK_THAT(result.error, StartsWith("thing.glb: "));
+  CHECK(std::count(result.error.begin(), result.error.end(), '\n') == 0);
+  return result.error;
+}
+
+using Indices = std::vector<std::uint32_t>;
+using Floats = std::vector<float>;
+
+}  // namespace
+
+TEST_CASE("a triangle is read with its name and its extent", "[gltf]") {
+  File file = triangle();
+  file.primitive += R"(,"material":0)";
+  file.extra = R"(,"materials":[{"name":"skin"}])";
+  const gltf::Model model = readable(file.bytes());
+  CHECK(model.positions.size() == 15);
+  CHECK(model.indices == Indices{0, 1, 2});
+  CHECK(model.uvs.empty());
+  CHECK(model.groups == Indices(5, 0));
+  REQUIRE(model.parts.size() == 1);
+  CHECK(model.parts[0].name == "thing/skin");
+  CHECK(model.parts[0].vertexCount == 5);
+  CHECK(model.parts[0].triangleCount == 1);
+}
+
+TEST_CASE("indices of every width are read, and left out they count up", "[gltf]") {
+  SECTION("8 bit") {
+    File file = points();
+    file.accessor(file.view<std::uint8_t>({4, 3, 2}), kUnsignedByte, "SCALAR", 3);
+    file.primitive += R"(,"indices":1)";
+    CHECK(readable(file.bytes()).indices == Indices{4, 3, 2});
+  }
+  SECTION("32 bit") {
+    File file = points();
+    file.accessor(file.view<std::uint32_t>({4, 3, 2}), kUnsignedInt, "SCALAR", 3);
+    file.primitive += R"(,"indices":1)";
+    CHECK(readable(file.bytes()).indices == Indices{4, 3, 2});
+  }
+  SECTION("none: two vertices are left over") { CHECK(readable(points().bytes()).indices == Indices{0, 1, 2}); }
+}
+
+TEST_CASE("strips and fans are expanded with their winding", "[gltf]") {
+  File file = points();
+  file.primitive += R"(,"mode":5)";
+  CHECK(readable(file.bytes()).indices == Indices{0, 1, 2, 1, 3, 2, 2, 3, 4});
+  file = points();
+  file.primitive += R"(,"mode":6)";
+  CHECK(readable(file.bytes()).indices == Indices{0, 1, 2, 0, 2, 3, 0, 3, 4});
+}
+
+TEST_CASE("points and lines are passed over, and a scene of nothing else is an error", "[gltf]") {
+  for (const char* mode : {"0", "1", "2", "3"}) {
+    File file = points();
+    file.primitive += std::string(R"(,"mode":)") + mode;
+    CHECK_THAT(errorOf(file.bytes()), Contains("no triangles"));
+  }
+}
+
+TEST_CASE("quantised numbers are decoded", "[gltf]") {
+  File file;
+  SECTION("plain integers stand for themselves") {
+    file.accessor(file.view<std::int16_t>({-5, 0, 7, 0, 300, 0, 0, 0, 1, 0, -32768, 0}, 8), kShort, "VEC3", 3);
+    CHECK(readable(file.bytes()).positions == Floats{-5, 0, 7, 300, 0, 0, 1, 0, -32768});
+  }
+  SECTION("normalised bytes") {
+    file.accessor(file.view<std::int8_t>({127, -127, -128, 0, 0, 64, -64, 0, 1, 2, 3, 0}, 4), kByte, "VEC3", 3, R"(,"normalized":true)");
+    const Floats expected{1, -1, -1, 0, 64 / 127.0f, -64 / 127.0f, 1 / 127.0f, 2 / 127.0f, 3 / 127.0f};
+    CHECK(readable(file.bytes()).positions == expected);
+  }
+  SECTION("normalised shorts") {
+    file.accessor(file.view<std::int16_t>({32767, -32767, -32768, 0, 0, 1, 2, 0, 3, 4, 5, 0}, 8), kShort, "VEC3", 3, R"(,"normalized":true)");
+    const Floats positions = readable(file.bytes()).positions;
+    CHECK(positions[0] == 1);
+    CHECK(positions[1] == -1);
+    CHECK(positions[2] == -1);
+    CHECK(positions[4] == 1 / 32767.0f);
+  }
+  SECTION("normalised UVs, of bytes and shorts") {
+    file = points();
+    file.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":1})";
+    SECTION("bytes") {
+      file.accessor(file.view<std::uint8_t>({0, 255, 0, 0, 51, 102, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 0, 0}, 4), kUnsignedByte, "VEC2", 5, R"(,"normalized":true)");
+      const Floats uvs = readable(file.bytes()).uvs;
+      CHECK(Floats(uvs.begin(), uvs.begin() + 4) == Floats{0, 1, 0.2f, 0.4f});
+      CHECK(uvs[9] == 2 / 255.0f);
+    }
+    SECTION("shorts") {
+      file.accessor(file.view<std::uint16_t>({0, 65535, 13107, 26214, 0, 0, 0, 0, 1, 2}), kUnsignedShort, "VEC2", 5, R"(,"normalized":true)");
+      const Floats uvs = readable(file.bytes()).uvs;
+      CHECK(Floats(uvs.begin(), uvs.begin() + 4) == Floats{0, 1, 0.2f, 0.4f});
+    }
+  }
+}
+
+TEST_CASE("interleaved and offset accessors are read", "[gltf]") {
+  File file;
+  file.view<float>({9, 9, 9, 9, 9, 1, 2, 3, 0.5f, 0.25f, 4, 5, 6, 0.125f, 1, 7, 8, 9, 0, 2}, 20);
+  file.accessor(0, kFloat, "VEC3", 3, R"(,"byteOffset":20)");
+  file.accessor(0, kFloat, "VEC2", 3, R"(,"byteOffset":32)");
+  file.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":1})";
+  const gltf::Model model = readable(file.bytes());
+  CHECK(model.positions == Floats{1, 2, 3, 4, 5, 6, 7, 8, 9});
+  CHECK(model.uvs == Floats{0.5f, 0.25f, 0.125f, 1, 0, 2});
+}
+
+TEST_CASE("sparse accessors are read, over values or over nothing", "[gltf]") {
+  for (const bool over : {true, false}) {
+    File file;
+    const int base = file.view<float>({0, 0, 0, 1, 0, 0, 1, 1, 0});
+    const int places = file.view<std::uint16_t>({0, 2}), values = file.view<float>({5, 6, 7, 8, 9, 10});
+    file.accessor(over ? base : -1, kFloat, "VEC3", 3,
+                  R"(,"sparse":{"count":2,"indices":{"bufferView":)" + std::to_string(places) +
+                      R"(,"componentType":5123},"values":{"bufferView":)" + std::to_string(values) + "}}");
+    const float middle = over ? 1 : 0;
+    CHECK(readable(file.bytes()).positions == Floats{5, 6, 7, middle, 0, 0, 8, 9, 10});
+  }
+}
+
+TEST_CASE("world transforms are applied down the tree, in scene order", "[gltf]") {
+  File file = triangle();
+  file.nodes = R"({"name":"a","children":[2,1],"translation":[10,0,0]},
+                  {"name":"b","mesh":0,"scale":[2,3,4]},
+                  {"name":"c","mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476],"children":[3]},
+                  {"name":"d","mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,5,0,1]})";
+  const gltf::Model model = readable(file.bytes());
+  REQUIRE(model.parts.size() == 3);
+  CHECK(model.parts[0].name == "c");
+  CHECK(model.parts[1].name == "d");
+  CHECK(model.parts[2].name == "b");
+  const auto at = [&](std::size_t part, std::size_t v, float x, float y, float z) {
+    const float* p = &model.positions[(model.parts[part].firstVertex + v) * 3];
+    CHECK(p[0] == Approx(x).margin(1e-6));
+    CHECK(p[1] == Approx(y).margin(1e-6));
+    CHECK(p[2] == Approx(z).margin(1e-6));
+  };
+  at(0, 1, 10, 1, 0);  // (1, 0, 0) a quarter round z, then moved.
+  at(1, 1, 5, 1, 0);   // Moved up by 5 before the quarter turn.
+  at(2, 2, 12, 3, 0);
+  CHECK(model.groups[5] == 1);
+  CHECK(model.indices == Indices{0, 1, 2, 5, 6, 7, 10, 11, 12});
+}
+
+TEST_CASE("a mirrored node has its triangles turned round", "[gltf]") {
+  File file = triangle();
+  for (const char* scale : {"[-1,1,1]", "[1,1,-2]", "[-1,-1,-1]"}) {
+    file.nodes = std::string(R"({"mesh":0,"scale":)") + scale + "}";
+    CHECK(readable(file.bytes()).indices == Indices{0, 2, 1});
+  }
+  file.nodes = R"({"mesh":0,"scale":[-1,-1,1]})";
+  CHECK(readable(file.bytes()).indices == Indices{0, 1, 2});
+}
+
+TEST_CASE("without transforms every bit of a position is kept", "[gltf]") {
+  File file;
+  file.accessor(file.view<float>({-0.0f, 1e-42f, 3.4e38f, 0.1f, 0.2f, 0.3f, 1, 2, 3}), kFloat, "VEC3", 3);
+  const Floats positions = readable(file.bytes()).positions;
+  CHECK(std::signbit(positions[0]));
+  CHECK(positions[1] == 1e-42f);
+  CHECK(positions[2] == 3.4e38f);
+}
+
+TEST_CASE("numbers that are not finite reach the library, which names them", "[gltf]") {
+  File file;
+  file.accessor(file.view<float>({0, 0, 0, 1, std::numeric_limits<float>::quiet_NaN(), 0, 1, 1, 0}), kFloat, "VEC3", 3);
+  CHECK(std::isnan(readable(file.bytes()).positions[4]));
+}
+
+TEST_CASE("the default scene is read, the first if none is said, all roots if there is none", "[gltf]") {
+  File file = triangle();
+  file.nodes = R"({"name":"a","mesh":0},{"name":"b","mesh":0,"children":[2]},{"name":"c"})";
+  std::string json = file.json();
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = json;
+    changed.replace(changed.find(from), from.size(), to);
+    return readable(glb(changed, file.bin));
+  };
+  const std::string scenes = R"("scene":0,"scenes":[{"nodes":[0]}])";
+  CHECK(with(scenes, R"("scene":1,"scenes":[{"nodes":[0]},{"nodes":[1]}])").parts[0].name == "b");
+  CHECK(with(scenes, R"("scenes":[{"nodes":[0]},{"nodes":[1]}])").parts[0].name == "a");
+  CHECK(with(scenes + ",", "").parts.size() == 2);
+}
+
+TEST_CASE("UVs are given only if every part has them", "[gltf]") {
+  File file = triangle();
+  file.accessor(0, kFloat, "VEC2", 5);
+  file.nodes = R"({"mesh":0},{"mesh":1})";
+  file.sceneNodes = "0,1";
+  std::string json = file.json();
+  const std::string mesh = R"({"primitives":[{"attributes":{"POSITION":0},"indices":1}]})";
+  const std::string mapped = R"({"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1}]})";
+  json.replace(json.find(mesh), mesh.size(), mapped + "," + mesh);
+  CHECK(readable(glb(json, file.bin)).uvs.empty());
+  json.replace(json.rfind(mesh), mesh.size(), mapped);
+  CHECK(readable(glb(json, file.bin)).uvs.size() == 20);
+}
+
+TEST_CASE("a .gltf file with a data URI is read", "[gltf]") {
+  File file;
+  // Nine floats: (0,0,0), (1,0,0), (0,1,0).
+  file.views = R"({"buffer":0,"byteLength":36})";
+  file.accessor(0, kFloat, "VEC3", 3);
+  file.buffer = R"({"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"})";
+  const std::string json = file.json();
+  CHECK(readable({json.begin(), json.end()}).positions == Floats{0, 0, 0, 1, 0, 0, 0, 1, 0});
+}
+
+TEST_CASE("a .gltf file with a buffer beside it is read, and a missing one is named", "[gltf]") {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "cagecast-gltf-test";
+  std::filesystem::create_directories(folder);
+  File file = triangle();
+  file.buffer = R"({"byteLength":)" + std::to_string(file.bin.size()) + R"(,"uri":"beside%20it.bin"})";
+  std::ofstream(folder / "thing.gltf") << file.json();
+  std::filesystem::remove(folder / "beside it.bin");
+  gltf::Model model;
+  CHECK_THAT(gltf::read((folder / "thing.gltf").string(), model).error, Contains("thing.gltf: ") && Contains("missing: beside it.bin"));
+  std::ofstream(folder / "beside it.bin", std::ios::binary).write(reinterpret_cast<const char*>(file.bin.data()), static_cast<std::streamsize>(file.bin.size()));
+  const gltf::Result result = gltf::read((folder / "thing.gltf").string(), model);
+  INFO(result.error);
+  CHECK(result.ok());
+  CHECK(model.indices == Indices{0, 1, 2});
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("pictures are not looked at", "[gltf]") {
+  File file = triangle();
+  file.extra = R"(,"images":[{"uri":"nowhere.png"},{"bufferView":0,"mimeType":"image/png"},{"uri":"data:image/png;base64,AAAA"}])";
+  CHECK(readable(file.bytes()).indices.size() == 3);
+}
+
+TEST_CASE("a file that is missing, empty, a folder, or no glTF is named", "[gltf]") {
+  gltf::Model model;
+  CHECK_THAT(gltf::read("/nowhere/at-all.glb", model).error, StartsWith("/nowhere/at-all.glb: cannot be read"));
+  CHECK_THAT(gltf::read(std::filesystem::temp_directory_path().string(), model).error, Contains("cannot be read"));
+  CHECK_THAT(errorOf({}), Contains("empty"));
+  CHECK_THAT(errorOf({'\n', ' '}), Contains("empty"));
+  CHECK_THAT(errorOf({'P', 'K', 3, 4, 0, 0}), Contains("not a glTF file"));
+  CHECK_THAT(errorOf({'{', '}'}), Contains("not valid glTF"));
+  CHECK_THAT(errorOf({'{', '"', 'a', '"', ':'}), Contains("not valid glTF"));
+  const std::string old = R"({"asset":{"version":"1.0"}})";
+  CHECK_THAT(errorOf({old.begin(), old.end()}), Contains("version 1.0, not 2"));
+}
+
+TEST_CASE("a GLB cut short anywhere is an error", "[gltf]") {
+  const Bytes whole = triangle().bytes();
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    INFO("cut to " << size << " of " << whole.size());
+    const std::string error = errorOf({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+    if (size >= 20) CHECK_THAT(error, Contains("truncated"));
+  }
+}
+
+TEST_CASE("a GLB cut short with its header mended is an error", "[gltf]") {
+  const Bytes whole = triangle().bytes();
+  for (std::size_t size = 12; size < whole.size(); ++size) {
+    Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    const auto length = static_cast<std::uint32_t>(size);
+    std::memcpy(&cut[8], &length, 4);
+    INFO("cut to " << size << " of " << whole.size());
+    (void)errorOf(cut);
+  }
+}
+
+TEST_CASE("a GLB with any byte changed is read or refused, never worse", "[gltf]") {
+  const Bytes whole = triangle().bytes();
+  scenes::Random random(firstSeed());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const auto value : {std::uint8_t{0}, std::uint8_t{255}, std::uint8_t{'9'}, static_cast<std::uint8_t>(random.below(256))}) {
+      Bytes changed = whole;
+      changed[i] = value;
+      gltf::Model model;
+      const gltf::Result result = gltf::readMemory(changed, "file", "", model);
+      if (!result.ok()) continue;
+      for (const std::uint32_t index : model.indices) REQUIRE(index < model.positions.size() / 3);
+    }
+  }
+}
+
+TEST_CASE("compression that is not understood is named", "[gltf]") {
+  File file = triangle();
+  file.extra = R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
+  CHECK_THAT(errorOf(file.bytes()), Contains("Draco"));
+  // As it is in the wild: accessors without data.
+  File bare;
+  bare.accessor(-1, kFloat, "VEC3", 3);
+  bare.accessor(-1, kUnsignedShort, "SCALAR", 3);
+  bare.view<std::uint32_t>({0});
+  bare.primitive = R"("attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})";
+  CHECK_THAT(errorOf(bare.bytes()), Contains("Draco"));
+  bare.extra = file.extra;
+  CHECK_THAT(errorOf(bare.bytes()), Contains("Draco"));
+  file.extra = R"(,"extensionsUsed":["EXT_meshopt_compression"],"extensionsRequired":["EXT_meshopt_compression"])";
+  CHECK_THAT(errorOf(file.bytes()), Contains("meshopt"));
+  file.buffer = R"({"byteLength":)" + std::to_string(file.bin.size()) + R"(},{"byteLength":100,"extensions":{"EXT_meshopt_compression":{"fallback":true}}})";
+  CHECK_THAT(errorOf(file.bytes()), Contains("meshopt"));
+}
+
+TEST_CASE("references that lead nowhere are named", "[gltf]") {
+  File file = triangle();
+  SECTION("index out of range") {
+    file.accessors.clear();
+    file.accessor(0, kFloat, "VEC3", 2);
+    file.accessor(1, kUnsignedShort, "SCALAR", 3);
+    CHECK_THAT(errorOf(file.bytes()), Contains("meshes[0].primitives[0].indices[2] = 2 is out of range (2 vertices)"));
+  }
+  SECTION("accessor past its view") {
+    file.accessors.clear();
+    file.accessor(0, kFloat, "VEC3", 6);
+    file.accessor(1, kUnsignedShort, "SCALAR", 3);
+    CHECK_THAT(errorOf(file.bytes()), Contains("accessors[0]") && Contains("bufferViews[0] (60 bytes)"));
+  }
+  SECTION("offset past its view") {
+    file.accessors.clear();
+    file.accessor(0, kFloat, "VEC3", 3, R"(,"byteOffset":4000000000)");
+    file.accessor(1, kUnsignedShort, "SCALAR", 3);
+    CHECK_THAT(errorOf(file.bytes()), Contains("accessors[0]"));
+  }
+  SECTION("view past its buffer") {
+    file.views = R"({"buffer":0,"byteOffset":60,"byteLength":60},{"buffer":0,"byteOffset":60,"byteLength":6})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("bufferViews[0] reaches past the end of buffers[0]"));
+  }
+  SECTION("a view whose end overflows") {
+    file.views = R"({"buffer":0,"byteOffset":18446744073709551600,"byteLength":60},{"buffer":0,"byteOffset":60,"byteLength":6})";
+    (void)errorOf(file.bytes());
+  }
+  SECTION("no such buffer") {
+    file.views = R"({"buffer":7,"byteLength":60},{"buffer":0,"byteOffset":60,"byteLength":6})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("buffers[7]"));
+  }
+  SECTION("no such accessor") {
+    file.primitive = R"("attributes":{"POSITION":9})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("accessors[9]"));
+  }
+  SECTION("no such mesh") {
+    file.nodes = R"({"mesh":3})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("meshes[3]"));
+  }
+  SECTION("no such material") {
+    file.primitive += R"(,"material":3)";
+    CHECK_THAT(errorOf(file.bytes()), Contains("materials[3]"));
+  }
+  SECTION("no such node") {
+    file.sceneNodes = "5";
+    CHECK_THAT(errorOf(file.bytes()), Contains("nodes[5]"));
+  }
+  SECTION("a wrong type") {
+    file.accessors.clear();
+    file.accessor(0, kFloat, "VEC2", 3);
+    file.accessor(1, kUnsignedShort, "SCALAR", 3);
+    CHECK_THAT(errorOf(file.bytes()), Contains("accessors[0]") && Contains("3 components"));
+  }
+  SECTION("a component type that does not exist") {
+    file.accessors.clear();
+    file.accessor(0, 5127, "VEC3", 3);
+    file.accessor(1, kUnsignedShort, "SCALAR", 3);
+    (void)errorOf(file.bytes());
+  }
+  SECTION("UVs for other vertices") {
+    file.accessor(0, kFloat, "VEC2", 4);
+    file.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1)";
+    CHECK_THAT(errorOf(file.bytes()), Contains("TEXCOORD_0 has 4 elements for 5 vertices"));
+  }
+  SECTION("a matrix of five numbers") {
+    file.nodes = R"({"mesh":0,"matrix":[1,2,3,4,5]})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("nodes[0].matrix has 5 numbers, not 16"));
+  }
+  SECTION("a sparse part out of range") {
+    file.accessors.clear();
+    file.accessor(0, kFloat, "VEC3", 2,
+                  R"(,"sparse":{"count":2,"indices":{"bufferView":1,"byteOffset":2,"componentType":5123},"values":{"bufferView":0}})");
+    file.primitive = R"("attributes":{"POSITION":0})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("replaces element 2"));
+  }
+}
+
+TEST_CASE("hostile files are refused", "[gltf]") {
+  SECTION("a node that is its own child") {
+    File file = triangle();
+    file.nodes = R"({"mesh":0,"children":[1]},{"children":[0]})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("its own ancestor"));
+  }
+  SECTION("a node with two parents, doubled again and again") {
+    File file = triangle();
+    file.nodes = R"({"children":[1,1]},{"mesh":0})";
+    CHECK_THAT(errorOf(file.bytes()), Contains("twice"));
+  }
+  SECTION("counts that nothing in the file stands for") {
+    for (const std::size_t count : {std::size_t{100'000'000}, std::size_t{4'294'967'295}, std::size_t{1} << 62}) {
+      File file;
+      file.view<float>({0});
+      file.accessor(-1, kFloat, "VEC3", count);
+      CHECK_THAT(errorOf(file.bytes()), Contains("elements"));
+      file = {};
+      file.view<float>({0, 0, 0});
+      file.accessor(0, kFloat, "VEC3", count);
+      CHECK_THAT(errorOf(file.bytes()), Contains("elements"));
+    }
+  }
+  SECTION("one large mesh in many places") {
+    File file;
+    file.view<float>({0});
+    file.accessor(-1, kFloat, "VEC3", 1u << 22);
+    file.nodes = R"({"mesh":0})";
+    for (int i = 1; i < 40; ++i) {
+      file.nodes += R"(,{"mesh":0})";
+      file.sceneNodes += "," + std::to_string(i);
+    }
+    CHECK_THAT(errorOf(file.bytes()), Contains("more than"));
+  }
+  SECTION("nested without end") {
+    File file = triangle();
+    file.extra = R"(,"extras":)" + std::string(200'000, '[') + std::string(200'000, ']');
+    CHECK_THAT(errorOf(file.bytes()), Contains("nested"));
+  }
+  SECTION("brackets in a string are not nesting") {
+    File file = triangle();
+    file.extra = R"(,"extras":{"a":"\")" + std::string(1000, '[') + "\"}";
+    CHECK(readable(file.bytes()).indices.size() == 3);
+  }
+}
+
+TEST_CASE("what is written is read back", "[gltf]") {
+  const scenes::Scene scene = scenes::head(8);
+  const TransferResult result = transferred(scene.cage.view(), scene.target.view());
+  gltf::Content content;
+  content.mesh = scene.target.view();
+  content.uvs1 = result.projection.uvs;
+  content.zones = {result.zones.zones.data(), result.zones.zones.size()};
+  content.name = "head";
+  Bytes bytes;
+  REQUIRE(gltf::writeMemory(content, bytes).ok());
+  const gltf::Model model = readable(bytes);
+  CHECK(model.positions == scene.target.positions);
+  CHECK(model.indices == scene.target.indices);
+  CHECK(model.uvs == scene.target.uvs);
+  CHECK(model.parts[0].name == "head");
+  const std::string text(bytes.begin(), bytes.end());
+  CHECK_THAT(text, Contains("TEXCOORD_1") && Contains("_NCZ"));
+
+  const std::string path = (std::filesystem::temp_directory_path() / "cagecast-write-test.glb").string();
+  REQUIRE(gltf::write(path, content).ok());
+  gltf::Model again;
+  REQUIRE(gltf::read(path, again).ok());
+  CHECK(again.positions == model.positions);
+  CHECK_FALSE(std::filesystem::exists(path + ".part"));
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("what cannot be written is an error, and leaves no file", "[gltf]") {
+  const scenes::Mesh mesh = scenes::box({}, {1, 1, 1}, 1);
+  gltf::Content content;
+  content.mesh = mesh.view();
+  CHECK_THAT(gltf::write("/nowhere/at-all/out.glb", content).error, StartsWith("/nowhere/at-all/out.glb: cannot be written"));
+  const std::string path = (std::filesystem::temp_directory_path() / "cagecast-not-written.glb").string();
+  scenes::Mesh bad = mesh;
+  bad.positions[4] = std::numeric_limits<float>::infinity();
+  content.mesh = bad.view();
+  CHECK_THAT(gltf::write(path, content).error, Contains("positions[4] = inf"));
+  bad = mesh;
+  bad.indices[3] = 24;
+  content.mesh = bad.view();
+  CHECK_THAT(gltf::write(path, content).error, Contains("indices[3] = 24 is out of range (24 vertices)"));
+  content.mesh = mesh.view();
+  const Floats few(5);
+  content.uvs1 = few;
+  CHECK_THAT(gltf::write(path, content).error, Contains("uvs1 has 5 values for 24 vertices"));
+  CHECK_FALSE(std::filesystem::exists(path));
+}
