@@ -48,7 +48,7 @@ export class CagecastError extends Error {
   override readonly name = 'CagecastError';
   /** What went wrong, for programs. */
   readonly code: Code;
-  /** The element at fault, counted in the array that the message names; 0 where there is none. */
+  /** The element at fault, counted in the array that the message names; how many there are, where that is the fault; else 0. */
   readonly at: number;
 
   constructor(code: Code, message: string, at = 0, options?: ErrorOptions) {

@@ -15,7 +15,7 @@ export interface ProjectOptions {
    * its nearest vertex with nothing filtered (`nearestVertex`), the classical baseline, for comparison.
    */
   projection?: 'nearestPoint' | 'nearestVertex' | undefined;
-  /** Vertices nearer than this share of the target's diagonal are one point; 0 … 0.1, by default 0. */
+  /** Vertices nearer than this share of the target's diagonal are one point; 0 … 0.01, by default 0. */
   weldTolerance?: number | undefined;
 }
 
@@ -63,7 +63,7 @@ export function resolveOptions(fn: 'project' | 'classify' | 'transfer', options:
     throw new CagecastError('badOption', `${fn}: options.projection = ${show(projection)} is unknown; there are: ${projections.map(show).join(', ')}`);
   }
   if (typeof weldTolerance !== 'number') {
-    throw new CagecastError('badWeldTolerance', `${fn}: options.weldTolerance = ${show(weldTolerance)} is not a number within 0..0.1`);
+    throw new CagecastError('badWeldTolerance', `${fn}: options.weldTolerance = ${show(weldTolerance)} is not a number within 0..0.01`);
   }
   if (typeof threshold !== 'number') {
     throw new CagecastError('badThreshold', `${fn}: options.threshold = ${show(threshold)} is not a number within 0..1`);

@@ -204,7 +204,7 @@ function check(fn: string, answer: Answer, cage: CheckedMesh | undefined, target
 
 function describe(code: string, at: number, name: string, mesh: CheckedMesh | undefined, options: ResolvedOptions): string {
   if (code === 'badThreshold') return `options.threshold = ${options.threshold} is not within 0..1`;
-  if (code === 'badWeldTolerance') return `options.weldTolerance = ${options.weldTolerance} is not within 0..0.1`;
+  if (code === 'badWeldTolerance') return `options.weldTolerance = ${options.weldTolerance} is not within 0..0.01`;
   if (code === 'outOfMemory') return 'not enough memory for this target and cage';
   if (mesh === undefined) return `failed (${code})`;
   const { positions, indices, uvs, groups } = mesh;
@@ -232,7 +232,7 @@ function describe(code: string, at: number, name: string, mesh: CheckedMesh | un
       return 'cage has no triangle with an area';
     case 'tooLarge':
       return at < positions.length && positions.length / 3 <= 2 ** 28 && indices.length / 3 <= 2 ** 28
-        ? `${name}.positions[${at}] = ${positions[at]} is out of all proportion (more than a million times the target's diagonal from the origin)`
+        ? `${name}.positions[${at}] = ${positions[at]} is out of all proportion (farther from the origin than 1e8 diagonals of the target)`
         : `${name} has ${vertices} and ${count(indices.length / 3, 'triangle')}, more than ${2 ** 28} of a kind`;
     default:
       return `failed (${code})`;

@@ -40,7 +40,7 @@ function common(command: Command): Command {
     .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it needs UVs')
     .addOption(new Option('--threshold <SHARE>', 'a segment is painted if at least this share of its exposed area is covered').default(0.5).argParser(numberWithin(0, 1)))
     .addOption(new Option('--preset <NAME>', 'the set of rules').choices(['paper']).default('paper'))
-    .addOption(new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").default(0).argParser(numberWithin(0, 0.1)))
+    .addOption(new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").default(0).argParser(numberWithin(0, 0.01)))
     .allowExcessArguments(false);
 }
 
