@@ -43,8 +43,12 @@ bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage
     const Vec3 normal = areaNormal(triangle.a, triangle.b, triangle.c);
     const double doubleArea = length(normal);
     if (!(doubleArea > 0)) continue;
+    const Vec3 unit = 1 / doubleArea * normal;
+    const Vec3 a = Vec3::from(triangle.a);
     triangle.index = static_cast<std::uint32_t>(t);
-    triangle.normal = RayDirection::along(1 / doubleArea * normal);
+    triangle.towardsB = 1 / doubleArea * cross(Vec3::from(triangle.c) - a, unit);
+    triangle.towardsC = 1 / doubleArea * cross(unit, Vec3::from(triangle.b) - a);
+    triangle.normal = RayDirection::along(unit);
     ++count;
   }
   out = {count, triangles};

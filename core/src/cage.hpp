@@ -26,6 +26,7 @@ struct CageTriangle {
   float a[3], b[3], c[3];  ///< Corners, scaled.
   float uvs[6];            ///< Of the corners.
   std::uint32_t index;     ///< In the caller's mesh.
+  Vec3 towardsB, towardsC; ///< dot(p − a, towardsB) is the barycentric of b of the foot of p, and likewise for c.
   RayDirection normal;     ///< Outward; the direction of the rays of the points that project here.
 };
 

@@ -34,6 +34,7 @@ struct alignas(16) NearLeaf {
   float origin[3][4];
   float axes[3][3][4];     ///< axes[x, y, z][component]: unit vectors.
   float base[4];           ///< B = (base, 0).
+  float height[4];         ///< Of C over AB.
   float toC[2][4];         ///< Unit vector from A to C.
   float lengthC[4];        ///< Its length.
   float fromB[2][4];       ///< Unit vector from B to C.
@@ -54,8 +55,10 @@ struct CageTree {
   double extent = 0;               ///< Longest side of its box, scaled.
 };
 
-/// Most nodes a path to a leaf can have times three siblings: the size of a traversal's stack.
-inline constexpr int kStackSize = 256;
+/// Most nodes that a path from the root to a leaf can have.
+inline constexpr std::uint32_t kMaxLevels = 64;
+/// What a walk may have to remember: three siblings a level, and one more.
+inline constexpr std::uint32_t kStackSize = 3 * kMaxLevels + 1;
 
 /// @return false if memory ran out.
 bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch, RayTree& out) noexcept;
@@ -64,15 +67,60 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
 /// SPEC §1: a cage triangle can be the answer if its distance is within this share of the diagonal of the least.
 inline constexpr double kTieDistance = 1e-6;
 
-/// Collects the cage triangles that could be the nearest to p by SPEC's tie rule: all whose distance is within
-/// `kTieDistance` of the least, and some that rounding cannot tell from them.
-/// @param[out] found  Room for every cage triangle.
-/// @return How many were found: at least 1.
-std::uint32_t nearTriangles(const CageTree& tree, const float* p, double diagonal, std::uint32_t* found) noexcept;
+/// Searches the cage's triangles for the nearest to a few points at once.
+///
+/// Points that are neighbours are near the same triangles: the tree is walked once for all of them, by the box around them,
+/// and only its leaves are looked at by each. The walk begins with the limits that the leaf last found gives them.
+class NearestSearch {
+ public:
+  static constexpr std::uint32_t kGroup = 8;  ///< Points searched for at once.
 
-/// Whether a ray from `origin` hits a triangle at a distance greater than `from`, from either side. Watertight: a ray
-/// through an edge or a corner that triangles share hits at least one of them. A triangle that holds the origin as a
-/// corner is hit at distance 0, exactly; one that holds the whole ray in its plane is not hit.
-bool hits(const RayTree& tree, const float* origin, const RayDirection& direction, double from) noexcept;
+  /// @param diagonal  Of the target, scaled.
+  NearestSearch(const CageTree& tree, double diagonal) noexcept;
+
+  /// Searches for `count` ≤ `kGroup` points that are near each other.
+  /// @param positions  3 per point.
+  void search(const float* positions, std::uint32_t count) noexcept;
+
+  /// The triangles that could be the nearest to point i of the last search by SPEC's tie rule: all whose distance is within
+  /// `kTieDistance` of the least, and some that rounding cannot tell from them.
+  /// @param[out] found  Room for every triangle of the cage.
+  /// @return How many were found: at least 1.
+  std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) const noexcept;
+
+ private:
+  /// Enough for a point on an edge; for one on a corner, `candidates` looks again.
+  static constexpr std::uint32_t kRoom = 4;
+
+  void searchLeaf(std::uint32_t leaf, std::uint32_t i) noexcept;
+  void lower(std::uint32_t i, float squaredDistance) noexcept;
+  [[nodiscard]] float limitFor(float squaredDistance) const noexcept;
+
+  const CageTree& tree_;
+  float slack_;
+  std::uint32_t lastLeaf_ = 0;
+  std::uint32_t count_ = 0;
+  alignas(16) float points_[3][kGroup];
+  alignas(16) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
+  float least_[kGroup];               ///< Squared distance of the nearest so far.
+  std::uint32_t foundCount_[kGroup];  ///< More than `kRoom` if some had no room.
+  std::uint32_t slots_[kGroup][kRoom];  ///< What was found; some may be too far by now.
+};
+
+/// A ray: r(t) = origin + t · direction.
+struct Ray {
+  float origin[3];
+  const RayDirection* direction;
+};
+
+/// Finds which rays hit a triangle at a distance greater than `from`, from either side. Watertight: a ray through an edge
+/// or a corner that triangles share hits at least one of them. A triangle that holds the origin as a corner is hit at
+/// distance 0, exactly; one that holds the whole ray in its plane is not hit.
+///
+/// All rays go through the tree together: each node is read once for all rays that enter it, which are then listed for its
+/// children. Rays should come in an order in which neighbours are neighbours in space.
+/// @param[out] hit  1 per ray.
+/// @return false if memory ran out.
+bool findHits(const RayTree& tree, const Ray* rays, std::uint32_t count, double from, Scratch& scratch, bool* hit) noexcept;
 
 }  // namespace cagecast

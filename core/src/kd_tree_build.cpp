@@ -101,6 +101,7 @@ void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std
   putVector(leaf.axes[1], y);
   putVector(leaf.axes[2], z);
   put(leaf.base, base);
+  put(leaf.height, cy);
   put(leaf.toC[0], cx / lengthC);
   put(leaf.toC[1], cy / lengthC);
   put(leaf.lengthC, lengthC);
@@ -116,7 +117,7 @@ void clearNearTriangle(NearLeaf& leaf, int lane) {
     leaf.origin[k][lane] = kFar;
     for (int i = 0; i < 3; ++i) leaf.axes[i][k][lane] = i == k ? 1.0f : 0.0f;
   }
-  leaf.base[lane] = leaf.lengthC[lane] = leaf.lengthB[lane] = 0;
+  leaf.base[lane] = leaf.height[lane] = leaf.lengthC[lane] = leaf.lengthB[lane] = 0;
   leaf.toC[0][lane] = leaf.fromB[1][lane] = 0;
   leaf.toC[1][lane] = leaf.fromB[0][lane] = 0;
   leaf.slot[lane] = 0;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "kd_tree.hpp"
@@ -14,82 +15,185 @@ using simd::splat;
 /// of the plane such a ray runs. Aligned lattices give false hits without it.
 constexpr double kParallel = 1e-6;
 
-/// Which of four boxes a ray enters at a distance that is not less than `from`.
-unsigned enters(const Node& node, const f32x4 (&origin)[3], const f32x4 (&inverse)[3], const RayDirection& direction, f32x4 from) {
-  f32x4 near = from;
-  f32x4 far = splat(std::numeric_limits<float>::infinity());
-  for (int k = 0; k < 3; ++k) {
-    const bool forward = direction.inverse[k] > 0;
-    const f32x4 first = (load(forward ? node.low[k] : node.high[k]) - origin[k]) * inverse[k];
-    const f32x4 last = (load(forward ? node.high[k] : node.low[k]) - origin[k]) * inverse[k];
-    near = simd::max(near, first);
-    far = simd::min(far, last);
-  }
-  return simd::bits(near <= far);
-}
+/// Rays that go through the tree together: enough to share nodes, few enough for their lists to stay in the cache.
+constexpr std::uint32_t kChunk = 1024;
 
-/// Which of four triangles the ray's line passes through: the watertight edge test of Woop, Benthin, Wald (2013).
-/// A corner is moved to the ray's origin and sheared so that the ray is the z-axis; the signs of the three edge functions
-/// then say on which side of each edge the ray runs. Two triangles that share an edge compute the same number with
-/// opposite signs, and 0 counts for both, so a ray cannot slip between them.
-unsigned crosses(const RayLeaf& leaf, const f32x4 (&origin)[3], const RayDirection& ray) {
-  const f32x4 shearX = splat(ray.shearX);
-  const f32x4 shearY = splat(ray.shearY);
-  f32x4 x[3];
-  f32x4 y[3];
-  for (int i = 0; i < 3; ++i) {
-    const f32x4 z = load(leaf.corner[i][ray.z]) - origin[ray.z];
-    x[i] = load(leaf.corner[i][ray.x]) - origin[ray.x] - shearX * z;
-    y[i] = load(leaf.corner[i][ray.y]) - origin[ray.y] - shearY * z;
-  }
-  const f32x4 u = x[2] * y[1] - y[2] * x[1];
-  const f32x4 v = x[0] * y[2] - y[0] * x[2];
-  const f32x4 w = x[1] * y[0] - y[1] * x[0];
-  const f32x4 zero = splat(0);
-  const mask4 front = zero <= simd::min(u, simd::min(v, w));
-  const mask4 back = simd::max(u, simd::max(v, w)) <= zero;
-  return simd::bits(front | back);
-}
+/// What the box test needs of a ray.
+struct alignas(16) Slabs {
+  float inverse[3];
+  float offset[3];  ///< origin · inverse.
+};
 
 /// Whether the line crosses the triangle's plane, and beyond `from`: decided in double.
-bool crossesBeyond(const RayLeaf& leaf, int lane, const float* origin, Vec3 direction, double from) {
+bool crossesBeyond(const RayLeaf& leaf, int lane, const Ray& ray, double from) {
   const auto corner = [&](int i) {
     return Vec3{static_cast<double>(leaf.corner[i][0][lane]), static_cast<double>(leaf.corner[i][1][lane]),
                 static_cast<double>(leaf.corner[i][2][lane])};
   };
   const Vec3 a = corner(0);
   const Vec3 normal = cross(corner(1) - a, corner(2) - a);
-  const double slope = dot(normal, direction);
+  const double slope = dot(normal, ray.direction->exact);
   if (slope * slope <= kParallel * kParallel * dot(normal, normal)) return false;
-  return dot(normal, a - Vec3::from(origin)) / slope > from;
+  return dot(normal, a - Vec3::from(ray.origin)) / slope > from;
 }
+
+/// One pass of up to `kChunk` rays through a tree.
+class Stream {
+ public:
+  Stream(const RayTree& tree, double from, Slabs* slabs, std::uint16_t* lists)
+      : tree_(tree), from_(from), fromFloat_(static_cast<float>(from)), loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)), slabs_(slabs), lists_(lists) {}
+
+  void run(const Ray* rays, std::uint32_t count, bool* hit) {
+    rays_ = rays;
+    hit_ = hit;
+    std::uint32_t starts[9] = {};
+    const auto octant = [rays](std::uint32_t i) {
+      const float* d = rays[i].direction->inverse;
+      return unsigned{d[0] < 0} | unsigned{d[1] < 0} << 1 | unsigned{d[2] < 0} << 2;
+    };
+    for (std::uint32_t i = 0; i < count; ++i) {
+      ++starts[octant(i) + 1];
+      for (int k = 0; k < 3; ++k) {
+        slabs_[i].inverse[k] = rays[i].direction->inverse[k];
+        slabs_[i].offset[k] = rays[i].origin[k] * rays[i].direction->inverse[k];
+      }
+      alive_[i] = 0xF;
+      hit[i] = false;
+    }
+    for (int o = 0; o < 8; ++o) starts[o + 1] += starts[o];
+    std::uint32_t ends[8];
+    std::copy(starts, starts + 8, ends);
+    for (std::uint32_t i = 0; i < count; ++i) lists_[ends[octant(i)]++] = static_cast<std::uint16_t>(i);
+    for (unsigned o = 0; o < 8; ++o) {
+      octant_ = o;
+      if (ends[o] > starts[o]) enter(0, lists_ + starts[o], ends[o] - starts[o], lists_ + count);
+    }
+  }
+
+ private:
+  /// Sends rays into a child. `free` is where lists may be put.
+  void enter(std::uint32_t child, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) {
+    if (child & kLeafBit) {
+      testLeaf(tree_.leaves[child & ~kLeafBit], ids, count);
+      return;
+    }
+    const Node& node = tree_.nodes[child];
+    std::uint16_t* lists[4] = {free, free + count, free + 2 * count, free + 3 * count};
+    std::uint32_t counts[4] = {};
+    testBoxes(node, ids, count, lists, counts);
+    for (int i = 0; i < 4; ++i) {
+      if (counts[i] > 0) enter(node.child[i], lists[i], counts[i], free + 4 * count);
+    }
+  }
+
+  /// Lists, for each of four boxes, the rays that enter it at a distance that is not less than `from`.
+  void testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* const (&lists)[4],
+                 std::uint32_t (&counts)[4]) {
+    // All rays of a pass point to the same octant, so the near and far sides of the boxes are the same for all.
+    f32x4 near[3];
+    f32x4 far[3];
+    for (unsigned k = 0; k < 3; ++k) {
+      const bool backward = octant_ >> k & 1;
+      near[k] = load(backward ? node.high[k] : node.low[k]);
+      far[k] = load(backward ? node.low[k] : node.high[k]);
+    }
+    const f32x4 from = splat(fromFloat_);
+    std::uint32_t c0 = 0;
+    std::uint32_t c1 = 0;
+    std::uint32_t c2 = 0;
+    std::uint32_t c3 = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint16_t id = ids[i];
+      const Slabs& ray = slabs_[id];
+      const auto distance = [&](f32x4 side, int k) { return side * splat(ray.inverse[k]) - splat(ray.offset[k]); };
+      const f32x4 first = simd::max(simd::max(distance(near[0], 0), distance(near[1], 1)), simd::max(distance(near[2], 2), from));
+      const f32x4 last = simd::min(simd::min(distance(far[0], 0), distance(far[1], 1)), distance(far[2], 2));
+      const unsigned entered = simd::bits(first <= last) & alive_[id];
+      lists[0][c0] = lists[1][c1] = lists[2][c2] = lists[3][c3] = id;
+      c0 += entered & 1;
+      c1 += entered >> 1 & 1;
+      c2 += entered >> 2 & 1;
+      c3 += entered >> 3;
+    }
+    counts[0] = c0;
+    counts[1] = c1;
+    counts[2] = c2;
+    counts[3] = c3;
+  }
+
+  void testLeaf(const RayLeaf& leaf, const std::uint16_t* ids, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint16_t id = ids[i];
+      if (!alive_[id]) continue;
+      unsigned crossed = crosses(leaf, rays_[id]);
+      for (int lane = 0; crossed != 0; ++lane, crossed >>= 1) {
+        if ((crossed & 1) && crossesBeyond(leaf, lane, rays_[id], from_)) {
+          hit_[id] = true;
+          alive_[id] = 0;
+          break;
+        }
+      }
+    }
+  }
+
+  /// Which of four triangles the ray passes through, beyond about `from`: the watertight edge test of Woop, Benthin, Wald
+  /// (2013). A corner is moved to the ray's origin and sheared so that the ray is the z-axis; the signs of the three edge
+  /// functions then say on which side of each edge the ray runs. Two triangles that share an edge compute the same number
+  /// with opposite signs, and 0 counts for both, so a ray cannot slip between them.
+  [[nodiscard]] unsigned crosses(const RayLeaf& leaf, const Ray& ray) const {
+    const RayDirection& direction = *ray.direction;
+    const f32x4 shearX = splat(direction.shearX);
+    const f32x4 shearY = splat(direction.shearY);
+    const f32x4 originX = splat(ray.origin[direction.x]);
+    const f32x4 originY = splat(ray.origin[direction.y]);
+    const f32x4 originZ = splat(ray.origin[direction.z]);
+    f32x4 x[3];
+    f32x4 y[3];
+    f32x4 z[3];
+    for (int i = 0; i < 3; ++i) {
+      z[i] = load(leaf.corner[i][direction.z]) - originZ;
+      x[i] = load(leaf.corner[i][direction.x]) - originX - shearX * z[i];
+      y[i] = load(leaf.corner[i][direction.y]) - originY - shearY * z[i];
+    }
+    const f32x4 u = x[2] * y[1] - y[2] * x[1];
+    const f32x4 v = x[0] * y[2] - y[0] * x[2];
+    const f32x4 w = x[1] * y[0] - y[1] * x[0];
+    const f32x4 zero = splat(0);
+    const mask4 front = zero <= simd::min(u, simd::min(v, w));
+    const mask4 back = simd::max(u, simd::max(v, w)) <= zero;
+    const mask4 inside = front | back;
+    if (simd::bits(inside) == 0) return 0;
+    // The distance is (u·z0 + v·z1 + w·z2)·scale / (u + v + w); multiplied by the square of the divisor there is no division.
+    const f32x4 sum = u + v + w;
+    const f32x4 distance = (u * z[0] + v * z[1] + w * z[2]) * splat(direction.scaleZ);
+    return simd::bits(inside & (splat(loose_) * sum * sum <= distance * sum));
+  }
+
+  const RayTree& tree_;
+  double from_;
+  float fromFloat_;
+  float loose_;  ///< Hits beyond this are worth deciding in double.
+  const Ray* rays_ = nullptr;
+  bool* hit_ = nullptr;
+  Slabs* slabs_;
+  std::uint16_t* lists_;
+  unsigned octant_ = 0;
+  std::uint8_t alive_[kChunk];  ///< All bits while the ray has hit nothing, else 0.
+};
 
 }  // namespace
 
-bool hits(const RayTree& tree, const float* origin, const RayDirection& direction, double from) noexcept {
-  const f32x4 start[3] = {splat(origin[0]), splat(origin[1]), splat(origin[2])};
-  const f32x4 inverse[3] = {splat(direction.inverse[0]), splat(direction.inverse[1]), splat(direction.inverse[2])};
-  const f32x4 nearest = splat(static_cast<float>(from));
-  std::uint32_t stack[kStackSize];
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const std::uint32_t child = stack[--depth];
-    if (child & kLeafBit) {
-      const RayLeaf& leaf = tree.leaves[child & ~kLeafBit];
-      const unsigned crossed = crosses(leaf, start, direction);
-      for (int i = 0; crossed >> i != 0; ++i) {
-        if ((crossed >> i & 1) && crossesBeyond(leaf, i, origin, direction.exact, from)) return true;
-      }
-      continue;
-    }
-    const Node& node = tree.nodes[child];
-    const unsigned entered = enters(node, start, inverse, direction, nearest);
-    for (int i = 3; i >= 0; --i) {
-      if (entered >> i & 1) stack[depth++] = node.child[i];
-    }
+bool findHits(const RayTree& tree, const Ray* rays, std::uint32_t count, double from, Scratch& scratch, bool* hit) noexcept {
+  const Scratch::Mark mark = scratch.mark();
+  const std::uint32_t chunk = std::min(count, kChunk);
+  auto* slabs = scratch.take<Slabs>(chunk);
+  auto* lists = scratch.take<std::uint16_t>(std::size_t{chunk} * (4 * kMaxLevels + 1));
+  if (scratch.failed()) return false;
+  for (std::uint32_t begin = 0; begin < count; begin += kChunk) {
+    Stream(tree, from, slabs, lists).run(rays + begin, std::min(kChunk, count - begin), hit + begin);
   }
-  return false;
+  scratch.rewind(mark);
+  return true;
 }
 
 }  // namespace cagecast

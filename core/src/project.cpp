@@ -10,41 +10,49 @@ namespace {
 /// SPEC §1: planes whose distance is within this share of the diagonal of the farthest are equally far.
 constexpr double kTiePlane = 1e-7;
 
-/// A triangle that could be the nearest, in double.
-struct Candidate {
-  std::uint32_t slot;
+/// The nearest point of one cage triangle.
+struct Place {
   double distance;
-  double planeDistance;
+  double v, w;     ///< Barycentrics of corners b and c.
+  double height;   ///< Of p over the triangle's plane.
+  bool inside;     ///< Strictly: not on an edge or a corner.
 };
 
-struct Corners {
-  explicit Corners(const CageTriangle& t) : a(Vec3::from(t.a)), b(Vec3::from(t.b)), c(Vec3::from(t.c)) {}
-  Vec3 a, b, c;
+Place placeOn(const CageTriangle& t, Vec3 p) {
+  const Vec3 a = Vec3::from(t.a);
+  const Vec3 offset = p - a;
+  const double height = dot(offset, t.normal.exact);
+  // Most points lie straight under their triangle.
+  const double v = dot(offset, t.towardsB);
+  const double w = dot(offset, t.towardsC);
+  if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
+  const ClosestPoint q = closestPoint(p, a, Vec3::from(t.b), Vec3::from(t.c));
+  return {std::sqrt(q.squaredDistance), q.v, q.w, height, q.inside};
+}
+
+/// A triangle that could be the nearest.
+struct Candidate {
+  std::uint32_t slot;
+  Place place;
 };
 
 /// Picks, of the triangles that could be the nearest, the one that SPEC's tie rule names: of those within
 /// `kTieDistance` of the nearest the one whose plane is farthest from p, of equals the first.
-std::uint32_t nearestOf(const Cage& cage, Vec3 p, double diagonal, const std::uint32_t* found, std::uint32_t count,
-                        Candidate* candidates) {
-  double least = INFINITY;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const CageTriangle& t = cage.triangles[found[i]];
-    const Corners corners(t);
-    const double distance = std::sqrt(closestPoint(p, corners.a, corners.b, corners.c).squaredDistance);
-    candidates[i] = {found[i], distance, std::abs(dot(p - corners.a, t.normal.exact))};
-    least = std::min(least, distance);
-  }
+const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) {
+  double least = candidates[0].place.distance;
+  for (std::uint32_t i = 1; i < count; ++i) least = std::min(least, candidates[i].place.distance);
+  const auto near = [&](const Candidate& c) { return c.place.distance <= least + kTieDistance * diagonal; };
   double farthest = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (candidates[i].distance <= least + kTieDistance * diagonal) farthest = std::max(farthest, candidates[i].planeDistance);
+    if (near(candidates[i])) farthest = std::max(farthest, std::abs(candidates[i].place.height));
   }
-  std::uint32_t first = UINT32_MAX;
+  const Candidate* first = nullptr;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate& c = candidates[i];
-    if (c.distance > least + kTieDistance * diagonal || c.planeDistance < farthest - kTiePlane * diagonal) continue;
-    first = std::min(first, c.slot);
+    if (!near(c) || std::abs(c.place.height) < farthest - kTiePlane * diagonal) continue;
+    if (first == nullptr || c.slot < first->slot) first = &c;
   }
-  return first;
+  return *first;
 }
 
 }  // namespace
@@ -56,23 +64,28 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
   auto* candidates = scratch.take<Candidate>(cage.count);
   if (scratch.failed()) return false;
 
+  NearestSearch search(tree, units.diagonal);
   for (std::uint32_t i = 0; i < points.count; ++i) {
+    const std::uint32_t member = i % NearestSearch::kGroup;
+    if (member == 0) search.search(points.at(i), std::min(NearestSearch::kGroup, points.count - i));
     const Vec3 p = Vec3::from(points.at(i));
-    const std::uint32_t count = nearTriangles(tree, points.at(i), units.diagonal, found);
-    const std::uint32_t slot = count == 1 ? found[0] : nearestOf(cage, p, units.diagonal, found, count, candidates);
+    const std::uint32_t count = search.candidates(member, found);
+    for (std::uint32_t c = 0; c < count; ++c) candidates[c] = {found[c], placeOn(cage.triangles[found[c]], p)};
+    const Candidate& nearest = count == 1 ? candidates[0] : nearestOf(candidates, count, units.diagonal);
 
-    const CageTriangle& t = cage.triangles[slot];
-    const Corners corners(t);
-    const ClosestPoint q = closestPoint(p, corners.a, corners.b, corners.c);
-    for (int k = 0; k < 2; ++k) {
-      const auto uv = [&](int corner) { return static_cast<double>(t.uvs[2 * corner + k]); };
-      results.uvs[2 * i + static_cast<std::uint32_t>(k)] = static_cast<float>(q.u * uv(0) + q.v * uv(1) + q.w * uv(2));
+    const CageTriangle& t = cage.triangles[nearest.slot];
+    const Place& q = nearest.place;
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      const double a = static_cast<double>(t.uvs[k]);
+      const double ab = static_cast<double>(t.uvs[2 + k]) - a;
+      const double ac = static_cast<double>(t.uvs[4 + k]) - a;
+      results.uvs[2 * i + k] = static_cast<float>(a + q.v * ab + q.w * ac);
     }
-    results.distances[i] = static_cast<float>(std::sqrt(q.squaredDistance));
-    results.triangles[i] = slot;
+    results.distances[i] = static_cast<float>(q.distance);
+    results.triangles[i] = nearest.slot;
     results.zones[i] = Zone::cosmetic;
-    // Strictly inside its triangle, q = p − h·n for the height h of p over the plane, so the ray hits it at −h.
-    results.meetsCage[i] = q.inside && -dot(p - corners.a, t.normal.exact) > -kRayStart * units.diagonal;
+    // Strictly inside its triangle, q = p − height · n, so the ray hits it at −height.
+    results.meetsCage[i] = q.inside && -q.height > -kRayStart * units.diagonal;
   }
   scratch.rewind(mark);
   return true;

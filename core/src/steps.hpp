@@ -22,6 +22,8 @@ struct PointResults {
   std::uint32_t* segments = nullptr;
 };
 
+/// All steps return false if memory ran out.
+
 /// Step 1: finds, for every point, the nearest point of the cage, and blends its UVs.
 bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
                    PointResults& results) noexcept;
@@ -31,11 +33,11 @@ bool projectToVertices(const MeshView& cageMesh, const Points& points, const Cag
                        Scratch& scratch, PointResults& results) noexcept;
 
 /// Step 2: marks the points over which the target itself lies.
-void markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units,
+bool markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units, Scratch& scratch,
                   PointResults& results) noexcept;
 
 /// Step 3: marks the points left whose ray leaves through a hole of the cage.
-void markUncovered(const Points& points, const Cage& cage, const CageTree& tree, const Units& units,
+bool markUncovered(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
                    PointResults& results) noexcept;
 
 /// Step 4: finds the connected components, numbered by their first vertex, and adds up their areas for step 5.

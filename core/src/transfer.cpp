@@ -71,9 +71,9 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
     out.timings.build = watch.lap();
     if (!projectPoints(points, cage, cageTree, units, scratch, results)) return kOutOfMemory;
     out.timings.project = watch.lap();
-    markOccluded(points, cage, targetTree, units, results);
+    if (!markOccluded(points, cage, targetTree, units, scratch, results)) return kOutOfMemory;
     out.timings.occluded = watch.lap();
-    markUncovered(points, cage, cageTree, units, results);
+    if (!markUncovered(points, cage, cageTree, units, scratch, results)) return kOutOfMemory;
     out.timings.covered = watch.lap();
   }
 
