@@ -1,0 +1,148 @@
+import assert from 'node:assert/strict';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join, resolve } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import * as simd from 'cagecast';
+import type { Mesh, TransferResult } from 'cagecast';
+import { head, modelFolders, readPlain, soup, type Scene } from './scenes.js';
+
+/** The brute-force reference and the native library behind one command; its source tells the formats of its files. */
+const native = process.env['CAGECAST_REFERENCE'] ?? 'build/release/tests/core/cagecast_reference';
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-reference-'));
+
+interface Answer {
+  uvs: Float32Array;
+  zones: Uint8Array;
+  triangles: Uint32Array;
+  distances: Float32Array;
+  segments: Uint32Array;
+  stable: Uint8Array;
+  stats: { points: number; culled: boolean; exposedArea: number; coveredArea: number }[];
+}
+
+function writeScene(path: string, { cage, target }: Scene): void {
+  const parts: Uint8Array[] = [Buffer.from('CAGESCN1')];
+  const add = (array: Float32Array | Uint32Array) => parts.push(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+  for (const { positions, indices, uvs, groups } of [cage, target] satisfies Mesh[]) {
+    add(new Uint32Array([positions.length / 3, indices.length]));
+    parts.push(new Uint8Array([uvs ? 1 : 0, groups ? 1 : 0, 0, 0]));
+    add(positions);
+    add(Uint32Array.from(indices));
+    if (uvs) add(uvs);
+    if (groups) add(groups);
+  }
+  writeFileSync(path, Buffer.concat(parts));
+}
+
+function readAnswer(path: string): Answer {
+  const bytes = new Uint8Array(readFileSync(path));
+  const view = new DataView(bytes.buffer);
+  let at = 8;
+  assert.equal(Buffer.from(bytes.subarray(0, 8)).toString(), 'CAGEREF1');
+  const u32 = () => view.getUint32((at += 4) - 4, true);
+  const f64 = () => view.getFloat64((at += 8) - 8, true);
+  const take = (length: number) => {
+    const part = bytes.slice(at, at + length);
+    at += Math.ceil(length / 4) * 4;
+    return part;
+  };
+  const [vertices, segments] = [u32(), u32()];
+  return {
+    uvs: new Float32Array(take(8 * vertices).buffer),
+    zones: take(vertices),
+    triangles: new Uint32Array(take(4 * vertices).buffer),
+    distances: new Float32Array(take(4 * vertices).buffer),
+    segments: new Uint32Array(take(4 * vertices).buffer),
+    stable: take(vertices),
+    stats: Array.from({ length: segments }, () => ({ points: u32(), culled: u32() === 1, exposedArea: f64(), coveredArea: f64() })),
+  };
+}
+
+/** What the reference, or with `--product` the native library, answers. */
+function ask(scene: Scene, threshold: number, ...flags: string[]): Answer {
+  const [sceneFile, resultFile] = [join(folder, 'scene'), join(folder, 'result')];
+  writeScene(sceneFile, scene);
+  const { status, stderr } = spawnSync(native, [sceneFile, resultFile, '--threshold', String(threshold), ...flags], { encoding: 'utf8' });
+  assert.equal(status, 0, `${native} failed: ${stderr}`);
+  return readAnswer(resultFile);
+}
+
+/** Asserts that every stable vertex has the reference's zone, triangle and UV. @returns a line about it. */
+function compare(reference: Answer, result: TransferResult): string {
+  const vertices = reference.zones.length;
+  assert.equal(result.zones.length, vertices);
+  let unstable = 0;
+  const differences: string[] = [];
+  for (let v = 0; v < vertices; ++v) {
+    if (!reference.stable[v]) {
+      ++unstable;
+      continue;
+    }
+    const same =
+      reference.zones[v] === result.zones[v] &&
+      reference.triangles[v] === result.triangles[v] &&
+      Math.abs(reference.uvs[2 * v]! - result.uvs[2 * v]!) <= 1e-5 &&
+      Math.abs(reference.uvs[2 * v + 1]! - result.uvs[2 * v + 1]!) <= 1e-5;
+    if (!same) differences.push(`vertex ${v}: zone ${result.zones[v]} for ${reference.zones[v]}, triangle ${result.triangles[v]} for ${reference.triangles[v]}, uv ${result.uvs.subarray(2 * v, 2 * v + 2)} for ${reference.uvs.subarray(2 * v, 2 * v + 2)}`);
+  }
+  const line = `${vertices} vertices, ${differences.length} differences, ${unstable} unstable`;
+  assert.equal(differences.length, 0, `${line}\n${differences.slice(0, 5).join('\n')}`);
+  assert.deepEqual(result.segments, reference.segments);
+  return line;
+}
+
+function unstableShare({ stable }: Answer): number {
+  return stable.filter((one) => one === 0).length / stable.length;
+}
+
+/** A hash of the bits of an answer. */
+function hash({ uvs, zones, triangles, distances, segments }: Pick<Answer, 'uvs' | 'zones' | 'triangles' | 'distances' | 'segments'>): string {
+  const sum = createHash('sha256');
+  for (const array of [uvs, zones, triangles, distances, segments]) sum.update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+  return sum.digest('hex');
+}
+
+describe('the package gives the answer of the reference, and the bits of the native library', () => {
+  let builds: [string, typeof simd][] = [];
+
+  before(async () => {
+    assert.ok(existsSync(native), `${native} is missing; cmake --preset release && cmake --build --preset release makes it`);
+    execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
+    const scalar = (await import(pathToFileURL(resolve('build/wasm-scalar/package/index.js')).href)) as typeof simd;
+    builds = [['SIMD', simd], ['scalar', scalar]];
+    for (const [, { init }] of builds) await init();
+  });
+  after(() => rmSync(folder, { recursive: true, force: true }));
+
+  const scenes: (() => Promise<Scene>)[] = [
+    ...[1, 2, 3, 4, 5, 6].map((seed) => async () => head(seed)),
+    ...[1, 2, 3, 4, 5, 6].map((seed) => async () => soup(seed)),
+    ...modelFolders().map((model) => async () => ({ name: basename(model), cage: await readPlain(join(model, 'cage.glb')), target: await readPlain(join(model, 'target.glb')) })),
+  ];
+  for (const [i, makeScene] of scenes.entries()) {
+    const isModel = i >= 12;
+    const name = isModel ? basename(modelFolders()[i - 12]!) : `${i < 6 ? 'head' : 'soup'}, seed ${(i % 6) + 1}`;
+    test(name, async (context) => {
+      const scene = await makeScene();
+      for (const threshold of isModel ? [0.5] : [0.5, 0.2]) {
+        const reference = ask(scene, threshold);
+        const product = ask(scene, threshold, '--product');
+        for (const [build, { transfer }] of builds) {
+          const result = transfer(scene.cage, scene.target, { threshold });
+          assert.equal(hash(result), hash(product), `${build}: not the bits of the native library`);
+          assert.deepEqual(
+            result.segmentStats.map(({ points, culled, exposedArea, coveredArea }) => ({ points, culled, exposedArea, coveredArea })),
+            product.stats,
+            `${build}: not the segments of the native library`,
+          );
+          context.diagnostic(`${name}, ${build}, threshold ${threshold}: ${compare(reference, result)}`);
+        }
+        if (isModel) assert.ok(unstableShare(reference) <= 0.01, `${unstableShare(reference)} of the vertices are unstable`);
+      }
+    });
+  }
+});
