@@ -1,6 +1,7 @@
 import { Document, NodeIO } from '@gltf-transform/core'
-import { type Rgba, linear } from './image.ts'
+import { type Rgba, type Shade, drawTexture, linear, rgb } from './image.ts'
 import type { Mesh } from './mesh.ts'
+import type { Vec3 } from './vec.ts'
 
 /** A named piece of a model: one node, one mesh, one material. */
 export interface Part {
@@ -11,9 +12,19 @@ export interface Part {
   metallic?: number
   doubleSided?: boolean // open: its back can be seen
   texture?: Buffer // PNG of the base colour, over the mesh's UVs
-  ncz: boolean // must not be painted
+  ncz: boolean | ((p: Vec3) => boolean) // must not be painted, whole or at a point
   ambiguous?: boolean // nobody would mind either way: not scored
 }
+
+/** A part whose colour is drawn into a texture of its own, `size` texels wide. */
+export const textured = (name: string, mesh: Mesh, shade: Shade, size: number, roughness: number, ncz: Part['ncz']): Part => ({
+  name,
+  mesh,
+  colour: [1, 1, 1, 1],
+  roughness,
+  ncz,
+  texture: drawTexture(mesh, size, shade, rgb('#808080'), 1),
+})
 
 /** Writes parts as one GLB, in order; the same parts give the same bytes. */
 export const writeGlb = async (title: string, parts: readonly Part[]): Promise<Uint8Array> => {

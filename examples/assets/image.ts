@@ -42,12 +42,12 @@ export const linear = (c: Rgba): [number, number, number, number] => {
 
 /**
  * Draws a texture (a PNG's bytes, `size` × `size`) for a mesh with UVs: each texel asks `shade` for the place of the
- * surface it covers, at four points. Colours are carried 12 texels beyond the charts, so that filtering finds no seam.
+ * surface it covers, at `samples` × `samples` points. Colours are carried 12 texels beyond the charts, so that filtering finds no seam.
  * @param far  The colour of texels that no chart is near.
  */
-export const drawTexture = (mesh: Mesh, size: number, shade: Shade, far: Rgba): Buffer => {
+export const drawTexture = (mesh: Mesh, size: number, shade: Shade, far: Rgba, samples: number): Buffer => {
   const sums = new Float64Array(size * size * 5)
-  const fine = size * 2
+  const fine = size * samples
   for (let t = 0; t < triangleCount(mesh); t++) {
     const vs = corners(mesh, t)
     const [a, b, c] = vs.map((v) => [mesh.uvs![2 * v]! * fine, mesh.uvs![2 * v + 1]! * fine] as const) as [Uv, Uv, Uv]
@@ -64,7 +64,7 @@ export const drawTexture = (mesh: Mesh, size: number, shade: Shade, far: Rgba): 
         if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue
         const blend = (q: readonly Vec3[]): Vec3 => [0, 1, 2].map((k) => w[0] * q[0]![k]! + w[1] * q[1]![k]! + w[2] * q[2]![k]!) as unknown as Vec3
         const colour = shade(blend(ps), unit(blend(ns)))
-        const texel = ((j >> 1) * size + (i >> 1)) * 5
+        const texel = (Math.floor(j / samples) * size + Math.floor(i / samples)) * 5
         for (let k = 0; k < 3; k++) sums[texel + k]! += colour[k]! * Math.max(colour[3], 1e-3)
         sums[texel + 3]! += colour[3]
         sums[texel + 4]! += 1

@@ -11,6 +11,7 @@ import { writeGlb } from './glb.ts'
 import { drawTexture } from './image.ts'
 import { triangleCount, withMeshNormals } from './mesh.ts'
 import type { Model } from './model.ts'
+import { human, humanFused, humanMisaligned } from './models/human.ts'
 import { lizard } from './models/lizard.ts'
 import { truthOf } from './truth.ts'
 
@@ -19,7 +20,7 @@ const root = join(here, '../..')
 const out = join(root, 'build/assets')
 const kPaintSize = 1024
 
-const models: Record<string, () => Model> = { lizard }
+const models: Record<string, () => Model> = { lizard, human, 'human-fused': humanFused, 'human-misaligned': humanMisaligned }
 
 /** One entry of build/assets/index.json; paths are relative to build/assets. */
 interface Entry {
@@ -41,20 +42,21 @@ const fingerprint = (): string => {
   return hash.digest('hex')
 }
 
-const write = async (model: Model, folder: string): Promise<Entry> => {
+const write = async (model: Model, folder: string, lent: (name: string) => Entry['paints']): Promise<Entry> => {
   writeFileSync(join(folder, 'target.glb'), await writeGlb(model.title, model.parts))
   const cage = { name: 'cage', mesh: withMeshNormals(model.cage), colour: [0.8, 0.8, 0.8, 1] as const, roughness: 0.9, ncz: false }
   writeFileSync(join(folder, 'cage.glb'), await writeGlb(`${model.title}: cage`, [cage]))
   writeFileSync(join(folder, 'truth.json'), JSON.stringify(truthOf(model.parts, model.cage, model.inside)))
-  for (const paint of model.paints)
-    writeFileSync(join(folder, `paint-${paint.name}.png`), drawTexture(cage.mesh, kPaintSize, paint.shade, paint.far))
+  const own = 'of' in model.paints ? [] : model.paints
+  for (const paint of own)
+    writeFileSync(join(folder, `paint-${paint.name}.png`), drawTexture(cage.mesh, kPaintSize, paint.shade, paint.far, 2))
   return {
     name: model.name,
     title: model.title,
     target: `${model.name}/target.glb`,
     cage: `${model.name}/cage.glb`,
     truth: `${model.name}/truth.json`,
-    paints: model.paints.map(({ name, title }) => ({ name, title, file: `${model.name}/paint-${name}.png` })),
+    paints: 'of' in model.paints ? lent(model.paints.of) : own.map(({ name, title }) => ({ name, title, file: `${model.name}/paint-${name}.png` })),
   }
 }
 
@@ -86,7 +88,7 @@ for (const [name, make] of Object.entries(models)) {
   const aside = join(out, `.${name}-${process.pid}`)
   mkdirSync(aside, { recursive: true })
   const model = make()
-  const entry = await write(model, aside)
+  const entry = await write(model, aside, (other) => index.find((e) => e.name === other)?.paints ?? [])
   writeFileSync(join(aside, 'made.json'), JSON.stringify({ print, entry }))
   rmSync(folder, { recursive: true, force: true })
   renameSync(aside, folder)

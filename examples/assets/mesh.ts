@@ -47,14 +47,21 @@ export const diagonalOf = (positions: ArrayLike<number>): number => {
   return length(sub(max, min))
 }
 
-/** The surface of a solid, as a closed mesh (cut off at the bounds) with edges of about `edge`. */
-export const surface = (solid: Sdf, bounds: Bounds, edge: number): Mesh => {
+/**
+ * The surface of a solid, as a closed mesh (cut off at the bounds) with edges of about `edge`.
+ * @param lens  A monotone map per axis from the space that is meshed to the model's, to look closer at some regions; the
+ *              bounds are in the meshed space.
+ */
+export const surface = (solid: Sdf, bounds: Bounds, edge: number, lens: (p: Vec3) => Vec3 = (p) => p): Mesh => {
   const box = { min: [...bounds.min] as [number, number, number], max: [...bounds.max] as [number, number, number] }
-  const result = manifold.Manifold.levelSet(([x, y, z]) => -solid(x!, y!, z!), box, edge, 0, edge * 0.01)
+  const result = manifold.Manifold.levelSet((p) => -solid(...lens([p[0]!, p[1]!, p[2]!])), box, edge, 0, edge * 0.01)
   const mesh = result.getMesh()
   result.delete()
   const positions = new Float32Array(mesh.numVert * 3)
-  for (let v = 0; v < mesh.numVert; v++) positions.set(mesh.position(v), 3 * v)
+  for (let v = 0; v < mesh.numVert; v++) {
+    const [x, y, z] = mesh.position(v)
+    positions.set(lens([x!, y!, z!]), 3 * v)
+  }
   return { positions, indices: new Uint32Array(mesh.triVerts) }
 }
 
@@ -161,9 +168,15 @@ const kPlane = 1e-6 // in model units (a head is about one): nearer to x = 0 cou
 
 /**
  * Fewer triangles, at most `triangles`, as near to the surface as may be. Borders stay, and stay in the plane x = 0.
- * @param keep  Says of a point that a vertex there must stay.
+ * @param keep   Says of a point that a vertex there must stay.
+ * @param focus  Maps the model to one whose important regions are enlarged: errors are measured in that.
  */
-export const simplify = (mesh: Mesh, triangles: number, keep: (p: Vec3) => boolean = () => false): Mesh => {
+export const simplify = (
+  mesh: Mesh,
+  triangles: number,
+  keep: (p: Vec3) => boolean = () => false,
+  focus: (p: Vec3) => Vec3 = (p) => p,
+): Mesh => {
   const next = new Map<number, number[]>()
   for (const [a, b] of openEdges(mesh)) {
     next.set(a, [...(next.get(a) ?? []), b])
@@ -175,8 +188,10 @@ export const simplify = (mesh: Mesh, triangles: number, keep: (p: Vec3) => boole
   for (const [v, around] of next) if (onPlane(v) && !around.every(onPlane)) lock[v] = 1
   for (let v = 0; v < lock.length; v++) if (keep(point(mesh, v))) lock[v] = 1
   const none = new Float32Array(vertexCount(mesh))
+  const seen = new Float32Array(mesh.positions.length)
+  for (let v = 0; v < lock.length; v++) seen.set(focus(point(mesh, v)), 3 * v)
   const [indices] = MeshoptSimplifier.simplifyWithAttributes(
-    mesh.indices, mesh.positions, 3, none, 1, [0], lock, triangles * 3, 1, ['Regularize'],
+    mesh.indices, seen, 3, none, 1, [0], lock, triangles * 3, 1, ['Regularize'],
   )
   return compact({ positions: mesh.positions, indices })
 }
@@ -246,6 +261,16 @@ export const mirror = (half: Mesh): Mesh => {
   for (let i = 0; i < half.indices.length; i += 3)
     indices.push(twin[half.indices[i]!]!, twin[half.indices[i + 2]!]!, twin[half.indices[i + 1]!]!)
   return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) }
+}
+
+/** The surface of a solid that is symmetric in x, as a symmetric mesh of exactly `triangles` (even). */
+export const symmetricSurface = (
+  solid: Sdf,
+  plan: { bounds: Bounds; edge: number; triangles: number; keep?: (p: Vec3) => number; lens?: (p: Vec3) => Vec3; focus?: (p: Vec3) => Vec3 },
+): Mesh => {
+  const half = clip(surface(solid, plan.bounds, plan.edge, plan.lens), (p) => p[0])
+  const kept = largestPart(plan.keep ? clip(half, plan.keep) : half)
+  return mirror(refineTo(simplify(kept, plan.triangles / 2, undefined, plan.focus), plan.triangles / 2, settleOn(solid)))
 }
 
 /** The mirror image in x = 0, still facing outwards. UVs stay. */

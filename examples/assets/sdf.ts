@@ -121,11 +121,23 @@ export const smoothSubtract =
     return d
   }
 
-/** `s` and its mirror image: only its side x ≥ 0 is asked. */
+/** `s` and its mirror image: only its side x ≥ 0 is asked, or x ≥ `round` to leave no crease in the middle. */
 export const mirrored =
-  (s: Sdf): Sdf =>
+  (s: Sdf, round = 0): Sdf =>
   (x, y, z) =>
-    s(Math.abs(x), y, z)
+    s(Math.sqrt(x * x + round * round), y, z)
+
+/**
+ * `s`, a solid within the ball (c, r), not asked beyond `margin` around it: far away the distance to the ball will do.
+ * Blends with it must not be wider than `margin`.
+ */
+export const local = (c: Vec3, r: number, margin: number, s: Sdf): Sdf => {
+  const ball = sphere(c, r)
+  return (x, y, z) => {
+    const d = ball(x, y, z)
+    return d > margin ? d : s(x, y, z)
+  }
+}
 
 /** `s` grown by `r` (shrunk if negative). */
 export const offset =

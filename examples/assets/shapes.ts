@@ -46,13 +46,14 @@ export interface Ring {
   depth: number
 }
 
-/** A shape swept through rings, ending in a point: a tooth, a claw. The first ring stays open: it is buried in what it grows from. */
+/** A shape swept through rings, ending in a point: a tooth, a claw. Widths go along `across`. The first ring stays open: it is buried in what it grows from. */
 export const spike = (rings: readonly Ring[], tip: Vec3, across: Vec3, sides: number): Mesh => {
   const positions: number[] = []
   const uvs: number[] = []
   rings.forEach((ring, i) => {
     const next = rings[i + 1]?.centre ?? tip
-    const [w, d] = frame(sub(next, ring.centre), across)
+    const [right, w] = frame(sub(next, ring.centre), across)
+    const d = scale(right, -1)
     for (let s = 0; s < sides; s++) {
       const a = (2 * Math.PI * s) / sides
       positions.push(...add(ring.centre, add(scale(w, ring.width * Math.cos(a)), scale(d, ring.depth * Math.sin(a)))))

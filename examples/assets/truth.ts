@@ -42,7 +42,7 @@ export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) =>
       firstVertex: truth.ncz.length,
       vertexCount: vertexCount(part.mesh),
       triangleCount: triangleCount(part.mesh),
-      ncz: part.ncz,
+      ncz: part.ncz !== false,
       ambiguous: part.ambiguous ?? false,
     })
     for (let v = 0; v < vertexCount(part.mesh); v++) {
@@ -50,11 +50,12 @@ export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) =>
       const n: Vec3 = [part.mesh.normals![3 * v]!, part.mesh.normals![3 * v + 1]!, part.mesh.normals![3 * v + 2]!]
       const from = add(p, scale(n, lift))
       const free = directions.filter((d) => dot(d, n) > 0 && !space.hits(from, d)).length
-      const hidden = !part.ncz && free === 0
+      const ncz = typeof part.ncz === 'function' ? part.ncz(p) : part.ncz
+      const hidden = !ncz && free === 0
       const exposed = free >= kRays / 8 // a quarter of the half that is on its side
-      truth.ncz.push(part.ncz ? 1 : 0)
+      truth.ncz.push(ncz ? 1 : 0)
       truth.hidden.push(hidden ? 1 : 0)
-      truth.ignore.push(!part.ncz && (!exposed || inside(p)) || part.ambiguous ? 1 : 0)
+      truth.ignore.push(!ncz && (!exposed || inside(p)) || part.ambiguous ? 1 : 0)
       truth.offCage.push(onBorder(cageSpace.nearest(p).point) ? 1 : 0)
     }
   }

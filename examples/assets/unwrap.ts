@@ -185,145 +185,182 @@ const pack = (uv: Uv[], owner: Int32Array, charts: number, margin: number): Floa
   )
 }
 
+type Flat = readonly [Float64Array, Float64Array] // u and v, each 1 per vertex
+
+const kRelaxRounds = 60
+
 /**
- * Unwraps a mesh with holes into one chart, as rigidly as possible: cut open along the edges that `seam` names, laid out
- * without overlaps on a disc (Tutte 1963), then relaxed (Liu et al. 2008, A Local/Global Approach to Mesh Parameterization),
- * each step only as far as no triangle, and no filled hole, turns over. +x of the model points to the right of the image.
+ * Unwraps a mesh with holes into one chart: cut open along the edges that `seam` names, laid out on a disc without overlaps
+ * (Tutte 1963), then relaxed towards its true shape. +x of the model points to the right of the image.
+ *
+ * Relaxing fits a rotation to each triangle and solves for the layout that follows them best (Liu et al. 2008), triangles
+ * that are squeezed counting more (after Rabinovich et al. 2017, Scalable Locally Injective Mappings), each step only as far
+ * as it lowers the distortion, no triangle turns over and no border crosses itself.
  * @param seam  Says of an edge's two ends whether it is cut. Cut open, the mesh must be a disc with holes.
  */
 export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, margin = 0.01): Mesh => {
   const { mesh: cut } = splitAlong(mesh, (a, b) => !seam(point(mesh, a), point(mesh, b)))
-  const count = vertexCount(cut)
   const loops = borderLoops(cut)
-  const perimeter = (loop: number[]): number => loop.reduce((s, v, i) => s + length(sub(point(cut, v), point(cut, loop[(i + 1) % loop.length]!))), 0)
+  const perimeter = (loop: number[]): number =>
+    loop.reduce((s, v, i) => s + length(sub(point(cut, v), point(cut, loop[(i + 1) % loop.length]!))), 0)
   loops.sort((a, b) => perimeter(b) - perimeter(a))
-  const [outer, ...holes] = loops
-  if (!outer) throw new Error('pelt: the mesh is closed; it needs a seam or a hole')
+  if (loops.length === 0) throw new Error('pelt: the mesh is closed; it needs a seam or a hole')
+  const flat = relax(cut, loops, onDisc(cut, loops))
+  return { ...cut, uvs: pack(upright(cut, flat), new Int32Array(vertexCount(cut)), 1, margin) }
+}
 
-  // Tutte: the outer loop on a circle, everything else at the mean of its neighbours; holes get a hub that holds them open.
-  const triangles = Array.from({ length: triangleCount(cut) }, (_, t) => corners(cut, t))
-  const filled = [...triangles, ...holes.flatMap((loop, h) => loop.map((v, i) => [v, count + h, loop[(i + 1) % loop.length]!] as [number, number, number]))]
+/** The first loop on a circle, everything else at the mean of its neighbours; each other loop gets a hub that holds it open. */
+const onDisc = (mesh: Mesh, loops: number[][]): Flat => {
+  const [outer, ...holes] = loops as [number[], ...number[][]]
+  const count = vertexCount(mesh)
   const total = count + holes.length
-  const links = new Map<number, Set<number>>()
-  for (const t of filled)
-    for (let k = 0; k < 3; k++) {
-      const [a, b] = [t[k]!, t[(k + 1) % 3]!]
-      links.set(a, (links.get(a) ?? new Set()).add(b))
-      links.set(b, (links.get(b) ?? new Set()).add(a))
-    }
-  const onCircle = new Map<number, Uv>()
-  const round = perimeter(outer)
+  const links = Array.from({ length: total }, () => new Set<number>())
+  const link = (a: number, b: number): void => void (links[a]!.add(b), links[b]!.add(a))
+  for (let t = 0; t < triangleCount(mesh); t++) {
+    const [a, b, c] = corners(mesh, t)
+    link(a, b)
+    link(b, c)
+    link(c, a)
+  }
+  holes.forEach((loop, h) => loop.forEach((v) => link(v, count + h)))
+  const lengths = outer.map((v, i) => length(sub(point(mesh, v), point(mesh, outer[(i + 1) % outer.length]!))))
+  const round = lengths.reduce((a, b) => a + b, 0)
+  const fixed = new Map<number, Uv>()
   let walked = 0
   outer.forEach((v, i) => {
     const angle = (2 * Math.PI * walked) / round
-    onCircle.set(v, [Math.cos(angle), Math.sin(angle)])
-    walked += length(sub(point(cut, v), point(cut, outer[(i + 1) % outer.length]!)))
+    fixed.set(v, [Math.cos(angle), Math.sin(angle)])
+    walked += lengths[i]!
   })
   const matrix = new Float64Array(total * total)
-  const right = [new Float64Array(total), new Float64Array(total)]
-  for (let v = 0; v < total; v++) {
-    matrix[v * total + v] = 1
-    const fixed = onCircle.get(v)
-    if (fixed) {
-      right[0]![v] = fixed[0]
-      right[1]![v] = fixed[1]
-      continue
-    }
-    const around = [...links.get(v)!]
-    matrix[v * total + v] = around.length
-    for (const n of around) {
-      const p = onCircle.get(n)
-      if (!p) matrix[v * total + n] = -1
-      else for (const k of [0, 1] as const) right[k]![v]! += p[k]
-    }
-  }
-  const solveTutte = cholesky(matrix, total)
-  let uv = [solveTutte(right[0]!), solveTutte(right[1]!)] as const
-
-  // As rigid as possible: fit a rotation to each triangle, then solve for the positions that follow them best.
-  const rest = triangles.map((_, t) => flatTriangle(cut, t))
-  const weights = rest.map((p) => p.map((a, k) => cotangent(p[(k + 2) % 3]!, a, p[(k + 1) % 3]!)))
-  const laplace = new Float64Array(total * total)
-  triangles.forEach((t, i) => {
-    for (let k = 0; k < 3; k++) {
-      const [a, b, w] = [t[k]!, t[(k + 1) % 3]!, weights[i]![k]!]
-      laplace[a * total + a]! += w
-      laplace[b * total + b]! += w
-      laplace[a * total + b]! -= w
-      laplace[b * total + a]! -= w
-    }
-  })
-  for (let v = 0; v < total; v++) laplace[v * total + v]! += v < count ? 1e-9 : 1
-  laplace[0]! += 1
-  const solveRigid = cholesky(laplace, total)
-  // Begin at the scale of the model.
-  const worldArea = rest.reduce((s, p) => s + area(p[0], p[1], p[2]), 0)
-  const flatArea = triangles.reduce((s, t) => s + area(...(t.map((v) => [uv[0][v]!, uv[1][v]!]) as unknown as [Uv, Uv, Uv])), 0)
-  const grow = Math.sqrt(worldArea / flatArea)
-  uv = [uv[0].map((x) => x * grow), uv[1].map((x) => x * grow)] as const
-  for (let round = 0; round < 200; round++) {
-    const b = [new Float64Array(total), new Float64Array(total)] as const
-    triangles.forEach((t, i) => {
-      let [c, s] = [0, 0]
-      const p = rest[i]!
-      for (let k = 0; k < 3; k++) {
-        const [from, to, w] = [t[k]!, t[(k + 1) % 3]!, weights[i]![k]!]
-        const [ex, ey] = [p[(k + 1) % 3]![0] - p[k]![0], p[(k + 1) % 3]![1] - p[k]![1]]
-        const [dx, dy] = [uv[0][to]! - uv[0][from]!, uv[1][to]! - uv[1][from]!]
-        c += w * (ex * dx + ey * dy)
-        s += w * (ex * dy - ey * dx)
+  const sums = [new Float64Array(total), new Float64Array(total)] as const
+  links.forEach((around, v) => {
+    const own = fixed.get(v)
+    matrix[v * total + v] = own ? 1 : around.size
+    if (own) for (const k of [0, 1] as const) sums[k][v] = own[k]
+    else
+      for (const n of around) {
+        const p = fixed.get(n)
+        if (!p) matrix[v * total + n] = -1
+        else for (const k of [0, 1] as const) sums[k][v]! += p[k]
       }
-      const norm = Math.sqrt(c * c + s * s) || 1
+  })
+  const solve = cholesky(matrix, total)
+  return [solve(sums[0]).slice(0, count), solve(sums[1]).slice(0, count)]
+}
+
+const relax = (mesh: Mesh, loops: number[][], start: Flat): Flat => {
+  const count = vertexCount(mesh)
+  const triangles = Array.from({ length: triangleCount(mesh) }, (_, t) => corners(mesh, t))
+  const rest = triangles.map((_, t) => flatTriangle(mesh, t))
+  const areas = rest.map((p) => area(...p) / 2)
+  const cotangents = rest.map((p) => p.map((a, k) => cotangent(p[(k + 2) % 3]!, a, p[(k + 1) % 3]!)))
+  const at = (flat: Flat, v: number): Uv => [flat[0][v]!, flat[1][v]!]
+  const layout = (flat: Flat, t: number): [Uv, Uv, Uv] => triangles[t]!.map((v) => at(flat, v)) as [Uv, Uv, Uv]
+
+  /** The two stretches of a triangle, the larger first; the second is not positive if it lies on its face. */
+  const stretches = (flat: Flat, t: number): Uv => {
+    const [p, q] = [rest[t]!, layout(flat, t)]
+    const x = p[1][0]
+    const y = p[2][1]
+    const a = (q[1][0] - q[0][0]) / x
+    const c = (q[1][1] - q[0][1]) / x
+    const b = (q[2][0] - q[0][0] - a * p[2][0]) / y
+    const d = (q[2][1] - q[0][1] - c * p[2][0]) / y
+    const sum = Math.hypot(a + d, c - b)
+    const difference = Math.hypot(a - d, c + b)
+    return [(sum + difference) / 2, (sum - difference) / 2]
+  }
+  const distortion = (flat: Flat): number => {
+    let total = 0
+    for (let t = 0; t < triangles.length; t++) {
+      const [s1, s2] = stretches(flat, t)
+      if (s2 <= 0) return Infinity
+      total += areas[t]! * (s1 * s1 + s2 * s2 + 1 / (s1 * s1) + 1 / (s2 * s2))
+    }
+    return loops.every((loop) => isSimple(loop.map((v) => at(flat, v)))) ? total : Infinity
+  }
+
+  const covered = triangles.reduce((s, _, t) => s + area(...layout(start, t)) / 2, 0)
+  const grow = Math.sqrt(areas.reduce((a, b) => a + b, 0) / covered)
+  let flat: Flat = [start[0].map((x) => x * grow), start[1].map((x) => x * grow)]
+  let least = distortion(flat)
+  for (let round = 0; round < kRelaxRounds; round++) {
+    const matrix = new Float64Array(count * count)
+    const sums = [new Float64Array(count), new Float64Array(count)] as const
+    triangles.forEach((t, i) => {
+      const squeeze = stretches(flat, i)[1]
+      const weight = ((squeeze + 1) * (squeeze * squeeze + 1)) / squeeze ** 3
+      const [p, q] = [rest[i]!, layout(flat, i)]
+      let [c, s] = [0, 0]
+      for (let k = 0; k < 3; k++) {
+        const [ex, ey] = [p[(k + 1) % 3]![0] - p[k]![0], p[(k + 1) % 3]![1] - p[k]![1]]
+        const [dx, dy] = [q[(k + 1) % 3]![0] - q[k]![0], q[(k + 1) % 3]![1] - q[k]![1]]
+        c += cotangents[i]![k]! * (ex * dx + ey * dy)
+        s += cotangents[i]![k]! * (ex * dy - ey * dx)
+      }
+      const norm = Math.hypot(c, s)
       c /= norm
       s /= norm
       for (let k = 0; k < 3; k++) {
-        const [from, to, w] = [t[k]!, t[(k + 1) % 3]!, weights[i]![k]!]
+        const [a, b, w] = [t[k]!, t[(k + 1) % 3]!, weight * cotangents[i]![k]!]
         const [ex, ey] = [p[(k + 1) % 3]![0] - p[k]![0], p[(k + 1) % 3]![1] - p[k]![1]]
-        const [rx, ry] = [w * (c * ex - s * ey), w * (s * ex + c * ey)]
-        b[0][to]! += rx
-        b[1][to]! += ry
-        b[0][from]! -= rx
-        b[1][from]! -= ry
+        matrix[a * count + a]! += w
+        matrix[b * count + b]! += w
+        matrix[a * count + b]! -= w
+        matrix[b * count + a]! -= w
+        const turned = [w * (c * ex - s * ey), w * (s * ex + c * ey)] as const
+        for (const n of [0, 1] as const) {
+          sums[n][b]! += turned[n]
+          sums[n][a]! -= turned[n]
+        }
       }
     })
-    b[0][0]! += uv[0][0]!
-    b[1][0]! += uv[1][0]!
-    holes.forEach((_, h) => {
-      b[0][count + h] = uv[0][count + h]!
-      b[1][count + h] = uv[1][count + h]!
-    })
-    const goal = [solveRigid(b[0]), solveRigid(b[1])] as const
-    // A hub stays in the middle of its hole.
-    holes.forEach((loop, h) => {
-      for (const k of [0, 1] as const) goal[k][count + h] = loop.reduce((s, v) => s + goal[k][v]!, 0) / loop.length
-    })
+    // One vertex is held, for the layout may slide as a whole.
+    matrix[0]! += 1
+    for (const k of [0, 1] as const) sums[k][0]! += flat[k][0]!
+    const solve = cholesky(matrix, count)
+    const goal = [solve(sums[0]), solve(sums[1])] as const
     let step = 1
-    const blended = (s: number): readonly [Float64Array, Float64Array] => [
-      uv[0].map((x, v) => x + s * (goal[0][v]! - x)),
-      uv[1].map((x, v) => x + s * (goal[1][v]! - x)),
-    ]
-    const upright = (p: readonly [Float64Array, Float64Array]): boolean =>
-      triangles.every((t, i) => {
-        const a = area(...(t.map((v) => [p[0][v]!, p[1][v]!]) as unknown as [Uv, Uv, Uv]))
-        return a > 0.02 * area(...rest[i]!)  || a > area(...(t.map((v) => [uv[0][v]!, uv[1][v]!]) as unknown as [Uv, Uv, Uv]))
-      })
-    while (step > 1e-4 && !upright(blended(step))) step /= 2
-    if (step <= 1e-4) break
-    uv = blended(step)
+    let better: Flat | undefined
+    while (step > 1e-3 && !better) {
+      const tried: Flat = [flat[0].map((x, v) => x + step * (goal[0][v]! - x)), flat[1].map((x, v) => x + step * (goal[1][v]! - x))]
+      const d = distortion(tried)
+      if (d < least) [better, least] = [tried, d]
+      else step /= 2
+    }
+    if (!better) break
+    flat = better
   }
-  // Turn it upright.
+  return flat
+}
+
+/** Turns a layout so that +x of the model points to the right. */
+const upright = (mesh: Mesh, flat: Flat): Uv[] => {
+  const count = vertexCount(mesh)
+  const mean = flat.map((a) => a.reduce((s, x) => s + x, 0) / count) as [number, number]
   let [c, s] = [0, 0]
-  const mean = [0, 1].map((k) => uv[k as 0 | 1].slice(0, count).reduce((a, x) => a + x, 0) / count)
   for (let v = 0; v < count; v++) {
-    c += point(cut, v)[0] * (uv[0][v]! - mean[0]!)
-    s += point(cut, v)[0] * (uv[1][v]! - mean[1]!)
+    c += point(mesh, v)[0] * (flat[0][v]! - mean[0])
+    s += point(mesh, v)[0] * (flat[1][v]! - mean[1])
   }
   const norm = Math.hypot(c, s) || 1
-  c /= norm
-  s /= norm
-  const turned = Array.from({ length: count }, (_, v): Uv => [c * uv[0][v]! + s * uv[1][v]!, c * uv[1][v]! - s * uv[0][v]!])
-  const chart: Mesh = { ...cut, uvs: pack(turned, new Int32Array(count), 1, margin) }
-  return chart
+  return Array.from({ length: count }, (_, v): Uv => {
+    const [x, y] = [flat[0][v]!, flat[1][v]!]
+    return [(c * x + s * y) / norm, (c * y - s * x) / norm]
+  })
+}
+
+/** Whether a closed polygon's sides meet only in their common corners. */
+const isSimple = (polygon: Uv[]): boolean => {
+  const n = polygon.length
+  for (let i = 0; i < n; i++)
+    for (let j = i + 2; j < n; j++) {
+      if (i === 0 && j === n - 1) continue
+      const [a, b, c, d] = [polygon[i]!, polygon[i + 1]!, polygon[j]!, polygon[(j + 1) % n]!]
+      if (area(a, b, c) * area(a, b, d) <= 0 && area(c, d, a) * area(c, d, b) <= 0) return false
+    }
+  return true
 }
 
 /** The open edges of a mesh as closed loops of vertices, in the direction of their triangles. */
@@ -360,23 +397,24 @@ const cotangent = (apex: Uv, a: Uv, b: Uv): number => {
 /** Factors a symmetric positive definite matrix (n × n, dense: cages are small) and returns its solver. */
 const cholesky = (matrix: Float64Array, n: number): ((b: Float64Array) => Float64Array) => {
   const l = matrix.slice()
-  for (let j = 0; j < n; j++) {
-    for (let k = 0; k < j; k++) {
-      const f = l[j * n + k]!
-      if (f !== 0) for (let i = j; i < n; i++) l[i * n + j]! -= l[i * n + k]! * f
+  const first = new Uint32Array(n) // the first entry of each row that is not zero, nor becomes so
+  for (let i = 0; i < n; i++) {
+    while (l[i * n + first[i]!] === 0) first[i]!++
+    for (let j = first[i]!; j <= i; j++) {
+      let sum = l[i * n + j]!
+      for (let k = Math.max(first[i]!, first[j]!); k < j; k++) sum -= l[i * n + k]! * l[j * n + k]!
+      l[i * n + j] = i === j ? Math.sqrt(sum) : sum / l[j * n + j]!
     }
-    const d = Math.sqrt(l[j * n + j]!)
-    for (let i = j; i < n; i++) l[i * n + j]! /= d
   }
   return (b) => {
     const x = b.slice()
     for (let i = 0; i < n; i++) {
-      for (let k = 0; k < i; k++) x[i]! -= l[i * n + k]! * x[k]!
+      for (let k = first[i]!; k < i; k++) x[i]! -= l[i * n + k]! * x[k]!
       x[i]! /= l[i * n + i]!
     }
     for (let i = n - 1; i >= 0; i--) {
-      for (let k = i + 1; k < n; k++) x[i]! -= l[k * n + i]! * x[k]!
       x[i]! /= l[i * n + i]!
+      for (let k = first[i]!; k < i; k++) x[k]! -= l[i * n + k]! * x[i]!
     }
     return x
   }

@@ -1,10 +1,7 @@
 import { makeCage } from '../cage.ts'
-import type { Part } from '../glb.ts'
-import { type Rgba, type Shade, drawTexture, lit, mixColour, over, rgb } from '../image.ts'
-import {
-  type Mesh, clip, join, largestPart, mirror, point, refineTo, reflected, settleOn, simplify, surface, triangleCount,
-  withFieldNormals,
-} from '../mesh.ts'
+import { type Part, textured } from '../glb.ts'
+import { type Rgba, type Shade, lit, mixColour, over, rgb } from '../image.ts'
+import { type Mesh, join, point, reflected, symmetricSurface, triangleCount, withFieldNormals } from '../mesh.ts'
 import type { Model } from '../model.ts'
 import { cells, fractal } from '../noise.ts'
 import {
@@ -187,14 +184,6 @@ const tongueSolid: Sdf = mirrored(
   ),
 )
 
-const symmetric = (solid: Sdf, bounds: { min: Vec3; max: Vec3 }, edge: number, triangles: number, end?: number): Mesh => {
-  const whole = surface(solid, bounds, edge)
-  const half = clip(whole, (p) => p[0])
-  const kept = largestPart(end === undefined ? half : clip(half, (p) => p[2] - end))
-  const settle = settleOn(solid)
-  return mirror(refineTo(simplify(kept, triangles / 2), triangles / 2, settle))
-}
-
 // ---- looks ----
 
 const scales = (p: Vec3, size: number): { border: number; id: number } => cells([p[0] / size, p[1] / size, p[2] / size])
@@ -288,14 +277,15 @@ export const lizard = (): Model => {
   const eye = eyeball(kEye, kEyeRadius, kLook, 8, 14)
   const upper = teeth(snout, 0.026, 15, -1, (p) => p)
   const lower = teeth(chin, 0.03, 13, 1, swing)
-  const tongue = symmetric(tongueSolid, { min: [-0.02, -0.42, -0.2], max: [0.14, 0.05, 0.4] }, 0.012, 260)
+  const tongue = symmetricSurface(tongueSolid, {
+    bounds: { min: [-0.02, -0.42, -0.2], max: [0.14, 0.05, 0.4] },
+    edge: 0.012,
+    triangles: 260,
+  })
   const others = 2 * triangleCount(eye) + triangleCount(upper) + triangleCount(lower) + triangleCount(tongue)
   const bounds = { min: [-0.03, -0.52, kNeck - 0.05] as Vec3, max: [0.42, 0.42, 0.64] as Vec3 }
-  const skin = symmetric(skinSolid, bounds, 0.0125, kTriangles - others, kNeck)
+  const skin = symmetricSurface(skinSolid, { bounds, edge: 0.0125, triangles: kTriangles - others, keep: (p) => p[2] - kNeck })
 
-  const textured = (name: string, mesh: Mesh, shade: Shade, size: number, roughness: number, ncz: boolean): Part => {
-    return { name, mesh, colour: [1, 1, 1, 1], roughness, ncz, texture: drawTexture(mesh, size, shade, rgb('#808080')) }
-  }
   const parts: Part[] = [
     { ...textured('skin', boxAtlas(withFieldNormals(skin, skinSolid)), skinShade, 1024, 0.75, false), doubleSided: true },
     textured('l-eye', eye, eyeShade, 256, 0.15, true),
