@@ -2,6 +2,7 @@
 ///
 ///     cagecast_bench TARGET.glb CAGE.glb [--runs 101] [--peers embree,nanoflann] [--json]
 ///     cagecast_bench FILE.scene [...]
+///     cagecast_bench TARGET.glb CAGE.glb --save FILE.scene
 ///
 /// Every run is the whole work from raw arrays to zones. With peers, the runs alternate (library, peer, library, peer, …)
 /// and a ratio is the median of the ratios of such pairs, so that what else the machine does falls on both alike.
@@ -28,6 +29,7 @@ using bench::Peer;
 struct Arguments {
   std::vector<std::string> files;
   std::vector<std::string> peers;
+  std::string save;  ///< Write the input to this scene file, and measure nothing.
   int runs = 101;
   bool json = false;
 };
@@ -52,6 +54,8 @@ Arguments parse(int argc, char** argv) {
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), arguments.runs);
       if (error != std::errc{} || end != text.data() + text.size() || arguments.runs < 1)
         stop(2, "--runs " + std::string(text) + " is not a whole number of at least 1");
+    } else if (argument == "--save") {
+      arguments.save = value();
     } else if (argument == "--peers") {
       std::string_view list = value();
       while (!list.empty()) {
@@ -66,7 +70,7 @@ Arguments parse(int argc, char** argv) {
     }
   }
   if (arguments.files.empty() || arguments.files.size() > 2)
-    stop(2, "usage: cagecast_bench TARGET.glb CAGE.glb | FILE.scene [--runs 101] [--peers embree,nanoflann] [--json]");
+    stop(2, "usage: cagecast_bench TARGET.glb CAGE.glb | FILE.scene [--runs 101] [--peers embree,nanoflann] [--json] [--save FILE.scene]");
   return arguments;
 }
 
@@ -204,6 +208,10 @@ int main(int argc, char** argv) {
   for (const std::string& name : arguments.peers) contests.push_back({name, makePeer(name), {}, {}});
   bench::Model model;
   if (const std::string error = bench::readModel(arguments.files, model); !error.empty()) stop(1, error);
+  if (!arguments.save.empty()) {
+    if (const std::string error = bench::writeScene(arguments.save, model); !error.empty()) stop(1, error);
+    return 0;
+  }
   const MeshView cage = model.cage.view();
   const MeshView target = model.target.view();
 

@@ -88,4 +88,24 @@ std::string readModel(const std::vector<std::string>& paths, Model& out) {
   return error;
 }
 
+std::string writeScene(const std::string& path, const Model& model) {
+  std::ofstream file(path, std::ios::binary);
+  const auto put = [&]<typename T>(std::span<const T> values) {
+    file.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+  };
+  put(std::span<const char>("CAGESCN1", 8));
+  for (const Mesh* mesh : {&model.cage, &model.target}) {
+    const std::uint32_t counts[] = {static_cast<std::uint32_t>(mesh->positions.size() / 3), static_cast<std::uint32_t>(mesh->indices.size())};
+    const std::uint8_t flags[] = {!mesh->uvs.empty(), !mesh->groups.empty(), 0, 0};
+    put(std::span<const std::uint32_t>(counts));
+    put(std::span<const std::uint8_t>(flags));
+    put(std::span<const float>(mesh->positions));
+    put(std::span<const std::uint32_t>(mesh->indices));
+    put(std::span<const float>(mesh->uvs));
+    put(std::span<const std::uint32_t>(mesh->groups));
+  }
+  file.close();
+  return file.good() ? "" : path + ": cannot be written";
+}
+
 }  // namespace cagecast::bench

@@ -26,4 +26,8 @@ struct Model {
 /// @return What is wrong, as one sentence; empty if nothing is.
 std::string readModel(const std::vector<std::string>& paths, Model& out);
 
+/// Writes a scene file.
+/// @return What is wrong; empty if nothing is.
+std::string writeScene(const std::string& path, const Model& model);
+
 }  // namespace cagecast::bench

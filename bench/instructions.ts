@@ -1,0 +1,54 @@
+import { output, root } from './native.js';
+
+/** How many instructions one transfer takes on a processor, and the compiler that chose them. */
+export interface InstructionCount {
+  perRun: number;
+  compiler: string;
+}
+
+const runs = { few: 2, many: 12 };
+
+/** What all runs together take beyond the first few, per run: reading the file and the first run's allocations fall out. */
+async function perRun(count: (runs: number) => Promise<number>): Promise<number> {
+  return Math.round(((await count(runs.many)) - (await count(runs.few))) / (runs.many - runs.few));
+}
+
+function numberIn(text: string, pattern: RegExp): number {
+  const found = pattern.exec(text)?.[1];
+  if (found === undefined) throw new Error(`no instruction count in: ${text.trim()}`);
+  return Number(found);
+}
+
+async function compilerOf(program: string, args: readonly string[], scene: string): Promise<string> {
+  const { stdout } = await output(program, [...args, scene, '--runs', '1', '--json']);
+  return (JSON.parse(stdout) as { compiler: string }).compiler;
+}
+
+/** Counts on this machine's processor, by Valgrind. */
+export async function countX86(scene: string): Promise<InstructionCount> {
+  const program = `${root}build/release/bench/cagecast_bench`;
+  const count = async (n: number): Promise<number> => {
+    const { stderr } = await output('valgrind', ['--tool=callgrind', '--callgrind-out-file=/dev/null', program, scene, '--runs', String(n)]);
+    return numberIn(stderr, /Collected : (\d+)/);
+  };
+  return { perRun: await perRun(count), compiler: await compilerOf(program, [], scene) };
+}
+
+/** Builds for 64-bit ARM and counts there, by QEMU with a plugin of ours. */
+export async function countAarch64(scene: string): Promise<InstructionCount> {
+  await output('cmake', ['--preset', 'aarch64', '-Wno-dev', '--log-level=WARNING']);
+  await output('cmake', ['--build', '--preset', 'aarch64', '--target', 'cagecast_bench']);
+  const program = `${root}build/aarch64/bench/cagecast_bench`;
+  const plugin = `${root}build/release/bench/libcagecast_count_instructions.so`;
+  const count = async (n: number): Promise<number> => {
+    const { stderr } = await output('qemu-aarch64', ['-plugin', plugin, program, scene, '--runs', String(n)]);
+    return numberIn(stderr, /^instructions (\d+)/m);
+  };
+  return { perRun: await perRun(count), compiler: await compilerOf('qemu-aarch64', [program], scene) };
+}
+
+/** The result's hash, as computed on 64-bit ARM. */
+export async function hashOnAarch64(scene: string): Promise<string> {
+  const { stdout } = await output('qemu-aarch64', [`${root}build/aarch64/bench/cagecast_bench`, scene, '--runs', '1', '--json']);
+  return (JSON.parse(stdout) as { hash: string }).hash;
+}

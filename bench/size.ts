@@ -1,0 +1,24 @@
+import { readFile } from 'node:fs/promises';
+import { gzipSync } from 'node:zlib';
+import { root } from './native.js';
+
+/** What a page has to load, in bytes. */
+export interface Size {
+  raw: number;
+  gz: number;
+}
+
+/** The files whose size counts. */
+export const sizedFiles = {
+  'cagecast.wasm': 'build/wasm/wasm/cagecast.wasm',
+  'cagecast (wasm, glue and API in one)': 'dist/index.js',
+} as const;
+
+export async function measureSizes(): Promise<Record<string, Size>> {
+  const sizes: Record<string, Size> = {};
+  for (const [name, path] of Object.entries(sizedFiles)) {
+    const bytes = await readFile(root + path);
+    sizes[name] = { raw: bytes.length, gz: gzipSync(bytes, { level: 9 }).length };
+  }
+  return sizes;
+}
