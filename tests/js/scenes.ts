@@ -32,7 +32,8 @@ export function ball(centre: readonly number[], radius: (phi: number, theta: num
       const theta = (Math.PI * r) / rings;
       const phi = (2 * Math.PI * (s % sectors)) / sectors;
       const length = radius(phi, theta);
-      positions.push(centre[0]! + length * Math.sin(theta) * Math.cos(phi), centre[1]! + length * Math.sin(theta) * Math.sin(phi), centre[2]! + length * Math.cos(theta));
+      const sine = r % rings === 0 ? 0 : Math.sin(theta); // poles are one place
+      positions.push(centre[0]! + length * sine * Math.cos(phi), centre[1]! + length * sine * Math.sin(phi), centre[2]! + length * Math.cos(theta));
       uvs.push(s / sectors, r / rings);
       if (r === rings || s === sectors) continue;
       const a = r * (sectors + 1) + s;

@@ -1,0 +1,647 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { NodeIO, type GLTF } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { init, transfer, type Mesh } from 'cagecast';
+import { PNG } from 'pngjs';
+import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from './glb.js';
+import { ball, head, join3d, modelFolders, readPlain } from './scenes.js';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-cli-'));
+const at = (name: string) => join(folder, name);
+const write = (name: string, data: Uint8Array | string) => {
+  writeFileSync(at(name), data);
+  return at(name);
+};
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const scene = head(1, 10);
+const paint = () => {
+  const png = new PNG({ width: 4, height: 4 });
+  png.data.fill(200);
+  return PNG.sync.write(png);
+};
+
+before(async () => {
+  await init();
+  write('target.glb', glbOf(scene.target));
+  write('cage.glb', glbOf(scene.cage));
+  write('paint.png', paint());
+});
+
+/** A report, as far as tests look at it. */
+interface Report {
+  counts: Record<'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
+  areas: Record<'total' | 'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
+  segments: { points: number; vertices: number; exposedArea: number; coveredArea: number; coverage: number; culled: boolean; part: string }[];
+  parts: { name: string; place: string; vertices: number; uvSet: string | null; overlayTriangles: number }[];
+  target: { vertices: number; triangles: number };
+  options: object;
+  timings: { total: number };
+  versions: { cagecast: string };
+}
+
+function report(target: string, cage = at('cage.glb'), ...more: string[]): Report {
+  const path = at('report.json');
+  const { status, stderr } = cagecast('transfer', target, '--cage', cage, '--report', path, ...more);
+  assert.equal(status, 0, stderr);
+  assert.equal(stderr, '');
+  return JSON.parse(readFileSync(path, 'utf8')) as Report;
+}
+
+/** Counts, areas and segments of a target, which other forms of the same mesh must share. */
+function answer(path: string): object {
+  const { counts, areas, segments } = report(path);
+  const round = (x: number) => Number(x.toPrecision(5));
+  return { counts, area: round(areas.total), segments: segments.map(({ points, exposedArea, coveredArea, culled }) => ({ points, e: round(exposedArea), c: round(coveredArea), culled })) };
+}
+
+describe('usage', () => {
+  test('--version prints the version of package.json, --help shows examples', () => {
+    const { version } = JSON.parse(readFileSync('package.json', 'utf8')) as { version: string };
+    assert.deepEqual(cagecast('--version'), { status: 0, stdout: `${version}\n`, stderr: '' });
+    for (const args of [['--help'], ['transfer', '--help'], ['inspect', '--help']]) {
+      const { status, stdout, stderr } = cagecast(...args);
+      assert.equal(status, 0);
+      assert.equal(stderr, '');
+      assert.match(stdout, /Example/);
+    }
+  });
+
+  test('wrong usage exits 2 with one line and writes nothing', () => {
+    const ok = ['transfer', at('target.glb'), '--cage', at('cage.glb')];
+    const cases: [string[], RegExp][] = [
+      [['transfer'], /missing required argument 'TARGET'|required option/],
+      [['transfer', at('target.glb')], /required option '--cage/],
+      [[...ok, '--threshold', '2'], /--threshold.*'2' is invalid.*not a number within 0\.\.1/],
+      [[...ok, '--threshold', 'half'], /not a number within 0\.\.1/],
+      [[...ok, '--threshold', ''], /not a number within 0\.\.1/],
+      [[...ok, '--weld-tolerance', '1'], /not a number within 0\.\.0\.01/],
+      [[...ok, '--preset', 'papre'], /--preset.*'papre' is invalid.*paper/],
+      [[...ok, '--output', at('out.obj')], /must end in \.glb/],
+      [[...ok, '--texture', at('paint.png')], /--texture needs -o/],
+      [[...ok, '-o', at('target.glb')], /would be written over another file/],
+      [[...ok, '-o', at('out.glb'), '--report', at('out.glb')], /would be written over another file/],
+      [[...ok, 'extra.glb', '-o', at('out.glb')], /too many arguments/],
+      [[...ok, '--colour', 'red'], /unknown option '--colour'/],
+      [['transmogrify'], /unknown command 'transmogrify'/],
+    ];
+    const files = readdirSync(folder).sort();
+    for (const [args, message] of cases) {
+      const { status, stdout, stderr } = cagecast(...args);
+      assert.equal(status, 2, `${args.join(' ')}: ${stderr}`);
+      assert.equal(stdout, '');
+      assert.match(stderr, message);
+      assert.match(stderr, /^cagecast: [^\n]+\n$/);
+    }
+    assert.deepEqual(readdirSync(folder).sort(), files);
+  });
+
+  test('without a command it shows its help and exits 2', () => {
+    const { status, stderr } = cagecast();
+    assert.equal(status, 2);
+    assert.match(stderr, /Usage: cagecast/);
+  });
+});
+
+describe('input that cannot be used exits 1 with one line, and writes nothing', () => {
+  const whole = () => readFileSync(at('target.glb'));
+  const changed = (change: (glb: ReturnType<typeof unpackGlb>) => void) => {
+    const glb = unpackGlb(whole());
+    change(glb);
+    return packGlb(glb);
+  };
+  const positionsAt = ({ json }: ReturnType<typeof unpackGlb>) => json.bufferViews![json.accessors![json.meshes![0]!.primitives[0]!.attributes['POSITION']!]!.bufferView!]!.byteOffset!;
+  const indicesAt = ({ json }: ReturnType<typeof unpackGlb>) => json.bufferViews![json.accessors![json.meshes![0]!.primitives[0]!.indices!]!.bufferView!]!.byteOffset!;
+
+  const targets: [string, () => Uint8Array | string, RegExp][] = [
+    ['a NaN position', () => changed((glb) => new DataView(glb.bin.buffer, glb.bin.byteOffset).setFloat32(positionsAt(glb) + 12 * 5 + 4, NaN, true)), /bad\.glb: meshes\[0\]\.primitives\[0\]: POSITION of vertex 5 has NaN, which is not a finite number/],
+    ['an index out of range', () => changed((glb) => new DataView(glb.bin.buffer, glb.bin.byteOffset).setUint32(indicesAt(glb) + 4 * 17, 912345, true)), /bad\.glb: meshes\[0\]\.primitives\[0\]: indices\[17\] = 912345 is out of range \(\d+ vertices\)/],
+    ['an empty mesh', () => { const maker = new GlbMaker(); maker.node({ name: 'empty' }); return maker.finish(); }, /bad\.glb: has no meshes; at least one triangle is needed/],
+    ['a mesh of lines', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.mode = 1; }), /bad\.glb: has no triangles in its scene/],
+    ['a mesh that is not in the scene', () => changed(({ json }) => { json.scenes![0]!.nodes = []; }), /bad\.glb: has no triangles in its scene/],
+    ['a truncated GLB', () => whole().subarray(0, whole().length - 100), /bad\.glb: is truncated: its header says \d+ bytes, there are \d+/],
+    ['a GLB cut within its header', () => whole().subarray(0, 10), /bad\.glb: is truncated: a GLB has at least 20 bytes, this one 10/],
+    ['a GLB of another version', () => Buffer.concat([whole().subarray(0, 4), Buffer.from([1, 0, 0, 0]), whole().subarray(8)]), /bad\.glb: is a GLB of version 1/],
+    ['a file that is no GLB', () => 'hello, world\n', /bad\.glb: is neither a GLB nor a glTF file/],
+    ['JSON that is no glTF', () => '{"hello": 1}', /bad\.glb: is JSON but no glTF/],
+    ['null', () => 'null', /bad\.glb: is JSON but no glTF/],
+    ['an empty file', () => '', /bad\.glb: the file is empty/],
+    ['glTF 1.0', () => '{"asset": {"version": "1.0"}}', /bad\.glb: is glTF 1\.0; only 2\.x/],
+    ['damaged JSON in a GLB', () => { const bytes = Buffer.from(whole()); bytes[20] = 0x21; return bytes; }, /bad\.glb: its JSON is damaged/],
+    ['an accessor beyond its view', () => changed(({ json }) => { json.accessors![0]!.count = 1e6; }), /bad\.glb: accessors\[0\] ends at byte \d+ of bufferViews\[0\], which has \d+/],
+    ['an accessor of absurd size', () => changed(({ json }) => { json.accessors![0]!.count = 2 ** 40; delete json.accessors![0]!.bufferView; }), /bad\.glb: accessors\[0\]\.count = \d+ is more than/],
+    ['a view beyond its buffer', () => changed(({ json }) => { json.bufferViews![0]!.byteOffset = 1e9; }), /bad\.glb: bufferViews\[0\] ends at byte \d+ of buffers\[0\], which has \d+/],
+    ['a buffer larger than the file', () => changed(({ json }) => { json.buffers![0]!.byteLength = 1e9; }), /bad\.glb: buffers\[0\] is truncated/],
+    ['a buffer in a file that is missing', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'gone.bin', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is in gone\.bin: no such file/],
+    ['a buffer on another host', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'https://example.com/a.bin', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is at https:.* only files are read/],
+    ['a reference to no accessor', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.attributes['POSITION'] = 99; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.POSITION = 99 is out of range \(\d+ accessors\)/],
+    ['a node that is its own ancestor', () => changed(({ json }) => { json.nodes!.push({ children: [2] }, { children: [1] }); }), /bad\.glb: has no|two parents|nodes/],
+    ['a scene whose root is its own ancestor', () => changed(({ json }) => { json.nodes![0]!.children = [0]; }), /bad\.glb: nodes\[0\] is a root of scenes\[0\] and a child of nodes\[0\]/],
+    ['corners that are no triangles', () => changed(({ json }) => { json.accessors![json.meshes![0]!.primitives[0]!.indices!]!.count -= 1; }), /bad\.glb: meshes\[0\]\.primitives\[0\] has \d+ corners, not 3 per triangle/],
+    ['damaged Draco data', () => changed(({ json }) => { json.extensionsUsed = json.extensionsRequired = ['KHR_draco_mesh_compression']; json.meshes![0]!.primitives[0]!.extensions = { KHR_draco_mesh_compression: { bufferView: 0, attributes: { POSITION: 0 } } }; }), /bad\.glb: cannot be decoded/],
+    ['damaged meshopt data', () => changed(({ json }) => { json.extensionsUsed = json.extensionsRequired = ['EXT_meshopt_compression']; const view = json.bufferViews![0]!; view.extensions = { EXT_meshopt_compression: { buffer: 0, byteOffset: 0, byteLength: 60, byteStride: 12, count: 5, mode: 'ATTRIBUTES' } }; }), /bad\.glb: cannot be decoded/],
+  ];
+
+  const fails = (args: string[], message: RegExp) => {
+    const before = readdirSync(folder).sort();
+    const { status, stdout, stderr } = cagecast(...args, '-o', at('never.glb'), '--report', at('never.json'));
+    assert.match(stderr, message);
+    assert.match(stderr, /^cagecast: [^\n]+\n$/);
+    assert.equal(status, 1, stderr);
+    assert.equal(stdout, '');
+    assert.deepEqual(readdirSync(folder).sort(), before);
+  };
+
+  for (const [name, make, message] of targets.filter(([name]) => name !== 'a node that is its own ancestor')) {
+    test(name, () => {
+      const path = write('bad.glb', make());
+      fails(['transfer', path, '--cage', at('cage.glb')], message);
+      rmSync(path);
+    });
+  }
+
+  test('a node that is its own ancestor, out of the scene, does no harm', () => {
+    const path = write('loop.glb', changed(({ json }) => { json.nodes!.push({ children: [2] }, { children: [1] }); }));
+    assert.deepEqual(answer(path), answer(at('target.glb')));
+    rmSync(path);
+  });
+
+  test('a missing file, and a folder', () => {
+    fails(['transfer', at('gone.glb'), '--cage', at('cage.glb')], /gone\.glb: no such file/);
+    fails(['transfer', at('target.glb'), '--cage', at('gone.glb')], /gone\.glb: no such file/);
+    fails(['transfer', folder, '--cage', at('cage.glb')], /: is a folder, not a file/);
+  });
+
+  test('a cage without UVs, or without a triangle that has an area', () => {
+    const bare = write('bare.glb', glbOf({ positions: scene.cage.positions, indices: scene.cage.indices }));
+    fails(['transfer', at('target.glb'), '--cage', bare], /bare\.glb: meshes\[0\]\.primitives\[0\] \("only"\) has no TEXCOORD_0: the texture is drawn in the cage's UVs/);
+    const flat = write('flat.glb', glbOf({ ...scene.cage, positions: scene.cage.positions.map(() => 0) }));
+    fails(['transfer', at('target.glb'), '--cage', flat], /flat\.glb: cage has no triangle with an area/);
+    rmSync(bare);
+    rmSync(flat);
+  });
+
+  test('a cage out of all proportion', () => {
+    const far = write('far-away.glb', glbOf({ ...scene.cage, positions: scene.cage.positions.map((x, i) => (i === 7 ? 1e30 : x)) }));
+    fails(['transfer', at('target.glb'), '--cage', far], /far-away\.glb: cage\.positions\[7\] = .* is out of all proportion .* \(meshes\[0\]\.primitives\[0\], "only"\)/);
+    rmSync(far);
+  });
+
+  test('a texture that is no image, and half of one', () => {
+    const text = write('text.png', 'no image');
+    fails(['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', text], /text\.png: is neither a PNG nor a JPEG image/);
+    const half = write('half.png', paint().subarray(0, 60));
+    fails(['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', half], /half\.png: is truncated: the PNG image has no end/);
+    rmSync(text);
+    rmSync(half);
+  });
+
+  test('an output that cannot be written leaves the other unwritten, too', () => {
+    const { status, stderr } = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('never.glb'), '--report', at('gone/never.json'));
+    assert.equal(status, 1);
+    assert.match(stderr, /^cagecast: .*gone\/never\.json: cannot be written \(its folder does not exist\)\n$/);
+    assert.ok(!existsSync(at('never.glb')));
+    assert.ok(!readdirSync(folder).some((name) => name.endsWith('.tmp')));
+  });
+
+  test('inspect fails in the same way', () => {
+    const { status, stderr } = cagecast('inspect', at('gone.glb'), '--cage', at('cage.glb'));
+    assert.equal(status, 1);
+    assert.match(stderr, /^cagecast: .*gone\.glb: no such file\n$/);
+  });
+});
+
+describe('transfer', () => {
+  test('reports what the package answers', () => {
+    const { counts, areas, segments, parts, target, options, versions, timings } = report(at('target.glb'));
+    // The file holds one primitive, so one group.
+    const result = transfer(scene.cage, { ...scene.target, groups: undefined });
+    assert.deepEqual(Object.values(counts), [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length));
+    assert.equal(target.vertices, result.zones.length);
+    assert.equal(segments.length, result.segmentStats.length);
+    segments.forEach((segment, s) => {
+      const { points, exposedArea, coveredArea, coverage, culled } = result.segmentStats[s]!;
+      assert.deepEqual([segment.points, segment.exposedArea, segment.coveredArea, segment.coverage, segment.culled], [points, exposedArea, coveredArea, coverage, culled]);
+      assert.equal(segment.vertices, result.segments.filter((one) => one === s).length);
+    });
+    const sum = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled;
+    assert.ok(Math.abs(sum - areas.total) < 1e-9 * areas.total);
+    assert.deepEqual(parts.map(({ name, place, vertices, uvSet }) => [name, place, vertices, uvSet]), [['only', 'meshes[0].primitives[0]', target.vertices, null]]);
+    assert.deepEqual(options, { preset: 'paper', threshold: 0.5, weldTolerance: 0 });
+    assert.match(versions.cagecast, /^\d+\.\d+\.\d+/);
+    assert.ok(timings.total > 0);
+  });
+
+  test('the threshold is obeyed', () => {
+    for (const threshold of [0, 0.2, 1]) {
+      const { counts } = report(at('target.glb'), at('cage.glb'), '--threshold', String(threshold));
+      const { zones } = transfer(scene.cage, { ...scene.target, groups: undefined }, { threshold });
+      assert.equal(counts.culled, zones.filter((zone) => zone === 3).length);
+    }
+  });
+
+  test('writes the UVs and zones of the package; all else stays byte for byte', async () => {
+    const out = at('out.glb');
+    assert.equal(cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', out).status, 0);
+    assert.deepEqual(await validate(out), []);
+    const result = transfer(scene.cage, { ...scene.target, groups: undefined });
+    const document = await new NodeIO().read(out);
+    const primitive = document.getRoot().listMeshes()[0]!.listPrimitives()[0]!;
+    assert.deepEqual(primitive.getAttribute('TEXCOORD_1')!.getArray(), result.uvs);
+    assert.deepEqual([...primitive.getAttribute('_NCZ')!.getArray()!], [...result.zones]);
+    const [before, afterwards] = [unpackGlb(readFileSync(at('target.glb'))), unpackGlb(readFileSync(out))];
+    assert.deepEqual(afterwards.bin.subarray(0, before.bin.length), before.bin);
+    assert.deepEqual(afterwards.json.accessors!.slice(0, before.json.accessors!.length), before.json.accessors);
+  });
+
+  test('without -o and --report nothing is written', () => {
+    const files = readdirSync(folder).sort();
+    const { status, stdout } = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'));
+    assert.equal(status, 0);
+    assert.match(stdout, /nothing written/);
+    assert.deepEqual(readdirSync(folder).sort(), files);
+  });
+
+  test('the same input gives the same bytes', () => {
+    for (const name of ['a.glb', 'b.glb']) cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', at(name));
+    assert.deepEqual(readFileSync(at('a.glb')), readFileSync(at('b.glb')));
+  });
+});
+
+describe('what a target has is kept', () => {
+  /** A target with a bit of everything. */
+  function rich(): Uint8Array {
+    const maker = new GlbMaker();
+    const { json } = maker;
+    const skin = { ...scene.target };
+    const vertices = skin.positions.length / 3;
+    const mesh = maker.mesh(skin, { material: 0, extras: { part: 'skin' } });
+    const primitive = json.meshes[mesh]!.primitives[0]!;
+    const normals = new Float32Array(skin.positions.length).map((_, i) => (i % 3 === 2 ? 1 : 0));
+    primitive.attributes['NORMAL'] = maker.accessor(normals, 'VEC3');
+    primitive.attributes['COLOR_0'] = maker.accessor(new Uint8Array(4 * vertices).fill(255), 'VEC4', { normalized: true });
+    primitive.attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
+    primitive.attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    primitive.attributes['_TEMPERATURE'] = maker.accessor(new Float32Array(vertices).fill(37), 'SCALAR');
+    primitive.targets = [{ POSITION: maker.accessor(skin.positions.map((x) => 0.1 * x), 'VEC3') }];
+    json.meshes[mesh]!.weights = [0.25];
+    json.meshes[mesh]!.extras = { targetNames: ['smile'] };
+    const identity = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+    json.skins = [{ joints: [1], inverseBindMatrices: maker.accessor(identity, 'MAT4') }];
+    maker.node({ mesh, skin: 0, name: 'head', extras: { id: 7 }, extensions: { ACME_avatar: { node: 0, mesh: 0 } } });
+    maker.node({ name: 'bone' });
+    json.animations = [{ name: 'nod', samplers: [{ input: maker.accessor(new Float32Array([0, 1]), 'SCALAR', { min: [0], max: [1] }), output: maker.accessor(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1]), 'VEC4') }], channels: [{ sampler: 0, target: { node: 1, path: 'rotation' } }] }];
+    const png = paint();
+    json.images = [{ bufferView: maker.view(png), mimeType: 'image/png', name: 'freckles' }];
+    json.textures = [{ source: 0 }];
+    json.materials = [{ name: 'skin', doubleSided: true, pbrMetallicRoughness: { baseColorTexture: { index: 0 }, roughnessFactor: 0.4 }, extensions: { KHR_materials_sheen: { sheenRoughnessFactor: 0.5 }, ACME_secret: { a: [1, 2, { b: null }] } } }];
+    json.extensionsUsed = ['KHR_materials_sheen', 'ACME_secret', 'ACME_avatar'];
+    json.extensions = { ACME_avatar: { meshes: [0], textures: [0] } };
+    json.extras = { author: 'someone' };
+    json.asset.generator = 'by hand';
+    return maker.finish();
+  }
+
+  const subset = (whole: unknown, part: unknown, path = ''): void => {
+    if (typeof part !== 'object' || part === null) return assert.deepEqual(whole, part, path);
+    for (const [key, value] of Object.entries(part)) {
+      if (path === '/buffers/0' && key === 'byteLength') continue;
+      subset((whole as Record<string, unknown>)[key], value, `${path}/${key}`);
+    }
+  };
+
+  test('skins, morphs, animations, materials, extras, colours, attributes of others, extensions nobody knows', async () => {
+    const path = write('rich.glb', rich());
+    assert.deepEqual((await validate(path)).filter((issue) => !/ACME|UNUSED/.test(issue)), []);
+    const out = at('rich-out.glb');
+    const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out);
+    assert.equal(status, 0, stderr);
+    assert.deepEqual(await validate(out), []);
+    const [before, afterwards] = [unpackGlb(readFileSync(path)), unpackGlb(readFileSync(out))];
+    subset(afterwards.json, before.json);
+    assert.deepEqual(afterwards.bin.subarray(0, before.bin.length), before.bin);
+
+    const [base, overlay] = afterwards.json.meshes![0]!.primitives as [GLTF.IMeshPrimitive, GLTF.IMeshPrimitive];
+    const { attributes } = base;
+    assert.deepEqual(overlay.targets, base.targets);
+    for (const name of ['NORMAL', 'JOINTS_0', 'WEIGHTS_0']) assert.equal(overlay.attributes[name], attributes[name]);
+    assert.equal(overlay.attributes['TEXCOORD_0'], attributes['TEXCOORD_1']);
+    assert.equal(overlay.attributes['COLOR_0'], undefined);
+    const material = afterwards.json.materials![overlay.material!]!;
+    assert.equal(material.alphaMode, 'BLEND');
+    assert.equal(material.doubleSided, true);
+    const image = afterwards.json.images![afterwards.json.textures![material.pbrMetallicRoughness!.baseColorTexture!.index]!.source!]!;
+    const { byteOffset = 0, byteLength } = afterwards.json.bufferViews![image.bufferView!]!;
+    assert.deepEqual(Buffer.from(afterwards.bin.subarray(byteOffset, byteOffset + byteLength)), paint());
+  });
+
+  test('the overlay has the cosmetic triangles alone, a hair off the surface', async () => {
+    const out = at('overlay.glb');
+    cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out);
+    const [base, overlay] = (await new NodeIO().read(out)).getRoot().listMeshes()[0]!.listPrimitives();
+    const { cosmeticTriangles } = transfer(scene.cage, { ...scene.target, groups: undefined });
+    const expected = [...scene.target.indices].filter((_, corner) => cosmeticTriangles[Math.floor(corner / 3)]);
+    assert.deepEqual([...overlay!.getIndices()!.getArray()!], expected);
+    const [p, q] = [base!.getAttribute('POSITION')!.getArray()!, overlay!.getAttribute('POSITION')!.getArray()!];
+    for (const v of new Set(expected)) {
+      const step = Math.hypot(...[0, 1, 2].map((k) => q[3 * v + k]! - p[3 * v + k]!));
+      assert.ok(step > 0.0005 && step < 0.005, `vertex ${v} moved by ${step}`);
+      assert.ok(Math.hypot(...q.slice(3 * v, 3 * v + 3)) > Math.hypot(...p.slice(3 * v, 3 * v + 3)) - 1e-4, `vertex ${v} moved inwards`);
+    }
+  });
+
+  test('nothing to paint, no overlay', async () => {
+    const far = write('far.glb', glbOf({ ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 50 : x)) }));
+    const { parts, counts } = report(at('target.glb'), far, '--texture', at('paint.png'), '-o', at('bare-out.glb'));
+    assert.equal(counts.cosmetic, 0);
+    assert.equal(parts[0]!.overlayTriangles, 0);
+    assert.deepEqual(await validate(at('bare-out.glb')), []);
+    assert.equal(unpackGlb(readFileSync(at('bare-out.glb'))).json.meshes![0]!.primitives.length, 1);
+  });
+
+  test('a target without UVs gets its first set', () => {
+    const path = write('plain.glb', glbOf({ positions: scene.target.positions, indices: scene.target.indices }));
+    assert.deepEqual(report(path, at('cage.glb'), '-o', at('plain-out.glb')).parts.map(({ uvSet }) => uvSet), ['TEXCOORD_0']);
+  });
+});
+
+describe('the same mesh in other forms gives the same answer', () => {
+  const expected = () => answer(at('target.glb'));
+  const made = (name: string, make: (maker: GlbMaker) => void): string => {
+    const maker = new GlbMaker();
+    make(maker);
+    return write(`${name}.glb`, maker.finish());
+  };
+
+  test('not indexed', () => {
+    const positions = Float32Array.from([...scene.target.indices].flatMap((v) => [...scene.target.positions.subarray(3 * v, 3 * v + 3)]));
+    const path = made('soup', (maker) => {
+      const POSITION = maker.accessor(positions, 'VEC3');
+      maker.node({ mesh: maker.json.meshes.push({ primitives: [{ attributes: { POSITION } }] }) - 1 });
+    });
+    const { segments, areas } = report(path);
+    const plain = report(at('target.glb'));
+    assert.deepEqual(segments.map(({ points }) => points), plain.segments.map(({ points }) => points));
+    assert.ok(Math.abs(areas.cosmetic - plain.areas.cosmetic) < 1e-6 * areas.total);
+  });
+
+  test('indices of 16 bits', () => {
+    assert.deepEqual(answer(made('short', (maker) => maker.node({ mesh: maker.mesh({ ...scene.target, indices: new Uint16Array(scene.target.indices) }) }))), expected());
+  });
+
+  test('moved and turned by nodes, undone by their parents', () => {
+    const path = made('nested', (maker) => {
+      const inner = maker.node({ mesh: maker.mesh(scene.target), translation: [1, 2, 3], scale: [2, 2, 2] }, false);
+      const middle = maker.node({ children: [inner], matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, -2, -3, 1] }, false);
+      maker.node({ children: [middle], scale: [0.5, 0.5, 0.5] });
+    });
+    assert.deepEqual(answer(path), expected());
+  });
+
+  test('mirrored by its node: outside stays outside', () => {
+    const positions = scene.target.positions.map((x, i) => (i % 3 === 0 ? -x : x));
+    const indices = new Uint32Array(scene.target.indices);
+    for (let t = 0; t < indices.length; t += 3) [indices[t + 1], indices[t + 2]] = [indices[t + 2]!, indices[t + 1]!];
+    assert.deepEqual(answer(made('mirrored', (maker) => maker.node({ mesh: maker.mesh({ positions, indices }), scale: [-1, 1, 1] }))), expected());
+    const cage = { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 1 ? -x : x)), indices: new Uint32Array(scene.cage.indices) };
+    for (let t = 0; t < cage.indices.length; t += 3) [cage.indices[t + 1], cage.indices[t + 2]] = [cage.indices[t + 2]!, cage.indices[t + 1]!];
+    const mirroredCage = made('mirrored-cage', (maker) => maker.node({ mesh: maker.mesh(cage), scale: [1, -1, 1] }));
+    assert.deepEqual(report(at('target.glb'), mirroredCage).counts, report(at('target.glb')).counts);
+  });
+
+  test('a skinned mesh is not moved by its node, as the format demands', () => {
+    const path = made('skinned', (maker) => {
+      const mesh = maker.mesh(scene.target);
+      const vertices = scene.target.positions.length / 3;
+      const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
+      attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
+      attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+      maker.json.skins = [{ joints: [0] }];
+      maker.node({ name: 'bone' });
+      maker.node({ mesh, skin: 0, translation: [100, 0, 0] });
+    });
+    assert.deepEqual(answer(path), expected());
+  });
+
+  test('strips and fans', () => {
+    // A strip and a fan of the same flat quad, against its two triangles.
+    const positions = new Float32Array([-0.1, -0.1, 0.9, 0.1, -0.1, 0.9, -0.1, 0.1, 0.9, 0.1, 0.1, 0.9]);
+    const form = (indices: number[], mode: number) =>
+      made(`mode-${mode}`, (maker) => {
+        const mesh = maker.mesh({ positions, indices: new Uint16Array(indices) }, { mode } as Partial<GLTF.IMeshPrimitive>);
+        maker.node({ mesh });
+      });
+    const triangles = answer(form([0, 1, 2, 2, 1, 3], 4));
+    assert.deepEqual(answer(form([0, 1, 2, 3], 5)), triangles);
+    assert.deepEqual(answer(form([1, 3, 2, 0], 6)), triangles);
+    // The winding shows in the overlay's normals: all must point up, as the cage is above.
+    for (const mode of [4, 5, 6]) {
+      cagecast('transfer', at(`mode-${mode}.glb`), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', at('wound.glb'));
+      const { json } = unpackGlb(readFileSync(at('wound.glb')));
+      const overlay = json.meshes![0]!.primitives[1]!;
+      assert.ok(json.accessors![overlay.attributes['POSITION']!]!.min![2]! > 0.9, `mode ${mode}`);
+    }
+  });
+
+  test('sparse accessors', () => {
+    const path = made('sparse', (maker) => {
+      const base = scene.target.positions.slice();
+      const moved = [3, 8, 20];
+      const values = Float32Array.from(moved.flatMap((v) => [...base.subarray(3 * v, 3 * v + 3)]));
+      for (const v of moved) base.fill(9, 3 * v, 3 * v + 3);
+      const mesh = maker.mesh({ ...scene.target, positions: base });
+      const accessor = maker.json.accessors[maker.json.meshes[mesh]!.primitives[0]!.attributes['POSITION']!]!;
+      accessor.sparse = {
+        count: moved.length,
+        indices: { bufferView: maker.view(new Uint8Array(new Uint16Array(moved).buffer)), componentType: 5123 },
+        values: { bufferView: maker.view(new Uint8Array(values.buffer)) },
+      } as GLTF.IAccessorSparse;
+      maker.node({ mesh });
+    });
+    assert.deepEqual(answer(path), expected());
+  });
+
+  test('quantised positions, normalised, with the scale in the node', () => {
+    const rounded = scene.target.positions.map((x) => (Math.round((x / 2) * 32767) / 32767) * 2);
+    const plain = write('rounded.glb', glbOf({ ...scene.target, positions: rounded }));
+    const path = made('quantised', (maker) => {
+      const vertices = rounded.length / 3;
+      const padded = new Int16Array(4 * vertices);
+      for (let v = 0; v < vertices; ++v) for (let k = 0; k < 3; ++k) padded[4 * v + k] = Math.round((rounded[3 * v + k]! / 2) * 32767);
+      const bufferView = maker.view(new Uint8Array(padded.buffer), { byteStride: 8 });
+      const POSITION = maker.json.accessors.push({ bufferView, componentType: 5122, normalized: true, count: vertices, type: 'VEC3', min: [-32767, -32767, -32767], max: [32767, 32767, 32767] } as GLTF.IAccessor) - 1;
+      const mesh = maker.json.meshes.push({ primitives: [{ attributes: { POSITION }, indices: maker.accessor(scene.target.indices as Uint32Array, 'SCALAR') }] }) - 1;
+      maker.node({ mesh, scale: [2, 2, 2] });
+      maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
+    });
+    assert.deepEqual(report(path).counts, report(plain).counts);
+  });
+
+  test('a glTF with its buffer and image beside it becomes one GLB', async () => {
+    const { json, bin } = unpackGlb(glbOf(scene.target));
+    mkdirSync(at('loose dir'), { recursive: true });
+    writeFileSync(at('loose dir/mesh data.bin'), bin);
+    copyFileSync(at('paint.png'), at('loose dir/skin.png'));
+    json.buffers![0]!.uri = 'mesh%20data.bin';
+    json.images = [{ uri: 'skin.png' }];
+    json.textures = [{ source: 0 }];
+    json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
+    json.meshes![0]!.primitives[0]!.material = 0;
+    const path = write('loose dir/target.gltf', JSON.stringify(json));
+    assert.deepEqual(answer(path), expected());
+    report(path, at('cage.glb'), '-o', at('packed.glb'));
+    assert.deepEqual(await validate(at('packed.glb')), []);
+    const document = await new NodeIO().read(at('packed.glb'));
+    assert.deepEqual(Buffer.from(document.getRoot().listTextures()[0]!.getImage()!), paint());
+  });
+
+  test('an extension of materials that nobody knows, though required, is no obstacle', () => {
+    const path = made('required', (maker) => {
+      maker.node({ mesh: maker.mesh(scene.target) });
+      maker.json.extensionsUsed = maker.json.extensionsRequired = ['ACME_materials'];
+    });
+    assert.deepEqual(answer(path), expected());
+  });
+});
+
+describe('several parts', () => {
+  test('every primitive of every node is a group of its own', () => {
+    const half = Math.floor(scene.target.indices.length / 6) * 3;
+    const maker = new GlbMaker();
+    const [a, b] = [maker.mesh({ ...scene.target, indices: scene.target.indices.subarray(0, half) }), maker.mesh({ ...scene.target, indices: scene.target.indices.subarray(half) })];
+    maker.json.meshes[a]!.primitives.push(maker.json.meshes[b]!.primitives[0]!);
+    maker.node({ mesh: a, name: 'split' });
+    const { parts, segments, target } = report(write('parts.glb', maker.finish()));
+    assert.equal(parts.length, 2);
+    assert.equal(target.vertices, (2 * scene.target.positions.length) / 3);
+    assert.ok(segments.length > report(at('target.glb')).segments.length);
+  });
+
+  test('a mesh that two nodes show gets UVs for each of them', async () => {
+    const small = ball([0, 0, 0], () => 0.2, 8, 12);
+    const maker = new GlbMaker();
+    const mesh = maker.mesh(small);
+    maker.node({ mesh, name: 'left', translation: [-0.6, 0, 0] });
+    maker.node({ mesh, name: 'right', translation: [0.6, 0, 0] });
+    const path = write('twins.glb', maker.finish());
+    const out = at('twins-out.glb');
+    const { parts } = report(path, at('cage.glb'), '--texture', at('paint.png'), '-o', out);
+    assert.deepEqual(parts.map(({ name }) => name), ['left', 'right']);
+    assert.deepEqual(await validate(out), []);
+    const twins = [-0.6, 0.6].map((x) => ({ ...small, positions: small.positions.map((value, i) => (i % 3 === 0 ? value + x : value)) }));
+    const { uvs } = transfer(scene.cage, join3d(...twins));
+    const document = await new NodeIO().read(out);
+    document.getRoot().listNodes().forEach((node, n) => {
+      const written = node.getMesh()!.listPrimitives()[0]!.getAttribute('TEXCOORD_1')!.getArray()!;
+      const own = uvs.subarray((n * uvs.length) / 2, ((n + 1) * uvs.length) / 2);
+      for (let i = 0; i < own.length; ++i) assert.ok(Math.abs(written[i]! - own[i]!) < 1e-5);
+    });
+    assert.notEqual(document.getRoot().listNodes()[0]!.getMesh(), document.getRoot().listNodes()[1]!.getMesh());
+  });
+});
+
+describe('inspect', () => {
+  test('calls a good cage good, in text and JSON', () => {
+    const text = cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'));
+    assert.equal(text.status, 0, text.stderr);
+    for (const word of [/cosmetic/, /outside the cage/, /median/, /F = C\/E/, /The cage fits\./]) assert.match(text.stdout, word);
+    const { stdout } = cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--json');
+    const inspection = JSON.parse(stdout) as { fit: boolean; counts: object; coverage: Record<string, number>; outside: { area: number }; distances: Record<string, number>; cage: { openLoops: number } };
+    assert.equal(inspection.fit, true);
+    assert.deepEqual(inspection.counts, report(at('target.glb')).counts);
+    assert.ok(Math.abs(Object.values(inspection.coverage).reduce((a, b) => a + b) - 1) < 1e-9);
+    assert.equal(inspection.cage.openLoops, 1);
+    const { p50, p90, p99, max } = inspection.distances as Record<'p50' | 'p90' | 'p99' | 'max', number>;
+    assert.ok(p50 <= p90 && p90 <= p99 && p99 <= max && max < 1);
+  });
+
+  test('a cage that is inside out, too small, elsewhere is not called good', () => {
+    const cages: [string, Mesh][] = [
+      ['flipped', { ...scene.cage, indices: scene.cage.indices.slice().reverse() }],
+      ['shrunk', { ...scene.cage, positions: scene.cage.positions.map((x) => 0.8 * x) }],
+      ['moved', { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 1 : x)) }],
+    ];
+    for (const [name, cage] of cages) {
+      const path = write(`${name}.glb`, glbOf(cage));
+      const { status, stdout } = cagecast('inspect', at('target.glb'), '--cage', path);
+      assert.equal(status, 0);
+      assert.match(stdout, /BAD: .*\n {2}→ .*\nThe cage does not fit\.\n$|BAD: [^]*The cage does not fit\.\n$/, name);
+      assert.equal((JSON.parse(cagecast('inspect', at('target.glb'), '--cage', path, '--json').stdout) as { fit: boolean }).fit, false);
+    }
+  });
+
+  test('a reader that leaves early is no failure', () => {
+    const shell = `'${process.execPath}' dist/cli.js inspect '${at('target.glb')}' --cage '${at('cage.glb')}' | true; echo "\${PIPESTATUS[0]}"`;
+    const { stdout, stderr } = spawnSync('bash', ['-c', shell], { encoding: 'utf8' });
+    assert.equal(stdout.trim(), '0', stderr);
+  });
+});
+
+describe('models', () => {
+  for (const model of modelFolders()) {
+    test(`${basename(model)}: the file is valid, its attributes stay byte for byte, UVs and zones are the package's`, async () => {
+      const [target, cage, out, reportFile] = [join(model, 'target.glb'), join(model, 'cage.glb'), at('model.glb'), at('model.json')];
+      const { status, stderr } = cagecast('transfer', target, '--cage', cage, '--texture', at('paint.png'), '-o', out, '--report', reportFile);
+      assert.equal(status, 0, stderr);
+      assert.deepEqual(await validate(out), []);
+      const result = transfer(await readPlain(cage), await readPlain(target));
+      const { counts } = JSON.parse(readFileSync(reportFile, 'utf8')) as Report;
+      assert.deepEqual(Object.values(counts), [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length));
+
+      const read = async (path: string) => (await new NodeIO().registerExtensions(ALL_EXTENSIONS).read(path)).getRoot();
+      const [before, afterwards] = [await read(target), await read(out)];
+      const [uvs, zones]: [number[], number[]] = [[], []];
+      before.listMeshes().forEach((mesh, m) =>
+        mesh.listPrimitives().forEach((primitive, p) => {
+          const written = afterwards.listMeshes()[m]!.listPrimitives()[p]!;
+          for (const semantic of primitive.listSemantics()) assert.deepEqual(written.getAttribute(semantic)!.getArray(), primitive.getAttribute(semantic)!.getArray(), semantic);
+          assert.deepEqual(written.getIndices()?.getArray(), primitive.getIndices()?.getArray());
+          const uvSet = written.listSemantics().find((name) => name.startsWith('TEXCOORD_') && !primitive.listSemantics().includes(name));
+          assert.ok(uvSet);
+          uvs.push(...written.getAttribute(uvSet)!.getArray()!);
+          zones.push(...written.getAttribute('_NCZ')!.getArray()!);
+        }),
+      );
+      // In the order of meshes, which is that of the scene in all of these.
+      assert.deepEqual(uvs, [...result.uvs]);
+      assert.deepEqual(zones, [...result.zones]);
+    });
+  }
+
+  const assets = process.env['CAGECAST_ASSETS'];
+  const formats = assets === undefined ? [] : readdirSync(join(assets, 'formats'));
+  for (const name of formats) {
+    test(`${name} opens, stays compressed, and is valid`, async () => {
+      const out = at('format.glb');
+      const path = join(assets!, 'formats', name);
+      const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out);
+      assert.equal(status, 0, stderr);
+      assert.deepEqual(await validate(out), []);
+      const { json } = unpackGlb(readFileSync(out));
+      assert.ok(json.extensionsRequired!.some((extension) => /draco|meshopt/.test(extension)));
+      // It opens again, by its own reader and by another.
+      assert.equal(cagecast('inspect', out, '--cage', at('cage.glb')).status, 0);
+    });
+  }
+
+  if (assets !== undefined) {
+    test('the sedan of the wild, Draco in a data URI, gives the counts of the plain one', () => {
+      const cage = join(assets, 'kenney_sedan/cage.glb');
+      assert.deepEqual(report(join(assets, 'formats/kenney_sedan_draco_datauri.gltf'), cage).counts, report(join(assets, 'kenney_sedan/target.glb'), cage).counts);
+    });
+
+    test('bad cages of real models are not called good, good ones are', () => {
+      for (const model of modelFolders().filter((path) => path.startsWith(assets))) {
+        for (const name of readdirSync(model).filter((file) => /^cage.*\.glb$/.test(file))) {
+          const { fit } = JSON.parse(cagecast('inspect', join(model, 'target.glb'), '--cage', join(model, name), '--json').stdout) as { fit: boolean };
+          assert.equal(fit, !name.includes('bad'), join(model, name));
+        }
+      }
+    });
+  }
+});
