@@ -11,6 +11,16 @@ TEST_CASE("the answer is the reference's on strewn triangles", "[equivalence]") 
   }
 }
 
+TEST_CASE("the answer is the reference's where everything lies on a grid", "[equivalence]") {
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 20; ++seed) {
+    const scenes::Scene scene = scenes::gridded(seed, seed % 2 == 0 ? 60 : 400);
+    INFO("CAGECAST_SEED=" << seed);
+    requireSameAsReference(scene.name, scene.cage.view(), scene.target.view());
+    const std::array<int, 4> turn{3, 1, -2, 1};
+    requireSameAsReference(scene.name + " rotated", rotated(scene.cage, turn).view(), rotated(scene.target, turn).view());
+  }
+}
+
 TEST_CASE("the answer is the reference's with nothing but single triangles", "[equivalence]") {
   // Every triangle a segment of its own: the threshold decides each by itself.
   for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 5; ++seed) {

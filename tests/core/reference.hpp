@@ -23,7 +23,7 @@ struct Result {
   std::vector<std::uint8_t> cosmeticTriangles;   ///< 1 per target triangle.
   /// 1 per target vertex: 0 where the method itself has no firm answer, so that another may be right as well.
   ///
-  /// A vertex is unstable if its zone before the threshold changes when its ray is turned by `kRayNudge` to any of four
+  /// A vertex is unstable if its zone before the threshold changes when its ray is turned by `kRayNudge` to any of sixteen
   /// sides; or if it is cosmetic or culled and its segment's verdict hangs on vertices that are unstable, or on the last
   /// bits of the sums. Nothing else is unstable: the nearest triangle and its ties are decided by tolerances of their
   /// own.

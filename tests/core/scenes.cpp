@@ -171,6 +171,17 @@ Scene strewn(std::uint64_t seed, int triangles) {
   return scene;
 }
 
+Scene gridded(std::uint64_t seed, int triangles) {
+  Scene scene = strewn(seed, triangles);
+  scene.name = "gridded " + std::to_string(seed);
+  scene.target = mapped(scene.target, [](Point p) {
+    for (float& x : p) x = std::round(x * 8) / 8;
+    return p;
+  });
+  scene.cage = without(box({}, {1.5f, 1.5f, 1.5f}, 12), [&](Point p) { return p[2] > 1.49f && p[0] > 0 && p[1] > 0.5f; });
+  return scene;
+}
+
 Scene lattice(int cells) {
   const float half = static_cast<float>(cells);  // One unit is half a cell, so that every coordinate is whole.
   return {"lattice " + std::to_string(cells), box({}, {half + 2, half + 2, half + 2}, cells + 2),

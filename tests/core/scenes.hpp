@@ -93,6 +93,10 @@ Mesh shuffled(const Mesh& mesh, Random& random, std::vector<std::uint32_t>& vert
 /// regular. Some triangles of both are degenerate.
 Scene strewn(std::uint64_t seed, int triangles);
 
+/// Strewn triangles with all corners on a grid, in a box of that grid: many are degenerate, coplanar or equally near, and
+/// most rays go through edges and corners.
+Scene gridded(std::uint64_t seed, int triangles);
+
 /// A box in a box on one lattice: every nearest point is on a corner or an edge of the cage, and every ray goes exactly
 /// through corners or edges.
 Scene lattice(int cells);
