@@ -1,0 +1,210 @@
+import assert from 'node:assert/strict';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { tmpdir } from 'node:os';
+import { extname, join, resolve } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
+import { gzipSync } from 'node:zlib';
+import { glbOf } from '../js/glb.js';
+import { head } from '../js/scenes.js';
+
+/** An empty folder of a user, into which the packed package is installed as npm does it, without a network. */
+const user = mkdtempSync(join(tmpdir(), 'cagecast-user-'));
+const installed = join(user, 'node_modules/cagecast');
+const tools = resolve('node_modules');
+
+/** What every host must print: it uses only what the package exports. */
+const program = `
+import { init, transfer, project, classify, Zone, CagecastError } from 'cagecast';
+await init();
+const mesh = (z) => ({ positions: new Float32Array([0, 0, z, 1, 0, z, 0, 1, z]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array([0, 0, 1, 0, 0, 1]) });
+const { uvs, zones } = transfer(mesh(0.1), mesh(0));
+const decided = classify(project(mesh(0.1), mesh(0)), { threshold: 0.2 });
+let code;
+try { transfer(mesh(0.1), { positions: new Float32Array([NaN, 0, 0]), indices: new Uint32Array(3) }); } catch (error) { code = error instanceof CagecastError && error.code; }
+globalThis.answer = JSON.stringify([[...uvs], [...zones], [...decided.zones], Zone.Culled, code]);
+`;
+const answer = '[[0,0,1,0,0,1],[0,0,0],[0,0,0],3,"nonFinitePosition"]';
+
+function run(command: string, args: string[], cwd = user): string {
+  const { status, stdout, stderr } = spawnSync(command, args, { cwd, encoding: 'utf8', env: { ...process.env, NODE_OPTIONS: '' } });
+  assert.equal(status, 0, `${command} ${args.join(' ')}:\n${stdout}${stderr}`);
+  return stdout;
+}
+
+before(() => {
+  const [packed] = JSON.parse(run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', user], process.cwd())) as [{ filename: string }];
+  writeFileSync(join(user, 'package.json'), '{ "private": true, "type": "module" }');
+  run('npm', ['install', '--offline', '--no-audit', '--no-fund', '--ignore-scripts', join(user, packed.filename)]);
+  writeFileSync(join(user, 'program.js'), program);
+  writeFileSync(join(user, 'print.js'), "await import('./program.js'); console.log(globalThis.answer);");
+});
+after(() => rmSync(user, { recursive: true, force: true }));
+
+describe('the packed package', () => {
+  test('needs nothing else', () => {
+    const manifest = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as Record<string, unknown>;
+    for (const name of ['dependencies', 'peerDependencies', 'optionalDependencies', 'bundledDependencies']) assert.equal(manifest[name], undefined, name);
+    for (const script of ['preinstall', 'install', 'postinstall', 'prepare']) assert.equal((manifest['scripts'] as Record<string, string>)[script], undefined, script);
+    assert.deepEqual(readdirSync(join(user, 'node_modules')).filter((name) => !name.startsWith('.')), ['cagecast']);
+  });
+
+  test('has what its manifest promises, and only what belongs to it', () => {
+    const { exports, bin } = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as { exports: Record<string, unknown>; bin: Record<string, string> };
+    const promised = (value: unknown): string[] => (typeof value === 'string' ? [value] : Object.values(value as object).flatMap(promised));
+    for (const file of [...promised(exports), ...Object.values(bin)]) assert.ok(existsSync(join(installed, file)), file);
+    const top = readdirSync(installed).filter((name) => !/^(dist|package\.json|README\.md|LICENSE|CHANGELOG\.md)$/.test(name));
+    assert.deepEqual(top, []);
+    for (const name of readdirSync(join(installed, 'dist'))) assert.match(name, /\.(js|d\.ts|wasm)$/);
+  });
+
+  test('holds nothing of the machine it was built on', () => {
+    const places = [process.cwd(), process.env['HOME']].filter((place) => place !== undefined && place.length > 3) as string[];
+    for (const name of readdirSync(join(installed, 'dist'))) {
+      const text = readFileSync(join(installed, 'dist', name), 'latin1');
+      for (const place of places) assert.ok(!text.includes(place), `${name} names ${place}`);
+    }
+  });
+
+  test('is small: the entry with its WebAssembly at most 60 KB gzipped, the WebAssembly itself at most 40 KB', (context) => {
+    const entry = gzipSync(readFileSync(join(installed, 'dist/index.js')), { level: 9 }).length;
+    const wasm = gzipSync(readFileSync('build/wasm/wasm/cagecast.wasm'), { level: 9 }).length;
+    context.diagnostic(`entry ${entry} bytes, WebAssembly ${wasm} bytes, gzipped`);
+    assert.ok(entry <= 60 * 1024, `${entry} bytes`);
+    assert.ok(wasm <= 40 * 1024, `${wasm} bytes`);
+  });
+
+  test('runs in Node', () => assert.equal(run(process.execPath, ['print.js']).trim(), answer));
+
+  test('runs in a worker thread of Node', () => {
+    writeFileSync(
+      join(user, 'threads.js'),
+      `import { Worker, isMainThread, parentPort } from 'node:worker_threads';
+      import { fileURLToPath } from 'node:url';
+      if (isMainThread) new Worker(fileURLToPath(import.meta.url)).on('message', (text) => console.log(text));
+      else { await import('./program.js'); parentPort.postMessage(globalThis.answer); }`,
+    );
+    assert.equal(run(process.execPath, ['threads.js']).trim(), answer);
+  });
+
+  test('runs bundled by esbuild, for the browser and for Node', () => {
+    for (const platform of ['browser', 'node']) {
+      run(join(tools, 'esbuild/bin/esbuild'), ['print.js', '--bundle', '--format=esm', `--platform=${platform}`, `--outfile=out-${platform}.js`, '--log-level=warning']);
+      assert.equal(run(process.execPath, [`out-${platform}.js`]).trim(), answer);
+    }
+  });
+
+  test('an importer of one name does not carry the command', () => {
+    writeFileSync(join(user, 'zone.js'), "import { Zone } from 'cagecast'; console.log(Zone.Culled);");
+    run(join(tools, 'esbuild/bin/esbuild'), ['zone.js', '--bundle', '--format=esm', '--outfile=out-zone.js']);
+    assert.equal(run(process.execPath, ['out-zone.js']).trim(), '3');
+  });
+
+  for (const [name, compilerOptions] of Object.entries({
+    bundler: { module: 'esnext', moduleResolution: 'bundler' },
+    nodenext: { module: 'nodenext', moduleResolution: 'nodenext' },
+  })) {
+    test(`its types check a consumer, strictly, without skipLibCheck (${name})`, () => {
+      const folder = join(user, `types-${name}`);
+      mkdirSync(folder);
+      writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
+      writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions: { ...compilerOptions, target: 'es2022', lib: ['es2022', 'dom'], strict: true, exactOptionalPropertyTypes: true, noEmit: true, types: [], skipLibCheck: false }, files: ['consumer.ts'] }));
+      writeFileSync(
+        join(folder, 'consumer.ts'),
+        `import { init, transfer, project, classify, Zone, CagecastError, type Code, type Mesh, type TransferResult, type Projection, type Classification, type SegmentStats, type Timings, type TransferOptions } from 'cagecast';
+        await init();
+        const mesh: Mesh = { positions: new Float32Array(9), indices: new Uint16Array(3) };
+        const options: TransferOptions = { preset: 'paper', threshold: 0.5, projection: 'nearestPoint' };
+        const result: TransferResult = transfer(mesh, { ...mesh, uvs: new Float32Array(6), groups: new Uint32Array(3) }, options);
+        const projection: Projection = project(mesh, mesh, { weldTolerance: 0 });
+        const decided: Classification = classify(projection, { threshold: 0.3 });
+        const [first]: SegmentStats[] = decided.segmentStats;
+        const timings: Timings = result.timings;
+        const buffers: ArrayBuffer[] = [result.uvs.buffer, result.zones.buffer, result.triangles.buffer, result.cosmeticTriangles.buffer];
+        const zone: Zone = Zone.Cosmetic;
+        try { transfer(mesh, mesh); } catch (error) { if (error instanceof CagecastError) { const code: Code = error.code; const at: number = error.at; void [code, at]; } }
+        // @ts-expect-error positions must be floats
+        transfer({ positions: [0, 0, 0], indices: new Uint32Array(3) }, mesh);
+        // @ts-expect-error no such option
+        transfer(mesh, mesh, { treshold: 0.5 });
+        // @ts-expect-error no such preset
+        transfer(mesh, mesh, { preset: 'papre' });
+        void [first, timings, buffers, zone];`,
+      );
+      run(process.execPath, [join(tools, 'typescript/bin/tsc'), '-p', 'tsconfig.json'], folder);
+    });
+  }
+
+  test('the command works without anything else', () => {
+    const { cage, target } = head(1, 8);
+    writeFileSync(join(user, 'target.glb'), glbOf(target));
+    writeFileSync(join(user, 'cage.glb'), glbOf(cage));
+    const command = join(user, 'node_modules/.bin/cagecast');
+    assert.match(run(command, ['transfer', 'target.glb', '--cage', 'cage.glb', '-o', 'out.glb', '--report', 'r.json']), /wrote out\.glb/);
+    assert.ok(existsSync(join(user, 'out.glb')) && existsSync(join(user, 'r.json')));
+    assert.match(run(command, ['inspect', 'target.glb', '--cage', 'cage.glb']), /The cage fits\./);
+    const assets = process.env['CAGECAST_ASSETS'];
+    // Compressed files need decoders, which must be aboard.
+    if (assets !== undefined) for (const name of readdirSync(join(assets, 'formats'))) run(command, ['inspect', join(assets, 'formats', name), '--cage', 'cage.glb']);
+  });
+});
+
+describe('in a browser, under a strict Content-Security-Policy', () => {
+  const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'";
+  const pages = join(user, 'pages');
+  let origin = '';
+  const types: Record<string, string> = { '.html': 'text/html', '.js': 'text/javascript' };
+  const server = createServer((request, response) => {
+    const path = join(pages, new URL(request.url ?? '/', 'http://localhost').pathname);
+    if (!existsSync(path)) return response.writeHead(404).end();
+    response.writeHead(200, { 'content-type': types[extname(path)] ?? 'application/octet-stream', 'content-security-policy': policy }).end(readFileSync(path));
+  });
+
+  before(async () => {
+    mkdirSync(pages, { recursive: true });
+    // As it is, through Vite, and in a worker.
+    run(join(tools, 'esbuild/bin/esbuild'), ['program.js', '--bundle', '--format=esm', '--outfile=pages/plain.js', '--log-level=warning']);
+    const site = join(user, 'site');
+    mkdirSync(site);
+    writeFileSync(join(site, 'index.html'), '<!doctype html><script type="module" src="/main.js"></script>');
+    writeFileSync(join(site, 'main.js'), program);
+    if (!existsSync(join(site, 'node_modules'))) symlinkSync(join(user, 'node_modules'), join(site, 'node_modules'));
+    run(process.execPath, [join(tools, 'vite/bin/vite.js'), 'build', '--logLevel', 'warn', '--outDir', join(pages, 'vite'), '--base', '/vite/'], site);
+    writeFileSync(join(pages, 'plain.html'), '<!doctype html><script type="module" src="/plain.js"></script>');
+    writeFileSync(join(pages, 'worker.html'), '<!doctype html><script type="module" src="/start.js"></script>');
+    writeFileSync(join(pages, 'start.js'), "new Worker('/worker.js', { type: 'module' }).onmessage = ({ data }) => { globalThis.answer = data; };");
+    writeFileSync(join(pages, 'worker.js'), "import '/plain.js'; postMessage(globalThis.answer);");
+    await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
+    const address = server.address();
+    assert.ok(address !== null && typeof address === 'object');
+    origin = `http://127.0.0.1:${address.port}`;
+  });
+  after(() => server.close());
+
+  test('it runs bundled, built by Vite, and in a worker', async () => {
+    const { chromium } = await import('playwright-core');
+    const executablePath = process.env['CHROMIUM'] ?? execFileSync('bash', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim();
+    const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
+    try {
+      for (const path of ['/plain.html', '/vite/index.html', '/worker.html']) {
+        const page = await browser.newPage();
+        const faults: string[] = [];
+        page.on('pageerror', (error) => faults.push(String(error)));
+        page.on('console', (message) => message.type() === 'error' && !/404/.test(message.text()) && faults.push(message.text()));
+        await page.goto(origin + path);
+        // Playwright's own waiting evaluates strings in the page, which the policy forbids.
+        let found: unknown;
+        for (const deadline = Date.now() + 20000; found === undefined && faults.length === 0 && Date.now() < deadline; await setTimeout(50)) {
+          found = await page.evaluate('globalThis.answer');
+        }
+        assert.deepEqual(faults, [], path);
+        assert.equal(found, answer, path);
+        await page.close();
+      }
+    } finally {
+      await browser.close();
+    }
+  });
+});
