@@ -38,6 +38,7 @@ bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t v = cage.indices[3 * t + i];
       for (std::size_t k = 0; k < 3; ++k) corners[i][k] = cage.positions[3 * v + k] * units.scale;
+      corners[i][3] = 0;
       for (std::size_t k = 0; k < 2; ++k) triangle.uvs[2 * i + k] = cage.uvs[2 * v + k];
     }
     const Vec3 normal = areaNormal(triangle.a, triangle.b, triangle.c);
@@ -45,9 +46,11 @@ bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage
     if (!(doubleArea > 0)) continue;
     const Vec3 unit = 1 / doubleArea * normal;
     const Vec3 a = Vec3::from(triangle.a);
+    const Vec3 edges[3] = {Vec3::from(triangle.b) - a, Vec3::from(triangle.c) - Vec3::from(triangle.b), a - Vec3::from(triangle.c)};
+    for (int i = 0; i < 3; ++i) triangle.inverseSquare[i] = 1 / dot(edges[i], edges[i]);
     triangle.index = static_cast<std::uint32_t>(t);
-    triangle.towardsB = 1 / doubleArea * cross(Vec3::from(triangle.c) - a, unit);
-    triangle.towardsC = 1 / doubleArea * cross(unit, Vec3::from(triangle.b) - a);
+    triangle.towardsB = 1 / doubleArea * cross(unit, edges[2]);
+    triangle.towardsC = 1 / doubleArea * cross(unit, edges[0]);
     triangle.normal = RayDirection::along(unit);
     ++count;
   }

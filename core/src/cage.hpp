@@ -23,10 +23,11 @@ struct RayDirection {
 
 /// A triangle of the cage that has an area.
 struct CageTriangle {
-  float a[3], b[3], c[3];  ///< Corners, scaled.
+  float a[4], b[4], c[4];  ///< Corners (x, y, z, 0), scaled.
   float uvs[6];            ///< Of the corners.
   std::uint32_t index;     ///< In the caller's mesh.
   Vec3 towardsB, towardsC; ///< dot(p − a, towardsB) is the barycentric of b of the foot of p, and likewise for c.
+  double inverseSquare[3]; ///< 1 / squared length of the edges ab, bc, ca.
   RayDirection normal;     ///< Outward; the direction of the rays of the points that project here.
 };
 

@@ -6,28 +6,39 @@
 namespace cagecast {
 
 /// Positions along a three-dimensional Hilbert curve, so that neighbours in space are neighbours in memory.
-/// After Hamilton and Rau-Chaplin, "Compact Hilbert indices" (2008): one table look-up per level.
+/// After Hamilton and Rau-Chaplin, "Compact Hilbert indices" (2008), by table, two levels at a time.
 /// Measured against Morton order: a third fewer tree nodes are visited, because the curve has no jumps.
 class HilbertCurve {
  public:
   /// The place of a cell on the curve.
-  /// @param x,y,z  The cell, 0 .. 2^levels − 1 on each axis.
+  /// @param x,y,z   The cell, 0 .. 2^levels − 1 on each axis.
+  /// @param levels  Even, at most 10.
   static std::uint32_t key(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels) noexcept {
+    const std::uint32_t octants = spread(x) | spread(y) << 1 | spread(z) << 2;
     std::uint32_t result = 0;
     std::uint32_t state = 0;
-    for (int level = levels - 1; level >= 0; --level) {
-      const std::uint32_t octant = (x >> level & 1) | (y >> level & 1) << 1 | (z >> level & 1) << 2;
-      const std::uint32_t step = kSteps[state | octant];
-      result = result << 3 | (step & 7);
-      state = step & ~7u;
+    for (int shift = 3 * levels - 6; shift >= 0; shift -= 6) {
+      const std::uint32_t step = kDoubleSteps[state | (octants >> shift & 63)];
+      result = result << 6 | (step & 63);
+      state = step & ~63u;
     }
     return result;
   }
 
  private:
-  /// state (entry corner and direction, times 8) | octant → next state | place of the octant along the curve.
-  static constexpr auto kSteps = [] {
-    std::array<std::uint8_t, 24 * 8> steps{};
+  /// Puts two zeros between the bits of a number of up to ten bits.
+  static std::uint32_t spread(std::uint32_t x) noexcept {
+    x = (x | x << 16) & 0x030000FF;
+    x = (x | x << 8) & 0x0300F00F;
+    x = (x | x << 4) & 0x030C30C3;
+    return (x | x << 2) & 0x09249249;
+  }
+
+  /// state (entry corner and direction, times 64) | two octants → next state | their place along the curve.
+  static constexpr auto kDoubleSteps = [] {
+    struct Step {
+      unsigned entry, direction, place;
+    };
     const auto rotateRight = [](unsigned bits, unsigned by) { return (bits >> by | bits << (3 - by)) & 7; };
     const auto rotateLeft = [](unsigned bits, unsigned by) { return (bits << by | bits >> (3 - by)) & 7; };
     const auto trailingOnes = [](unsigned i) {
@@ -35,21 +46,22 @@ class HilbertCurve {
       for (; i & 1; i >>= 1) ++count;
       return count;
     };
-    for (unsigned direction = 0; direction < 3; ++direction) {
-      for (unsigned entry = 0; entry < 8; ++entry) {
-        for (unsigned octant = 0; octant < 8; ++octant) {
-          const unsigned turn = (direction + 1) % 3;
-          const unsigned gray = rotateRight(octant ^ entry, turn);
-          const unsigned place = gray ^ gray >> 1 ^ gray >> 2;
-          const unsigned even = place == 0 ? 0 : (place - 1) / 2 * 2;
-          const unsigned entered = place == 0 ? 0 : even ^ even >> 1;
-          const unsigned along = place == 0 ? 0 : trailingOnes(place % 2 == 0 ? place - 1 : place) % 3;
-          const unsigned nextEntry = entry ^ rotateLeft(entered, turn);
-          const unsigned nextDirection = (direction + along + 1) % 3;
-          // 24 states of 8 octants need 8 bits: state · 8 + octant.
-          steps[(direction * 8 + entry) * 8 + octant] =
-              static_cast<std::uint8_t>((nextDirection * 8 + nextEntry) * 8 + place);
-        }
+    const auto step = [&](unsigned entry, unsigned direction, unsigned octant) {
+      const unsigned turn = (direction + 1) % 3;
+      const unsigned gray = rotateRight(octant ^ entry, turn);
+      const unsigned place = gray ^ gray >> 1 ^ gray >> 2;
+      const unsigned even = place == 0 ? 0 : (place - 1) / 2 * 2;
+      const unsigned entered = place == 0 ? 0 : even ^ even >> 1;
+      const unsigned along = place == 0 ? 0 : trailingOnes(place % 2 == 0 ? place - 1 : place) % 3;
+      return Step{entry ^ rotateLeft(entered, turn), (direction + along + 1) % 3, place};
+    };
+    std::array<std::uint16_t, 24 * 64> steps{};
+    for (unsigned state = 0; state < 24; ++state) {
+      for (unsigned octants = 0; octants < 64; ++octants) {
+        const Step first = step(state % 8, state / 8, octants >> 3);
+        const Step second = step(first.entry, first.direction, octants & 7);
+        steps[state * 64 + octants] =
+            static_cast<std::uint16_t>((second.direction * 8 + second.entry) * 64 + first.place * 8 + second.place);
       }
     }
     return steps;

@@ -34,7 +34,6 @@ struct alignas(16) NearLeaf {
   float origin[3][4];
   float axes[3][3][4];     ///< axes[x, y, z][component]: unit vectors.
   float base[4];           ///< B = (base, 0).
-  float height[4];         ///< Of C over AB.
   float toC[2][4];         ///< Unit vector from A to C.
   float lengthC[4];        ///< Its length.
   float fromB[2][4];       ///< Unit vector from B to C.
@@ -46,6 +45,7 @@ struct alignas(16) NearLeaf {
 struct RayTree {
   const Node* nodes = nullptr;     ///< The root is node 0.
   const RayLeaf* leaves = nullptr;
+  std::uint32_t levels = 0;        ///< Nodes on the longest way from the root to a leaf; at most `kMaxLevels`.
 };
 
 /// A tree over the cage's triangles: well built, because each of its triangles sees many queries.
@@ -79,7 +79,7 @@ class NearestSearch {
   NearestSearch(const CageTree& tree, double diagonal) noexcept;
 
   /// Searches for `count` ≤ `kGroup` points that are near each other.
-  /// @param positions  3 per point.
+  /// @param positions  As in `Points`.
   void search(const float* positions, std::uint32_t count) noexcept;
 
   /// The triangles that could be the nearest to point i of the last search by SPEC's tie rule: all whose distance is within
@@ -89,22 +89,24 @@ class NearestSearch {
   std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) const noexcept;
 
  private:
-  /// Enough for a point on an edge; for one on a corner, `candidates` looks again.
-  static constexpr std::uint32_t kRoom = 4;
+  /// Leaves to remember of a point; if more come close, `candidates` looks again.
+  static constexpr std::uint32_t kRoom = 8;
 
-  void searchLeaf(std::uint32_t leaf, std::uint32_t i) noexcept;
-  void lower(std::uint32_t i, float squaredDistance) noexcept;
-  [[nodiscard]] float limitFor(float squaredDistance) const noexcept;
+  /// A leaf that had triangles within the limit, as it was then.
+  struct Near {
+    float squaredDistance;  ///< Of the nearest of them.
+    std::uint32_t lanes;    ///< Which they were: a bit each, below the leaf's index.
+  };
+
+  void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
 
   const CageTree& tree_;
-  float slack_;
+  float fixedSlack_;                  ///< See `kRelativeSlack`.
   std::uint32_t lastLeaf_ = 0;
-  std::uint32_t count_ = 0;
   alignas(16) float points_[3][kGroup];
   alignas(16) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
-  float least_[kGroup];               ///< Squared distance of the nearest so far.
-  std::uint32_t foundCount_[kGroup];  ///< More than `kRoom` if some had no room.
-  std::uint32_t slots_[kGroup][kRoom];  ///< What was found; some may be too far by now.
+  std::uint32_t nearCount_[kGroup];   ///< More than `kRoom` if some had no room.
+  Near near_[kGroup][kRoom + 1];
 };
 
 /// A ray: r(t) = origin + t · direction.

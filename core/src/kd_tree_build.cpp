@@ -13,58 +13,54 @@ namespace {
 /// ray's origin by at most 2^-23 of their size, and this is eight times that. The lattice tests leak without it.
 constexpr float kPadding = 1e-6f;
 
-struct Box {
-  float low[3] = {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
-                  std::numeric_limits<float>::infinity()};
-  float high[3] = {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-                   -std::numeric_limits<float>::infinity()};
+using simd::f32x4;
+using simd::load;
+using simd::splat;
 
-  void grow(const float* p) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k]);
-      high[k] = std::max(high[k], p[k]);
-    }
+/// A box; the fourth lane is not used.
+struct Box {
+  f32x4 low = splat(std::numeric_limits<float>::infinity());
+  f32x4 high = splat(-std::numeric_limits<float>::infinity());
+
+  void grow(f32x4 p) {
+    low = simd::min(low, p);
+    high = simd::max(high, p);
   }
   void grow(const Box& other) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], other.low[k]);
-      high[k] = std::max(high[k], other.high[k]);
-    }
+    low = simd::min(low, other.low);
+    high = simd::max(high, other.high);
   }
-  void pad(float by) {
-    for (int k = 0; k < 3; ++k) {
-      // The second term is an ulp of the coordinate: far from the origin the padding alone would round away.
-      low[k] -= by + std::abs(low[k]) * 1.2e-7f;
-      high[k] += by + std::abs(high[k]) * 1.2e-7f;
-    }
+  [[nodiscard]] Box padded(float by) const {
+    // The second term is an ulp of the coordinate: far from the origin the padding alone would round away.
+    const f32x4 most = simd::max(simd::max(low, splat(0) - low), simd::max(high, splat(0) - high));
+    const f32x4 pad = splat(by) + most * splat(1.2e-7f);
+    Box box;
+    box.low = low - pad;
+    box.high = high + pad;
+    return box;
   }
   [[nodiscard]] float halfArea() const {
-    const float x = high[0] - low[0];
-    const float y = high[1] - low[1];
-    const float z = high[2] - low[2];
-    return x * y + y * z + z * x;
+    float side[4];
+    simd::store(side, high - low);
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
   }
 };
 
-void setChild(Node& node, int lane, const Box& box, std::uint32_t child) {
+void setChildren(Node& node, const Box (&boxes)[4]) {
+  f32x4 low[4] = {boxes[0].low, boxes[1].low, boxes[2].low, boxes[3].low};
+  f32x4 high[4] = {boxes[0].high, boxes[1].high, boxes[2].high, boxes[3].high};
+  simd::transpose(low[0], low[1], low[2], low[3]);
+  simd::transpose(high[0], high[1], high[2], high[3]);
   for (int k = 0; k < 3; ++k) {
-    node.low[k][lane] = box.low[k];
-    node.high[k][lane] = box.high[k];
-  }
-  node.child[lane] = child;
-}
-
-void setRayTriangle(RayLeaf& leaf, int lane, const float* a, const float* b, const float* c) {
-  for (int k = 0; k < 3; ++k) {
-    leaf.corner[0][k][lane] = a[k];
-    leaf.corner[1][k][lane] = b[k];
-    leaf.corner[2][k][lane] = c[k];
+    simd::store(node.low[k], low[k]);
+    simd::store(node.high[k], high[k]);
   }
 }
 
-void clearRayTriangle(RayLeaf& leaf, int lane) {
-  constexpr float kZero[3] = {};
-  setRayTriangle(leaf, lane, kZero, kZero, kZero);
+/// @param positions  Of corner `corner` of the four triangles.
+void setCorner(RayLeaf& leaf, int corner, f32x4 (&positions)[4]) {
+  simd::transpose(positions[0], positions[1], positions[2], positions[3]);
+  for (int k = 0; k < 3; ++k) simd::store(leaf.corner[corner][k], positions[k]);
 }
 
 void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std::uint32_t slot) {
@@ -101,7 +97,6 @@ void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std
   putVector(leaf.axes[1], y);
   putVector(leaf.axes[2], z);
   put(leaf.base, base);
-  put(leaf.height, cy);
   put(leaf.toC[0], cx / lengthC);
   put(leaf.toC[1], cy / lengthC);
   put(leaf.lengthC, lengthC);
@@ -117,7 +112,7 @@ void clearNearTriangle(NearLeaf& leaf, int lane) {
     leaf.origin[k][lane] = kFar;
     for (int i = 0; i < 3; ++i) leaf.axes[i][k][lane] = i == k ? 1.0f : 0.0f;
   }
-  leaf.base[lane] = leaf.height[lane] = leaf.lengthC[lane] = leaf.lengthB[lane] = 0;
+  leaf.base[lane] = leaf.lengthC[lane] = leaf.lengthB[lane] = 0;
   leaf.toC[0][lane] = leaf.fromB[1][lane] = 0;
   leaf.toC[1][lane] = leaf.fromB[0][lane] = 0;
   leaf.slot[lane] = 0;
@@ -125,24 +120,24 @@ void clearNearTriangle(NearLeaf& leaf, int lane) {
 
 constexpr std::uint32_t groupsOfFour(std::uint32_t count) { return (count + 3) / 4; }
 
-/// Builds the cage's tree from the top, by the surface area heuristic over binned centroids (Wald 2007).
+/// Builds the cage's tree from the top, by the surface area heuristic over binned centroids (Wald 2007), along the axis on
+/// which the centroids spread most: looking at all three costs three times as much and finds trees hardly better.
 class CageTreeBuilder {
  public:
   CageTreeBuilder(const Cage& cage, float padding, const Box* boxes, std::uint32_t* order, Node* nodes, RayLeaf* rayLeaves,
                   NearLeaf* nearLeaves)
       : cage_(cage), padding_(padding), boxes_(boxes), order_(order), nodes_(nodes), rayLeaves_(rayLeaves), nearLeaves_(nearLeaves) {}
 
-  void build() {
-    Range all{0, cage_.count, {}};
-    for (std::uint32_t i = 0; i < cage_.count; ++i) all.box.grow(boxes_[i]);
+  void build(const Box& all) {
     nodeCount_ = 1;
-    fill(0, all, 0);
+    fill(0, {0, cage_.count, all}, 1);
   }
+  [[nodiscard]] std::uint32_t levels() const { return levels_; }
 
  private:
   static constexpr int kBins = 8;
-  /// Below this depth ranges are halved, whatever their shape, so that a traversal's stack has a bound.
-  static constexpr int kMaxDepth = 32;
+  /// Below this level ranges are halved, whatever their shape, so that the number of levels has a bound.
+  static constexpr std::uint32_t kMaxBinnedLevel = 32;
 
   /// A run of `order_` and the box around it.
   struct Range {
@@ -151,114 +146,114 @@ class CageTreeBuilder {
     [[nodiscard]] std::uint32_t size() const { return end - begin; }
   };
 
-  void fill(std::uint32_t nodeIndex, const Range& range, int depth) {
-    Range children[4] = {range};
+  void fill(std::uint32_t nodeIndex, const Range& range, std::uint32_t level) {
+    levels_ = std::max(levels_, level);
+    Range children[4] = {range, {}, {}, {}};
     int count = 1;
-    while (count < 4) {
+    for (; count < 4; ++count) {
       int widest = -1;
+      float widestArea = -1;
       for (int i = 0; i < count; ++i) {
-        if (children[i].size() > 4 && (widest < 0 || children[i].box.halfArea() > children[widest].box.halfArea())) widest = i;
+        const float area = children[i].box.halfArea();
+        if (children[i].size() <= 4 || !(area > widestArea)) continue;
+        widestArea = area;
+        widest = i;
       }
       if (widest < 0) break;
       const Range parent = children[widest];
-      split(parent, depth, children[widest], children[count]);
-      ++count;
+      split(parent, level, children[widest], children[count]);
     }
+    Box boxes[4];
+    std::uint32_t* child = nodes_[nodeIndex].child;
     for (int i = 0; i < 4; ++i) {
-      if (i >= count) {
-        setChild(nodes_[nodeIndex], i, Box{}, kLeafBit);
-        continue;
-      }
-      Box padded = children[i].box;
-      padded.pad(padding_);
-      if (children[i].size() <= 4) {
-        setChild(nodes_[nodeIndex], i, padded, kLeafBit | makeLeaf(children[i]));
-      } else {
-        const std::uint32_t child = nodeCount_++;
-        setChild(nodes_[nodeIndex], i, padded, child);
-        fill(child, children[i], depth + 1);
-      }
+      child[i] = i >= count ? kLeafBit : children[i].size() <= 4 ? kLeafBit | makeLeaf(children[i]) : nodeCount_++;
+      if (i < count) boxes[i] = children[i].box.padded(padding_);
+    }
+    setChildren(nodes_[nodeIndex], boxes);
+    for (int i = 0; i < count; ++i) {
+      if ((child[i] & kLeafBit) == 0) fill(child[i], children[i], level + 1);
     }
   }
 
   std::uint32_t makeLeaf(const Range& range) {
     const std::uint32_t leaf = leafCount_++;
+    f32x4 corners[3][4];
     for (std::uint32_t lane = 0; lane < 4; ++lane) {
-      const int at = static_cast<int>(lane);
-      if (lane < range.size()) {
-        const std::uint32_t slot = order_[range.begin + lane];
-        const CageTriangle& t = cage_.triangles[slot];
-        setRayTriangle(rayLeaves_[leaf], at, t.a, t.b, t.c);
-        setNearTriangle(nearLeaves_[leaf], at, t, slot);
+      const std::uint32_t i = range.begin + lane;
+      if (i < range.end) {
+        const CageTriangle& t = cage_.triangles[order_[i]];
+        corners[0][lane] = load(t.a);
+        corners[1][lane] = load(t.b);
+        corners[2][lane] = load(t.c);
+        setNearTriangle(nearLeaves_[leaf], static_cast<int>(lane), t, order_[i]);
       } else {
-        clearRayTriangle(rayLeaves_[leaf], at);
-        clearNearTriangle(nearLeaves_[leaf], at);
+        corners[0][lane] = corners[1][lane] = corners[2][lane] = splat(0);
+        clearNearTriangle(nearLeaves_[leaf], static_cast<int>(lane));
       }
     }
+    for (int i = 0; i < 3; ++i) setCorner(rayLeaves_[leaf], i, corners[i]);
     return leaf;
   }
 
-  [[nodiscard]] float centre(std::uint32_t slot, int axis) const { return boxes_[slot].low[axis] + boxes_[slot].high[axis]; }
+  /// Twice the centre of a triangle's box.
+  [[nodiscard]] f32x4 centre(std::uint32_t slot) const { return boxes_[slot].low + boxes_[slot].high; }
 
-  void split(const Range& range, int depth, Range& left, Range& right) {
-    float low[3];
-    float high[3];
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::numeric_limits<float>::infinity();
-      high[k] = -low[k];
-      for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        low[k] = std::min(low[k], centre(order_[i], k));
-        high[k] = std::max(high[k], centre(order_[i], k));
-      }
+  void split(const Range& range, std::uint32_t level, Range& left, Range& right) {
+    Box centres;
+    for (std::uint32_t i = range.begin; i < range.end; ++i) centres.grow(centre(order_[i]));
+    float low[4];
+    float spread[4];
+    simd::store(low, centres.low);
+    simd::store(spread, centres.high - centres.low);
+    const int axis = static_cast<int>(std::max_element(spread, spread + 3) - spread);
+    const float toBin = static_cast<float>(kBins) * 0.9999f / spread[axis];
+    if (!(spread[axis] > 0) || !(toBin < std::numeric_limits<float>::max()) || level > kMaxBinnedLevel) {
+      const std::uint32_t middle = range.begin + range.size() / 2;
+      left = rangeOf(range.begin, middle);
+      right = rangeOf(middle, range.end);
+      return;
+    }
+
+    const auto binOf = [&](std::uint32_t slot) {
+      float at[4];
+      simd::store(at, centre(slot));
+      return static_cast<int>((at[axis] - low[axis]) * toBin);
+    };
+    Box boxes[kBins];
+    std::uint32_t counts[kBins] = {};
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+      const int bin = binOf(order_[i]);
+      boxes[bin].grow(boxes_[order_[i]]);
+      ++counts[bin];
+    }
+    // The first and the last bin are never empty, so no side of any split is.
+    Box fromRight[kBins];
+    float rightCost[kBins];
+    std::uint32_t count = 0;
+    Box box;
+    for (int bin = kBins - 1; bin > 0; --bin) {
+      box.grow(boxes[bin]);
+      count += counts[bin];
+      fromRight[bin] = box;
+      rightCost[bin] = box.halfArea() * static_cast<float>(groupsOfFour(count));
     }
     float bestCost = std::numeric_limits<float>::infinity();
-    int bestAxis = -1;
-    int bestBin = 0;
-    for (int axis = 0; axis < 3 && depth < kMaxDepth; ++axis) {
-      if (!(high[axis] > low[axis])) continue;
-      Box boxes[kBins];
-      std::uint32_t counts[kBins] = {};
-      for (std::uint32_t i = range.begin; i < range.end; ++i) {
-        const int bin = binOf(order_[i], axis, low[axis], high[axis]);
-        boxes[bin].grow(boxes_[order_[i]]);
-        ++counts[bin];
-      }
-      float costFromRight[kBins];
-      Box box;
-      std::uint32_t count = 0;
-      for (int bin = kBins - 1; bin > 0; --bin) {
-        box.grow(boxes[bin]);
-        count += counts[bin];
-        costFromRight[bin] = count == 0 ? std::numeric_limits<float>::infinity() : box.halfArea() * static_cast<float>(groupsOfFour(count));
-      }
-      box = {};
-      count = 0;
-      for (int bin = 0; bin < kBins - 1; ++bin) {
-        box.grow(boxes[bin]);
-        count += counts[bin];
-        if (count == 0) continue;
-        const float cost = box.halfArea() * static_cast<float>(groupsOfFour(count)) + costFromRight[bin + 1];
-        if (cost < bestCost) {
-          bestCost = cost;
-          bestAxis = axis;
-          bestBin = bin;
-        }
-      }
+    int best = 1;
+    count = 0;
+    box = {};
+    for (int bin = 0; bin < kBins - 1; ++bin) {
+      box.grow(boxes[bin]);
+      count += counts[bin];
+      const float cost = box.halfArea() * static_cast<float>(groupsOfFour(count)) + rightCost[bin + 1];
+      if (!(cost < bestCost)) continue;
+      bestCost = cost;
+      best = bin + 1;
+      left.box = box;
     }
-    std::uint32_t middle = range.begin + range.size() / 2;
-    if (bestAxis >= 0) {
-      middle = static_cast<std::uint32_t>(
-          std::partition(order_ + range.begin, order_ + range.end,
-                         [&](std::uint32_t slot) { return binOf(slot, bestAxis, low[bestAxis], high[bestAxis]) <= bestBin; }) -
-          order_);
-    }
-    left = rangeOf(range.begin, middle);
-    right = rangeOf(middle, range.end);
-  }
-
-  [[nodiscard]] int binOf(std::uint32_t slot, int axis, float low, float high) const {
-    const float share = (centre(slot, axis) - low) / (high - low);
-    return std::clamp(static_cast<int>(share * static_cast<float>(kBins)), 0, kBins - 1);
+    const auto middle = static_cast<std::uint32_t>(
+        std::partition(order_ + range.begin, order_ + range.end, [&](std::uint32_t slot) { return binOf(slot) < best; }) - order_);
+    left = {range.begin, middle, left.box};
+    right = {middle, range.end, fromRight[best]};
   }
 
   [[nodiscard]] Range rangeOf(std::uint32_t begin, std::uint32_t end) const {
@@ -276,6 +271,7 @@ class CageTreeBuilder {
   NearLeaf* nearLeaves_;
   std::uint32_t nodeCount_ = 0;
   std::uint32_t leafCount_ = 0;
+  std::uint32_t levels_ = 0;
 };
 
 }  // namespace
@@ -292,25 +288,28 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
   Box all;
   for (std::uint32_t i = 0; i < cage.count; ++i) {
     const CageTriangle& t = cage.triangles[i];
-    boxes[i] = {};
-    boxes[i].grow(t.a);
-    boxes[i].grow(t.b);
-    boxes[i].grow(t.c);
-    all.grow(boxes[i]);
+    Box box;
+    box.grow(load(t.a));
+    box.grow(load(t.b));
+    box.grow(load(t.c));
+    boxes[i] = box;
+    all.grow(box);
     order[i] = i;
   }
-  CageTreeBuilder(cage, kPadding * units.reach, boxes, order, nodes, rayLeaves, nearLeaves).build();
+  CageTreeBuilder builder(cage, kPadding * units.reach, boxes, order, nodes, rayLeaves, nearLeaves);
+  builder.build(all);
   scratch.rewind(mark);
-  float extent = 0;
-  for (int k = 0; k < 3; ++k) extent = std::max(extent, all.high[k] - all.low[k]);
-  out = {{nodes, rayLeaves}, nearLeaves, static_cast<double>(extent)};
+  float sides[4];
+  simd::store(sides, all.high - all.low);
+  out = {{nodes, rayLeaves, builder.levels()}, nearLeaves, static_cast<double>(std::max({sides[0], sides[1], sides[2]}))};
   return true;
 }
 
 bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch, RayTree& out) noexcept {
   const std::uint32_t leafCount = std::max(1u, groupsOfFour(target.triangleCount));
   std::uint32_t nodeCount = 0;
-  for (std::uint32_t width = leafCount; nodeCount == 0 || width > 1; width = groupsOfFour(width)) nodeCount += groupsOfFour(width);
+  std::uint32_t levels = 0;
+  for (std::uint32_t width = leafCount; levels == 0 || width > 1; ++levels) nodeCount += width = groupsOfFour(width);
   auto* nodes = scratch.take<Node>(nodeCount);
   auto* leaves = scratch.take<RayLeaf>(leafCount);
   const Scratch::Mark mark = scratch.mark();
@@ -332,19 +331,21 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
 
   // Four neighbours along the curve make a leaf, four leaves a node, four nodes a node, up to the root.
   for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf) {
-    boxes[leaf] = {};
-    for (int lane = 0; lane < 4; ++lane) {
-      const std::uint32_t i = 4 * leaf + static_cast<std::uint32_t>(lane);
-      if (i >= target.triangleCount) {
-        clearRayTriangle(leaves[leaf], lane);
-        continue;
+    Box box;
+    f32x4 corners[3][4];
+    for (std::uint32_t lane = 0; lane < 4; ++lane) {
+      const std::uint32_t i = 4 * leaf + lane;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (i < target.triangleCount) {
+          corners[k][lane] = load(target.at(target.triangles[std::size_t{3} * order[i] + k]));
+          box.grow(corners[k][lane]);
+        } else {
+          corners[k][lane] = splat(0);
+        }
       }
-      const std::uint32_t* corner = target.triangles + std::size_t{3} * order[i];
-      const float* positions[3] = {target.at(corner[0]), target.at(corner[1]), target.at(corner[2])};
-      setRayTriangle(leaves[leaf], lane, positions[0], positions[1], positions[2]);
-      for (const float* p : positions) boxes[leaf].grow(p);
     }
-    if (target.triangleCount > 0) boxes[leaf].pad(kPadding * units.reach);
+    for (int k = 0; k < 3; ++k) setCorner(leaves[leaf], k, corners[k]);
+    boxes[leaf] = target.triangleCount == 0 ? box : box.padded(kPadding * units.reach);
   }
   // Levels are stored root first, so that the root is node 0; they are filled from the leaves upwards.
   std::uint32_t childBase = 0;
@@ -354,13 +355,16 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
     const std::uint32_t levelSize = groupsOfFour(width);
     const std::uint32_t levelBegin = levelEnd - levelSize;
     for (std::uint32_t i = 0; i < levelSize; ++i) {
+      Box children[4];
       Box around;
-      for (int lane = 0; lane < 4; ++lane) {
-        const std::uint32_t child = 4 * i + static_cast<std::uint32_t>(lane);
-        const Box box = child < width ? boxes[child] : Box{};
-        setChild(nodes[levelBegin + i], lane, box, child < width ? childFlag | (childBase + child) : kLeafBit);
-        around.grow(box);
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        const std::uint32_t child = 4 * i + lane;
+        nodes[levelBegin + i].child[lane] = child < width ? childFlag | (childBase + child) : kLeafBit;
+        if (child >= width) continue;
+        children[lane] = boxes[child];
+        around.grow(boxes[child]);
       }
+      setChildren(nodes[levelBegin + i], children);
       boxes[i] = around;
     }
     if (levelSize == 1) break;
@@ -369,7 +373,7 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
     childFlag = 0;
   }
   scratch.rewind(mark);
-  out = {nodes, leaves};
+  out = {nodes, leaves, levels};
   return true;
 }
 

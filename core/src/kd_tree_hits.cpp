@@ -187,7 +187,7 @@ bool findHits(const RayTree& tree, const Ray* rays, std::uint32_t count, double 
   const Scratch::Mark mark = scratch.mark();
   const std::uint32_t chunk = std::min(count, kChunk);
   auto* slabs = scratch.take<Slabs>(chunk);
-  auto* lists = scratch.take<std::uint16_t>(std::size_t{chunk} * (4 * kMaxLevels + 1));
+  auto* lists = scratch.take<std::uint16_t>(std::size_t{chunk} * (4 * tree.levels + 1));
   if (scratch.failed()) return false;
   for (std::uint32_t begin = 0; begin < count; begin += kChunk) {
     Stream(tree, from, slabs, lists).run(rays + begin, std::min(kChunk, count - begin), hit + begin);

@@ -14,7 +14,10 @@ using simd::splat;
 
 /// What the kernels below may be off, as a share of the distance and of the cage's extent: they round a dozen times, each
 /// time by 2^-24 of one of them.
-constexpr float kRounding = 1e-6f;
+constexpr double kRounding = 1e-6;
+/// A squared distance of interest is (d + s)² for the nearest distance d and the slack s. It is at most
+/// d² · (1 + r) + s² · (1 + 1/r) for any r, which needs no root; this r is good where d is a few thousandths of the diagonal.
+constexpr double kRelativeSlack = 1e-4;
 
 /// Squared distance of a box to four boxes.
 f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x4 (&high)[3]) {
@@ -27,7 +30,7 @@ f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x
 }
 
 /// Squared distance of four points to a node's child.
-f32x4 squaredDistanceToChild(const Node& node, int child, const float* x, const float* y, const float* z) {
+f32x4 squaredDistanceToChild(const Node& node, std::uint32_t child, const float* x, const float* y, const float* z) {
   const float* const points[3] = {x, y, z};
   f32x4 sum = splat(0);
   for (int k = 0; k < 3; ++k) {
@@ -38,9 +41,8 @@ f32x4 squaredDistanceToChild(const Node& node, int child, const float* x, const 
   return sum;
 }
 
-/// Squared distance of p to four triangles, each in its own frame; what is beyond `limit` may be any number beyond it.
-/// @return Which of the four are within the limit.
-unsigned squaredDistanceToTriangles(const NearLeaf& leaf, const f32x4 (&p)[3], f32x4 limit, f32x4& squared) {
+/// Squared distance of p to four triangles, each in its own frame.
+f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, const f32x4 (&p)[3]) {
   const f32x4 dx = p[0] - load(leaf.origin[0]);
   const f32x4 dy = p[1] - load(leaf.origin[1]);
   const f32x4 dz = p[2] - load(leaf.origin[2]);
@@ -50,16 +52,10 @@ unsigned squaredDistanceToTriangles(const NearLeaf& leaf, const f32x4 (&p)[3], f
   const f32x4 z = along(leaf.axes[2]);
   const f32x4 zero = splat(0);
 
-  // To the rectangle around the triangle: in half the cases that is enough to know that it is too far.
+  // To edge AB, which lies on the x-axis.
   const f32x4 base = load(leaf.base);
   const f32x4 baseX = x - simd::clamp(x, zero, base);
-  const f32x4 sideY = y - simd::clamp(y, zero, load(leaf.height));
-  const f32x4 height = z * z;
-  const f32x4 beside = baseX * baseX;
-  if (simd::bits(height + beside + sideY * sideY <= limit) == 0) return 0;
-
-  // To edge AB, which lies on the x-axis.
-  const f32x4 toAB = beside + y * y;
+  const f32x4 toAB = baseX * baseX + y * y;
   // To edge AC.
   const f32x4 cx = load(leaf.toC[0]);
   const f32x4 cy = load(leaf.toC[1]);
@@ -79,79 +75,56 @@ unsigned squaredDistanceToTriangles(const NearLeaf& leaf, const f32x4 (&p)[3], f
   // Below AB the nearest is on AB, since the angles at A and B are acute. Above it, inside if right of AC and left of BC.
   const mask4 below = y < zero;
   const mask4 within = (cx * y <= cy * x) & (by * xB <= bx * y);
-  squared = height + simd::select(below, toAB, simd::drop(within, simd::min(toAC, toBC)));
-  return simd::bits(squared <= limit);
+  return z * z + simd::select(below, toAB, simd::drop(within, simd::min(toAC, toBC)));
 }
 
-/// What is still to be visited. Nodes and leaves come with the node that holds their box.
+/// What is still to be visited, with the node that holds its box.
 struct Visit {
-  float squaredDistance;
   std::uint32_t child;
+  std::uint32_t lane;
   const Node* parent;
-  int lane;
 };
 
-/// Pushes the children that are near enough, the nearest last, so that it is visited first.
-void pushChildren(const Node& node, f32x4 squaredDistances, float limit, Visit* stack, int& depth) {
-  unsigned close = simd::bits(squaredDistances <= splat(limit));
-  float lanes[4];
-  simd::store(lanes, squaredDistances);
-  const int first = depth;
-  for (int i = 0; close != 0; ++i, close >>= 1) {
-    if ((close & 1) == 0) continue;
-    int at = depth++;
-    for (; at > first && stack[at - 1].squaredDistance < lanes[i]; --at) stack[at] = stack[at - 1];
-    stack[at] = {lanes[i], node.child[i], &node, i};
+/// Pushes the children that are near enough.
+void pushChildren(const Node& node, unsigned close, Visit* stack, std::uint32_t& depth) {
+  for (std::uint32_t lane = 0; lane < 4; ++lane) {
+    stack[depth] = {node.child[lane], lane, &node};
+    depth += close >> lane & 1;
   }
 }
 
 }  // namespace
 
-NearestSearch::NearestSearch(const CageTree& tree, double diagonal) noexcept
-    : tree_(tree), slack_(static_cast<float>(kTieDistance * diagonal + static_cast<double>(kRounding) * tree.extent)) {}
-
-float NearestSearch::limitFor(float squaredDistance) const noexcept {
-  const float distance = std::sqrt(squaredDistance);
-  const float limit = distance + distance * kRounding + slack_;
-  return limit * limit * (1 + kRounding);
+NearestSearch::NearestSearch(const CageTree& tree, double diagonal) noexcept : tree_(tree) {
+  const double slack = kTieDistance * diagonal + kRounding * tree.extent;
+  fixedSlack_ = static_cast<float>(slack * slack * (1 + 1 / kRelativeSlack));
 }
 
-void NearestSearch::lower(std::uint32_t i, float squaredDistance) noexcept {
-  limits_[i] = limitFor(squaredDistance);
-  if (least_[i] > limits_[i]) foundCount_[i] = 0;  // All that was found is farther than that.
-  least_[i] = squaredDistance;
-}
-
-void NearestSearch::searchLeaf(std::uint32_t leafIndex, std::uint32_t i) noexcept {
+void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
   const NearLeaf& leaf = tree_.near[leafIndex];
-  const f32x4 point[3] = {splat(points_[0][i]), splat(points_[1][i]), splat(points_[2][i])};
-  f32x4 squared;
-  unsigned close = squaredDistanceToTriangles(leaf, point, splat(limits_[i]), squared);
-  if (close == 0) return;
-  float lanes[4];
-  simd::store(lanes, squared);
-  // The nearest first: most of the others are then too far.
-  const float least = std::min(std::min(lanes[0], lanes[1]), std::min(lanes[2], lanes[3]));
-  if (least < least_[i]) {
-    lower(i, least);
-    close = simd::bits(squared <= splat(limits_[i]));
-  }
-  for (int lane = 0; close != 0; ++lane, close >>= 1) {
-    if ((close & 1) == 0) continue;
-    const std::uint32_t found = foundCount_[i]++;
-    if (found < kRoom) slots_[i][found] = leaf.slot[lane];
+  for (std::uint32_t i = 0; members != 0; ++i, members >>= 1) {
+    if ((members & 1) == 0) continue;
+    const f32x4 point[3] = {splat(points_[0][i]), splat(points_[1][i]), splat(points_[2][i])};
+    const f32x4 squared = squaredDistanceToTriangles(leaf, point);
+    const float least = simd::lowest(squared);
+    const float limit = std::min(limits_[i], least * (1 + static_cast<float>(kRelativeSlack)) + fixedSlack_);
+    const unsigned lanes = simd::bits(squared <= splat(limit));
+    limits_[i] = limit;
+    // No branch: whether a leaf is of interest is a coin toss.
+    const std::uint32_t count = nearCount_[i];
+    near_[i][std::min(count, kRoom)] = {least, leafIndex << 4 | lanes};
+    nearCount_[i] = count + (lanes != 0);
   }
 }
 
 void NearestSearch::search(const float* positions, std::uint32_t count) noexcept {
-  count_ = count;
   f32x4 low[3];
   f32x4 high[3];
   for (std::uint32_t k = 0; k < 3; ++k) {
     float least = positions[k];
     float most = positions[k];
     for (std::uint32_t i = 0; i < kGroup; ++i) {
-      const float x = positions[3 * std::min(i, count - 1) + k];
+      const float x = positions[Points::kStride * std::min(i, count - 1) + k];
       points_[k][i] = x;
       least = std::min(least, x);
       most = std::max(most, x);
@@ -160,65 +133,70 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     high[k] = splat(most);
   }
   for (std::uint32_t i = 0; i < kGroup; ++i) {
-    limits_[i] = least_[i] = i < count ? std::numeric_limits<float>::max() : -1.0f;
-    foundCount_[i] = 0;
+    limits_[i] = i < count ? std::numeric_limits<float>::max() : -1.0f;
+    nearCount_[i] = 0;
   }
-  for (std::uint32_t i = 0; i < count; ++i) searchLeaf(lastLeaf_, i);
   const std::uint32_t seed = lastLeaf_;
-  const auto groupLimit = [this] { return *std::max_element(limits_, limits_ + kGroup); };
+  searchLeaf(seed, (1u << count) - 1);
+  const auto groupLimit = [this] { return splat(simd::highest(simd::max(load(limits_), load(limits_ + 4)))); };
 
   Visit stack[kStackSize];
-  int depth = 0;
-  float limit = groupLimit();
+  std::uint32_t depth = 0;
   const Node& root = tree_.rays.nodes[0];
-  pushChildren(root, squaredDistanceToBoxes(root, low, high), limit, stack, depth);
+  pushChildren(root, simd::bits(squaredDistanceToBoxes(root, low, high) <= groupLimit()), stack, depth);
   while (depth > 0) {
     const Visit visit = stack[--depth];
-    if (visit.squaredDistance > limit) continue;
     if ((visit.child & kLeafBit) == 0) {
       const Node& node = tree_.rays.nodes[visit.child];
-      pushChildren(node, squaredDistanceToBoxes(node, low, high), limit, stack, depth);
+      pushChildren(node, simd::bits(squaredDistanceToBoxes(node, low, high) <= groupLimit()), stack, depth);
       continue;
     }
     const std::uint32_t leaf = visit.child & ~kLeafBit;
     if (leaf == seed) continue;
-    unsigned close = 0;
+    unsigned members = 0;
     for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
       const f32x4 squared = squaredDistanceToChild(*visit.parent, visit.lane, points_[0] + i, points_[1] + i, points_[2] + i);
-      close |= simd::bits(squared <= load(limits_ + i)) << i;
+      members |= simd::bits(squared <= load(limits_ + i)) << i;
     }
-    if (close == 0) continue;
-    for (std::uint32_t i = 0; close != 0; ++i, close >>= 1) {
-      if (close & 1) searchLeaf(leaf, i);
-    }
-    limit = groupLimit();
-    lastLeaf_ = leaf;
+    searchLeaf(leaf, members);
+  }
+  // Where the last point is nearest, the next group begins.
+  const std::uint32_t last = count - 1;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::uint32_t j = 0; j < std::min(nearCount_[last], kRoom); ++j) {
+    if (near_[last][j].squaredDistance >= least) continue;
+    least = near_[last][j].squaredDistance;
+    lastLeaf_ = near_[last][j].lanes >> 4;
   }
 }
 
 std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) const noexcept {
-  if (foundCount_[i] <= kRoom) {
-    std::copy(slots_[i], slots_[i] + foundCount_[i], found);
-    return foundCount_[i];
+  std::uint32_t count = 0;
+  const auto takeLanes = [&](std::uint32_t leaf, unsigned lanes) {
+    for (std::uint32_t lane = 0; lanes != 0; ++lane, lanes >>= 1) {
+      if (lanes & 1) found[count++] = tree_.near[leaf].slot[lane];
+    }
+  };
+  if (nearCount_[i] <= kRoom) {
+    for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
+      if (near_[i][j].squaredDistance <= limits_[i]) takeLanes(near_[i][j].lanes >> 4, near_[i][j].lanes & 15);
+    }
+    return count;
   }
   // A fan around a corner, or a stack of copies: collect all within the limit, which is known by now.
   const f32x4 point[3] = {splat(points_[0][i]), splat(points_[1][i]), splat(points_[2][i])};
+  const f32x4 limit = splat(limits_[i]);
   Visit stack[kStackSize];
-  int depth = 0;
-  std::uint32_t count = 0;
-  stack[depth++] = {0, 0, nullptr, 0};
+  std::uint32_t depth = 0;
+  stack[depth++] = {0, 0, nullptr};
   while (depth > 0) {
-    const Visit visit = stack[--depth];
-    if ((visit.child & kLeafBit) == 0) {
-      const Node& node = tree_.rays.nodes[visit.child];
-      pushChildren(node, squaredDistanceToBoxes(node, point, point), limits_[i], stack, depth);
-      continue;
-    }
-    const NearLeaf& leaf = tree_.near[visit.child & ~kLeafBit];
-    f32x4 squared;
-    unsigned close = squaredDistanceToTriangles(leaf, point, splat(limits_[i]), squared);
-    for (int lane = 0; close != 0; ++lane, close >>= 1) {
-      if (close & 1) found[count++] = leaf.slot[lane];
+    const std::uint32_t child = stack[--depth].child;
+    if (child & kLeafBit) {
+      const std::uint32_t leaf = child & ~kLeafBit;
+      takeLanes(leaf, simd::bits(squaredDistanceToTriangles(tree_.near[leaf], point) <= limit));
+    } else {
+      const Node& node = tree_.rays.nodes[child];
+      pushChildren(node, simd::bits(squaredDistanceToBoxes(node, point, point) <= limit), stack, depth);
     }
   }
   return count;

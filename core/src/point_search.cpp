@@ -15,13 +15,16 @@
 namespace cagecast {
 namespace {
 
+/// Floats per position.
+constexpr std::size_t kStride = 4;
+
 /// Points as nanoflann wants to see them.
 struct Cloud {
   const float* positions;
   std::size_t count;
 
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return count; }
-  [[nodiscard]] float kdtree_get_pt(std::size_t point, std::size_t axis) const { return positions[3 * point + axis]; }
+  [[nodiscard]] float kdtree_get_pt(std::size_t point, std::size_t axis) const { return positions[kStride * point + axis]; }
   template <typename Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
@@ -63,7 +66,7 @@ bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t coun
     UnionFind sets(parents.data(), count);
     std::vector<std::pair<std::uint32_t, double>> near;
     for (std::uint32_t i = 0; i < count; ++i) {
-      tree.radiusSearch(positions + std::size_t{3} * i, radius * radius, near, nanoflann::SearchParams());
+      tree.radiusSearch(positions + kStride * i, radius * radius, near, nanoflann::SearchParams());
       for (const auto& [other, squaredDistance] : near) {
         if (groups[other] == groups[i]) sets.join(i, other);
       }
@@ -71,15 +74,15 @@ bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t coun
     joinedCount = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t root = sets.find(i);  // Never behind i, so it has its number already.
-      const float* from = positions + std::size_t{3} * i;
+      const float* from = positions + kStride * i;
       if (root == i) {
         joined[i] = joinedCount++;
-        std::copy(from, from + 3, positions + std::size_t{3} * joined[i]);
+        std::copy(from, from + kStride, positions + kStride * joined[i]);
         continue;
       }
       joined[i] = joined[root];
-      float* to = positions + std::size_t{3} * joined[i];
-      if (std::lexicographical_compare(from, from + 3, to, to + 3)) std::copy(from, from + 3, to);
+      float* to = positions + kStride * joined[i];
+      if (std::lexicographical_compare(from, from + kStride, to, to + kStride)) std::copy(from, from + kStride, to);
     }
     return true;
   } catch (const std::bad_alloc&) {
@@ -94,7 +97,7 @@ bool nearestSites(const float* sites, std::uint32_t siteCount, const float* poin
     const Tree tree(3, cloud);
     for (std::uint32_t i = 0; i < pointCount; ++i) {
       FirstNearest found;
-      tree.findNeighbors(found, points + std::size_t{3} * i, nanoflann::SearchParams());
+      tree.findNeighbors(found, points + kStride * i, nanoflann::SearchParams());
       nearest[i] = found.site();
     }
     return true;

@@ -7,7 +7,7 @@ namespace cagecast {
 
 /// Joins points of equal group that are nearer to each other than `radius`, chains of them too, and moves them to the
 /// position that is smallest in x, then y, then z. Joined points keep the order of their first members.
-/// @param[in,out] positions  3 per point; on return those of the joined points.
+/// @param[in,out] positions  x, y, z, 0 per point; on return those of the joined points.
 /// @param groups             1 per point.
 /// @param[out] joined        The joined point of each point.
 /// @param[out] joinedCount  the number of joined points.
@@ -16,7 +16,7 @@ bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t coun
                std::uint32_t& joinedCount) noexcept;
 
 /// Finds the nearest of `sites` for each of `points`; of equally near ones the first.
-/// @param sites,points  3 floats each.
+/// @param sites,points  x, y, z, 0 each.
 /// @param[out] nearest  1 per point.
 /// @return false if memory ran out.
 bool nearestSites(const float* sites, std::uint32_t siteCount, const float* points, std::uint32_t pointCount,

@@ -11,7 +11,7 @@ bool projectToVertices(const MeshView& cageMesh, const Points& points, const Cag
   const Scratch::Mark mark = scratch.mark();
   auto* slotOfVertex = scratch.take<std::uint32_t>(allSites);
   auto* vertexOfSite = scratch.take<std::uint32_t>(allSites);
-  auto* sites = scratch.take<float>(std::size_t{3} * allSites);
+  auto* sites = scratch.take<float>(Points::kStride * allSites);
   auto* nearest = scratch.take<std::uint32_t>(points.count);
   if (scratch.failed()) return false;
 
@@ -22,16 +22,17 @@ bool projectToVertices(const MeshView& cageMesh, const Points& points, const Cag
     for (int i = 0; i < 3; ++i) slotOfVertex[index[i]] = slot;
   }
   std::uint32_t siteCount = 0;
-  for (std::uint32_t v = 0; v < allSites; ++v) {
+  for (std::size_t v = 0; v < allSites; ++v) {
     if (slotOfVertex[v] == UINT32_MAX) continue;
-    for (std::uint32_t k = 0; k < 3; ++k) sites[3 * siteCount + k] = cageMesh.positions[std::size_t{3} * v + k] * units.scale;
-    vertexOfSite[siteCount++] = v;
+    for (std::size_t k = 0; k < 3; ++k) sites[Points::kStride * siteCount + k] = cageMesh.positions[3 * v + k] * units.scale;
+    sites[Points::kStride * siteCount + 3] = 0;
+    vertexOfSite[siteCount++] = static_cast<std::uint32_t>(v);
   }
 
   const bool done = nearestSites(sites, siteCount, points.positions, points.count, nearest);
   for (std::uint32_t i = 0; done && i < points.count; ++i) {
     const std::uint32_t vertex = vertexOfSite[nearest[i]];
-    const Vec3 offset = Vec3::from(points.at(i)) - Vec3::from(sites + std::size_t{3} * nearest[i]);
+    const Vec3 offset = Vec3::from(points.at(i)) - Vec3::from(sites + Points::kStride * nearest[i]);
     for (std::uint32_t k = 0; k < 2; ++k) results.uvs[2 * i + k] = cageMesh.uvs[std::size_t{2} * vertex + k];
     results.distances[i] = static_cast<float>(length(offset));
     results.triangles[i] = slotOfVertex[vertex];

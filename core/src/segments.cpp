@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "steps.hpp"
-#include "triangle.hpp"
 #include "union_find.hpp"
 
 namespace cagecast {
@@ -54,7 +53,7 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, const Units& 
   const AreaUnit unit(points.triangleCount);
   for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
-    const std::int64_t third = unit.third(length(areaNormal(points.at(corner[0]), points.at(corner[1]), points.at(corner[2]))));
+    const std::int64_t third = unit.third(points.doubleAreas[t]);
     Sums& sum = sums[results.segments[corner[0]]];
     for (int i = 0; i < 3; ++i) {
       const Zone zone = results.zones[corner[i]];

@@ -68,6 +68,8 @@ inline f32x4 select(mask4 m, f32x4 a, f32x4 b) {
 }
 /// Bit i is lane i.
 inline unsigned bits(mask4 m) { return static_cast<unsigned>(_mm_movemask_ps(m.v)); }
+/// Turns four rows into columns.
+inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) { _MM_TRANSPOSE4_PS(a.v, b.v, c.v, d.v); }
 
 #elif defined(CAGECAST_NEON)
 
@@ -97,6 +99,14 @@ inline unsigned bits(mask4 m) {
   static const uint32_t kBit[4] = {1, 2, 4, 8};
   return vaddvq_u32(vandq_u32(m.v, vld1q_u32(kBit)));
 }
+inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
+  const float32x4x2_t ab = vtrnq_f32(a.v, b.v);
+  const float32x4x2_t cd = vtrnq_f32(c.v, d.v);
+  a.v = vcombine_f32(vget_low_f32(ab.val[0]), vget_low_f32(cd.val[0]));
+  b.v = vcombine_f32(vget_low_f32(ab.val[1]), vget_low_f32(cd.val[1]));
+  c.v = vcombine_f32(vget_high_f32(ab.val[0]), vget_high_f32(cd.val[0]));
+  d.v = vcombine_f32(vget_high_f32(ab.val[1]), vget_high_f32(cd.val[1]));
+}
 
 #elif defined(CAGECAST_WASM)
 
@@ -123,6 +133,16 @@ inline f32x4 keep(mask4 m, f32x4 a) { return {wasm_v128_and(m.v, a.v)}; }
 inline f32x4 drop(mask4 m, f32x4 a) { return {wasm_v128_andnot(a.v, m.v)}; }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {wasm_v128_bitselect(a.v, b.v, m.v)}; }
 inline unsigned bits(mask4 m) { return wasm_i32x4_bitmask(m.v); }
+inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
+  const v128_t abLow = wasm_i32x4_shuffle(a.v, b.v, 0, 4, 1, 5);
+  const v128_t abHigh = wasm_i32x4_shuffle(a.v, b.v, 2, 6, 3, 7);
+  const v128_t cdLow = wasm_i32x4_shuffle(c.v, d.v, 0, 4, 1, 5);
+  const v128_t cdHigh = wasm_i32x4_shuffle(c.v, d.v, 2, 6, 3, 7);
+  a.v = wasm_i64x2_shuffle(abLow, cdLow, 0, 2);
+  b.v = wasm_i64x2_shuffle(abLow, cdLow, 1, 3);
+  c.v = wasm_i64x2_shuffle(abHigh, cdHigh, 0, 2);
+  d.v = wasm_i64x2_shuffle(abHigh, cdHigh, 1, 3);
+}
 
 #else
 
@@ -159,8 +179,35 @@ inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return lanes([&](int i) { retur
 inline unsigned bits(mask4 m) {
   return unsigned{m.v[0]} | unsigned{m.v[1]} << 1 | unsigned{m.v[2]} << 2 | unsigned{m.v[3]} << 3;
 }
+inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
+  f32x4* rows[4] = {&a, &b, &c, &d};
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const float x = rows[i]->v[j];
+      rows[i]->v[j] = rows[j]->v[i];
+      rows[j]->v[i] = x;
+    }
+  }
+}
 
 #endif
+
+/// The least of the four lanes.
+inline float lowest(f32x4 a) {
+  float v[4];
+  store(v, a);
+  const float x = v[0] < v[1] ? v[0] : v[1];
+  const float y = v[2] < v[3] ? v[2] : v[3];
+  return x < y ? x : y;
+}
+/// The greatest of the four lanes.
+inline float highest(f32x4 a) {
+  float v[4];
+  store(v, a);
+  const float x = v[0] > v[1] ? v[0] : v[1];
+  const float y = v[2] > v[3] ? v[2] : v[3];
+  return x > y ? x : y;
+}
 
 inline f32x4 clamp(f32x4 x, f32x4 low, f32x4 high) { return min(max(x, low), high); }
 

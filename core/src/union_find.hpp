@@ -16,6 +16,7 @@ class UnionFind {
     return i;
   }
   void join(std::uint32_t a, std::uint32_t b) noexcept {
+    if (parents_[a] == parents_[b]) return;
     a = find(a);
     b = find(b);
     if (a < b) parents_[b] = a;

@@ -19,13 +19,17 @@ struct Placed {
 /// Sorts by key, stably: least significant digit first.
 /// @return The one of the two arrays that holds the result.
 Placed* sortByKey(Placed* items, Placed* other, std::uint32_t count, int keyBits) {
-  constexpr int kDigitBits = 11;
-  for (int shift = 0; shift < keyBits; shift += kDigitBits) {
-    std::uint32_t starts[1 << kDigitBits] = {};
-    for (std::uint32_t i = 0; i < count; ++i) ++starts[items[i].key >> shift & ((1 << kDigitBits) - 1)];
+  constexpr int kMostDigitBits = 12;
+  const int digits = (keyBits + kMostDigitBits - 1) / kMostDigitBits;
+  const int digitBits = (keyBits + digits - 1) / digits;
+  const std::uint32_t mask = (1u << digitBits) - 1;
+  std::uint32_t starts[1 << kMostDigitBits];
+  for (int shift = 0; shift < keyBits; shift += digitBits) {
+    std::fill(starts, starts + mask + 1, 0u);
+    for (std::uint32_t i = 0; i < count; ++i) ++starts[items[i].key >> shift & mask];
     std::uint32_t sum = 0;
-    for (std::uint32_t& start : starts) sum += std::exchange(start, sum);
-    for (std::uint32_t i = 0; i < count; ++i) other[starts[items[i].key >> shift & ((1 << kDigitBits) - 1)]++] = items[i];
+    for (std::uint32_t digit = 0; digit <= mask; ++digit) sum += std::exchange(starts[digit], sum);
+    for (std::uint32_t i = 0; i < count; ++i) other[starts[items[i].key >> shift & mask]++] = items[i];
     std::swap(items, other);
   }
   return items;
@@ -67,8 +71,9 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
   const auto allTriangles = static_cast<std::uint32_t>(target.indices.size() / 3);
   auto* ofVertex = scratch.take<std::uint32_t>(vertexCount);
-  auto* positions = scratch.take<float>(std::size_t{3} * vertexCount);
+  auto* positions = scratch.take<float>(Points::kStride * vertexCount);
   auto* triangles = scratch.take<std::uint32_t>(std::size_t{3} * allTriangles);
+  auto* doubleAreas = scratch.take<double>(allTriangles);
   const bool tolerant = tolerance > 0;
   auto* groups = scratch.take<std::uint32_t>(tolerant ? vertexCount : 0);
   const Scratch::Mark mark = scratch.mark();
@@ -78,7 +83,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
 
   // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
   const Welder welder(target, units);
-  const int levels = vertexCount < (1u << 16) ? 7 : 10;
+  const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
   float side = 0;
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
@@ -116,10 +121,11 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
       }
       if (point == pointCount) {
         spare[pointCount++].vertex = v;
-        float* p = positions + std::size_t{3} * point;
+        float* p = positions + Points::kStride * point;
         p[0] = s.x;
         p[1] = s.y;
         p[2] = s.z;
+        p[3] = 0;
         if (tolerant) groups[point] = s.group;
       }
       ofVertex[v] = point;
@@ -140,12 +146,14 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   for (std::uint32_t t = 0; t < allTriangles; ++t) {
     const std::uint32_t* index = target.indices.data() + std::size_t{3} * t;
     const std::uint32_t corner[3] = {ofVertex[index[0]], ofVertex[index[1]], ofVertex[index[2]]};
-    const auto position = [&](int i) { return positions + std::size_t{3} * corner[i]; };
-    if (!hasArea(position(0), position(1), position(2))) continue;
-    std::copy(corner, corner + 3, triangles + std::size_t{3} * kept++);
+    const auto position = [&](int i) { return positions + Points::kStride * corner[i]; };
+    const double doubleArea = length(areaNormal(position(0), position(1), position(2)));
+    if (!(doubleArea > 0)) continue;
+    std::copy(corner, corner + 3, triangles + std::size_t{3} * kept);
+    doubleAreas[kept++] = doubleArea;
   }
 
-  out = {pointCount, positions, ofVertex, kept, triangles};
+  out = {pointCount, positions, ofVertex, kept, triangles, doubleAreas};
   return true;
 }
 

@@ -10,13 +10,16 @@ namespace cagecast {
 
 /// The target, welded: what every later step works on.
 struct Points {
+  static constexpr std::size_t kStride = 4;  ///< Floats per position: one SIMD load.
+
   std::uint32_t count = 0;
-  const float* positions = nullptr;          ///< 3 per point, scaled, in the order of a space-filling curve.
+  const float* positions = nullptr;          ///< x, y, z, 0 per point, scaled, in the order of a space-filling curve.
   const std::uint32_t* ofVertex = nullptr;   ///< The point of each vertex.
   std::uint32_t triangleCount = 0;           ///< Triangles with an area; the others take no part in anything.
   const std::uint32_t* triangles = nullptr;  ///< 3 points per triangle with an area.
+  const double* doubleAreas = nullptr;       ///< Twice the area of each of them, scaled.
 
-  [[nodiscard]] const float* at(std::uint32_t point) const { return positions + std::size_t{3} * point; }
+  [[nodiscard]] const float* at(std::uint32_t point) const { return positions + kStride * point; }
 };
 
 /// Welds the vertices that have equal positions (−0 is 0) and equal groups into points, and drops triangles without area.
