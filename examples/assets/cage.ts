@@ -11,6 +11,7 @@ export interface CagePlan {
   distance: number // from the skin
   keep: (p: Vec3) => number // negative where the cage has a hole or ends
   triangles: number // at most this many
+  focus?: (p: Vec3) => Vec3 // enlarges the regions that deserve more of them
   wrap: Mesh // the outside of this must lie within
   seen: (vertex: number) => boolean // which vertices of `wrap` are outside
 }
@@ -27,19 +28,29 @@ export const makeCage = (plan: CagePlan): Mesh => {
   }
   const fine = surface(grown, plan.bounds, plan.edge)
   const half = largestPart(clip(clip(fine, (p) => p[0]), plan.keep))
-  const cage = mirror(simplify(half, Math.floor(plan.triangles / 2), rimKeeper(half)))
+  const cage = mirror(simplify(half, Math.floor(plan.triangles / 2), rimKeeper(half), plan.focus))
   return pushOut(cage, plan)
 }
 
-const kRimCorners = 12
+const kRimCorners = 12 // of a whole hole
 
-/** Holds on to some vertices all around each hole that lies on one side: small holes would lose their shape. */
+/** Holds on to some vertices all along each border of one half: small holes would lose their shape, or close. */
 const rimKeeper = (half: Mesh): ((p: Vec3) => boolean) => {
   const kept = new Set<string>()
+  const onPlane = (v: number): boolean => Math.abs(point(half, v)[0]) < 1e-6
   for (const loop of borderLoops(half)) {
-    if (loop.some((v) => Math.abs(point(half, v)[0]) < 1e-6)) continue
-    const step = loop.length / Math.min(kRimCorners, loop.length)
-    for (let i = 0; i < loop.length; i += step) kept.add(point(half, loop[Math.floor(i)]!).join())
+    const start = loop.findIndex(onPlane)
+    const whole = start < 0
+    const turned = whole ? loop : [...loop.slice(start), ...loop.slice(0, start)]
+    const runs: number[][] = [[]]
+    for (const v of turned) {
+      if (!onPlane(v)) runs.at(-1)!.push(v)
+      else if (runs.at(-1)!.length > 0) runs.push([])
+    }
+    for (const run of runs) {
+      const step = Math.max(run.length / (whole ? kRimCorners : kRimCorners / 2), 1)
+      for (let i = step / 2; i < run.length; i += step) kept.add(point(half, run[Math.floor(i)]!).join())
+    }
   }
   return (p) => kept.has(p.join())
 }

@@ -74,15 +74,19 @@ export const clip = (mesh: Mesh, keep: (p: Vec3) => number): Mesh => {
   const indices: number[] = []
   const cuts = new Map<number, number>()
   const cut = (inside: number, outside: number): number => {
-    // A cut next to a corner would leave a sliver: use the corner.
     const t = values[inside]! / (values[inside]! - values[outside]!)
-    if (t < 0.02) return inside
+    const a = point(mesh, inside)
+    const at = add(a, scale(sub(point(mesh, outside), a), t))
+    // A cut next to a corner would leave a sliver: move the corner to the cut instead.
+    if (t < 0.02) {
+      at.forEach((x, k) => (positions[3 * inside + k] = x))
+      return inside
+    }
     const key = Math.min(inside, outside) * count + Math.max(inside, outside)
     let vertex = cuts.get(key)
     if (vertex === undefined) {
       vertex = positions.length / 3
-      const a = point(mesh, inside)
-      positions.push(...add(a, scale(sub(point(mesh, outside), a), t)))
+      positions.push(...at)
       cuts.set(key, vertex)
     }
     return vertex

@@ -1,5 +1,5 @@
 import { type Mesh, boundsOf, corners, faceNormal, openEdges, point, triangleCount, vertexCount } from './mesh.ts'
-import { type Vec3, cross, dot, length, sub, unit } from './vec.ts'
+import { type Vec3, add, cross, dot, length, scale, sub, unit } from './vec.ts'
 
 type Uv = readonly [number, number]
 
@@ -197,23 +197,36 @@ const kRelaxRounds = 60
  * that are squeezed counting more (after Rabinovich et al. 2017, Scalable Locally Injective Mappings), each step only as far
  * as it lowers the distortion, no triangle turns over and no border crosses itself.
  * @param seam  Says of an edge's two ends whether it is cut. Cut open, the mesh must be a disc with holes.
+ * @param zoom  How large a place shall be drawn: regions where much is painted deserve more of the texture.
  */
-export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, margin = 0.01): Mesh => {
+export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, zoom: (p: Vec3) => number = () => 1): Mesh => {
   const { mesh: cut } = splitAlong(mesh, (a, b) => !seam(point(mesh, a), point(mesh, b)))
   const loops = borderLoops(cut)
   const perimeter = (loop: number[]): number =>
     loop.reduce((s, v, i) => s + length(sub(point(cut, v), point(cut, loop[(i + 1) % loop.length]!))), 0)
   loops.sort((a, b) => perimeter(b) - perimeter(a))
   if (loops.length === 0) throw new Error('pelt: the mesh is closed; it needs a seam or a hole')
-  const flat = relax(cut, loops, onDisc(cut, loops))
-  return { ...cut, uvs: pack(upright(cut, flat), new Int32Array(vertexCount(cut)), 1, margin) }
+  const [outer, ...holes] = loops as [number[], ...number[][]]
+  const filled = fill(cut, holes)
+  const flat = upright(filled, relax(filled, outer, onDisc(filled, outer), zoom)).slice(0, vertexCount(cut))
+  return { ...cut, uvs: pack(flat, new Int32Array(flat.length), 1, 0.01) }
 }
 
-/** The first loop on a circle, everything else at the mean of its neighbours; each other loop gets a hub that holds it open. */
-const onDisc = (mesh: Mesh, loops: number[][]): Flat => {
-  const [outer, ...holes] = loops as [number[], ...number[][]]
-  const count = vertexCount(mesh)
-  const total = count + holes.length
+/** Closes holes with fans about their middles, so that they keep their shape and nothing is laid over them. */
+const fill = (mesh: Mesh, holes: number[][]): Mesh => {
+  const positions = Array.from(mesh.positions)
+  const indices = Array.from(mesh.indices)
+  for (const loop of holes) {
+    const hub = positions.length / 3
+    positions.push(...scale(loop.map((v) => point(mesh, v)).reduce((a, b) => add(a, b)), 1 / loop.length))
+    loop.forEach((v, i) => indices.push(v, hub, loop[(i + 1) % loop.length]!))
+  }
+  return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) }
+}
+
+/** The border on a circle, everything else at the mean of its neighbours. */
+const onDisc = (mesh: Mesh, outer: number[]): Flat => {
+  const total = vertexCount(mesh)
   const links = Array.from({ length: total }, () => new Set<number>())
   const link = (a: number, b: number): void => void (links[a]!.add(b), links[b]!.add(a))
   for (let t = 0; t < triangleCount(mesh); t++) {
@@ -222,7 +235,6 @@ const onDisc = (mesh: Mesh, loops: number[][]): Flat => {
     link(b, c)
     link(c, a)
   }
-  holes.forEach((loop, h) => loop.forEach((v) => link(v, count + h)))
   const lengths = outer.map((v, i) => length(sub(point(mesh, v), point(mesh, outer[(i + 1) % outer.length]!))))
   const round = lengths.reduce((a, b) => a + b, 0)
   const fixed = new Map<number, Uv>()
@@ -246,13 +258,16 @@ const onDisc = (mesh: Mesh, loops: number[][]): Flat => {
       }
   })
   const solve = cholesky(matrix, total)
-  return [solve(sums[0]).slice(0, count), solve(sums[1]).slice(0, count)]
+  return [solve(sums[0]), solve(sums[1])]
 }
 
-const relax = (mesh: Mesh, loops: number[][], start: Flat): Flat => {
+const relax = (mesh: Mesh, outer: number[], start: Flat, zoom: (p: Vec3) => number): Flat => {
   const count = vertexCount(mesh)
   const triangles = Array.from({ length: triangleCount(mesh) }, (_, t) => corners(mesh, t))
-  const rest = triangles.map((_, t) => flatTriangle(mesh, t))
+  const rest = triangles.map((t, i) => {
+    const centre = scale(t.map((v) => point(mesh, v)).reduce((a, b) => add(a, b)), 1 / 3)
+    return flatTriangle(mesh, i).map(([x, y]) => [x * zoom(centre), y * zoom(centre)]) as unknown as [Uv, Uv, Uv]
+  })
   const areas = rest.map((p) => area(...p) / 2)
   const cotangents = rest.map((p) => p.map((a, k) => cotangent(p[(k + 2) % 3]!, a, p[(k + 1) % 3]!)))
   const at = (flat: Flat, v: number): Uv => [flat[0][v]!, flat[1][v]!]
@@ -278,7 +293,7 @@ const relax = (mesh: Mesh, loops: number[][], start: Flat): Flat => {
       if (s2 <= 0) return Infinity
       total += areas[t]! * (s1 * s1 + s2 * s2 + 1 / (s1 * s1) + 1 / (s2 * s2))
     }
-    return loops.every((loop) => isSimple(loop.map((v) => at(flat, v)))) ? total : Infinity
+    return isSimple(outer.map((v) => at(flat, v))) ? total : Infinity
   }
 
   const covered = triangles.reduce((s, _, t) => s + area(...layout(start, t)) / 2, 0)

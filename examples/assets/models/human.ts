@@ -16,6 +16,7 @@ const kBottom = -0.93 // the bust ends at this y
 const kEye: Vec3 = [0.143, 0.0, 0.255]
 const kLook: Vec3 = unit([0.06, 0, 1])
 const kEyeRadius = 0.066
+const kNoseTip: Vec3 = [0, -0.2, 0.42]
 const kMouth: Vec3 = [0, -0.305, 0.345]
 
 // ---- the head without its openings ----
@@ -339,8 +340,9 @@ const makeup: Shade = (p) => {
   const wing = Math.abs(eye[1] - 0.03 - 0.35 * Math.max(eye[0] - 0.03, 0) + 4 * eye[0] * eye[0])
   c = over(c, rgb('#120c10'), smoothstep(0.014, 0.009, wing) * smoothstep(-0.065, -0.045, eye[0]) * smoothstep(0.115, 0.085, eye[0]) * front)
   c = over(c, rgb('#f6e2c8'), 0.45 * smoothstep(0.03, 0.01, Math.hypot(q[0] * 0.9, (q[1] + 0.05) * 0.16)) * smoothstep(0.3, 0.34, q[2]))
-  const lip = lips(q[0], p[1], p[2] - 0.03)
-  const onLips = smoothstep(0.016, 0.006, Math.min(lip, lips(...q))) * smoothstep(0.22, 0.26, q[2])
+  const bow = 0.012 * smoothstep(0.03, 0, q[0]) // the dip of the upper lip
+  const lip = Math.hypot(q[0] / 0.152, (p[1] + 0.313 + (p[1] > -0.31 ? bow : 0)) / (p[1] > -0.31 ? 0.054 : 0.066))
+  const onLips = smoothstep(1.04, 0.96, lip) * smoothstep(0.22, 0.26, q[2])
   return over(c, rgb('#b3122f'), onLips * (0.94 + 0.06 * grain))
 }
 
@@ -413,12 +415,14 @@ const cageFor = (skin: Mesh): Mesh =>
       bounds: { min: [-0.08, kBottom - 0.2, -0.62], max: [0.82, 0.62, 0.58] },
       edge: 0.034,
       distance: 0.04,
-      triangles: 760,
+      triangles: 800,
+      focus: (p) => add(faceFocus(p), scale(sub(p, kNoseTip), 0.7 * Math.exp(-((length(sub(p, kNoseTip)) / 0.15) ** 2)))),
       wrap: skin,
       seen: (v) => Math.abs(closedSolid(...point(skin, v))) < 0.006,
-      keep: (p) => Math.min(p[1] - (kBottom - 0.035), lidOpening(0.01)(...p), lipGap(0.016)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5),
+      keep: (p) => Math.min(p[1] - (kBottom - 0.035), lidOpening(0.006)(...p), lipGap(0.014)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5),
     }),
     (a, b) => a[0] === 0 && b[0] === 0 && (a[2] + b[2]) / 2 < 0 && (a[1] + b[1]) / 2 < 0.4,
+    (p) => 1 + 1.3 * Math.exp(-((length(sub(p, [0, -0.13, 0.38])) / 0.33) ** 2)),
   )
 
 const others = (): Part[] => [
