@@ -2,9 +2,9 @@ import { CagecastError, classify, init, type Mesh, type Projection } from 'cagec
 import { setUpDivider } from './compare'
 import { setUpFiles, type Intake } from './files'
 import { loadModel, type Model } from './load'
-import { announce, clearError, element, showError, showNotice, showStatus } from './page'
+import { clearError, element, showError, showNotice, showStatus } from './page'
 import { loadPaint, makeChecker, type Paint } from './paint'
-import { offerPaints } from './paints'
+import { offerPaints, type Choice } from './paints'
 import { showCounts, showTimings } from './results'
 import { fetchFile, loadSamples, type Sample } from './samples'
 import { Superseded, TransferClient } from './transfer-client'
@@ -21,6 +21,8 @@ interface Scene {
 type Wanted = { [Slot in keyof Scene]?: Promise<Scene[Slot]> }
 
 const kOwn = 'own'
+const kBlind =
+  'This browser draws no 3D here: WebGL 2 is missing or switched off. The transfer works all the same, its numbers are in the panel.'
 
 /** Wires the page: inputs on one side, one worker and one viewer on the other. */
 class App {
@@ -34,8 +36,10 @@ class App {
   #view: View = { mode: 'compare', split: 0.5, paint: true, zones: false, cage: false }
   #wanted: Wanted = {}
   #shown: (Scene & { projection: Projection }) | undefined
-  /** Which of the wanted files are the sample's. */
-  #fromSample = { target: true, cage: true, paint: true }
+  /** Which sample something belongs to; the visitor's own things to none. */
+  readonly #origin = new WeakMap<Model | Paint, Sample>()
+  /** The last paint of the visitor's own, to choose from beside the sample's. */
+  #ownPaint: Paint | undefined
   #runs = 0
 
   constructor() {
@@ -50,6 +54,7 @@ class App {
 
   /** Opens the first sample. */
   async start(): Promise<void> {
+    init().catch(() => {}) // begun while the files are on their way; told when it is waited for
     try {
       this.#samples = await loadSamples()
       this.#select.replaceChildren(...this.#samples.map(({ name, title }) => new Option(title, name)))
@@ -86,28 +91,20 @@ class App {
     const sample = this.#samples.find((candidate) => candidate.name === name)
     if (!sample) return
     this.#select.value = name
-    this.#fromSample = { target: true, cage: true, paint: true }
-    const model = (address: string): Promise<Model> => fetchFile(address).then((file) => loadModel(file))
-    const first = sample.paints[0]
-    this.#want({ target: model(sample.target), cage: model(sample.cage), paint: first ? this.#fetchPaint(first.file) : this.#ownPaint(this.#checker) })
-    this.#offerPaints(sample)
+    const { target, cage, paints } = sample
+    const model = (address: string): Promise<Model> => this.#fetch(sample, address, loadModel)
+    this.#want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, paints[0]) })
   }
 
-  #offerPaints(sample?: Sample): void {
-    const paints = sample?.paints ?? []
-    const choices = [...paints.map(({ title, file }) => ({ title, picture: file })), { title: this.#checker.name }]
-    offerPaints(choices, 0, (index) => {
-      const chosen = paints[index]
-      this.#want({ paint: chosen ? this.#fetchPaint(chosen.file) : this.#ownPaint(this.#checker) })
-    })
+  /** Fetches and reads a file of a sample, and notes whose it is. */
+  async #fetch<T extends Model | Paint>(sample: Sample, address: string, read: (file: File) => Promise<T>): Promise<T> {
+    const thing = await read(await fetchFile(address))
+    this.#origin.set(thing, sample)
+    return thing
   }
 
-  async #fetchPaint(address: string): Promise<Paint> {
-    return loadPaint(await fetchFile(address))
-  }
-
-  async #ownPaint(paint: Paint): Promise<Paint> {
-    return paint
+  async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {
+    return paint ? this.#fetch(sample, paint.file, (file) => loadPaint(file, paint.file)) : this.#checker
   }
 
   /** Takes in files of the visitor's own. */
@@ -115,7 +112,6 @@ class App {
     const wanted: Wanted = {}
     if (target) wanted.target = loadModel(target, all)
     if (cage) wanted.cage = loadModel(cage, all)
-    if (texture) wanted.paint = loadPaint(texture)
     const [one, other] = unclear
     if (!target && one && other) {
       // Nothing in their names tells: the cage is the one with fewer triangles.
@@ -126,14 +122,8 @@ class App {
       wanted.cage = pair.then(([, smaller]) => smaller!)
     }
 
-    if (wanted.target) this.#fromSample.target = false
-    if (wanted.cage) this.#fromSample.cage = false
-    if (wanted.paint) this.#fromSample.paint = false
-    else if (wanted.target || wanted.cage) {
-      // A sample's paint means nothing on another cage.
-      if (this.#fromSample.paint) wanted.paint = this.#ownPaint(this.#checker)
-      this.#offerPaints()
-    }
+    if (texture) wanted.paint = loadPaint(texture)
+    else if (!this.#wanted.paint) wanted.paint = Promise.resolve(this.#checker)
     this.#want(wanted)
   }
 
@@ -159,6 +149,9 @@ class App {
       const scene = await this.#read(superseded)
       if (superseded()) return
       if (!scene) return this.#askForRest()
+      // A sample's paint means nothing on another cage: there the checker takes its place.
+      const ofPaint = this.#origin.get(scene.paint)
+      if (ofPaint && ofPaint !== this.#origin.get(scene.cage)) scene.paint = this.#checker
       const same = scene.target === this.#shown?.target && scene.cage === this.#shown.cage
       const projection = same ? this.#shown!.projection : await this.#project(scene, superseded)
       if (superseded()) return
@@ -244,19 +237,19 @@ class App {
   }
 
   #describe({ target, cage, paint }: Scene): void {
-    element('target-name', HTMLElement).textContent = target.name
-    element('cage-name', HTMLElement).textContent = cage.name
-    element('texture-name', HTMLElement).textContent = paint.name
+    for (const [slot, { name }] of Object.entries({ target, cage, texture: paint })) {
+      const label = element(`${slot}-name`, HTMLElement)
+      label.textContent = label.title = name
+    }
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`
     element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`
-    this.#describeOrigin()
-    if (this.#viewer) showNotice('stage-notice', '')
-    announce(`${target.name} is shown.`)
+    this.#describeOrigin(this.#origin.has(target), this.#origin.has(cage))
+    this.#offerPaints(this.#origin.get(cage), paint)
+    showNotice('stage-notice', this.#viewer ? '' : kBlind)
   }
 
-  /** Tells where the files come from, and what is still a sample's among one's own. */
-  #describeOrigin(): void {
-    const { target, cage } = this.#fromSample
+  /** Tells what is still a sample's among files of one's own. */
+  #describeOrigin(target: boolean, cage: boolean): void {
     const own = this.#select.querySelector<HTMLOptionElement>(`option[value=${kOwn}]`)
     if (target && cage) own?.remove()
     else {
@@ -272,9 +265,23 @@ class App {
           : 'The target is yours, the cage is still the sample’s: add the cage made for it.'
   }
 
+  /** Offers what there is to paint with: one's own, the sample's, and the checker. */
+  #offerPaints(sample: Sample | undefined, shown: Paint): void {
+    if (shown !== this.#checker && !this.#origin.has(shown)) this.#ownPaint = shown
+    const own = this.#ownPaint
+    const choices: (Choice & { load(): Promise<Paint> })[] = [
+      ...(own ? [{ title: own.name, picture: own.picture, load: async () => own }] : []),
+      ...(sample?.paints ?? []).map((paint) => ({ title: paint.title, picture: paint.file, load: () => this.#fetchPaint(sample!, paint) })),
+      { title: this.#checker.name, picture: this.#checker.picture, load: async () => this.#checker },
+    ]
+    const chosen = choices.findIndex(({ picture }) => picture === shown.picture)
+    offerPaints(choices, chosen, (index) => this.#want({ paint: choices[index]!.load() }))
+  }
+
   #fail(error: unknown): void {
     showError(error instanceof Error ? error.message : String(error))
     showStatus('error')
+    if (!this.#shown) showNotice('stage-notice', 'Nothing to show yet: drop a target and its cage here.')
   }
 }
 
@@ -293,7 +300,7 @@ function startViewer(): Viewer | undefined {
   } catch {
     element('view', HTMLCanvasElement).hidden = true
     element('stage', HTMLElement).classList.add('blind')
-    showNotice('stage-notice', 'This browser draws no 3D here (WebGL 2 is missing or switched off). The transfer works all the same: its numbers are in the panel.')
+    showNotice('stage-notice', kBlind)
     return undefined
   }
 }

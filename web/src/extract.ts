@@ -1,4 +1,4 @@
-import { Matrix4, Mesh, Vector3, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three'
+import { Matrix4, Mesh, SkinnedMesh, Vector3, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three'
 
 /** One triangle mesh of the scene, and where its elements lie in the concatenated arrays. */
 export interface Part {
@@ -23,6 +23,13 @@ export interface ExtractedMesh {
   /** 1 per vertex: the number of its part, so that only vertices of one part are welded. */
   groups: Uint32Array
   parts: Part[]
+}
+
+const kIdentity = new Matrix4()
+
+/** Where a mesh lies in the scene. A skinned one is taken in its bind pose: glTF gives its node's transform no say. */
+function matrixOf(mesh: Mesh): Matrix4 {
+  return mesh instanceof SkinnedMesh ? kIdentity : mesh.matrixWorld
 }
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute
@@ -79,18 +86,19 @@ function copyPositions({ mesh, firstVertex, vertexCount }: Part, out: Float32Arr
   if (vertexCount === 0) return
   const position = mesh.geometry.attributes.position as Attribute
   const point = new Vector3()
-  const identity = mesh.matrixWorld.equals(new Matrix4())
+  const matrix = matrixOf(mesh)
+  const identity = matrix.equals(kIdentity)
   for (let i = 0; i < vertexCount; i++) {
     // A quantised position decodes to a float before the matrix is applied, as every glTF reader stores it.
     point.set(Math.fround(position.getX(i)), Math.fround(position.getY(i)), Math.fround(position.getZ(i)))
-    if (!identity) point.applyMatrix4(mesh.matrixWorld)
+    if (!identity) point.applyMatrix4(matrix)
     point.toArray(out, 3 * (firstVertex + i))
   }
 }
 
 function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, triangleCount }: Part, out: Uint32Array): void {
   const { index } = mesh.geometry
-  const mirrored = mesh.matrixWorld.determinant() < 0
+  const mirrored = matrixOf(mesh).determinant() < 0
   const base = 3 * firstTriangle
   for (let corner = 0; corner < 3 * triangleCount; corner++) {
     const vertex = index ? index.getX(corner) : corner

@@ -1,5 +1,5 @@
-import { LoadingManager, type Object3D } from 'three'
-import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
+import { Group, LoadingManager, type Object3D } from 'three'
+import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
 
@@ -28,7 +28,7 @@ export async function loadModel(file: File, companions: readonly File[] = []): P
     const loader = new GLTFLoader(manager)
     const release = await addDecoders(loader, manager, head.extensions)
     try {
-      const { scene } = await loader.parseAsync(bytes, '')
+      const scene = await sceneOf(await loader.parseAsync(bytes, ''))
       return { name: file.name, scene, mesh: extractMesh(scene) }
     } finally {
       release()
@@ -49,6 +49,20 @@ export function disposeModel({ mesh }: Model): void {
       material.dispose()
     }
   }
+}
+
+/** The default scene; all nodes of a file without scenes. Nodes get their matrices exactly as the file has them. */
+async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
+  const nodes: Object3D[] = scene ? [] : await parser.getDependencies('node')
+  const root = scene ?? new Group().add(...nodes.filter((node) => !node.parent))
+  root.traverse((object) => {
+    const matrix: number[] | undefined = parser.json.nodes?.[parser.associations.get(object)?.nodes ?? -1]?.matrix
+    if (!matrix) return
+    // The loader takes it apart into a translation, a rotation and a scale, which rounds, and loses a shear.
+    object.matrixAutoUpdate = false
+    object.matrix.fromArray(matrix)
+  })
+  return root
 }
 
 function findCompanion(uri: string, companions: readonly File[]): File {

@@ -5,18 +5,24 @@ export interface Paint {
   /** The file's name, for people. */
   name: string
   texture: Texture
+  /** The address of its picture. */
+  picture: string
 }
 
 const kLargest = 4096 // texels a side: what every WebGL 2 phone can hold with its mipmaps
 
-/** Reads an image to paint with. @throws Error that names the file. */
-export async function loadPaint(file: File): Promise<Paint> {
+/**
+ * Reads an image to paint with.
+ * @param picture Where the image can be shown from, if not from the file itself.
+ * @throws Error that names the file.
+ */
+export async function loadPaint(file: File, picture = URL.createObjectURL(file)): Promise<Paint> {
   const bitmap = await decode(file)
   const texture = new Texture(bitmap)
   // glTF puts the origin of UVs at the image's upper left corner.
   texture.flipY = false
   texture.needsUpdate = true
-  return { name: file.name, texture: prepare(texture) }
+  return { name: file.name, texture: prepare(texture), picture }
 }
 
 async function decode(file: File): Promise<ImageBitmap> {
@@ -56,7 +62,14 @@ export function makeChecker(): Paint {
   }
   const texture = new CanvasTexture(canvas)
   texture.flipY = false
-  return { name: 'UV checker', texture: prepare(texture) }
+  return { name: 'UV checker', texture: prepare(texture), picture: thumbnail(canvas) }
+}
+
+function thumbnail(canvas: HTMLCanvasElement): string {
+  const small = document.createElement('canvas')
+  small.width = small.height = 160
+  small.getContext('2d')!.drawImage(canvas, 0, 0, small.width, small.height)
+  return small.toDataURL()
 }
 
 function prepare(texture: Texture): Texture {

@@ -1,37 +1,42 @@
 import { element } from './page'
 
-/** A paint one can choose: its picture, if it has one of its own, and what to call it. */
+/** A paint one can choose: what to call it, and the address of its picture. */
 export interface Choice {
   title: string
-  picture?: string
+  picture: string
 }
 
 /**
  * Offers paints as a row of pictures.
- * @param onChoose Called with the place of the chosen one.
+ * @param chosen   The place of the one in use.
+ * @param onChoose Called with the place of another one, once it is chosen.
  */
 export function offerPaints(choices: readonly Choice[], chosen: number, onChoose: (index: number) => void): void {
-  element('paints', HTMLElement).replaceChildren(
-    ...choices.map(({ title, picture }, index) => {
-      const label = document.createElement('label')
-      const input = document.createElement('input')
-      input.type = 'radio'
-      input.name = 'paint'
-      input.checked = index === chosen
-      input.addEventListener('change', () => onChoose(index))
-      const swatch = document.createElement('span')
-      swatch.className = picture ? 'picture' : 'picture checker'
-      if (picture) {
-        const image = document.createElement('img')
-        image.src = picture
-        image.alt = ''
-        swatch.append(image)
-      }
-      const name = document.createElement('span')
-      name.className = 'title'
-      name.textContent = title
-      label.append(input, swatch, name)
-      return label
-    }),
-  )
+  const row = element('paints', HTMLElement)
+  const offered = JSON.stringify(choices)
+  // The same row stays where it is: the keyboard's focus may be in it.
+  if (row.dataset.offered !== offered) row.replaceChildren(...choices.map(label))
+  row.dataset.offered = offered
+  row.querySelectorAll('input').forEach((input, index) => {
+    input.checked = index === chosen
+    input.onchange = () => onChoose(index)
+  })
+}
+
+function label({ title, picture }: Choice): HTMLElement {
+  const input = document.createElement('input')
+  input.type = 'radio'
+  input.name = 'paint'
+  const frame = document.createElement('span')
+  frame.className = 'picture'
+  const image = document.createElement('img')
+  image.src = picture
+  image.alt = ''
+  frame.append(image)
+  const name = document.createElement('span')
+  name.className = 'title'
+  name.textContent = title
+  const label = document.createElement('label')
+  label.append(input, frame, name)
+  return label
 }

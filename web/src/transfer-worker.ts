@@ -1,6 +1,8 @@
 import { CagecastError, init, project } from 'cagecast'
 import type { Reply, Request } from './transfer-messages'
 
+init().catch(() => {}) // begun before the first request; told with it
+
 addEventListener('message', async ({ data: { id, cage, target } }: MessageEvent<Request>) => {
   try {
     await init()

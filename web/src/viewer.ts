@@ -18,7 +18,7 @@ export interface View {
 }
 
 const kFieldOfView = 28 // degrees
-const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(24))
+const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14))
 const kFill = 0.86 // below 1, as models seldom reach into the corners of their box
 const kToolbar = 96 // pixels of the picture's lower edge that controls lie on
 const kSway = MathUtils.degToRad(40) // how far the model turns to either side
@@ -36,6 +36,7 @@ export class Viewer {
   #model: Model | undefined
   #overlay: Overlay | undefined
   #cage: CageLines | undefined
+  #paint: Texture | undefined
   #frame = 0
   #stale = true
   #turnStarted: number | undefined
@@ -76,6 +77,7 @@ export class Viewer {
    */
   setTarget(model: Model, uvs: Float32Array, paint: Texture): void {
     this.#overlay?.dispose()
+    this.#exchange(paint)
     if (model !== this.#model) this.#place(model)
     this.#overlay = new Overlay(model.mesh.parts, uvs, paint)
     this.#invalidate()
@@ -90,8 +92,15 @@ export class Viewer {
   }
 
   setPaint(paint: Texture): void {
+    this.#exchange(paint)
     this.#overlay?.setPaint(paint)
     this.#invalidate()
+  }
+
+  /** Frees the graphics memory of the paint before; it comes back by itself if that is used again. */
+  #exchange(paint: Texture): void {
+    if (paint !== this.#paint) this.#paint?.dispose()
+    this.#paint = paint
   }
 
   /** Shows the decision for another threshold. */
@@ -129,8 +138,7 @@ export class Viewer {
     }
     this.#model = model
     const { stage } = this.#studio
-    // Bounds of the arrays, not of the scene: those of a skinned mesh or of a NaN would mislead.
-    const box = new Box3().setFromArray(model.mesh.positions)
+    const box = new Box3().setFromObject(model.scene, true)
     const size = box.getSize(new Vector3())
     const scale = 2 / Math.max(size.length(), Number.MIN_VALUE)
     stage.scale.setScalar(scale)
@@ -145,7 +153,14 @@ export class Viewer {
 
   #look({ radius, phi, theta }: Pick<Spherical, 'radius' | 'phi' | 'theta'>): void {
     this.#camera.position.setFromSphericalCoords(radius, phi, theta)
-    this.#controls.update()
+    this.#atOnce(() => this.#controls.update())
+  }
+
+  /** Moves the camera without the glide of a drag, and ends one under way. */
+  #atOnce(move: () => void): void {
+    this.#controls.enableDamping = false
+    move()
+    this.#controls.enableDamping = true
     this.#invalidate()
   }
 
@@ -164,8 +179,7 @@ export class Viewer {
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return
     event.preventDefault()
     this.turn(false)
-    action()
-    this.#invalidate()
+    this.#atOnce(action)
   }
 
   #resize(): void {

@@ -1,0 +1,153 @@
+import assert from 'node:assert/strict'
+import { existsSync, readdirSync, readFileSync } from 'node:fs'
+import path from 'node:path'
+import { after, before, test } from 'node:test'
+import { PNG } from 'pngjs'
+import { reportedCounts } from './cli'
+import { glb, tetrahedron, writeGlb } from './glb'
+import { difference, look, modelArea, shareOfHue } from './picture'
+import { drop, inRepository, settled, setThreshold, shownCounts, shownError, Site, type Upload } from './site'
+
+/** Pairs of a target and its cage: the samples, and the folders of env CAGECAST_ASSETS that hold one. */
+function pairs(): { name: string; target: string; cage: string }[] {
+  const list: { name: string; target: string; cage: string }[] = JSON.parse(readFileSync(inRepository('build/assets/index.json'), 'utf8'))
+  const samples = list.map(({ name, target, cage }) => ({ name, target: inRepository('build/assets', target), cage: inRepository('build/assets', cage) }))
+  const root = process.env.CAGECAST_ASSETS
+  const others = (root ? readdirSync(root) : []).map((name) => ({ name, target: path.join(root!, name, 'target.glb'), cage: path.join(root!, name, 'cage.glb') }))
+  return [...samples, ...others.filter(({ target, cage }) => existsSync(target) && existsSync(cage))]
+}
+
+const read = (file: string): Upload => glb(path.basename(file), readFileSync(file))
+const kLizard = inRepository('build/assets/lizard')
+
+let site: Site
+before(async () => void (site = await Site.open()))
+after(() => site?.close())
+
+for (const { name, target, cage } of pairs()) {
+  test(`${name}: the page counts what the command line reports`, async () => {
+    const { page, complaints } = await site.visit()
+    await drop(page, [read(target), read(cage)])
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    assert.deepEqual(await shownCounts(page), await reportedCounts(target, cage))
+    assert.deepEqual(complaints, [])
+  })
+}
+
+test('the threshold changes the counts at once, to what a transfer with it gives', async () => {
+  const { page, complaints } = await site.visit()
+  const [target, cage] = [path.join(kLizard, 'target.glb'), path.join(kLizard, 'cage.glb')]
+  const seen = new Set<string>()
+  for (const threshold of [0, 0.25, 0.5, 0.75, 1]) {
+    await setThreshold(page, threshold)
+    const counts = await shownCounts(page)
+    assert.deepEqual(counts, await reportedCounts(target, cage, threshold), `threshold ${threshold}`)
+    assert.equal(await page.getByTestId('status').textContent(), 'ready')
+    seen.add(JSON.stringify(counts))
+  }
+  assert.ok(seen.size > 1, 'the threshold makes a difference on the sample')
+  assert.deepEqual(complaints, [])
+})
+
+test('a sample can be chosen again after files of one’s own, and everything is as before', async () => {
+  const { page } = await site.visit()
+  const before = await shownCounts(page)
+  const area = await modelArea(page)
+  const picture = await look(page, area)
+  await page.getByTestId('target-input').setInputFiles(glb('thing.glb', writeGlb(tetrahedron())))
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.equal(await page.getByTestId('sample-select').inputValue(), 'own')
+  assert.notDeepEqual(await shownCounts(page), before)
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))))
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 })
+
+  await page.getByTestId('sample-select').selectOption({ index: 0 })
+  assert.equal(await settled(page), 'ready')
+  assert.deepEqual(await shownCounts(page), before)
+  assert.ok(difference(picture, await look(page, area)) < 0.002)
+})
+
+test('of two models dropped together whose names say nothing, the simpler one is the cage, and they can be swapped', async () => {
+  const { page } = await site.visit()
+  const target = { ...read(path.join(kLizard, 'target.glb')), name: 'b.glb' }
+  const cage = { ...read(path.join(kLizard, 'cage.glb')), name: 'a.glb' }
+  const expected = await shownCounts(page)
+  await drop(page, [cage, target])
+  assert.equal(await settled(page), 'ready')
+  assert.deepEqual(await shownCounts(page), expected)
+  await page.locator('#swap').click()
+  await settled(page)
+  assert.notDeepEqual(await shownCounts(page), expected)
+  await page.locator('#swap').click()
+  assert.equal(await settled(page), 'ready')
+  assert.deepEqual(await shownCounts(page), expected)
+})
+
+test('the last of several files in a row wins', async () => {
+  const { page } = await site.visit()
+  const input = page.getByTestId('target-input')
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))))
+  for (let i = 0; i < 3; i++) await input.setInputFiles(read(path.join(kLizard, 'target.glb')))
+  await input.setInputFiles(glb('thing.glb', writeGlb(tetrahedron())))
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 })
+})
+
+test('a paint of one’s own, PNG or JPEG, is drawn on the model', async () => {
+  const { page, complaints } = await site.visit()
+  await page.locator('input[value=result]').check({ force: true })
+  const area = await modelArea(page)
+  const png = new PNG({ width: 8, height: 8 })
+  for (let at = 0; at < png.data.length; at += 4) png.data.set([200, 0, 220, 255], at)
+  assert.ok(shareOfHue(await look(page, area), 295) < 0.01)
+  await page.getByTestId('texture-input').setInputFiles({ name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(png) })
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  const violet = shareOfHue(await look(page, area), 295)
+  assert.ok(violet > 0.1, `${violet} of the picture is violet`)
+
+  const jpeg = await page.evaluate(() => {
+    const canvas = document.createElement('canvas')
+    canvas.width = canvas.height = 16
+    const context = canvas.getContext('2d')!
+    context.fillStyle = '#00c040'
+    context.fillRect(0, 0, 16, 16)
+    return canvas.toDataURL('image/jpeg', 1).split(',')[1]!
+  })
+  await page.getByTestId('texture-input').setInputFiles({ name: 'green.jpg', mimeType: 'image/jpeg', buffer: Buffer.from(jpeg, 'base64') })
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  const green = shareOfHue(await look(page, area), 140)
+  assert.ok(green > 0.1, `${green} of the picture is green`)
+  assert.deepEqual(complaints, [])
+})
+
+test('a glTF takes its buffer from a file dropped with it, and asks for it when it is missing', async () => {
+  const { page } = await site.visit()
+  const whole = writeGlb(tetrahedron())
+  const jsonLength = whole.readUInt32LE(12)
+  const json = JSON.parse(whole.subarray(20, 20 + jsonLength).toString())
+  json.buffers[0].uri = 'thing data.bin'
+  const gltf = { name: 'thing.gltf', mimeType: 'model/gltf+json', buffer: Buffer.from(JSON.stringify({ ...json, buffers: [{ ...json.buffers[0], uri: 'thing%20data.bin' }] })) }
+  const bin = { name: 'thing data.bin', mimeType: 'application/octet-stream', buffer: whole.subarray(28 + jsonLength) }
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))))
+  await settled(page)
+  await drop(page, [gltf])
+  assert.equal(await settled(page), 'error')
+  assert.match(await shownError(page), /thing\.gltf: .*thing data\.bin/)
+  await drop(page, [bin, gltf])
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 })
+})
+
+const formats = process.env.CAGECAST_ASSETS && path.join(process.env.CAGECAST_ASSETS, 'formats')
+for (const name of formats && existsSync(formats) ? readdirSync(formats) : []) {
+  test(`${name} opens, and counts what the command line reports`, async () => {
+    const { page, complaints } = await site.visit()
+    const target = path.join(formats!, name)
+    const cage = path.join(kLizard, 'cage.glb')
+    await page.getByTestId('target-input').setInputFiles({ ...read(target), name })
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    assert.deepEqual(await shownCounts(page), await reportedCounts(target, cage))
+    assert.deepEqual(complaints, [])
+  })
+}

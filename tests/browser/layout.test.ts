@@ -1,0 +1,117 @@
+import assert from 'node:assert/strict'
+import { after, before, test } from 'node:test'
+import { difference, look, modelArea } from './picture'
+import { Site } from './site'
+
+let site: Site
+before(async () => void (site = await Site.open()))
+after(() => site?.close())
+
+const kSizes = [
+  { name: 'phone', width: 390, height: 844 },
+  { name: 'small phone', width: 320, height: 568 },
+  { name: 'phone on its side', width: 844, height: 390 },
+  { name: 'tablet', width: 768, height: 1024 },
+  { name: 'desk', width: 1440, height: 900 },
+]
+
+/** Everything that is pressed or moved; for a box hidden behind its label, the label. */
+const kControls = 'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, #threshold, .knob, summary, #view'
+
+for (const { name, ...viewport } of kSizes) {
+  test(`${name}: nothing sticks out sideways, and every control can be reached and hit`, async () => {
+    const { page, complaints } = await site.visit({ viewport, hasTouch: viewport.width < 900 })
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)
+    assert.equal(wide, 0, 'no horizontal scroll')
+    const faults = await page.evaluate((controls) => {
+      const faults: string[] = []
+      for (const control of document.querySelectorAll<HTMLElement>(controls)) {
+        if (!control.checkVisibility()) continue
+        control.scrollIntoView({ block: 'center', behavior: 'instant' })
+        const { left, right, top, bottom, width, height } = control.getBoundingClientRect()
+        const label = control.id || control.textContent!.trim() || control.className
+        if (left < -0.5 || right > innerWidth + 0.5) faults.push(`${label} sticks out: ${left}..${right}`)
+        if (Math.min(width, height) < 24) faults.push(`${label} is small: ${width} × ${height}`)
+        const hit = document.elementFromPoint((left + right) / 2, (Math.max(0, top) + Math.min(innerHeight, bottom)) / 2)
+        // The line lies over the middle of the picture, on purpose.
+        if (control.id !== 'view' && !control.contains(hit)) faults.push(`${label} is covered by ${hit?.outerHTML.slice(0, 60)}`)
+      }
+      return faults
+    }, kControls)
+    assert.deepEqual(faults, [])
+    assert.deepEqual(complaints, [])
+  })
+}
+
+test('on a phone the picture stays in sight while the panel scrolls', async () => {
+  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true })
+  await page.getByTestId('threshold').scrollIntoViewIfNeeded()
+  const stage = (await page.locator('#stage').boundingBox())!
+  assert.ok(stage.y >= 0 && stage.y + stage.height < 844, `the stage is at ${stage.y}`)
+  const slider = (await page.getByTestId('threshold').boundingBox())!
+  assert.ok(slider.y >= stage.y + stage.height, 'the slider is below it, not behind')
+})
+
+test('a finger turns the model and moves the line', async () => {
+  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true })
+  const area = await modelArea(page)
+  const session = await page.context().newCDPSession(page)
+  const swipe = async (x: number, y: number, by: number): Promise<void> => {
+    const touch = (type: string, at?: number): Promise<unknown> =>
+      session.send('Input.dispatchTouchEvent' as never, { type, touchPoints: at === undefined ? [] : [{ x: at, y }] } as never)
+    await touch('touchStart', x)
+    for (let step = 1; step <= 4; step++) await touch('touchMove', x + (by * step) / 4)
+    await touch('touchEnd')
+    await page.waitForTimeout(600)
+  }
+  const before = await look(page, area)
+  await swipe(area.x + 40, area.y + area.height / 3, 90)
+  assert.ok(difference(before, await look(page, area)) > 0.02, 'the model turned')
+
+  const knob = (await page.locator('.knob').boundingBox())!
+  await swipe(knob.x + knob.width / 2, knob.y + knob.height / 2, 100)
+  const value = Number(await page.getByTestId('compare-slider').getAttribute('aria-valuenow'))
+  assert.ok(Math.abs(value - 100 * (295 / 390)) < 3, `the line is at ${value} %`)
+})
+
+for (const colorScheme of ['light', 'dark'] as const) {
+  test(`${colorScheme}: text stands out from its ground by 4.5 to 1 or more`, async () => {
+    const { page } = await site.visit({ colorScheme })
+    await page.locator('summary').click()
+    const faint = await page.evaluate(`(${contrastFaults})()`)
+    assert.deepEqual(faint, [])
+  })
+}
+
+// A text, as a function of its own would reach the page with the test compiler's helpers in it.
+const contrastFaults = `() => {
+  const channels = (color) => {
+    const context = new OffscreenCanvas(1, 1).getContext('2d')
+    context.fillStyle = color
+    context.fillRect(0, 0, 1, 1)
+    const [r, g, b, a] = context.getImageData(0, 0, 1, 1).data
+    return { rgb: [r, g, b], alpha: a / 255 }
+  }
+  const luminance = (rgb) => {
+    const [r, g, b] = rgb.map((value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4))
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b
+  }
+  const ground = (element) => {
+    for (let at = element; at; at = at.parentElement) {
+      const { rgb, alpha } = channels(getComputedStyle(at).backgroundColor)
+      if (alpha > 0.7) return rgb
+    }
+    return [255, 255, 255]
+  }
+  const faults = []
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT)
+  while (walker.nextNode()) {
+    const text = walker.currentNode
+    const element = text.parentElement
+    if (!text.data.trim() || !element.checkVisibility() || element.closest('script, noscript, .unseen, .skip')) continue
+    const [dark, light] = [luminance(channels(getComputedStyle(element).color).rgb), luminance(ground(element))].sort((a, b) => a - b)
+    const ratio = (light + 0.05) / (dark + 0.05)
+    if (ratio < 4.5) faults.push(text.data.trim().slice(0, 40) + ': ' + ratio.toFixed(2))
+  }
+  return faults
+}`

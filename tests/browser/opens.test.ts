@@ -1,0 +1,147 @@
+import assert from 'node:assert/strict'
+import { after, before, test } from 'node:test'
+import { columns, difference, look, modelArea, shareOfHue } from './picture'
+import { shownCounts, shownError, Site } from './site'
+
+let site: Site
+before(async () => void (site = await Site.open()))
+after(() => site?.close())
+
+test('the page opens with the first sample transferred, silently and without asking other hosts', async () => {
+  const { page, complaints, foreign } = await site.visit()
+  assert.equal(await page.getByTestId('status').textContent(), 'ready')
+  assert.equal(await shownError(page), '')
+  const { cosmetic, occluded, uncovered, culled } = await shownCounts(page)
+  assert.ok(cosmetic > 0 && occluded > 0 && uncovered > 0, 'the sample has paint, insides and holes')
+  const total = Number((await page.locator('#count-total').textContent())!.replaceAll(',', ''))
+  assert.equal(cosmetic + occluded + uncovered + culled, total)
+  assert.ok(Number(await page.getByTestId('time-total').textContent()) > 0)
+  assert.ok((await page.getByTestId('sample-select').locator('option').count()) > 0)
+  assert.deepEqual(complaints, [])
+  assert.deepEqual(foreign, [])
+})
+
+test('the content security policy forbids other hosts, inline scripts and eval', async () => {
+  const { page } = await site.visit()
+  const outcome = await page.evaluate(async () => {
+    const breaches: string[] = []
+    document.addEventListener('securitypolicyviolation', ({ effectiveDirective }) => breaches.push(effectiveDirective))
+    const refused = await fetch('https://example.org/').then(() => false, () => true)
+    const script = document.createElement('script')
+    script.textContent = 'globalThis.inlineRan = true'
+    document.head.append(script)
+    await new Promise((done) => setTimeout(done, 100))
+    // The test's own evaluation is exempt from the policy; a timer of the page is not.
+    return { refused, breaches, ran: 'inlineRan' in globalThis }
+  })
+  assert.equal(outcome.refused, true)
+  assert.equal(outcome.ran, false)
+  assert.ok(outcome.breaches.includes('connect-src') && outcome.breaches.includes('script-src-elem'), outcome.breaches.join())
+  const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content')
+  assert.match(policy!, /script-src 'self' 'wasm-unsafe-eval';/)
+})
+
+test('paint, zones and cage are really drawn, and the line shows naive and filtered side by side', async () => {
+  const { page, complaints } = await site.visit()
+  const area = await modelArea(page)
+  const mode = (value: string): Promise<void> => page.locator(`input[value=${value}]`).check({ force: true })
+  const layer = (name: string, on: boolean): Promise<void> => page.locator(`#show-${name}`).setChecked(on, { force: true })
+
+  const compared = await look(page, area)
+  await mode('result')
+  const result = await look(page, area)
+  await mode('naive')
+  const naive = await look(page, area)
+  assert.ok(difference(result, naive) > 0.01, 'the filter changes the picture')
+  // Clear of the line itself, which is 2 pixels wide, and of its knob.
+  assert.ok(difference(columns(compared, 0, 0.45), columns(naive, 0, 0.45)) < 0.002, 'naive on the left')
+  assert.ok(difference(columns(compared, 0.55, 1), columns(result, 0.55, 1)) < 0.002, 'filtered on the right')
+
+  await mode('result')
+  await layer('paint', false)
+  const bare = await look(page, area)
+  assert.ok(difference(result, bare) > 0.05, 'paint covers the model')
+  await layer('zones', true)
+  const zones = await look(page, area)
+  const [blue, orange] = [shareOfHue(zones, 202), shareOfHue(zones, 41)]
+  assert.ok(blue > 0.005 && orange > 0.005, `occluded in blue (${blue}), uncovered in orange (${orange})`)
+  await layer('zones', false)
+  assert.ok(difference(bare, await look(page, area)) < 0.002, 'zones leave no trace when switched off')
+  await layer('cage', true)
+  assert.ok(difference(bare, await look(page, area)) > 0.02, 'the cage is drawn')
+  assert.deepEqual(complaints, [])
+})
+
+test('the line moves with the pointer and with the keys of a slider', async () => {
+  const { page } = await site.visit()
+  const divider = page.getByTestId('compare-slider')
+  const value = async (): Promise<number> => Number(await divider.getAttribute('aria-valuenow'))
+  assert.equal(await value(), 50)
+  await divider.focus()
+  await page.keyboard.press('ArrowLeft')
+  assert.equal(await value(), 45)
+  await page.keyboard.press('End')
+  assert.equal(await value(), 100)
+
+  const knob = (await page.locator('.knob').boundingBox())!
+  const stage = (await page.locator('#stage').boundingBox())!
+  await page.keyboard.press('Home')
+  await page.keyboard.press('PageUp')
+  assert.equal(await value(), 20)
+  const from = { x: stage.x + 0.2 * stage.width, y: knob.y + knob.height / 2 }
+  await page.mouse.move(from.x, from.y)
+  await page.mouse.down()
+  await page.mouse.move(stage.x + 0.7 * stage.width, from.y, { steps: 4 })
+  await page.mouse.up()
+  assert.ok(Math.abs((await value()) - 70) <= 1, `dragged to ${await value()}`)
+})
+
+test('the model turns by mouse and by keys, and comes back home', async () => {
+  const { page } = await site.visit()
+  await page.locator('input[value=result]').check({ force: true })
+  const area = await modelArea(page)
+  const home = await look(page, area)
+  await page.locator('#view').focus()
+  await page.keyboard.press('ArrowRight')
+  await page.waitForTimeout(500)
+  assert.ok(difference(home, await look(page, area)) > 0.02, 'an arrow key turns it')
+  await page.keyboard.press('Home')
+  await page.waitForTimeout(500)
+  assert.ok(difference(home, await look(page, area)) < 0.01, 'Home brings it back')
+
+  await page.mouse.move(area.x + area.width / 2, area.y + area.height / 2)
+  await page.mouse.down()
+  await page.mouse.move(area.x + area.width / 2 + 120, area.y + area.height / 2, { steps: 4 })
+  await page.mouse.up()
+  await page.waitForTimeout(500)
+  assert.ok(difference(home, await look(page, area)) > 0.02, 'a drag turns it')
+})
+
+test('the model turns by itself until it is touched, and not for those who want no motion', async () => {
+  const moving = await site.visit({ reducedMotion: 'no-preference', viewport: { width: 800, height: 700 } })
+  const area = await modelArea(moving.page)
+  const first = await look(moving.page, area)
+  await moving.page.waitForTimeout(700)
+  assert.ok(difference(first, await look(moving.page, area)) > 0.01, 'it turns')
+  await moving.page.locator('#view').focus()
+  await moving.page.keyboard.press('ArrowUp')
+  await moving.page.waitForTimeout(700)
+  const touched = await look(moving.page, area)
+  await moving.page.waitForTimeout(700)
+  assert.ok(difference(touched, await look(moving.page, area)) < 0.002, 'it stands still once touched')
+
+  const still = await site.visit({ viewport: { width: 800, height: 700 } })
+  const before = await look(still.page, area)
+  await still.page.waitForTimeout(700)
+  assert.equal(difference(before, await look(still.page, area)), 0)
+})
+
+test('without WebGL the page says so, and still counts', async () => {
+  const { page } = await site.visit({}, `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+    apply: (original, canvas, args) => (String(args[0]).startsWith('webgl') ? null : Reflect.apply(original, canvas, args)),
+  })`)
+  assert.equal(await page.getByTestId('status').textContent(), 'ready')
+  assert.match((await page.locator('#stage-notice').textContent())!, /WebGL/)
+  assert.equal(await page.locator('#stage-notice').isVisible(), true)
+  assert.ok((await shownCounts(page)).cosmetic > 0)
+})

@@ -1,0 +1,56 @@
+import type { Page } from 'playwright-core'
+import { PNG } from 'pngjs'
+
+/** A part of the page, in CSS pixels. */
+export interface Area {
+  x: number
+  y: number
+  width: number
+  height: number
+}
+
+/** The middle of the picture, free of the controls that lie on it. */
+export async function modelArea(page: Page): Promise<Area> {
+  const box = (await page.locator('#view').boundingBox())!
+  return { x: box.x + 0.1 * box.width, y: box.y + 0.14 * box.height, width: 0.8 * box.width, height: 0.5 * box.height }
+}
+
+/** What is to be seen in an area of the page, two frames from now. */
+export async function look(page: Page, area: Area): Promise<PNG> {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))
+  return PNG.sync.read(await page.screenshot({ clip: area }))
+}
+
+/** The share of pixels that differ visibly between two pictures of one size, 0..1. */
+export function difference(a: PNG, b: PNG): number {
+  if (a.width !== b.width || a.height !== b.height) throw new Error('the pictures differ in size')
+  let differing = 0
+  for (let at = 0; at < a.data.length; at += 4) {
+    const apart = Math.max(...[0, 1, 2].map((channel) => Math.abs(a.data[at + channel]! - b.data[at + channel]!)))
+    if (apart > 16) differing++
+  }
+  return differing / (a.width * a.height)
+}
+
+/** The columns `from` to `to` of a picture, as shares of its width. */
+export function columns(picture: PNG, from: number, to: number): PNG {
+  const left = Math.round(from * picture.width)
+  const part = new PNG({ width: Math.round(to * picture.width) - left, height: picture.height })
+  PNG.bitblt(picture, part, left, 0, part.width, part.height, 0, 0)
+  return part
+}
+
+/** The share of pixels whose hue is within 12° of `hue` and which are clearly coloured. */
+export function shareOfHue({ data, width, height }: PNG, hue: number): number {
+  let found = 0
+  for (let at = 0; at < data.length; at += 4) {
+    const [r, g, b] = [data[at]!, data[at + 1]!, data[at + 2]!]
+    const most = Math.max(r, g, b)
+    const spread = most - Math.min(r, g, b)
+    if (spread < 0.35 * most || most < 60) continue
+    const sixth = most === r ? ((g - b) / spread + 6) % 6 : most === g ? (b - r) / spread + 2 : (r - g) / spread + 4
+    const apart = Math.abs(60 * sixth - hue)
+    if (Math.min(apart, 360 - apart) < 12) found++
+  }
+  return found / (width * height)
+}

@@ -1,0 +1,165 @@
+import { execFileSync } from 'node:child_process'
+import { mkdtemp, rm } from 'node:fs/promises'
+import { tmpdir } from 'node:os'
+import path from 'node:path'
+import { fileURLToPath } from 'node:url'
+import { chromium, type Browser, type BrowserContext, type BrowserContextOptions, type Page } from 'playwright-core'
+import { build, preview } from 'vite'
+
+const kRoot = fileURLToPath(new URL('../..', import.meta.url))
+const kConfig = path.join(kRoot, 'web/vite.config.ts')
+/** Long enough for software rendering on a busy machine; a page that hangs still ends the test. */
+const kPatience = 60_000
+
+/** A file inside the repository. */
+export const inRepository = (...names: string[]): string => path.join(kRoot, ...names)
+
+/** The page in a browser, and everything it complained about or asked other hosts for. */
+export interface Visit {
+  page: Page
+  /** Errors and warnings on the console, exceptions, breaches of the content security policy. */
+  complaints: string[]
+  /** Addresses asked for that are not the site's own. */
+  foreign: string[]
+}
+
+/** The built page, served, and a browser to visit it with. */
+export class Site {
+  private visitor: BrowserContext | undefined
+
+  private constructor(
+    readonly url: string,
+    private readonly browser: Browser,
+    private readonly stop: () => Promise<void>,
+  ) {}
+
+  /** Builds the page as it is published, serves it on a free port and starts Chromium (env CHROMIUM: another one). */
+  static async open(): Promise<Site> {
+    const outDir = await mkdtemp(path.join(tmpdir(), 'cagecast-page-'))
+    await build({ configFile: kConfig, logLevel: 'error', build: { outDir } })
+    const server = await preview({ configFile: kConfig, logLevel: 'error', build: { outDir }, preview: { host: '127.0.0.1', port: 0 } })
+    const browser = await chromium.launch({ executablePath: findChromium(), args: kFlags })
+    return new Site(server.resolvedUrls!.local[0]!, browser, async () => {
+      await browser.close()
+      await server.close()
+      await rm(outDir, { recursive: true, force: true })
+    })
+  }
+
+  close(): Promise<void> {
+    return this.stop()
+  }
+
+  /**
+   * Opens the page and waits until it shows the first sample. One visit at a time: a new one ends the last.
+   * @param options   A still picture 1000 × 700 in light colours unless they say otherwise.
+   * @param prepare   A script that runs in the page before its own.
+   */
+  async visit(options: BrowserContextOptions = {}, prepare?: string): Promise<Visit> {
+    await this.visitor?.close()
+    this.visitor = await this.browser.newContext({
+      viewport: { width: 1000, height: 700 },
+      colorScheme: 'light',
+      reducedMotion: 'reduce',
+      ...options,
+    })
+    const page = await this.visitor.newPage()
+    page.setDefaultTimeout(kPatience)
+    const visit: Visit = { page, complaints: [], foreign: [] }
+    page.on('console', (message) => {
+      if (message.type() === 'error' || message.type() === 'warning') visit.complaints.push(message.text())
+    })
+    page.on('pageerror', (error) => visit.complaints.push(String(error)))
+    page.on('request', (request) => {
+      const { origin, protocol } = new URL(request.url())
+      if (protocol.startsWith('http') && origin !== new URL(this.url).origin) visit.foreign.push(request.url())
+    })
+    if (prepare) await page.addInitScript({ content: prepare })
+    await page.goto(this.url)
+    await settled(page)
+    return visit
+  }
+}
+
+const kFlags = [
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+  '--ignore-gpu-blocklist',
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+]
+
+function findChromium(): string {
+  if (process.env.CHROMIUM) return process.env.CHROMIUM
+  try {
+    return execFileSync('sh', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim()
+  } catch {
+    throw new Error('The browser tests need Chromium: install the package "chromium", or set CHROMIUM to its path.')
+  }
+}
+
+/** Waits until the page neither loads nor works, and returns its status. */
+export async function settled(page: Page): Promise<string> {
+  const status = page.getByTestId('status')
+  await page.waitForFunction(
+    () => ['ready', 'error'].includes(document.querySelector('[data-testid=status]')?.textContent ?? ''),
+    undefined,
+    { timeout: kPatience },
+  )
+  return (await status.textContent())!
+}
+
+/** Numbers of target vertices by zone. */
+export interface Counts {
+  cosmetic: number
+  occluded: number
+  uncovered: number
+  culled: number
+}
+
+/** The counts as the page shows them. */
+export async function shownCounts(page: Page): Promise<Counts> {
+  const count = async (zone: string): Promise<number> => {
+    const text = (await page.getByTestId(`count-${zone}`).textContent())!
+    if (!/^\d+$/.test(text)) throw new Error(`count-${zone} is “${text}”, not bare digits`)
+    return Number(text)
+  }
+  return { cosmetic: await count('cosmetic'), occluded: await count('occluded'), uncovered: await count('uncovered'), culled: await count('culled') }
+}
+
+/** The message the page shows, or an empty string. */
+export async function shownError(page: Page): Promise<string> {
+  const error = page.getByTestId('error')
+  return (await error.isVisible()) ? (await error.textContent())! : ''
+}
+
+/** Moves the threshold's slider, as a hand would. */
+export async function setThreshold(page: Page, threshold: number): Promise<void> {
+  await page.getByTestId('threshold').fill(String(threshold))
+}
+
+/** A file to give to the page. */
+export interface Upload {
+  name: string
+  mimeType: string
+  buffer: Buffer
+}
+
+/** Drops files on the page, all at once. */
+export async function drop(page: Page, uploads: Upload[]): Promise<void> {
+  const files = uploads.map(({ name, mimeType, buffer }) => ({ name, mimeType, base64: buffer.toString('base64') }))
+  await page.evaluate(async (files) => {
+    const transfer = new DataTransfer()
+    for (const { name, mimeType, base64 } of files) {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))
+      transfer.items.add(new File([bytes], name, { type: mimeType }))
+    }
+    for (const type of ['dragover', 'drop']) {
+      document.body.dispatchEvent(new DragEvent(type, { dataTransfer: transfer, bubbles: true, cancelable: true }))
+    }
+  }, files)
+}
