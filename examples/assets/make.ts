@@ -11,6 +11,7 @@ import { writeGlb } from './glb.ts'
 import { drawTexture } from './image.ts'
 import { triangleCount, withMeshNormals } from './mesh.ts'
 import type { Model } from './model.ts'
+import { car } from './models/car.ts'
 import { human, humanFused, humanMisaligned } from './models/human.ts'
 import { lizard } from './models/lizard.ts'
 import { truthOf } from './truth.ts'
@@ -20,7 +21,7 @@ const root = join(here, '../..')
 const out = join(root, 'build/assets')
 const kPaintSize = 1024
 
-const models: Record<string, () => Model> = { lizard, human, 'human-fused': humanFused, 'human-misaligned': humanMisaligned }
+const models: Record<string, () => Model> = { lizard, human, 'human-fused': humanFused, 'human-misaligned': humanMisaligned, car }
 
 /** One entry of build/assets/index.json; paths are relative to build/assets. */
 interface Entry {

@@ -1,7 +1,7 @@
-import Module from 'manifold-3d'
+import Module, { type Manifold } from 'manifold-3d'
 import { MeshoptSimplifier } from 'meshoptimizer'
 import { type Sdf, gradient } from './sdf.ts'
-import { type Vec3, add, cross, length, scale, sub, unit } from './vec.ts'
+import { type Vec3, add, cross, dot, length, scale, sub, unit } from './vec.ts'
 
 /** Triangles, counter-clockwise seen from outside. */
 export interface Mesh {
@@ -16,7 +16,8 @@ export interface Bounds {
   max: Vec3
 }
 
-const manifold = await Module()
+/** The library of solids, ready to use. */
+export const manifold = await Module()
 manifold.setup()
 await MeshoptSimplifier.ready
 
@@ -55,12 +56,17 @@ export const diagonalOf = (positions: ArrayLike<number>): number => {
 export const surface = (solid: Sdf, bounds: Bounds, edge: number, lens: (p: Vec3) => Vec3 = (p) => p): Mesh => {
   const box = { min: [...bounds.min] as [number, number, number], max: [...bounds.max] as [number, number, number] }
   const result = manifold.Manifold.levelSet((p) => -solid(...lens([p[0]!, p[1]!, p[2]!])), box, edge, 0, edge * 0.01)
-  const mesh = result.getMesh()
-  result.delete()
+  return fromSolid(result, lens)
+}
+
+/** The mesh of a solid of the library, each point put through `place`; the solid is freed. */
+export const fromSolid = (solid: Manifold, place: (p: Vec3) => Vec3 = (p) => p): Mesh => {
+  const mesh = solid.getMesh()
+  solid.delete()
   const positions = new Float32Array(mesh.numVert * 3)
   for (let v = 0; v < mesh.numVert; v++) {
     const [x, y, z] = mesh.position(v)
-    positions.set(lens([x!, y!, z!]), 3 * v)
+    positions.set(place([x!, y!, z!]), 3 * v)
   }
   return { positions, indices: new Uint32Array(mesh.triVerts) }
 }
@@ -328,6 +334,30 @@ export const withMeshNormals = (mesh: Mesh): Mesh => {
   for (let v = 0; v < vertexCount(mesh); v++)
     normals.set(unit([sums[3 * v]!, sums[3 * v + 1]!, sums[3 * v + 2]!]), 3 * v)
   return { ...mesh, normals }
+}
+
+/** Normals as above, but not across edges sharper than `angle` (radians): there the vertices are doubled. */
+export const withCreasedNormals = (mesh: Mesh, angle: number): Mesh => {
+  const faces = Array.from({ length: triangleCount(mesh) }, (_, t) => faceNormal(mesh, t))
+  const around: number[][] = Array.from({ length: vertexCount(mesh) }, () => [])
+  mesh.indices.forEach((v, i) => around[v]!.push(Math.floor(i / 3)))
+  const place = new Map<string, number>()
+  const positions: number[] = []
+  const normals: number[] = []
+  const indices = mesh.indices.map((v, i) => {
+    const own = unit(faces[Math.floor(i / 3)]!)
+    const alike = around[v]!.filter((t) => dot(own, unit(faces[t]!)) > Math.cos(angle))
+    const normal = unit(alike.map((t) => faces[t]!).reduce((a, b) => add(a, b), [0, 0, 0] as Vec3))
+    const key = `${v} ${normal.map((x) => x.toFixed(3)).join(' ')}`
+    let at = place.get(key)
+    if (at === undefined) {
+      place.set(key, (at = positions.length / 3))
+      positions.push(...point(mesh, v))
+      normals.push(...normal)
+    }
+    return at
+  })
+  return { positions: Float32Array.from(positions), normals: Float32Array.from(normals), indices }
 }
 
 /** The normal of a triangle, as long as twice its area. */

@@ -75,6 +75,38 @@ export const box =
     return out + Math.min(Math.max(a, b, d), 0) - r
   }
 
+/** The distance to a flat polygon, negative inside it. */
+export const polygon =
+  (points: readonly (readonly [number, number])[]): ((u: number, v: number) => number) =>
+  (u, v) => {
+    let d = Infinity
+    let inside = false
+    points.forEach((a, i) => {
+      const b = points[(i + 1) % points.length]!
+      const [ex, ey] = [b[0] - a[0], b[1] - a[1]]
+      const [px, py] = [u - a[0], v - a[1]]
+      const t = Math.min(Math.max((px * ex + py * ey) / (ex * ex + ey * ey), 0), 1)
+      d = Math.min(d, Math.hypot(px - t * ex, py - t * ey))
+      if (a[1] > v !== b[1] > v && u < a[0] + ((v - a[1]) / ey) * ex) inside = !inside
+    })
+    return inside ? -d : d
+  }
+
+/** A ring about an axis parallel to x through `c`: its radius, and the radius of its tube. */
+export const ring =
+  (c: Vec3, radius: number, tubeRadius: number): Sdf =>
+  (x, y, z) =>
+    Math.hypot(Math.hypot(y - c[1], z - c[2]) - radius, x - c[0]) - tubeRadius
+
+/** A disc about an axis parallel to x through `c`, `half` to each side, its edges rounded by `r`. */
+export const disc =
+  (c: Vec3, radius: number, half: number, r = 0): Sdf =>
+  (x, y, z) => {
+    const a = Math.hypot(y - c[1], z - c[2]) - radius + r
+    const b = Math.abs(x - c[0]) - half + r
+    return Math.min(Math.max(a, b), 0) + Math.hypot(Math.max(a, 0), Math.max(b, 0)) - r
+  }
+
 /** The half-space on the side that unit normal `n` points away from; its surface goes through `p`. */
 export const halfSpace = (p: Vec3, n: Vec3): Sdf => {
   const d = dot(p, n)

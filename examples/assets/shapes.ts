@@ -1,4 +1,4 @@
-import { type Mesh, withMeshNormals } from './mesh.ts'
+import { type Mesh, fromSolid, manifold, withCreasedNormals, withMeshNormals } from './mesh.ts'
 import { type Vec3, add, frame, mix, scale, sub } from './vec.ts'
 
 /** A ball with its pole along `forward` and UVs whose centre (0.5, 0.5) is that pole, so an iris is a disc in the texture. */
@@ -83,4 +83,44 @@ export const alongLine = (line: readonly Vec3[], count: number): { at: Vec3; ahe
     while (i < lengths.length - 1 && left > lengths[i]!) left -= lengths[i++]!
     return { at: mix(line[i]!, line[i + 1]!, left / lengths[i]!), ahead: sub(line[i + 1]!, line[i]!) }
   })
+}
+
+/** A profile (distance from the axis, place along it), turned about an axis parallel to x through `centre`; both ends stay open. */
+export const lathe = (centre: Vec3, profile: readonly (readonly [number, number])[], segments: number): Mesh => {
+  const positions: number[] = []
+  for (const [r, x] of profile)
+    for (let j = 0; j < segments; j++) {
+      const a = (2 * Math.PI * j) / segments
+      positions.push(centre[0] + x, centre[1] + r * Math.sin(a), centre[2] + r * Math.cos(a))
+    }
+  const indices: number[] = []
+  for (let i = 0; i + 1 < profile.length; i++)
+    for (let j = 0; j < segments; j++) {
+      const [a, b] = [i * segments + j, i * segments + ((j + 1) % segments)]
+      indices.push(a, b, b + segments, a, b + segments, a + segments)
+    }
+  return withMeshNormals({ positions: Float32Array.from(positions), indices: Uint32Array.from(indices) })
+}
+
+/**
+ * A wheel rim about an axis parallel to x through `centre`, its face towards +x: a profile (distance from the axis, place along
+ * it; closed on the axis), turned, with a window between every two spokes.
+ */
+export const spokedRim = (
+  centre: Vec3, profile: readonly (readonly [number, number])[], segments: number, spokes: number, from: number, to: number,
+): Mesh => {
+  const { Manifold } = manifold
+  let solid = Manifold.revolve([profile.map(([r, x]) => [r, x] as [number, number])], segments)
+  const half = (Math.PI / spokes) * 0.72
+  const window = [
+    ...[-1, 0, 1].map((k) => [to, half * k] as const),
+    ...[1, -1].map((k) => [from, half * 0.62 * k] as const),
+  ].map(([r, a]) => [r * Math.cos(a), r * Math.sin(a)] as [number, number])
+  for (let k = 0; k < spokes; k++) {
+    const hole = Manifold.extrude([window], 1, 0, 0, [1, 1], true).rotate([0, 0, ((k + 0.5) * 360) / spokes])
+    solid = solid.subtract(hole)
+  }
+  // The solid's axis is z: x, y and z of the model are its z, x and y.
+  const mesh = fromSolid(solid, ([a, b, c]) => [centre[0] + c, centre[1] + a, centre[2] + b])
+  return withCreasedNormals(mesh, 0.6)
 }
