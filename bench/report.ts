@@ -1,0 +1,112 @@
+import { writeFile } from 'node:fs/promises';
+import { goalsOf, isReached, phone } from './goals.js';
+import { scalingPlot, stagesPlot, totalsPlot } from './plots.js';
+import { resultsFolder, type Results } from './results.js';
+
+const ms = (value: number | undefined): string => (value === undefined ? '–' : value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(value < 0.1 ? 3 : 2));
+const times = (value: number | undefined): string => (value === undefined ? '–' : `${value >= 10 ? value.toFixed(1) : value.toFixed(2)}×`);
+
+function table(head: string[], rows: string[][]): string {
+  const line = (cells: string[]): string => `| ${cells.join(' | ')} |`;
+  return [line(head), line(head.map((_, i) => (i === 0 ? '---' : '---:'))), ...rows.map(line), ''].join('\n');
+}
+
+/** Writes the table and the plots of results, over those of earlier ones. */
+export async function writeReport(results: Results): Promise<void> {
+  await writeFile(`${resultsFolder}/README.md`, markdown(results));
+  if (results.native === undefined) return;
+  await writeFile(`${resultsFolder}/totals.svg`, totalsPlot(results));
+  await writeFile(`${resultsFolder}/stages.svg`, stagesPlot(results));
+  await writeFile(`${resultsFolder}/scaling.svg`, scalingPlot(results));
+}
+
+function markdown(results: Results): string {
+  const { date, machine, native, web, mobile } = results;
+  const parts = [
+    `# Measured on ${date}`,
+    `${machine.processor}, ${machine.cores} cores; Node ${machine.node}${machine.compiler ? `, g++ ${machine.compiler}` : ''}${machine.chromium ? `, Chromium ${machine.chromium}` : ''}. Written by \`npm run bench\`; all numbers: [${date}.json](${date}.json).`,
+    'Every time is that of the whole work, from raw arrays to zones, single-threaded; medians, in ms: CPU time natively, wall time in JavaScript. A ratio is the median over pairs of runs, one right after the other.',
+    '![Totals by size](totals.svg)',
+    '![Steps at 4.8k triangles](stages.svg)',
+    '![Scaling](scaling.svg)',
+  ];
+  const goals = goalsOf(results);
+  parts.push(
+    '## Goals',
+    table(
+      ['', 'measured', 'goal', ''],
+      goals.map((goal) => {
+        const reached = isReached(goal);
+        const unit = goal.unit === '×' ? '×' : goal.unit && ` ${goal.unit}`;
+        return [goal.what, goal.value === undefined ? 'not measured' : `${ms(goal.value)}${unit}`, `${goal.kind} ${goal.limit}${unit}`, reached === undefined ? '' : reached ? 'yes' : 'no'];
+      }),
+    ),
+  );
+  if (native) {
+    parts.push(
+      '## Native',
+      table(
+        ['scene', 'triangles', 'cage', 'Cagecast', 'Embree', 'ratio', 'nanoflann', 'ratio', 'MB above inputs', 'B/triangle'],
+        Object.entries(native).map(([scene, r]) => [
+          scene,
+          String(r.triangles),
+          String(r.cageTriangles),
+          ms(r.cagecast.total.median),
+          ms(r.peers['embree']?.times.total.median),
+          times(r.peers['embree']?.ratios.total),
+          ms(r.peers['nanoflann']?.times.total.median),
+          times(r.peers['nanoflann']?.ratios.total),
+          (r.peakBytes / 1e6).toFixed(2),
+          (r.peakBytes / r.triangles).toFixed(0),
+        ]),
+      ),
+      'Embree 3.13, in the form in which it is fastest at this (bench/native/embree_peer.cpp says what was tried), computes the same zones. nanoflann finds the nearest cage *vertex* and filters nothing.',
+    );
+    const sample = native['4.8k'];
+    const embree = sample?.peers['embree'];
+    if (sample) {
+      parts.push(
+        table(
+          ['4.8k, step by step', 'Cagecast', 'min–max', 'Embree', 'ratio'],
+          Object.entries(sample.cagecast).map(([stage, t]) => {
+            const theirs = embree?.times[stage as 'total'];
+            return [stage, ms(t.median), `${ms(t.min)}–${ms(t.max)}`, theirs && theirs.median > 0 ? ms(theirs.median) : '–', times(embree?.ratios[stage as 'total'])];
+          }),
+        ),
+      );
+    }
+  }
+  if (web) {
+    const scenes = Object.keys(web.chromium);
+    parts.push(
+      '## In JavaScript',
+      table(
+        ['scene', 'Cagecast, Chromium', 'three-mesh-bvh, Chromium', 'ratio', 'Cagecast, Node', 'three-mesh-bvh, Node', 'ratio'],
+        scenes.map((scene) => {
+          const [page, node] = [web.chromium[scene], web.node[scene]];
+          return [scene, ms(page?.cagecast.median), ms(page?.peer?.total.median), times(page?.peer?.ratio), ms(node?.cagecast.median), ms(node?.peer?.total.median), times(node?.peer?.ratio)];
+        }),
+      ),
+      `three-mesh-bvh in the form in which it is fastest at this (bench/web/bvh-peer.ts says what was tried), in the same page. Native Embree on the same core, in turn with Chromium, takes ${times(web.againstNativeEmbree.ratio)} the package’s time at 4.8k (${ms(web.againstNativeEmbree.embree)} and ${ms(web.againstNativeEmbree.cagecast)} ms).`,
+    );
+  }
+  if (mobile) {
+    const estimate = (1e3 * mobile.aarch64.perRun) / phone.instructionsPerSecond;
+    parts.push(
+      '## Phones',
+      `64-bit ARM (NEON) under QEMU: ${(mobile.aarch64.perRun / 1e6).toFixed(2)} M instructions a transfer at 4.8k${mobile.aarch64.sameAnswer ? ', with bit-identical results' : ', BUT WITH ANOTHER RESULT'}. That is ${ms(estimate)} ms on a ${phone.name}, assuming one instruction per cycle. x86-64: ${(mobile.x86_64.perRun / 1e6).toFixed(2)} M.`,
+      table(
+        ['Chromium, 4.8k', 'warm', 'first use', '= import', '+ init', '+ transfer'],
+        Object.keys(mobile.firstUse).map((rate) => {
+          const first = mobile.firstUse[rate]!;
+          return [rate === '1' ? 'as it is' : `slowed ${rate}×`, ms(mobile.warm[rate]?.cagecast.median), ms(first.total), ms(first.import), ms(first.init), ms(first.transfer)];
+        }),
+      ),
+      'The first use is that of a browser that was just started.',
+    );
+  }
+  if (results.size) {
+    parts.push('## Size', table(['file', 'bytes', 'gzipped'], Object.entries(results.size).map(([name, { raw, gz }]) => [name, String(raw), String(gz)])));
+  }
+  return `${parts.join('\n\n').replace(/\n{3,}/g, '\n\n').trim()}\n`;
+}

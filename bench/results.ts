@@ -1,0 +1,44 @@
+import { mkdir, readFile, writeFile } from 'node:fs/promises';
+import { root, type NativeResult } from './native.js';
+import type { InstructionCount } from './instructions.js';
+import type { Size } from './size.js';
+import type { RaceResult } from './web.js';
+import type { FirstUse } from './web/first-page.js';
+
+/** Everything that one run of the benchmark found out. Parts that were not run are missing. */
+export interface Results {
+  date: string;
+  machine: { processor: string; cores: number; node: string; compiler?: string; chromium?: string };
+  /** By scene. */
+  native?: Record<string, NativeResult>;
+  web?: {
+    node: Record<string, RaceResult>;
+    chromium: Record<string, RaceResult>;
+    /** Chromium against native Embree, both pinned to one core; the ratio is Embree's time ÷ the package's. */
+    againstNativeEmbree: { ratio: number; cagecast: number; embree: number };
+  };
+  mobile?: {
+    aarch64: InstructionCount & { sameAnswer: boolean };
+    x86_64: InstructionCount;
+    /** By how many times Chromium is slowed down. */
+    warm: Record<string, RaceResult>;
+    firstUse: Record<string, FirstUse>;
+  };
+  size?: Record<string, Size>;
+}
+
+/** Where results are kept; the plots and the table always show the newest. */
+export const resultsFolder = `${root}bench/results`;
+
+/** Reads the results of a day; undefined if there are none. */
+export async function readResults(date: string): Promise<Results | undefined> {
+  const text = await readFile(`${resultsFolder}/${date}.json`, 'utf8').catch(() => undefined);
+  return text === undefined ? undefined : (JSON.parse(text) as Results);
+}
+
+export async function writeResults(results: Results): Promise<void> {
+  await mkdir(resultsFolder, { recursive: true });
+  // Six digits are more than any of these times is good for.
+  const text = JSON.stringify(results, (_, value: unknown) => (typeof value === 'number' && !Number.isInteger(value) ? Number(value.toPrecision(6)) : value), 1);
+  await writeFile(`${resultsFolder}/${results.date}.json`, `${text}\n`);
+}

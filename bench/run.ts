@@ -1,0 +1,169 @@
+// Measures everything, and writes bench/results.
+//
+//   npm run bench [-- options]
+//     --only native,web,mobile,size   only these parts; what else is known of today stays in the results
+//     --quick                         few runs, up to 50k triangles: to see whether it works, not how fast it is
+//     --record                        record the instruction counts of now as the budget of later ones, and stop
+//     --check                         hold instruction counts and sizes against the budget, and stop
+//
+// With CAGECAST_ASSETS naming a folder of models (each a folder with target.glb and cage.glb) those are measured too.
+
+import { existsSync, readdirSync } from 'node:fs';
+import { cpus } from 'node:os';
+import { parseArgs } from 'node:util';
+import { checkInstructions, checkSizes, recordBudget } from './budget.js';
+import { goalsOf, isReached } from './goals.js';
+import { countAarch64, countX86, hashOnAarch64 } from './instructions.js';
+import { buildNative, measureNative, root, saveScene } from './native.js';
+import { writeReport } from './report.js';
+import { readResults, resultsFolder, writeResults, type Results } from './results.js';
+import { makeScenes, sampleScene, scenes, type BenchScene } from './scenes.js';
+import { measureSizes } from './size.js';
+import { buildWeb, raceInNode, WebBench } from './web.js';
+
+const parts = ['native', 'web', 'mobile', 'size'] as const;
+
+const began = Date.now();
+const say = (line: string): void => console.error(`[${((Date.now() - began) / 1000).toFixed(0).padStart(4)} s] ${line}`);
+
+function fail(message: string): never {
+  console.error(message);
+  process.exit(2);
+}
+
+function options(): { only: readonly string[]; quick: boolean; record: boolean; check: boolean } {
+  try {
+    const { values } = parseArgs({
+      options: { only: { type: 'string' }, quick: { type: 'boolean' }, record: { type: 'boolean' }, check: { type: 'boolean' } },
+    });
+    const only = values.only?.split(',') ?? parts;
+    const unknown = only.find((part) => !(parts as readonly string[]).includes(part));
+    if (unknown !== undefined) fail(`--only ${unknown}: there are ${parts.join(', ')}`);
+    return { only, quick: values.quick ?? false, record: values.record ?? false, check: values.check ?? false };
+  } catch (error) {
+    fail((error as Error).message);
+  }
+}
+
+/** The models of the folder that CAGECAST_ASSETS names, as scenes. */
+async function sharedScenes(): Promise<BenchScene[]> {
+  const folder = process.env['CAGECAST_ASSETS'];
+  if (folder === undefined) return [];
+  const found: BenchScene[] = [];
+  for (const name of readdirSync(folder).sort()) {
+    const [target, cage] = [`${folder}/${name}/target.glb`, `${folder}/${name}/cage.glb`];
+    if (!existsSync(target) || !existsSync(cage)) continue;
+    const path = `${root}build/bench/scenes/model-${name}.scene`;
+    await saveScene(target, cage, path);
+    found.push({ name, triangles: 10_000, cage: 'fixed', shuffled: false, path });
+  }
+  return found;
+}
+
+/** More runs of what is short. */
+function runsFor(triangles: number, quick: boolean): number {
+  const runs = triangles <= 10_000 ? 101 : triangles <= 50_000 ? 31 : triangles <= 500_000 ? 11 : 5;
+  return quick ? Math.max(3, Math.round(runs / 10)) : runs;
+}
+
+async function main(): Promise<void> {
+  const { only, quick, record, check } = options();
+  say('building');
+  await buildNative();
+  if (record) {
+    const { instructions } = await recordBudget();
+    for (const [processor, { perRun, compiler }] of Object.entries(instructions)) say(`${processor}: ${perRun} instructions a transfer, compiler ${compiler}: recorded`);
+    return;
+  }
+  if (check) {
+    const problems = [await checkInstructions('x86_64'), await checkInstructions('aarch64'), await checkSizes()].filter((problem) => problem !== '');
+    for (const problem of problems) console.error(problem);
+    say(problems.length === 0 ? 'within the budget' : 'over the budget');
+    process.exit(problems.length === 0 ? 0 : 1);
+  }
+
+  const wanted = scenes.filter(({ triangles }) => !quick || triangles <= 50_000);
+  await makeScenes(wanted, say);
+  const models = await sharedScenes();
+  const date = new Date().toISOString().slice(0, 10);
+  const [processor] = cpus();
+  const results: Results = {
+    ...(await readResults(date)),
+    date,
+    machine: { ...(await readResults(date))?.machine, processor: processor!.model, cores: cpus().length, node: process.versions.node },
+  };
+
+  if (only.includes('native')) {
+    results.native = {};
+    for (const scene of [...wanted, ...models]) {
+      say(`native: ${scene.name}`);
+      const result = await measureNative(scene.path, runsFor(scene.triangles, quick), ['embree', 'nanoflann']);
+      results.native[scene.name] = result;
+      results.machine.compiler = result.compiler;
+      say(`  ${result.cagecast.total.median.toFixed(3)} ms, ${result.peers['embree']!.ratios.total!.toFixed(3)} of Embree's`);
+    }
+  }
+  if (only.includes('size')) results.size = await measureSizes();
+  if (only.includes('web') || only.includes('mobile')) {
+    await buildWeb();
+    const bench = await WebBench.start();
+    try {
+      results.machine.chromium = bench.version;
+      if (only.includes('web')) results.web = await measureWeb(bench, [...wanted.filter(({ cage, shuffled }) => cage === 'grown' && !shuffled), ...models], quick);
+      if (only.includes('mobile')) results.mobile = await measureMobile(bench, quick);
+    } finally {
+      await bench.stop();
+    }
+  }
+
+  await writeResults(results);
+  await writeReport(results);
+  for (const goal of goalsOf(results)) {
+    const reached = isReached(goal);
+    if (reached === undefined) continue;
+    console.log(`${reached ? 'yes' : 'NO '}  ${goal.what}: ${goal.value!.toPrecision(4)} ${goal.unit} (${goal.kind} ${goal.limit})`);
+  }
+  say(`written to ${resultsFolder.slice(root.length)}`);
+}
+
+async function measureWeb(bench: WebBench, wanted: readonly BenchScene[], quick: boolean): Promise<NonNullable<Results['web']>> {
+  const web: NonNullable<Results['web']> = { node: {}, chromium: {}, againstNativeEmbree: { ratio: 0, cagecast: 0, embree: 0 } };
+  for (const scene of wanted) {
+    // At 2M triangles a run of three-mesh-bvh takes most of a minute.
+    const withPeer = scene.triangles <= 500_000;
+    const few = scene.triangles > 50_000;
+    const race = { runs: few ? 3 : Math.min(51, runsFor(scene.triangles, quick)), warmUp: few ? 1 : scene.triangles > 10_000 ? 5 : 60, withPeer };
+    say(`Chromium and Node: ${scene.name}`);
+    web.chromium[scene.name] = await bench.race(scene, race);
+    web.node[scene.name] = await raceInNode(scene, race);
+    const { cagecast, peer } = web.chromium[scene.name]!;
+    say(`  ${cagecast.median.toFixed(3)} ms in Chromium${peer ? `, three-mesh-bvh ${peer.ratio.toFixed(1)} times that` : ''}`);
+  }
+  say('Chromium against native Embree');
+  web.againstNativeEmbree = await bench.againstNativeEmbree(sampleScene, quick ? 3 : 9, 21);
+  return web;
+}
+
+async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullable<Results['mobile']>> {
+  say('counting instructions');
+  const x86 = await countX86(sampleScene.path);
+  const aarch64 = await countAarch64(sampleScene.path);
+  const native = await measureNative(sampleScene.path, 1, []);
+  const mobile: NonNullable<Results['mobile']> = {
+    aarch64: { ...aarch64, sameAnswer: (await hashOnAarch64(sampleScene.path)) === native.hash },
+    x86_64: x86,
+    warm: {},
+    firstUse: {},
+  };
+  for (const rate of [1, 4, 6]) {
+    say(`Chromium slowed ${rate}×`);
+    mobile.warm[rate] = await bench.throttled(sampleScene, rate, { runs: 51, warmUp: 60, withPeer: false });
+    mobile.firstUse[rate] = await bench.firstUse(sampleScene, rate, quick ? 3 : 9);
+  }
+  return mobile;
+}
+
+await main().catch((error: Error) => {
+  console.error(error.message);
+  process.exit(1);
+});
