@@ -22,29 +22,34 @@ struct alignas(16) Node {
   std::uint32_t child[4];
 };
 
-/// Four triangles for rays: corner[a, b, c][axis][lane]. Unused lanes hold a triangle without area, which nothing hits.
+/// Four triangles for rays. Unused lanes hold a triangle without area, which nothing hits.
 struct alignas(16) RayLeaf {
-  float corner[3][3][4];
+  float corner[3][3][4];  ///< corner[a, b, c][axis][lane].
+  float rounding[4];      ///< What the edge functions of a ray that hits may be off in float; less than 0 if unused.
 };
 
 /// Four triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
-/// edge, x along that edge to B, z along the normal; so C is above the edge, and the angles at A and B are acute.
+/// edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B.
 /// Unused lanes are infinitely far away.
 struct alignas(16) NearLeaf {
+  /// One of the two upper edges, from its foot on AB to C; x is counted from that foot, towards the other one.
+  struct Edge {
+    float x[4], y[4];  ///< Unit vector.
+    float length[4];
+  };
   float origin[3][4];
-  float axes[3][3][4];     ///< axes[x, y, z][component]: unit vectors.
-  float base[4];           ///< B = (base, 0).
-  float toC[2][4];         ///< Unit vector from A to C.
-  float lengthC[4];        ///< Its length.
-  float fromB[2][4];       ///< Unit vector from B to C.
-  float lengthB[4];
-  std::uint32_t slot[4];   ///< The place in `Cage::triangles`.
+  float axes[3][3][4];    ///< axes[x, y, z][component]: unit vectors.
+  float base[4];          ///< B = (base, 0).
+  float foot[4];          ///< x of C.
+  Edge left, right;       ///< AC and BC.
+  std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
 };
 
 /// A tree over the target's triangles: cheap to build, because each of its triangles sees less than one ray.
 struct RayTree {
   const Node* nodes = nullptr;     ///< The root is node 0.
   const RayLeaf* leaves = nullptr;
+  float reach = 0;                 ///< The longest side of the box around all rays and triangles, scaled.
   std::uint32_t levels = 0;        ///< Nodes on the longest way from the root to a leaf; at most `kMaxLevels`.
 };
 
@@ -73,7 +78,7 @@ inline constexpr double kTieDistance = 1e-6;
 /// and only its leaves are looked at by each. The walk begins with the limits that the leaf last found gives them.
 class NearestSearch {
  public:
-  static constexpr std::uint32_t kGroup = 8;  ///< Points searched for at once.
+  static constexpr std::uint32_t kGroup = 16;  ///< Points searched for at once.
 
   /// @param diagonal  Of the target, scaled.
   NearestSearch(const CageTree& tree, double diagonal) noexcept;
@@ -103,7 +108,8 @@ class NearestSearch {
   const CageTree& tree_;
   float fixedSlack_;                  ///< See `kRelativeSlack`.
   std::uint32_t lastLeaf_ = 0;
-  alignas(16) float points_[3][kGroup];
+  alignas(16) float points_[kGroup][4];   ///< x, y, z, 0 each.
+  alignas(16) float columns_[3][kGroup];  ///< The same, by axis.
   alignas(16) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
   std::uint32_t nearCount_[kGroup];   ///< More than `kRoom` if some had no room.
   Near near_[kGroup][kRoom + 1];

@@ -57,10 +57,28 @@ void setChildren(Node& node, const Box (&boxes)[4]) {
   }
 }
 
-/// @param positions  Of corner `corner` of the four triangles.
-void setCorner(RayLeaf& leaf, int corner, f32x4 (&positions)[4]) {
-  simd::transpose(positions[0], positions[1], positions[2], positions[3]);
-  for (int k = 0; k < 3; ++k) simd::store(leaf.corner[corner][k], positions[k]);
+/// The rounding of an edge function in float, for a ray that hits, as a share of the scene's reach R times the triangle's
+/// size E: corners are moved and sheared with errors up to 2^-21 R, then lie within 2 E of the ray; of their products four
+/// are off by as much. The double of that.
+constexpr float kEdgeRounding = 0x1p-17f;
+
+/// Puts up to four triangles into a leaf.
+/// @param corners  Of all four, corner by corner; anything where unused.
+void setRayLeaf(RayLeaf& leaf, f32x4 (&corners)[3][4], std::uint32_t used, float reach) {
+  f32x4 low[3];
+  f32x4 high[3];
+  for (int i = 0; i < 3; ++i) {
+    f32x4(&rows)[4] = corners[i];
+    simd::transpose(rows[0], rows[1], rows[2], rows[3]);
+    for (int k = 0; k < 3; ++k) {
+      simd::store(leaf.corner[i][k], rows[k]);
+      low[k] = i == 0 ? rows[k] : simd::min(low[k], rows[k]);
+      high[k] = i == 0 ? rows[k] : simd::max(high[k], rows[k]);
+    }
+  }
+  const f32x4 size = (high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2]);
+  simd::store(leaf.rounding, size * splat(kEdgeRounding * reach));
+  for (std::uint32_t lane = used; lane < 4; ++lane) leaf.rounding[lane] = -1;
 }
 
 void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std::uint32_t slot) {
@@ -78,13 +96,11 @@ void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std
   const Vec3 ab = corners[(longest + 1) % 3] - a;
   const Vec3 ac = corners[(longest + 2) % 3] - a;
   const double base = length(ab);
-  const Vec3 x = 1 / base * ab;
-  const Vec3 z = triangle.normal.exact;
-  const Vec3 y = cross(z, x);
-  const double cx = dot(ac, x);
-  const double cy = dot(ac, y);
-  const double lengthC = std::sqrt(cx * cx + cy * cy);
-  const double lengthB = std::sqrt((cx - base) * (cx - base) + cy * cy);
+  const Vec3 axisX = 1 / base * ab;
+  const Vec3 axisZ = triangle.normal.exact;
+  const Vec3 axisY = cross(axisZ, axisX);
+  const double footX = dot(ac, axisX);
+  const double height = dot(ac, axisY);
 
   const auto put = [lane](float (&to)[4], double value) { to[lane] = static_cast<float>(value); };
   const auto putVector = [&put](float (&to)[3][4], Vec3 v) {
@@ -92,17 +108,20 @@ void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std
     put(to[1], v.y);
     put(to[2], v.z);
   };
+  const auto putEdge = [&put, height](NearLeaf::Edge& edge, double toFoot) {
+    const double edgeLength = std::sqrt(toFoot * toFoot + height * height);
+    put(edge.x, toFoot / edgeLength);
+    put(edge.y, height / edgeLength);
+    put(edge.length, edgeLength);
+  };
   putVector(leaf.origin, a);
-  putVector(leaf.axes[0], x);
-  putVector(leaf.axes[1], y);
-  putVector(leaf.axes[2], z);
+  putVector(leaf.axes[0], axisX);
+  putVector(leaf.axes[1], axisY);
+  putVector(leaf.axes[2], axisZ);
   put(leaf.base, base);
-  put(leaf.toC[0], cx / lengthC);
-  put(leaf.toC[1], cy / lengthC);
-  put(leaf.lengthC, lengthC);
-  put(leaf.fromB[0], (cx - base) / lengthB);
-  put(leaf.fromB[1], cy / lengthB);
-  put(leaf.lengthB, lengthB);
+  put(leaf.foot, footX);
+  putEdge(leaf.left, footX);
+  putEdge(leaf.right, base - footX);
   leaf.slot[lane] = slot;
 }
 
@@ -112,9 +131,8 @@ void clearNearTriangle(NearLeaf& leaf, int lane) {
     leaf.origin[k][lane] = kFar;
     for (int i = 0; i < 3; ++i) leaf.axes[i][k][lane] = i == k ? 1.0f : 0.0f;
   }
-  leaf.base[lane] = leaf.lengthC[lane] = leaf.lengthB[lane] = 0;
-  leaf.toC[0][lane] = leaf.fromB[1][lane] = 0;
-  leaf.toC[1][lane] = leaf.fromB[0][lane] = 0;
+  leaf.base[lane] = leaf.foot[lane] = 0;
+  for (NearLeaf::Edge* edge : {&leaf.left, &leaf.right}) edge->x[lane] = edge->y[lane] = edge->length[lane] = 0;
   leaf.slot[lane] = 0;
 }
 
@@ -124,9 +142,9 @@ constexpr std::uint32_t groupsOfFour(std::uint32_t count) { return (count + 3) /
 /// which the centroids spread most: looking at all three costs three times as much and finds trees hardly better.
 class CageTreeBuilder {
  public:
-  CageTreeBuilder(const Cage& cage, float padding, const Box* boxes, std::uint32_t* order, Node* nodes, RayLeaf* rayLeaves,
+  CageTreeBuilder(const Cage& cage, float reach, const Box* boxes, std::uint32_t* order, Node* nodes, RayLeaf* rayLeaves,
                   NearLeaf* nearLeaves)
-      : cage_(cage), padding_(padding), boxes_(boxes), order_(order), nodes_(nodes), rayLeaves_(rayLeaves), nearLeaves_(nearLeaves) {}
+      : cage_(cage), reach_(reach), boxes_(boxes), order_(order), nodes_(nodes), rayLeaves_(rayLeaves), nearLeaves_(nearLeaves) {}
 
   void build(const Box& all) {
     nodeCount_ = 1;
@@ -167,7 +185,7 @@ class CageTreeBuilder {
     std::uint32_t* child = nodes_[nodeIndex].child;
     for (int i = 0; i < 4; ++i) {
       child[i] = i >= count ? kLeafBit : children[i].size() <= 4 ? kLeafBit | makeLeaf(children[i]) : nodeCount_++;
-      if (i < count) boxes[i] = children[i].box.padded(padding_);
+      if (i < count) boxes[i] = children[i].box.padded(kPadding * reach_);
     }
     setChildren(nodes_[nodeIndex], boxes);
     for (int i = 0; i < count; ++i) {
@@ -191,7 +209,7 @@ class CageTreeBuilder {
         clearNearTriangle(nearLeaves_[leaf], static_cast<int>(lane));
       }
     }
-    for (int i = 0; i < 3; ++i) setCorner(rayLeaves_[leaf], i, corners[i]);
+    setRayLeaf(rayLeaves_[leaf], corners, range.size(), reach_);
     return leaf;
   }
 
@@ -263,7 +281,7 @@ class CageTreeBuilder {
   }
 
   const Cage& cage_;
-  float padding_;
+  float reach_;  ///< See `RayTree`.
   const Box* boxes_;
   std::uint32_t* order_;
   Node* nodes_;
@@ -296,12 +314,12 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     all.grow(box);
     order[i] = i;
   }
-  CageTreeBuilder builder(cage, kPadding * units.reach, boxes, order, nodes, rayLeaves, nearLeaves);
+  CageTreeBuilder builder(cage, units.reach, boxes, order, nodes, rayLeaves, nearLeaves);
   builder.build(all);
   scratch.rewind(mark);
   float sides[4];
   simd::store(sides, all.high - all.low);
-  out = {{nodes, rayLeaves, builder.levels()}, nearLeaves, static_cast<double>(std::max({sides[0], sides[1], sides[2]}))};
+  out = {{nodes, rayLeaves, units.reach, builder.levels()}, nearLeaves, static_cast<double>(std::max({sides[0], sides[1], sides[2]}))};
   return true;
 }
 
@@ -344,7 +362,7 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
         }
       }
     }
-    for (int k = 0; k < 3; ++k) setCorner(leaves[leaf], k, corners[k]);
+    setRayLeaf(leaves[leaf], corners, std::min(4u, target.triangleCount - 4 * leaf), units.reach);
     boxes[leaf] = target.triangleCount == 0 ? box : box.padded(kPadding * units.reach);
   }
   // Levels are stored root first, so that the root is node 0; they are filled from the leaves upwards.
@@ -373,7 +391,7 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
     childFlag = 0;
   }
   scratch.rewind(mark);
-  out = {nodes, leaves, levels};
+  out = {nodes, leaves, units.reach, levels};
   return true;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "kd_tree.hpp"
@@ -11,37 +12,69 @@ using simd::load;
 using simd::mask4;
 using simd::splat;
 
-/// The sine of the angle between a ray and a plane under which they count as parallel: a float cannot tell on which side
-/// of the plane such a ray runs. Aligned lattices give false hits without it.
-constexpr double kParallel = 1e-6;
+/// The sine of the angle between a ray and a plane under which the ray lies in the plane: less cannot be told from nothing
+/// in double precision between vertices that are floats. Aligned lattices give false hits without it.
+constexpr double kParallel = 1e-10;
+
+/// The rounding of a distance in `mightHit`: three times that of an edge function, times a corner's distance from the ray's
+/// origin (the reach), times the stretch of the shear (less than 2).
+constexpr float kDistanceRounding = 8.0f;
 
 /// Rays that go through the tree together: enough to share nodes, few enough for their lists to stay in the cache.
-constexpr std::uint32_t kChunk = 1024;
+constexpr std::uint32_t kChunk = 2048;
 
 /// What the box test needs of a ray.
 struct alignas(16) Slabs {
-  float inverse[3];
-  float offset[3];  ///< origin · inverse.
+  float inverse[4];
+  float offset[4];  ///< origin · inverse.
 };
 
-/// Whether the line crosses the triangle's plane, and beyond `from`: decided in double.
-bool crossesBeyond(const RayLeaf& leaf, int lane, const Ray& ray, double from) {
+/// Whether a ray hits a triangle beyond `from`, decided in double: the watertight edge test of Woop, Benthin, Wald (2013).
+/// A corner is moved to the ray's origin and sheared so that the ray is the z-axis; the signs of the three edge functions
+/// then say on which side of each edge the ray runs. Two triangles that share an edge compute the same number with opposite
+/// signs, and 0 counts for both, so a ray cannot slip between them.
+bool hitsBeyond(const RayLeaf& leaf, int lane, const Ray& ray, double from) {
+  const RayDirection& direction = *ray.direction;
   const auto corner = [&](int i) {
     return Vec3{static_cast<double>(leaf.corner[i][0][lane]), static_cast<double>(leaf.corner[i][1][lane]),
                 static_cast<double>(leaf.corner[i][2][lane])};
   };
   const Vec3 a = corner(0);
   const Vec3 normal = cross(corner(1) - a, corner(2) - a);
-  const double slope = dot(normal, ray.direction->exact);
+  const double slope = dot(normal, direction.exact);
   if (slope * slope <= kParallel * kParallel * dot(normal, normal)) return false;
-  return dot(normal, a - Vec3::from(ray.origin)) / slope > from;
+  const double d[3] = {direction.exact.x, direction.exact.y, direction.exact.z};
+  double x[3];
+  double y[3];
+  double z[3];
+  for (int i = 0; i < 3; ++i) {
+    const auto offset = [&](std::uint32_t axis) {
+      return static_cast<double>(leaf.corner[i][axis][lane]) - static_cast<double>(ray.origin[axis]);
+    };
+    z[i] = offset(direction.z) / d[direction.z];
+    x[i] = offset(direction.x) - z[i] * d[direction.x];
+    y[i] = offset(direction.y) - z[i] * d[direction.y];
+  }
+  const double u = x[2] * y[1] - y[2] * x[1];
+  const double v = x[0] * y[2] - y[0] * x[2];
+  const double w = x[1] * y[0] - y[1] * x[0];
+  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
+  const double sum = u + v + w;
+  return sum != 0 && (u * z[0] + v * z[1] + w * z[2]) / sum > from;
 }
 
 /// One pass of up to `kChunk` rays through a tree.
 class Stream {
  public:
   Stream(const RayTree& tree, double from, Slabs* slabs, std::uint16_t* lists)
-      : tree_(tree), from_(from), fromFloat_(static_cast<float>(from)), loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)), slabs_(slabs), lists_(lists) {}
+      : tree_(tree),
+        from_(from),
+        fromFloat_(static_cast<float>(from)),
+        loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
+        zero_(from > 0 ? 0.0f : -1.0f),
+        distanceRounding_(kDistanceRounding * tree.reach),
+        slabs_(slabs),
+        lists_(lists) {}
 
   void run(const Ray* rays, std::uint32_t count, bool* hit) {
     rays_ = rays;
@@ -98,16 +131,20 @@ class Stream {
       far[k] = load(backward ? node.low[k] : node.high[k]);
     }
     const f32x4 from = splat(fromFloat_);
-    std::uint32_t c0 = 0;
-    std::uint32_t c1 = 0;
-    std::uint32_t c2 = 0;
-    std::uint32_t c3 = 0;
+    std::size_t c0 = 0;
+    std::size_t c1 = 0;
+    std::size_t c2 = 0;
+    std::size_t c3 = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint16_t id = ids[i];
       const Slabs& ray = slabs_[id];
-      const auto distance = [&](f32x4 side, int k) { return side * splat(ray.inverse[k]) - splat(ray.offset[k]); };
-      const f32x4 first = simd::max(simd::max(distance(near[0], 0), distance(near[1], 1)), simd::max(distance(near[2], 2), from));
-      const f32x4 last = simd::min(simd::min(distance(far[0], 0), distance(far[1], 1)), distance(far[2], 2));
+      const f32x4 inverse = load(ray.inverse);
+      const f32x4 offset = load(ray.offset);
+      const f32x4 inverses[3] = {simd::splatLane<0>(inverse), simd::splatLane<1>(inverse), simd::splatLane<2>(inverse)};
+      const f32x4 offsets[3] = {simd::splatLane<0>(offset), simd::splatLane<1>(offset), simd::splatLane<2>(offset)};
+      const auto distance = [&](const f32x4 (&sides)[3], int k) { return sides[k] * inverses[k] - offsets[k]; };
+      const f32x4 first = simd::max(simd::max(distance(near, 0), distance(near, 1)), simd::max(distance(near, 2), from));
+      const f32x4 last = simd::min(simd::min(distance(far, 0), distance(far, 1)), distance(far, 2));
       const unsigned entered = simd::bits(first <= last) & alive_[id];
       lists[0][c0] = lists[1][c1] = lists[2][c2] = lists[3][c3] = id;
       c0 += entered & 1;
@@ -115,32 +152,25 @@ class Stream {
       c2 += entered >> 2 & 1;
       c3 += entered >> 3;
     }
-    counts[0] = c0;
-    counts[1] = c1;
-    counts[2] = c2;
-    counts[3] = c3;
+    const std::size_t all[4] = {c0, c1, c2, c3};
+    for (int i = 0; i < 4; ++i) counts[i] = static_cast<std::uint32_t>(all[i]);
   }
 
   void testLeaf(const RayLeaf& leaf, const std::uint16_t* ids, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint16_t id = ids[i];
       if (!alive_[id]) continue;
-      unsigned crossed = crosses(leaf, rays_[id]);
-      for (int lane = 0; crossed != 0; ++lane, crossed >>= 1) {
-        if ((crossed & 1) && crossesBeyond(leaf, lane, rays_[id], from_)) {
-          hit_[id] = true;
-          alive_[id] = 0;
-          break;
-        }
+      for (unsigned close = mightHit(leaf, rays_[id]); close != 0; close &= close - 1) {
+        if (!hitsBeyond(leaf, std::countr_zero(close), rays_[id], from_)) continue;
+        hit_[id] = true;
+        alive_[id] = 0;
+        break;
       }
     }
   }
 
-  /// Which of four triangles the ray passes through, beyond about `from`: the watertight edge test of Woop, Benthin, Wald
-  /// (2013). A corner is moved to the ray's origin and sheared so that the ray is the z-axis; the signs of the three edge
-  /// functions then say on which side of each edge the ray runs. Two triangles that share an edge compute the same number
-  /// with opposite signs, and 0 counts for both, so a ray cannot slip between them.
-  [[nodiscard]] unsigned crosses(const RayLeaf& leaf, const Ray& ray) const {
+  /// Which of four triangles the ray might hit: the test of `hitsBeyond` in float, with room for its rounding.
+  [[nodiscard]] unsigned mightHit(const RayLeaf& leaf, const Ray& ray) const {
     const RayDirection& direction = *ray.direction;
     const f32x4 shearX = splat(direction.shearX);
     const f32x4 shearY = splat(direction.shearY);
@@ -158,21 +188,25 @@ class Stream {
     const f32x4 u = x[2] * y[1] - y[2] * x[1];
     const f32x4 v = x[0] * y[2] - y[0] * x[2];
     const f32x4 w = x[1] * y[0] - y[1] * x[0];
-    const f32x4 zero = splat(0);
-    const mask4 front = zero <= simd::min(u, simd::min(v, w));
-    const mask4 back = simd::max(u, simd::max(v, w)) <= zero;
-    const mask4 inside = front | back;
-    if (simd::bits(inside) == 0) return 0;
+    const f32x4 rounding = load(leaf.rounding);
+    const mask4 front = splat(0) - rounding <= simd::min(u, simd::min(v, w));
+    const mask4 back = simd::max(u, simd::max(v, w)) <= rounding;
     // The distance is (u·z0 + v·z1 + w·z2)·scale / (u + v + w); multiplied by the square of the divisor there is no division.
     const f32x4 sum = u + v + w;
-    const f32x4 distance = (u * z[0] + v * z[1] + w * z[2]) * splat(direction.scaleZ);
-    return simd::bits(inside & (splat(loose_) * sum * sum <= distance * sum));
+    const f32x4 distance = (u * z[0] + v * z[1] + w * z[2]) * splat(direction.scaleZ) * sum;
+    const f32x4 slack = rounding * splat(distanceRounding_) * simd::max(sum, splat(0) - sum);
+    const mask4 beyond = splat(loose_) * sum * sum <= distance + slack;
+    // Triangles at the origin itself come out at 0 exactly; they are many, and no hits if hits begin beyond 0.
+    const mask4 elsewhere = (distance < splat(0)) | (splat(zero_) < distance);
+    return simd::bits((front | back) & beyond & elsewhere);
   }
 
   const RayTree& tree_;
   double from_;
   float fromFloat_;
-  float loose_;  ///< Hits beyond this are worth deciding in double.
+  float loose_;             ///< Hits beyond this are worth deciding in double.
+  float zero_;              ///< 0 if a hit at distance 0 is none, else less.
+  float distanceRounding_;  ///< What to multiply `RayLeaf::rounding` with for the rounding of a distance.
   const Ray* rays_ = nullptr;
   bool* hit_ = nullptr;
   Slabs* slabs_;

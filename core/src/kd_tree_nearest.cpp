@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -42,40 +43,33 @@ f32x4 squaredDistanceToChild(const Node& node, std::uint32_t child, const float*
 }
 
 /// Squared distance of p to four triangles, each in its own frame.
-f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, const f32x4 (&p)[3]) {
-  const f32x4 dx = p[0] - load(leaf.origin[0]);
-  const f32x4 dy = p[1] - load(leaf.origin[1]);
-  const f32x4 dz = p[2] - load(leaf.origin[2]);
-  const auto along = [&](const float (&axis)[3][4]) { return dx * load(axis[0]) + dy * load(axis[1]) + dz * load(axis[2]); };
-  const f32x4 x = along(leaf.axes[0]);
-  const f32x4 y = along(leaf.axes[1]);
-  const f32x4 z = along(leaf.axes[2]);
+f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
+  const f32x4 dx = simd::splatLane<0>(p) - load(leaf.origin[0]);
+  const f32x4 dy = simd::splatLane<1>(p) - load(leaf.origin[1]);
+  const f32x4 dz = simd::splatLane<2>(p) - load(leaf.origin[2]);
+  const auto coordinate = [&](const float (&axis)[3][4]) { return dx * load(axis[0]) + dy * load(axis[1]) + dz * load(axis[2]); };
+  const f32x4 x = coordinate(leaf.axes[0]);
+  const f32x4 y = coordinate(leaf.axes[1]);
+  const f32x4 z = coordinate(leaf.axes[2]);
   const f32x4 zero = splat(0);
 
-  // To edge AB, which lies on the x-axis.
-  const f32x4 base = load(leaf.base);
-  const f32x4 baseX = x - simd::clamp(x, zero, base);
-  const f32x4 toAB = baseX * baseX + y * y;
-  // To edge AC.
-  const f32x4 cx = load(leaf.toC[0]);
-  const f32x4 cy = load(leaf.toC[1]);
-  const f32x4 alongC = simd::clamp(x * cx + y * cy, zero, load(leaf.lengthC));
-  const f32x4 acX = x - alongC * cx;
-  const f32x4 acY = y - alongC * cy;
-  const f32x4 toAC = acX * acX + acY * acY;
-  // To edge BC.
-  const f32x4 bx = load(leaf.fromB[0]);
-  const f32x4 by = load(leaf.fromB[1]);
-  const f32x4 xB = x - base;
-  const f32x4 alongB = simd::clamp(xB * bx + y * by, zero, load(leaf.lengthB));
-  const f32x4 bcX = xB - alongB * bx;
-  const f32x4 bcY = y - alongB * by;
-  const f32x4 toBC = bcX * bcX + bcY * bcY;
 
-  // Below AB the nearest is on AB, since the angles at A and B are acute. Above it, inside if right of AC and left of BC.
-  const mask4 below = y < zero;
-  const mask4 within = (cx * y <= cy * x) & (by * xB <= bx * y);
-  return z * z + simd::select(below, toAB, simd::drop(within, simd::min(toAC, toBC)));
+  // A perpendicular through C parts the points that can be nearest to the left edge from those that can be to the right
+  // one. Mirrored if need be, x counts from the lower end of that edge.
+  const mask4 isLeft = x < load(leaf.foot);
+  const auto side = [&](const float (&left)[4], const float (&right)[4]) { return simd::select(isLeft, load(left), load(right)); };
+  const f32x4 fromCorner = simd::select(isLeft, x, load(leaf.base) - x);
+  const f32x4 edgeX = side(leaf.left.x, leaf.right.x);
+  const f32x4 edgeY = side(leaf.left.y, leaf.right.y);
+  // Above AB: beyond the edge by `beyond`, and past one of its ends by `past`; or inside.
+  const f32x4 along = fromCorner * edgeX + y * edgeY;
+  const f32x4 past = along - simd::clamp(along, zero, side(leaf.left.length, leaf.right.length));
+  const f32x4 beyond = y * edgeX - fromCorner * edgeY;
+  const f32x4 toEdge = simd::keep(zero < beyond, beyond * beyond + past * past);
+  // Below AB: nearest to AB, or to its end.
+  const f32x4 outside = simd::min(fromCorner, zero);
+  const f32x4 toBase = outside * outside + y * y;
+  return z * z + simd::select(y < zero, toBase, toEdge);
 }
 
 /// What is still to be visited, with the node that holds its box.
@@ -102,10 +96,9 @@ NearestSearch::NearestSearch(const CageTree& tree, double diagonal) noexcept : t
 
 void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
   const NearLeaf& leaf = tree_.near[leafIndex];
-  for (std::uint32_t i = 0; members != 0; ++i, members >>= 1) {
-    if ((members & 1) == 0) continue;
-    const f32x4 point[3] = {splat(points_[0][i]), splat(points_[1][i]), splat(points_[2][i])};
-    const f32x4 squared = squaredDistanceToTriangles(leaf, point);
+  for (; members != 0; members &= members - 1) {
+    const int i = std::countr_zero(members);
+    const f32x4 squared = squaredDistanceToTriangles(leaf, load(points_[i]));
     const float least = simd::lowest(squared);
     const float limit = std::min(limits_[i], least * (1 + static_cast<float>(kRelativeSlack)) + fixedSlack_);
     const unsigned lanes = simd::bits(squared <= splat(limit));
@@ -118,27 +111,32 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
 }
 
 void NearestSearch::search(const float* positions, std::uint32_t count) noexcept {
-  f32x4 low[3];
-  f32x4 high[3];
-  for (std::uint32_t k = 0; k < 3; ++k) {
-    float least = positions[k];
-    float most = positions[k];
-    for (std::uint32_t i = 0; i < kGroup; ++i) {
-      const float x = positions[Points::kStride * std::min(i, count - 1) + k];
-      points_[k][i] = x;
-      least = std::min(least, x);
-      most = std::max(most, x);
+  f32x4 lowCorner = load(positions);
+  f32x4 highCorner = lowCorner;
+  for (std::uint32_t i = 0; i < kGroup; i += simd::kWidth) {
+    f32x4 rows[simd::kWidth];
+    for (std::uint32_t j = 0; j < simd::kWidth; ++j) {
+      rows[j] = load(positions + Points::kStride * std::min(i + j, count - 1));
+      lowCorner = simd::min(lowCorner, rows[j]);
+      highCorner = simd::max(highCorner, rows[j]);
+      simd::store(points_[i + j], rows[j]);
     }
-    low[k] = splat(least);
-    high[k] = splat(most);
+    simd::transpose(rows[0], rows[1], rows[2], rows[3]);
+    for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);
   }
+  const f32x4 low[3] = {simd::splatLane<0>(lowCorner), simd::splatLane<1>(lowCorner), simd::splatLane<2>(lowCorner)};
+  const f32x4 high[3] = {simd::splatLane<0>(highCorner), simd::splatLane<1>(highCorner), simd::splatLane<2>(highCorner)};
   for (std::uint32_t i = 0; i < kGroup; ++i) {
     limits_[i] = i < count ? std::numeric_limits<float>::max() : -1.0f;
     nearCount_[i] = 0;
   }
   const std::uint32_t seed = lastLeaf_;
   searchLeaf(seed, (1u << count) - 1);
-  const auto groupLimit = [this] { return splat(simd::highest(simd::max(load(limits_), load(limits_ + 4)))); };
+  const auto groupLimit = [this] {
+    f32x4 most = load(limits_);
+    for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
+    return splat(simd::highest(most));
+  };
 
   Visit stack[kStackSize];
   std::uint32_t depth = 0;
@@ -155,7 +153,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     if (leaf == seed) continue;
     unsigned members = 0;
     for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
-      const f32x4 squared = squaredDistanceToChild(*visit.parent, visit.lane, points_[0] + i, points_[1] + i, points_[2] + i);
+      const f32x4 squared = squaredDistanceToChild(*visit.parent, visit.lane, columns_[0] + i, columns_[1] + i, columns_[2] + i);
       members |= simd::bits(squared <= load(limits_ + i)) << i;
     }
     searchLeaf(leaf, members);
@@ -173,9 +171,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
 std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) const noexcept {
   std::uint32_t count = 0;
   const auto takeLanes = [&](std::uint32_t leaf, unsigned lanes) {
-    for (std::uint32_t lane = 0; lanes != 0; ++lane, lanes >>= 1) {
-      if (lanes & 1) found[count++] = tree_.near[leaf].slot[lane];
-    }
+    for (; lanes != 0; lanes &= lanes - 1) found[count++] = tree_.near[leaf].slot[std::countr_zero(lanes)];
   };
   if (nearCount_[i] <= kRoom) {
     for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
@@ -184,7 +180,8 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) c
     return count;
   }
   // A fan around a corner, or a stack of copies: collect all within the limit, which is known by now.
-  const f32x4 point[3] = {splat(points_[0][i]), splat(points_[1][i]), splat(points_[2][i])};
+  const f32x4 point = load(points_[i]);
+  const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
   const f32x4 limit = splat(limits_[i]);
   Visit stack[kStackSize];
   std::uint32_t depth = 0;
@@ -196,7 +193,7 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) c
       takeLanes(leaf, simd::bits(squaredDistanceToTriangles(tree_.near[leaf], point) <= limit));
     } else {
       const Node& node = tree_.rays.nodes[child];
-      pushChildren(node, simd::bits(squaredDistanceToBoxes(node, point, point) <= limit), stack, depth);
+      pushChildren(node, simd::bits(squaredDistanceToBoxes(node, box, box) <= limit), stack, depth);
     }
   }
   return count;

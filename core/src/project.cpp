@@ -87,8 +87,12 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
     if (member == 0) search.search(points.at(i), std::min(NearestSearch::kGroup, points.count - i));
     const Vec3 p = Vec3::from(points.at(i));
     const std::uint32_t count = search.candidates(member, found);
-    for (std::uint32_t c = 0; c < count; ++c) candidates[c] = {found[c], placeOn(cage.triangles[found[c]], p)};
-    const Candidate& nearest = count == 1 ? candidates[0] : nearestOf(candidates, count, units.diagonal);
+    Candidate nearest{found[0], placeOn(cage.triangles[found[0]], p)};
+    if (count > 1) {
+      candidates[0] = nearest;
+      for (std::uint32_t c = 1; c < count; ++c) candidates[c] = {found[c], placeOn(cage.triangles[found[c]], p)};
+      nearest = nearestOf(candidates, count, units.diagonal);
+    }
 
     const CageTriangle& t = cage.triangles[nearest.slot];
     const Place& q = nearest.place;

@@ -12,7 +12,7 @@
 #if !defined(CAGECAST_SCALAR)
 #if defined(__SSE2__)
 #define CAGECAST_SSE
-#include <emmintrin.h>
+#include <immintrin.h>
 #elif defined(__aarch64__)
 #define CAGECAST_NEON
 #include <arm_neon.h>
@@ -64,8 +64,21 @@ inline f32x4 keep(mask4 m, f32x4 a) { return {_mm_and_ps(m.v, a.v)}; }
 /// 0 where the mask is set, else a.
 inline f32x4 drop(mask4 m, f32x4 a) { return {_mm_andnot_ps(m.v, a.v)}; }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) {
+#if defined(__SSE4_1__)
+  return {_mm_blendv_ps(b.v, a.v, m.v)};
+#else
   return {_mm_or_ps(_mm_and_ps(m.v, a.v), _mm_andnot_ps(m.v, b.v))};
+#endif
 }
+/// Lane `lane` in all four lanes.
+template <int lane>
+inline f32x4 splatLane(f32x4 a) {
+  return {_mm_castsi128_ps(_mm_shuffle_epi32(_mm_castps_si128(a.v), lane * 0x55))};
+}
+/// Lanes 2, 3, 0, 1.
+inline f32x4 swapHalves(f32x4 a) { return {_mm_castsi128_ps(_mm_shuffle_epi32(_mm_castps_si128(a.v), 0x4E))}; }
+/// Lane 0.
+inline float first(f32x4 a) { return _mm_cvtss_f32(a.v); }
 /// Bit i is lane i.
 inline unsigned bits(mask4 m) { return static_cast<unsigned>(_mm_movemask_ps(m.v)); }
 /// Turns four rows into columns.
@@ -95,6 +108,12 @@ inline mask4 operator|(mask4 a, mask4 b) { return {vorrq_u32(a.v, b.v)}; }
 inline f32x4 keep(mask4 m, f32x4 a) { return {vreinterpretq_f32_u32(vandq_u32(m.v, vreinterpretq_u32_f32(a.v)))}; }
 inline f32x4 drop(mask4 m, f32x4 a) { return {vreinterpretq_f32_u32(vbicq_u32(vreinterpretq_u32_f32(a.v), m.v))}; }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {vbslq_f32(m.v, a.v, b.v)}; }
+template <int lane>
+inline f32x4 splatLane(f32x4 a) {
+  return {vdupq_laneq_f32(a.v, lane)};
+}
+inline f32x4 swapHalves(f32x4 a) { return {vextq_f32(a.v, a.v, 2)}; }
+inline float first(f32x4 a) { return vgetq_lane_f32(a.v, 0); }
 inline unsigned bits(mask4 m) {
   static const uint32_t kBit[4] = {1, 2, 4, 8};
   return vaddvq_u32(vandq_u32(m.v, vld1q_u32(kBit)));
@@ -132,6 +151,12 @@ inline mask4 operator|(mask4 a, mask4 b) { return {wasm_v128_or(a.v, b.v)}; }
 inline f32x4 keep(mask4 m, f32x4 a) { return {wasm_v128_and(m.v, a.v)}; }
 inline f32x4 drop(mask4 m, f32x4 a) { return {wasm_v128_andnot(a.v, m.v)}; }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {wasm_v128_bitselect(a.v, b.v, m.v)}; }
+template <int lane>
+inline f32x4 splatLane(f32x4 a) {
+  return {wasm_i32x4_shuffle(a.v, a.v, lane, lane, lane, lane)};
+}
+inline f32x4 swapHalves(f32x4 a) { return {wasm_i64x2_shuffle(a.v, a.v, 1, 0)}; }
+inline float first(f32x4 a) { return wasm_f32x4_extract_lane(a.v, 0); }
 inline unsigned bits(mask4 m) { return wasm_i32x4_bitmask(m.v); }
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   const v128_t abLow = wasm_i32x4_shuffle(a.v, b.v, 0, 4, 1, 5);
@@ -176,6 +201,12 @@ inline mask4 operator|(mask4 a, mask4 b) { return test([&](int i) { return a.v[i
 inline f32x4 keep(mask4 m, f32x4 a) { return lanes([&](int i) { return m.v[i] ? a.v[i] : 0.0f; }); }
 inline f32x4 drop(mask4 m, f32x4 a) { return lanes([&](int i) { return m.v[i] ? 0.0f : a.v[i]; }); }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return lanes([&](int i) { return m.v[i] ? a.v[i] : b.v[i]; }); }
+template <int lane>
+inline f32x4 splatLane(f32x4 a) {
+  return splat(a.v[lane]);
+}
+inline f32x4 swapHalves(f32x4 a) { return {{a.v[2], a.v[3], a.v[0], a.v[1]}}; }
+inline float first(f32x4 a) { return a.v[0]; }
 inline unsigned bits(mask4 m) {
   return unsigned{m.v[0]} | unsigned{m.v[1]} << 1 | unsigned{m.v[2]} << 2 | unsigned{m.v[3]} << 3;
 }
@@ -192,21 +223,16 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
 
 #endif
 
-/// The least of the four lanes.
+/// The least and the greatest of the four lanes.
 inline float lowest(f32x4 a) {
-  float v[4];
-  store(v, a);
-  const float x = v[0] < v[1] ? v[0] : v[1];
-  const float y = v[2] < v[3] ? v[2] : v[3];
-  return x < y ? x : y;
+  a = min(a, swapHalves(a));
+  a = min(a, splatLane<1>(a));
+  return first(a);
 }
-/// The greatest of the four lanes.
 inline float highest(f32x4 a) {
-  float v[4];
-  store(v, a);
-  const float x = v[0] > v[1] ? v[0] : v[1];
-  const float y = v[2] > v[3] ? v[2] : v[3];
-  return x > y ? x : y;
+  a = max(a, swapHalves(a));
+  a = max(a, splatLane<1>(a));
+  return first(a);
 }
 
 inline f32x4 clamp(f32x4 x, f32x4 low, f32x4 high) { return min(max(x, low), high); }
