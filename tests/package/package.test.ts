@@ -28,11 +28,19 @@ globalThis.answer = JSON.stringify([[...uvs], [...zones], [...decided.zones], Zo
 `;
 const answer = '[[0,0,1,0,0,1],[0,0,0],[0,0,0],3,"nonFinitePosition"]';
 
+const slimProgram = program.replace("'cagecast'", "'cagecast/slim'");
+const workerProgram = program
+  .replace("'cagecast'", "'cagecast/worker'")
+  .replaceAll(/(transfer|classify|project)\(mesh/g, 'await $1(mesh')
+  .replace('classify(await', 'await classify(await');
+
 function run(command: string, args: string[], cwd = user): string {
   const { status, stdout, stderr } = spawnSync(command, args, { cwd, encoding: 'utf8', env: { ...process.env, NODE_OPTIONS: '' } });
   assert.equal(status, 0, `${command} ${args.join(' ')}:\n${stdout}${stderr}`);
   return stdout;
 }
+
+const distFiles = () => (readdirSync(join(installed, 'dist'), { recursive: true }) as string[]).filter((name) => extname(name) !== '');
 
 before(() => {
   const [packed] = JSON.parse(run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', user], process.cwd())) as [{ filename: string }];
@@ -57,12 +65,12 @@ describe('the packed package', () => {
     for (const file of [...promised(exports), ...Object.values(bin)]) assert.ok(existsSync(join(installed, file)), file);
     const top = readdirSync(installed).filter((name) => !/^(dist|package\.json|README\.md|LICENSE|CHANGELOG\.md)$/.test(name));
     assert.deepEqual(top, []);
-    for (const name of readdirSync(join(installed, 'dist'))) assert.match(name, /\.(js|d\.ts|wasm)$/);
+    for (const name of distFiles()) assert.match(name, /\.(js|d\.ts|wasm)$/);
   });
 
   test('holds nothing of the machine it was built on', () => {
     const places = [process.cwd(), process.env['HOME']].filter((place) => place !== undefined && place.length > 3) as string[];
-    for (const name of readdirSync(join(installed, 'dist'))) {
+    for (const name of distFiles()) {
       const text = readFileSync(join(installed, 'dist', name), 'latin1');
       for (const place of places) assert.ok(!text.includes(place), `${name} names ${place}`);
     }
@@ -77,6 +85,13 @@ describe('the packed package', () => {
   });
 
   test('runs in Node', () => assert.equal(run(process.execPath, ['print.js']).trim(), answer));
+
+  test('its other entries run in Node: slim, and the worker', () => {
+    for (const [entry, text] of Object.entries({ slim: slimProgram, worker: workerProgram })) {
+      writeFileSync(join(user, `${entry}.js`), `${text}; console.log(globalThis.answer);`);
+      assert.equal(run(process.execPath, [`${entry}.js`]).trim(), answer, entry);
+    }
+  });
 
   test('runs in a worker thread of Node', () => {
     writeFileSync(
@@ -152,10 +167,10 @@ describe('the packed package', () => {
 });
 
 describe('in a browser, under a strict Content-Security-Policy', () => {
-  const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'";
+  const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'";
   const pages = join(user, 'pages');
   let origin = '';
-  const types: Record<string, string> = { '.html': 'text/html', '.js': 'text/javascript' };
+  const types: Record<string, string> = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
   const server = createServer((request, response) => {
     const path = join(pages, new URL(request.url ?? '/', 'http://localhost').pathname);
     if (!existsSync(path)) return response.writeHead(404).end();
@@ -166,12 +181,15 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
     mkdirSync(pages, { recursive: true });
     // As it is, through Vite, and in a worker.
     run(join(tools, 'esbuild/bin/esbuild'), ['program.js', '--bundle', '--format=esm', '--outfile=pages/plain.js', '--log-level=warning']);
-    const site = join(user, 'site');
-    mkdirSync(site);
-    writeFileSync(join(site, 'index.html'), '<!doctype html><script type="module" src="/main.js"></script>');
-    writeFileSync(join(site, 'main.js'), program);
-    if (!existsSync(join(site, 'node_modules'))) symlinkSync(join(user, 'node_modules'), join(site, 'node_modules'));
-    run(process.execPath, [join(tools, 'vite/bin/vite.js'), 'build', '--logLevel', 'warn', '--outDir', join(pages, 'vite'), '--base', '/vite/'], site);
+    for (const [entry, text] of Object.entries({ main: program, slim: slimProgram, worker: workerProgram })) {
+      const site = join(user, `site-${entry}`);
+      mkdirSync(site);
+      writeFileSync(join(site, 'index.html'), '<!doctype html><script type="module" src="/main.js"></script>');
+      writeFileSync(join(site, 'main.js'), text);
+      symlinkSync(join(user, 'node_modules'), join(site, 'node_modules'));
+      writeFileSync(join(site, 'vite.config.js'), "export default { build: { target: 'es2022', assetsInlineLimit: 0 }, worker: { format: 'es' } };");
+      run(process.execPath, [join(tools, 'vite/bin/vite.js'), 'build', '--logLevel', 'warn', '--outDir', join(pages, `vite-${entry}`), '--base', `/vite-${entry}/`], site);
+    }
     writeFileSync(join(pages, 'plain.html'), '<!doctype html><script type="module" src="/plain.js"></script>');
     writeFileSync(join(pages, 'worker.html'), '<!doctype html><script type="module" src="/start.js"></script>');
     writeFileSync(join(pages, 'start.js'), "new Worker('/worker.js', { type: 'module' }).onmessage = ({ data }) => { globalThis.answer = data; };");
@@ -183,12 +201,12 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
   });
   after(() => server.close());
 
-  test('it runs bundled, built by Vite, and in a worker', async () => {
+  test('every entry runs: bundled by esbuild, built by Vite, in a worker of the page and in its own', async () => {
     const { chromium } = await import('playwright-core');
     const executablePath = process.env['CHROMIUM'] ?? execFileSync('bash', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim();
     const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
     try {
-      for (const path of ['/plain.html', '/vite/index.html', '/worker.html']) {
+      for (const path of ['/plain.html', '/worker.html', '/vite-main/index.html', '/vite-slim/index.html', '/vite-worker/index.html']) {
         const page = await browser.newPage();
         const faults: string[] = [];
         page.on('pageerror', (error) => faults.push(String(error)));

@@ -80,6 +80,26 @@ async function buildPackage() {
     plugins: [wasmModules('wasm-inline.ts')],
   });
   if (shipped) {
+    // What is imported from index.js or by one of the names in package.json's "imports" stays a file of its own.
+    const beside = (entry, outfile, platform) =>
+      esbuild.build({
+        ...common,
+        entryPoints: [at('wasm/src', entry)],
+        outfile: join(fresh, outfile),
+        platform,
+        external: ['#spawn', '#read-wasm', './index.js'],
+        plugins: [wasmModules('wasm-file.ts', { index: true })],
+      });
+    await beside('index.ts', 'slim.js', 'neutral');
+    await beside('read-wasm.ts', 'read-wasm.js', 'neutral');
+    await beside('read-wasm-node.ts', 'read-wasm-node.js', 'node');
+    await beside('worker/index.ts', 'worker.js', 'neutral');
+    await beside('worker/spawn.ts', 'spawn.js', 'neutral');
+    await beside('worker/spawn-node.ts', 'spawn-node.js', 'node');
+    await beside('worker/thread.ts', 'worker-thread.js', 'neutral');
+    await beside('worker/thread-node.ts', 'worker-thread-node.js', 'node');
+    cpSync(at('build', preset, 'wasm/cagecast.wasm'), join(fresh, 'cagecast.wasm'));
+    chmodSync(join(fresh, 'cagecast.wasm'), 0o644);
     await esbuild.build({
       ...common,
       entryPoints: [at('wasm/src/cli/main.ts')],
@@ -105,7 +125,7 @@ async function buildPackage() {
   renameSync(fresh, out);
 
   /** Resolves the names that stand for what the C++ build makes. */
-  function wasmModules(wasm) {
+  function wasmModules(wasm, { index = false } = {}) {
     const files = {
       '#glue': at('build', preset, 'wasm/cagecast.js'),
       '#wasm-base64': at('build', preset, 'wasm/cagecast.wasm'),
@@ -115,6 +135,8 @@ async function buildPackage() {
       name: 'wasm-modules',
       setup(build) {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
+        // Importers of the package's index share one copy of it.
+        if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: './index.js', external: true }));
         build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({ contents: readFileSync(path), loader: 'base64' }));
       },
     };

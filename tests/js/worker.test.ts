@@ -1,0 +1,109 @@
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { before, describe, test } from 'node:test';
+import * as direct from 'cagecast';
+import { CagecastError } from 'cagecast';
+import * as slim from 'cagecast/slim';
+import { classify, init, project, terminate, transfer } from 'cagecast/worker';
+import { head } from './scenes.js';
+
+const scene = head(30, 12);
+const large = head(31, 200);
+
+async function failure(promise: Promise<unknown>): Promise<unknown> {
+  try {
+    await promise;
+  } catch (error) {
+    return error;
+  }
+  assert.fail('it did not fail');
+}
+
+describe('the worker', () => {
+  before(() => direct.init());
+
+  test('answers as the package does, without init', async () => {
+    const projection = await project(scene.cage, scene.target);
+    const expected = direct.project(scene.cage, scene.target);
+    for (const name of ['uvs', 'zones', 'triangles', 'distances', 'segments', 'indices', 'segmentStats'] as const) assert.deepEqual(projection[name], expected[name], name);
+    assert.deepEqual(await classify(projection, { threshold: 0.3 }), direct.classify(expected, { threshold: 0.3 }));
+    const result = await transfer(scene.cage, scene.target, { threshold: 0.3 });
+    assert.deepEqual(result.zones, direct.transfer(scene.cage, scene.target, { threshold: 0.3 }).zones);
+    await init();
+  });
+
+  test('carries out calls made at once in order', async () => {
+    const order: number[] = [];
+    await Promise.all([0, 1, 2, 3].map((i) => transfer(scene.cage, scene.target, { threshold: i / 4 }).then(() => order.push(i))));
+    assert.deepEqual(order, [0, 1, 2, 3]);
+  });
+
+  test('copies its arguments, or takes them over when told to', async () => {
+    const { cage, target } = structuredClone(scene);
+    await transfer(cage, target);
+    assert.deepEqual({ cage, target }, { cage: scene.cage, target: scene.target });
+    await transfer(cage, target, { move: true });
+    assert.equal(target.positions.length, 0);
+    assert.equal(cage.indices.length, 0);
+    // What was moved away cannot be sent again.
+    const error = await failure(transfer(cage, target, { move: true }));
+    assert.ok(error instanceof CagecastError, String(error));
+  });
+
+  test('errors come over as they are', async () => {
+    const error = await failure(transfer(scene.cage, { ...scene.target, indices: new Uint32Array([0, 1, 99999]) }));
+    assert.ok(error instanceof CagecastError);
+    assert.equal(error.code, 'indexOutOfRange');
+    assert.equal(error.at, 2);
+    assert.match(error.message, /^transfer: target\.indices\[2\] = 99999 is out of range/);
+    const unsendable = await failure(transfer(scene.cage, { ...scene.target, extra: () => 0 } as unknown as typeof scene.target));
+    assert.ok(unsendable instanceof CagecastError && unsendable.code === 'badArgument');
+    assert.equal(((await failure(transfer(scene.cage, scene.target, { threshold: 2 }))) as CagecastError).code, 'badThreshold');
+    await transfer(scene.cage, scene.target);
+  });
+
+  test('a call under way is given up at once, the ones behind it go on', async () => {
+    const controller = new AbortController();
+    const first = failure(transfer(large.cage, large.target, { signal: controller.signal }));
+    const second = transfer(scene.cage, scene.target);
+    setTimeout(() => controller.abort(new Error('never mind')), 20);
+    assert.equal(((await first) as Error).message, 'never mind');
+    assert.deepEqual((await second).zones, direct.transfer(scene.cage, scene.target).zones);
+  });
+
+  test('a call that waits is given up, the one under way goes on', async () => {
+    const controller = new AbortController();
+    const first = transfer(scene.cage, scene.target);
+    const second = failure(transfer(scene.cage, scene.target, { signal: controller.signal }));
+    controller.abort();
+    assert.equal(((await second) as Error).name, 'AbortError');
+    assert.equal((await first).zones.length, scene.target.positions.length / 3);
+    assert.equal(((await failure(transfer(scene.cage, scene.target, { signal: controller.signal }))) as Error).name, 'AbortError');
+  });
+
+  test('terminate gives up what waits; the next call starts afresh', async () => {
+    const given = failure(transfer(large.cage, large.target));
+    terminate();
+    const error = await given;
+    assert.ok(error instanceof CagecastError && error.code === 'aborted');
+    await transfer(scene.cage, scene.target);
+  });
+
+  test('an idle worker does not keep a process alive', () => {
+    const script = `
+      import { init, transfer } from 'cagecast/worker';
+      await init();
+      const mesh = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) };
+      console.log((await transfer(mesh, mesh)).zones.length);`;
+    assert.equal(execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8', timeout: 10000 }).trim(), '3');
+  });
+});
+
+describe('slim', () => {
+  test('is the same with the WebAssembly beside it', async () => {
+    await Promise.all([slim.init(), direct.init()]);
+    const { timings: _, ...expected } = direct.transfer(scene.cage, scene.target);
+    const { timings: __, ...result } = slim.transfer(scene.cage, scene.target);
+    assert.deepEqual(result, expected);
+  });
+});

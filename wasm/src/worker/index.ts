@@ -1,0 +1,150 @@
+/**
+ * The functions of `cagecast`, off the main thread: the same names and arguments, with promises.
+ *
+ * All calls share one worker, which starts with the first of them, and are carried out in order.
+ * @module cagecast/worker
+ */
+import { spawn } from '#spawn';
+import {
+  CagecastError,
+  type Classification,
+  type ClassifyOptions,
+  type Mesh,
+  type Projection,
+  type ProjectOptions,
+  type TransferOptions,
+  type TransferResult,
+} from '../index.js';
+import type { Reply, Request, Thread } from './protocol.js';
+
+export * from '../index.js';
+
+/** How a call is made. */
+export interface CallOptions {
+  /** Gives the call up: its promise rejects with the signal's reason, and work under way ends at once. */
+  signal?: AbortSignal | undefined;
+  /** Hands the arrays of the arguments over instead of copying them: the caller's are empty from then on. */
+  move?: boolean | undefined;
+}
+
+interface Job {
+  request: Request;
+  move: boolean;
+  settle(): void;
+  resolve(result: unknown): void;
+  reject(error: unknown): void;
+}
+
+let thread: Thread | undefined;
+let lastId = 0;
+/** The first one is under way. */
+const jobs: Job[] = [];
+
+/** Starts the worker before it is needed. Not necessary: every call does it. @throws {CagecastError} `unsupported` */
+export function init(): Promise<void> {
+  return call('init', [], {});
+}
+
+/** As `transfer` of `cagecast`, off the main thread. */
+export function transfer(cage: Mesh, target: Mesh, options: TransferOptions & CallOptions = {}): Promise<TransferResult> {
+  return withOptions('transfer', [cage, target], options);
+}
+
+/** As `project` of `cagecast`, off the main thread. */
+export function project(cage: Mesh, target: Mesh, options: ProjectOptions & CallOptions = {}): Promise<Projection> {
+  return withOptions('project', [cage, target], options);
+}
+
+/** As `classify` of `cagecast`, off the main thread. It takes microseconds, less than the way there and back. */
+export function classify(projection: Projection, options: ClassifyOptions & CallOptions = {}): Promise<Classification> {
+  return withOptions('classify', [projection], options);
+}
+
+/** Ends the worker and gives its memory back. Calls that wait are given up, with code `aborted`; the next one starts afresh. */
+export function terminate(): void {
+  stop();
+  for (const job of jobs.splice(0)) {
+    job.settle();
+    job.reject(new CagecastError('aborted', `${job.request.fn}: the worker was terminated`));
+  }
+}
+
+function withOptions<T>(fn: Request['fn'], args: unknown[], options: CallOptions): Promise<T> {
+  if (typeof options !== 'object' || options === null) return call(fn, [...args, options], {});
+  const { signal, move, ...rest } = options;
+  return call(fn, [...args, rest], { signal, move });
+}
+
+function call<T>(fn: Request['fn'], args: unknown[], { signal, move = false }: CallOptions): Promise<T> {
+  return new Promise<T>((resolve, reject) => {
+    if (signal?.aborted) return reject(signal.reason);
+    const giveUp = () => {
+      const place = jobs.indexOf(job);
+      if (place < 0) return;
+      jobs.splice(place, 1);
+      job.settle();
+      reject(signal?.reason);
+      if (place > 0) return;
+      // A call into WebAssembly cannot be interrupted, its worker can.
+      stop();
+      next();
+    };
+    const job: Job = {
+      request: { id: ++lastId, fn, args },
+      move,
+      settle: () => signal?.removeEventListener('abort', giveUp),
+      resolve: (result) => resolve(result as T),
+      reject,
+    };
+    signal?.addEventListener('abort', giveUp, { once: true });
+    jobs.push(job);
+    if (jobs.length === 1) next();
+  });
+}
+
+/** Hands the first job to the worker. */
+function next(): void {
+  const job = jobs[0];
+  if (job === undefined) return thread?.setBusy(false);
+  try {
+    thread ??= spawn(onReply, onFailure);
+    thread.setBusy(true);
+    thread.post(job.request, job.move ? buffersOf(job.request.args) : []);
+  } catch (cause) {
+    // An argument that cannot be sent, as a function or an array that has been moved away.
+    finish(job, new CagecastError('badArgument', `${job.request.fn}: the arguments cannot be sent to the worker (${String(cause)})`, 0, { cause }));
+  }
+}
+
+function onReply(reply: Reply): void {
+  const job = jobs[0];
+  if (job?.request.id !== reply.id) return;
+  if ('error' in reply) finish(job, new CagecastError(reply.error.code, reply.error.message, reply.error.at));
+  else finish(job, undefined, reply.result);
+}
+
+function onFailure(message: string): void {
+  stop();
+  const job = jobs[0];
+  if (job) finish(job, new CagecastError('unsupported', `${job.request.fn}: the worker failed (${message})`));
+}
+
+function finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
+  jobs.shift();
+  job.settle();
+  if (error) job.reject(error);
+  else job.resolve(result);
+  next();
+}
+
+function stop(): void {
+  thread?.terminate();
+  thread = undefined;
+}
+
+function buffersOf(args: unknown[]): ArrayBuffer[] {
+  const values = args.flatMap((arg) => (typeof arg === 'object' && arg !== null ? Object.values(arg) : []));
+  const buffers = values.filter((value) => ArrayBuffer.isView(value)).map((view) => view.buffer);
+  // An empty one may have been moved away before. Listed, it would be lost on the way; left to be copied, it throws.
+  return [...new Set(buffers)].filter((buffer): buffer is ArrayBuffer => buffer instanceof ArrayBuffer && buffer.byteLength > 0);
+}

@@ -1,0 +1,23 @@
+import type { Code } from '../index.js';
+
+/** A call for the worker: a function of the package by name, and its arguments. */
+export interface Request {
+  id: number;
+  fn: 'init' | 'transfer' | 'project' | 'classify';
+  args: unknown[];
+}
+
+/** What became of it. */
+export type Reply = { id: number; result: unknown } | { id: number; error: { code: Code; message: string; at: number } };
+
+/** A worker on some host. */
+export interface Thread {
+  post(request: Request, move: ArrayBuffer[]): void;
+  /** Ends it at once, whatever it is doing. */
+  terminate(): void;
+  /** Says whether there is work: an idle worker must not keep a process alive. */
+  setBusy(busy: boolean): void;
+}
+
+/** How a thread is started; `onFailure` tells that it could not start or that it died. */
+export type Spawn = (onReply: (reply: Reply) => void, onFailure: (message: string) => void) => Thread;
