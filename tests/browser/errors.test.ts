@@ -2,10 +2,15 @@ import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
 import { after, before, test } from 'node:test'
 import { glb, tetrahedron, writeGlb } from './glb'
-import { drop, inRepository, settled, shownCounts, shownError, Site, type Upload } from './site'
+import { drop, inRepository, settled, shownCounts, shownError, Site, type Upload, type Visit } from './site'
 
 let site: Site
-before(async () => void (site = await Site.open()))
+// One page for all of it: it must come through everything.
+let visit: Visit
+before(async () => {
+  site = await Site.open()
+  visit = await site.visit({ viewport: { width: 700, height: 500 } })
+})
 after(() => site?.close())
 
 const sound = tetrahedron()
@@ -31,7 +36,7 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
 
 for (const { what, input, file, says } of kBad) {
   test(`${what} is told in plain words, and the page goes on with the next file`, async () => {
-    const { page, complaints } = await site.visit({ viewport: { width: 700, height: 500 } })
+    const { page, complaints } = visit
     const before = await shownCounts(page)
     await page.getByTestId(`${input}-input`).setInputFiles(file)
     assert.equal(await settled(page), 'error')
@@ -43,12 +48,16 @@ for (const { what, input, file, says } of kBad) {
     assert.equal(await settled(page), 'ready', await shownError(page))
     assert.equal(await shownError(page), '')
     assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 })
+
+    await page.getByTestId('sample-select').selectOption({ index: 0 })
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    assert.deepEqual(await shownCounts(page), before)
     assert.deepEqual(complaints, [])
   })
 }
 
 test('a dropped file that is nothing the page knows is told apart by name', async () => {
-  const { page } = await site.visit({ viewport: { width: 700, height: 500 } })
+  const { page } = visit
   await drop(page, [{ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('hello') }])
   assert.equal(await settled(page), 'error')
   assert.match(await shownError(page), /notes\.txt: .*not a GLB or glTF file/)

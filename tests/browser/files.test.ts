@@ -6,7 +6,7 @@ import { PNG } from 'pngjs'
 import { reportedCounts } from './cli'
 import { glb, tetrahedron, writeGlb } from './glb'
 import { difference, look, modelArea, shareOfHue } from './picture'
-import { drop, inRepository, settled, setThreshold, shownCounts, shownError, Site, type Upload } from './site'
+import { drop, inRepository, settled, setThreshold, shownCounts, shownError, Site, type Upload, type Visit } from './site'
 
 /** Pairs of a target and its cage: the samples, and the folders of env CAGECAST_ASSETS that hold one. */
 function pairs(): { name: string; target: string; cage: string }[] {
@@ -21,12 +21,27 @@ const read = (file: string): Upload => glb(path.basename(file), readFileSync(fil
 const kLizard = inRepository('build/assets/lizard')
 
 let site: Site
-before(async () => void (site = await Site.open()))
+// One page for all of it: a file's result must not depend on the files before.
+let visit: Visit
+before(async () => {
+  site = await Site.open()
+  visit = await site.visit()
+})
 after(() => site?.close())
+
+/** Goes back to what the page opens with. */
+async function fresh(): Promise<Visit> {
+  const { page } = visit
+  await page.getByTestId('sample-select').selectOption({ index: 0 })
+  await setThreshold(page, 0.5)
+  await page.locator('input[value=compare]').check({ force: true })
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  return visit
+}
 
 for (const { name, target, cage } of pairs()) {
   test(`${name}: the page counts what the command line reports`, async () => {
-    const { page, complaints } = await site.visit()
+    const { page, complaints } = await fresh()
     await drop(page, [read(target), read(cage)])
     assert.equal(await settled(page), 'ready', await shownError(page))
     assert.deepEqual(await shownCounts(page), await reportedCounts(target, cage))
@@ -35,7 +50,7 @@ for (const { name, target, cage } of pairs()) {
 }
 
 test('the threshold changes the counts at once, to what a transfer with it gives', async () => {
-  const { page, complaints } = await site.visit()
+  const { page, complaints } = await fresh()
   const [target, cage] = [path.join(kLizard, 'target.glb'), path.join(kLizard, 'cage.glb')]
   const seen = new Set<string>()
   for (const threshold of [0, 0.25, 0.5, 0.75, 1]) {
@@ -50,7 +65,7 @@ test('the threshold changes the counts at once, to what a transfer with it gives
 })
 
 test('a sample can be chosen again after files of one’s own, and everything is as before', async () => {
-  const { page } = await site.visit()
+  const { page } = await fresh()
   const before = await shownCounts(page)
   const area = await modelArea(page)
   const picture = await look(page, area)
@@ -69,7 +84,7 @@ test('a sample can be chosen again after files of one’s own, and everything is
 })
 
 test('of two models dropped together whose names say nothing, the simpler one is the cage, and they can be swapped', async () => {
-  const { page } = await site.visit()
+  const { page } = await fresh()
   const target = { ...read(path.join(kLizard, 'target.glb')), name: 'b.glb' }
   const cage = { ...read(path.join(kLizard, 'cage.glb')), name: 'a.glb' }
   const expected = await shownCounts(page)
@@ -85,7 +100,7 @@ test('of two models dropped together whose names say nothing, the simpler one is
 })
 
 test('the last of several files in a row wins', async () => {
-  const { page } = await site.visit()
+  const { page } = await fresh()
   const input = page.getByTestId('target-input')
   await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))))
   for (let i = 0; i < 3; i++) await input.setInputFiles(read(path.join(kLizard, 'target.glb')))
@@ -95,7 +110,7 @@ test('the last of several files in a row wins', async () => {
 })
 
 test('a paint of one’s own, PNG or JPEG, is drawn on the model', async () => {
-  const { page, complaints } = await site.visit()
+  const { page, complaints } = await fresh()
   await page.locator('input[value=result]').check({ force: true })
   const area = await modelArea(page)
   const png = new PNG({ width: 8, height: 8 })
@@ -122,7 +137,7 @@ test('a paint of one’s own, PNG or JPEG, is drawn on the model', async () => {
 })
 
 test('a glTF takes its buffer from a file dropped with it, and asks for it when it is missing', async () => {
-  const { page } = await site.visit()
+  const { page } = await fresh()
   const whole = writeGlb(tetrahedron())
   const jsonLength = whole.readUInt32LE(12)
   const json = JSON.parse(whole.subarray(20, 20 + jsonLength).toString())
@@ -142,7 +157,7 @@ test('a glTF takes its buffer from a file dropped with it, and asks for it when 
 const formats = process.env.CAGECAST_ASSETS && path.join(process.env.CAGECAST_ASSETS, 'formats')
 for (const name of formats && existsSync(formats) ? readdirSync(formats) : []) {
   test(`${name} opens, and counts what the command line reports`, async () => {
-    const { page, complaints } = await site.visit()
+    const { page, complaints } = await fresh()
     const target = path.join(formats!, name)
     const cage = path.join(kLizard, 'cage.glb')
     await page.getByTestId('target-input').setInputFiles({ ...read(target), name })

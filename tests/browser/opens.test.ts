@@ -1,14 +1,18 @@
 import assert from 'node:assert/strict'
 import { after, before, test } from 'node:test'
 import { columns, difference, look, modelArea, shareOfHue } from './picture'
-import { shownCounts, shownError, Site } from './site'
+import { shownCounts, shownError, Site, type Visit } from './site'
 
 let site: Site
-before(async () => void (site = await Site.open()))
+let visit: Visit
+before(async () => {
+  site = await Site.open()
+  visit = await site.visit()
+})
 after(() => site?.close())
 
 test('the page opens with the first sample transferred, silently and without asking other hosts', async () => {
-  const { page, complaints, foreign } = await site.visit()
+  const { page, complaints, foreign } = visit
   assert.equal(await page.getByTestId('status').textContent(), 'ready')
   assert.equal(await shownError(page), '')
   const { cosmetic, occluded, uncovered, culled } = await shownCounts(page)
@@ -21,28 +25,8 @@ test('the page opens with the first sample transferred, silently and without ask
   assert.deepEqual(foreign, [])
 })
 
-test('the content security policy forbids other hosts, inline scripts and eval', async () => {
-  const { page } = await site.visit()
-  const outcome = await page.evaluate(async () => {
-    const breaches: string[] = []
-    document.addEventListener('securitypolicyviolation', ({ effectiveDirective }) => breaches.push(effectiveDirective))
-    const refused = await fetch('https://example.org/').then(() => false, () => true)
-    const script = document.createElement('script')
-    script.textContent = 'globalThis.inlineRan = true'
-    document.head.append(script)
-    await new Promise((done) => setTimeout(done, 100))
-    // The test's own evaluation is exempt from the policy; a timer of the page is not.
-    return { refused, breaches, ran: 'inlineRan' in globalThis }
-  })
-  assert.equal(outcome.refused, true)
-  assert.equal(outcome.ran, false)
-  assert.ok(outcome.breaches.includes('connect-src') && outcome.breaches.includes('script-src-elem'), outcome.breaches.join())
-  const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content')
-  assert.match(policy!, /script-src 'self' 'wasm-unsafe-eval';/)
-})
-
 test('paint, zones and cage are really drawn, and the line shows naive and filtered side by side', async () => {
-  const { page, complaints } = await site.visit()
+  const { page, complaints } = visit
   const area = await modelArea(page)
   const mode = (value: string): Promise<void> => page.locator(`input[value=${value}]`).check({ force: true })
   const layer = (name: string, on: boolean): Promise<void> => page.locator(`#show-${name}`).setChecked(on, { force: true })
@@ -69,11 +53,14 @@ test('paint, zones and cage are really drawn, and the line shows naive and filte
   assert.ok(difference(bare, await look(page, area)) < 0.002, 'zones leave no trace when switched off')
   await layer('cage', true)
   assert.ok(difference(bare, await look(page, area)) > 0.02, 'the cage is drawn')
+  await layer('cage', false)
+  await layer('paint', true)
+  await mode('compare')
   assert.deepEqual(complaints, [])
 })
 
 test('the line moves with the pointer and with the keys of a slider', async () => {
-  const { page } = await site.visit()
+  const { page } = visit
   const divider = page.getByTestId('compare-slider')
   const value = async (): Promise<number> => Number(await divider.getAttribute('aria-valuenow'))
   assert.equal(await value(), 50)
@@ -97,7 +84,7 @@ test('the line moves with the pointer and with the keys of a slider', async () =
 })
 
 test('the model turns by mouse and by keys, and comes back home', async () => {
-  const { page } = await site.visit()
+  const { page } = visit
   await page.locator('input[value=result]').check({ force: true })
   const area = await modelArea(page)
   const home = await look(page, area)
@@ -115,6 +102,26 @@ test('the model turns by mouse and by keys, and comes back home', async () => {
   await page.mouse.up()
   await page.waitForTimeout(500)
   assert.ok(difference(home, await look(page, area)) > 0.02, 'a drag turns it')
+})
+
+test('the content security policy forbids other hosts, inline scripts and eval', async () => {
+  const { page } = visit
+  const outcome = await page.evaluate(async () => {
+    const breaches: string[] = []
+    document.addEventListener('securitypolicyviolation', ({ effectiveDirective }) => breaches.push(effectiveDirective))
+    const refused = await fetch('https://example.org/').then(() => false, () => true)
+    const script = document.createElement('script')
+    script.textContent = 'globalThis.inlineRan = true'
+    document.head.append(script)
+    await new Promise((done) => setTimeout(done, 100))
+    // The test's own evaluation is exempt from the policy; a timer of the page is not.
+    return { refused, breaches, ran: 'inlineRan' in globalThis }
+  })
+  assert.equal(outcome.refused, true)
+  assert.equal(outcome.ran, false)
+  assert.ok(outcome.breaches.includes('connect-src') && outcome.breaches.includes('script-src-elem'), outcome.breaches.join())
+  const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content')
+  assert.match(policy!, /script-src 'self' 'wasm-unsafe-eval';/)
 })
 
 test('the model turns by itself until it is touched, and not for those who want no motion', async () => {

@@ -52,11 +52,10 @@ class App {
     element('swap', HTMLButtonElement).addEventListener('click', () => this.#swap())
   }
 
-  /** Opens the first sample. */
-  async start(): Promise<void> {
-    init().catch(() => {}) // begun while the files are on their way; told when it is waited for
+  /** Opens the first of the samples. */
+  async start(samples: Promise<Sample[]>): Promise<void> {
     try {
-      this.#samples = await loadSamples()
+      this.#samples = await samples
       this.#select.replaceChildren(...this.#samples.map(({ name, title }) => new Option(title, name)))
       // Files of one's own may have come in while the list was on its way.
       if (this.#runs === 0) this.#openSample(this.#samples[0]!.name)
@@ -305,4 +304,15 @@ function startViewer(): Viewer | undefined {
   }
 }
 
-void new App().start()
+/** Waits until the page is on the screen: making a picture in 3D can take a moment, and words come first. */
+function painted(): Promise<unknown> {
+  const frames = new Promise((done) => requestAnimationFrame(() => setTimeout(done)))
+  // A page in the background has no frames.
+  return Promise.race([frames, new Promise((done) => setTimeout(done, 200))])
+}
+
+const samples = loadSamples()
+// Begun while the files are on their way; told when they are waited for.
+for (const early of [samples, init()]) early.catch(() => {})
+await painted()
+await new App().start(samples)

@@ -45,6 +45,8 @@ export class Viewer {
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas
     this.#renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true })
+    // Asking for each shader's log waits until it is compiled: seconds, on a slow machine.
+    this.#renderer.debug.checkShaderErrors = import.meta.env.DEV
     this.#renderer.toneMapping = NeutralToneMapping
     this.#renderer.toneMappingExposure = 1.05
     this.#renderer.shadowMap.enabled = true
