@@ -125,10 +125,45 @@ struct Ray {
 /// or a corner that triangles share hits at least one of them. A triangle that holds the origin as a corner is hit at
 /// distance 0, exactly; one that holds the whole ray in its plane is not hit.
 ///
-/// All rays go through the tree together: each node is read once for all rays that enter it, which are then listed for its
-/// children. Rays should come in an order in which neighbours are neighbours in space.
-/// @param[out] hit  1 per ray.
-/// @return false if memory ran out.
-bool findHits(const RayTree& tree, const Ray* rays, std::uint32_t count, double from, Scratch& scratch, bool* hit) noexcept;
+/// Many rays go through the tree together: each node is read once for all rays that enter it, which are then listed for its
+/// children. They should come in an order in which neighbours are neighbours in space.
+class HitSearch {
+ public:
+  /// Rays that go together: enough to share nodes, few enough for their lists to stay in the cache.
+  static constexpr std::uint32_t kMostRays = 1024;
+
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
+  /// @param from  Scaled.
+  HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcept;
+
+  /// @param rays      Up to `kMostRays`.
+  /// @param[out] hit  1 per ray.
+  void search(const Ray* rays, std::uint32_t count, bool* hit) noexcept;
+
+ private:
+  /// What the box test needs of a ray.
+  struct alignas(16) Slabs {
+    float inverse[4];
+    float offset[4];  ///< origin · inverse.
+  };
+
+  void enter(std::uint32_t child, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept;
+  void testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* const (&lists)[4],
+                 std::uint32_t (&counts)[4]) const noexcept;
+  void testLeaf(const RayLeaf& leaf, const std::uint16_t* ids, std::uint32_t count) noexcept;
+  [[nodiscard]] unsigned mightHit(const RayLeaf& leaf, const Ray& ray) const noexcept;
+
+  const RayTree& tree_;
+  double from_;
+  float loose_;             ///< Hits beyond this are worth deciding in double.
+  float zero_;              ///< 0 if a hit at distance 0 is none, else less.
+  float distanceRounding_;  ///< What to multiply `RayLeaf::rounding` with for the rounding of a distance.
+  Slabs* slabs_;            ///< 1 per ray.
+  std::uint8_t* alive_;     ///< 1 per ray: all bits while it has hit nothing, else 0.
+  std::uint16_t* lists_;
+  const Ray* rays_ = nullptr;
+  bool* hit_ = nullptr;
+  unsigned octant_ = 0;     ///< Where the rays of this pass point to.
+};
 
 }  // namespace cagecast

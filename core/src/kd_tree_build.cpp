@@ -142,14 +142,22 @@ constexpr std::uint32_t groupsOfFour(std::uint32_t count) { return (count + 3) /
 /// which the centroids spread most: looking at all three costs three times as much and finds trees hardly better.
 class CageTreeBuilder {
  public:
-  CageTreeBuilder(const Cage& cage, float reach, const Box* boxes, std::uint32_t* order, Node* nodes, RayLeaf* rayLeaves,
-                  NearLeaf* nearLeaves)
-      : cage_(cage), reach_(reach), boxes_(boxes), order_(order), nodes_(nodes), rayLeaves_(rayLeaves), nearLeaves_(nearLeaves) {}
+  struct Leaf {
+    std::uint32_t begin, size;
+  };
+
+  /// @param order   Room for all triangles; on return they stand leaf by leaf.
+  /// @param leaves  Room for as many: on return the part of `order` that each leaf holds.
+  /// @param nodes   Room for as many.
+  CageTreeBuilder(std::uint32_t count, float reach, const Box* boxes, std::uint32_t* order, Leaf* leaves, Node* nodes)
+      : count_(count), reach_(reach), boxes_(boxes), order_(order), leaves_(leaves), nodes_(nodes) {}
 
   void build(const Box& all) {
     nodeCount_ = 1;
-    fill(0, {0, cage_.count, all}, 1);
+    fill(0, {0, count_, all}, 1);
   }
+  [[nodiscard]] std::uint32_t nodeCount() const { return nodeCount_; }
+  [[nodiscard]] std::uint32_t leafCount() const { return leafCount_; }
   [[nodiscard]] std::uint32_t levels() const { return levels_; }
 
  private:
@@ -184,33 +192,20 @@ class CageTreeBuilder {
     Box boxes[4];
     std::uint32_t* child = nodes_[nodeIndex].child;
     for (int i = 0; i < 4; ++i) {
-      child[i] = i >= count ? kLeafBit : children[i].size() <= 4 ? kLeafBit | makeLeaf(children[i]) : nodeCount_++;
-      if (i < count) boxes[i] = children[i].box.padded(kPadding * reach_);
+      child[i] = kLeafBit;
+      if (i >= count) continue;
+      boxes[i] = children[i].box.padded(kPadding * reach_);
+      if (children[i].size() > 4) {
+        child[i] = nodeCount_++;
+      } else {
+        child[i] = kLeafBit | leafCount_;
+        leaves_[leafCount_++] = {children[i].begin, children[i].size()};
+      }
     }
     setChildren(nodes_[nodeIndex], boxes);
     for (int i = 0; i < count; ++i) {
       if ((child[i] & kLeafBit) == 0) fill(child[i], children[i], level + 1);
     }
-  }
-
-  std::uint32_t makeLeaf(const Range& range) {
-    const std::uint32_t leaf = leafCount_++;
-    f32x4 corners[3][4];
-    for (std::uint32_t lane = 0; lane < 4; ++lane) {
-      const std::uint32_t i = range.begin + lane;
-      if (i < range.end) {
-        const CageTriangle& t = cage_.triangles[order_[i]];
-        corners[0][lane] = load(t.a);
-        corners[1][lane] = load(t.b);
-        corners[2][lane] = load(t.c);
-        setNearTriangle(nearLeaves_[leaf], static_cast<int>(lane), t, order_[i]);
-      } else {
-        corners[0][lane] = corners[1][lane] = corners[2][lane] = splat(0);
-        clearNearTriangle(nearLeaves_[leaf], static_cast<int>(lane));
-      }
-    }
-    setRayLeaf(rayLeaves_[leaf], corners, range.size(), reach_);
-    return leaf;
   }
 
   /// Twice the centre of a triangle's box.
@@ -280,13 +275,12 @@ class CageTreeBuilder {
     return range;
   }
 
-  const Cage& cage_;
+  std::uint32_t count_;
   float reach_;  ///< See `RayTree`.
   const Box* boxes_;
   std::uint32_t* order_;
+  Leaf* leaves_;
   Node* nodes_;
-  RayLeaf* rayLeaves_;
-  NearLeaf* nearLeaves_;
   std::uint32_t nodeCount_ = 0;
   std::uint32_t leafCount_ = 0;
   std::uint32_t levels_ = 0;
@@ -295,13 +289,11 @@ class CageTreeBuilder {
 }  // namespace
 
 bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageTree& out) noexcept {
+  auto* order = scratch.take<std::uint32_t>(cage.count);
+  auto* built = scratch.take<CageTreeBuilder::Leaf>(cage.count);
+  auto* boxes = scratch.take<Box>(cage.count);
   // A split never makes an empty side, so a leaf has at least one triangle, and a node at least two children.
   auto* nodes = scratch.take<Node>(cage.count);
-  auto* rayLeaves = scratch.take<RayLeaf>(cage.count);
-  auto* nearLeaves = scratch.take<NearLeaf>(cage.count);
-  const Scratch::Mark mark = scratch.mark();
-  auto* boxes = scratch.take<Box>(cage.count);
-  auto* order = scratch.take<std::uint32_t>(cage.count);
   if (scratch.failed()) return false;
   Box all;
   for (std::uint32_t i = 0; i < cage.count; ++i) {
@@ -314,9 +306,31 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     all.grow(box);
     order[i] = i;
   }
-  CageTreeBuilder builder(cage, units.reach, boxes, order, nodes, rayLeaves, nearLeaves);
+  CageTreeBuilder builder(cage.count, units.reach, boxes, order, built, nodes);
   builder.build(all);
-  scratch.rewind(mark);
+  scratch.shrink(nodes, builder.nodeCount());
+
+  const std::uint32_t leafCount = builder.leafCount();
+  auto* rayLeaves = scratch.take<RayLeaf>(leafCount);
+  auto* nearLeaves = scratch.take<NearLeaf>(leafCount);
+  if (scratch.failed()) return false;
+  for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf) {
+    const auto [begin, size] = built[leaf];
+    f32x4 corners[3][4];
+    for (std::uint32_t lane = 0; lane < 4; ++lane) {
+      if (lane < size) {
+        const CageTriangle& t = cage.triangles[order[begin + lane]];
+        corners[0][lane] = load(t.a);
+        corners[1][lane] = load(t.b);
+        corners[2][lane] = load(t.c);
+        setNearTriangle(nearLeaves[leaf], static_cast<int>(lane), t, order[begin + lane]);
+      } else {
+        corners[0][lane] = corners[1][lane] = corners[2][lane] = splat(0);
+        clearNearTriangle(nearLeaves[leaf], static_cast<int>(lane));
+      }
+    }
+    setRayLeaf(rayLeaves[leaf], corners, size, units.reach);
+  }
   float sides[4];
   simd::store(sides, all.high - all.low);
   out = {{nodes, rayLeaves, units.reach, builder.levels()}, nearLeaves, static_cast<double>(std::max({sides[0], sides[1], sides[2]}))};

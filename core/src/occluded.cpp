@@ -5,17 +5,18 @@ namespace cagecast {
 bool markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units, Scratch& scratch,
                   PointResults& results) noexcept {
   const Scratch::Mark mark = scratch.mark();
-  auto* rays = scratch.take<Ray>(points.count);
-  auto* hit = scratch.take<bool>(points.count);
-  if (scratch.failed()) return false;
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    const float* p = points.at(i);
-    rays[i] = {{p[0], p[1], p[2]}, &cage.triangles[results.triangles[i]].normal};
-  }
+  auto* rays = scratch.take<Ray>(HitSearch::kMostRays);
+  auto* hit = scratch.take<bool>(HitSearch::kMostRays);
   // Triangles at the point itself are hit at distance 0, exactly, and so do not count.
-  if (!findHits(target, rays, points.count, kRayStart * units.diagonal, scratch, hit)) return false;
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    if (hit[i]) results.zones[i] = Zone::occluded;
+  HitSearch search(target, kRayStart * units.diagonal, scratch);
+  if (scratch.failed()) return false;
+  for (std::uint32_t begin = 0; begin < points.count; begin += HitSearch::kMostRays) {
+    const std::uint32_t count = std::min(HitSearch::kMostRays, points.count - begin);
+    for (std::uint32_t i = 0; i < count; ++i) rays[i] = rayOf(points, cage, results, begin + i);
+    search.search(rays, count, hit);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (hit[i]) results.zones[begin + i] = Zone::occluded;
+    }
   }
   scratch.rewind(mark);
   return true;

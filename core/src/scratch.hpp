@@ -31,7 +31,16 @@ class Scratch {
     if (current_ == blockCount_ && !addBlock(size)) return fail<T>();
     T* place = reinterpret_cast<T*>(blocks_[current_].data + used_);
     used_ += size;
+    note();
     return place;
+  }
+
+  /// Gives back the end of the array taken last.
+  /// @param count  Elements to keep.
+  template <typename T>
+  void shrink(const T* array, std::size_t count) noexcept {
+    const auto* end = reinterpret_cast<const std::byte*>(array + count);
+    used_ = (static_cast<std::size_t>(end - blocks_[current_].data) + kAlign - 1) / kAlign * kAlign;
   }
 
   /// Where the stack stands.
@@ -47,12 +56,13 @@ class Scratch {
 
   /// Empties the stack for a new call. What the last call needed in several blocks is taken as one.
   void begin() noexcept {
-    failed_ = false;
     if (blockCount_ > 1) {
-      const std::size_t all = bytes();
+      const std::size_t all = peak_;
       release();
       addBlock(all);
     }
+    failed_ = false;
+    peak_ = 0;
     rewind({0, 0});
   }
   /// Gives all memory back to the system.
@@ -62,12 +72,8 @@ class Scratch {
   }
 
   [[nodiscard]] bool failed() const noexcept { return failed_; }
-  /// All memory held, in bytes.
-  [[nodiscard]] std::size_t bytes() const noexcept {
-    std::size_t sum = 0;
-    for (std::size_t i = 0; i < blockCount_; ++i) sum += blocks_[i].size;
-    return sum;
-  }
+  /// Most memory in use at once since `begin`, in bytes.
+  [[nodiscard]] std::size_t peak() const noexcept { return peak_; }
 
  private:
   static constexpr std::size_t kAlign = 16;
@@ -83,6 +89,11 @@ class Scratch {
     failed_ = true;
     return nullptr;
   }
+  void note() noexcept {
+    std::size_t inUse = used_;
+    for (std::size_t i = 0; i < current_; ++i) inUse += blocks_[i].size;
+    if (inUse > peak_) peak_ = inUse;
+  }
   bool addBlock(std::size_t size) noexcept {
     if (blockCount_ == kMaxBlocks) return false;
     if (size < kMinBlock) size = kMinBlock;
@@ -96,6 +107,7 @@ class Scratch {
   std::size_t blockCount_ = 0;
   std::size_t current_ = 0;  ///< The block in use.
   std::size_t used_ = 0;     ///< Bytes used of it.
+  std::size_t peak_ = 0;
   bool failed_ = false;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "cage.hpp"
@@ -21,6 +22,12 @@ struct PointResults {
   bool* meetsCage = nullptr;           ///< Step 1 knows already that step 3's ray hits.
   std::uint32_t* segments = nullptr;
 };
+
+/// The ray of SPEC §1: from the point, along the normal of its nearest cage triangle.
+inline Ray rayOf(const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
+  const float* p = points.at(point);
+  return {{p[0], p[1], p[2]}, &cage.triangles[results.triangles[point]].normal};
+}
 
 /// All steps return false if memory ran out.
 

@@ -82,7 +82,7 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   out.timings.segments = watch.lap();
   const Timings& t = out.timings;
   out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments;
-  out.peakBytes = scratch.bytes() + vertexCount * (2 * sizeof(float) + sizeof(Zone) + 2 * sizeof(std::uint32_t) + sizeof(float)) +
+  out.peakBytes = scratch.peak() + vertexCount * (2 * sizeof(float) + sizeof(Zone) + 2 * sizeof(std::uint32_t) + sizeof(float)) +
                   out.segmentStats.size() * sizeof(SegmentStats);
   return {};
 }
