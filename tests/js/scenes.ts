@@ -110,6 +110,7 @@ export function modelFolders(): string[] {
   return folders.flatMap((folder) =>
     existsSync(folder)
       ? readdirSync(folder)
+          .filter((name) => !name.startsWith('.')) // one that is being made
           .map((name) => join(folder, name))
           .filter((model) => existsSync(join(model, 'target.glb')) && existsSync(join(model, 'cage.glb')))
       : [],
