@@ -1,8 +1,8 @@
 import { type Bounds, type Mesh, clip, corners, largestPart, mirror, point, simplify, surface, vertexCount, withMeshNormals } from './mesh.ts'
 import { type Sdf } from './sdf.ts'
 import { borderLoops } from './unwrap.ts'
-import { spaceOf } from './space.ts'
-import type { Vec3 } from './vec.ts'
+import { onOpenEdge, spaceOf } from './space.ts'
+import { type Vec3, length, sub } from './vec.ts'
 
 export interface CagePlan {
   solid: Sdf // the model's outer skin, symmetric in x, with everything bridged over that the cage shall bridge
@@ -23,6 +23,7 @@ export const makeCage = (plan: CagePlan): Mesh => {
   // The solid's own field is only nearly a distance; the distance to its surface is.
   const grown: Sdf = (x, y, z) => {
     const rough = plan.solid(x, y, z)
+    if (Math.abs(rough) > 4 * plan.distance) return rough - plan.distance // far from the surface it need not be exact
     const distance = space.nearest([x, y, z]).distance
     return (rough < 0 ? -distance : distance) - plan.distance
   }
@@ -48,8 +49,15 @@ const rimKeeper = (half: Mesh): ((p: Vec3) => boolean) => {
       else if (runs.at(-1)!.length > 0) runs.push([])
     }
     for (const run of runs) {
-      const step = Math.max(run.length / (whole ? kRimCorners : kRimCorners / 2), 1)
-      for (let i = step / 2; i < run.length; i += step) kept.add(point(half, run[Math.floor(i)]!).join())
+      const steps = run.map((v, i) => (i === 0 ? 0 : length(sub(point(half, v), point(half, run[i - 1]!)))))
+      const spacing = steps.reduce((a, b) => a + b, 0) / (whole ? kRimCorners : kRimCorners / 2)
+      let walked = spacing / 2
+      run.forEach((v, i) => {
+        walked += steps[i]!
+        if (walked < spacing) return
+        kept.add(point(half, v).join())
+        walked = 0
+      })
     }
   }
   return (p) => kept.has(p.join())
@@ -63,16 +71,15 @@ const pushOut = (cage: Mesh, plan: CagePlan): Mesh => {
   let current = cage
   for (let round = 0; round < kRounds; round++) {
     const space = spaceOf(current)
+    const onBorder = onOpenEdge(current)
     const { normals } = withMeshNormals(current)
     const push = new Float64Array(vertexCount(current))
     for (let v = 0; v < vertexCount(plan.wrap); v++) {
       if (!plan.seen(v)) continue
       const p = point(plan.wrap, v)
       const near = space.nearest(p)
-      // Off the border the nearest point is straight above: only there does "beneath" mean anything.
-      const lateral = Math.sqrt(Math.max(near.distance ** 2 - near.side ** 2, 0))
-      const missing = near.side + least
-      if (missing <= 0 || lateral > 0.1 * plan.distance) continue
+      const missing = near.side > 0 ? near.distance + least : least - near.distance
+      if (missing <= 0 || onBorder(near.point)) continue // beyond a border there is no beneath
       for (const c of corners(current, near.triangle)) push[c] = Math.max(push[c]!, missing)
     }
     if (push.every((d) => d === 0)) return current
@@ -84,16 +91,4 @@ const pushOut = (cage: Mesh, plan: CagePlan): Mesh => {
     current = { positions, indices: current.indices }
   }
   return current
-}
-
-/** How many seen vertices of the skin lie outside the cage, borders aside: of a good cage none. */
-export const outsideCage = (cage: Mesh, wrap: Mesh, seen: (vertex: number) => boolean, onBorder: (p: Vec3) => boolean): number => {
-  const space = spaceOf(cage)
-  let outside = 0
-  for (let v = 0; v < vertexCount(wrap); v++) {
-    if (!seen(v)) continue
-    const near = space.nearest(point(wrap, v))
-    if (near.side > 0 && !onBorder(near.point)) outside++
-  }
-  return outside
 }

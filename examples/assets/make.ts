@@ -7,6 +7,7 @@ import { createHash } from 'node:crypto'
 import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs'
 import { dirname, join } from 'node:path'
 import { fileURLToPath } from 'node:url'
+import { faultsOf } from './check.ts'
 import { writeGlb } from './glb.ts'
 import { drawTexture } from './image.ts'
 import { triangleCount, withMeshNormals } from './mesh.ts'
@@ -44,10 +45,15 @@ const fingerprint = (): string => {
 }
 
 const write = async (model: Model, folder: string, lent: (name: string) => Entry['paints']): Promise<Entry> => {
-  writeFileSync(join(folder, 'target.glb'), await writeGlb(model.title, model.parts))
+  const target = await writeGlb(model.title, model.parts)
   const cage = { name: 'cage', mesh: withMeshNormals(model.cage), colour: [0.8, 0.8, 0.8, 1] as const, roughness: 0.9, ncz: false }
-  writeFileSync(join(folder, 'cage.glb'), await writeGlb(`${model.title}: cage`, [cage]))
-  writeFileSync(join(folder, 'truth.json'), JSON.stringify(truthOf(model.parts, model.cage, model.inside)))
+  const cageGlb = await writeGlb(`${model.title}: cage`, [cage])
+  const truth = truthOf(model.parts, model.cage, model.inside)
+  const faults = await faultsOf(model, truth, { target, cage: cageGlb })
+  if (faults.length > 0) throw new Error(`assets: ${model.name} is not as it should be:\n  ${faults.join('\n  ')}`)
+  writeFileSync(join(folder, 'target.glb'), target)
+  writeFileSync(join(folder, 'cage.glb'), cageGlb)
+  writeFileSync(join(folder, 'truth.json'), JSON.stringify(truth))
   const own = 'of' in model.paints ? [] : model.paints
   for (const paint of own)
     writeFileSync(join(folder, `paint-${paint.name}.png`), drawTexture(cage.mesh, kPaintSize, paint.shade, paint.far, 2))

@@ -65,8 +65,10 @@ export const fromSolid = (solid: Manifold, place: (p: Vec3) => Vec3 = (p) => p):
   solid.delete()
   const positions = new Float32Array(mesh.numVert * 3)
   for (let v = 0; v < mesh.numVert; v++) {
-    const [x, y, z] = mesh.position(v)
-    positions.set(place([x!, y!, z!]), 3 * v)
+    const [x, y, z] = place(mesh.position(v) as unknown as Vec3)
+    positions[3 * v] = x
+    positions[3 * v + 1] = y
+    positions[3 * v + 2] = z
   }
   return { positions, indices: new Uint32Array(mesh.triVerts) }
 }
@@ -84,7 +86,7 @@ export const clip = (mesh: Mesh, keep: (p: Vec3) => number): Mesh => {
     const a = point(mesh, inside)
     const at = add(a, scale(sub(point(mesh, outside), a), t))
     // A cut next to a corner would leave a sliver: move the corner to the cut instead.
-    if (t < 0.02) {
+    if (t < 0.08) {
       at.forEach((x, k) => (positions[3 * inside + k] = x))
       return inside
     }

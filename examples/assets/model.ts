@@ -17,6 +17,7 @@ export interface Model {
   title: string // for people
   parts: Part[]
   cage: Mesh // with UVs
+  misfit?: boolean // the cage is wrong on purpose
   inside: (p: Vec3) => boolean // points of paintable parts that count as the inside of the model: not scored
   paints: Paint[] | { of: string } // of its own, or those of another model whose cage has the same UVs
 }

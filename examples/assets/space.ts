@@ -3,10 +3,20 @@ import { MeshBVH } from 'three-mesh-bvh'
 import { type Mesh, diagonalOf, faceNormal, openEdges, point } from './mesh.ts'
 import { type Vec3, add, clamp, dot, length, scale, sub, unit } from './vec.ts'
 
+export interface Nearest {
+  point: Vec3
+  triangle: number
+  distance: number
+  side: number
+}
+
 /** Questions about a mesh in space. */
 export interface Space {
-  /** The nearest point of the surface, its triangle, and the signed distance from the triangle's plane (+ is outside). */
-  nearest(p: Vec3): { point: Vec3; triangle: number; distance: number; side: number }
+  /**
+   * The nearest point of the surface, its triangle, and the signed distance from the triangle's plane (+ is outside). Where
+   * several triangles share the point, the one whose plane is farthest: its side is the true one.
+   */
+  nearest(p: Vec3): Nearest
   /** Whether a ray hits the mesh, from either side. */
   hits(from: Vec3, direction: Vec3): boolean
 }
@@ -18,12 +28,28 @@ export const spaceOf = (mesh: Mesh): Space => {
   const bvh = new MeshBVH(geometry, { indirect: true })
   const ray = new Ray()
   const query = new Vector3()
+  const found = new Vector3()
+  const tie = 1e-6 * diagonalOf(mesh.positions)
   return {
     nearest(p) {
       const hit = bvh.closestPointToPoint(query.set(...p))
       if (!hit) throw new Error('spaceOf: the mesh has no triangles')
       const q: Vec3 = [hit.point.x, hit.point.y, hit.point.z]
-      return { point: q, triangle: hit.faceIndex, distance: hit.distance, side: dot(sub(p, q), unit(faceNormal(mesh, hit.faceIndex))) }
+      const sideOf = (triangle: number): number => dot(sub(p, q), unit(faceNormal(mesh, triangle)))
+      const best = { point: q, triangle: hit.faceIndex, distance: hit.distance, side: sideOf(hit.faceIndex) }
+      // Straight above the inside of a triangle there is no other.
+      if (Math.abs(best.side) > 0.9999 * hit.distance) return best
+      const limit = hit.distance + tie
+      bvh.shapecast({
+        intersectsBounds: (bounds) => bounds.distanceToPoint(query) <= limit,
+        intersectsTriangle: (triangle, index) => {
+          if (triangle.closestPointToPoint(query, found).distanceTo(query) > limit) return false
+          const side = sideOf(index)
+          if (Math.abs(side) > Math.abs(best.side)) Object.assign(best, { triangle: index, side })
+          return false
+        },
+      })
+      return best
     },
     hits(from, direction) {
       ray.origin.set(...from)

@@ -13,7 +13,7 @@ export interface Truth {
   parts: { name: string; firstVertex: number; vertexCount: number; triangleCount: number; ncz: boolean; ambiguous: boolean }[]
 }
 
-const kRays = 512 // over the whole sphere; half of them on a vertex's own side
+const kRays = 256 // over the whole sphere; half of them on a vertex's own side
 const kGolden = Math.PI * (3 - Math.sqrt(5))
 
 /** Directions spread evenly over the sphere. */

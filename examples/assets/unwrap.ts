@@ -105,7 +105,7 @@ export const boxAtlas = (mesh: Mesh, margin = 0.006): Mesh => {
     })
   const flat = (v: number, s: number): Uv => [dot(point(mesh, v), kSides[s]!.u), dot(point(mesh, v), kSides[s]!.v)]
   const bounds = boundsOf(mesh.positions)
-  const cell = length(sub(bounds.max, bounds.min)) / 1500
+  const cell = length(sub(bounds.max, bounds.min)) / 800
   const chart = new Int32Array(count).fill(-1)
   const charts: number[] = [] // the side of each
   for (let seed = 0; seed < count; seed++) {

@@ -276,7 +276,7 @@ const camouflage: Shade = (p) => {
 export const car = (): Model => {
   const half = clip(surface(shell, bounds, 0.026), (p) => p[0])
   const onBody = (p: Vec3): number => Math.min(p[1] - kSill, arch(0)(...p), ...openings.map((o) => o.field(...p)))
-  const body = panel(half, (p) => Math.min(onBody(p), -bumperLine(p)), 3600)
+  const body = panel(half, (p) => Math.min(onBody(p), -bumperLine(p)), 3500)
   const bumpers = panel(half, (p) => Math.min(onBody(p), bumperLine(p)), 900)
   const opening = (name: string, triangles: number, inset = 0.008): Mesh => {
     const { field } = openings.find((o) => o.name === name)!
@@ -338,7 +338,7 @@ export const car = (): Model => {
     // An opening's edge is above its edge in the shell, wherever the offset has carried it.
     keep: (p) => {
       const q = beneath(p)
-      const light = (o: Opening): number => (o.name.endsWith('lights') ? 0.025 : 0)
+      const light = (o: Opening): number => (o.name.endsWith('lights') ? 0.01 : 0)
       return Math.min(p[1] - (kSill - 0.05), arch(0.015)(...p), ...openings.map((o) => o.field(...q) - light(o)))
     },
   })

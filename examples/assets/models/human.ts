@@ -221,15 +221,9 @@ const tongueSolid: Sdf = mirrored(
 )
 
 /** Looks closely at the face, less so at the skull, least at the shoulders. */
-const faceLens = (p: Vec3): Vec3 => {
-  const bend = (x: number, from: number, to: number): number => {
-    // Slope 1 within [from, to], 2 outside.
-    if (x < from) return from + (x - from) * 2
-    if (x > to) return to + (x - to) * 2
-    return x
-  }
-  return [bend(p[0], -1, 0.22), bend(p[1], -0.42, 0.13), bend(p[2], 0.12, 1)]
-}
+const faceLens = (p: Vec3): Vec3 => [bend(p[0], -1, 0.22), bend(p[1], -0.42, 0.13), bend(p[2], 0.12, 1)]
+/** A map with slope 1 within [from, to] and 2 outside. */
+const bend = (x: number, from: number, to: number): number => x + Math.min(x - from, 0) + Math.max(x - to, 0)
 
 /** Enlarges eyes, mouth and ears, so that they keep more of their triangles. */
 const faceFocus = (p: Vec3): Vec3 => {
@@ -490,5 +484,5 @@ export const humanMisaligned = (): Model => {
     const [x, y, z] = [positions[i]!, positions[i + 1]!, positions[i + 2]!]
     positions.set([c * x + s * z + 0.07, y - 0.06, c * z - s * x + 0.04], i)
   }
-  return { ...whole, name: 'human-misaligned', title: 'Human bust, cage out of place', cage: { ...whole.cage, positions }, paints: { of: 'human' } }
+  return { ...whole, name: 'human-misaligned', title: 'Human bust, cage out of place', misfit: true, cage: { ...whole.cage, positions }, paints: { of: 'human' } }
 }
