@@ -211,6 +211,12 @@ class CageTreeBuilder {
   /// Twice the centre of a triangle's box.
   [[nodiscard]] f32x4 centre(std::uint32_t slot) const { return boxes_[slot].low + boxes_[slot].high; }
 
+  [[nodiscard]] float at(std::uint32_t slot, int axis) const {
+    float coordinates[4];
+    simd::store(coordinates, centre(slot));
+    return coordinates[axis];
+  }
+
   void split(const Range& range, std::uint32_t level, Range& left, Range& right) {
     Box centres;
     for (std::uint32_t i = range.begin; i < range.end; ++i) centres.grow(centre(order_[i]));
@@ -221,17 +227,13 @@ class CageTreeBuilder {
     const int axis = static_cast<int>(std::max_element(spread, spread + 3) - spread);
     const float toBin = static_cast<float>(kBins) * 0.9999f / spread[axis];
     if (!(spread[axis] > 0) || !(toBin < std::numeric_limits<float>::max()) || level > kMaxBinnedLevel) {
-      const std::uint32_t middle = range.begin + range.size() / 2;
-      left = rangeOf(range.begin, middle);
-      right = rangeOf(middle, range.end);
+      const std::uint32_t half = range.begin + range.size() / 2;
+      left = rangeOf(range.begin, half);
+      right = rangeOf(half, range.end);
       return;
     }
 
-    const auto binOf = [&](std::uint32_t slot) {
-      float at[4];
-      simd::store(at, centre(slot));
-      return static_cast<int>((at[axis] - low[axis]) * toBin);
-    };
+    const auto binOf = [&](std::uint32_t slot) { return static_cast<int>((at(slot, axis) - low[axis]) * toBin); };
     Box boxes[kBins];
     std::uint32_t counts[kBins] = {};
     for (std::uint32_t i = range.begin; i < range.end; ++i) {
@@ -239,19 +241,17 @@ class CageTreeBuilder {
       boxes[bin].grow(boxes_[order_[i]]);
       ++counts[bin];
     }
-    // The first and the last bin are never empty, so no side of any split is.
-    Box fromRight[kBins];
     float rightCost[kBins];
     std::uint32_t count = 0;
     Box box;
     for (int bin = kBins - 1; bin > 0; --bin) {
       box.grow(boxes[bin]);
       count += counts[bin];
-      fromRight[bin] = box;
       rightCost[bin] = box.halfArea() * static_cast<float>(groupsOfFour(count));
     }
     float bestCost = std::numeric_limits<float>::infinity();
-    int best = 1;
+    std::uint32_t middle = range.begin;
+    int best = 0;
     count = 0;
     box = {};
     for (int bin = 0; bin < kBins - 1; ++bin) {
@@ -260,13 +260,18 @@ class CageTreeBuilder {
       const float cost = box.halfArea() * static_cast<float>(groupsOfFour(count)) + rightCost[bin + 1];
       if (!(cost < bestCost)) continue;
       bestCost = cost;
+      middle = range.begin + count;
       best = bin + 1;
-      left.box = box;
     }
-    const auto middle = static_cast<std::uint32_t>(
-        std::partition(order_ + range.begin, order_ + range.end, [&](std::uint32_t slot) { return binOf(slot) < best; }) - order_);
-    left = {range.begin, middle, left.box};
-    right = {middle, range.end, fromRight[best]};
+    std::uint32_t* first = order_ + range.begin;
+    std::partition(first, order_ + range.end, [&](std::uint32_t slot) { return binOf(slot) < best; });
+    // Full leaves are better than tight ones: the split is moved to the next multiple of four.
+    const std::uint32_t full = range.begin + std::clamp((middle - range.begin + 2) / 4 * 4, 4u, (range.size() - 1) / 4 * 4);
+    const auto before = [&](std::uint32_t a, std::uint32_t b) { return at(a, axis) < at(b, axis); };
+    if (full < middle) std::nth_element(first, order_ + full, order_ + middle, before);
+    if (full > middle) std::nth_element(order_ + middle, order_ + full, order_ + range.end, before);
+    left = rangeOf(range.begin, full);
+    right = rangeOf(full, range.end);
   }
 
   [[nodiscard]] Range rangeOf(std::uint32_t begin, std::uint32_t end) const {

@@ -1,6 +1,8 @@
 #include "weld.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <tuple>
 #include <utility>
 
 #include "curve.hpp"
@@ -35,34 +37,13 @@ Placed* sortByKey(Placed* items, Placed* other, std::uint32_t count, int keyBits
   return items;
 }
 
-/// One vertex as weld sees it: equal if position and group are.
+/// A vertex as weld sees it, scaled. Adding 0 made 0 of −0, so equal is the same as equal to the bit.
 struct Site {
   float x, y, z;
   std::uint32_t group;
 
-  friend bool operator==(const Site& a, const Site& b) { return a.x == b.x && a.y == b.y && a.z == b.z && a.group == b.group; }
-  friend bool operator<(const Site& a, const Site& b) {
-    if (a.x != b.x) return a.x < b.x;
-    if (a.y != b.y) return a.y < b.y;
-    if (a.z != b.z) return a.z < b.z;
-    return a.group < b.group;
-  }
-};
-
-class Welder {
- public:
-  Welder(const MeshView& target, const Units& units) : target_(target), units_(units) {}
-
-  /// Adding 0 makes 0 of −0.
-  [[nodiscard]] Site site(std::uint32_t v) const {
-    const float* p = target_.positions.data() + std::size_t{3} * v;
-    return {p[0] * units_.scale + 0.0f, p[1] * units_.scale + 0.0f, p[2] * units_.scale + 0.0f,
-            target_.groups.empty() ? 0 : target_.groups[v]};
-  }
-
- private:
-  const MeshView& target_;
-  const Units& units_;
+  friend bool operator==(const Site& a, const Site& b) { return std::memcmp(&a, &b, sizeof(Site)) == 0; }
+  friend bool operator<(const Site& a, const Site& b) { return std::tie(a.x, a.y, a.z, a.group) < std::tie(b.x, b.y, b.z, b.group); }
 };
 
 }  // namespace
@@ -77,19 +58,22 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   const bool tolerant = tolerance > 0;
   auto* groups = scratch.take<std::uint32_t>(tolerant ? vertexCount : 0);
   const Scratch::Mark mark = scratch.mark();
+  auto* sites = scratch.take<Site>(vertexCount);
   auto* placed = scratch.take<Placed>(vertexCount);
   auto* spare = scratch.take<Placed>(vertexCount);
   if (scratch.failed()) return false;
 
   // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
-  const Welder welder(target, units);
   const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
   float side = 0;
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const Site s = welder.site(v);
-    const auto cell = [cells](float x, float low) { return static_cast<std::uint32_t>((x - low) * cells); };
+    const float* p = target.positions.data() + std::size_t{3} * v;
+    const Site s{p[0] * units.scale + 0.0f, p[1] * units.scale + 0.0f, p[2] * units.scale + 0.0f,
+                 target.groups.empty() ? 0 : target.groups[v]};
+    const auto cell = [cells](float x, float low) { return static_cast<std::uint32_t>(static_cast<std::int32_t>((x - low) * cells)); };
+    sites[v] = s;
     placed[v] = {HilbertCurve::key(cell(s.x, units.low[0]), cell(s.y, units.low[1]), cell(s.z, units.low[2]), levels), v};
   }
   if (Placed* sorted = sortByKey(placed, spare, vertexCount, 3 * levels); sorted != placed) std::swap(placed, spare);
@@ -102,23 +86,16 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
     const bool crowded = end - begin > kFew;
     if (crowded) {
       std::sort(placed + begin, placed + end, [&](const Placed& a, const Placed& b) {
-        const Site sa = welder.site(a.vertex);
-        const Site sb = welder.site(b.vertex);
-        return sa == sb ? a.vertex < b.vertex : sa < sb;
+        return sites[a.vertex] == sites[b.vertex] ? a.vertex < b.vertex : sites[a.vertex] < sites[b.vertex];
       });
     }
     const std::uint32_t firstPoint = pointCount;
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t v = placed[i].vertex;
-      const Site s = welder.site(v);
-      std::uint32_t point = pointCount;
+      const Site& s = sites[v];
       // The spare array remembers the vertex that each point was made from.
-      for (std::uint32_t q = crowded && pointCount > firstPoint ? pointCount - 1 : firstPoint; q < pointCount; ++q) {
-        if (welder.site(spare[q].vertex) == s) {
-          point = q;
-          break;
-        }
-      }
+      std::uint32_t point = crowded && pointCount > firstPoint ? pointCount - 1 : firstPoint;
+      while (point < pointCount && !(sites[spare[point].vertex] == s)) ++point;
       if (point == pointCount) {
         spare[pointCount++].vertex = v;
         float* p = positions + Points::kStride * point;
