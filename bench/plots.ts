@@ -76,10 +76,10 @@ export function scalingPlot(results: Results): string {
     { name: 'Embree, native', colour: colours.embree, points: nativeSeries(results, (r) => r.peers['embree']?.times.total.median, isGrown) },
     { name: 'Cagecast, Chromium', colour: colours.wasm, points: webSeries(results, (scene) => results.web!.chromium[scene]!.cagecast.median) },
     { name: 'Cagecast, native', colour: colours.ours, points: nativeSeries(results, (r) => r.cagecast.total.median, isGrown) },
-    { name: 'Cagecast, native, cage of 620 triangles at every size', colour: colours.fixed, points: nativeSeries(results, (r) => r.cagecast.total.median, isFixed), dashed: true },
+    { name: 'Cagecast, native, the sample’s cage at every size', colour: colours.fixed, points: nativeSeries(results, (r) => r.cagecast.total.median, isFixed), dashed: true },
   ];
   const height = 460;
-  const frame = { left: 64, right: width - 20, top: 44, bottom: height - 130 };
+  const frame = { left: 64, right: width - 20, top: 60, bottom: height - 116 };
   const points = series.flatMap(({ points: p }) => p);
   const decade = (values: number[], round: (x: number) => number, pick: (...v: number[]) => number): number => round(Math.log10(pick(...values)));
   const [y0, y1] = [decade(points.map(([, y]) => y), Math.floor, Math.min), decade(points.map(([, y]) => y), Math.ceil, Math.max)];
@@ -94,7 +94,7 @@ export function scalingPlot(results: Results): string {
   for (const n of [...new Set(points.map(([x]) => x))]) {
     if (Object.values(results.native ?? {}).some((r) => r.triangles === n)) body.push(`<line x1="${px(n).toFixed(1)}" x2="${px(n).toFixed(1)}" y1="${frame.top}" y2="${frame.bottom}" stroke="#eee"/>`, text(px(n), frame.bottom + 18, short(Number(n.toPrecision(2))), 'text-anchor="middle"'));
   }
-  body.push(text(frame.left - 48, frame.top - 8, 'ms'), text(frame.right, frame.bottom + 36, 'triangles of the target', 'text-anchor="end"'));
+  body.push(text(frame.left - 8, frame.top - 14, 'ms', 'text-anchor="end"'), text(frame.right, frame.bottom + 36, 'triangles of the target', 'text-anchor="end"'));
   series.forEach(({ name, colour, points: line, dashed }, i) => {
     if (line.length === 0) return;
     body.push(
@@ -113,29 +113,34 @@ interface Bar {
   parts: { value: number; colour: string }[];
 }
 
-function bars(title: string, rows: Bar[], legend: { name: string; colour: string }[]): string {
+/** Stacked bars in groups, each group to its own scale. */
+function bars(title: string, groups: Bar[][], legend: { name: string; colour: string }[]): string {
   const left = 230;
   const right = width - 70;
-  const most = Math.max(...rows.map(({ parts }) => parts.reduce((sum, { value }) => sum + value, 0)));
+  const total = ({ parts }: Bar): number => parts.reduce((sum, { value }) => sum + value, 0);
   const body: string[] = [];
-  rows.forEach(({ name, parts }, i) => {
-    const y = 46 + 28 * i;
-    let x = left;
-    body.push(text(left - 10, y + 15, name, 'text-anchor="end"'));
-    for (const { value, colour } of parts) {
-      const w = (value / most) * (right - left);
-      body.push(`<rect x="${x.toFixed(1)}" y="${y}" width="${w.toFixed(1)}" height="20" fill="${colour}"/>`);
-      x += w;
+  let y = 46;
+  for (const rows of groups) {
+    const most = Math.max(...rows.map(total));
+    for (const row of rows) {
+      let x = left;
+      body.push(text(left - 10, y + 15, row.name, 'text-anchor="end"'));
+      for (const { value, colour } of row.parts) {
+        const w = (value / most) * (right - left);
+        body.push(`<rect x="${x.toFixed(1)}" y="${y}" width="${w.toFixed(1)}" height="20" fill="${colour}"/>`);
+        x += w;
+      }
+      body.push(text(x + 6, y + 15, `${number(total(row))} ms`));
+      y += 28;
     }
-    body.push(text(x + 6, y + 15, `${number(parts.reduce((sum, { value }) => sum + value, 0))} ms`));
-  });
-  const below = 46 + 28 * rows.length + 20;
-  const step = (width - 40) / Math.max(1, legend.length);
+    y += 10;
+  }
+  const step = (width - 40) / legend.length;
   legend.forEach(({ name, colour }, i) => {
     const x = 20 + i * step;
-    body.push(`<rect x="${x.toFixed(1)}" y="${below - 10}" width="12" height="12" fill="${colour}"/>`, text(x + 17, below, name));
+    body.push(`<rect x="${x.toFixed(1)}" y="${y}" width="12" height="12" fill="${colour}"/>`, text(x + 17, y + 10, name));
   });
-  return picture(below + (legend.length > 0 ? 16 : 0), title, body);
+  return picture(y + 28, title, body);
 }
 
 /** The steps of each at the sample's size, one after the other. */
@@ -147,19 +152,20 @@ export function stagesPlot({ native, web }: Results): string {
   });
   const sample = native?.['4.8k'];
   const page = web?.chromium['4.8k'];
-  const rows: Bar[] = [];
+  const inC: Bar[] = [];
+  const inJs: Bar[] = [];
   if (sample) {
-    rows.push(stacked('Cagecast, native', (stage) => sample.cagecast[stage].median));
+    inC.push(stacked('Cagecast, native', (stage) => sample.cagecast[stage].median));
     for (const [name, title] of [['nanoflann', 'nanoflann, native, no filter'], ['embree', 'Embree, native']] as const) {
       const peer = sample.peers[name];
-      if (peer) rows.push(stacked(title, (stage) => peer.times[stage].median));
+      if (peer) inC.push(stacked(title, (stage) => peer.times[stage].median));
     }
   }
   if (page) {
-    rows.push(stacked('Cagecast, Chromium', (stage) => page.stages[stage]));
-    if (page.peer) rows.push(stacked('three-mesh-bvh, Chromium', (stage) => page.peer!.stages[stage]));
+    inJs.push(stacked('Cagecast, Chromium', (stage) => page.stages[stage]));
+    if (page.peer) inJs.push(stacked('three-mesh-bvh, Chromium', (stage) => page.peer!.stages[stage]));
   }
-  return bars('Where the time goes, 4.8k triangles', rows, steps.map((stage) => ({ name: stageNames[stage], colour: stageColours[stage] })));
+  return bars('Where the time goes, 4.8k triangles (native and Chromium each to its own scale)', [inC, inJs].filter((rows) => rows.length > 0), steps.map((stage) => ({ name: stageNames[stage], colour: stageColours[stage] })));
 }
 
 /** The totals of each, size by size; each size to its own scale. */

@@ -25,7 +25,7 @@ function markdown(results: Results): string {
   const parts = [
     `# Measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores; Node ${machine.node}${machine.compiler ? `, g++ ${machine.compiler}` : ''}${machine.chromium ? `, Chromium ${machine.chromium}` : ''}. Written by \`npm run bench\`; all numbers: [${date}.json](${date}.json).`,
-    'Every time is that of the whole work, from raw arrays to zones, single-threaded; medians, in ms: CPU time natively, wall time in JavaScript. A ratio is the median over pairs of runs, one right after the other.',
+    'Every time is that of the whole work, from raw arrays to zones, single-threaded; medians, in ms: CPU time of the one thread that does it. A ratio is the median over pairs of runs, one right after the other.',
     '![Totals by size](totals.svg)',
     '![Steps at 4.8k triangles](stages.svg)',
     '![Scaling](scaling.svg)',
@@ -99,7 +99,7 @@ function markdown(results: Results): string {
         ['Chromium, 4.8k', 'warm', 'first use', '= import', '+ init', '+ transfer'],
         Object.keys(mobile.firstUse).map((rate) => {
           const first = mobile.firstUse[rate]!;
-          return [rate === '1' ? 'as it is' : `slowed ${rate}×`, ms(mobile.warm[rate]?.cagecast.median), ms(first.total), ms(first.import), ms(first.init), ms(first.transfer)];
+          return [rate === '1' ? 'as it is' : `slowed ${rate}×`, ms(mobile.warm[rate]?.median), ms(first.total), ms(first.import), ms(first.init), ms(first.transfer)];
         }),
       ),
       'The first use is that of a browser that was just started.',

@@ -1,8 +1,8 @@
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
-import { root, type NativeResult } from './native.js';
+import { root, type NativeResult, type Spread } from './native.js';
 import type { InstructionCount } from './instructions.js';
 import type { Size } from './size.js';
-import type { RaceResult } from './web.js';
+import type { RaceResult } from './race.js';
 import type { FirstUse } from './web/first-page.js';
 
 /** Everything that one run of the benchmark found out. Parts that were not run are missing. */
@@ -20,8 +20,8 @@ export interface Results {
   mobile?: {
     aarch64: InstructionCount & { sameAnswer: boolean };
     x86_64: InstructionCount;
-    /** By how many times Chromium is slowed down. */
-    warm: Record<string, RaceResult>;
+    /** By how many times Chromium is slowed down; ms of wall time. */
+    warm: Record<string, Spread>;
     firstUse: Record<string, FirstUse>;
   };
   size?: Record<string, Size>;

@@ -131,8 +131,8 @@ async function measureWeb(bench: WebBench, wanted: readonly BenchScene[], quick:
   for (const scene of wanted) {
     // At 2M triangles a run of three-mesh-bvh takes most of a minute.
     const withPeer = scene.triangles <= 500_000;
-    const few = scene.triangles > 50_000;
-    const race = { runs: few ? 3 : Math.min(51, runsFor(scene.triangles, quick)), warmUp: few ? 1 : scene.triangles > 10_000 ? 5 : 60, withPeer };
+    const isLarge = scene.triangles > 50_000;
+    const race = { turns: quick || isLarge ? 3 : 11, turnMs: 150, warmUp: isLarge ? 2 : scene.triangles > 10_000 ? 6 : 80, withPeer };
     say(`Chromium and Node: ${scene.name}`);
     web.chromium[scene.name] = await bench.race(scene, race);
     web.node[scene.name] = await raceInNode(scene, race);
@@ -140,7 +140,7 @@ async function measureWeb(bench: WebBench, wanted: readonly BenchScene[], quick:
     say(`  ${cagecast.median.toFixed(3)} ms in Chromium${peer ? `, three-mesh-bvh ${peer.ratio.toFixed(1)} times that` : ''}`);
   }
   say('Chromium against native Embree');
-  web.againstNativeEmbree = await bench.againstNativeEmbree(sampleScene, quick ? 3 : 9, 21);
+  web.againstNativeEmbree = await bench.againstNativeEmbree(sampleScene, quick ? 3 : 11);
   return web;
 }
 
@@ -157,7 +157,7 @@ async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullab
   };
   for (const rate of [1, 4, 6]) {
     say(`Chromium slowed ${rate}×`);
-    mobile.warm[rate] = await bench.throttled(sampleScene, rate, { runs: 51, warmUp: 60, withPeer: false });
+    mobile.warm[rate] = await bench.throttled(sampleScene, rate, 101);
     mobile.firstUse[rate] = await bench.firstUse(sampleScene, rate, quick ? 3 : 9);
   }
   return mobile;

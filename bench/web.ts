@@ -4,18 +4,11 @@ import type { AddressInfo } from 'node:net';
 import { build } from 'esbuild';
 import { chromium, type Browser, type CDPSession, type Page } from 'playwright-core';
 import { measureNative, output, root, type Spread } from './native.js';
+import { cpuTime, race, turn, warmUp, type Realm, type RaceOptions, type RaceResult } from './race.js';
 import type { BenchScene } from './scenes.js';
 import { median, spread } from './statistics.js';
 import type { FirstUse } from './web/first-page.js';
-import type { Race, RaceOptions } from './web/race.js';
-
-/** The package against the same pipeline on three-mesh-bvh, in one realm; ms of wall time. */
-export interface RaceResult {
-  runs: number;
-  cagecast: Spread;
-  stages: Record<string, number>;
-  peer?: { total: Spread; stages: Record<string, number>; ratio: number; otherZones: number; otherTriangles: number };
-}
+import type { Block, Runner } from './web/runner.js';
 
 const bundles = `${root}build/bench/web`;
 
@@ -32,30 +25,10 @@ export async function buildWeb(): Promise<void> {
   await build({ ...common, entryPoints: ['bench/web/node-race.ts'], outfile: `${bundles}/node-race.mjs`, platform: 'node', plugins: [packageAt(`${root}dist/index.js`)] });
 }
 
-function summary({ pairs, otherZones, otherTriangles }: Race): RaceResult {
-  const medians = (of: readonly Record<string, number>[]): Record<string, number> =>
-    Object.fromEntries(Object.keys(of[0]!).map((stage) => [stage, median(of.map((stages) => stages[stage]!))]));
-  const peers = pairs.flatMap(({ peer }) => (peer ? [peer] : []));
-  return {
-    runs: pairs.length,
-    cagecast: spread(pairs.map(({ cagecast }) => cagecast)),
-    stages: medians(pairs.map(({ stages }) => stages)),
-    ...(peers.length > 0 && {
-      peer: {
-        total: spread(peers.map(({ total }) => total)),
-        stages: medians(peers.map((stages) => ({ ...stages }))),
-        ratio: median(pairs.map(({ cagecast, peer }) => peer!.total / cagecast)),
-        otherZones: otherZones!,
-        otherTriangles: otherTriangles!,
-      },
-    }),
-  };
-}
-
 /** Races in Node, on one core. */
 export async function raceInNode(scene: BenchScene, options: RaceOptions): Promise<RaceResult> {
   const { stdout } = await output('taskset', ['-c', '0', process.execPath, `${bundles}/node-race.mjs`, scene.path, JSON.stringify(options)]);
-  return summary(JSON.parse(stdout) as Race);
+  return JSON.parse(stdout) as RaceResult;
 }
 
 /** Serves the checkout, isolated from other origins: a page then has a clock of 5 µs instead of 100. */
@@ -93,12 +66,16 @@ async function throttle(page: Page, rate: number): Promise<CDPSession> {
   return session;
 }
 
-/** Keeps the processes that run pages on one core, as native runs are. */
-async function pinRenderers(browser: Browser): Promise<void> {
+/** The process that runs the page: of those that could, the one that a busy page keeps busy. */
+async function rendererOf(browser: Browser, page: Page): Promise<number> {
   const session = await browser.newBrowserCDPSession();
   const { processInfo } = await session.send('SystemInfo.getProcessInfo');
-  for (const { type, id } of processInfo) if (type === 'renderer') await output('taskset', ['-a', '-c', '-p', '0', String(id)]);
   await session.detach();
+  const renderers = processInfo.filter(({ type }) => type === 'renderer').map(({ id }) => ({ id, before: cpuTime(id) }));
+  await page.evaluate(() => {
+    for (const end = performance.now() + 50; performance.now() < end; );
+  });
+  return renderers.sort((x, y) => cpuTime(y.id) - y.before - (cpuTime(x.id) - x.before))[0]!.id;
 }
 
 /** Chromium, with the benchmark's pages. */
@@ -125,53 +102,50 @@ export class WebBench {
     return `${this.origin}/${path.slice(root.length)}`;
   }
 
-  /** Does something with the page of the race, in a browser of its own, pinned to a core. */
-  private async withPage<T>(body: (page: Page) => Promise<T>): Promise<T> {
+  /** Does something with a page that has loaded a scene, in a browser of its own. */
+  private async withRealm<T>(scene: BenchScene, body: (realm: Realm, page: Page) => Promise<T>): Promise<T> {
     const browser = await launch();
     try {
       const page = await browser.newPage();
       await page.goto(`${this.origin}/page.html`);
-      await page.waitForFunction(() => 'raceOn' in window);
-      await pinRenderers(browser);
-      return await body(page);
+      await page.waitForFunction(() => 'start' in window);
+      await page.evaluate((url) => (window as unknown as { start(url: string): Promise<void> }).start(url), this.urlOf(scene));
+      const realm: Realm = {
+        pid: await rendererOf(browser, page),
+        run: (who, runs): Promise<Block> => page.evaluate(([w, n]) => (window as unknown as { runner: Runner }).runner.run(w, n), [who, runs] as const),
+        differences: () => page.evaluate(() => (window as unknown as { runner: Runner }).runner.differences()),
+      };
+      return await body(realm, page);
     } finally {
       await browser.close();
     }
   }
 
-  private raceOn(page: Page, scene: BenchScene, options: RaceOptions): Promise<Race> {
-    return page.evaluate(
-      ([url, given]) => (window as unknown as { raceOn(url: string, options: RaceOptions): Promise<Race> }).raceOn(url, given),
-      [this.urlOf(scene), options] as const,
-    );
-  }
-
   /** Races in one page. */
   async race(scene: BenchScene, options: RaceOptions): Promise<RaceResult> {
-    return this.withPage(async (page) => summary(await this.raceOn(page, scene, options)));
+    return this.withRealm(scene, (realm) => race(realm, options));
   }
 
-  /** The package alone on a slower processor, as DevTools emulate it. */
-  async throttled(scene: BenchScene, rate: number, options: RaceOptions): Promise<RaceResult> {
-    return this.withPage(async (page) => {
+  /** The package alone on a slower processor, as DevTools emulate it: by the clock on the wall. */
+  async throttled(scene: BenchScene, rate: number, runs: number): Promise<Spread> {
+    return this.withRealm(scene, async (realm, page) => {
       await throttle(page, rate);
-      return summary(await this.raceOn(page, scene, { ...options, withPeer: false }));
+      await realm.run('cagecast', 60);
+      return spread((await realm.run('cagecast', runs)).times);
     });
   }
 
   /**
-   * The package in a page against Embree natively, both on the same core, in alternating blocks of runs.
-   * @return The median over blocks of Embree's median ÷ the package's.
+   * The package in a page against Embree natively, both on the same core and in CPU time, in turns.
+   * @return The median over turns of Embree's time ÷ the package's, and the medians of both in ms.
    */
-  async againstNativeEmbree(scene: BenchScene, blocks: number, runs: number): Promise<{ ratio: number; cagecast: number; embree: number }> {
-    return this.withPage(async (page) => {
-      await this.raceOn(page, scene, { runs: 1, warmUp: 60, withPeer: false });
+  async againstNativeEmbree(scene: BenchScene, turns: number): Promise<{ ratio: number; cagecast: number; embree: number }> {
+    const native = (): Promise<number> => measureNative(scene.path, 21, ['embree']).then(({ peers }) => peers['embree']!.times.total.median);
+    return this.withRealm(scene, async (realm) => {
+      await output('taskset', ['-a', '-c', '-p', '0', String(realm.pid)]);
+      const runs = await warmUp(realm, 'cagecast', 100, 50);
       const pairs: { cagecast: number; embree: number }[] = [];
-      for (let block = 0; block < blocks; ++block) {
-        const ours = summary(await this.raceOn(page, scene, { runs, warmUp: 3, withPeer: false }));
-        const native = await measureNative(scene.path, runs, ['embree']);
-        pairs.push({ cagecast: ours.cagecast.median, embree: native.peers['embree']!.times.total.median });
-      }
+      for (let i = 0; i < turns; ++i) pairs.push({ cagecast: (await turn(realm, 'cagecast', runs)).cpu, embree: await native() });
       return {
         ratio: median(pairs.map(({ cagecast, embree }) => embree / cagecast)),
         cagecast: median(pairs.map(({ cagecast }) => cagecast)),

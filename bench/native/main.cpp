@@ -138,6 +138,12 @@ void pinToOneCore() {
   sched_setaffinity(0, sizeof(cores), &cores);
 }
 
+std::string hashOf(const TransferResult& result) {
+  Hash hash;
+  hash.add(result);
+  return hash.text();
+}
+
 std::uint32_t pointCount(const Projection& projection) {
   std::uint32_t sum = 0;
   for (const SegmentStats& segment : projection.segmentStats) sum += segment.points;
@@ -161,7 +167,7 @@ void printJson(const Arguments& arguments, const bench::Model& model, const Tran
               __VERSION__, model.target.indices.size() / 3, model.target.positions.size() / 3, pointCount(result.projection),
               model.cage.indices.size() / 3);
   std::printf("\"peakBytes\":%llu,\"hash\":\"%s\",\"cagecast\":%s,\"peers\":{", static_cast<unsigned long long>(result.projection.peakBytes),
-              bench::hashOf(result).c_str(), stages(runs).c_str());
+              hashOf(result).c_str(), stages(runs).c_str());
   for (std::size_t i = 0; i < contests.size(); ++i) {
     const Contest& contest = contests[i];
     std::printf("%s\"%s\":{\"times\":%s,\"ratios\":{", i > 0 ? "," : "", contest.name.c_str(), stages(contest.theirs).c_str());
@@ -191,7 +197,7 @@ void printTable(const bench::Model& model, const TransferResult& result, const s
     std::printf("\n");
   }
   std::printf("\npeak %llu bytes above the inputs, hash %s\n", static_cast<unsigned long long>(result.projection.peakBytes),
-              bench::hashOf(result).c_str());
+              hashOf(result).c_str());
   for (const Contest& contest : contests) {
     if (contest.peer->zones().empty()) continue;
     std::printf("%s: another zone at %zu, another nearest triangle at %zu of %zu vertices\n", contest.name.c_str(),

@@ -1,9 +1,9 @@
 // What the page of the race offers to the benchmark that drives it.
 import { readScene } from '../scene-file.js';
-import { race, type Race, type RaceOptions } from './race.js';
+import { Runner } from './runner.js';
 
-async function raceOn(url: string, options: RaceOptions): Promise<Race> {
-  return race(readScene(await (await fetch(url)).arrayBuffer()), options);
+async function start(url: string): Promise<void> {
+  Object.assign(window, { runner: await Runner.start(readScene(await (await fetch(url)).arrayBuffer())) });
 }
 
-Object.assign(window, { raceOn });
+Object.assign(window, { start });

@@ -1,0 +1,47 @@
+import { init, transfer } from 'cagecast';
+import type { Scene } from '../scene-file.js';
+import { transferByBvh } from './bvh-peer.js';
+
+/** The package, or the same pipeline on three-mesh-bvh. */
+export type Who = 'cagecast' | 'peer';
+
+/** Several transfers, one after the other. */
+export interface Block {
+  runs: number;
+  /** Wall time of each, in ms. */
+  times: number[];
+  /** Of each, step by step. */
+  stages: Record<string, number>[];
+}
+
+/** Runs transfers of one scene in this realm, page or process: the method of the poster, which is what the peer does. */
+export class Runner {
+  private constructor(private readonly scene: Scene) {}
+
+  static async start(scene: Scene): Promise<Runner> {
+    await init();
+    return new Runner(scene);
+  }
+
+  run(who: Who, runs: number): Block {
+    const block: Block = { runs, times: [], stages: [] };
+    for (let i = 0; i < runs; ++i) {
+      const start = performance.now();
+      const { timings } = this.transferBy(who);
+      block.times.push(performance.now() - start);
+      block.stages.push({ ...timings });
+    }
+    return block;
+  }
+
+  /** At how many vertices the two answers differ. */
+  differences(): { otherZones: number; otherTriangles: number } {
+    const [ours, theirs] = [this.transferBy('cagecast'), this.transferBy('peer')];
+    const count = (a: ArrayLike<number>, b: ArrayLike<number>): number => Array.from(a).filter((value, v) => value !== b[v]).length;
+    return { otherZones: count(ours.zones, theirs.zones), otherTriangles: count(ours.triangles, theirs.triangles) };
+  }
+
+  private transferBy(who: Who) {
+    return who === 'cagecast' ? transfer(this.scene.cage, this.scene.target, { preset: 'paper' }) : transferByBvh(this.scene);
+  }
+}
