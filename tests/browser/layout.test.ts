@@ -49,6 +49,27 @@ for (const { name, ...viewport } of kSizes) {
   })
 }
 
+test('the Tab key reaches every control, and each says what it is', async () => {
+  const { page } = visit
+  await page.setViewportSize({ width: 1440, height: 900 })
+  await page.evaluate(() => document.body.focus())
+  const reached: string[] = []
+  for (let presses = 0; presses < 30; presses++) {
+    await page.keyboard.press('Tab')
+    const id = await page.evaluate(() => document.activeElement!.id || (document.activeElement as HTMLInputElement).name || document.activeElement!.tagName.toLowerCase())
+    if (id === 'body') break
+    reached.push(id)
+  }
+  const expected = ['view', 'divider', 'view-mode', 'show-paint', 'show-zones', 'show-cage', 'sample-select', 'target-input', 'cage-input', 'texture-input', 'paint', 'threshold', 'summary']
+  assert.deepEqual(reached.filter((id) => expected.includes(id)), expected)
+  for (const [role, name] of [['slider', /Compare/], ['slider', /Threshold/], ['combobox', /Sample/], ['radio', /Result/], ['checkbox', /Zones/], ['radiogroup', /shown/]] as const) {
+    assert.equal(await page.getByRole(role, { name }).count(), 1, `${role} ${name}`)
+  }
+  for (const label of [/Target/, /Cage/, /Paint/]) {
+    assert.ok((await page.getByLabel(label).and(page.locator('input[type=file]')).count()) === 1, String(label))
+  }
+})
+
 for (const colorScheme of ['light', 'dark'] as const) {
   test(`${colorScheme}: text stands out from its ground by 4.5 to 1 or more`, async () => {
     const { page } = visit

@@ -21,9 +21,8 @@ export type Look = 'naive' | 'filtered'
 /** Colours of the reasons, by zone. After Okabe and Ito, so that colour-blind eyes tell them apart; see style.css. */
 const kReasonColors = { 1: '#0072b2', 2: '#e69f00', 3: '#cc79a7' } as const
 
-/** What may be painted, while the zones are looked at. */
+/** What may be painted, while the zones are looked at: a paint of any colour could be mistaken for one. */
 const kClayColor = '#9aa7b3'
-const kPaintOnClay = 0.3 // opacity: the paint is seen, and no zone is mistaken for it
 
 // The transferred UVs take a channel that glTF models do not fill, so the base maps keep theirs.
 const kUvChannel = 3
@@ -62,7 +61,7 @@ export class Overlay {
     for (const layer of this.#layers) layer.setPaint(paint)
   }
 
-  /** Chooses what the next frame draws. Zones show in the filtered look only. */
+  /** Chooses what the next frame draws. Zones show in the filtered look only, and there in place of the paint. */
   show(look: Look, paint: boolean, zones: boolean): void {
     for (const layer of this.#layers) layer.show(look, paint, zones)
   }
@@ -122,8 +121,8 @@ class Layer {
       }
       if (filled === start) continue
       const draw = (material: number): void => this.#geometry.addGroup(start, filled - start, material)
-      if (zone === 0) draw(kClay)
       draw(zone)
+      if (zone === 0) draw(kClay)
       // Drawn a second time where something lies in front of it: most zones are inside.
       if (zone > 0) draw(kHidden + zone)
     }
@@ -137,10 +136,9 @@ class Layer {
 
   show(look: Look, paint: boolean, zones: boolean): void {
     const painted = paint ? this.#paint : this.#nothing
-    this.#paint.opacity = zones && look === 'filtered' ? kPaintOnClay : 1
     // A group whose material is missing here is not drawn.
     if (look === 'naive') this.#mesh.material = [painted, painted, painted, painted]
-    else if (zones) this.#mesh.material = [painted, ...this.#reasons, ...this.#hidden, this.#clay]
+    else if (zones) this.#mesh.material = [this.#nothing, ...this.#reasons, ...this.#hidden, this.#clay]
     else this.#mesh.material = [painted]
   }
 
