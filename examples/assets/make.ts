@@ -22,7 +22,14 @@ const root = join(here, '../..')
 const out = join(root, 'build/assets')
 const kPaintSize = 1024
 
-const models: Record<string, () => Model> = { lizard, human, 'human-fused': humanFused, 'human-misaligned': humanMisaligned, car }
+/** Each sample's maker, and the file in models/ that it comes from. A sample that borrows paints comes after their owner. */
+const models: Record<string, { make: () => Model; source: string }> = {
+  lizard: { make: lizard, source: 'lizard.ts' },
+  human: { make: human, source: 'human.ts' },
+  'human-fused': { make: humanFused, source: 'human.ts' },
+  'human-misaligned': { make: humanMisaligned, source: 'human.ts' },
+  car: { make: car, source: 'car.ts' },
+}
 
 /** One entry of build/assets/index.json; paths are relative to build/assets. */
 interface Entry {
@@ -34,11 +41,11 @@ interface Entry {
   paints: { name: string; title: string; file: string }[]
 }
 
-/** A number of everything a model's bytes depend on: these sources, and the versions of the libraries they call. */
-const fingerprint = (): string => {
+/** A number of everything a model's bytes depend on: its sources, and the versions of the libraries they call. */
+const fingerprint = (source: string): string => {
   const hash = createHash('sha256')
-  for (const folder of [here, join(here, 'models')])
-    for (const file of readdirSync(folder).filter((f) => f.endsWith('.ts')).sort()) hash.update(file).update(readFileSync(join(folder, file)))
+  const shared = readdirSync(here).filter((f) => f.endsWith('.ts')).sort()
+  for (const file of [...shared, join('models', source)]) hash.update(file).update(readFileSync(join(here, file)))
   for (const name of ['manifold-3d', 'meshoptimizer', '@gltf-transform/core', 'pngjs', 'three', 'three-mesh-bvh'])
     hash.update(JSON.parse(readFileSync(join(root, 'node_modules', name, 'package.json'), 'utf8')).version)
   return hash.digest('hex')
@@ -76,31 +83,34 @@ if (unknown !== undefined) {
 }
 
 mkdirSync(out, { recursive: true })
-const print = fingerprint()
 const index: Entry[] = []
-for (const [name, make] of Object.entries(models)) {
+for (const [name, { make, source }] of Object.entries(models)) {
+  const chosen = wanted.length === 0 || wanted.includes(name)
   const folder = join(out, name)
   const stamp = join(folder, 'made.json')
   const made = existsSync(stamp) ? (JSON.parse(readFileSync(stamp, 'utf8')) as { print: string; entry: Entry }) : undefined
-  if (made?.print === print && !(force && (wanted.length === 0 || wanted.includes(name)))) {
-    index.push(made.entry)
-    continue
-  }
-  if (wanted.length > 0 && !wanted.includes(name)) {
+  const print = fingerprint(source)
+  if (!chosen || (made?.print === print && !force)) {
     if (made) index.push(made.entry)
     continue
   }
   const started = performance.now()
   // Made aside and moved into place whole, so that nobody finds half a model.
   const aside = join(out, `.${name}-${process.pid}`)
-  mkdirSync(aside, { recursive: true })
-  const model = make()
-  const entry = await write(model, aside, (other) => index.find((e) => e.name === other)?.paints ?? [])
-  writeFileSync(join(aside, 'made.json'), JSON.stringify({ print, entry }))
-  rmSync(folder, { recursive: true, force: true })
-  renameSync(aside, folder)
-  index.push(entry)
-  const triangles = model.parts.reduce((n, p) => n + triangleCount(p.mesh), 0)
-  console.log(`${name}: ${triangles} triangles, cage ${triangleCount(model.cage)}, ${((performance.now() - started) / 1000).toFixed(1)} s`)
+  try {
+    mkdirSync(aside, { recursive: true })
+    const model = make()
+    const entry = await write(model, aside, (other) => index.find((e) => e.name === other)?.paints ?? [])
+    writeFileSync(join(aside, 'made.json'), JSON.stringify({ print, entry }))
+    rmSync(folder, { recursive: true, force: true })
+    renameSync(aside, folder)
+    index.push(entry)
+    const triangles = model.parts.reduce((n, p) => n + triangleCount(p.mesh), 0)
+    console.log(`${name}: ${triangles} triangles, cage ${triangleCount(model.cage)}, ${((performance.now() - started) / 1000).toFixed(1)} s`)
+  } finally {
+    rmSync(aside, { recursive: true, force: true })
+  }
 }
-writeFileSync(join(out, 'index.json'), JSON.stringify(index, null, 2) + '\n')
+const list = join(out, `.index-${process.pid}.json`)
+writeFileSync(list, JSON.stringify(index, null, 2) + '\n')
+renameSync(list, join(out, 'index.json'))

@@ -308,7 +308,7 @@ export const lizard = (): Model => {
     keep: (p) => {
       const e = sub(p, kEye)
       const [u, w, d] = eyeAxes.map((a) => e[0] * a[0] + e[1] * a[1] + e[2] * a[2]) as [number, number, number]
-      const eyeHole = d < 0 ? 1 : (Math.hypot(u / 0.079, w / 0.071) - 1) * 0.05
+      const eyeHole = d < 0 ? 1 : (Math.hypot(u / 0.077, w / 0.069) - 1) * 0.05
       return Math.min(p[2] - (kNeck - 0.03), eyeHole, mouth(...p))
     },
   })
@@ -328,7 +328,7 @@ export const lizard = (): Model => {
 
 /** The wedge between the lips, out to beyond the cage: negative inside it, so that `keep` can use it as it is. */
 const mouthHole = (): Sdf => {
-  const margin = -0.012
+  const margin = -0.008 // the hole is a little larger than the mouth: what sticks out of it shall find no cage
   const upper: Sdf = (_x, y, z) => y - lip(z) + margin
   const lower = inJaw((_x, y, z) => lip(z) + margin - y)
   return smoothIntersect(0.03, upper, lower, halfSpace([0, 0, -0.02], [0, 0, -1]))
