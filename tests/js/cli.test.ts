@@ -9,7 +9,7 @@ import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { init, transfer, type Mesh } from 'cagecast';
 import { PNG } from 'pngjs';
 import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from './glb.js';
-import { ball, head, join3d, modelFolders, readPlain } from './scenes.js';
+import { ball, head, join3d, modelFolders, random, readPlain } from './scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-cli-'));
 const at = (name: string) => join(folder, name);
@@ -214,6 +214,38 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     assert.equal(status, 1);
     assert.match(stderr, /^cagecast: .*gone\.glb: no such file\n$/);
   });
+});
+
+describe('files damaged at random', () => {
+  const values = [-1, 0, 1.5, 2 ** 31, 2 ** 53, 1e300, null, 'x', [], {}, true, [null], [{}]];
+
+  for (let seed = 1; seed <= 24; ++seed) {
+    test(`seed ${seed}: done, or one clear line`, () => {
+      const next = random(seed);
+      const pick = <T>(list: readonly T[]): T => list[Math.floor(next() * list.length)]!;
+      const glb = unpackGlb(readFileSync(at('target.glb')));
+      const places: [Record<string, unknown>, string][] = [];
+      const walk = (value: unknown) => {
+        if (typeof value !== 'object' || value === null) return;
+        for (const key of Object.keys(value)) {
+          places.push([value as Record<string, unknown>, key]);
+          walk((value as Record<string, unknown>)[key]);
+        }
+      };
+      walk(glb.json);
+      const [owner, key] = pick(places);
+      owner[key] = pick(values);
+      for (let i = 0; i < 3; ++i) glb.bin[Math.floor(next() * glb.bin.length)] = Math.floor(next() * 256);
+      const path = write(`damaged-${seed}.glb`, packGlb(glb));
+      const out = at(`damaged-${seed}-out.glb`);
+      const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out);
+      if (status === 0) return assert.equal(stderr, '');
+      assert.equal(status, 1, stderr);
+      assert.match(stderr, /^cagecast: [^\n]+\n$/);
+      assert.doesNotMatch(stderr, /unexpectedly/);
+      assert.ok(!existsSync(out));
+    });
+  }
 });
 
 describe('transfer', () => {

@@ -25,18 +25,37 @@ export function meshoptView(view: GLTF.IBufferView): MeshoptView | undefined {
 }
 
 /**
+ * Checks that all lists of a glTF are lists, so that they can be walked.
+ * @throws {InputError}
+ */
+export function checkLists(json: GLTF.IGLTF): void {
+  for (const name of ['buffers', 'bufferViews', 'accessors', 'meshes', 'nodes', 'scenes', 'skins', 'materials', 'textures', 'images'] as const) {
+    listOf(name, json[name], (item) => typeof item === 'object' && item !== null, 'objects');
+  }
+  const isText = (item: unknown) => typeof item === 'string';
+  listOf('extensionsUsed', json.extensionsUsed, isText, 'names');
+  listOf('extensionsRequired', json.extensionsRequired, isText, 'names');
+  for (const name of ['buffers', 'images'] as const) {
+    json[name]?.forEach(({ uri }: { uri?: unknown }, i) => {
+      if (uri !== undefined && !isText(uri)) throw new InputError(`${name}[${i}].uri is not a text`);
+    });
+  }
+  json.meshes?.forEach((mesh, m) => listOf(`meshes[${m}].primitives`, mesh.primitives ?? null, (item) => typeof item === 'object' && item !== null, 'objects'));
+  json.nodes?.forEach((node, n) => listOf(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers'));
+  json.scenes?.forEach((scene, s) => listOf(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
+}
+
+function listOf(name: string, value: unknown, fits: (item: unknown) => boolean, what: string): void {
+  if (value !== undefined && !(Array.isArray(value) && value.every(fits))) throw new InputError(`${name} is not a list of ${what}`);
+}
+
+/**
  * Checks what reading the geometry of a glTF relies on: that every reference leads somewhere and every range of bytes
  * is there, so that a damaged file ends in one sentence about it and not in the depths of a decoder.
  * @param bytes  The size of each buffer, `undefined` for one without bytes (a fallback for compressed views).
  * @throws {InputError}
  */
 export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): void {
-  for (const list of ['bufferViews', 'accessors', 'meshes', 'nodes', 'scenes', 'skins', 'materials'] as const) {
-    const value: unknown = json[list];
-    if (value !== undefined && !(Array.isArray(value) && value.every((item) => typeof item === 'object' && item !== null))) {
-      throw new InputError(`${list} is not a list of objects`);
-    }
-  }
   const { bufferViews = [], accessors = [], meshes = [], nodes = [], scenes = [], skins = [], materials = [] } = json;
 
   bufferViews.forEach((view, v) => {
@@ -80,17 +99,19 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
   }
 
   meshes.forEach((mesh, m) => {
-    if (!Array.isArray(mesh.primitives) || mesh.primitives.length === 0) throw new InputError(`meshes[${m}] has no primitives`);
+    if (mesh.primitives.length === 0) throw new InputError(`meshes[${m}] has no primitives`);
     mesh.primitives.forEach((primitive, p) => {
       const name = `meshes[${m}].primitives[${p}]`;
-      if (typeof primitive?.attributes !== 'object' || primitive.attributes === null) throw new InputError(`${name} has no attributes`);
+      if (typeof primitive.attributes !== 'object' || primitive.attributes === null) throw new InputError(`${name} has no attributes`);
       for (const [semantic, accessor] of Object.entries(primitive.attributes)) {
         index(`${name}.attributes.${semantic}`, accessor, accessors.length, 'accessors');
       }
       if (primitive.indices !== undefined) index(`${name}.indices`, primitive.indices, accessors.length, 'accessors');
       if (primitive.material !== undefined) index(`${name}.material`, primitive.material, materials.length, 'materials');
       const draco = dracoOf(primitive);
-      if (draco) index(`${name} (compressed).bufferView`, draco.bufferView, bufferViews.length, 'bufferViews');
+      if (draco === undefined) return;
+      if (typeof draco?.attributes !== 'object' || draco.attributes === null) throw new InputError(`${name} is compressed, but has no compressed attributes`);
+      index(`${name} (compressed).bufferView`, draco.bufferView, bufferViews.length, 'bufferViews');
     });
   });
 

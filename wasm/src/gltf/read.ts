@@ -4,7 +4,7 @@ import { Logger, NodeIO, type Document, type GLTF, type JSONDocument } from '@gl
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { createDracoDecoder } from './draco.js';
-import { checkGeometry, dracoOf, meshoptView } from './check.js';
+import { checkGeometry, checkLists, dracoOf, meshoptView } from './check.js';
 import { InputError, firstLine } from './input-error.js';
 
 /** A glTF file as it is, and its geometry decoded. */
@@ -71,6 +71,7 @@ function parse(bytes: Uint8Array): { json: GLTF.IGLTF; binary: Uint8Array | unde
     throw new InputError('is JSON but no glTF: it has no asset.version');
   }
   if (!/^2\./.test(String(version))) throw new InputError(`is glTF ${version}; only 2.x can be read`);
+  checkLists(json);
   return { json, binary };
 }
 
@@ -98,7 +99,6 @@ function chunks(bytes: Uint8Array): { text: Uint8Array; binary: Uint8Array | und
 
 async function readBuffers(json: GLTF.IGLTF, binary: Uint8Array | undefined, folder: string): Promise<(Uint8Array | undefined)[]> {
   const { buffers = [] } = json;
-  if (!Array.isArray(buffers)) throw new InputError('buffers is not a list');
   return Promise.all(
     buffers.map(async (buffer, b) => {
       const bytes = buffer.uri === undefined ? (b === 0 ? binary : undefined) : await readUri(`buffers[${b}]`, buffer.uri, folder);
