@@ -6,11 +6,32 @@
 
 #include "cagecast/transfer.hpp"
 
-/// The method once more, as plainly as it can be said: brute force in double precision, sharing no code with the
-/// library. It is what the library is measured against, so it prefers being readable to being fast; the only concession
-/// is a bounding sphere per triangle, without which ten thousand points against ten thousand triangles would take
-/// minutes.
+/// The method once more, as plainly as it can be said: in double precision, sharing no code with the library. It is what
+/// the library is measured against, so it prefers being readable to being fast.
 namespace cagecast::reference {
+
+/// Which steps are taken, and their constants. Lengths are shares of the diagonal of the target's bounding box.
+struct Options {
+  ProjectionMode projection = ProjectionMode::nearestPoint;
+  double threshold = 0.5;
+  double weldTolerance = 0;
+  bool groups = true;               ///< Weld within a group only; else all vertices count as one group.
+  bool endOfSelfRay = false;        ///< Step 2': a self hit counts only up to `occlusionReach` beyond the cage.
+  double occlusionReach = 0.03;
+  bool pokes = false;               ///< Step 3': a point without a cage hit, up to `pokeThrough` outside, is covered.
+  double pokeThrough = 0.0025;
+  bool votes = false;               ///< Step 4': big triangles of small segments at a hole vote from within.
+  bool floor = false;               ///< Step 5': a segment also needs C >= `minCovered` * A, and C > 0.
+  double minCovered = 0.2;
+  bool secondLook = false;          ///< Step 6: occluded points that are seen from elsewhere are restored.
+  bool holes = false;               ///< Step 7: uncovered points whose hole is not meant for them are restored.
+  bool partialTriangles = false;    ///< Step 8: triangles with some corners occluded are painted.
+  bool seams = false;               ///< Step 9: UVs per corner, where a triangle lies across a seam.
+  bool stability = true;            ///< Find out where the answer is firm; without, everything is called stable.
+
+  static Options paper();     ///< The literal method: none of the steps that can be switched.
+  static Options standard();  ///< The preset `default`: all of them.
+};
 
 /// The answer of the reference, with the same fields and meanings as `Projection` and `Zones`.
 struct Result {
@@ -19,24 +40,25 @@ struct Result {
   std::vector<std::uint32_t> triangles;          ///< 1 per target vertex.
   std::vector<float> distances;                  ///< 1 per target vertex.
   std::vector<std::uint32_t> segments;           ///< 1 per target vertex.
-  std::vector<SegmentStats> segmentStats;        ///< 1 per segment.
+  std::vector<SegmentStats> segmentStats;        ///< 1 per segment; exposed and covered areas are those that voted.
   std::vector<std::uint8_t> cosmeticTriangles;   ///< 1 per target triangle.
+  std::vector<float> cornerUvs;                  ///< 6 per target triangle, with `seams`; else empty.
   /// 1 per target vertex: 0 where the method itself has no firm answer, so that another may be right as well.
   ///
-  /// A vertex is unstable if its zone before the threshold changes when its ray is turned by `kRayNudge` to any of sixteen
-  /// sides; or if it is cosmetic or culled and its segment's verdict hangs on vertices that are unstable, or on the last
-  /// bits of the sums. Nothing else is unstable: the nearest triangle and its ties are decided by tolerances of their
-  /// own.
+  /// Each ray that has a say is turned by `kRayNudge` to sixteen sides, and what may come of it is followed to the end:
+  /// to the verdict over its segment, to the neighbours that a second look brings in, to the hole that a failing segment
+  /// explains. A vertex is unstable if it may then end up in more than one zone; or if that hangs on the last bits of
+  /// the sums. Nothing else is unstable: the nearest triangle and its ties are decided by tolerances of their own.
   std::vector<std::uint8_t> stable;
+  /// 1 per target triangle, with `seams`: 0 where which corner's patch serves it is decided by rounding.
+  std::vector<std::uint8_t> stableCorners;
 };
 
-/// How far a ray is turned to see whether its answer is firm, in radians.
-inline constexpr double kRayNudge = 1e-4;
-
-/// Carries the cage's UVs to the target and finds its zones: the preset `paper`, or with
-/// `ProjectionMode::nearestVertex` the classical baseline.
+/// Carries the cage's UVs to the target and finds its zones; with `ProjectionMode::nearestVertex` the classical baseline.
 /// @pre The meshes are valid, and the cage has a triangle that is not degenerate.
-/// Cost: O(V (N + M)) for V points and N triangles of the target, and M triangles of the cage.
+Result transfer(const MeshView& cage, const MeshView& target, const Options& options);
+
+/// The same for the options of the library.
 Result transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options = {});
 
 /// How an answer of the library differs from the reference, counted over the vertices where the reference is stable.

@@ -1,0 +1,96 @@
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "reference.hpp"
+#include "reference_geometry.hpp"
+
+namespace cagecast::reference {
+
+Differences compare(const Result& reference, const TransferResult& product, const MeshView& target) {
+  constexpr std::size_t kMaxLines = 10;
+  constexpr double kUvTolerance = 1e-5, kDistanceTolerance = 1e-6, kAreaTolerance = 1e-9, kLeastArea = 1e-13;
+  Differences found;
+  std::size_t lines = 0;
+  const auto report = [&](const char* format, auto... values) {
+    if (++lines > kMaxLines) return;
+    std::array<char, 256> line{};
+    std::snprintf(line.data(), line.size(), format, values...);
+    found.details += line.data();
+    found.details += '\n';
+  };
+  const Projection& projection = product.projection;
+  const double diag = boxOf(target).diagonal();
+  found.vertices = reference.zones.size();
+  if (product.zones.zones.size() != found.vertices || projection.uvs.size() != 2 * found.vertices ||
+      projection.triangles.size() != found.vertices || projection.distances.size() != found.vertices ||
+      projection.segments.size() != found.vertices || projection.segmentStats.size() != reference.segmentStats.size() ||
+      product.zones.culledSegments.size() != reference.segmentStats.size() ||
+      product.zones.cosmeticTriangles.size() != reference.cosmeticTriangles.size()) {
+    report("the arrays have other lengths: %zu zones of %zu, %zu segments of %zu", product.zones.zones.size(),
+           found.vertices, projection.segmentStats.size(), reference.segmentStats.size());
+    found.stats = 1;
+    return found;
+  }
+  std::vector<std::uint8_t> firm(reference.segmentStats.size(), 1);
+  for (std::size_t v = 0; v < found.vertices; ++v) {
+    if (projection.segments[v] != reference.segments[v]) {
+      ++found.segments;
+      report("vertex %zu: segment %u, expected %u", v, projection.segments[v], reference.segments[v]);
+    }
+    if (reference.stable[v] == 0) {
+      ++found.unstable;
+      firm[reference.segments[v]] = 0;
+      continue;
+    }
+    const float* p = &target.positions[v * 3];
+    const auto at = [&] {
+      std::array<char, 128> text{};
+      std::snprintf(text.data(), text.size(), "vertex %zu at (%.9g, %.9g, %.9g)", v, static_cast<double>(p[0]),
+                    static_cast<double>(p[1]), static_cast<double>(p[2]));
+      return std::string(text.data());
+    };
+    if (product.zones.zones[v] != reference.zones[v]) {
+      ++found.zones;
+      report("%s: zone %u, expected %u", at().c_str(), static_cast<unsigned>(product.zones.zones[v]),
+             static_cast<unsigned>(reference.zones[v]));
+    }
+    if (projection.triangles[v] != reference.triangles[v]) {
+      ++found.triangles;
+      report("%s: cage triangle %u, expected %u", at().c_str(), projection.triangles[v], reference.triangles[v]);
+      continue;  // Another triangle has another UV.
+    }
+    for (std::size_t k = v * 2; k < v * 2 + 2; ++k) {
+      const double expected = static_cast<double>(reference.uvs[k]), got = static_cast<double>(projection.uvs[k]);
+      if (std::abs(got - expected) <= kUvTolerance * std::max(1.0, std::abs(expected))) continue;
+      ++found.uvs;
+      report("%s: uv %.9g, expected %.9g", at().c_str(), got, expected);
+      break;
+    }
+    const double expected = static_cast<double>(reference.distances[v]);
+    const double got = static_cast<double>(projection.distances[v]);
+    if (!(std::abs(got - expected) <= kDistanceTolerance * std::max(diag, expected))) {
+      ++found.distances;
+      report("%s: distance %.9g, expected %.9g", at().c_str(), got, expected);
+    }
+  }
+  for (std::size_t s = 0; s < reference.segmentStats.size(); ++s) {
+    const SegmentStats& expected = reference.segmentStats[s];
+    const SegmentStats& got = projection.segmentStats[s];
+    // Slivers have areas that rounding makes; they are compared with what matters, the size of the target.
+    const double slack = kAreaTolerance * expected.area + kLeastArea * diag * diag;
+    const auto differs = [&](double a, double b) { return !(std::abs(a - b) <= slack); };
+    bool same = got.points == expected.points && !differs(got.area, expected.area);
+    if (firm[s] != 0)
+      same = same && got.culled == expected.culled && !differs(got.exposedArea, expected.exposedArea) &&
+             !differs(got.coveredArea, expected.coveredArea);
+    if (same) continue;
+    ++found.stats;
+    report("segment %zu: %u points, area %.9g, exposed %.9g, covered %.9g, expected %u, %.9g, %.9g, %.9g", s, got.points,
+           got.area, got.exposedArea, got.coveredArea, expected.points, expected.area, expected.exposedArea,
+           expected.coveredArea);
+  }
+  return found;
+}
+
+}  // namespace cagecast::reference
