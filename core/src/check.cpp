@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simd.hpp"
+
 namespace cagecast {
 namespace {
 
@@ -32,9 +34,12 @@ struct Box {
 /// The place of the first value that is not finite, or the size.
 std::size_t firstNonFinite(std::span<const float> values) {
   // x · 0 is 0 for finite x and NaN otherwise: one sum tells whether there is anything to look for.
-  float sum = 0;
-  for (const float x : values) sum += x * 0.0f;
-  if (sum == 0.0f) return values.size();
+  simd::f32x4 sums = simd::splat(0);
+  std::size_t i = 0;
+  for (; i + simd::kWidth <= values.size(); i += simd::kWidth) sums = sums + simd::load(&values[i]) * simd::splat(0);
+  bool finite = simd::bits(sums <= simd::splat(0)) == 15;
+  for (; i < values.size(); ++i) finite = finite && std::isfinite(values[i]);
+  if (finite) return values.size();
   return static_cast<std::size_t>(
       std::find_if(values.begin(), values.end(), [](float x) { return !std::isfinite(x); }) - values.begin());
 }
@@ -65,10 +70,34 @@ Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
     return fault(Code::indexOutOfRange, static_cast<std::size_t>(first - mesh.indices.begin()));
   }
 
-  for (std::size_t v = 0; v < vertices; ++v) {
+  // Four vertices are three vectors; what lane holds which axis repeats.
+  const float* p = mesh.positions.data();
+  const std::size_t fours = vertices / simd::kWidth * simd::kWidth;
+  if (fours > 0) {
+    simd::f32x4 low[3] = {simd::load(p), simd::load(p + 4), simd::load(p + 8)};
+    simd::f32x4 high[3] = {low[0], low[1], low[2]};
+    for (std::size_t v = simd::kWidth; v < fours; v += simd::kWidth) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const simd::f32x4 row = simd::load(p + 3 * v + 4 * j);
+        low[j] = simd::min(low[j], row);
+        high[j] = simd::max(high[j], row);
+      }
+    }
+    float lows[12];
+    float highs[12];
+    for (std::size_t j = 0; j < 3; ++j) {
+      simd::store(lows + 4 * j, low[j]);
+      simd::store(highs + 4 * j, high[j]);
+    }
+    for (std::size_t j = 0; j < 12; ++j) {
+      box.low[j % 3] = std::min(box.low[j % 3], lows[j]);
+      box.high[j % 3] = std::max(box.high[j % 3], highs[j]);
+    }
+  }
+  for (std::size_t v = fours; v < vertices; ++v) {
     for (std::size_t k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], mesh.positions[3 * v + k]);
-      box.high[k] = std::max(box.high[k], mesh.positions[3 * v + k]);
+      box.low[k] = std::min(box.low[k], p[3 * v + k]);
+      box.high[k] = std::max(box.high[k], p[3 * v + k]);
     }
   }
   return {};

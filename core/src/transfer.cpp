@@ -30,13 +30,14 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
       !out.distances.reset(vertexCount) || !out.segments.reset(vertexCount)) {
     return false;
   }
+  const float toInput = 1 / units.scale;  // A power of two, like the scale.
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
     const std::uint32_t i = points.ofVertex[v];
     out.uvs[std::size_t{2} * v] = results.uvs[std::size_t{2} * i];
     out.uvs[std::size_t{2} * v + 1] = results.uvs[std::size_t{2} * i + 1];
     out.zones[v] = results.zones[i];
     out.triangles[v] = cage.triangles[results.triangles[i]].index;
-    out.distances[v] = static_cast<float>(static_cast<double>(results.distances[i]) / static_cast<double>(units.scale));
+    out.distances[v] = results.distances[i] * toInput;
     out.segments[v] = results.segments[i];
   }
   return true;
