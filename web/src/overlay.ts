@@ -98,26 +98,19 @@ class Layer {
     mesh.add(this.#mesh)
   }
 
-  classify({ zones, cosmeticTriangles }: Classification): void {
-    const { mesh, firstVertex, firstTriangle, triangleCount } = this.#part
+  classify(classification: Classification): void {
+    const { mesh, triangleCount } = this.#part
     const source = mesh.geometry.index
     const index = this.#geometry.index!
-    const corner = (at: number): number => (source ? source.getX(at) : at)
+    const reasons = this.#reasonsOf(classification)
 
     this.#geometry.clearGroups()
     let filled = 0
     for (const zone of kZones) {
       const start = filled
       for (let triangle = 0; triangle < triangleCount; triangle++) {
-        const [a, b, c] = [corner(3 * triangle), corner(3 * triangle + 1), corner(3 * triangle + 2)]
-        // A triangle is NCZ for the reason decided last among its corners.
-        const reason = cosmeticTriangles[firstTriangle + triangle]
-          ? 0
-          : Math.max(zones[firstVertex + a]!, zones[firstVertex + b]!, zones[firstVertex + c]!)
-        if (reason !== zone) continue
-        index.setX(filled++, a)
-        index.setX(filled++, b)
-        index.setX(filled++, c)
+        if (reasons[triangle] !== zone) continue
+        for (let corner = 3 * triangle; corner < 3 * triangle + 3; corner++) index.array[filled++] = source ? source.array[corner]! : corner
       }
       if (filled === start) continue
       const draw = (material: number): void => this.#geometry.addGroup(start, filled - start, material)
@@ -127,6 +120,19 @@ class Layer {
       if (zone > 0) draw(kHidden + zone)
     }
     index.needsUpdate = true
+  }
+
+  /** 1 per triangle: 0 where it may be painted, else the zone, of those of its corners, that was decided last. */
+  #reasonsOf({ zones, cosmeticTriangles }: Classification): Uint8Array {
+    const { mesh, firstVertex, firstTriangle, triangleCount } = this.#part
+    const source = mesh.geometry.index
+    const zoneAt = (corner: number): number => zones[firstVertex + (source ? source.array[corner]! : corner)]!
+    const reasons = new Uint8Array(triangleCount)
+    for (let triangle = 0; triangle < triangleCount; triangle++) {
+      if (cosmeticTriangles[firstTriangle + triangle]) continue
+      reasons[triangle] = Math.max(zoneAt(3 * triangle), zoneAt(3 * triangle + 1), zoneAt(3 * triangle + 2))
+    }
+    return reasons
   }
 
   setPaint(paint: Texture): void {
