@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <new>
-#include <utility>
 #include <vector>
 
 #include "union_find.hpp"
@@ -55,6 +54,27 @@ class FirstNearest {
   std::uint32_t site_ = 0;
 };
 
+/// Joins all points of a group within a radius of one of them.
+class JoinNear {
+ public:
+  JoinNear(UnionFind& sets, const std::uint32_t* groups, double squaredRadius) : sets_(sets), groups_(groups), squaredRadius_(squaredRadius) {}
+  void around(std::uint32_t point) { point_ = point; }
+
+  [[nodiscard]] std::size_t size() const { return 1; }
+  [[nodiscard]] bool full() const { return true; }
+  [[nodiscard]] double worstDist() const { return squaredRadius_; }
+  bool addPoint(double squaredDistance, std::uint32_t other) {
+    if (squaredDistance < squaredRadius_ && groups_[other] == groups_[point_]) sets_.join(point_, other);
+    return true;
+  }
+
+ private:
+  UnionFind& sets_;
+  const std::uint32_t* groups_;
+  double squaredRadius_;
+  std::uint32_t point_ = 0;
+};
+
 }  // namespace
 
 bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius, std::uint32_t* joined,
@@ -64,12 +84,10 @@ bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t coun
     const Tree tree(3, cloud);
     std::vector<std::uint32_t> parents(count);
     UnionFind sets(parents.data(), count);
-    std::vector<std::pair<std::uint32_t, double>> near;
+    JoinNear near(sets, groups, radius * radius);
     for (std::uint32_t i = 0; i < count; ++i) {
-      tree.radiusSearch(positions + kStride * i, radius * radius, near, nanoflann::SearchParams());
-      for (const auto& [other, squaredDistance] : near) {
-        if (groups[other] == groups[i]) sets.join(i, other);
-      }
+      near.around(i);
+      tree.findNeighbors(near, positions + kStride * i, nanoflann::SearchParams());
     }
     joinedCount = 0;
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <type_traits>
 
 namespace cagecast {
@@ -22,17 +21,7 @@ class Scratch {
   template <typename T>
   [[nodiscard]] T* take(std::size_t count) noexcept {
     static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kAlign);
-    if (count > (SIZE_MAX - kAlign) / sizeof(T)) return fail<T>();
-    const std::size_t size = (count * sizeof(T) + kAlign - 1) / kAlign * kAlign;
-    while (current_ < blockCount_ && blocks_[current_].size - used_ < size) {
-      ++current_;
-      used_ = 0;
-    }
-    if (current_ == blockCount_ && !addBlock(size)) return fail<T>();
-    T* place = reinterpret_cast<T*>(blocks_[current_].data + used_);
-    used_ += size;
-    note();
-    return place;
+    return static_cast<T*>(takeBytes(count, sizeof(T)));
   }
 
   /// Gives back the end of the array taken last.
@@ -55,21 +44,9 @@ class Scratch {
   }
 
   /// Empties the stack for a new call. What the last call needed in several blocks is taken as one.
-  void begin() noexcept {
-    if (blockCount_ > 1) {
-      const std::size_t all = peak_;
-      release();
-      addBlock(all);
-    }
-    failed_ = false;
-    peak_ = 0;
-    rewind({0, 0});
-  }
+  void begin() noexcept;
   /// Gives all memory back to the system.
-  void release() noexcept {
-    for (std::size_t i = 0; i < blockCount_; ++i) std::free(blocks_[i].data);
-    blockCount_ = current_ = used_ = 0;
-  }
+  void release() noexcept;
 
   [[nodiscard]] bool failed() const noexcept { return failed_; }
   /// Most memory in use at once since `begin`, in bytes.
@@ -84,24 +61,8 @@ class Scratch {
     std::size_t size;
   };
 
-  template <typename T>
-  T* fail() noexcept {
-    failed_ = true;
-    return nullptr;
-  }
-  void note() noexcept {
-    std::size_t inUse = used_;
-    for (std::size_t i = 0; i < current_; ++i) inUse += blocks_[i].size;
-    if (inUse > peak_) peak_ = inUse;
-  }
-  bool addBlock(std::size_t size) noexcept {
-    if (blockCount_ == kMaxBlocks) return false;
-    if (size < kMinBlock) size = kMinBlock;
-    auto* data = static_cast<std::byte*>(std::malloc(size));
-    if (data == nullptr) return false;
-    blocks_[blockCount_++] = {data, size};
-    return true;
-  }
+  void* takeBytes(std::size_t count, std::size_t size) noexcept;
+  bool addBlock(std::size_t size) noexcept;
 
   Block blocks_[kMaxBlocks] = {};
   std::size_t blockCount_ = 0;
