@@ -8,9 +8,15 @@ export type Rgba = readonly [number, number, number, number]
 /** What a surface looks like at a point of the model: its colour by position and unit normal. */
 export type Shade = (p: Vec3, n: Vec3) => Rgba
 
+const known = new Map<string, Rgba>() // paints name their colours at every texel
+/** A colour by its name on the web, `#rrggbb`. */
 export const rgb = (hex: string, alpha = 1): Rgba => {
-  const n = parseInt(hex.slice(1), 16)
-  return [(n >> 16) / 255, ((n >> 8) & 255) / 255, (n & 255) / 255, alpha]
+  let c = known.get(hex)
+  if (!c) {
+    const n = parseInt(hex.slice(1), 16)
+    known.set(hex, (c = [(n >> 16) / 255, ((n >> 8) & 255) / 255, (n & 255) / 255, 1]))
+  }
+  return alpha === 1 ? c : [c[0], c[1], c[2], alpha]
 }
 export const mixColour = (a: Rgba, b: Rgba, t: number): Rgba => [
   a[0] + (b[0] - a[0]) * t,
@@ -53,17 +59,21 @@ export const drawTexture = (mesh: Mesh, size: number, shade: Shade, far: Rgba, s
     const [a, b, c] = vs.map((v) => [mesh.uvs![2 * v]! * fine, mesh.uvs![2 * v + 1]! * fine] as const) as [Uv, Uv, Uv]
     const whole = cross2(a, b, c)
     if (whole === 0) continue
-    const ps = vs.map((v) => point(mesh, v)) as [Vec3, Vec3, Vec3]
-    const ns = vs.map((v): Vec3 => (mesh.normals ? [mesh.normals[3 * v]!, mesh.normals[3 * v + 1]!, mesh.normals[3 * v + 2]!] : [0, 0, 0]))
-    const low = (k: 0 | 1): number => Math.max(0, Math.floor(Math.min(a[k], b[k], c[k])))
-    const high = (k: 0 | 1): number => Math.min(fine - 1, Math.ceil(Math.max(a[k], b[k], c[k])))
-    for (let j = low(1); j <= high(1); j++)
-      for (let i = low(0); i <= high(0); i++) {
-        const p = [i + 0.5, j + 0.5] as const
-        const w = [cross2(p, b, c) / whole, cross2(a, p, c) / whole, cross2(a, b, p) / whole] as const
-        if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue
-        const blend = (q: readonly Vec3[]): Vec3 => [0, 1, 2].map((k) => w[0] * q[0]![k]! + w[1] * q[1]![k]! + w[2] * q[2]![k]!) as unknown as Vec3
-        const colour = shade(blend(ps), unit(blend(ns)))
+    const ps = vs.flatMap((v) => point(mesh, v))
+    const ns = vs.flatMap((v) => (mesh.normals ? Array.from(mesh.normals.subarray(3 * v, 3 * v + 3)) : [0, 0, 0]))
+    const low = [0, 1].map((k) => Math.max(0, Math.floor(Math.min(a[k]!, b[k]!, c[k]!))))
+    const high = [0, 1].map((k) => Math.min(fine - 1, Math.ceil(Math.max(a[k]!, b[k]!, c[k]!))))
+    for (let j = low[1]!; j <= high[1]!; j++)
+      for (let i = low[0]!; i <= high[0]!; i++) {
+        const [x, y] = [i + 0.5, j + 0.5]
+        const u = ((c[0] - b[0]) * (y - b[1]) - (c[1] - b[1]) * (x - b[0])) / whole
+        const v = ((a[0] - c[0]) * (y - c[1]) - (a[1] - c[1]) * (x - c[0])) / whole
+        const w = 1 - u - v
+        if (u < 0 || v < 0 || w < 0) continue
+        const colour = shade(
+          [u * ps[0]! + v * ps[3]! + w * ps[6]!, u * ps[1]! + v * ps[4]! + w * ps[7]!, u * ps[2]! + v * ps[5]! + w * ps[8]!],
+          unit([u * ns[0]! + v * ns[3]! + w * ns[6]!, u * ns[1]! + v * ns[4]! + w * ns[7]!, u * ns[2]! + v * ns[5]! + w * ns[8]!]),
+        )
         const texel = (Math.floor(j / samples) * size + Math.floor(i / samples)) * 5
         for (let k = 0; k < 3; k++) sums[texel + k]! += colour[k]! * Math.max(colour[3], 1e-3)
         sums[texel + 3]! += colour[3]

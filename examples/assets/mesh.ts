@@ -217,13 +217,14 @@ export const refineTo = (mesh: Mesh, triangles: number, settle: (p: Vec3) => Vec
   const at = (v: number): Vec3 => [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!]
   while (missing > 0) {
     // Corner k stands for the edge from it to the next corner; an inner edge adds two triangles, an open one adds one.
-    const twin = new Map<string, number>()
-    indices.forEach((a, i) => twin.set(`${a},${indices[i - (i % 3) + ((i + 1) % 3)]!}`, i))
+    const twin = new Map<number, number>()
+    const key = (a: number, b: number): number => a * 2 ** 26 + b
+    indices.forEach((a, i) => twin.set(key(a, indices[i - (i % 3) + ((i + 1) % 3)]!), i))
     let best = -1
     let longest = -1
     indices.forEach((a, i) => {
       const b = indices[i - (i % 3) + ((i + 1) % 3)]!
-      const open = !twin.has(`${b},${a}`)
+      const open = !twin.has(key(b, a))
       if (open !== (missing === 1)) return
       const l = length(sub(at(a), at(b)))
       if (l > longest) [best, longest] = [i, l]
@@ -233,7 +234,7 @@ export const refineTo = (mesh: Mesh, triangles: number, settle: (p: Vec3) => Vec
     const middle = positions.length / 3
     const p = scale(add(at(a), at(b)), 0.5)
     positions.push(...(missing === 1 ? p : settle(p)))
-    for (const corner of [best, twin.get(`${b},${a}`)]) {
+    for (const corner of [best, twin.get(key(b, a))]) {
       if (corner === undefined) continue
       const base = corner - (corner % 3)
       const [u, v, w] = [0, 1, 2].map((k) => indices[base + ((corner + k) % 3)]!) as [number, number, number]

@@ -8,21 +8,20 @@ const bits = (x: number, y: number, z: number, salt: number): number => {
   return (h ^ (h >>> 15)) >>> 0
 }
 
-/** A number in 0..1 for each cell. */
-export const hash = (x: number, y: number, z: number, salt = 0): number => bits(x, y, z, salt) / 2 ** 32
-
 const fade = (t: number): number => t * t * (3 - 2 * t)
 
 /** Smooth noise in 0..1 whose features are about one unit apart. */
 export const noise = (p: Vec3, salt = 0): number => {
-  const i = p.map(Math.floor) as [number, number, number]
-  const [u, v, w] = [fade(p[0] - i[0]), fade(p[1] - i[1]), fade(p[2] - i[2])]
+  const [i, j, k] = [Math.floor(p[0]), Math.floor(p[1]), Math.floor(p[2])]
+  const [u, v, w] = [fade(p[0] - i), fade(p[1] - j), fade(p[2] - k)]
   let sum = 0
   for (let c = 0; c < 8; c++) {
-    const [a, b, d] = [c & 1, (c >> 1) & 1, c >> 2]
-    sum += hash(i[0] + a, i[1] + b, i[2] + d, salt) * (a ? u : 1 - u) * (b ? v : 1 - v) * (d ? w : 1 - w)
+    const a = c & 1
+    const b = (c >> 1) & 1
+    const d = c >> 2
+    sum += bits(i + a, j + b, k + d, salt) * (a ? u : 1 - u) * (b ? v : 1 - v) * (d ? w : 1 - w)
   }
-  return sum
+  return sum / 2 ** 32
 }
 
 /** Three octaves of `noise`, in 0..1. */

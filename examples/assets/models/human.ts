@@ -448,8 +448,8 @@ const makeHuman = (): Model => {
     title: 'Human bust',
     parts: [
       { ...textured('skin', boxAtlas(withFieldNormals(skin, skinSolid)), skinShade(false), 1024, 0.6, false), doubleSided: true },
-      textured('l-eye', eye, eyeShade, 256, 0.1, true),
-      textured('r-eye', reflected(eye), eyeShade, 256, 0.1, true),
+      textured('l-eye', eye, eyeShade, 512, 0.1, true),
+      textured('r-eye', reflected(eye), eyeShade, 512, 0.1, true),
       ...others(),
     ],
     cage: cageFor(skin),

@@ -254,7 +254,7 @@ const warPaint: Shade = (p, n) => {
   let c: Rgba = rgb('#3d5c33', 0)
   const eye = sub(q, kEye)
   // A dark mask around the eyes that runs out backwards.
-  const mask = Math.hypot(eye[1] * 1.15, (eye[2] + 0.02) * (eye[2] < 0 ? 0.55 : 1.1))
+  const mask = Math.hypot(eye[1] * 1.15, (eye[2] + 0.02) * (eye[2] < 0 ? 0.55 : 0.8))
   c = over(c, rgb('#14110f'), smoothstep(0.135, 0.12, mask + 0.02 * rough) * smoothstep(0.05, 0.09, q[0]))
   // Three claw marks down the cheek, a red stripe over the snout, white dots along the brow.
   for (let k = 0; k < 3; k++) {
@@ -288,8 +288,8 @@ export const lizard = (): Model => {
 
   const parts: Part[] = [
     { ...textured('skin', boxAtlas(withFieldNormals(skin, skinSolid)), skinShade, 1024, 0.75, false), doubleSided: true },
-    textured('l-eye', eye, eyeShade, 256, 0.15, true),
-    textured('r-eye', reflected(eye), eyeShade, 256, 0.15, true),
+    textured('l-eye', eye, eyeShade, 512, 0.15, true),
+    textured('r-eye', reflected(eye), eyeShade, 512, 0.15, true),
     textured('upper-teeth', boxAtlas(upper), toothShade, 64, 0.4, true),
     textured('lower-teeth', boxAtlas(lower), toothShade, 64, 0.4, true),
     textured('tongue', boxAtlas(withFieldNormals(tongue, tongueSolid)), tongueShade, 256, 0.35, true),
