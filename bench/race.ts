@@ -44,7 +44,9 @@ export function cpuTime(pid: number): number {
 export async function turn(realm: Realm, who: Who, runs: number): Promise<{ cpu: number; block: Block }> {
   const start = cpuTime(realm.pid);
   const block = await realm.run(who, runs);
-  return { cpu: (cpuTime(realm.pid) - start) / runs, block };
+  const cpu = (cpuTime(realm.pid) - start) / runs;
+  if (!(cpu > 0)) throw new Error(`process ${realm.pid} used no CPU time: it is not the one that runs transfers`);
+  return { cpu, block };
 }
 
 /** Warms up, and finds how many runs make a turn. */
