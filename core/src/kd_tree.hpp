@@ -45,25 +45,28 @@ struct alignas(16) NearLeaf {
   std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
 };
 
-/// A tree over the target's triangles: cheap to build, because each of its triangles sees less than one ray.
+/// A tree without gaps over a row of leaves: node i of a level holds nodes 4i … 4i + 3 of the next, or such leaves.
 struct RayTree {
-  const Node* nodes = nullptr;     ///< The root is node 0.
+  /// A level of at most so many nodes is looked at as a whole: quicker than finding the way to it from the root.
+  static constexpr std::uint32_t kMostEntries = 16;
+
+  const Node* nodes = nullptr;         ///< Level by level. The root is node 0.
   const RayLeaf* leaves = nullptr;
-  float reach = 0;                 ///< The longest side of the box around all rays and triangles, scaled.
-  std::uint32_t levels = 0;        ///< Nodes on the longest way from the root to a leaf; at most `kMaxLevels`.
+  std::uint32_t leafCount = 0;
+  std::uint32_t levels = 0;            ///< Of nodes.
+  std::uint32_t lastLevel = 0;         ///< The first node whose children are leaves.
+  std::uint32_t entry = 0;             ///< The first node of the lowest level with at most `kMostEntries`.
+  std::uint32_t entryCount = 0;        ///< Nodes of that level.
+  std::uint32_t levelsBelowEntry = 0;
+  float reach = 0;                     ///< The longest side of the box around all rays and triangles, scaled.
 };
 
-/// A tree over the cage's triangles: well built, because each of its triangles sees many queries.
+/// A tree over the cage's triangles.
 struct CageTree {
   RayTree rays;
   const NearLeaf* near = nullptr;  ///< Leaf by leaf the triangles of `rays.leaves`.
   double extent = 0;               ///< Longest side of its box, scaled.
 };
-
-/// Most nodes that a path from the root to a leaf can have.
-inline constexpr std::uint32_t kMaxLevels = 64;
-/// What a walk may have to remember: three siblings a level, and one more.
-inline constexpr std::uint32_t kStackSize = 3 * kMaxLevels + 1;
 
 /// @return false if memory ran out.
 bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch, RayTree& out) noexcept;
@@ -80,8 +83,9 @@ class NearestSearch {
  public:
   static constexpr std::uint32_t kGroup = 16;  ///< Points searched for at once.
 
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
   /// @param diagonal  Of the target, scaled.
-  NearestSearch(const CageTree& tree, double diagonal) noexcept;
+  NearestSearch(const CageTree& tree, double diagonal, Scratch& scratch) noexcept;
 
   /// Searches for `count` ≤ `kGroup` points that are near each other.
   /// @param positions  As in `Points`.
@@ -103,6 +107,11 @@ class NearestSearch {
     std::uint32_t lanes;    ///< Which they were: a bit each, below the leaf's index.
   };
 
+  /// Leaves that are near enough to a box, level by level.
+  /// @param[out] leaves  With the leaf bit.
+  /// @return How many.
+  std::uint32_t listLeaves(const simd::f32x4 (&low)[3], const simd::f32x4 (&high)[3], simd::f32x4 limit,
+                           std::uint32_t*& leaves) const noexcept;
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
 
   const CageTree& tree_;
@@ -111,6 +120,8 @@ class NearestSearch {
   alignas(16) float points_[kGroup][4];   ///< x, y, z, 0 each.
   alignas(16) float columns_[3][kGroup];  ///< The same, by axis.
   alignas(16) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
+  std::uint32_t* list_;               ///< Room for all leaves, and four more.
+  std::uint32_t* otherList_;
   std::uint32_t nearCount_[kGroup];   ///< More than `kRoom` if some had no room.
   Near near_[kGroup][kRoom + 1];
 };

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kd_tree.hpp"
 
@@ -72,26 +73,37 @@ f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
   return z * z + simd::select(y < zero, toBase, toEdge);
 }
 
-/// What is still to be visited, with the node that holds its box.
-struct Visit {
-  std::uint32_t child;
-  std::uint32_t lane;
-  const Node* parent;
-};
-
-/// Pushes the children that are near enough.
-void pushChildren(const Node& node, unsigned close, Visit* stack, std::uint32_t& depth) {
-  for (std::uint32_t lane = 0; lane < 4; ++lane) {
-    stack[depth] = {node.child[lane], lane, &node};
-    depth += close >> lane & 1;
-  }
-}
-
 }  // namespace
 
-NearestSearch::NearestSearch(const CageTree& tree, double diagonal) noexcept : tree_(tree) {
+NearestSearch::NearestSearch(const CageTree& tree, double diagonal, Scratch& scratch) noexcept
+    : tree_(tree),
+      list_(scratch.take<std::uint32_t>(std::size_t{tree.rays.leafCount} + RayTree::kMostEntries + 4)),
+      otherList_(scratch.take<std::uint32_t>(std::size_t{tree.rays.leafCount} + RayTree::kMostEntries + 4)) {
   const double slack = kTieDistance * diagonal + kRounding * tree.extent;
   fixedSlack_ = static_cast<float>(slack * slack * (1 + 1 / kRelativeSlack));
+}
+
+std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
+  const RayTree& rays = tree_.rays;
+  std::uint32_t* from = list_;
+  std::uint32_t* to = otherList_;
+  std::uint32_t count = rays.entryCount;
+  for (std::uint32_t i = 0; i < count; ++i) from[i] = rays.entry + i;
+  for (std::uint32_t level = 0; level <= rays.levelsBelowEntry; ++level) {
+    std::size_t found = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Node& node = rays.nodes[from[i]];
+      const unsigned close = simd::bits(squaredDistanceToBoxes(node, low, high) <= limit);
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        to[found] = node.child[lane];
+        found += close >> lane & 1;
+      }
+    }
+    std::swap(from, to);
+    count = static_cast<std::uint32_t>(found);
+  }
+  leaves = from;
+  return count;
 }
 
 void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
@@ -138,25 +150,17 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     return splat(simd::highest(most));
   };
 
-  Visit stack[kStackSize];
-  std::uint32_t depth = 0;
-  const Node& root = tree_.rays.nodes[0];
-  pushChildren(root, simd::bits(squaredDistanceToBoxes(root, low, high) <= groupLimit()), stack, depth);
-  while (depth > 0) {
-    const Visit visit = stack[--depth];
-    if ((visit.child & kLeafBit) == 0) {
-      const Node& node = tree_.rays.nodes[visit.child];
-      pushChildren(node, simd::bits(squaredDistanceToBoxes(node, low, high) <= groupLimit()), stack, depth);
-      continue;
-    }
-    const std::uint32_t leaf = visit.child & ~kLeafBit;
-    if (leaf == seed) continue;
+  std::uint32_t* leaves;
+  const std::uint32_t leafCount = listLeaves(low, high, groupLimit(), leaves);
+  for (std::uint32_t j = 0; j < leafCount; ++j) {
+    const std::uint32_t leaf = leaves[j] & ~kLeafBit;
+    const Node& parent = tree_.rays.nodes[tree_.rays.lastLevel + leaf / 4];
     unsigned members = 0;
     for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
-      const f32x4 squared = squaredDistanceToChild(*visit.parent, visit.lane, columns_[0] + i, columns_[1] + i, columns_[2] + i);
+      const f32x4 squared = squaredDistanceToChild(parent, leaf % 4, columns_[0] + i, columns_[1] + i, columns_[2] + i);
       members |= simd::bits(squared <= load(limits_ + i)) << i;
     }
-    searchLeaf(leaf, members);
+    if (leaf != seed) searchLeaf(leaf, members);
   }
   // Where the last point is nearest, the next group begins.
   const std::uint32_t last = count - 1;
@@ -183,18 +187,11 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) c
   const f32x4 point = load(points_[i]);
   const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
   const f32x4 limit = splat(limits_[i]);
-  Visit stack[kStackSize];
-  std::uint32_t depth = 0;
-  stack[depth++] = {0, 0, nullptr};
-  while (depth > 0) {
-    const std::uint32_t child = stack[--depth].child;
-    if (child & kLeafBit) {
-      const std::uint32_t leaf = child & ~kLeafBit;
-      takeLanes(leaf, simd::bits(squaredDistanceToTriangles(tree_.near[leaf], point) <= limit));
-    } else {
-      const Node& node = tree_.rays.nodes[child];
-      pushChildren(node, simd::bits(squaredDistanceToBoxes(node, box, box) <= limit), stack, depth);
-    }
+  std::uint32_t* leaves;
+  const std::uint32_t leafCount = listLeaves(box, box, limit, leaves);
+  for (std::uint32_t j = 0; j < leafCount; ++j) {
+    const std::uint32_t leaf = leaves[j] & ~kLeafBit;
+    takeLanes(leaf, simd::bits(squaredDistanceToTriangles(tree_.near[leaf], point) <= limit));
   }
   return count;
 }

@@ -79,9 +79,9 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
   const Scratch::Mark mark = scratch.mark();
   auto* found = scratch.take<std::uint32_t>(cage.count);
   auto* candidates = scratch.take<Candidate>(cage.count);
+  NearestSearch search(tree, units.diagonal, scratch);
   if (scratch.failed()) return false;
 
-  NearestSearch search(tree, units.diagonal);
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const std::uint32_t member = i % NearestSearch::kGroup;
     if (member == 0) search.search(points.at(i), std::min(NearestSearch::kGroup, points.count - i));
