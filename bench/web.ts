@@ -72,14 +72,13 @@ async function rendererOf(browser: Browser, page: Page): Promise<number> {
   const { processInfo } = await session.send('SystemInfo.getProcessInfo');
   await session.detach();
   const ids = processInfo.filter(({ type }) => type === 'renderer').map(({ id }) => id);
-  const before = ids.map(cpuTime);
   for (let attempt = 0; attempt < 20; ++attempt) {
+    const before = ids.map(cpuTime);
     await page.evaluate(() => {
       for (const end = performance.now() + 50; performance.now() < end; );
     });
-    const busy = ids.filter((id, i) => cpuTime(id) - before[i]! > 30);
-    if (busy.length === 1) return busy[0]!;
-    if (busy.length > 1) break;
+    const used = ids.map((id, i) => ({ id, time: cpuTime(id) - before[i]! })).sort((x, y) => y.time - x.time);
+    if (used[0]!.time > 10 && used[0]!.time > 4 * (used[1]?.time ?? 0)) return used[0]!.id;
   }
   throw new Error('cannot tell which process runs the page: is another Chromium page busy?');
 }
