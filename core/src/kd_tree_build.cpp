@@ -138,19 +138,27 @@ void clearNearTriangle(NearLeaf& leaf, int lane) {
 
 constexpr std::uint32_t groupsOfFour(std::uint32_t count) { return (count + 3) / 4; }
 
-/// Builds the nodes over a row of leaves: four neighbours make a node, four nodes a node, up to the root. Levels are stored
-/// root first.
-/// @param boxes  Of the leaves; used up.
-bool buildNodes(Box* boxes, std::uint32_t leafCount, Scratch& scratch, RayTree& out) {
+/// Takes the memory of a tree over a row of leaves: four neighbours make a node, four nodes a node, up to the root.
+/// @return The nodes, which `fillNodes` fills.
+Node* takeTree(std::uint32_t leafCount, float reach, Scratch& scratch, RayTree& out) {
+  out.leafCount = leafCount;
+  out.reach = reach;
+  out.levels = 0;
   std::uint32_t nodeCount = 0;
-  out.levels = out.entryCount = out.levelsBelowEntry = 0;
   for (std::uint32_t width = leafCount; out.levels == 0 || width > 1; ++out.levels) nodeCount += width = groupsOfFour(width);
   auto* nodes = scratch.take<Node>(nodeCount);
-  if (scratch.failed()) return false;
+  out.nodes = nodes;
+  out.lastLevel = nodeCount - groupsOfFour(leafCount);
+  return nodes;
+}
+
+/// @param boxes  Of the leaves; used up.
+void fillNodes(Box* boxes, Node* nodes, RayTree& out) {
+  out.entryCount = out.levelsBelowEntry = 0;
   std::uint32_t childBase = 0;
   std::uint32_t childFlag = kLeafBit;
-  std::uint32_t levelEnd = nodeCount;
-  for (std::uint32_t width = leafCount;;) {
+  std::uint32_t levelEnd = out.lastLevel + groupsOfFour(out.leafCount);
+  for (std::uint32_t width = out.leafCount;;) {
     const std::uint32_t levelSize = groupsOfFour(width);
     const std::uint32_t levelBegin = levelEnd - levelSize;
     for (std::uint32_t i = 0; i < levelSize; ++i) {
@@ -166,7 +174,6 @@ bool buildNodes(Box* boxes, std::uint32_t leafCount, Scratch& scratch, RayTree& 
       setChildren(nodes[levelBegin + i], children);
       boxes[i] = around;
     }
-    if (childFlag != 0) out.lastLevel = levelBegin;
     if (out.entryCount == 0 && levelSize <= RayTree::kMostEntries) {
       out.entry = levelBegin;
       out.entryCount = levelSize;
@@ -177,8 +184,6 @@ bool buildNodes(Box* boxes, std::uint32_t leafCount, Scratch& scratch, RayTree& 
     levelEnd = childBase = levelBegin;
     childFlag = 0;
   }
-  out.nodes = nodes;
-  return true;
 }
 
 /// Orders the cage's triangles so that runs of 4, 16, 64 … of them, which will be leaves and nodes, are compact: a k-d tree
@@ -186,35 +191,28 @@ bool buildNodes(Box* boxes, std::uint32_t leafCount, Scratch& scratch, RayTree& 
 /// with leaves half empty: 7 % slower.)
 class CageOrder {
  public:
-  CageOrder(const Box* boxes, std::uint32_t* order) : boxes_(boxes), order_(order) {}
+  /// @param centres  Of the triangles, 4 floats each.
+  CageOrder(const float* centres, std::uint32_t* order) : centres_(centres), order_(order) {}
 
   /// @param run  Triangles below one child: 4, 16, 64 …
   void sort(std::uint32_t begin, std::uint32_t end, std::uint32_t run) {
     while (run > 4 && end - begin <= run) run /= 4;
     const std::uint32_t children = (end - begin + run - 1) / run;
     if (children < 2) return;
-    Box centres;
-    for (std::uint32_t i = begin; i < end; ++i) centres.grow(centre(order_[i]));
+    Box box;
+    for (std::uint32_t i = begin; i < end; ++i) box.grow(load(centres_ + 4 * order_[i]));
     float spread[4];
-    simd::store(spread, centres.high - centres.low);
-    const auto axis = std::max_element(spread, spread + 3) - spread;
+    simd::store(spread, box.high - box.low);
+    const float* along = centres_ + (std::max_element(spread, spread + 3) - spread);
     const std::uint32_t middle = begin + children / 2 * run;
-    std::nth_element(order_ + begin, order_ + middle, order_ + end, [&](std::uint32_t a, std::uint32_t b) {
-      float atA[4];
-      float atB[4];
-      simd::store(atA, centre(a));
-      simd::store(atB, centre(b));
-      return atA[axis] < atB[axis];
-    });
+    std::nth_element(order_ + begin, order_ + middle, order_ + end,
+                     [along](std::uint32_t a, std::uint32_t b) { return along[4 * a] < along[4 * b]; });
     sort(begin, middle, run);
     sort(middle, end, run);
   }
 
  private:
-  /// Twice the centre of a triangle's box.
-  [[nodiscard]] f32x4 centre(std::uint32_t slot) const { return boxes_[slot].low + boxes_[slot].high; }
-
-  const Box* boxes_;
+  const float* centres_;
   std::uint32_t* order_;
 };
 
@@ -224,8 +222,11 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
   const std::uint32_t leafCount = groupsOfFour(cage.count);
   auto* rayLeaves = scratch.take<RayLeaf>(leafCount);
   auto* nearLeaves = scratch.take<NearLeaf>(leafCount);
+  auto* nodes = takeTree(leafCount, units.reach, scratch, out.rays);
+  const Scratch::Mark mark = scratch.mark();
   auto* order = scratch.take<std::uint32_t>(cage.count);
-  auto* boxes = scratch.take<Box>(cage.count);
+  auto* centres = scratch.take<float>(std::size_t{4} * cage.count);
+  auto* boxes = scratch.take<Box>(leafCount);
   if (scratch.failed()) return false;
   Box all;
   for (std::uint32_t i = 0; i < cage.count; ++i) {
@@ -234,13 +235,13 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     box.grow(load(t.a));
     box.grow(load(t.b));
     box.grow(load(t.c));
-    boxes[i] = box;
     all.grow(box);
+    simd::store(centres + 4 * i, box.low + box.high);
     order[i] = i;
   }
   std::uint32_t run = 4;
   while (run < cage.count) run *= 4;
-  CageOrder(boxes, order).sort(0, cage.count, run);
+  CageOrder(centres, order).sort(0, cage.count, run);
 
   for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf) {
     Box box;
@@ -260,12 +261,11 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
       }
     }
     setRayLeaf(rayLeaves[leaf], corners, std::min(4u, cage.count - 4 * leaf), units.reach);
-    boxes[leaf] = box.padded(kPadding * units.reach);  // The boxes of triangles are no longer needed.
+    boxes[leaf] = box.padded(kPadding * units.reach);
   }
-  if (!buildNodes(boxes, leafCount, scratch, out.rays)) return false;
+  fillNodes(boxes, nodes, out.rays);
+  scratch.rewind(mark);
   out.rays.leaves = rayLeaves;
-  out.rays.leafCount = leafCount;
-  out.rays.reach = units.reach;
   out.near = nearLeaves;
   float sides[4];
   simd::store(sides, all.high - all.low);
@@ -276,8 +276,9 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
 bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch, RayTree& out) noexcept {
   const std::uint32_t leafCount = std::max(1u, groupsOfFour(target.triangleCount));
   auto* leaves = scratch.take<RayLeaf>(leafCount);
-  auto* boxes = scratch.take<Box>(leafCount);
+  auto* nodes = takeTree(leafCount, units.reach, scratch, out);
   const Scratch::Mark mark = scratch.mark();
+  auto* boxes = scratch.take<Box>(leafCount);
   auto* order = scratch.take<std::uint32_t>(target.triangleCount);
   auto* starts = scratch.take<std::uint32_t>(std::size_t{target.count} + 1);
   if (scratch.failed()) return false;
@@ -310,11 +311,10 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
     setRayLeaf(leaves[leaf], corners, std::min(4u, target.triangleCount - 4 * leaf), units.reach);
     boxes[leaf] = target.triangleCount == 0 ? box : box.padded(kPadding * units.reach);
   }
+  fillNodes(boxes, nodes, out);
   scratch.rewind(mark);
   out.leaves = leaves;
-  out.leafCount = leafCount;
-  out.reach = units.reach;
-  return buildNodes(boxes, leafCount, scratch, out);
+  return true;
 }
 
 }  // namespace cagecast

@@ -37,14 +37,16 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, const Units& 
     sets.join(corner[0], corner[2]);
   }
 
+  sets.flatten(points.count);
+
   // Number the components in the order in which the vertices meet them.
   std::fill(results.segments, results.segments + points.count, UINT32_MAX);
   std::uint32_t count = 0;
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const std::uint32_t root = sets.find(points.ofVertex[v]);
+    const std::uint32_t root = parents[points.ofVertex[v]];
     if (results.segments[root] == UINT32_MAX) results.segments[root] = count++;
   }
-  for (std::uint32_t i = 0; i < points.count; ++i) results.segments[i] = results.segments[sets.find(i)];
+  for (std::uint32_t i = 0; i < points.count; ++i) results.segments[i] = results.segments[parents[i]];
 
   auto* sums = scratch.take<Sums>(count);
   if (scratch.failed() || !stats.reset(count)) return false;
@@ -55,12 +57,16 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, const Units& 
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
     const std::int64_t third = unit.third(points.doubleAreas[t]);
     Sums& sum = sums[results.segments[corner[0]]];
+    std::int64_t exposed = 0;
+    std::int64_t covered = 0;
     for (int i = 0; i < 3; ++i) {
       const Zone zone = results.zones[corner[i]];
-      sum.all += third;
-      if (zone != Zone::occluded) sum.exposed += third;
-      if (zone == Zone::cosmetic) sum.covered += third;
+      exposed += zone != Zone::occluded;
+      covered += zone == Zone::cosmetic;
     }
+    sum.all += 3 * third;
+    sum.exposed += exposed * third;
+    sum.covered += covered * third;
   }
   for (std::uint32_t i = 0; i < points.count; ++i) ++stats[results.segments[i]].points;
   const double toInput = 1.0 / units.scale / units.scale;

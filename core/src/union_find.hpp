@@ -22,6 +22,11 @@ class UnionFind {
     if (a < b) parents_[b] = a;
     if (b < a) parents_[a] = b;
   }
+  /// Makes every parent a root, once all is joined.
+  void flatten(std::uint32_t count) noexcept {
+    // A parent comes before its children, so it points to a root already.
+    for (std::uint32_t i = 0; i < count; ++i) parents_[i] = parents_[parents_[i]];
+  }
 
  private:
   std::uint32_t* parents_;
