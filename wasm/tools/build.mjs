@@ -93,6 +93,7 @@ async function buildPackage() {
     await beside('index.ts', 'slim.js', 'neutral');
     await beside('read-wasm.ts', 'read-wasm.js', 'neutral');
     await beside('read-wasm-node.ts', 'read-wasm-node.js', 'node');
+    await beside('inspect/index.ts', 'inspect.js', 'neutral');
     await beside('worker/index.ts', 'worker.js', 'neutral');
     await beside('worker/spawn.ts', 'spawn.js', 'neutral');
     await beside('worker/spawn-node.ts', 'spawn-node.js', 'node');
