@@ -16,11 +16,12 @@ Status classify(std::span<const Zone> zones, std::span<const std::uint32_t> segm
     out.culledSegments[s] = stats[s].coveredArea < threshold * stats[s].exposedArea;
   }
   for (std::size_t v = 0; v < zones.size(); ++v) {
-    out.zones[v] = zones[v] == Zone::cosmetic && out.culledSegments[segments[v]] ? Zone::culled : zones[v];
+    const bool culled = (zones[v] == Zone::cosmetic) & (out.culledSegments[segments[v]] != 0);
+    out.zones[v] = culled ? Zone::culled : zones[v];
   }
   for (std::size_t t = 0; t < triangles; ++t) {
-    const auto cosmetic = [&](std::size_t corner) { return out.zones[indices[3 * t + corner]] == Zone::cosmetic; };
-    out.cosmeticTriangles[t] = cosmetic(0) && cosmetic(1) && cosmetic(2);
+    const auto zone = [&](std::size_t corner) { return static_cast<unsigned>(out.zones[indices[3 * t + corner]]); };
+    out.cosmeticTriangles[t] = (zone(0) | zone(1) | zone(2)) == static_cast<unsigned>(Zone::cosmetic);
   }
   return {};
 }
