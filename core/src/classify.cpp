@@ -16,8 +16,9 @@ Status classify(std::span<const Zone> zones, std::span<const std::uint32_t> segm
     out.culledSegments[s] = stats[s].coveredArea < threshold * stats[s].exposedArea;
   }
   for (std::size_t v = 0; v < zones.size(); ++v) {
-    const bool culled = (zones[v] == Zone::cosmetic) & (out.culledSegments[segments[v]] != 0);
-    out.zones[v] = culled ? Zone::culled : zones[v];
+    // As numbers: clang takes a `&` of truth values for a mistake, and `&&` branches.
+    const int culled = static_cast<int>(zones[v] == Zone::cosmetic) & static_cast<int>(out.culledSegments[segments[v]] != 0);
+    out.zones[v] = culled != 0 ? Zone::culled : zones[v];
   }
   for (std::size_t t = 0; t < triangles; ++t) {
     const auto zone = [&](std::size_t corner) { return static_cast<unsigned>(out.zones[indices[3 * t + corner]]); };
