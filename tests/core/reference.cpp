@@ -169,7 +169,8 @@ std::vector<bool> mayVoteFromWithin(const Scene& scene, const State& state) {
 std::vector<Voter> findVoters(const Scene& scene, const Options& options, const State& state) {
   constexpr double kBigTriangle = 0.06;
   std::vector<Voter> voters;
-  for (std::size_t p = 0; p < state.segments.size(); ++p) voters.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
+  for (std::size_t p = 0; p < state.segments.size(); ++p)
+    voters.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
   const std::vector<bool> within = options.votes ? mayVoteFromWithin(scene, state) : std::vector<bool>(state.segmentCount);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
     const Triangle& triangle = scene.target.triangles()[t];
@@ -272,20 +273,25 @@ std::vector<std::uint32_t> findCopies(const Scene& scene, const State& state, co
 /// The sums that step 5 compares.
 struct Tally {
   double area = 0, exposed = 0, covered = 0, sunk = 0;
+  double segments = 0;  // Of which these are the sums.
   void add(const Tally& other) {
     area += other.area, exposed += other.exposed, covered += other.covered, sunk += other.sunk;
+    segments += other.segments;
   }
 };
 
 /// How many times what is asked of it a segment reaches: it passes from 1 on.
-double marginOf(const Options& options, const Tally& tally, double cageArea) {
+/// @param allCovered  The covered area of all segments.
+double marginOf(const Options& options, const Tally& tally, double allCovered) {
   const auto times = [](double has, double needs) { return needs > 0 ? has / needs : kInfinity; };
   const double coverage = times(tally.covered, options.threshold * tally.exposed);
   if (options.floor == Floor::none) return coverage;
   if (!(tally.covered > 0)) return 0;
-  double floor = times(tally.covered, options.minCovered * tally.area);
-  if (options.floor == Floor::depth)
-    floor = std::max(times(tally.sunk, options.minCovered * tally.area), times(tally.sunk, options.minOfCage * cageArea));
+  if (options.floor == Floor::area) return std::min(coverage, times(tally.covered, options.minCovered * tally.area));
+  // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
+  const double counted = tally.sunk * (tally.covered / tally.exposed);
+  const double floor = std::max(times(counted, options.minCovered * tally.area),
+                                times(counted, options.minOfAll * allCovered * tally.segments));
   return std::min(coverage, floor);
 }
 
@@ -295,9 +301,8 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
   // Three times: as it is, and with every voter at its worst and at its best.
   std::vector<Tally> is(state.segmentCount), worst(state.segmentCount), best(state.segmentCount);
   const std::vector<Range> weights = depthWeights(scene, voters);
-  double cageArea = 0;
-  for (const Triangle& triangle : scene.cage.triangles()) cageArea += triangle.area;
-  for (std::uint32_t s = 0; s < state.segmentCount; ++s) is[s].area = worst[s].area = best[s].area = stats[s].area;
+  Range all;  // The covered area of all segments.
+  for (std::uint32_t s = 0; s < state.segmentCount; ++s) is[s] = worst[s] = best[s] = {stats[s].area, 0, 0, 0, 1};
   for (std::size_t i = 0; i < voters.size(); ++i) {
     const Voter& voter = voters[i];
     const auto count = [&](Tally& tally, Zone zone, double weight) {
@@ -306,6 +311,9 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
     };
     const auto might = [&](Zone zone) { return (voter.finding.nearby & bit(zone)) != 0; };
     count(is[voter.segment], voter.finding.zone, weights[i].is);
+    if (voter.finding.zone == Zone::cosmetic) all.is += voter.area;
+    if (voter.finding.nearby == bit(Zone::cosmetic)) all.least += voter.area;
+    if (might(Zone::cosmetic)) all.most += voter.area;
     const Zone hidden = might(Zone::occluded) ? Zone::occluded : Zone::cosmetic;
     count(worst[voter.segment], might(Zone::uncovered) ? Zone::uncovered : hidden, weights[i].least);
     const Zone bare = might(Zone::occluded) ? Zone::occluded : Zone::uncovered;
@@ -315,7 +323,7 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
     stats[s].exposedArea = is[s].exposed;
     stats[s].coveredArea = is[s].covered;
-    measures[s] = {is[s].sunk, marginOf(options, is[s], cageArea), s};
+    measures[s] = {is[s].sunk, marginOf(options, is[s], all.is), s};
   }
 
   // Copies that are in doubt are judged together, so that twins do not fall on either side by accident.
@@ -328,7 +336,7 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
     std::vector<bool> doubted(state.segmentCount), unsureSum(state.segmentCount, false);
     for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
       measures[s].copies = copies[s];
-      const double least = marginOf(options, worst[s], cageArea), most = marginOf(options, best[s], cageArea);
+      const double least = marginOf(options, worst[s], all.most), most = marginOf(options, best[s], all.least);
       doubted[s] = inDoubt(measures[s].margin);
       if (inDoubt(least) != doubted[s] || inDoubt(most) != doubted[s]) unsureSum[copies[s]] = unsureDoubt[s] = true;
       if (!doubted[s]) continue;
@@ -350,8 +358,8 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
   const bool exact = options.floor == Floor::none && (options.threshold == 0 || options.threshold == 1);
   state.passes.resize(state.segmentCount);
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-    const double margin = marginOf(options, is[s], cageArea);
-    const double least = marginOf(options, worst[s], cageArea), most = marginOf(options, best[s], cageArea);
+    const double margin = marginOf(options, is[s], all.is);
+    const double least = marginOf(options, worst[s], all.most), most = marginOf(options, best[s], all.least);
     const double noise = exact || is[s].exposed == 0 ? 0 : kSumNoise;
     Verdict& pass = state.passes[s];
     pass.is = margin >= 1;

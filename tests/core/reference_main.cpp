@@ -17,7 +17,8 @@
 /// RESULT: "CAGEREF1", u32 vertexCount, u32 segmentCount, f32 uvs (2 per vertex), u8 zones (then to a multiple of 4),
 /// u32 triangles, f32 distances, u32 segments, u8 stable (then to a multiple of 4), and per segment u32 points,
 /// u32 culled, f64 exposed area, f64 covered area; then u32 triangleCount, u32 cornerUvCount, u8 cosmeticTriangles (to a
-/// multiple of 4), and if there are any f32 cornerUvs and u8 stableCorners (to a multiple of 4). Exit code 1, and a line on stderr, if it cannot be done.
+/// multiple of 4), and if there are any f32 cornerUvs and u8 stableCorners (to a multiple of 4); then, by the reference, per
+/// segment f64 whole area, f64 sunk area. Exit code 1, and a line on stderr, if it cannot be done.
 
 #include <algorithm>
 #include <bit>
@@ -241,6 +242,10 @@ int main(int argc, char** argv) {
   } else {
     const reference::Result result = reference::transfer(cage.view(), target.view(), plain);
     write(result, result.zones, result.stable, result.cosmeticTriangles, result.cornerUvs, result.stableCorners);
+    for (std::size_t s = 0; s < result.measures.size(); ++s) {
+      const double areas[] = {result.segmentStats[s].area, result.measures[s].sunkArea};
+      put(out, areas, 2);
+    }
   }
   if (!save(files[1], out)) return fail(files[1] + " cannot be written");
 }
