@@ -243,10 +243,11 @@ std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& vo
   return weights;
 }
 
-/// The first of the segments that each is a copy of: as many points, nearly the same area, nearly the same extent. Sorted
-/// by points, area and number, a segment that is like the first of a run belongs to the run; else it begins one.
+/// The first of the segments that each is a copy of: as many points, nearly the same area, nearly the same extent. Taken by
+/// points, area and number, a segment belongs to the latest of the last few runs whose first it is like; else it begins one.
 std::vector<std::uint32_t> findCopies(const Scene& scene, const State& state, const std::vector<SegmentStats>& stats) {
   constexpr double kSameArea = 0.01, kSameExtent = 0.02;
+  constexpr std::size_t kRuns = 8;  // Parts of equal area and another shape may lie between copies; not many do.
   std::vector<Vec> centres(state.segmentCount);
   std::vector<double> extents(state.segmentCount, 0.0);  // Sum of squared distances of the points from their mean.
   for (std::size_t p = 0; p < state.segments.size(); ++p)
@@ -261,11 +262,16 @@ std::vector<std::uint32_t> findCopies(const Scene& scene, const State& state, co
   std::sort(order.begin(), order.end(), [&](std::uint32_t s, std::uint32_t t) {
     return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
   });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const std::uint32_t s = order[i], first = i == 0 ? s : copies[order[i - 1]];
-    const bool same = stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
-                      std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];
-    copies[s] = same ? first : s;
+  std::vector<std::uint32_t> runs;  // By their first.
+  for (const std::uint32_t s : order) {
+    const auto isLike = [&](std::uint32_t first) {
+      return stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
+             std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];
+    };
+    const auto oldest = runs.rbegin() + static_cast<std::ptrdiff_t>(std::min(kRuns, runs.size()));
+    const auto run = std::find_if(runs.rbegin(), oldest, isLike);
+    copies[s] = run == oldest ? s : *run;
+    if (run == oldest) runs.push_back(s);
   }
   return copies;
 }
