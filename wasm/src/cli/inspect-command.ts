@@ -2,7 +2,7 @@ import { inspect, unfitFrom, usableFrom, type Inspection, type Verdict } from '.
 import type { TransferOptions } from '../index.js';
 import { counted } from '../inspect/finding.js';
 import { vertexAreas } from '../inspect/geometry.js';
-import { diagonal } from '../gltf/write.js';
+import { diagonal } from '../gltf/overlay.js';
 import { inspectionPage } from './inspect-page.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
