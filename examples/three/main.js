@@ -1,4 +1,4 @@
-import { AmbientLight, DirectionalLight, PerspectiveCamera, Scene, SRGBColorSpace, TextureLoader, WebGLRenderer } from 'three';
+import { AmbientLight, Box3, DirectionalLight, PerspectiveCamera, Scene, SRGBColorSpace, TextureLoader, WebGLRenderer } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { init } from 'cagecast';
 import { applyTransfer } from 'cagecast/three';
@@ -11,8 +11,8 @@ const { overlays } = applyTransfer(head.scene, cage.scene, { texture: paint });
 
 const scene = new Scene().add(head.scene, new AmbientLight(0xffffff, 1.5), new DirectionalLight(0xffffff, 2));
 const camera = new PerspectiveCamera(35, innerWidth / innerHeight, 0.01, 100);
-camera.position.set(0, 0.2, 3.2);
-const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+new Box3().setFromObject(head.scene).getCenter(camera.position).z += 2.5;
+const renderer = new WebGLRenderer({ antialias: true, alpha: true });
 renderer.setSize(innerWidth, innerHeight);
 document.body.append(renderer.domElement);
 renderer.setAnimationLoop((time) => {
