@@ -410,10 +410,10 @@ std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const 
   for (std::size_t p = 0; p < result.size(); ++p) {
     if (length(sums[p]) > kCancelled * weights[p]) result[p].normal = unit(sums[p]);
     agreement[state.segments[p]] += state.areas[p] * dot(result[p].normal, state.places[p].triangle->normal);
-    most[state.segments[p]] += state.areas[p];
+    if (dot(result[p].normal, result[p].normal) > 0) most[state.segments[p]] += state.areas[p];
   }
   for (std::uint32_t s = 0; s < state.segmentCount; ++s)
-    firm.push_back(agreement[s] == 0 || std::abs(agreement[s]) > kSumNoise * most[s]);
+    firm.push_back(most[s] == 0 || std::abs(agreement[s]) > kSumNoise * most[s]);
   for (std::size_t p = 0; p < result.size(); ++p) {
     const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
     if (!cancelled && agreement[state.segments[p]] < 0) result[p].normal = result[p].normal * -1;
