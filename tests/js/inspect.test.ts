@@ -119,6 +119,32 @@ describe('a cage out of place', () => {
   });
 });
 
+describe('a cage for a part of the target', () => {
+  const tube = (x: number, length: number, radius: number): Whole => {
+    const mesh = ball([0, 0, 0], () => 1, 24, 24) as Whole;
+    return { ...mesh, positions: mesh.positions.map((value, i) => (i % 3 === 0 ? x + radius * value : i % 3 === 1 ? radius * value : length * value)) };
+  };
+
+  test('a sleeve on an arm beside a body: the flank, which is near, does not count as outside', () => {
+    const body = join3d(tube(0, 1.4, 0.5), tube(0.75, 0.8, 0.12));
+    const around = tube(0.75, 0.8, 0.16);
+    const sleeve = { ...around, indices: Uint32Array.from(around.indices).filter((_, i) => [0, 1, 2].every((k) => Math.abs(around.positions[3 * around.indices[i - (i % 3) + k]! + 2]!) < 0.6)) };
+    const inspection = inspect(sleeve, body);
+    assert.ok(inspection.placement.outside.area > 0.1, 'the flank is on the outer side');
+    assert.notEqual(inspection.verdict, 'unfit', JSON.stringify(inspection.findings));
+    // The same sleeve, too thin.
+    const thin = { ...sleeve, positions: tube(0.75, 0.8, 0.09).positions };
+    assert.equal(codes(inspect(thin, body))[0], 'cageTooSmall');
+  });
+
+  test('half a cage: nothing of the segment passes, and why', () => {
+    const cap = { ...cage, indices: Uint32Array.from(cage.indices).filter((_, i) => [0, 1, 2].every((k) => cage.positions[3 * cage.indices[i - (i % 3) + k]! + 2]! > 0.6)) };
+    const inspection = inspect(cap, target, { parts });
+    assert.match(find(inspection, 'nothingToPaint').sentence, /of "skin" \d+\.\d % is covered, less than the threshold of 0\.5/);
+    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05 }).verdict, 'unfit');
+  });
+});
+
 describe('normals', () => {
   test('all turned inward: that is the one reason, all else is judged as if they were not', () => {
     const indices = cage.indices.map((_, i, all) => all[i % 3 === 0 ? i : i - (i % 3) + 3 - (i % 3)]!);
@@ -157,9 +183,24 @@ describe('the surface', () => {
     assert.equal(flat.topology.degenerateTriangles, 1);
     assert.equal(flat.verdict, 'good');
     const doubled = look({ indices: Uint32Array.from([...cage.indices, ...cage.indices.slice(60, 90)]) });
-    assert.ok(doubled.topology.nonManifoldEdges >= 10);
+    assert.equal(doubled.topology.doubledTriangles, 10);
+    assert.equal(doubled.topology.nonManifoldEdges, 0);
     assert.equal(doubled.verdict, 'usable');
     assert.ok(!codes(doubled).includes('normalsInward'));
+  });
+
+  test('a cage of two-sided triangles keeps its hole', () => {
+    const both = look({ indices: Uint32Array.from([...cage.indices, ...cage.indices.slice().reverse()]) });
+    assert.equal(both.holes.length, 1);
+    assert.equal(both.topology.pieces, 1);
+    assert.equal(both.verdict, 'usable');
+    assert.equal(codes(both)[0], 'doubledTriangles');
+  });
+
+  test('a fin is an edge of three triangles', () => {
+    const finned = look({ groups: undefined, positions: Float32Array.from([...cage.positions, 3, 3, 3]), uvs: Float32Array.from([...cage.uvs, 0.5, 0.5]), indices: Uint32Array.from([...cage.indices, 100, 101, cage.positions.length / 3]) });
+    assert.ok(finned.topology.nonManifoldEdges >= 1);
+    assert.ok(codes(finned).includes('nonManifoldEdges'));
   });
 
   test('a seam that does not meet is a crack', () => {

@@ -24,6 +24,7 @@ export type FindingCode =
   // How it faces, and its surface.
   | 'normalsInward'
   | 'degenerateTriangles'
+  | 'doubledTriangles'
   | 'nonManifoldEdges'
   | 'cracks'
   // Its UVs.

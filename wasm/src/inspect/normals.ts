@@ -54,14 +54,10 @@ export function orientationOf(scene: Scene): Orientation {
   return { inward, share: surface.area > 0 ? Math.min(1, area / surface.area) : 0 };
 }
 
-/** The triangles at an edge, doubled ones once. */
-const singleUses = ({ uses }: Edge, doubled: Uint8Array) => uses.filter(({ triangle }) => doubled[triangle] === 0);
-
 /** Collects pieces of triangles joined by edges of two, and says which of a piece are wound alike. */
 function windAlike({ areas, doubled, edges }: Surface, turned: Int8Array, pieceOf: Int32Array): number[][] {
   const neighbours: { triangle: number; alike: boolean }[][] = Array.from(areas, () => []);
-  for (const edge of edges) {
-    const uses = singleUses(edge, doubled);
+  for (const { uses } of edges) {
     if (uses.length !== 2) continue;
     const [one, other] = uses as [Edge['uses'][0], Edge['uses'][0]];
     const alike = one.forward !== other.forward; // a shared edge is run through both ways
@@ -88,10 +84,10 @@ function windAlike({ areas, doubled, edges }: Surface, turned: Int8Array, pieceO
 }
 
 /** The edges at which each piece ends. */
-function bordersOf({ edges, doubled }: Surface, pieceOf: Int32Array, pieces: number): Edge[][] {
+function bordersOf({ edges }: Surface, pieceOf: Int32Array, pieces: number): Edge[][] {
   const borders: Edge[][] = Array.from({ length: pieces }, () => []);
   for (const edge of edges) {
-    if (singleUses(edge, doubled).length === 2) continue;
+    if (edge.uses.length === 2) continue;
     for (const piece of new Set(edge.uses.map(({ triangle }) => pieceOf[triangle]!))) if (piece >= 0) borders[piece]!.push(edge);
   }
   return borders;

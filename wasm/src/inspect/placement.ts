@@ -8,18 +8,33 @@ const pokeThrough = 0.0025;
 const mostOutside = 0.1;
 /** From here on, as a share of the diagonal, a cage that could be moved to stand off evenly is worth a remark. */
 const unevenFrom = 0.02;
-/** The farthest that a cage stands off its target at the median. */
+/** The farthest that a cage stands off what lies beneath it at the median. */
 const farCage = 0.15;
+/** The least of the exposed area that a cage lies over; a face is a hundredth of a body. */
+const leastBeneath = 0.002;
+/**
+ * A point so far outside, as a share of the diagonal, is not poking through but belongs to another part of the target, if
+ * what should be beneath the nearest triangle of the cage is there: the flank beside a sleeve, one leg beside the other.
+ */
+const elsewhere = 0.02;
+/** That much, as a share of the triangle's own area, is enough to be there. */
+const leastServed = 0.3;
+/** Nor may much of the cage lie over nothing: then it is the cage that is elsewhere. */
+const allServed = 0.95;
+/** And so near must it be, as a share of the diagonal. */
+const close = 0.04;
 
 /** Where the target lies about the cage. Lengths are shares of the target's diagonal. */
 export interface Placement {
   /**
    * Share of the target on the outer side of the cage: of its vertices, of its area, and, farther out than 0.25 % of the
-   * diagonal, of the area that nothing occludes and that lies over the cage, not beside its open borders.
+   * diagonal, of the area that nothing occludes and that the cage lies over: not beside its open borders.
    */
   outside: { vertices: number; area: number; exposedArea: number };
   /** Distance from target to cage: quantiles over the vertices. */
   distances: { p50: number; p90: number; p99: number; max: number };
+  /** What the cage lies over: its share of the exposed area, and its median distance. */
+  beneath: { share: number; distance: number };
   /** How the cage would have to be moved, turned (about the target's middle; degrees) and grown to fit best. */
   correction: { move: Vector; turn: Vector; grow: number };
   /** What would remain outside after moving and turning alone. */
@@ -31,28 +46,49 @@ export interface Placement {
 /** Measures where the target lies about the cage. */
 export function placementOf(scene: Scene): Placement {
   const { areas, diagonal, sides, result } = scene;
-  let [vertices, area, total, exposed, exposedOutside] = [0, 0, 0, 0, 0];
-  const judged: number[] = [];
+  let [vertices, area, total, exposed, beneath, exposedOutside] = [0, 0, 0, 0, 0, 0];
+  const candidates: number[] = [];
+  // Per triangle of the cage: how much of the target lies close beneath it, hidden or not.
+  const within = new Float64Array(scene.surface.areas.length);
   for (let v = 0; v < areas.length; ++v) {
     total += areas[v]!;
     if (sides.signed[v]! > 0) {
       ++vertices;
       area += areas[v]!;
     }
-    if (result.zones[v] === 1 || sides.loops[v]! >= 0 || areas[v] === 0) continue;
-    judged.push(v);
+    const over = sides.loops[v]! < 0;
+    if (over && sides.signed[v]! <= 0 && sides.signed[v]! > -close * diagonal) within[result.triangles[v]!]! += areas[v]!;
+    if (result.zones[v] === 1 || areas[v] === 0) continue;
     exposed += areas[v]!;
+    if (!over) continue;
+    candidates.push(v);
+  }
+  const [there, needed] = [overNeighbours(scene, within), overNeighbours(scene, scene.surface.areas)];
+  const served = (t: number) => there[t]! >= leastServed * needed[t]!;
+  const servedShare = scene.surface.areas.reduce((sum, size, t) => sum + (served(t) ? size : 0), 0) / scene.surface.area;
+  const beside = (v: number) => servedShare >= allServed && sides.signed[v]! > elsewhere * diagonal && served(result.triangles[v]!);
+  const judged = candidates.filter((v) => !beside(v));
+  for (const v of judged) {
+    beneath += areas[v]!;
     if (sides.signed[v]! > pokeThrough * diagonal) exposedOutside += areas[v]!;
   }
   const { correction, remaining } = correct(scene, judged);
   const [p50 = 0, p90 = 0, p99 = 0, max = 0] = quantiles(result.distances, [0.5, 0.9, 0.99, 1]).map((d) => d / diagonal);
   return {
-    outside: { vertices: areas.length > 0 ? vertices / areas.length : 0, area: total > 0 ? area / total : 0, exposedArea: exposed > 0 ? exposedOutside / exposed : 0 },
+    outside: { vertices: areas.length > 0 ? vertices / areas.length : 0, area: total > 0 ? area / total : 0, exposedArea: beneath > 0 ? exposedOutside / beneath : 0 },
     distances: { p50, p90, p99, max },
+    beneath: { share: exposed > 0 ? beneath / exposed : 0, distance: quantiles(judged.map((v) => result.distances[v]!), [0.5])[0]! / diagonal },
     correction,
-    outsideOnceMoved: exposed > 0 ? remaining / exposed : 0,
+    outsideOnceMoved: beneath > 0 ? remaining / beneath : 0,
     room: roomOf(boxOf(scene.cage.positions, scene.cage.indices), boxOf(scene.target.positions, judged), diagonal),
   };
+}
+
+/** For each triangle of the cage, the sum of a value over it and its neighbours, weighted by the corners they share. */
+function overNeighbours({ cage: { indices }, surface: { place } }: Scene, values: Float64Array): Float64Array {
+  const atPlace = new Float64Array(place.length);
+  for (let i = 0; i < indices.length; ++i) atPlace[place[indices[i]!]!]! += values[Math.floor(i / 3)]!;
+  return values.map((_, t) => atPlace[place[indices[3 * t]!]!]! + atPlace[place[indices[3 * t + 1]!]!]! + atPlace[place[indices[3 * t + 2]!]!]!);
 }
 
 function roomOf(cage: Box, judged: Box, diagonal: number): Vector {
@@ -150,8 +186,17 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
       },
     ];
   }
-  const { outside, distances } = placement;
+  const { outside, beneath } = placement;
   const findings: Finding[] = [];
+  if (beneath.share < leastBeneath) {
+    findings.push({
+      code: 'cageElsewhere',
+      weight: 50,
+      sentence: `The cage lies over no more than ${percent(beneath.share)} of what is exposed of the target; it is ${size.toPrecision(2)} times as large`,
+      advice: 'Move it around the target, in the same unit; check that transforms were applied on export.',
+      numbers: { gap, size, beneath: beneath.share },
+    });
+  }
   const share = outside.exposedArea;
   const cause = causeOf(placement);
   if (share > 0 || cause === 'cageMisplaced') {
@@ -166,13 +211,13 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
       numbers: { share, onceMoved: placement.outsideOnceMoved, move: [...placement.correction.move], turn: [...placement.correction.turn], grow: placement.correction.grow, room: [...placement.room] },
     });
   }
-  if (distances.p50 > farCage / 2) {
+  if (beneath.distance > farCage / 2) {
     findings.push({
       code: 'cageTooFar',
-      weight: distances.p50 / farCage,
-      sentence: `Half of the target is farther than ${percent(distances.p50)} of its diagonal from the cage, which is ${size.toPrecision(2)} times as large`,
+      weight: beneath.distance / farCage,
+      sentence: `Half of what the cage lies over is farther than ${percent(beneath.distance)} of the diagonal from it; it is ${size.toPrecision(2)} times as large as the target`,
       advice: 'Fit the cage more closely: the farther off, the more the texture is distorted. Check that both are in the same unit.',
-      numbers: { median: distances.p50, size },
+      numbers: { median: beneath.distance, size },
     });
   }
   return findings;

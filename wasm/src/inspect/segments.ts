@@ -8,7 +8,7 @@ const near = 0.1;
 const leastArea = 0.001;
 /** From this share of the exposed area on, culling is worth a remark. */
 const muchCulled = 0.3;
-/** The least of what is exposed that must be paintable. */
+/** The least of what is exposed and lies over the cage, not beside its borders, that must be paintable. */
 const leastCosmetic = 0.02;
 
 /** A connected component of the target. */
@@ -39,19 +39,31 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
 }
 
 /** Segments that the threshold barely decides, and what is left to paint. */
-export function checkSegments({ threshold, areas, result }: Scene, segments: readonly Segment[]): Finding[] {
+export function checkSegments({ threshold, areas, sides, result }: Scene, segments: readonly Segment[]): Finding[] {
   const findings: Finding[] = [];
   const exposed = segments.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
-  let cosmetic = 0;
-  for (let v = 0; v < areas.length; ++v) if (result.zones[v] === 0) cosmetic += areas[v]!;
-  const share = exposed > 0 ? cosmetic / exposed : 0;
+  let [cosmetic, over, cut] = [0, 0, 0];
+  for (let v = 0; v < areas.length; ++v) {
+    if (result.zones[v] === 1 || sides.loops[v]! >= 0) continue;
+    over += areas[v]!;
+    if (result.zones[v] === 0) cosmetic += areas[v]!;
+    if (result.zones[v] === 3) cut += areas[v]!;
+  }
+  const share = over > 0 ? cosmetic / over : 0;
   if (share < leastCosmetic) {
+    const only = cosmetic === 0 ? 'Nothing of the target' : `Only ${percent(share)} of what is exposed of the target, beneath the cage,`;
+    const largest = segments.filter(({ culled }) => culled).sort((a, b) => b.exposedArea - a.exposedArea)[0];
+    const culling = cut > 0.5 * over && largest !== undefined;
     findings.push({
       code: 'nothingToPaint',
       weight: 2,
-      sentence: cosmetic === 0 ? 'Nothing of the target may be painted' : `Only ${percent(share)} of what is exposed of the target may be painted`,
-      advice: 'See the other findings and the zones for the reason: uncovered means that the cage is not over it, culled that too little of a segment is covered.',
-      numbers: { share },
+      sentence: culling
+        ? `${only} may be painted: of "${largest.part}" ${percent(largest.coverage)} is covered, less than the threshold of ${threshold}`
+        : `${only} may be painted`,
+      advice: culling
+        ? 'If the cage is meant for a part of it only, lower the threshold, or make that part a mesh of its own; otherwise extend the cage.'
+        : 'See the other findings and the zones for the reason: uncovered means that the cage is not over it.',
+      numbers: { share, culled: over > 0 ? cut / over : 0 },
     });
   }
   const doubtful = segments.filter(({ coverage, exposedArea }) => Math.abs(coverage - threshold) < near && exposedArea >= leastArea * exposed && exposedArea > 0);

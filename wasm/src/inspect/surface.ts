@@ -6,7 +6,7 @@ export interface Edge {
   /** Places: the first vertex of each. */
   a: number;
   b: number;
-  /** Each triangle at it, the corner it begins at there, and whether it runs from `a` to `b`. */
+  /** Each triangle at it, doubled ones once, the corner it begins at there, and whether it runs from `a` to `b`. */
   uses: { triangle: number; corner: number; forward: boolean }[];
 }
 
@@ -22,7 +22,7 @@ export interface Loop {
   centre: Vector;
 }
 
-/** A cage as a surface. Triangles without area take no part in it, and vertices in one place are one. */
+/** A cage as a surface. Triangles without area take no part in it, doubled ones count once, vertices in one place are one. */
 export interface Surface {
   mesh: Mesh;
   /** 1 per vertex: the first vertex in the same place. */
@@ -59,8 +59,11 @@ export function surfaceOf(mesh: Mesh): Surface {
     areas[t] = length(doubleAreaNormal(pointAt(positions, i), pointAt(positions, j), pointAt(positions, k))) / 2;
     if (areas[t] === 0) continue;
     const corners = [place[i]!, place[j]!, place[k]!].sort((v, w) => v - w).join(' ');
-    if (seen.has(corners)) doubled[t] = 1;
-    else seen.add(corners);
+    if (seen.has(corners)) {
+      doubled[t] = 1;
+      continue;
+    }
+    seen.add(corners);
     for (let corner = 0; corner < 3; ++corner) {
       const from = place[indices[3 * t + corner]!]!;
       const to = place[indices[3 * t + ((corner + 1) % 3)]!]!;

@@ -16,7 +16,9 @@ const mostCompared = 20000;
 export interface Topology {
   /** Triangles without area: they take no part. */
   degenerateTriangles: number;
-  /** Edges of more than two triangles. */
+  /** Triangles with the same corners as an earlier one, in whatever order. */
+  doubledTriangles: number;
+  /** Edges of more than two triangles, doubled ones aside. */
   nonManifoldEdges: number;
   /** Open edges that run along another one, so close that a gap cannot be meant. */
   crackEdges: number;
@@ -30,21 +32,22 @@ export interface Topology {
 export function topologyOf({ surface, diagonal }: Scene): Topology {
   const degenerateTriangles = surface.areas.reduce((sum, area) => sum + (area === 0 ? 1 : 0), 0);
   const nonManifoldEdges = surface.edges.filter(({ uses }) => uses.length > 2).length;
-  return { degenerateTriangles, nonManifoldEdges, crackEdges: cracksIn(surface, crackWidth * diagonal), slits: slitsIn(surface, tiny * diagonal), pieces: piecesOf(surface) };
+  const doubledTriangles = surface.doubled.reduce((sum, one) => sum + one, 0);
+  return { degenerateTriangles, doubledTriangles, nonManifoldEdges, crackEdges: cracksIn(surface, crackWidth * diagonal), slits: slitsIn(surface, tiny * diagonal), pieces: piecesOf(surface) };
 }
 
 function slitsIn({ loops }: Surface, least: number): number {
   return loops.filter(({ diagonal, area, perimeter }) => diagonal < least || area < narrow * perimeter ** 2).length;
 }
 
-function piecesOf({ areas, edges }: Surface): number {
+function piecesOf({ areas, doubled, edges }: Surface): number {
   const piece = Int32Array.from(areas, (_, t) => t);
   const root = (t: number) => {
     while (piece[t] !== t) t = piece[t] = piece[piece[t]!]!;
     return t;
   };
   for (const { uses } of edges) for (const { triangle } of uses) piece[root(triangle)] = root(uses[0]!.triangle);
-  return areas.reduce((sum, area, t) => sum + (area > 0 && piece[t] === t ? 1 : 0), 0);
+  return areas.reduce((sum, area, t) => sum + (area > 0 && doubled[t] === 0 && piece[t] === t ? 1 : 0), 0);
 }
 
 /** Counts open edges both ends of which lie within `width` of the ends of another. */
@@ -68,7 +71,7 @@ function cracksIn({ mesh, edges }: Surface, width: number): number {
 }
 
 /** Triangles without area, edges of three triangles, and gaps where vertices almost meet. */
-export function checkTopology({ surface }: Scene, { degenerateTriangles, nonManifoldEdges, crackEdges, slits }: Topology): Finding[] {
+export function checkTopology({ surface }: Scene, { degenerateTriangles, doubledTriangles, nonManifoldEdges, crackEdges, slits }: Topology): Finding[] {
   const findings: Finding[] = [];
   if (degenerateTriangles > 0) {
     findings.push({
@@ -79,12 +82,21 @@ export function checkTopology({ surface }: Scene, { degenerateTriangles, nonMani
       numbers: { triangles: degenerateTriangles },
     });
   }
+  if (doubledTriangles > 0) {
+    findings.push({
+      code: 'doubledTriangles',
+      weight: Math.min(0.9, 0.25 + doubledTriangles / surface.areas.length),
+      sentence: `${counted(doubledTriangles, 'triangle')} of the cage ${doubledTriangles === 1 ? 'is' : 'are'} there twice`,
+      advice: 'Remove doubled triangles, also those that face the other way: a cage is one skin around the target.',
+      numbers: { triangles: doubledTriangles },
+    });
+  }
   if (nonManifoldEdges > 0) {
     findings.push({
       code: 'nonManifoldEdges',
       weight: Math.min(0.9, 0.25 + (2 * nonManifoldEdges) / surface.edges.length),
       sentence: `${counted(nonManifoldEdges, 'edge')} of the cage ${nonManifoldEdges === 1 ? 'belongs' : 'belong'} to more than two triangles`,
-      advice: 'Remove inner faces and doubled triangles: a cage is one skin around the target.',
+      advice: 'Remove inner faces: a cage is one skin around the target.',
       numbers: { edges: nonManifoldEdges },
     });
   }

@@ -62,12 +62,12 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
       seamLength += size;
     }
   }
-  const { used, share, layers } = coverageOf(uvs, indices, surface.areas);
+  const { used, share, layers } = coverageOf(uvs, indices, surface.areas.map((area, t) => (surface.doubled[t] === 1 ? 0 : area)));
   return {
     outside: { vertices: outside, share: uvs.length > 0 ? outside / (uvs.length / 2) : 0 },
     withoutArea: { triangles: flat, share: surface.area > 0 ? flatArea / surface.area : 0 },
     overlap: { share, layers },
-    charts: surface.areas.reduce((sum, area, t) => sum + (area > 0 && charts.root(t) === t ? 1 : 0), 0),
+    charts: surface.areas.reduce((sum, area, t) => sum + (area > 0 && surface.doubled[t] === 0 && charts.root(t) === t ? 1 : 0), 0),
     seams: { edges: seams, share: innerLength > 0 ? seamLength / innerLength : 0 },
     used,
   };
