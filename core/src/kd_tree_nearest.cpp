@@ -54,7 +54,6 @@ f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
   const f32x4 z = coordinate(leaf.axes[2]);
   const f32x4 zero = splat(0);
 
-
   // A perpendicular through C parts the points that can be nearest to the left edge from those that can be to the right
   // one. Mirrored if need be, x counts from the lower end of that edge.
   const mask4 isLeft = x < load(leaf.foot);
