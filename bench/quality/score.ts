@@ -45,8 +45,8 @@ export interface SegmentMeasure {
   culled: boolean;
 }
 
-/** The floor's constants: shares of the segment's own area, and of all that is covered. */
-const floor = { own: 0.2, all: 0.005 };
+/** The floor's constants: shares of the segment's own area, and of all that is covered, where little enough is uncovered. */
+const floor = { own: 0.2, all: 0.005, uncovered: 0.25 };
 
 /** Measures every segment that covers anything. */
 export function measureSegments({ scene, truth }: Model, answer: Answer): SegmentMeasure[] {
@@ -72,7 +72,7 @@ export function measureSegments({ scene, truth }: Model, answer: Answer): Segmen
         wanted: painted + bare === 0 ? 'either' : bare > painted ? 'bare' : 'painted',
         coverage: covered / exposed,
         coveredShare: covered / area,
-        reach: Math.max(counted / (floor.own * area), counted / (floor.all * allCovered)),
+        reach: Math.max(counted / (floor.own * area), Math.min(counted / (floor.all * allCovered), (floor.uncovered * exposed) / (exposed - covered))),
         culled,
       },
     ];

@@ -171,7 +171,8 @@ std::vector<Voter> findVoters(const Scene& scene, const Options& options, const 
   std::vector<Voter> voters;
   for (std::size_t p = 0; p < state.segments.size(); ++p)
     voters.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
-  const std::vector<bool> within = options.votes ? mayVoteFromWithin(scene, state) : std::vector<bool>(state.segmentCount);
+  std::vector<bool> within(state.segmentCount, false);
+  if (options.votes) within = mayVoteFromWithin(scene, state);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
     const Triangle& triangle = scene.target.triangles()[t];
     const auto& [a, b, c] = triangle.corners;
@@ -296,8 +297,10 @@ double marginOf(const Options& options, const Tally& tally, double allCovered) {
   if (options.floor == Floor::area) return std::min(coverage, times(tally.covered, options.minCovered * tally.area));
   // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
   const double counted = tally.sunk * (tally.covered / tally.exposed);
-  const double floor = std::max(times(counted, options.minCovered * tally.area),
-                                times(counted, options.minOfAll * allCovered * tally.segments));
+  // A part that is mostly hidden passes for what it is of the whole, if where it is exposed it is covered beyond doubt.
+  const double ofAll = std::min(times(counted, options.minOfAll * allCovered * tally.segments),
+                                times(options.maxUncovered * tally.exposed, tally.exposed - tally.covered));
+  const double floor = std::max(times(counted, options.minCovered * tally.area), ofAll);
   return std::min(coverage, floor);
 }
 

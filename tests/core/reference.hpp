@@ -14,7 +14,7 @@ namespace cagecast::reference {
 enum class Floor : std::uint8_t {
   none,
   area,   ///< C >= `minCovered` * A.
-  depth,  ///< D F >= `minCovered` * A or D F >= `minOfAll` * the sum of all C; see `SegmentMeasure`.
+  depth,  ///< D F >= `minCovered` * A, or D F >= `minOfAll` * all C and E - C <= `maxUncovered` * E.
 };
 
 /// Which steps are taken, and their constants. Lengths are shares of the diagonal of the target's bounding box.
@@ -31,6 +31,7 @@ struct Options {
   Floor floor = Floor::none;        ///< Step 5': what a segment needs besides its coverage, and C > 0.
   double minCovered = 0.2;
   double minOfAll = 0.005;
+  double maxUncovered = 0.25;
   bool copies = false;              ///< Step 5': copies of one part that are in doubt are judged together.
   bool secondLook = false;          ///< Step 6: occluded points that are seen from elsewhere are restored.
   bool bothSides = false;           ///< Step 6: where normals cancel out, look to both sides; else such points stay.
