@@ -80,26 +80,6 @@ export function firstInPlace(positions: Float32Array): Uint32Array {
   return place;
 }
 
-/** Marks the vertices that lie on an open border: on an edge of exactly one triangle, vertices in one place being one. */
-export function openVertices({ positions, indices }: Mesh): Uint8Array {
-  const place = firstInPlace(positions);
-  const count = place.length;
-  const keys = new Float64Array(indices.length);
-  for (let i = 0; i < indices.length; ++i) {
-    const a = place[indices[i]!]!;
-    const b = place[indices[i % 3 === 2 ? i - 2 : i + 1]!]!;
-    keys[i] = a < b ? a * count + b : b * count + a;
-  }
-  keys.sort();
-  const open = new Uint8Array(count);
-  for (let i = 0, end = 0; i < keys.length; i = end) {
-    for (end = i + 1; keys[end] === keys[i]; ) ++end;
-    if (end - i === 1) open[Math.floor(keys[i]! / count)] = open[keys[i]! % count] = 1;
-  }
-  for (let v = 0; v < count; ++v) open[v] = open[place[v]!]!;
-  return open;
-}
-
 /** Sets of things by number that grow together. */
 export class UnionFind {
   readonly #parents: Uint32Array;

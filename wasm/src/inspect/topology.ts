@@ -1,5 +1,5 @@
 import { counted, percent, type Finding } from './finding.js';
-import { minus, length, pointAt } from './geometry.js';
+import { length, minus, pointAt, UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
 import type { Surface } from './surface.js';
 
@@ -41,13 +41,9 @@ function slitsIn({ loops }: Surface, least: number): number {
 }
 
 function piecesOf({ areas, doubled, edges }: Surface): number {
-  const piece = Int32Array.from(areas, (_, t) => t);
-  const root = (t: number) => {
-    while (piece[t] !== t) t = piece[t] = piece[piece[t]!]!;
-    return t;
-  };
-  for (const { uses } of edges) for (const { triangle } of uses) piece[root(triangle)] = root(uses[0]!.triangle);
-  return areas.reduce((sum, area, t) => sum + (area > 0 && doubled[t] === 0 && piece[t] === t ? 1 : 0), 0);
+  const sets = new UnionFind(areas.length);
+  for (const { uses } of edges) for (const { triangle } of uses) sets.join(triangle, uses[0]!.triangle);
+  return areas.reduce((sum, area, t) => sum + (area > 0 && doubled[t] === 0 && sets.root(t) === t ? 1 : 0), 0);
 }
 
 /** Counts open edges both ends of which lie within `width` of the ends of another. */
