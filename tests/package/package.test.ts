@@ -103,7 +103,8 @@ describe('the packed package', () => {
     mkdirSync(join(folder, 'node_modules/@types'), { recursive: true });
     mkdirSync(join(folder, 'node_modules/@gltf-transform'));
     symlinkSync(installed, join(folder, 'node_modules/cagecast'));
-    for (const name of ['three', '@types/three', '@gltf-transform/core']) symlinkSync(join(tools, name), join(folder, 'node_modules', name));
+    // property-graph is what @gltf-transform/core stands on.
+    for (const name of ['three', '@types/three', '@gltf-transform/core', 'property-graph']) symlinkSync(join(tools, name), join(folder, 'node_modules', name));
     writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
     writeFileSync(
       join(folder, 'program.ts'),
