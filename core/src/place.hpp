@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "cage.hpp"
+#include "kd_tree.hpp"
+
+/// Places on the cage, decided in double: which triangle is nearest, and where on it.
+namespace cagecast {
+
+/// SPEC §1: planes whose distance is within this share of the diagonal of the farthest are equally far.
+inline constexpr double kTiePlane = 1e-7;
+
+/// The point of a cage triangle that is nearest to a point p.
+struct Place {
+  double distance;
+  double v, w;     ///< Barycentrics of corners b and c.
+  double height;   ///< Of p over the triangle's plane.
+  bool inside;     ///< Strictly: not on an edge or a corner.
+};
+
+/// Finds the point of a triangle that is nearest to p.
+inline Place placeOn(const CageTriangle& t, Vec3 p) {
+  const Vec3 a = Vec3::from(t.a);
+  const Vec3 offset = p - a;
+  const double height = dot(offset, t.normal.exact);
+  // Most points lie straight under their triangle.
+  const double v = dot(offset, t.towardsB);
+  const double w = dot(offset, t.towardsC);
+  if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
+
+  // The others are nearest to one of its edges.
+  const Vec3 b = Vec3::from(t.b);
+  const Vec3 c = Vec3::from(t.c);
+  const Vec3 starts[3] = {a, b, c};
+  double along[3];
+  double squared[3];
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 start = starts[i];
+    const Vec3 edge = starts[(i + 1) % 3] - start;
+    along[i] = std::min(std::max(dot(p - start, edge) * t.inverseSquare[i], 0.0), 1.0);
+    const Vec3 away = (p - start) - along[i] * edge;
+    squared[i] = dot(away, away);
+  }
+  Place place{squared[0], along[0], 0, height, false};
+  if (squared[1] < place.distance) place = {squared[1], 1 - along[1], along[1], height, false};
+  if (squared[2] < place.distance) place = {squared[2], 0, 1 - along[2], height, false};
+  place.distance = std::sqrt(place.distance);
+  return place;
+}
+
+/// A triangle that could be the nearest.
+struct Candidate {
+  std::uint32_t slot;
+  Place place;
+};
+
+/// Picks, of the triangles that could be the nearest, the one that SPEC's tie rule names: of those within
+/// `kTieDistance` of the nearest the one whose plane is farthest from p, of equals the first.
+inline const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) {
+  double least = candidates[0].place.distance;
+  for (std::uint32_t i = 1; i < count; ++i) least = std::min(least, candidates[i].place.distance);
+  const auto near = [&](const Candidate& c) { return c.place.distance <= least + kTieDistance * diagonal; };
+  double farthest = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (near(candidates[i])) farthest = std::max(farthest, std::abs(candidates[i].place.height));
+  }
+  const Candidate* first = nullptr;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Candidate& c = candidates[i];
+    if (!near(c) || std::abs(c.place.height) < farthest - kTiePlane * diagonal) continue;
+    if (first == nullptr || c.slot < first->slot) first = &c;
+  }
+  return *first;
+}
+
+/// Blends the UVs of a triangle's corners at a place on it.
+/// @param[out] uv  2 floats.
+inline void uvAt(const CageTriangle& t, const Place& place, float* uv) {
+  for (int k = 0; k < 2; ++k) {
+    const double a = static_cast<double>(t.uvs[k]);
+    const double ab = static_cast<double>(t.uvs[2 + k]) - a;
+    const double ac = static_cast<double>(t.uvs[4 + k]) - a;
+    uv[k] = static_cast<float>(a + place.v * ab + place.w * ac);
+  }
+}
+
+}  // namespace cagecast
