@@ -77,13 +77,14 @@ inline const Candidate& nearestOf(const Candidate* candidates, std::uint32_t cou
 }
 
 /// Blends the UVs of a triangle's corners at a place on it.
-/// @param[out] uv  2 floats.
-inline void uvAt(const CageTriangle& t, const Place& place, float* uv) {
+/// @param[out] uv  2 floats, or doubles.
+template <typename Number>
+void uvAt(const CageTriangle& t, const Place& place, Number* uv) {
   for (int k = 0; k < 2; ++k) {
     const double a = static_cast<double>(t.uvs[k]);
     const double ab = static_cast<double>(t.uvs[2 + k]) - a;
     const double ac = static_cast<double>(t.uvs[4 + k]) - a;
-    uv[k] = static_cast<float>(a + place.v * ab + place.w * ac);
+    uv[k] = static_cast<Number>(a + place.v * ab + place.w * ac);
   }
 }
 

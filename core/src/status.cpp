@@ -13,6 +13,7 @@ const char* codeName(Code code) noexcept {
     case Code::missingUvs: return "missingUvs";
     case Code::uvCountMismatch: return "uvCountMismatch";
     case Code::groupCountMismatch: return "groupCountMismatch";
+    case Code::cornerUvCountMismatch: return "cornerUvCountMismatch";
     case Code::indexOutOfRange: return "indexOutOfRange";
     case Code::nonFinitePosition: return "nonFinitePosition";
     case Code::nonFiniteUv: return "nonFiniteUv";
@@ -54,6 +55,8 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
       return name + ".uvs has " + std::to_string(mesh.uvs.size()) + " numbers, not 2 for each of " + vertices;
     case Code::groupCountMismatch:
       return name + ".groups has " + std::to_string(mesh.groups.size()) + " entries, not 1 for each of " + vertices;
+    case Code::cornerUvCountMismatch:
+      return "cornerUvs has not 2 numbers for each of " + std::to_string(mesh.indices.size()) + " indices";
     case Code::indexOutOfRange:
       return name + ".indices" + at + " = " + std::to_string(mesh.indices[status.at]) + " is out of range (" + vertices + ")";
     case Code::nonFinitePosition:

@@ -4,6 +4,7 @@
 
 #include "check.hpp"
 #include "cpu_clock.hpp"
+#include "seams.hpp"
 #include "steps.hpp"
 
 namespace cagecast {
@@ -81,10 +82,15 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   if (!findSegments(points, vertexCount, units, scratch, results, out.segmentStats)) return kOutOfMemory;
   if (!writeOut(points, cage, units, results, vertexCount, out)) return kOutOfMemory;
   out.timings.segments = watch.lap();
+
+  const bool atCorners = options.seams == Seams::corner && options.projection == ProjectionMode::nearestPoint;
+  if (!out.cornerUvs.reset(atCorners ? 2 * targetMesh.indices.size() : 0)) return kOutOfMemory;
+  if (atCorners && !findCornerUvs(cageMesh, targetMesh, points, cage, units, results, scratch, out.cornerUvs.data())) return kOutOfMemory;
+  out.timings.seams = watch.lap();
   const Timings& t = out.timings;
-  out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments;
+  out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments + t.seams;
   out.peakBytes = scratch.peak() + vertexCount * (2 * sizeof(float) + sizeof(Zone) + 2 * sizeof(std::uint32_t) + sizeof(float)) +
-                  out.segmentStats.size() * sizeof(SegmentStats);
+                  out.segmentStats.size() * sizeof(SegmentStats) + out.cornerUvs.size() * sizeof(float);
   return {};
 }
 

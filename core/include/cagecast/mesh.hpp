@@ -23,6 +23,7 @@ enum class Code : std::uint8_t {
   missingUvs,            ///< The cage has no UVs.
   uvCountMismatch,       ///< UVs are not two per vertex.
   groupCountMismatch,    ///< Groups are not one per vertex.
+  cornerUvCountMismatch, ///< UVs per corner are not two per index.
   indexOutOfRange,       ///< `at` is the place in `indices`.
   nonFinitePosition,     ///< `at` is the place in `positions`.
   nonFiniteUv,           ///< `at` is the place in `uvs`.

@@ -28,10 +28,17 @@ enum class ProjectionMode : std::uint8_t {
   nearestVertex,  ///< The nearest vertex of the cage, nothing filtered: the classical baseline, for comparison.
 };
 
+/// Where UVs are kept.
+enum class Seams : std::uint8_t {
+  vertex,  ///< Per vertex alone: a triangle across a seam of the cage's texture stretches over the atlas.
+  corner,  ///< Per triangle corner as well, in `Projection::cornerUvs`: no triangle does.
+};
+
 /// Options of the costly part. The defaults are the method of the poster.
 struct ProjectOptions {
   ProjectionMode projection = ProjectionMode::nearestPoint;
   float weldTolerance = 0.0f;  ///< Vertices nearer than this share of the target's diagonal are one point; 0..0.01.
+  Seams seams = Seams::vertex;
 };
 
 /// Options of the decision per segment.
@@ -49,6 +56,7 @@ struct Timings {
   double occluded = 0;  ///< Step 2: self-intersection.
   double covered = 0;   ///< Step 3: cage intersection.
   double segments = 0;  ///< Step 4: connected components, and their areas.
+  double seams = 0;     ///< UVs per triangle corner, if asked for.
   double classify = 0;  ///< Step 5: the threshold, and writing the answer out to vertices and triangles.
   double total = 0;     ///< All of it, from raw arrays to zones.
 };
@@ -68,6 +76,8 @@ struct SegmentStats {
 /// The part of the answer that does not depend on the threshold: steps 1 to 4.
 struct Projection {
   Array<float> uvs;                ///< 2 per target vertex: its place in the cage's texture, NCZ or not.
+  Array<float> cornerUvs;          ///< 2 per target index, with `Seams::corner` and nearest points; else empty. Those of
+                                   ///< the vertices, but where a seam of the cage's texture runs through a triangle.
   Array<Zone> zones;               ///< 1 per vertex: cosmetic, occluded or uncovered; culled is decided later.
   Array<std::uint32_t> triangles;  ///< 1 per vertex: the nearest cage triangle.
   Array<float> distances;          ///< 1 per vertex: the distance to it, in units of the input.
