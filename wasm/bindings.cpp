@@ -142,7 +142,7 @@ val classify(const val& zones, const val& segments, const val& segmentStats, con
     stats[s] = {static_cast<std::uint32_t>(n[0]), false, n[1], n[2], n[3]};
   }
   cagecast::Zones result;
-  const cagecast::Status status = cagecast::classify(zoneValues, segmentIds, stats, corners, {threshold}, result);
+  const cagecast::Status status = cagecast::classify({zoneValues, segmentIds, stats}, corners, {threshold}, result);
   val out = answer(status);
   if (status.ok()) addZones(out, result);
   return out;

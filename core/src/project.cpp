@@ -10,13 +10,14 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
   const Scratch::Mark mark = scratch.mark();
   auto* found = scratch.take<std::uint32_t>(cage.count);
   auto* candidates = scratch.take<Candidate>(cage.count);
-  NearestSearch search(tree, units.diagonal, scratch);
+  // Where positions are rounded, so is the search, by less than what a reach more makes it allow for.
+  NearestSearch search(tree, points.rests == nullptr ? units.diagonal : units.diagonal + static_cast<double>(units.reach), scratch);
   if (scratch.failed()) return false;
 
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const std::uint32_t member = i % NearestSearch::kGroup;
     if (member == 0) search.search(points.at(i), std::min(NearestSearch::kGroup, points.count - i));
-    const Vec3 p = Vec3::from(points.at(i));
+    const Vec3 p = points.exactly(i);
     const std::uint32_t count = search.candidates(member, found);
     Candidate nearest{found[0], placeOn(cage.triangles[found[0]], p)};
     if (count > 1) {
@@ -33,6 +34,7 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
     results.zones[i] = Zone::cosmetic;
     // Strictly inside its triangle, q = p − height · n, so the ray hits it at −height.
     results.meetsCage[i] = q.inside && -q.height > -kRayStart * units.diagonal;
+    if (results.cageDistances != nullptr) results.cageDistances[i] = std::max(0.0, -q.height);
   }
   scratch.rewind(mark);
   return true;

@@ -21,6 +21,10 @@ const char* codeName(Code code) noexcept {
     case Code::tooLarge: return "tooLarge";
     case Code::badThreshold: return "badThreshold";
     case Code::badWeldTolerance: return "badWeldTolerance";
+    case Code::badOcclusionReach: return "badOcclusionReach";
+    case Code::badPokeThrough: return "badPokeThrough";
+    case Code::badMinCovered: return "badMinCovered";
+    case Code::badLocks: return "badLocks";
     case Code::outOfMemory: return "outOfMemory";
   }
   return "unknown";
@@ -73,6 +77,10 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
              " is out of all proportion (farther from the origin than 1e8 diagonals of the target)";
     case Code::badThreshold: return "options.threshold is not within 0..1";
     case Code::badWeldTolerance: return "options.weldTolerance is not within 0..0.01";
+    case Code::badOcclusionReach: return "options.occlusionReach is not a number of at least 0";
+    case Code::badPokeThrough: return "options.pokeThrough is not within 0..1";
+    case Code::badMinCovered: return "options.minCovered is not within 0..1";
+    case Code::badLocks: return "options.locks has " + std::to_string(status.at) + " entries, not 1 per segment";
     case Code::outOfMemory: return "not enough memory for this target and cage";
   }
   return "unknown";

@@ -525,6 +525,17 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.projection = library.projection;
   options.threshold = static_cast<double>(library.threshold);
   options.weldTolerance = static_cast<double>(library.weldTolerance);
+  options.endOfSelfRay = std::isfinite(library.occlusionReach);
+  options.occlusionReach = static_cast<double>(library.occlusionReach);
+  options.pokes = library.pokeThrough > 0;
+  options.pokeThrough = static_cast<double>(library.pokeThrough);
+  options.votes = library.votes;
+  options.floor = library.minCovered > 0;
+  options.minCovered = static_cast<double>(library.minCovered);
+  options.secondLook = library.secondLook;
+  options.holes = library.holes;
+  options.partialTriangles = library.partialTriangles;
+  options.seams = library.seams == Seams::corner;
   return transfer(cage, target, options);
 }
 

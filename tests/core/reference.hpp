@@ -58,7 +58,7 @@ struct Result {
 /// @pre The meshes are valid, and the cage has a triangle that is not degenerate.
 Result transfer(const MeshView& cage, const MeshView& target, const Options& options);
 
-/// The same for the options of the library.
+/// The same for the options of the library, without its locks.
 Result transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options = {});
 
 /// How an answer of the library differs from the reference, counted over the vertices where the reference is stable.
@@ -70,10 +70,11 @@ struct Differences {
   std::size_t uvs = 0;        ///< Vertices with a UV more than 1e-5 off.
   std::size_t distances = 0;  ///< Vertices with a distance more than 1e-6 of the target's diagonal off.
   std::size_t segments = 0;   ///< Vertices (stable or not) with another segment.
+  std::size_t painted = 0;    ///< Triangles, all their corners being stable, that are cosmetic for one of the two only.
   std::size_t stats = 0;      ///< Segments with other counts, or, all their vertices being stable, other areas.
   std::string details;        ///< A line for each of the first few.
   [[nodiscard]] std::size_t total() const noexcept {
-    return zones + triangles + uvs + distances + segments + stats;
+    return zones + triangles + uvs + distances + segments + painted + stats;
   }
 };
 

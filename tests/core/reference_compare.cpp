@@ -74,6 +74,13 @@ Differences compare(const Result& reference, const TransferResult& product, cons
       report("%s: distance %.9g, expected %.9g", at().c_str(), got, expected);
     }
   }
+  for (std::size_t t = 0; t < reference.cosmeticTriangles.size(); ++t) {
+    const auto isStable = [&](std::size_t corner) { return reference.stable[target.indices[3 * t + corner]] != 0; };
+    if (!isStable(0) || !isStable(1) || !isStable(2)) continue;
+    if (product.zones.cosmeticTriangles[t] == reference.cosmeticTriangles[t]) continue;
+    ++found.painted;
+    report("triangle %zu: cosmetic %d, expected %d", t, int{product.zones.cosmeticTriangles[t]}, int{reference.cosmeticTriangles[t]});
+  }
   for (std::size_t s = 0; s < reference.segmentStats.size(); ++s) {
     const SegmentStats& expected = reference.segmentStats[s];
     const SegmentStats& got = projection.segmentStats[s];

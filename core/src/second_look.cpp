@@ -1,0 +1,302 @@
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "areas.hpp"
+#include "steps.hpp"
+#include "triangle.hpp"
+
+namespace cagecast {
+namespace {
+
+/// SPEC §6: where a ray begins above its point, as a share of the diagonal, and how many good ones restore it.
+constexpr double kLift = 1e-4;
+constexpr unsigned kEnough = 2;
+
+/// SPEC §6: the directions, evenly over the hemisphere about z by the golden angle: z = 1 − (k + 0.5) / 12, azimuth
+/// k · 2.399963229728653.
+constexpr double kDirections[][3] = {
+    {0.28565227501671, 0.0, 0.9583333333333334},
+    {-0.3569771731011225, 0.32702033252495366, 0.875},
+    {0.05341303173720899, -0.6086139473669074, 0.7916666666666666},
+    {0.42948366578740593, 0.5601853886979745, 0.7083333333333333},
+    {-0.7686917180988453, -0.13597074143449128, 0.625},
+    {0.7092551110048801, -0.4511700452553088, 0.5416666666666667},
+    {-0.23073121154526574, 0.8583086062567528, 0.45833333333333337},
+    {-0.4272722474213815, -0.8226867122930099, 0.375},
+    {0.8984796285317633, 0.3281233193008084, 0.29166666666666663},
+    {-0.9040634576660739, 0.37318425306420056, 0.20833333333333337},
+    {0.42052166140780717, -0.8986303646588055, 0.125},
+    {0.2990239565674109, 0.9533354930388671, 0.04166666666666663},
+};
+constexpr unsigned kDirectionCount = static_cast<unsigned>(std::size(kDirections));
+/// Directions tried at once: enough rays for a stream, few enough to stop early.
+constexpr unsigned kAtOnce = 4;
+constexpr std::uint32_t kChunk = HitSearch::kMostRays / kAtOnce;
+
+/// Normals that cancel out to this share of the areas are none.
+constexpr double kCancelled = 1e-6;
+
+/// Sums normals as whole numbers, so that they do not depend on the order of the triangles: in units of 2^-34 of the largest
+/// triangle at the point, whose fans have up to 2^28 triangles.
+class NormalSum {
+ public:
+  void meet(double doubleArea) { largest_ = std::max(largest_, doubleArea); }
+  void add(Vec3 areaNormal, double doubleArea) {
+    const double perArea = kUnits / largest_;
+    x_ += static_cast<std::int64_t>(areaNormal.x * perArea);
+    y_ += static_cast<std::int64_t>(areaNormal.y * perArea);
+    z_ += static_cast<std::int64_t>(areaNormal.z * perArea);
+    all_ += static_cast<std::int64_t>(doubleArea * perArea);
+  }
+  /// Of unit length, or zero if the normals cancel out.
+  [[nodiscard]] Vec3 normal() const {
+    const Vec3 sum{static_cast<double>(x_), static_cast<double>(y_), static_cast<double>(z_)};
+    const double size = length(sum);
+    return size > kCancelled * static_cast<double>(all_) ? 1 / size * sum : Vec3{0, 0, 0};
+  }
+
+ private:
+  static constexpr double kUnits = 0x1p34;
+  double largest_ = 0;
+  std::int64_t x_ = 0, y_ = 0, z_ = 0, all_ = 0;
+};
+
+bool isZero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+
+/// The occluded points of the target and which triangles join them.
+class Occluded {
+ public:
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
+  Occluded(const Points& points, const Zone* zones, Scratch& scratch) noexcept
+      : points_(points), zones_(zones), starts_(scratch.take<std::uint32_t>(std::size_t{points.count} + 1)),
+        triangles_(nullptr), isQueued_(scratch.take<bool>(points.count)) {
+    if (scratch.failed()) return;
+    std::fill(starts_, starts_ + points.count + 1, 0u);
+    std::fill(isQueued_, isQueued_ + points.count, false);
+    std::uint32_t total = 0;
+    eachJoined([&](std::uint32_t p, std::uint32_t) { ++starts_[p]; });
+    for (std::uint32_t p = 0; p <= points.count; ++p) total += std::exchange(starts_[p], total);
+    triangles_ = scratch.take<std::uint32_t>(total);
+    if (scratch.failed()) return;
+    eachJoined([&](std::uint32_t p, std::uint32_t t) { triangles_[starts_[p]++] = t; });
+    // Each start has become its end, which is the next one's start.
+  }
+
+  /// Queues the points joined by an edge to one that is not occluded.
+  std::uint32_t queueRim(std::uint32_t* queue) noexcept {
+    std::uint32_t count = 0;
+    for (std::uint32_t t = 0; t < points_.triangleCount; ++t) {
+      const std::uint32_t* corner = points_.triangles + std::size_t{3} * t;
+      const unsigned occluded = occludedCorners(corner);
+      if (occluded == 0 || occluded == 3) continue;
+      for (int i = 0; i < 3; ++i) count = put(corner[i], queue, count);
+    }
+    return count;
+  }
+
+  /// Queues the occluded neighbours of a point that were never queued.
+  std::uint32_t queueNeighbours(std::uint32_t point, std::uint32_t* queue, std::uint32_t count) noexcept {
+    for (std::uint32_t i = point == 0 ? 0 : starts_[point - 1]; i < starts_[point]; ++i) {
+      const std::uint32_t* corner = points_.triangles + std::size_t{3} * triangles_[i];
+      for (int k = 0; k < 3; ++k) count = put(corner[k], queue, count);
+    }
+    return count;
+  }
+
+ private:
+  [[nodiscard]] bool isOccluded(std::uint32_t point) const noexcept { return zones_[point] == Zone::occluded; }
+  [[nodiscard]] unsigned occludedCorners(const std::uint32_t* corner) const noexcept {
+    return unsigned{isOccluded(corner[0])} + unsigned{isOccluded(corner[1])} + unsigned{isOccluded(corner[2])};
+  }
+  std::uint32_t put(std::uint32_t point, std::uint32_t* queue, std::uint32_t count) noexcept {
+    if (isQueued_[point] || !isOccluded(point)) return count;
+    isQueued_[point] = true;
+    queue[count] = point;
+    return count + 1;
+  }
+  /// Calls for each occluded corner of the triangles that join it to another.
+  template <typename Call>
+  void eachJoined(Call call) const noexcept {
+    for (std::uint32_t t = 0; t < points_.triangleCount; ++t) {
+      const std::uint32_t* corner = points_.triangles + std::size_t{3} * t;
+      if (occludedCorners(corner) < 2) continue;
+      for (int i = 0; i < 3; ++i) {
+        if (isOccluded(corner[i])) call(corner[i], t);
+      }
+    }
+  }
+
+  const Points& points_;
+  const Zone* zones_;
+  std::uint32_t* starts_;     ///< 1 per point: the end of its triangles.
+  std::uint32_t* triangles_;
+  bool* isQueued_;
+};
+
+/// Finds the unit normal of each point, turned so that those of its segment mostly agree with the cage; zero where there is
+/// none. Only for the segments that `isWanted`.
+bool findNormals(const Points& points, const Cage& cage, const PointResults& results, std::uint32_t segmentCount,
+                 const bool* isWanted, Scratch& scratch, Vec3* normals) noexcept {
+  const Scratch::Mark mark = scratch.mark();
+  auto* sums = scratch.take<NormalSum>(points.count);
+  auto* areas = scratch.take<std::int64_t>(points.count);
+  auto* agreement = scratch.take<std::int64_t>(segmentCount);
+  if (scratch.failed()) return false;
+  std::fill(sums, sums + points.count, NormalSum{});
+  std::fill(areas, areas + points.count, 0);
+  std::fill(agreement, agreement + segmentCount, 0);
+  const AreaUnit unit(points.triangleCount);
+  const auto eachCorner = [&](auto call) {
+    for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+      const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+      if (isWanted[results.segments[corner[0]]]) call(corner, points.doubleAreas[t]);
+    }
+  };
+  eachCorner([&](const std::uint32_t* corner, double doubleArea) {
+    for (int i = 0; i < 3; ++i) {
+      sums[corner[i]].meet(doubleArea);
+      areas[corner[i]] += unit.third(doubleArea);
+    }
+  });
+  eachCorner([&](const std::uint32_t* corner, double doubleArea) {
+    const Vec3 normal = areaNormal(points.at(corner[0]), points.at(corner[1]), points.at(corner[2]));
+    for (int i = 0; i < 3; ++i) sums[corner[i]].add(normal, doubleArea);
+  });
+  for (std::uint32_t p = 0; p < points.count; ++p) {
+    const std::uint32_t s = results.segments[p];
+    if (!isWanted[s]) continue;
+    normals[p] = sums[p].normal();
+    const double agrees = dot(normals[p], cage.triangles[results.triangles[p]].normal.exact);
+    agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas[p]) * agrees);
+  }
+  for (std::uint32_t p = 0; p < points.count; ++p) {
+    const std::uint32_t s = results.segments[p];
+    if (isWanted[s] && agreement[s] < 0) normals[p] = -1 * normals[p];
+  }
+  scratch.rewind(mark);
+  return true;
+}
+
+/// Looks from points to the cage.
+class Lookout {
+ public:
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
+  Lookout(const RayTree& target, const RayTree& cage, double diagonal, Scratch& scratch) noexcept
+      : lift_(kLift * diagonal),
+        pastTarget_(target, kRayStart * diagonal, scratch),
+        toCage_(cage, -kRayStart * diagonal, scratch),
+        directions_(scratch.take<RayDirection>(HitSearch::kMostRays)),
+        rays_(scratch.take<Ray>(HitSearch::kMostRays)),
+        ofRay_(scratch.take<std::uint8_t>(HitSearch::kMostRays)),
+        hit_(scratch.take<bool>(HitSearch::kMostRays)),
+        good_(scratch.take<std::uint8_t>(kChunk)) {}
+
+  /// Which of up to `kChunk` points are seen.
+  /// @param chosen  Their numbers; those that are seen are moved to the front.
+  /// @return How many are seen.
+  std::uint32_t keepSeen(const Points& points, const Vec3* normals, std::uint32_t* chosen, std::uint32_t count) noexcept {
+    std::uint32_t seen = 0;
+    std::fill(good_, good_ + count, std::uint8_t{0});
+    for (unsigned k = 0; k < kDirectionCount && count > seen; k += kAtOnce) {
+      look(points, normals, chosen, seen, count, k);
+      // Points that are seen go to the front, those that are left without hope to the end.
+      const auto swap = [&](std::uint32_t i, std::uint32_t other) {
+        std::swap(chosen[i], chosen[other]);
+        std::swap(good_[i], good_[other]);
+      };
+      for (std::uint32_t i = seen; i < count;) {
+        if (good_[i] >= kEnough) {
+          swap(i++, seen++);
+        } else if (good_[i] + (kDirectionCount - k - kAtOnce) < kEnough) {
+          swap(i, --count);
+        } else {
+          ++i;
+        }
+      }
+    }
+    return seen;
+  }
+
+ private:
+  /// Sends rays in directions k … k + kAtOnce − 1 from the chosen points first … count − 1, and counts the good ones.
+  void look(const Points& points, const Vec3* normals, const std::uint32_t* chosen, std::uint32_t first, std::uint32_t count,
+            unsigned k) noexcept {
+    std::uint32_t rayCount = 0;
+    for (std::uint32_t i = first; i < count; ++i) {
+      const Vec3 n = normals[chosen[i]];
+      const Vec3 across = cross(n, std::abs(n.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+      const Vec3 t1 = 1 / length(across) * across;
+      const Vec3 t2 = cross(n, t1);
+      const Vec3 origin = points.exactly(chosen[i]) + lift_ * n;
+      const double at[3] = {origin.x, origin.y, origin.z};
+      for (unsigned j = k; j < k + kAtOnce; ++j) {
+        const double(&d)[3] = kDirections[j];
+        directions_[rayCount] = RayDirection::along(d[2] * n + (d[0] * t1 + d[1] * t2));
+        Ray ray{{}, {}, &directions_[rayCount]};
+        for (int axis = 0; axis < 3; ++axis) {
+          ray.origin[axis] = static_cast<float>(at[axis]);
+          ray.rest[axis] = static_cast<float>(at[axis] - static_cast<double>(ray.origin[axis]));
+        }
+        ofRay_[rayCount] = static_cast<std::uint8_t>(i);
+        rays_[rayCount++] = ray;
+      }
+    }
+    pastTarget_.search(rays_, rayCount, hit_);
+    std::uint32_t free = 0;
+    for (std::uint32_t r = 0; r < rayCount; ++r) {
+      if (hit_[r]) continue;
+      ofRay_[free] = ofRay_[r];
+      rays_[free++] = rays_[r];
+    }
+    toCage_.search(rays_, free, hit_);
+    for (std::uint32_t r = 0; r < free; ++r) good_[ofRay_[r]] = static_cast<std::uint8_t>(good_[ofRay_[r]] + hit_[r]);
+  }
+
+  double lift_;
+  HitSearch pastTarget_;
+  HitSearch toCage_;
+  RayDirection* directions_;
+  Ray* rays_;
+  std::uint8_t* ofRay_;  ///< The place of its point among the chosen ones: `kChunk` is 256 at most.
+  bool* hit_;
+  std::uint8_t* good_;   ///< 1 per chosen point.
+};
+static_assert(kChunk <= 256 && kDirectionCount % kAtOnce == 0);
+
+}  // namespace
+
+bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
+               const PointResults& results, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores) noexcept {
+  const Scratch::Mark mark = scratch.mark();
+  auto* queue = scratch.take<std::uint32_t>(points.count);
+  auto* isWanted = scratch.take<bool>(segmentCount);
+  Occluded occluded(points, results.zones, scratch);
+  if (scratch.failed()) return false;
+  std::uint32_t end = occluded.queueRim(queue);
+  if (end > 0) {
+    auto* normals = scratch.take<Vec3>(points.count);
+    Lookout lookout(targetTree, cageTree.rays, units.diagonal, scratch);
+    auto* chosen = scratch.take<std::uint32_t>(kChunk);
+    if (scratch.failed()) return false;
+    std::fill(isWanted, isWanted + segmentCount, false);
+    for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
+    if (!findNormals(points, cage, results, segmentCount, isWanted, scratch, normals)) return false;
+    // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.
+    for (std::uint32_t begin = 0; begin < end;) {
+      std::uint32_t count = 0;
+      for (; begin < end && count < kChunk; ++begin) {
+        if (!isZero(normals[queue[begin]])) chosen[count++] = queue[begin];
+      }
+      const std::uint32_t seen = lookout.keepSeen(points, normals, chosen, count);
+      for (std::uint32_t i = 0; i < seen; ++i) {
+        restores[chosen[i]] = Restores::always;
+        end = occluded.queueNeighbours(chosen[i], queue, end);
+      }
+    }
+  }
+  scratch.rewind(mark);
+  return true;
+}
+
+}  // namespace cagecast
