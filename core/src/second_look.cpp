@@ -64,16 +64,21 @@ class NormalSum {
 
 bool isZero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
-/// The occluded points of the target and which triangles join them.
+/// The occluded points of the segments that are looked at, and which triangles join them.
 class Occluded {
  public:
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
-  Occluded(const Points& points, const Zone* zones, Scratch& scratch) noexcept
-      : points_(points), zones_(zones), starts_(scratch.take<std::uint32_t>(std::size_t{points.count} + 1)),
-        triangles_(nullptr), isQueued_(scratch.take<bool>(points.count)) {
+  Occluded(const Points& points, const PointResults& results, const Array<SegmentStats>& stats, Scratch& scratch) noexcept
+      : points_(points),
+        isOccluded_(scratch.take<bool>(points.count)),
+        isQueued_(scratch.take<bool>(points.count)),
+        starts_(scratch.take<std::uint32_t>(std::size_t{points.count} + 1)) {
     if (scratch.failed()) return;
-    std::fill(starts_, starts_ + points.count + 1, 0u);
+    for (std::uint32_t p = 0; p < points.count; ++p) {
+      isOccluded_[p] = results.zones[p] == Zone::occluded && stats[results.segments[p]].coveredArea > 0;
+    }
     std::fill(isQueued_, isQueued_ + points.count, false);
+    std::fill(starts_, starts_ + points.count + 1, 0u);
     std::uint32_t total = 0;
     eachJoined([&](std::uint32_t p, std::uint32_t) { ++starts_[p]; });
     for (std::uint32_t p = 0; p <= points.count; ++p) total += std::exchange(starts_[p], total);
@@ -105,12 +110,11 @@ class Occluded {
   }
 
  private:
-  [[nodiscard]] bool isOccluded(std::uint32_t point) const noexcept { return zones_[point] == Zone::occluded; }
   [[nodiscard]] unsigned occludedCorners(const std::uint32_t* corner) const noexcept {
-    return unsigned{isOccluded(corner[0])} + unsigned{isOccluded(corner[1])} + unsigned{isOccluded(corner[2])};
+    return unsigned{isOccluded_[corner[0]]} + unsigned{isOccluded_[corner[1]]} + unsigned{isOccluded_[corner[2]]};
   }
   std::uint32_t put(std::uint32_t point, std::uint32_t* queue, std::uint32_t count) noexcept {
-    if (isQueued_[point] || !isOccluded(point)) return count;
+    if (isQueued_[point] || !isOccluded_[point]) return count;
     isQueued_[point] = true;
     queue[count] = point;
     return count + 1;
@@ -122,16 +126,16 @@ class Occluded {
       const std::uint32_t* corner = points_.triangles + std::size_t{3} * t;
       if (occludedCorners(corner) < 2) continue;
       for (int i = 0; i < 3; ++i) {
-        if (isOccluded(corner[i])) call(corner[i], t);
+        if (isOccluded_[corner[i]]) call(corner[i], t);
       }
     }
   }
 
   const Points& points_;
-  const Zone* zones_;
-  std::uint32_t* starts_;     ///< 1 per point: the end of its triangles.
-  std::uint32_t* triangles_;
+  bool* isOccluded_;
   bool* isQueued_;
+  std::uint32_t* starts_;     ///< 1 per point: the end of its triangles.
+  std::uint32_t* triangles_ = nullptr;
 };
 
 /// Finds the unit normal of each point, turned so that those of its segment mostly agree with the cage; zero where there is
@@ -267,11 +271,12 @@ static_assert(kChunk <= 256 && kDirectionCount % kAtOnce == 0);
 }  // namespace
 
 bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
-               const PointResults& results, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores) noexcept {
+               const PointResults& results, const Array<SegmentStats>& stats, Scratch& scratch, std::uint32_t* restores) noexcept {
+  const auto segmentCount = static_cast<std::uint32_t>(stats.size());
   const Scratch::Mark mark = scratch.mark();
   auto* queue = scratch.take<std::uint32_t>(points.count);
   auto* isWanted = scratch.take<bool>(segmentCount);
-  Occluded occluded(points, results.zones, scratch);
+  Occluded occluded(points, results, stats, scratch);
   if (scratch.failed()) return false;
   std::uint32_t end = occluded.queueRim(queue);
   if (end > 0) {

@@ -78,10 +78,11 @@ bool findVoters(const Points& points, const Rims& rims, const Units& units, cons
 bool addUpAreas(const Points& points, const Voters& voters, const Units& units, const PointResults& results, Scratch& scratch,
                 Array<SegmentStats>& stats) noexcept;
 
-/// Step 6: finds the occluded points that are seen from elsewhere.
+/// Step 6: finds the occluded points that are seen from elsewhere, in the segments of which anything is covered: others pass
+/// at a threshold of 0 without a floor alone, or by a lock, and are taken as they are.
 /// @param[out] restores  1 per point: set to `Restores::always` for those.
 bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
-               const PointResults& results, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores) noexcept;
+               const PointResults& results, const Array<SegmentStats>& stats, Scratch& scratch, std::uint32_t* restores) noexcept;
 
 /// Step 7: finds what brings each uncovered point back, and what the segments have at each hole.
 /// @param[out] restores  1 per point: set for those.

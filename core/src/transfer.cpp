@@ -81,7 +81,7 @@ bool findRestores(const Points& points, const Scene& scene, const ProjectOptions
   if (scratch.failed() || !out.restores.reset(vertexCount)) return false;
   std::fill(restores, restores + points.count, Restores::never);
   if (options.secondLook &&
-      !lookAgain(points, cage, cageTree, targetTree, units, results, segmentCount, scratch, restores)) {
+      !lookAgain(points, cage, cageTree, targetTree, units, results, out.segmentStats, scratch, restores)) {
     return false;
   }
   out.timings.secondLook = watch.lap();

@@ -467,12 +467,16 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
   for (std::size_t t = 0; t < scene.corners.size(); ++t)
     for (const std::uint32_t p : scene.corners[t]) state.areas[p] += scene.target.triangles()[t].area / 3;
   result.segmentStats.resize(state.segmentCount);
+  result.firmAreas.assign(state.segmentCount, 1);
   for (std::size_t p = 0; p < pointCount; ++p) {
     ++result.segmentStats[state.segments[p]].points;
     result.segmentStats[state.segments[p]].area += state.areas[p];
   }
   if (filtered) {
-    decide(options, findVoters(scene, options, state), state, result.segmentStats);
+    const std::vector<Voter> voters = findVoters(scene, options, state);
+    for (const Voter& voter : voters)
+      if (!single(voter.finding.nearby)) result.firmAreas[voter.segment] = 0;
+    decide(options, voters, state, result.segmentStats);
   } else {
     state.passes.assign(state.segmentCount, {true, true, true});
     for (SegmentStats& stats : result.segmentStats) stats.exposedArea = stats.coveredArea = stats.area;

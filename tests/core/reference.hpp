@@ -41,6 +41,7 @@ struct Result {
   std::vector<float> distances;                  ///< 1 per target vertex.
   std::vector<std::uint32_t> segments;           ///< 1 per target vertex.
   std::vector<SegmentStats> segmentStats;        ///< 1 per segment; exposed and covered areas are those that voted.
+  std::vector<std::uint8_t> firmAreas;           ///< 1 per segment: 0 where what a voter found hangs on rounding.
   std::vector<std::uint8_t> cosmeticTriangles;   ///< 1 per target triangle.
   std::vector<float> cornerUvs;                  ///< 6 per target triangle, with `seams`; else empty.
   /// 1 per target vertex: 0 where the method itself has no firm answer, so that another may be right as well.
@@ -71,7 +72,7 @@ struct Differences {
   std::size_t distances = 0;  ///< Vertices with a distance more than 1e-6 of the target's diagonal off.
   std::size_t segments = 0;   ///< Vertices (stable or not) with another segment.
   std::size_t painted = 0;    ///< Triangles, all their corners being stable, that are cosmetic for one of the two only.
-  std::size_t stats = 0;      ///< Segments with other counts, or, all their vertices being stable, other areas.
+  std::size_t stats = 0;      ///< Segments with other counts, or, all their vertices and areas being firm, other areas.
   std::string details;        ///< A line for each of the first few.
   [[nodiscard]] std::size_t total() const noexcept {
     return zones + triangles + uvs + distances + segments + painted + stats;

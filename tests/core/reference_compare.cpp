@@ -32,7 +32,7 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     found.stats = 1;
     return found;
   }
-  std::vector<std::uint8_t> firm(reference.segmentStats.size(), 1);
+  std::vector<std::uint8_t> firm = reference.firmAreas;
   for (std::size_t v = 0; v < found.vertices; ++v) {
     if (projection.segments[v] != reference.segments[v]) {
       ++found.segments;

@@ -48,7 +48,8 @@ struct ProjectOptions {
   float pokeThrough = 0.0f;
   /// Step 4′: in small segments near a hole, big triangles vote with what is found inside them, not at their corners.
   bool votes = false;
-  /// Step 6: occluded points that are seen from the cage in another direction are restored.
+  /// Step 6: occluded points that are seen from the cage in another direction are restored, if their segment passes and
+  /// anything of it is covered.
   bool secondLook = false;
   /// Step 7: uncovered points are restored unless the hole over them is meant for them.
   bool holes = false;
