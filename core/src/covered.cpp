@@ -25,7 +25,7 @@ bool sendToCage(const Points& points, const Cage& cage, const CageTree& tree, co
   for (std::uint32_t i = 0; i < points.count; ++i) {
     if (!picks(i)) continue;
     ofRay[count] = i;
-    rays[count++] = rayOf(points, cage, results, i);
+    setRay(rays[count++], points, cage, results, i);
     if (count == HitSearch::kMostRays) send();
   }
   send();

@@ -13,7 +13,7 @@ bool markOccluded(const Points& points, const Cage& cage, const RayTree& target,
   for (std::uint32_t begin = 0; begin < points.count; begin += HitSearch::kMostRays) {
     const std::uint32_t count = std::min(HitSearch::kMostRays, points.count - begin);
     for (std::uint32_t i = 0; i < count; ++i) {
-      rays[i] = rayOf(points, cage, results, begin + i);
+      setRay(rays[i], points, cage, results, begin + i);
       if (results.cageDistances != nullptr) rays[i].end = results.cageDistances[begin + i] + reach;
     }
     search.search(rays, count, hit);

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "areas.hpp"
@@ -237,13 +238,15 @@ class Lookout {
       for (unsigned j = k; j < k + kAtOnce; ++j) {
         const double(&d)[3] = kDirections[j];
         directions_[rayCount] = RayDirection::along(d[2] * n + (d[0] * t1 + d[1] * t2));
-        Ray ray{{}, {}, &directions_[rayCount]};
+        Ray& ray = rays_[rayCount];
+        ray.direction = &directions_[rayCount];
+        ray.end = std::numeric_limits<double>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
           ray.origin[axis] = static_cast<float>(at[axis]);
           ray.rest[axis] = static_cast<float>(at[axis] - static_cast<double>(ray.origin[axis]));
         }
         ofRay_[rayCount] = static_cast<std::uint8_t>(i);
-        rays_[rayCount++] = ray;
+        ++rayCount;
       }
     }
     pastTarget_.search(rays_, rayCount, hit_);

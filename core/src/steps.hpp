@@ -33,12 +33,16 @@ struct Voters {
   PointResults results;                      ///< Of these points.
 };
 
-/// The ray of SPEC §1: from the point, along the normal of its nearest cage triangle.
-inline Ray rayOf(const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
+/// Makes the ray of SPEC §1: from the point, along the normal of its nearest cage triangle, without end.
+inline void setRay(Ray& ray, const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
+  // In place, field by field: a ray that is copied as a whole right after it was written stalls.
   const float* p = points.at(point);
-  Ray ray{{p[0], p[1], p[2]}, {0, 0, 0}, &cage.triangles[results.triangles[point]].normal};
-  if (points.rests != nullptr) std::copy_n(points.rests + std::size_t{3} * point, 3, ray.rest);
-  return ray;
+  for (std::size_t k = 0; k < 3; ++k) {
+    ray.origin[k] = p[k];
+    ray.rest[k] = points.rests == nullptr ? 0.0f : points.rests[std::size_t{3} * point + k];
+  }
+  ray.direction = &cage.triangles[results.triangles[point]].normal;
+  ray.end = std::numeric_limits<double>::infinity();
 }
 
 /// All steps return false if memory ran out.
