@@ -31,9 +31,9 @@ constexpr double kDirections[][3] = {
     {0.2990239565674109, 0.9533354930388671, 0.04166666666666663},
 };
 constexpr unsigned kDirectionCount = static_cast<unsigned>(std::size(kDirections));
-/// Directions tried at once: enough rays for a stream, few enough to stop early.
-constexpr unsigned kAtOnce = 4;
-constexpr std::uint32_t kChunk = HitSearch::kMostRays / kAtOnce;
+/// Points that look at once, in all directions: to stop at the second good ray saves less than many rays that begin close
+/// together do.
+constexpr std::uint32_t kChunk = HitSearch::kMostRays / kDirectionCount;
 
 /// Normals that cancel out to this share of the areas are none.
 constexpr double kCancelled = 1e-6;
@@ -89,14 +89,18 @@ class Occluded {
     // Each start has become its end, which is the next one's start.
   }
 
-  /// Queues the points joined by an edge to one that is not occluded.
+  /// Queues the points joined by an edge to one that is not occluded, in their order: neighbours look together.
   std::uint32_t queueRim(std::uint32_t* queue) noexcept {
-    std::uint32_t count = 0;
     for (std::uint32_t t = 0; t < points_.triangleCount; ++t) {
       const std::uint32_t* corner = points_.triangles + std::size_t{3} * t;
       const unsigned occluded = occludedCorners(corner);
       if (occluded == 0 || occluded == 3) continue;
-      for (int i = 0; i < 3; ++i) count = put(corner[i], queue, count);
+      for (int i = 0; i < 3; ++i) isQueued_[corner[i]] = isOccluded_[corner[i]];
+    }
+    std::uint32_t count = 0;
+    for (std::uint32_t p = 0; p < points_.count; ++p) {
+      queue[count] = p;
+      count += isQueued_[p];
     }
     return count;
   }
@@ -194,82 +198,57 @@ class Lookout {
         directions_(scratch.take<RayDirection>(HitSearch::kMostRays)),
         rays_(scratch.take<Ray>(HitSearch::kMostRays)),
         ofRay_(scratch.take<std::uint8_t>(HitSearch::kMostRays)),
-        hit_(scratch.take<bool>(HitSearch::kMostRays)),
-        good_(scratch.take<std::uint8_t>(kChunk)) {}
+        hit_(scratch.take<bool>(HitSearch::kMostRays)) {}
 
-  /// Which of up to `kChunk` points are seen.
-  /// @param chosen  Their numbers; those that are seen are moved to the front.
-  /// @return How many are seen.
-  std::uint32_t keepSeen(const Points& points, const Vec3* normals, std::uint32_t* chosen, std::uint32_t count) noexcept {
-    std::uint32_t seen = 0;
-    std::fill(good_, good_ + count, std::uint8_t{0});
-    for (unsigned k = 0; k < kDirectionCount && count > seen; k += kAtOnce) {
-      look(points, normals, chosen, seen, count, k);
-      // Points that are seen go to the front, those that are left without hope to the end.
-      const auto swap = [&](std::uint32_t i, std::uint32_t other) {
-        std::swap(chosen[i], chosen[other]);
-        std::swap(good_[i], good_[other]);
-      };
-      for (std::uint32_t i = seen; i < count;) {
-        if (good_[i] >= kEnough) {
-          swap(i++, seen++);
-        } else if (good_[i] + (kDirectionCount - k - kAtOnce) < kEnough) {
-          swap(i, --count);
-        } else {
-          ++i;
-        }
+  /// Looks from a point.
+  /// @pre Fewer than `kChunk` have been added since the last `count`.
+  void add(Vec3 point, Vec3 normal) noexcept {
+    const Vec3 across = cross(normal, std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+    const Vec3 t1 = 1 / length(across) * across;
+    const Vec3 t2 = cross(normal, t1);
+    const Vec3 origin = point + lift_ * normal;
+    const double at[3] = {origin.x, origin.y, origin.z};
+    for (const double(&d)[3] : kDirections) {
+      directions_[rayCount_] = RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2));
+      Ray& ray = rays_[rayCount_];
+      for (int axis = 0; axis < 3; ++axis) {
+        ray.origin[axis] = static_cast<float>(at[axis]);
+        ray.rest[axis] = static_cast<float>(at[axis] - static_cast<double>(ray.origin[axis]));
       }
+      ray.direction = &directions_[rayCount_];
+      ray.end = std::numeric_limits<double>::infinity();
+      ofRay_[rayCount_++] = pointCount_;
     }
-    return seen;
+    ++pointCount_;
   }
 
- private:
-  /// Sends rays in directions k … k + kAtOnce − 1 from the chosen points first … count − 1, and counts the good ones.
-  void look(const Points& points, const Vec3* normals, const std::uint32_t* chosen, std::uint32_t first, std::uint32_t count,
-            unsigned k) noexcept {
-    std::uint32_t rayCount = 0;
-    for (std::uint32_t i = first; i < count; ++i) {
-      const Vec3 n = normals[chosen[i]];
-      const Vec3 across = cross(n, std::abs(n.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
-      const Vec3 t1 = 1 / length(across) * across;
-      const Vec3 t2 = cross(n, t1);
-      const Vec3 origin = points.exactly(chosen[i]) + lift_ * n;
-      const double at[3] = {origin.x, origin.y, origin.z};
-      for (unsigned j = k; j < k + kAtOnce; ++j) {
-        const double(&d)[3] = kDirections[j];
-        directions_[rayCount] = RayDirection::along(d[2] * n + (d[0] * t1 + d[1] * t2));
-        Ray& ray = rays_[rayCount];
-        ray.direction = &directions_[rayCount];
-        ray.end = std::numeric_limits<double>::infinity();
-        for (int axis = 0; axis < 3; ++axis) {
-          ray.origin[axis] = static_cast<float>(at[axis]);
-          ray.rest[axis] = static_cast<float>(at[axis] - static_cast<double>(ray.origin[axis]));
-        }
-        ofRay_[rayCount] = static_cast<std::uint8_t>(i);
-        ++rayCount;
-      }
-    }
-    pastTarget_.search(rays_, rayCount, hit_);
+  /// Counts the good rays of each point added, and forgets them.
+  void count(std::uint8_t (&good)[kChunk]) noexcept {
+    std::fill(good, good + pointCount_, std::uint8_t{0});
+    pastTarget_.search(rays_, rayCount_, hit_);
     std::uint32_t free = 0;
-    for (std::uint32_t r = 0; r < rayCount; ++r) {
+    for (std::uint32_t r = 0; r < rayCount_; ++r) {
       if (hit_[r]) continue;
       ofRay_[free] = ofRay_[r];
       rays_[free++] = rays_[r];
     }
     toCage_.search(rays_, free, hit_);
-    for (std::uint32_t r = 0; r < free; ++r) good_[ofRay_[r]] = static_cast<std::uint8_t>(good_[ofRay_[r]] + hit_[r]);
+    for (std::uint32_t r = 0; r < free; ++r) good[ofRay_[r]] = static_cast<std::uint8_t>(good[ofRay_[r]] + hit_[r]);
+    rayCount_ = pointCount_ = 0;
   }
 
+ private:
   double lift_;
   HitSearch pastTarget_;
   HitSearch toCage_;
   RayDirection* directions_;
   Ray* rays_;
-  std::uint8_t* ofRay_;  ///< The place of its point among the chosen ones: `kChunk` is 256 at most.
+  std::uint8_t* ofRay_;  ///< The place of its point among those added.
   bool* hit_;
-  std::uint8_t* good_;   ///< 1 per chosen point.
+  std::uint32_t rayCount_ = 0;
+  std::uint8_t pointCount_ = 0;
 };
-static_assert(kChunk <= 256 && kDirectionCount % kAtOnce == 0);
+static_assert(kChunk < 256);
 
 }  // namespace
 
@@ -285,19 +264,24 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
   if (end > 0) {
     auto* normals = scratch.take<Vec3>(points.count);
     Lookout lookout(targetTree, cageTree.rays, units.diagonal, scratch);
-    auto* chosen = scratch.take<std::uint32_t>(kChunk);
     if (scratch.failed()) return false;
     std::fill(isWanted, isWanted + segmentCount, false);
     for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
     if (!findNormals(points, cage, results, segmentCount, isWanted, scratch, normals)) return false;
     // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.
     for (std::uint32_t begin = 0; begin < end;) {
+      std::uint32_t chosen[kChunk];
+      std::uint8_t good[kChunk];
       std::uint32_t count = 0;
       for (; begin < end && count < kChunk; ++begin) {
-        if (!isZero(normals[queue[begin]])) chosen[count++] = queue[begin];
+        const std::uint32_t p = queue[begin];
+        if (isZero(normals[p])) continue;
+        lookout.add(points.exactly(p), normals[p]);
+        chosen[count++] = p;
       }
-      const std::uint32_t seen = lookout.keepSeen(points, normals, chosen, count);
-      for (std::uint32_t i = 0; i < seen; ++i) {
+      lookout.count(good);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (good[i] < kEnough) continue;
         restores[chosen[i]] = Restores::always;
         end = occluded.queueNeighbours(chosen[i], queue, end);
       }
