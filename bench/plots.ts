@@ -171,7 +171,7 @@ export function stagesPlot({ native, web }: Results): string {
 /** The totals of each, size by size; each size to its own scale. */
 export function totalsPlot({ native, web }: Results): string {
   const groups = Object.keys(native ?? {}).filter(isGrown);
-  const left = 230;
+  const left = 250;
   const right = width - 80;
   const body: string[] = [];
   let y = 44;

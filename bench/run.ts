@@ -104,12 +104,15 @@ async function main(): Promise<void> {
     }
   }
   if (only.includes('size')) results.size = await measureSizes();
+  // What is known is kept, whatever happens to the rest.
+  await writeResults(results);
   if (only.includes('web') || only.includes('mobile')) {
     await buildWeb();
     const bench = await WebBench.start();
     try {
       results.machine.chromium = bench.version;
       if (only.includes('web')) results.web = await measureWeb(bench, [...wanted.filter(({ cage, shuffled }) => cage === 'grown' && !shuffled), ...models], quick);
+      await writeResults(results);
       if (only.includes('mobile')) results.mobile = await measureMobile(bench, quick);
     } finally {
       await bench.stop();

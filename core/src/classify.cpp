@@ -52,22 +52,20 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
   }
   explainHoles(shares, out);
   for (std::size_t v = 0; v < zones.size(); ++v) {
-    out.zones[v] = zones[v] == Zone::cosmetic && out.culledSegments[segments[v]] ? Zone::culled : zones[v];
+    // As numbers: clang takes a `&` of truth values for a mistake, and `&&` branches.
+    const int culled = static_cast<int>(zones[v] == Zone::cosmetic) & static_cast<int>(out.culledSegments[segments[v]] != 0);
+    out.zones[v] = culled != 0 ? Zone::culled : zones[v];
   }
   for (std::size_t v = 0; v < restores.size(); ++v) {
     if (restores[v] == Restores::never || out.culledSegments[segments[v]]) continue;
     if (restores[v] == Restores::always || out.explainedHoles[restores[v] - Restores::throughHole]) out.zones[v] = Zone::cosmetic;
   }
 
+  // The depth buffer hides what is occluded of a triangle.
+  const unsigned counting = options.partialTriangles ? ~(1u << static_cast<unsigned>(Zone::occluded)) : ~0u;
   for (std::size_t t = 0; t < triangles; ++t) {
-    const auto corners = [&](Zone zone) {
-      const auto is = [&](std::size_t corner) { return unsigned{out.zones[indices[3 * t + corner]] == zone}; };
-      return is(0) + is(1) + is(2);
-    };
-    // The depth buffer hides what is occluded of a triangle.
-    const unsigned cosmetic = corners(Zone::cosmetic);
-    out.cosmeticTriangles[t] =
-        cosmetic == 3 || (options.partialTriangles && cosmetic > 0 && cosmetic + corners(Zone::occluded) == 3);
+    const auto zone = [&](std::size_t corner) { return 1u << static_cast<unsigned>(out.zones[indices[3 * t + corner]]); };
+    out.cosmeticTriangles[t] = ((zone(0) | zone(1) | zone(2)) & counting) == 1u << static_cast<unsigned>(Zone::cosmetic);
   }
   return {};
 }

@@ -27,12 +27,15 @@ class HilbertCurve {
 
  private:
   /// Puts two zeros between the bits of a number of up to ten bits.
-  static std::uint32_t spread(std::uint32_t x) noexcept {
-    x = (x | x << 16) & 0x030000FF;
-    x = (x | x << 8) & 0x0300F00F;
-    x = (x | x << 4) & 0x030C30C3;
-    return (x | x << 2) & 0x09249249;
-  }
+  static std::uint32_t spread(std::uint32_t x) noexcept { return kSpread[x & 255] | kSpread[x >> 8] << 24; }
+
+  static constexpr auto kSpread = [] {
+    std::array<std::uint32_t, 256> spread{};
+    for (std::uint32_t x = 0; x < 256; ++x) {
+      for (std::uint32_t bit = 0; bit < 8; ++bit) spread[x] |= (x >> bit & 1) << 3 * bit;
+    }
+    return spread;
+  }();
 
   /// state (entry corner and direction, times 64) | two octants → next state | their place along the curve.
   static constexpr auto kDoubleSteps = [] {

@@ -21,34 +21,19 @@ struct Place {
   bool inside;     ///< Strictly: not on an edge or a corner.
 };
 
+/// The place on a triangle of a point that lies beside it: on one of the edges.
+/// @param height  Of p over the plane.
+Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept;
+
 /// Finds the point of a triangle that is nearest to p.
 inline Place placeOn(const CageTriangle& t, Vec3 p) {
-  const Vec3 a = Vec3::from(t.a);
-  const Vec3 offset = p - a;
+  const Vec3 offset = p - Vec3::from(t.a);
   const double height = dot(offset, t.normal.exact);
   // Most points lie straight under their triangle.
   const double v = dot(offset, t.towardsB);
   const double w = dot(offset, t.towardsC);
   if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
-
-  // The others are nearest to one of its edges.
-  const Vec3 b = Vec3::from(t.b);
-  const Vec3 c = Vec3::from(t.c);
-  const Vec3 starts[3] = {a, b, c};
-  double along[3];
-  double squared[3];
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 start = starts[i];
-    const Vec3 edge = starts[(i + 1) % 3] - start;
-    along[i] = std::min(std::max(dot(p - start, edge) * t.inverseSquare[i], 0.0), 1.0);
-    const Vec3 away = (p - start) - along[i] * edge;
-    squared[i] = dot(away, away);
-  }
-  Place place{squared[0], along[0], 0, height, false};
-  if (squared[1] < place.distance) place = {squared[1], 1 - along[1], along[1], height, false};
-  if (squared[2] < place.distance) place = {squared[2], 0, 1 - along[2], height, false};
-  place.distance = std::sqrt(place.distance);
-  return place;
+  return placeOnEdge(t, p, height);
 }
 
 /// A triangle that could be the nearest.

@@ -1,9 +1,28 @@
 #include <algorithm>
+#include <cmath>
 
 #include "place.hpp"
 #include "steps.hpp"
 
 namespace cagecast {
+
+Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept {
+  const Vec3 corners[3] = {Vec3::from(t.a), Vec3::from(t.b), Vec3::from(t.c)};
+  double along[3];
+  double squared[3];
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 edge = corners[(i + 1) % 3] - corners[i];
+    const Vec3 offset = p - corners[i];
+    along[i] = std::min(std::max(dot(offset, edge) * t.inverseSquare[i], 0.0), 1.0);
+    const Vec3 away = offset - along[i] * edge;
+    squared[i] = dot(away, away);
+  }
+  Place place{squared[0], along[0], 0, height, false};
+  if (squared[1] < place.distance) place = {squared[1], 1 - along[1], along[1], height, false};
+  if (squared[2] < place.distance) place = {squared[2], 0, 1 - along[2], height, false};
+  place.distance = std::sqrt(place.distance);
+  return place;
+}
 
 bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
                    PointResults& results) noexcept {

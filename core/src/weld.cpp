@@ -64,7 +64,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   if (scratch.failed()) return false;
 
   // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
-  const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
+  const int levels = vertexCount < (1u << 18) ? 8 : 10;
   float side = 0;
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;

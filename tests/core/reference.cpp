@@ -6,6 +6,8 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 #include "reference_scene.hpp"
 
@@ -141,6 +143,7 @@ struct Voter {
   std::uint32_t segment;
   double area;
   Finding finding;
+  Place place;
 };
 
 /// Step 4': whether the triangles of each segment may vote from within: if it is small, and near a hole.
@@ -166,7 +169,8 @@ std::vector<bool> mayVoteFromWithin(const Scene& scene, const State& state) {
 std::vector<Voter> findVoters(const Scene& scene, const Options& options, const State& state) {
   constexpr double kBigTriangle = 0.06;
   std::vector<Voter> voters;
-  for (std::size_t p = 0; p < state.segments.size(); ++p) voters.push_back({state.segments[p], 0, state.findings[p]});
+  for (std::size_t p = 0; p < state.segments.size(); ++p)
+    voters.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
   const std::vector<bool> within = options.votes ? mayVoteFromWithin(scene, state) : std::vector<bool>(state.segmentCount);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
     const Triangle& triangle = scene.target.triangles()[t];
@@ -181,7 +185,7 @@ std::vector<Voter> findVoters(const Scene& scene, const Options& options, const 
                                 (a + b + c) * (1.0 / 3)}) {
       const Place place = project(scene, centroid);
       const Sight sight = look(scene, options, centroid, place, [&](std::size_t other) { return other == t; });
-      voters.push_back({segment, triangle.area / 4, judge(scene, options, sight, place)});
+      voters.push_back({segment, triangle.area / 4, judge(scene, options, sight, place), place});
     }
   }
   return voters;
@@ -192,74 +196,230 @@ struct Range {
   double is = 0, least = 0, most = 0;
 };
 
-/// Step 5: whether each segment passes, and could have passed, given what its voters might have found.
-void decide(const Options& options, const std::vector<Voter>& voters, State& state, std::vector<SegmentStats>& stats) {
-  std::vector<Range> covered(state.segmentCount), margins(state.segmentCount);  // C, and C - threshold * E.
-  std::vector<bool> unsure(state.segmentCount, false);
+/// For each voter the share of its area that counts when it is covered: less than all of it where it lies deeper than
+/// what else the cage covers there. Teeth and tongues are seen past the lips, from below; what is to be painted lies
+/// about as deep as its neighbours, or above them.
+std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& voters) {
+  constexpr double kNotDeep = 0.01;  // No depth below this share of the diagonal counts as deep.
+  // What is usual about each vertex of the cage: of what is covered in the triangles around it.
+  struct Sum {
+    double area = 0, depth = 0;
+  };
+  std::vector<Sum> sums(scene.cageVertices);
+  std::vector<std::vector<const Voter*>> unsure(scene.cageVertices);
+  const auto corners = [&](const Voter& voter) {
+    return scene.cageCorners[static_cast<std::size_t>(voter.place.triangle - scene.cage.triangles().data())];
+  };
   for (const Voter& voter : voters) {
-    SegmentStats& segment = stats[voter.segment];
-    if (voter.finding.zone != Zone::occluded) segment.exposedArea += voter.area;
-    if (voter.finding.zone == Zone::cosmetic) segment.coveredArea += voter.area;
-    double low = kInfinity, high = -kInfinity;
-    const auto might = [&](Zone zone, double value) {
-      if ((voter.finding.nearby & bit(zone)) == 0) return;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    };
-    might(Zone::occluded, 0);
-    might(Zone::uncovered, -options.threshold * voter.area);
-    might(Zone::cosmetic, (1 - options.threshold) * voter.area);
-    margins[voter.segment].least += low;
-    margins[voter.segment].most += high;
-    if ((voter.finding.nearby & bit(Zone::cosmetic)) != 0) covered[voter.segment].most += voter.area;
-    if (voter.finding.nearby == bit(Zone::cosmetic)) covered[voter.segment].least += voter.area;
-    if (!single(voter.finding.nearby)) unsure[voter.segment] = true;
+    const bool isCovered = voter.finding.zone == Zone::cosmetic;
+    for (const std::uint32_t v : corners(voter)) {
+      if (isCovered) sums[v].area += voter.area, sums[v].depth += voter.area * voter.place.nearest.distance;
+      if (!single(voter.finding.nearby)) unsure[v].push_back(&voter);
+    }
   }
+  const auto weight = [&](const Voter& voter, Sum sum) {
+    const double usual = std::max(sum.area > 0 ? sum.depth / sum.area : 0, kNotDeep * scene.diag);
+    const double share = usual / std::max(voter.place.nearest.distance, usual);
+    return share * share;
+  };
+  std::vector<Range> weights;
+  for (const Voter& voter : voters) {
+    Sum is;
+    for (const std::uint32_t v : corners(voter)) is.area += sums[v].area, is.depth += sums[v].depth;
+    // Every unsure neighbour that would pull what is usual down, or up, does so.
+    Sum low = is, high = is;
+    for (const std::uint32_t v : corners(voter))
+      for (const Voter* other : unsure[v]) {
+        const bool isCovered = other->finding.zone == Zone::cosmetic;
+        const bool deeper = other->place.nearest.distance * is.area > is.depth;
+        Sum& changed = deeper == isCovered ? low : high;
+        const double sign = isCovered ? -1 : 1;
+        changed.area = std::max(0.0, changed.area + sign * other->area);
+        changed.depth = std::max(0.0, changed.depth + sign * other->area * other->place.nearest.distance);
+      }
+    const double now = weight(voter, is);
+    weights.push_back({now, std::min(now, weight(voter, low)), std::max(now, weight(voter, high))});
+  }
+  return weights;
+}
+
+/// The first of the segments that each is a copy of: as many points, nearly the same area, nearly the same extent. Taken by
+/// points, area and number, a segment belongs to the latest of the last few runs whose first it is like; else it begins one.
+std::vector<std::uint32_t> findCopies(const Scene& scene, const State& state, const std::vector<SegmentStats>& stats) {
+  constexpr double kSameArea = 0.01, kSameExtent = 0.02;
+  constexpr std::size_t kRuns = 8;  // Parts of equal area and another shape may lie between copies; not many do.
+  std::vector<Vec> centres(state.segmentCount);
+  std::vector<double> extents(state.segmentCount, 0.0);  // Sum of squared distances of the points from their mean.
+  for (std::size_t p = 0; p < state.segments.size(); ++p)
+    centres[state.segments[p]] = centres[state.segments[p]] + scene.points.positions[p];
+  for (std::uint32_t s = 0; s < state.segmentCount; ++s) centres[s] = centres[s] * (1.0 / stats[s].points);
+  for (std::size_t p = 0; p < state.segments.size(); ++p) {
+    const Vec offset = scene.points.positions[p] - centres[state.segments[p]];
+    extents[state.segments[p]] += dot(offset, offset);
+  }
+  std::vector<std::uint32_t> order(state.segmentCount), copies(state.segmentCount);
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t s, std::uint32_t t) {
+    return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
+  });
+  std::vector<std::uint32_t> runs;  // By their first.
+  for (const std::uint32_t s : order) {
+    const auto isLike = [&](std::uint32_t first) {
+      return stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
+             std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];
+    };
+    const auto oldest = runs.rbegin() + static_cast<std::ptrdiff_t>(std::min(kRuns, runs.size()));
+    const auto run = std::find_if(runs.rbegin(), oldest, isLike);
+    copies[s] = run == oldest ? s : *run;
+    if (run == oldest) runs.push_back(s);
+  }
+  return copies;
+}
+
+/// The sums that step 5 compares.
+struct Tally {
+  double area = 0, exposed = 0, covered = 0, sunk = 0;
+  double segments = 0;  // Of which these are the sums.
+  void add(const Tally& other) {
+    area += other.area, exposed += other.exposed, covered += other.covered, sunk += other.sunk;
+    segments += other.segments;
+  }
+};
+
+/// How many times what is asked of it a segment reaches: it passes from 1 on.
+/// @param allCovered  The covered area of all segments.
+double marginOf(const Options& options, const Tally& tally, double allCovered) {
+  const auto times = [](double has, double needs) { return needs > 0 ? has / needs : kInfinity; };
+  const double coverage = times(tally.covered, options.threshold * tally.exposed);
+  if (options.floor == Floor::none) return coverage;
+  if (!(tally.covered > 0)) return 0;
+  if (options.floor == Floor::area) return std::min(coverage, times(tally.covered, options.minCovered * tally.area));
+  // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
+  const double counted = tally.sunk * (tally.covered / tally.exposed);
+  const double floor = std::max(times(counted, options.minCovered * tally.area),
+                                times(counted, options.minOfAll * allCovered * tally.segments));
+  return std::min(coverage, floor);
+}
+
+/// Step 5: whether each segment passes, and could have passed, given what its voters might have found.
+void decide(const Scene& scene, const Options& options, const std::vector<Voter>& voters, State& state,
+            std::vector<SegmentStats>& stats, std::vector<SegmentMeasure>& measures) {
+  // Three times: as it is, and with every voter at its worst and at its best.
+  std::vector<Tally> is(state.segmentCount), worst(state.segmentCount), best(state.segmentCount);
+  const std::vector<Range> weights = depthWeights(scene, voters);
+  Range all;  // The covered area of all segments.
+  for (std::uint32_t s = 0; s < state.segmentCount; ++s) is[s] = worst[s] = best[s] = {stats[s].area, 0, 0, 0, 1};
+  for (std::size_t i = 0; i < voters.size(); ++i) {
+    const Voter& voter = voters[i];
+    const auto count = [&](Tally& tally, Zone zone, double weight) {
+      if (zone != Zone::occluded) tally.exposed += voter.area;
+      if (zone == Zone::cosmetic) tally.covered += voter.area, tally.sunk += voter.area * weight;
+    };
+    const auto might = [&](Zone zone) { return (voter.finding.nearby & bit(zone)) != 0; };
+    count(is[voter.segment], voter.finding.zone, weights[i].is);
+    if (voter.finding.zone == Zone::cosmetic) all.is += voter.area;
+    if (voter.finding.nearby == bit(Zone::cosmetic)) all.least += voter.area;
+    if (might(Zone::cosmetic)) all.most += voter.area;
+    const Zone hidden = might(Zone::occluded) ? Zone::occluded : Zone::cosmetic;
+    count(worst[voter.segment], might(Zone::uncovered) ? Zone::uncovered : hidden, weights[i].least);
+    const Zone bare = might(Zone::occluded) ? Zone::occluded : Zone::uncovered;
+    count(best[voter.segment], might(Zone::cosmetic) ? Zone::cosmetic : bare, weights[i].most);
+  }
+  measures.resize(state.segmentCount);
+  for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
+    stats[s].exposedArea = is[s].exposed;
+    stats[s].coveredArea = is[s].covered;
+    measures[s] = {is[s].sunk, marginOf(options, is[s], all.is), s};
+  }
+
+  // Copies that are in doubt are judged together, so that twins do not fall on either side by accident.
+  constexpr double kDoubt = 2;
+  std::vector<bool> unsureDoubt(state.segmentCount, false);
+  if (options.copies) {
+    const std::vector<std::uint32_t> copies = findCopies(scene, state, stats);
+    const auto inDoubt = [](double margin) { return margin >= 1 / kDoubt && margin < kDoubt; };
+    std::vector<Tally> sums(state.segmentCount), worstSums(state.segmentCount), bestSums(state.segmentCount);
+    std::vector<bool> doubted(state.segmentCount), unsureSum(state.segmentCount, false);
+    for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
+      measures[s].copies = copies[s];
+      const double least = marginOf(options, worst[s], all.most), most = marginOf(options, best[s], all.least);
+      doubted[s] = inDoubt(measures[s].margin);
+      if (inDoubt(least) != doubted[s] || inDoubt(most) != doubted[s]) unsureSum[copies[s]] = unsureDoubt[s] = true;
+      if (!doubted[s]) continue;
+      sums[copies[s]].add(is[s]);
+      worstSums[copies[s]].add(worst[s]);
+      bestSums[copies[s]].add(best[s]);
+    }
+    for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
+      if (unsureSum[copies[s]] && copies[s] != s) unsureDoubt[s] = unsureDoubt[s] || doubted[s];
+      if (!doubted[s]) continue;
+      is[s] = sums[copies[s]];
+      worst[s] = worstSums[copies[s]];
+      best[s] = bestSums[copies[s]];
+      unsureDoubt[s] = unsureDoubt[s] || unsureSum[copies[s]];
+    }
+  }
+
+  // With a threshold of 0 or 1 a tie is a sum compared with nothing or with itself: exact, whatever the order.
+  const bool exact = options.floor == Floor::none && (options.threshold == 0 || options.threshold == 1);
   state.passes.resize(state.segmentCount);
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-    const double area = stats[s].area, floor = options.minCovered * area;
-    covered[s].is = stats[s].coveredArea;
-    // With a threshold of 0 or 1 a tie is a sum compared with nothing or with itself: exact, whatever the order.
-    const bool exact = options.threshold == 0 || options.threshold == 1;
-    const double noise = kSumNoise * area, sumNoise = exact ? 0 : noise;
-    const auto aboveFloor = [&](double c, double slack) { return !options.floor || (c >= floor + slack && c > 0); };
+    const double margin = marginOf(options, is[s], all.is);
+    const double least = marginOf(options, worst[s], all.most), most = marginOf(options, best[s], all.least);
+    const double noise = exact || is[s].exposed == 0 ? 0 : kSumNoise;
     Verdict& pass = state.passes[s];
-    pass.is = !(covered[s].is < options.threshold * stats[s].exposedArea) && aboveFloor(covered[s].is, 0);
-    if (!unsure[s]) margins[s].least = margins[s].most = covered[s].is - options.threshold * stats[s].exposedArea;
-    const bool nothing = stats[s].exposedArea == 0 && !unsure[s];  // 0 >= 0, without noise.
-    pass.might = pass.is || (margins[s].most >= -sumNoise && aboveFloor(covered[s].most, -noise));
-    pass.must = pass.is && (nothing || margins[s].least >= sumNoise) && aboveFloor(covered[s].least, noise);
+    pass.is = margin >= 1;
+    pass.might = pass.is || most >= 1 - noise || unsureDoubt[s];
+    pass.must = pass.is && least >= 1 + noise && !unsureDoubt[s];
     stats[s].culled = !pass.is;
   }
 }
 
 // ------------------------------------------------------------------------------------------------------- 6 Second look
 
-/// Each point's normal: of its triangles, weighted by area, turned so that the segment's mostly agree with the cage. Zero
-/// where the triangles cancel out.
+/// Which way a point looks.
+struct Outlook {
+  Vec normal;          // Unit; zero if it has none.
+  bool twoSided = false;  // The other way as well.
+};
+
+/// Each point's normal: of its triangles, weighted by area, turned so that the segment's mostly agree with the cage.
+///
+/// Where they cancel out, because every triangle has a copy in reverse winding, the point looks to both sides: along the
+/// sum of the normals, each turned to the side of the largest triangle (the first of equals), and against it.
 /// @param firm  Receives for each segment whether that turn is certain.
-std::vector<Vec> pointNormals(const Scene& scene, const State& state, std::vector<bool>& firm) {
+std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const State& state, std::vector<bool>& firm) {
   constexpr double kCancelled = 1e-6;  // Of the areas summed up: less than this is nothing.
-  std::vector<Vec> normals(scene.points.count());
+  const std::vector<Triangle>& triangles = scene.target.triangles();
+  std::vector<Vec> sums(scene.points.count()), turned(scene.points.count());
   std::vector<double> weights(scene.points.count(), 0.0);
-  for (std::size_t t = 0; t < scene.corners.size(); ++t) {
-    const Triangle& triangle = scene.target.triangles()[t];
+  std::vector<const Triangle*> largest(scene.points.count(), nullptr);
+  for (std::size_t t = 0; t < scene.corners.size(); ++t)
     for (const std::uint32_t p : scene.corners[t]) {
-      normals[p] = normals[p] + triangle.normal * triangle.area;
-      weights[p] += triangle.area;
+      sums[p] = sums[p] + triangles[t].normal * triangles[t].area;
+      weights[p] += triangles[t].area;
+      if (largest[p] == nullptr || triangles[t].area > largest[p]->area * (1 + kSumNoise)) largest[p] = &triangles[t];
     }
-  }
+  for (std::size_t t = 0; t < scene.corners.size(); ++t)
+    for (const std::uint32_t p : scene.corners[t]) {
+      const double side = dot(triangles[t].normal, largest[p]->normal) < 0 ? -1 : 1;
+      turned[p] = turned[p] + triangles[t].normal * (triangles[t].area * side);
+    }
+  std::vector<Outlook> result(scene.points.count());
   std::vector<double> agreement(state.segmentCount, 0.0), most(state.segmentCount, 0.0);
-  for (std::size_t p = 0; p < normals.size(); ++p) {
-    normals[p] = length(normals[p]) <= kCancelled * weights[p] ? Vec{} : unit(normals[p]);
-    agreement[state.segments[p]] += state.areas[p] * dot(normals[p], state.places[p].triangle->normal);
-    most[state.segments[p]] += state.areas[p];
+  for (std::size_t p = 0; p < result.size(); ++p) {
+    if (length(sums[p]) > kCancelled * weights[p]) result[p].normal = unit(sums[p]);
+    agreement[state.segments[p]] += state.areas[p] * dot(result[p].normal, state.places[p].triangle->normal);
+    if (dot(result[p].normal, result[p].normal) > 0) most[state.segments[p]] += state.areas[p];
   }
   for (std::uint32_t s = 0; s < state.segmentCount; ++s)
-    firm.push_back(agreement[s] == 0 || std::abs(agreement[s]) > kSumNoise * most[s]);
-  for (std::size_t p = 0; p < normals.size(); ++p)
-    if (agreement[state.segments[p]] < 0) normals[p] = normals[p] * -1;
-  return normals;
+    firm.push_back(most[s] == 0 || std::abs(agreement[s]) > kSumNoise * most[s]);
+  for (std::size_t p = 0; p < result.size(); ++p) {
+    const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
+    if (!cancelled && agreement[state.segments[p]] < 0) result[p].normal = result[p].normal * -1;
+    if (cancelled && options.bothSides && length(turned[p]) > kCancelled * weights[p]) result[p] = {unit(turned[p]), true};
+  }
+  return result;
 }
 
 /// Whether enough rays from a point, in twelve directions about its normal, come to the cage past the target.
@@ -269,13 +429,13 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal) {
   if (dot(normal, normal) == 0) return {};
   const Vec t1 = unit(cross(normal, std::abs(normal.x) < 0.9 ? Vec{1, 0, 0} : Vec{0, 1, 0}));
   const Vec t2 = cross(normal, t1);
+  const double behind = -2 * kCageHitStart * scene.diag;
   int good = 0, might = 0, must = 0;
   for (int k = 0; k < kDirections; ++k) {
     const double z = 1 - (k + 0.5) / kDirections, aside = std::sqrt(1 - z * z);
     const double azimuth = k * kGoldenAngle;
     const Ray ray{p + normal * (kLift * scene.diag),
                   normal * z + (t1 * std::cos(azimuth) + t2 * std::sin(azimuth)) * aside};
-    const double behind = -2 * kCageHitStart * scene.diag;
     const auto target = scene.target.along(ray, behind), cage = scene.cage.along(ray, behind);
     const auto isGood = [&](const Ray& turned) {
       const auto hits = [&](const std::vector<const Triangle*>& triangles, double start) {
@@ -298,12 +458,19 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal) {
   return {good >= kEnough, might >= kEnough, must >= kEnough};
 }
 
+Verdict isSeen(const Scene& scene, const Options& options, Vec p, const Outlook& outlook) {
+  Verdict seen = isSeen(scene, options, p, outlook.normal);
+  if (!outlook.twoSided) return seen;
+  const Verdict behind = isSeen(scene, options, p, outlook.normal * -1);
+  return {seen.is || behind.is, seen.might || behind.might, seen.must || behind.must};
+}
+
 /// Step 6: the occluded points of passing segments that are seen from elsewhere. Begins at the rim of what is occluded; a
 /// restored point brings its neighbours in, a rejected one does not.
 std::vector<Verdict> secondLook(const Scene& scene, const Options& options, const State& state) {
   const std::size_t count = scene.points.count();
   std::vector<bool> firm;
-  const std::vector<Vec> normals = pointNormals(scene, state, firm);
+  const std::vector<Outlook> outlook = outlooks(scene, options, state, firm);
   std::vector<std::vector<std::uint32_t>> neighbours(count);
   for (const auto& corners : scene.corners)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -313,9 +480,9 @@ std::vector<Verdict> secondLook(const Scene& scene, const Options& options, cons
   std::vector<Verdict> seen(count), result(count);
   std::vector<bool> known(count, false);
   const auto isSeenFrom = [&](std::uint32_t p) {
-    if (!known[p]) seen[p] = isSeen(scene, options, scene.points.positions[p], normals[p]);
+    if (!known[p]) seen[p] = isSeen(scene, options, scene.points.positions[p], outlook[p]);
     known[p] = true;
-    if (!firm[state.segments[p]]) seen[p].might = true, seen[p].must = false;
+    if (!firm[state.segments[p]] && !outlook[p].twoSided) seen[p].might = true, seen[p].must = false;
     return seen[p];
   };
   // Once as it is, and once each as it might and as it must be.
@@ -437,8 +604,17 @@ Options Options::paper() { return {}; }
 
 Options Options::standard() {
   Options options;
-  options.endOfSelfRay = options.pokes = options.votes = options.floor = true;
-  options.secondLook = options.holes = options.partialTriangles = options.seams = true;
+  options.endOfSelfRay = options.pokes = options.votes = true;
+  options.floor = Floor::depth;
+  options.copies = options.secondLook = options.bothSides = true;
+  options.holes = options.partialTriangles = options.seams = true;
+  return options;
+}
+
+Options Options::earlier() {
+  Options options = standard();
+  options.floor = Floor::area;
+  options.copies = options.bothSides = false;
   return options;
 }
 
@@ -476,7 +652,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     const std::vector<Voter> voters = findVoters(scene, options, state);
     for (const Voter& voter : voters)
       if (!single(voter.finding.nearby)) result.firmAreas[voter.segment] = 0;
-    decide(options, voters, state, result.segmentStats);
+    decide(scene, options, voters, state, result.segmentStats, result.measures);
   } else {
     state.passes.assign(state.segmentCount, {true, true, true});
     for (SegmentStats& stats : result.segmentStats) stats.exposedArea = stats.coveredArea = stats.area;
@@ -534,7 +710,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.pokes = library.pokeThrough > 0;
   options.pokeThrough = static_cast<double>(library.pokeThrough);
   options.votes = library.votes;
-  options.floor = library.minCovered > 0;
+  options.floor = library.minCovered > 0 ? Floor::area : Floor::none;
   options.minCovered = static_cast<double>(library.minCovered);
   options.secondLook = library.secondLook;
   options.holes = library.holes;

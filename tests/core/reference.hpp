@@ -10,6 +10,13 @@
 /// the library is measured against, so it prefers being readable to being fast.
 namespace cagecast::reference {
 
+/// What keeps a segment out of which hardly anything is covered, however little of it is exposed.
+enum class Floor : std::uint8_t {
+  none,
+  area,   ///< C >= `minCovered` * A.
+  depth,  ///< D F >= `minCovered` * A or D F >= `minOfAll` * the sum of all C; see `SegmentMeasure`.
+};
+
 /// Which steps are taken, and their constants. Lengths are shares of the diagonal of the target's bounding box.
 struct Options {
   ProjectionMode projection = ProjectionMode::nearestPoint;
@@ -21,9 +28,12 @@ struct Options {
   bool pokes = false;               ///< Step 3': a point without a cage hit, up to `pokeThrough` outside, is covered.
   double pokeThrough = 0.0025;
   bool votes = false;               ///< Step 4': big triangles of small segments at a hole vote from within.
-  bool floor = false;               ///< Step 5': a segment also needs C >= `minCovered` * A, and C > 0.
+  Floor floor = Floor::none;        ///< Step 5': what a segment needs besides its coverage, and C > 0.
   double minCovered = 0.2;
+  double minOfAll = 0.005;
+  bool copies = false;              ///< Step 5': copies of one part that are in doubt are judged together.
   bool secondLook = false;          ///< Step 6: occluded points that are seen from elsewhere are restored.
+  bool bothSides = false;           ///< Step 6: where normals cancel out, look to both sides; else such points stay.
   bool holes = false;               ///< Step 7: uncovered points whose hole is not meant for them are restored.
   bool partialTriangles = false;    ///< Step 8: triangles with some corners occluded are painted.
   bool seams = false;               ///< Step 9: UVs per corner, where a triangle lies across a seam.
@@ -31,6 +41,14 @@ struct Options {
 
   static Options paper();     ///< The literal method: none of the steps that can be switched.
   static Options standard();  ///< The preset `default`: all of them.
+  static Options earlier();   ///< The same with the floor and the second look as they were first written down.
+};
+
+/// What step 5' asks of a segment, besides what is in its `SegmentStats`.
+struct SegmentMeasure {
+  double sunkArea = 0;  ///< D: the covered area, less where it lies deeper under the cage than what else lies there.
+  double margin = 0;    ///< How many times what is asked of it the segment reaches, by itself: it passes from 1 on.
+  std::uint32_t copies = 0;  ///< The first of the segments that it is a copy of.
 };
 
 /// The answer of the reference, with the same fields and meanings as `Projection` and `Zones`.
@@ -42,6 +60,7 @@ struct Result {
   std::vector<std::uint32_t> segments;           ///< 1 per target vertex.
   std::vector<SegmentStats> segmentStats;        ///< 1 per segment; exposed and covered areas are those that voted.
   std::vector<std::uint8_t> firmAreas;           ///< 1 per segment: 0 where what a voter found hangs on rounding.
+  std::vector<SegmentMeasure> measures;          ///< 1 per segment.
   std::vector<std::uint8_t> cosmeticTriangles;   ///< 1 per target triangle.
   std::vector<float> cornerUvs;                  ///< 6 per target triangle, with `seams`; else empty.
   /// 1 per target vertex: 0 where the method itself has no firm answer, so that another may be right as well.

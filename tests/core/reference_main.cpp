@@ -1,27 +1,38 @@
 /// Runs the brute-force reference, or the library itself, over one scene file, so that hosts in other languages can
 /// compare their answer with it on exactly the same arrays.
 ///
-///     cagecast_reference SCENE RESULT [--threshold T] [--product]
+///     cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked] [--product]
 ///     cagecast_reference --golden FOLDER
+///     cagecast_reference --traps FOLDER
 ///
-/// The second form writes the scenes of the golden hash as FOLDER/0.scene, FOLDER/1.scene and so on, in their order.
+/// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
+/// votes, floor, copies, second-look, both-sides, holes, triangles, seams. --preset earlier is `default` with the floor and
+/// the second look as they were first written down. --unchecked does not ask which vertices are stable. --product asks
+/// the library instead, whose preset is `paper`. The second form writes the scenes of the golden hash as FOLDER/0.scene,
+/// FOLDER/1.scene and so on, in their order; the third the models made to be difficult as FOLDER/NAME.scene, each with
+/// the truth about its vertices in FOLDER/NAME.truth: u8 per target vertex, 0 to be painted, 1 not to be, 2 either.
 ///
 /// SCENE, little-endian: "CAGESCN1", then the cage, then the target, each as u32 vertexCount, u32 indexCount,
 /// u8 hasUvs, u8 hasGroups, two bytes 0, f32 positions, u32 indices, f32 uvs (if any), u32 groups (if any).
 /// RESULT: "CAGEREF1", u32 vertexCount, u32 segmentCount, f32 uvs (2 per vertex), u8 zones (then to a multiple of 4),
 /// u32 triangles, f32 distances, u32 segments, u8 stable (then to a multiple of 4), and per segment u32 points,
-/// u32 culled, f64 exposed area, f64 covered area. Exit code 1, and a line on stderr, if it cannot be done.
+/// u32 culled, f64 exposed area, f64 covered area; then u32 triangleCount, u32 cornerUvCount, u8 cosmeticTriangles (to a
+/// multiple of 4), and if there are any f32 cornerUvs and u8 stableCorners (to a multiple of 4); then, by the reference, per
+/// segment f64 whole area, f64 sunk area. Exit code 1, and a line on stderr, if it cannot be done.
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "reference.hpp"
 #include "scenes.hpp"
+#include "traps.hpp"
 
 namespace {
 
@@ -96,28 +107,72 @@ int fail(const std::string& message) {
   return 1;
 }
 
+bool saveScene(const std::string& path, const MeshView& cage, const MeshView& target) {
+  std::vector<char> out;
+  put(out, "CAGESCN1", 8);
+  putMesh(out, cage);
+  putMesh(out, target);
+  return save(path, out);
+}
+
+int writeGolden(const std::string& folder) {
+  int number = 0;
+  for (const scenes::Scene& scene : scenes::golden()) {
+    const std::string path = folder + "/" + std::to_string(number++) + ".scene";
+    if (!saveScene(path, scene.cage.view(), scene.target.view())) return fail(path + " cannot be written");
+  }
+  return 0;
+}
+
+int writeTraps(const std::string& folder) {
+  for (const scenes::Trap& trap : scenes::traps()) {
+    const std::string path = folder + "/" + trap.scene.name;
+    std::vector<char> truth;
+    put(truth, trap.truth.data(), trap.truth.size());
+    if (!saveScene(path + ".scene", trap.scene.cage.view(), trap.scene.target.view()) || !save(path + ".truth", truth))
+      return fail(path + " cannot be written");
+  }
+  return 0;
+}
+
+/// The steps of the preset `default` by name, but for the floor, which is no yes or no.
+constexpr std::pair<std::string_view, bool reference::Options::*> kSteps[] = {
+    {"groups", &reference::Options::groups},
+    {"end-of-self-ray", &reference::Options::endOfSelfRay},
+    {"pokes", &reference::Options::pokes},
+    {"votes", &reference::Options::votes},
+    {"copies", &reference::Options::copies},
+    {"second-look", &reference::Options::secondLook},
+    {"both-sides", &reference::Options::bothSides},
+    {"holes", &reference::Options::holes},
+    {"triangles", &reference::Options::partialTriangles},
+    {"seams", &reference::Options::seams},
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 3 && std::string_view(argv[1]) == "--golden") {
-    int number = 0;
-    for (const scenes::Scene& scene : scenes::golden()) {
-      std::vector<char> out;
-      put(out, "CAGESCN1", 8);
-      putMesh(out, scene.cage.view());
-      putMesh(out, scene.target.view());
-      const std::string path = std::string(argv[2]) + "/" + std::to_string(number++) + ".scene";
-      if (!save(path, out)) return fail(path + " cannot be written");
-    }
-    return 0;
-  }
+  if (argc == 3 && std::string_view(argv[1]) == "--golden") return writeGolden(argv[2]);
+  if (argc == 3 && std::string_view(argv[1]) == "--traps") return writeTraps(argv[2]);
   TransferOptions options;
-  bool useProduct = false;
+  reference::Options plain = reference::Options::paper();
+  std::vector<std::string> without;
+  bool useProduct = false, isChecked = true;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--product") {
       useProduct = true;
+    } else if (argument == "--unchecked") {
+      isChecked = false;
+    } else if (argument == "--preset" && i + 1 < argc) {
+      const std::string_view preset = argv[++i];
+      if (preset == "paper") plain = reference::Options::paper();
+      else if (preset == "default") plain = reference::Options::standard();
+      else if (preset == "earlier") plain = reference::Options::earlier();
+      else return fail("--preset " + std::string(preset) + ": there are paper, default and earlier");
+    } else if (argument == "--without" && i + 1 < argc) {
+      without.emplace_back(argv[++i]);
     } else if (argument == "--threshold" && i + 1 < argc) {
       char* end = nullptr;
       options.threshold = static_cast<float>(std::strtod(argv[++i], &end));
@@ -126,7 +181,19 @@ int main(int argc, char** argv) {
       files.emplace_back(argument);
     }
   }
-  if (files.size() != 2) return fail("usage: cagecast_reference SCENE RESULT [--threshold T] [--product]");
+  if (files.size() != 2)
+    return fail("usage: cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked] [--product]");
+  for (const std::string& step : without) {
+    if (step == "floor") {
+      plain.floor = reference::Floor::none;
+      continue;
+    }
+    const auto known = std::find_if(std::begin(kSteps), std::end(kSteps), [&](const auto& s) { return s.first == step; });
+    if (known == std::end(kSteps)) return fail("--without " + step + ": there is no such step");
+    plain.*(known->second) = false;
+  }
+  plain.threshold = static_cast<double>(options.threshold);
+  plain.stability = isChecked;
 
   std::ifstream file(files[0], std::ios::binary);
   if (!file) return fail(files[0] + " cannot be read");
@@ -143,7 +210,8 @@ int main(int argc, char** argv) {
   if (!status.ok()) return fail(describe(status, cage.view(), target.view()));
 
   std::vector<char> out;
-  const auto write = [&](const auto& answer, const auto& zones, const auto& stable) {
+  const auto write = [&](const auto& answer, const auto& zones, const auto& stable, const auto& cosmeticTriangles,
+                         const std::vector<float>& cornerUvs, const std::vector<std::uint8_t>& stableCorners) {
     const std::uint32_t vertexCount = static_cast<std::uint32_t>(zones.size());
     const std::uint32_t segmentCount = static_cast<std::uint32_t>(answer.segmentStats.size());
     put(out, "CAGEREF1", 8);
@@ -161,12 +229,23 @@ int main(int argc, char** argv) {
       put(out, counts, 2);
       put(out, areas, 2);
     }
+    const std::uint32_t counts[] = {static_cast<std::uint32_t>(cosmeticTriangles.size()),
+                                    static_cast<std::uint32_t>(cornerUvs.size())};
+    put(out, counts, 2);
+    put(out, cosmeticTriangles.data(), cosmeticTriangles.size());
+    put(out, cornerUvs.data(), cornerUvs.size());
+    put(out, stableCorners.data(), stableCorners.size());
   };
   if (useProduct) {
-    write(product.projection, product.zones.zones, std::vector<std::uint8_t>(product.zones.zones.size(), 1));
+    write(product.projection, product.zones.zones, std::vector<std::uint8_t>(product.zones.zones.size(), 1),
+          product.zones.cosmeticTriangles, {}, {});
   } else {
-    const reference::Result result = reference::transfer(cage.view(), target.view(), options);
-    write(result, result.zones, result.stable);
+    const reference::Result result = reference::transfer(cage.view(), target.view(), plain);
+    write(result, result.zones, result.stable, result.cosmeticTriangles, result.cornerUvs, result.stableCorners);
+    for (std::size_t s = 0; s < result.measures.size(); ++s) {
+      const double areas[] = {result.segmentStats[s].area, result.measures[s].sunkArea};
+      put(out, areas, 2);
+    }
   }
   if (!save(files[1], out)) return fail(files[1] + " cannot be written");
 }

@@ -42,22 +42,29 @@ Points weld(const MeshView& target, double tolerance, bool groups) {
   return points;
 }
 
-Rims findRims(const Surface& cage) {
-  const auto& triangles = cage.triangles();
-  // Equal positions are one vertex.
+/// Numbers the cage's vertices; equal positions are one vertex.
+/// @return Where each is.
+std::vector<Vec> weldCage(Scene& scene) {
   std::map<Position, std::uint32_t> numbers;
   std::vector<Vec> positions;
-  std::vector<std::array<std::uint32_t, 3>> corners(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
+  for (const Triangle& triangle : scene.cage.triangles()) {
+    std::array<std::uint32_t, 3> corners{};
     for (std::size_t c = 0; c < 3; ++c) {
       const auto [at, isNew] =
-          numbers.try_emplace(key(triangles[t].corners[c]), static_cast<std::uint32_t>(positions.size()));
-      if (isNew) positions.push_back(triangles[t].corners[c]);
-      corners[t][c] = at->second;
+          numbers.try_emplace(key(triangle.corners[c]), static_cast<std::uint32_t>(positions.size()));
+      if (isNew) positions.push_back(triangle.corners[c]);
+      corners[c] = at->second;
     }
+    scene.cageCorners.push_back(corners);
+  }
+  scene.cageVertices = static_cast<std::uint32_t>(positions.size());
+  return positions;
+}
+
+Rims findRims(const std::vector<std::array<std::uint32_t, 3>>& corners, const std::vector<Vec>& positions) {
   const auto edge = [&](std::size_t t, std::size_t k) { return std::minmax(corners[t][k], corners[t][(k + 1) % 3]); };
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
+  for (std::size_t t = 0; t < corners.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) ++uses[edge(t, k)];
 
   Sets sets(positions.size());
@@ -79,7 +86,7 @@ Rims findRims(const Surface& cage) {
     loopOf[v] = loop;
     rims.loops[static_cast<std::size_t>(loop)].box.add(positions[v]);
   }
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
+  for (std::size_t t = 0; t < corners.size(); ++t) {
     std::array<std::int32_t, 3> ofEdge{}, ofCorner{};
     for (std::size_t k = 0; k < 3; ++k) {
       ofEdge[k] = uses[edge(t, k)] == 1 ? loopOf[corners[t][k]] : -1;
@@ -109,7 +116,8 @@ Scene makeScene(const MeshView& cage, const MeshView& target, const Options& opt
       corners[c] = scene.points.ofVertex[target.indices[std::size_t{triangle.index} * 3 + c]];
     scene.corners.push_back(corners);
   }
-  scene.rims = findRims(scene.cage);
+  const std::vector<Vec> cagePositions = weldCage(scene);
+  scene.rims = findRims(scene.cageCorners, cagePositions);
   return scene;
 }
 

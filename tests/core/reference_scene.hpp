@@ -47,6 +47,9 @@ struct Rims {
 
 struct Scene {
   Surface cage, target;
+  /// The vertices of each usable triangle of the cage, where equal positions are one vertex.
+  std::vector<std::array<std::uint32_t, 3>> cageCorners;
+  std::uint32_t cageVertices = 0;
   Points points;
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< The points of each usable triangle of the target.
   Rims rims;

@@ -578,33 +578,71 @@ describe('several parts', () => {
 });
 
 describe('inspect', () => {
+  interface Report {
+    verdict: 'good' | 'usable' | 'unfit';
+    findings: { code: string; weight: number; sentence: string; advice: string; numbers: object }[];
+    counts: object;
+    coverage: Record<string, number>;
+    placement: { distances: Record<'p50' | 'p90' | 'p99' | 'max', number> };
+    holes: object[];
+    segments: { part: string }[];
+  }
+  const json = (cage: string): { status: number | null; report: Report } => {
+    const { status, stdout } = cagecast('inspect', at('target.glb'), '--cage', cage, '--json');
+    return { status, report: JSON.parse(stdout) as Report };
+  };
+
   test('calls a good cage good, in text and JSON', () => {
     const text = cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'));
     assert.equal(text.status, 0, text.stderr);
-    for (const word of [/cosmetic/, /outside the cage/, /median/, /F = C\/E/, /The cage fits\./]) assert.match(text.stdout, word);
-    const { stdout } = cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--json');
-    const inspection = JSON.parse(stdout) as { fit: boolean; counts: object; coverage: Record<string, number>; outside: { area: number }; distances: Record<string, number>; cage: { openLoops: number } };
-    assert.equal(inspection.fit, true);
+    for (const word of [/cosmetic/, /outside the cage/, /median/, /F = C\/E/, /beneath/, /(GOOD|USABLE): the cage fits/]) assert.match(text.stdout, word);
+    const { status, report: inspection } = json(at('cage.glb'));
+    assert.equal(status, 0);
+    assert.notEqual(inspection.verdict, 'unfit');
     assert.deepEqual(inspection.counts, report(at('target.glb')).counts);
     assert.ok(Math.abs(Object.values(inspection.coverage).reduce((a, b) => a + b) - 1) < 1e-9);
-    assert.equal(inspection.cage.openLoops, 1);
-    const { p50, p90, p99, max } = inspection.distances as Record<'p50' | 'p90' | 'p99' | 'max', number>;
+    assert.equal(inspection.holes.length, 1);
+    assert.ok(inspection.segments.every(({ part }) => part === 'only'));
+    const { p50, p90, p99, max } = inspection.placement.distances;
     assert.ok(p50 <= p90 && p90 <= p99 && p99 <= max && max < 1);
   });
 
-  test('a cage that is inside out, too small, elsewhere is not called good', () => {
-    const cages: [string, Mesh][] = [
-      ['flipped', { ...scene.cage, indices: scene.cage.indices.slice().reverse() }],
-      ['shrunk', { ...scene.cage, positions: scene.cage.positions.map((x) => 0.8 * x) }],
-      ['moved', { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 1 : x)) }],
+  test('a cage that is inside out, too small, elsewhere is unfit: exit 3, the cause first, with advice', () => {
+    const cages: [string, Mesh, string][] = [
+      ['flipped', { ...scene.cage, indices: scene.cage.indices.slice().reverse() }, 'normalsInward'],
+      ['shrunk', { ...scene.cage, positions: scene.cage.positions.map((x) => 0.8 * x) }, 'cageTooSmall'],
+      ['moved', { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 0.3 : x)) }, 'cageMisplaced'],
+      ['away', { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 9 : x)) }, 'cageElsewhere'],
     ];
-    for (const [name, cage] of cages) {
+    for (const [name, cage, code] of cages) {
       const path = write(`${name}.glb`, glbOf(cage));
       const { status, stdout } = cagecast('inspect', at('target.glb'), '--cage', path);
-      assert.equal(status, 0);
-      assert.match(stdout, /BAD: .*\n {2}→ .*\nThe cage does not fit\.\n$|BAD: [^]*The cage does not fit\.\n$/, name);
-      assert.equal((JSON.parse(cagecast('inspect', at('target.glb'), '--cage', path, '--json').stdout) as { fit: boolean }).fit, false);
+      assert.equal(status, 3, name);
+      assert.match(stdout, /UNFIT: the cage does not fit\.\n✗ .*\.\n {2}→ /, name);
+      const { status: again, report: inspection } = json(path);
+      assert.equal(again, 3);
+      assert.equal(inspection.verdict, 'unfit');
+      assert.equal(inspection.findings[0]!.code, code);
     }
+  });
+
+  test('--html writes a page that needs nothing else', () => {
+    const page = at('inspection.html');
+    const { status, stdout } = cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--html', page);
+    assert.equal(status, 0);
+    assert.match(stdout, /wrote .*inspection\.html/);
+    const html = readFileSync(page, 'utf8');
+    assert.doesNotMatch(html, /(?:src|href)="(?!data:)|https?:\/\/|<script/);
+    const pictures = [...html.matchAll(/data:image\/png;base64,([^"]+)"/g)].map(([, data]) => PNG.sync.read(Buffer.from(data!, 'base64')));
+    assert.equal(pictures.length, 8);
+    // Something is to be seen in each, and not everywhere.
+    for (const { data } of pictures) {
+      const shown = data.filter((_, i) => i % 4 === 3).filter((alpha) => alpha > 0).length / (data.length / 4);
+      assert.ok(shown > 0.1 && shown < 0.95, `${shown} of a picture shows the model`);
+    }
+    assert.match(html, /<svg[^]*<path/);
+    assert.equal(cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--html', at('page.txt')).status, 2);
+    assert.equal(cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--html', at('gone/page.html')).status, 1);
   });
 
   test('a reader that leaves early is no failure', () => {
@@ -657,7 +695,7 @@ describe('models', () => {
       const { json } = unpackGlb(readFileSync(out));
       assert.ok(json.extensionsRequired!.some((extension) => /draco|meshopt/.test(extension)));
       // It opens again, by its own reader and by another.
-      assert.equal(cagecast('inspect', out, '--cage', at('cage.glb')).status, 0);
+      assert.equal(cagecast('transfer', out, '--cage', at('cage.glb')).status, 0);
     });
   }
 
@@ -667,13 +705,20 @@ describe('models', () => {
       assert.deepEqual(report(join(assets, 'formats/kenney_sedan_draco_datauri.gltf'), cage).counts, report(join(assets, 'kenney_sedan/target.glb'), cage).counts);
     });
 
-    test('bad cages of real models are not called good, good ones are', () => {
-      for (const model of modelFolders().filter((path) => path.startsWith(assets))) {
-        for (const name of readdirSync(model).filter((file) => /^cage.*\.glb$/.test(file))) {
-          const { fit } = JSON.parse(cagecast('inspect', join(model, 'target.glb'), '--cage', join(model, name), '--json').stdout) as { fit: boolean };
-          assert.equal(fit, !name.includes('bad'), join(model, name));
-        }
-      }
-    });
   }
+
+  test('inspect finds bad cages of models unfit, for the right reason first, and good ones good or usable', () => {
+    const reasons: [RegExp, string][] = [[/shifted|misaligned/, 'cageMisplaced'], [/shrunk/, 'cageTooSmall'], [/flipped/, 'normalsInward']];
+    for (const model of modelFolders()) {
+      for (const name of readdirSync(model).filter((file) => /^cage.*\.glb$/.test(file))) {
+        const path = join(model, name);
+        const { status, stdout } = cagecast('inspect', join(model, 'target.glb'), '--cage', path, '--json');
+        const { verdict, findings } = JSON.parse(stdout) as { verdict: string; findings: { code: string }[] };
+        const reason = reasons.find(([pattern]) => pattern.test(path))?.[1];
+        assert.equal(status, reason ? 3 : 0, path);
+        assert.equal(verdict === 'unfit', reason !== undefined, path);
+        if (reason) assert.equal(findings[0]!.code, reason, path);
+      }
+    }
+  });
 });

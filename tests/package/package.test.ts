@@ -54,7 +54,10 @@ after(() => rmSync(user, { recursive: true, force: true }));
 describe('the packed package', () => {
   test('needs nothing else', () => {
     const manifest = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as Record<string, unknown>;
-    for (const name of ['dependencies', 'peerDependencies', 'optionalDependencies', 'bundledDependencies']) assert.equal(manifest[name], undefined, name);
+    for (const name of ['dependencies', 'optionalDependencies', 'bundledDependencies']) assert.equal(manifest[name], undefined, name);
+    // What is made for three.js or glTF-Transform takes the user's own; who uses neither needs neither.
+    const optional = manifest['peerDependenciesMeta'] as Record<string, { optional: boolean }>;
+    for (const name of Object.keys(manifest['peerDependencies'] as object)) assert.equal(optional[name]?.optional, true, name);
     for (const script of ['preinstall', 'install', 'postinstall', 'prepare']) assert.equal((manifest['scripts'] as Record<string, string>)[script], undefined, script);
     assert.deepEqual(readdirSync(join(user, 'node_modules')).filter((name) => !name.startsWith('.')), ['cagecast']);
   });
@@ -82,6 +85,58 @@ describe('the packed package', () => {
     context.diagnostic(`entry ${entry} bytes, WebAssembly ${wasm} bytes, gzipped`);
     assert.ok(entry <= 60 * 1024, `${entry} bytes`);
     assert.ok(wasm <= 40 * 1024, `${wasm} bytes`);
+  });
+
+  test('its further entries are small, and none of them is in the main one', (context) => {
+    for (const [name, most] of Object.entries({ inspect: 12, three: 4, gltf: 6 })) {
+      const text = readFileSync(join(installed, `dist/${name}.js`));
+      const size = gzipSync(text, { level: 9 }).length;
+      context.diagnostic(`${name} ${size} bytes, gzipped`);
+      assert.ok(size <= most * 1024, `${name}: ${size} bytes`);
+      assert.match(text.toString(), /from"\.\/index\.js"/);
+    }
+    assert.doesNotMatch(readFileSync(join(installed, 'dist/index.js'), 'utf8'), /cageMisplaced|TEXCOORD_0|isBufferGeometry/);
+  });
+
+  test('its entries for three.js and glTF-Transform, and inspect, run and type-check beside these', () => {
+    const folder = join(user, 'peers');
+    mkdirSync(join(folder, 'node_modules/@types'), { recursive: true });
+    mkdirSync(join(folder, 'node_modules/@gltf-transform'));
+    symlinkSync(installed, join(folder, 'node_modules/cagecast'));
+    for (const name of ['three', '@types/three', '@gltf-transform/core']) symlinkSync(join(tools, name), join(folder, 'node_modules', name));
+    writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
+    writeFileSync(
+      join(folder, 'program.ts'),
+      `import { Document } from '@gltf-transform/core';
+      import { BoxGeometry, Group, Mesh, SphereGeometry, Texture } from 'three';
+      import { init, type Mesh as Arrays } from 'cagecast';
+      import { cagecast } from 'cagecast/gltf';
+      import { inspect, type Inspection, type Verdict } from 'cagecast/inspect';
+      import { applyTransfer, extract, type Applied } from 'cagecast/three';
+      await init();
+      const scene = new Group().add(new Mesh(new BoxGeometry(1, 1, 1, 3, 3, 3)));
+      const cage = new SphereGeometry(1);
+      const applied: Applied = applyTransfer(scene, cage, { texture: new Texture(), threshold: 0.3 });
+      const arrays: Arrays = extract(cage, 'cage').mesh;
+      const inspection: Inspection = inspect(arrays, extract(scene).mesh, { result: applied.result });
+      const verdict: Verdict = inspection.verdict;
+      const document = new Document();
+      const buffer = document.createBuffer();
+      const { positions, indices } = extract(scene).mesh;
+      const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'SCALAR') => document.createAccessor().setType(type).setArray(new (array.constructor as Float32ArrayConstructor)(array)).setBuffer(buffer);
+      const primitive = document.createPrimitive().setAttribute('POSITION', accessor(positions, 'VEC3')).setIndices(accessor(indices, 'SCALAR'));
+      document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
+      await document.transform(cagecast({ cage: arrays }));
+      // @ts-expect-error a cage is needed
+      void (() => cagecast({}));
+      console.log(verdict !== undefined, applied.overlays.length, primitive.listSemantics().join());`,
+    );
+    run(join(tools, 'esbuild/bin/esbuild'), ['program.ts', '--format=esm', '--outfile=program.js', '--log-level=warning'], folder);
+    assert.equal(run(process.execPath, ['--preserve-symlinks', '--preserve-symlinks-main', 'program.js'], folder).trim(), 'true 1 POSITION,TEXCOORD_0,_NCZ');
+    // Without skipLibCheck the types of three would be checked as well, which is not ours to do.
+    const compilerOptions = { module: 'esnext', moduleResolution: 'bundler', target: 'es2022', lib: ['es2022', 'dom'], strict: true, exactOptionalPropertyTypes: true, noEmit: true, types: [], skipLibCheck: true, preserveSymlinks: true };
+    writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, files: ['program.ts'] }));
+    run(process.execPath, [join(tools, 'typescript/bin/tsc'), '-p', 'tsconfig.json'], folder);
   });
 
   test('runs in Node', () => assert.equal(run(process.execPath, ['print.js']).trim(), answer));
@@ -159,10 +214,10 @@ describe('the packed package', () => {
     const command = join(user, 'node_modules/.bin/cagecast');
     assert.match(run(command, ['transfer', 'target.glb', '--cage', 'cage.glb', '-o', 'out.glb', '--report', 'r.json']), /wrote out\.glb/);
     assert.ok(existsSync(join(user, 'out.glb')) && existsSync(join(user, 'r.json')));
-    assert.match(run(command, ['inspect', 'target.glb', '--cage', 'cage.glb']), /The cage fits\./);
+    assert.match(run(command, ['inspect', 'target.glb', '--cage', 'cage.glb']), /: the cage fits/);
     const assets = process.env['CAGECAST_ASSETS'];
     // Compressed files need decoders, which must be aboard.
-    if (assets !== undefined) for (const name of readdirSync(join(assets, 'formats'))) run(command, ['inspect', join(assets, 'formats', name), '--cage', 'cage.glb']);
+    if (assets !== undefined) for (const name of readdirSync(join(assets, 'formats'))) run(command, ['transfer', join(assets, 'formats', name), '--cage', 'cage.glb']);
   });
 });
 

@@ -80,19 +80,22 @@ async function buildPackage() {
     plugins: [wasmModules('wasm-inline.ts')],
   });
   if (shipped) {
-    // What is imported from index.js or by one of the names in package.json's "imports" stays a file of its own.
+    // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
     const beside = (entry, outfile, platform) =>
       esbuild.build({
         ...common,
         entryPoints: [at('wasm/src', entry)],
         outfile: join(fresh, outfile),
         platform,
-        external: ['#spawn', '#read-wasm', './index.js'],
+        external: ['#spawn', '#read-wasm', './index.js', 'three'],
         plugins: [wasmModules('wasm-file.ts', { index: true })],
       });
     await beside('index.ts', 'slim.js', 'neutral');
     await beside('read-wasm.ts', 'read-wasm.js', 'neutral');
     await beside('read-wasm-node.ts', 'read-wasm-node.js', 'node');
+    await beside('inspect/index.ts', 'inspect.js', 'neutral');
+    await beside('three/index.ts', 'three.js', 'neutral');
+    await beside('gltf/index.ts', 'gltf.js', 'neutral');
     await beside('worker/index.ts', 'worker.js', 'neutral');
     await beside('worker/spawn.ts', 'spawn.js', 'neutral');
     await beside('worker/spawn-node.ts', 'spawn-node.js', 'node');

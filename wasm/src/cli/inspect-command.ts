@@ -1,158 +1,131 @@
-import { diagonal } from '../gltf/write.js';
-import { cageShape, perZone, quantiles, sidesOf, vertexAreas, type CageShape, type PerZone } from './analysis.js';
-import type { Progress } from './progress.js';
-import { run } from './run.js';
-import { cut, integer, percent, short, table } from './table.js';
+import { inspect, unfitFrom, usableFrom, type Inspection, type Verdict } from '../inspect/index.js';
 import type { TransferOptions } from '../index.js';
+import { counted } from '../inspect/finding.js';
+import { vertexAreas } from '../inspect/geometry.js';
+import { diagonal } from '../gltf/overlay.js';
+import { inspectionPage } from './inspect-page.js';
+import { writeFiles } from './output.js';
+import type { Progress } from './progress.js';
+import { run, type Run } from './run.js';
+import { cut, integer, percent, short, table } from './table.js';
+import { perZone, type PerZone } from './zones.js';
 
 /** What `cagecast inspect` was asked for. */
 export interface InspectCommand {
   target: string;
   cage: string;
   json: boolean;
+  html?: string | undefined;
   options: Required<Pick<TransferOptions, 'preset' | 'threshold' | 'weldTolerance'>>;
 }
 
-/** Shares that `distances` reports. */
-const distanceShares = { p50: 0.5, p90: 0.9, p99: 0.99, max: 1 } as const;
-/** How far outside the cage a vertex may lie, as a share of the diagonal, before it counts as poking through. */
-const pokeThrough = 0.0025;
-/** The most of the exposed area that pokes through a good cage; of bad ones it was more than 0.12. */
-const mostOutside = 0.07;
-/** The most that a cage stands off its target at the median, as a share of the diagonal. */
-const farCage = 0.15;
-
-/** Something about the cage that its author should know. */
-export interface Finding {
-  level: 'bad' | 'note';
-  /** What is the matter, with its number. */
-  text: string;
-  /** What to do about it. */
-  advice: string;
-}
-
-/** Is this cage fit for this target? Lengths are shares of the target's diagonal where not said otherwise. */
-export interface Inspection {
-  fit: boolean;
-  findings: Finding[];
+/** What it prints as JSON: the inspection, and what it was made of. */
+export interface InspectionReport extends Inspection {
+  versions: { cagecast: string; node: string };
   target: { file: string; vertices: number; triangles: number; points: number; diagonal: number };
-  cage: { file: string; vertices: number; triangles: number } & CageShape;
+  cage: { file: string; vertices: number; triangles: number };
   options: InspectCommand['options'];
+  /** Vertices of the target in each zone. */
   counts: PerZone;
   /** Share of the target's area in each zone. */
   coverage: PerZone;
-  /**
-   * Share of the target that lies on the outer side of the cage: of its vertices, of its area, and, farther out than
-   * `pokeThrough`, of the area that nothing occludes and that lies over the cage, not beside its open borders.
-   */
-  outside: { vertices: number; area: number; exposedArea: number };
-  /** Distance from target to cage: quantiles over the vertices. */
-  distances: { p50: number; p90: number; p99: number; max: number };
-  segments: { points: number; exposedArea: number; coveredArea: number; coverage: number; culled: boolean }[];
 }
 
 /**
  * Finds out whether a cage fits a target.
- * @returns text for people, or JSON.
+ * @returns text for people, or JSON, and the verdict.
  * @throws {InputError} that names the file at fault.
  */
-export async function inspectCommand(command: InspectCommand, progress: Progress): Promise<string> {
-  const inspection = await inspect(command, progress);
-  return command.json ? JSON.stringify(inspection, null, 2) : describe(inspection);
+export async function inspectCommand(command: InspectCommand, progress: Progress): Promise<{ text: string; verdict: Verdict }> {
+  const done = await run(command.target, command.cage, command.options, progress);
+  progress.step('inspecting');
+  const report = makeReport(command, done);
+  if (command.html !== undefined) {
+    progress.step(`writing ${command.html}`);
+    writeFiles([{ path: command.html, data: inspectionPage(report, done) }]);
+  }
+  return { text: command.json ? JSON.stringify(report, null, 2) : describe(report, command.html), verdict: report.verdict };
 }
 
-async function inspect(command: InspectCommand, progress: Progress): Promise<Inspection> {
-  const { target, cage, result } = await run(command.target, command.cage, command.options, progress);
-  const { mesh } = target;
-  const vertices = mesh.positions.length / 3;
-  const size = diagonal(mesh.positions) || 1;
-  const areas = vertexAreas(mesh);
-  const total = areas.reduce((sum, area) => sum + area, 0) || 1;
-  const share = (sums: PerZone): PerZone => ({
-    cosmetic: sums.cosmetic / total,
-    occluded: sums.occluded / total,
-    uncovered: sums.uncovered / total,
-    culled: sums.culled / total,
-  });
-
-  const { signedDistances, onBorder } = sidesOf(cage.mesh, mesh, result);
-  let [outsideVertices, outsideArea, exposed, exposedOutside] = [0, 0, 0, 0];
-  signedDistances.forEach((distance, v) => {
-    if (distance > 0) {
-      ++outsideVertices;
-      outsideArea += areas[v]!;
-    }
-    if (result.zones[v] === 1 || onBorder[v] === 1) return;
-    exposed += areas[v]!;
-    if (distance > pokeThrough * size) exposedOutside += areas[v]!;
-  });
-  const [p50 = 0, p90 = 0, p99 = 0, max = 0] = quantiles(result.distances, Object.values(distanceShares)).map((d) => d / size);
-
-  const counts = perZone(result.zones);
-  const inspection: Inspection = {
-    fit: true,
-    findings: [],
+function makeReport({ target: targetFile, cage: cageFile, options }: InspectCommand, { target, cage, result }: Run): InspectionReport {
+  const { mesh, parts } = target;
+  const areas = perZone(result.zones, vertexAreas(mesh));
+  const total = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled || 1;
+  return {
+    ...inspect(cage.mesh, mesh, { ...options, result, parts }),
+    versions: { cagecast: CAGECAST_VERSION, node: process.versions.node },
     target: {
-      file: command.target,
-      vertices,
+      file: targetFile,
+      vertices: mesh.positions.length / 3,
       triangles: mesh.indices.length / 3,
       points: result.segmentStats.reduce((sum, { points }) => sum + points, 0),
-      diagonal: size,
+      diagonal: diagonal(mesh.positions),
     },
-    cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3, ...cageShape(cage.mesh) },
-    options: command.options,
-    counts,
-    coverage: share(perZone(result.zones, areas)),
-    outside: { vertices: outsideVertices / vertices, area: outsideArea / total, exposedArea: exposed > 0 ? exposedOutside / exposed : 0 },
-    distances: { p50, p90, p99, max },
-    segments: result.segmentStats.map(({ points, exposedArea, coveredArea, coverage, culled }) => ({ points, exposedArea, coveredArea, coverage, culled })),
+    cage: { file: cageFile, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
+    options,
+    counts: perZone(result.zones),
+    coverage: { cosmetic: areas.cosmetic / total, occluded: areas.occluded / total, uncovered: areas.uncovered / total, culled: areas.culled / total },
   };
-  inspection.findings = findings(inspection);
-  inspection.fit = inspection.findings.every(({ level }) => level !== 'bad');
-  return inspection;
 }
 
-function findings({ outside, coverage, distances, cage, counts }: Inspection): Finding[] {
-  const found: Finding[] = [];
-  const add = (level: Finding['level'], text: string, advice: string) => found.push({ level, text, advice });
-  if (outside.area > 0.8) {
-    add('bad', `${percent(outside.area)} of the target lies on the outer side of the cage: it is inside out, or somewhere else`, 'turn its triangles round, so that they are counter-clockwise seen from outside; check its place and unit');
-  } else if (outside.exposedArea > mostOutside) {
-    add('bad', `${percent(outside.exposedArea)} of the exposed target pokes out of the cage by more than ${percent(pokeThrough)} of its diagonal`, 'move the cage onto the target, or grow it along its normals');
-  }
-  if (distances.p50 > farCage) add('bad', `half of the target is farther than ${percent(distances.p50)} of its diagonal from the cage`, 'check that both have the same place and unit; fit the cage more closely');
-  if (counts.cosmetic === 0) add('bad', 'nothing of the target may be painted', 'see the zones above for the reason');
-  else if (coverage.culled > 0.3) add('note', `${percent(coverage.culled)} of the target is culled, as too little of its segments is covered`, 'if some of it should be painted, close holes of the cage over it, or lower --threshold');
-  if (cage.degenerateTriangles > 0) add('note', `${integer(cage.degenerateTriangles)} of the cage's triangles have no area and take no part`, 'remove them');
-  if (cage.nonManifoldEdges > 0) add('note', `${integer(cage.nonManifoldEdges)} edges of the cage belong to more than two triangles`, 'remove inner faces');
-  if (cage.uvsOutside > 0) add('note', `${integer(cage.uvsOutside)} of the cage's UVs lie outside 0..1`, 'fine with a repeating texture; otherwise move them in');
-  return found;
-}
+/** The most rows of a table that people read. */
+const mostRows = 15;
+const conclusions: Record<Verdict, string> = {
+  good: 'GOOD: the cage fits.',
+  usable: 'USABLE: the cage fits, with reservations.',
+  unfit: 'UNFIT: the cage does not fit.',
+};
 
-function describe({ fit, findings, target, cage, counts, coverage, outside, distances, segments }: Inspection): string {
-  const most = 20;
+function describe(report: InspectionReport, html: string | undefined): string {
+  const { verdict, findings, target, cage, counts, coverage, placement, inside, inward, topology, uv, holes, segments } = report;
+  const { outside, distances } = placement;
+  const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const listed = segments
     .map((segment, s) => ({ ...segment, s }))
     .sort((a, b) => b.exposedArea - a.exposedArea || a.s - b.s)
-    .slice(0, most);
-  const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
+    .slice(0, mostRows);
+  const more = (n: number) => (n > mostRows ? `, the ${mostRows} largest` : '');
   return [
     `target  ${target.file}: ${integer(target.vertices)} vertices (${integer(target.points)} points), ${integer(target.triangles)} triangles, diagonal ${short(target.diagonal)}`,
-    `cage    ${cage.file}: ${integer(cage.vertices)} vertices, ${integer(cage.triangles)} triangles, ${integer(cage.openLoops)} holes or open rims`,
+    `cage    ${cage.file}: ${integer(cage.vertices)} vertices, ${integer(cage.triangles)} triangles`,
     '',
     'zones',
     table([['', 'vertices', 'area'], ...zones.map((zone) => [zone, integer(counts[zone]), percent(coverage[zone])])]),
     '',
-    `outside the cage: ${percent(outside.vertices)} of the vertices, ${percent(outside.area)} of the area, ${percent(outside.exposedArea)} of the exposed area by more than ${percent(pokeThrough)} of the diagonal`,
-    `distance to the cage, as a share of the diagonal: median ${percent(distances.p50)}, 90 % within ${percent(distances.p90)}, 99 % within ${percent(distances.p99)}, most ${percent(distances.max)}`,
+    'fit (lengths as shares of the diagonal)',
+    `  outside the cage: ${percent(outside.vertices)} of the vertices, ${percent(outside.area)} of the area; ${percent(outside.exposedArea)} of the exposed area by more than 0.25 %`,
+    `  distance to the cage: median ${percent(distances.p50)}, 90 % within ${percent(distances.p90)}, 99 % within ${percent(distances.p99)}, most ${percent(distances.max)}`,
+    `  cage vertices inside the target: ${integer(inside.vertices)} (${percent(inside.area)} by area)`,
     '',
-    `segments: ${integer(segments.length)}${segments.length > most ? `, the ${most} with the most exposed area` : ''}`,
+    'cage',
+    `  turned inward: ${integer(inward.triangles.length)} triangles; without area: ${integer(topology.degenerateTriangles)}; edges of more than two triangles: ${integer(topology.nonManifoldEdges)}; cracks: ${integer(topology.crackEdges + topology.slits)}; pieces: ${integer(topology.pieces)}`,
+    `  UVs: ${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}, ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that twice; ${integer(uv.outside.vertices)} vertices outside 0..1; ${integer(uv.withoutArea.triangles)} triangles without area`,
+    '',
+    `holes: ${integer(holes.length)}${more(holes.length)}`,
+    holes.length === 0
+      ? ''
+      : table([
+          ['beneath', 'kind', 'size', 'perimeter', 'cut off'],
+          ...holes.slice(0, mostRows).map(({ beneath, kind, diagonal: size, perimeter, cutOff }) => [
+            cut(beneath.slice(0, 3).map(({ part, share }) => `${part} ${Math.round(100 * share)} %`).join(', ') || 'nothing', 60),
+            kind,
+            percent(size),
+            percent(perimeter),
+            percent(cutOff),
+          ]),
+        ]),
+    '',
+    `segments: ${integer(segments.length)}${more(segments.length)}`,
     table([
-      ['segment', 'points', 'exposed E', 'covered C', 'F = C/E', ''],
-      ...listed.map(({ s, points, exposedArea, coveredArea, coverage: f, culled }) => [cut(String(s), 12), integer(points), short(exposedArea), short(coveredArea), f.toFixed(3), culled ? 'culled' : '']),
+      ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', ''],
+      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, culled }) => [cut(part, 40), String(s), integer(points), short(exposedArea), short(coveredArea), f.toFixed(3), culled ? 'culled' : '']),
     ]),
     '',
-    ...findings.flatMap(({ level, text, advice }) => [`${level === 'bad' ? 'BAD' : 'note'}: ${text}`, `  → ${advice}`]),
-    fit ? 'The cage fits.' : 'The cage does not fit.',
-  ].join('\n');
+    conclusions[verdict],
+    ...findings.flatMap(({ weight, sentence, advice }) => [`${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${sentence}.`, `  → ${advice}`]),
+    html === undefined ? '' : `wrote ${html}`,
+  ]
+    .join('\n')
+    .replace(/\n{3,}/g, '\n\n')
+    .trimEnd();
 }

@@ -9,6 +9,7 @@ import { transferCommand } from './transfer-command.js';
 /** Exit codes. */
 const unusable = 1;
 const wrongUsage = 2;
+const unfit = 3;
 
 const progress = new Progress();
 
@@ -61,7 +62,7 @@ Examples:
   cagecast transfer head.glb --cage cage.glb -o head-with-uvs.glb --report report.json
   cagecast inspect head.glb --cage cage.glb
 
-Exit codes: 0 done, 1 an input is unusable, 2 wrong usage.`,
+Exit codes: 0 done, 1 an input is unusable, 2 wrong usage, 3 inspect finds the cage unfit.`,
   );
 
 common(program.command('transfer'))
@@ -94,11 +95,27 @@ Examples:
 common(program.command('inspect'))
   .description('is this cage fit for this target? numbers, causes, what to do')
   .option('--json', 'print JSON', false)
-  .addHelpText('after', '\nExample:\n  cagecast inspect head.glb --cage cage.glb --json')
-  .action(async (target: string, flags: CommonFlags & { json: boolean }) => {
-    const text = await inspectCommand({ target, cage: flags.cage, json: flags.json, options: optionsOf(flags) }, progress);
+  .addOption(new Option('--html <REPORT.html>', 'where to write a page with pictures').argParser(endingIn('.html')))
+  .addHelpText(
+    'after',
+    `
+The verdict is good, usable (fits, with reservations) or unfit, with the reasons in the order of their weight.
+Exit codes: 0 good or usable, 1 an input is unusable, 2 wrong usage, 3 unfit.
+
+Examples:
+  cagecast inspect head.glb --cage cage.glb
+  cagecast inspect head.glb --cage cage.glb --html report.html
+  cagecast inspect head.glb --cage cage.glb --json`,
+  )
+  .action(async (target: string, flags: CommonFlags & { json: boolean; html?: string }, command: Command) => {
+    const { cage, json, html } = flags;
+    if (html !== undefined && [target, cage].some((path) => resolve(path) === resolve(html))) {
+      command.error(`${resolve(html)} would be written over another file of this command`, { exitCode: wrongUsage });
+    }
+    const { text, verdict } = await inspectCommand({ target, cage, json, html, options: optionsOf(flags) }, progress);
     progress.clear();
     console.log(text);
+    if (verdict === 'unfit') process.exitCode = unfit;
   });
 
 // A reader that has seen enough, as `head` has, is no failure.

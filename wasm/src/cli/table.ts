@@ -1,14 +1,11 @@
+export { percent } from '../inspect/finding.js';
+
 /** Lays rows out in columns; all but the first are set to the right. */
 export function table(rows: readonly (readonly string[])[], indent = '  '): string {
   const widths = (rows[0] ?? []).map((_, column) => Math.max(...rows.map((row) => row[column]?.length ?? 0)));
   return rows
     .map((row) => indent + row.map((cell, column) => (column === 0 ? cell.padEnd(widths[0]!) : cell.padStart(widths[column]!))).join('  ').trimEnd())
     .join('\n');
-}
-
-/** "12.3 %" */
-export function percent(share: number): string {
-  return `${(100 * share).toFixed(1)} %`;
 }
 
 /** "5,316" */

@@ -1,11 +1,12 @@
 import { basename } from 'node:path';
 import type { TransferOptions } from '../index.js';
 import { placeOf } from '../gltf/extract.js';
-import { imageIsWhole, imageType } from '../gltf/image.js';
 import { InputError } from '../gltf/input-error.js';
 import { readBytes } from '../gltf/read.js';
-import { diagonal, writeTransfer, zoneAttribute, type Added, type Paint } from '../gltf/write.js';
-import { perZone, vertexAreas, type PerZone } from './analysis.js';
+import { diagonal, paintOf, zoneAttribute, type Paint } from '../gltf/overlay.js';
+import { writeTransfer, type Added } from '../gltf/write.js';
+import { vertexAreas } from '../inspect/geometry.js';
+import { perZone, type PerZone } from './zones.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { run, type Run } from './run.js';
@@ -47,11 +48,7 @@ export async function transferCommand(command: TransferCommand, progress: Progre
 
 async function readPaint(path: string): Promise<Paint> {
   try {
-    const bytes = await readBytes(path);
-    const mimeType = imageType(bytes);
-    if (mimeType !== 'image/png' && mimeType !== 'image/jpeg') throw new InputError('is neither a PNG nor a JPEG image');
-    if (!imageIsWhole(bytes)) throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image has no end`);
-    return { name: basename(path), mimeType, bytes };
+    return paintOf(await readBytes(path), basename(path));
   } catch (error) {
     throw error instanceof InputError ? error.in(path) : error;
   }

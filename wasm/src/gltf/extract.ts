@@ -1,27 +1,15 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../mesh.js';
 import { InputError } from './input-error.js';
-import { determinant, identity, localMatrix, multiply, type Matrix } from './matrix.js';
+import { identity, localMatrix, multiply } from './matrix.js';
+import { decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 
-/** One primitive of one node, and where its elements lie in the concatenated arrays. */
-export interface Part {
-  /** Its node's name, with its material's where that adds something: "head", "head/skin". */
-  name: string;
-  /** Its place in the file's JSON. */
+/** A piece, and its place in the file's JSON. */
+export interface Part extends Piece {
   node: number;
   mesh: number;
   primitive: number;
-  /** From its own space to the scene's, column by column; the identity for a skinned mesh. */
-  matrix: Matrix;
-  firstVertex: number;
-  vertexCount: number;
-  firstTriangle: number;
-  triangleCount: number;
-  /** Its positions as stored, decoded, 3 per vertex. */
-  localPositions: Float32Array;
-  /** Its triangles among its own vertices, with the winding that they have in the file. */
-  localIndices: Uint32Array;
 }
 
 /** All triangles of a glTF's scene as arrays, and the parts they come from. */
@@ -32,10 +20,6 @@ export interface Extracted {
   parts: Part[];
 }
 
-const triangles = 4;
-const triangleStrip = 5;
-const triangleFan = 6;
-
 /**
  * Collects the triangles of a glTF's default scene (else its first), depth first, in the scene's space.
  *
@@ -43,25 +27,14 @@ const triangleFan = 6;
  * double precision and rounded last; the winding of mirrored parts is turned, so that outside stays outside. A skinned
  * mesh is taken as it is stored, in its bind pose: as the format demands, the transform of its node does not move it.
  * Points and lines are left out, and so are morphs.
-
  * @throws {InputError} that names the file, the primitive and the element.
  */
 export function extract(file: GltfFile): Extracted {
   try {
     const parts = listParts(file);
-    const last = parts.at(-1);
-    const vertexCount = last ? last.firstVertex + last.vertexCount : 0;
-    const triangleCount = last ? last.firstTriangle + last.triangleCount : 0;
-    const positions = new Float32Array(3 * vertexCount);
-    const indices = new Uint32Array(3 * triangleCount);
-    const groups = new Uint32Array(vertexCount);
-    parts.forEach((part, group) => {
-      placePositions(part, positions);
-      placeIndices(part, indices);
-      groups.fill(group, part.firstVertex, part.firstVertex + part.vertexCount);
-    });
-    const uvs = readUvs(file, parts, vertexCount);
-    return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts };
+    const mesh = joinPieces(parts);
+    const uvs = readUvs(file, parts, mesh.positions.length / 3);
+    return { mesh: { ...mesh, ...(uvs && { uvs }) }, parts };
   } catch (error) {
     throw error instanceof InputError ? error.in(file.path) : error;
   }
@@ -142,70 +115,17 @@ function accessorOf(file: GltfFile, place: string, mesh: number, primitive: numb
 function readPositions(file: GltfFile, place: string, mesh: number, primitive: number): Float32Array | undefined {
   const accessor = accessorOf(file, place, mesh, primitive, 'POSITION');
   if (accessor === undefined) return undefined;
-  if (accessor.getElementSize() !== 3) throw new InputError(`${place}.attributes.POSITION is ${accessor.getType()}, not VEC3`);
-  const positions = decodeFloats(accessor);
-  const bad = positions.findIndex((value) => !Number.isFinite(value));
-  if (bad >= 0) throw new InputError(`${place}: POSITION of vertex ${Math.floor(bad / 3)} has ${positions[bad]}, which is not a finite number`);
-  return positions;
-}
-
-/** All components of an accessor as 32-bit floats, with normalised integers decoded. */
-export function decodeFloats(accessor: Accessor): Float32Array {
-  const array = accessor.getArray()!;
-  if (array instanceof Float32Array) return array;
-  if (!accessor.getNormalized()) return Float32Array.from(array as ArrayLike<number>);
-  const size = accessor.getElementSize();
-  const out = new Float32Array(array.length);
-  const element: number[] = [];
-  for (let i = 0; i < accessor.getCount(); ++i) out.set(accessor.getElement(i, element), i * size);
-  return out;
+  return decodePositions(place, accessor);
 }
 
 /** The triangles of a primitive, strips and fans expanded; `undefined` if it is of points or lines. */
 function readTriangles(file: GltfFile, place: string, mesh: number, primitive: number, vertexCount: number): Uint32Array | undefined {
-  const { indices, mode = triangles } = file.json.meshes![mesh]!.primitives[primitive]!;
-  if (mode < triangles || mode > triangleFan) return undefined;
+  const { indices, mode = 4 } = file.json.meshes![mesh]!.primitives[primitive]!;
+  if (!hasTriangles(mode)) return undefined;
   const accessor = indices === undefined ? undefined : file.geometry.getRoot().listAccessors()[indices];
   const array = accessor?.getArray() ?? undefined;
   if (indices !== undefined && array === undefined) throw new InputError(`${place}.indices has no data`);
-  const corners = array ? Uint32Array.from(array as ArrayLike<number>) : Uint32Array.from({ length: vertexCount }, (_, v) => v);
-  const bad = corners.findIndex((vertex) => vertex >= vertexCount);
-  if (bad >= 0) throw new InputError(`${place}: indices[${bad}] = ${corners[bad]} is out of range (${vertexCount} vertices)`);
-  if (mode === triangles) {
-    if (corners.length % 3 !== 0) throw new InputError(`${place} has ${corners.length} corners, not 3 per triangle`);
-    return corners;
-  }
-  const expanded = new Uint32Array(3 * Math.max(corners.length - 2, 0));
-  for (let t = 0; t < expanded.length / 3; ++t) {
-    // As the specification orders them: every other triangle of a strip turns; a fan goes round its first vertex.
-    const [a, b, c] = mode === triangleStrip ? [t, t + 1 + (t % 2), t + 2 - (t % 2)] : [t + 1, t + 2, 0];
-    expanded.set([corners[a]!, corners[b]!, corners[c]!], 3 * t);
-  }
-  return expanded;
-}
-
-function placePositions({ matrix: m, localPositions, firstVertex }: Part, out: Float32Array): void {
-  if (m === identity || m.every((value, i) => value === identity[i])) {
-    out.set(localPositions, 3 * firstVertex);
-    return;
-  }
-  for (let at = 0; at < localPositions.length; at += 3) {
-    const [x, y, z] = [localPositions[at]!, localPositions[at + 1]!, localPositions[at + 2]!];
-    const to = 3 * firstVertex + at;
-    out[to] = m[0]! * x + m[4]! * y + m[8]! * z + m[12]!;
-    out[to + 1] = m[1]! * x + m[5]! * y + m[9]! * z + m[13]!;
-    out[to + 2] = m[2]! * x + m[6]! * y + m[10]! * z + m[14]!;
-  }
-}
-
-function placeIndices({ matrix, localIndices, firstVertex, firstTriangle }: Part, out: Uint32Array): void {
-  const mirrored = determinant(matrix) < 0;
-  for (let at = 0; at < localIndices.length; at += 3) {
-    const to = 3 * firstTriangle + at;
-    out[to] = firstVertex + localIndices[at]!;
-    out[to + (mirrored ? 2 : 1)] = firstVertex + localIndices[at + 1]!;
-    out[to + (mirrored ? 1 : 2)] = firstVertex + localIndices[at + 2]!;
-  }
+  return decodeTriangles(place, array ?? null, mode, vertexCount);
 }
 
 function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Array | undefined {

@@ -1,27 +1,11 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { TransferResult } from '../transfer.js';
 import { dracoOf } from './check.js';
-import { decodeFloats, type Extracted, type Part } from './extract.js';
+import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
-import { determinant } from './matrix.js';
+import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
+import { decodeFloats } from './pieces.js';
 import type { GltfFile } from './read.js';
-
-/** The attribute that holds each vertex's `Zone`, as a float: 0 may be painted, all else is a Non-Cosmetic Zone. */
-export const zoneAttribute = '_NCZ';
-
-/**
- * How far the overlay stands off the surface, as a share of the target's diagonal. Two equal surfaces would do in
- * viewers that draw a later one of equal depth on top, as most do, but path tracers and strict depth tests make noise
- * of them. This is half a millimetre on a metre: not seen, and beyond the resolution of a 24-bit depth buffer.
- */
-const overlayOffset = 5e-4;
-
-/** The texture to show: a PNG or JPEG file's bytes, in the cage's UVs. */
-export interface Paint {
-  name: string;
-  mimeType: string;
-  bytes: Uint8Array;
-}
 
 /** What was added to a primitive. */
 export interface Added {
@@ -54,7 +38,7 @@ export async function writeTransfer(
     const primitive = primitives[part.primitive]!;
     const uvs = result.uvs.slice(2 * part.firstVertex, 2 * (part.firstVertex + part.vertexCount));
     const zones = result.zones.subarray(part.firstVertex, part.firstVertex + part.vertexCount);
-    const uvSet = freeUvSet(primitive.attributes);
+    const uvSet = freeUvSet((semantic) => primitive.attributes[semantic] !== undefined);
     const uvAccessor = writer.addAttribute(uvs, 2);
     primitive.attributes[uvSet] = uvAccessor;
     primitive.attributes[zoneAttribute] = writer.addAttribute(Float32Array.from(zones), 1);
@@ -81,13 +65,6 @@ function separateMeshes(json: GLTF.IGLTF, parts: Part[]): Map<number, number> {
   return meshOfNode;
 }
 
-/** The first free UV set: the numbers of sets must not have gaps. */
-function freeUvSet(attributes: Record<string, number>): string {
-  let set = 0;
-  while (attributes[`TEXCOORD_${set}`] !== undefined) ++set;
-  return `TEXCOORD_${set}`;
-}
-
 /** Makes the overlays that show a texture. */
 class Painter {
   readonly #writer: GlbWriter;
@@ -106,12 +83,11 @@ class Painter {
 
   /** A primitive of the cosmetic triangles of `base`, moved and deformed as it is; none if there are none. */
   overlay(part: Part, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
-    const corners = part.localIndices.filter((_, corner) => cosmetic[Math.floor(corner / 3)] === 1);
+    const corners = cosmeticCorners(part, cosmetic);
     if (corners.length === 0) return undefined;
     const attributes: Record<string, number> = { POSITION: this.#positions(part), TEXCOORD_0: uvAccessor };
     for (const [semantic, accessor] of Object.entries(base.attributes)) {
-      // Not its colours: they would tint the texture. Not its tangents: the material has no use for them.
-      if (semantic === 'NORMAL' || /^(JOINTS|WEIGHTS)_\d+$/.test(semantic)) attributes[semantic] = this.#shared(base, semantic, accessor);
+      if (isOverlaid(semantic)) attributes[semantic] = this.#shared(base, semantic, accessor);
     }
     return {
       attributes,
@@ -134,16 +110,13 @@ class Painter {
 
   /** The part's positions, moved a little off the surface along their normals. */
   #positions(part: Part): number {
-    const step = this.#offset / Math.cbrt(Math.abs(determinant(part.matrix)) || 1);
-    const positions = part.localPositions.slice();
-    const normals = weldedNormals(part);
+    const positions = overlayPositions(part, this.#offset);
     const min = [Infinity, Infinity, Infinity];
     const max = [-Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < positions.length; ++i) {
-      const value = (positions[i] = Math.fround(positions[i]! + step * normals[i]!));
+    positions.forEach((value, i) => {
       min[i % 3] = Math.min(min[i % 3]!, value);
       max[i % 3] = Math.max(max[i % 3]!, value);
-    }
+    });
     return this.#writer.addAttribute(positions, 3, { min, max });
   }
 
@@ -166,43 +139,4 @@ class Painter {
     }
     return number;
   }
-}
-
-/**
- * Unit normals, area-weighted, 3 numbers per vertex, the same for all vertices in one place: an overlay that is moved
- * along them does not open at seams. Zero where triangles cancel out.
- */
-function weldedNormals({ localPositions: p, localIndices }: Part): Float64Array {
-  const places = new Map<string, number>();
-  const place = Uint32Array.from({ length: p.length / 3 }, (_, v) => {
-    const key = `${p[3 * v]} ${p[3 * v + 1]} ${p[3 * v + 2]}`;
-    if (!places.has(key)) places.set(key, v);
-    return places.get(key)!;
-  });
-  const sums = new Float64Array(p.length);
-  for (let t = 0; t < localIndices.length; t += 3) {
-    const [a, b, c] = [3 * localIndices[t]!, 3 * localIndices[t + 1]!, 3 * localIndices[t + 2]!];
-    const u = [0, 1, 2].map((k) => p[b + k]! - p[a + k]!) as [number, number, number];
-    const v = [0, 1, 2].map((k) => p[c + k]! - p[a + k]!) as [number, number, number];
-    const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    for (const corner of [a, b, c]) for (let k = 0; k < 3; ++k) sums[3 * place[corner / 3]! + k]! += normal[k]!;
-  }
-  const out = new Float64Array(p.length);
-  for (let v = 0; v < place.length; ++v) {
-    const from = 3 * place[v]!;
-    const length = Math.hypot(sums[from]!, sums[from + 1]!, sums[from + 2]!);
-    if (length > 0) for (let k = 0; k < 3; ++k) out[3 * v + k] = sums[from + k]! / length;
-  }
-  return out;
-}
-
-/** The diagonal of the points' box. */
-export function diagonal(positions: Float32Array): number {
-  const min = [Infinity, Infinity, Infinity];
-  const max = [-Infinity, -Infinity, -Infinity];
-  positions.forEach((value, i) => {
-    min[i % 3] = Math.min(min[i % 3]!, value);
-    max[i % 3] = Math.max(max[i % 3]!, value);
-  });
-  return positions.length > 0 ? Math.hypot(max[0]! - min[0]!, max[1]! - min[1]!, max[2]! - min[2]!) : 0;
 }

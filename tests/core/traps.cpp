@@ -1,0 +1,190 @@
+#include "traps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace cagecast::scenes {
+namespace {
+
+float distance(Point a, Point b) {
+  const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+/// The same triangles over no more vertices than they need.
+Mesh trimmed(const Mesh& mesh) {
+  constexpr std::uint32_t kUnused = 0xffffffff;
+  std::vector<std::uint32_t> places(mesh.vertexCount(), kUnused);
+  Mesh result;
+  for (const std::uint32_t v : mesh.indices) {
+    if (places[v] == kUnused) places[v] = result.addVertex(mesh.vertex(v), mesh.uvs[v * 2], mesh.uvs[v * 2 + 1]);
+    result.indices.push_back(places[v]);
+  }
+  return result;
+}
+
+/// Adds a part of which each vertex is wanted as a function of its position says.
+template <typename Wish>
+void addBy(Trap& trap, const Mesh& mesh, Wish wish) {
+  const Mesh part = trimmed(mesh);
+  append(trap.scene.target, part);
+  for (std::size_t v = 0; v < part.vertexCount(); ++v) trap.truth.push_back(wish(part.vertex(v)));
+}
+
+/// Adds a part of which all is wanted alike.
+void add(Trap& trap, const Mesh& part, Wanted wanted) {
+  addBy(trap, part, [&](Point) { return wanted; });
+}
+
+/// From 0 to 1 between two values, straight.
+float ramp(float x, float from, float to) { return std::clamp((x - from) / (to - from), 0.0f, 1.0f); }
+
+/// A unit sphere's point to that of a figure `size` times as thick: a trunk, a neck, a head.
+Point onFigure(Point p, float size) {
+  const float h = p[1];
+  const float neck = 1 - 0.72f * ramp(h, 0.3f, 0.5f) + 0.22f * ramp(h, 0.55f, 0.65f);
+  const float thick = 0.8f * neck;
+  // What is above and below grows with the size as the sides do.
+  return {p[0] * thick + (size - 1) * p[0] * 0.8f, 1.4f * h + (size - 1) * h * 0.8f, p[2] * thick + (size - 1) * p[2] * 0.8f};
+}
+
+constexpr Point kEyes[] = {{0.12f, 1.17f, 0.235f}, {-0.12f, 1.17f, 0.235f}};
+constexpr Point kMouth{0, 0.98f, 0.29f};
+
+float fromMouth(Point p) { return distance({p[0] * 0.6f, p[1] * 1.6f, p[2]}, {kMouth[0], kMouth[1] * 1.6f, kMouth[2]}); }
+
+/// Whether a point is where a figure's eyes or mouth are open.
+bool inOpening(Point p, float grow) {
+  return distance(p, kEyes[0]) < 0.075f * grow || distance(p, kEyes[1]) < 0.075f * grow || fromMouth(p) < 0.08f * grow;
+}
+
+Mesh figure(float size, int cells) {
+  return mapped(ellipsoid({}, {1, 1, 1}, cells), [&](Point p) { return onFigure(p, size); });
+}
+
+}  // namespace
+
+Trap clothed(bool hooded) {
+  Trap trap;
+  trap.scene.name = hooded ? "hooded" : "clothed";
+  trap.scene.cage = without(figure(1.12f, 24), [](Point p) { return inOpening(p, 1.35f); });
+  const auto leftFree = [&](Point p, float margin) {
+    if (hooded) return p[2] > 0.12f + margin && p[1] > 0.8f + margin;
+    return p[1] > 0.62f + margin;
+  };
+  // The clothes end between what is surely free and what is surely covered.
+  addBy(trap, without(figure(1, 40), [](Point p) { return inOpening(p, 1); }),
+        [&](Point p) { return leftFree(p, 0.08f) ? Wanted::painted : Wanted::either; });
+  add(trap, without(figure(1.05f, 32), [&](Point p) { return leftFree(p, 0); }), Wanted::painted);
+  for (const Point& eye : kEyes) add(trap, ellipsoid({eye[0], eye[1], eye[2] - 0.05f}, {0.07f, 0.07f, 0.07f}, 6), Wanted::bare);
+  add(trap, ellipsoid({0, 0.975f, 0.16f}, {0.09f, 0.03f, 0.13f}, 6), Wanted::bare);
+  for (const float y : {-0.4f, -0.2f, 0.0f, 0.2f}) {
+    const float x = y / 1.4f;
+    add(trap, ellipsoid({0, y, 0.8f * std::sqrt(1 - x * x) + 0.045f}, {0.02f, 0.02f, 0.012f}, 2), Wanted::either);
+  }
+  return trap;
+}
+
+Trap twins(std::uint64_t seed) {
+  Trap trap;
+  trap.scene.name = "twins " + std::to_string(seed);
+  Random random(seed);
+  const auto uneven = [&](const Mesh& mesh, float by) {
+    std::map<Point, Point> moved;  // What was one point stays one.
+    return mapped(mesh, [&](Point p) {
+      const auto [at, isNew] = moved.try_emplace(p, p);
+      for (std::size_t k = 0; isNew && k < 3; ++k) at->second[k] += random.between(-by, by);
+      return at->second;
+    });
+  };
+  const auto inWindow = [](Point p, float grow) {
+    return std::abs(p[0]) > 0.4f && p[1] > 0.18f - 0.02f * grow && p[1] < 0.38f + 0.02f * grow && std::abs(p[2]) < 0.6f + 0.02f * grow;
+  };
+  const auto shell = [&](float grow, int cells) { return ellipsoid({}, {0.9f + grow, 0.55f + grow, 1.9f + grow}, cells); };
+  trap.scene.cage = without(uneven(shell(0.08f, 20), 5e-3f), [&](Point p) { return inWindow(p, 0) || p[1] < -0.4f; });
+  addBy(trap, without(uneven(shell(0, 36), 5e-4f), [&](Point p) { return inWindow(p, 0) || p[1] < -0.25f; }), [&](Point p) {
+    const bool behindSills = p[1] > -0.17f && p[1] < -0.03f && std::abs(p[0]) > 0.4f && std::abs(p[2]) < 1.3f;
+    const bool besideHole = inWindow(p, 4) || p[1] < -0.2f;  // The cage ends there.
+    return behindSills || besideHole ? Wanted::either : Wanted::painted;
+  });
+  const auto pair = [&](const Mesh& right, Wanted wanted) {
+    for (const float side : {1.0f, -1.0f}) {
+      Mesh part = uneven(mapped(right, [&](Point p) { return Point{side * p[0], p[1], p[2]}; }), 5e-4f);
+      // Mirrored triangles are turned round, so that they still face outward.
+      for (std::size_t i = 0; side < 0 && i < part.indices.size(); i += 3) std::swap(part.indices[i + 1], part.indices[i + 2]);
+      add(trap, part, wanted);
+      trap.twins.push_back(trap.scene.target.groups.back());
+    }
+  };
+  // Sills: bars along the sides, of several lengths, each pair farther out than the one before.
+  float z = -1.05f, length = 0.1f;
+  for (const float out : {-0.02f, -0.0115f, -0.0105f, -0.0103f, -0.0101f, -0.0099f, 0.0f, 0.02f}) {
+    const float x = 0.9f * std::sqrt(1 - z * z / 3.61f - 0.01f / 0.3025f);
+    pair(box({x - 0.02f + out, -0.1f, z}, {0.03f, 0.04f, length}, 3), Wanted::either);
+    z += 0.3f;
+    length += 0.005f;
+  }
+  // Linings: the inside of the doors, up to the lower edge of the windows or a little above it.
+  for (const float top : {0.16f, 0.2f, 0.24f}) {
+    const Mesh inner = without(shell(-0.03f - 0.05f * top, 36), [&](Point p) {
+      return p[0] < 0.3f || p[1] < -0.15f || p[1] > top || p[2] < -0.6f || p[2] > 0.6f;
+    });
+    Mesh facing = inner;  // Towards the inside.
+    for (std::size_t i = 0; i < facing.indices.size(); i += 3) std::swap(facing.indices[i + 1], facing.indices[i + 2]);
+    pair(facing, Wanted::bare);
+  }
+  return trap;
+}
+
+Trap doubled(bool own) {
+  Scene plain = head(24);
+  // A fold under the brow, that goes in and up.
+  const auto depthAt = [](Point p) { return p[2] < 0 ? 0 : ramp(p[1], 0.35f, 0.6f) * (1 - ramp(p[1], 0.6f, 0.75f)); };
+  std::vector<float> depths;
+  std::size_t v = 0;
+  for (; v < plain.target.vertexCount(); ++v)
+    depths.push_back(plain.target.groups[v] == plain.target.groups[0] ? depthAt(plain.target.vertex(v)) : 0);
+  v = 0;
+  plain.target = mapped(plain.target, [&](Point p) {
+    const float depth = depths[v++], in = 1 - 0.35f * depth;
+    return Point{p[0] * in, p[1] + 0.12f * depth, p[2] * in};
+  });
+  Trap trap;
+  trap.scene = std::move(plain);
+  trap.scene.name = own ? "doubled with own vertices" : "doubled";
+  Mesh& target = trap.scene.target;
+  for (v = 0; v < target.vertexCount(); ++v) {
+    // Nothing is asked of the bottom of the fold, nor of what lies beside a hole of the cage.
+    float besides = 1e9f;
+    for (const Point hole : {Point{0.35f, 0.25f, 0.85f}, Point{-0.35f, 0.25f, 0.85f}, Point{0, -0.4f, 0.95f}})
+      besides = std::min(besides, distance(target.vertex(v), hole));
+    const Wanted skin = depths[v] > 0.7f || besides < 0.32f ? Wanted::either : Wanted::painted;
+    trap.truth.push_back(target.groups[v] == target.groups[0] ? skin : Wanted::bare);
+  }
+  const std::size_t triangles = target.triangleCount();
+  std::uint32_t shift = 0;
+  if (own) {
+    shift = static_cast<std::uint32_t>(target.vertexCount());
+    for (v = 0; v < shift; ++v) {
+      target.addVertex(target.vertex(v), target.uvs[v * 2], target.uvs[v * 2 + 1], target.groups[v]);
+      trap.truth.push_back(trap.truth[v]);
+    }
+  }
+  for (std::size_t t = 0; t < triangles; ++t)
+    target.addTriangle(shift + target.indices[t * 3], shift + target.indices[t * 3 + 2], shift + target.indices[t * 3 + 1]);
+  return trap;
+}
+
+std::vector<Trap> traps() {
+  std::vector<Trap> all;
+  all.push_back(clothed(false));
+  all.push_back(clothed(true));
+  all.push_back(twins(1));
+  all.push_back(twins(2));
+  all.push_back(doubled(false));
+  all.push_back(doubled(true));
+  return all;
+}
+
+}  // namespace cagecast::scenes

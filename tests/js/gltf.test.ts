@@ -1,0 +1,143 @@
+import assert from 'node:assert/strict';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { Document, NodeIO, type Primitive } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { CagecastError, init, transfer, type Mesh, type TransferResult } from 'cagecast';
+import { cagecast as cagecastTransform } from 'cagecast/gltf';
+import { PNG } from 'pngjs';
+import { cagecast, GlbMaker, glbOf, validate } from './glb.js';
+import { ball, head, modelFolders } from './scenes.js';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-gltf-'));
+const at = (name: string) => join(folder, name);
+const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
+const scene = head(2, 10);
+const paint = PNG.sync.write(new PNG({ width: 4, height: 4 }));
+const documentOf = (glb: Uint8Array): Promise<Document> => io.readBinary(glb);
+const primitives = (document: Document): Primitive[] => document.getRoot().listMeshes().flatMap((mesh) => mesh.listPrimitives());
+const arrayOf = (primitive: Primitive, semantic: string) => primitive.getAttribute(semantic)!.getArray()!;
+
+before(async () => {
+  await init();
+  writeFileSync(at('paint.png'), paint);
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+describe('document.transform(cagecast(…))', () => {
+  test('writes the UVs and zones of the package, and keeps the rest', async () => {
+    const document = await documentOf(glbOf(scene.target));
+    let seen: TransferResult | undefined;
+    await document.transform(cagecastTransform({ cage: scene.cage, onResult: (result) => (seen = result) }));
+    const expected = transfer(scene.cage, { ...scene.target, groups: undefined });
+    const [primitive, ...others] = primitives(document);
+    assert.equal(others.length, 0);
+    assert.deepEqual(arrayOf(primitive!, 'TEXCOORD_1'), expected.uvs);
+    assert.deepEqual([...arrayOf(primitive!, '_NCZ')], [...expected.zones]);
+    assert.deepEqual(arrayOf(primitive!, 'TEXCOORD_0'), scene.target.uvs);
+    assert.deepEqual(seen!.zones, expected.zones);
+  });
+
+  test('options are those of transfer', async () => {
+    const document = await documentOf(glbOf(scene.target));
+    await document.transform(cagecastTransform({ cage: await documentOf(glbOf(scene.cage)), threshold: 1 }));
+    assert.deepEqual([...arrayOf(primitives(document)[0]!, '_NCZ')], [...transfer(scene.cage, { ...scene.target, groups: undefined }, { threshold: 1 }).zones]);
+  });
+
+  for (const model of modelFolders()) {
+    test(`${model}: the same as the command writes, and valid`, async () => {
+      const [target, cage] = [join(model, 'target.glb'), join(model, 'cage.glb')];
+      assert.equal(cagecast('transfer', target, '--cage', cage, '--texture', at('paint.png'), '-o', at('command.glb')).status, 0);
+      const document = await io.read(target);
+      await document.transform(cagecastTransform({ cage: await io.read(cage), texture: paint }));
+      await io.write(at('function.glb'), document);
+      assert.deepEqual(await validate(at('function.glb')), []);
+      const [ours, theirs] = [primitives(await io.read(at('function.glb'))), primitives(await io.read(at('command.glb')))];
+      assert.equal(ours.length, theirs.length);
+      ours.forEach((primitive, p) => {
+        assert.deepEqual(primitive.listSemantics().sort(), theirs[p]!.listSemantics().sort());
+        for (const semantic of primitive.listSemantics()) assert.deepEqual(arrayOf(primitive, semantic), arrayOf(theirs[p]!, semantic), semantic);
+        assert.deepEqual([...primitive.getIndices()!.getArray()!], [...theirs[p]!.getIndices()!.getArray()!]);
+        const [a, b] = [primitive.getMaterial(), theirs[p]!.getMaterial()];
+        assert.deepEqual([a?.getName(), a?.getAlphaMode(), a?.getRoughnessFactor(), a?.getDoubleSided()], [b?.getName(), b?.getAlphaMode(), b?.getRoughnessFactor(), b?.getDoubleSided()]);
+      });
+    });
+  }
+
+  test('a mesh that two nodes show, one of them mirrored, becomes one for each', async () => {
+    const maker = new GlbMaker();
+    const mesh = maker.mesh(ball([0, 0, 0], () => 0.2, 8, 12));
+    maker.node({ mesh, name: 'left', translation: [-0.6, 0, 0] });
+    maker.node({ mesh, name: 'right', translation: [0.6, 0, 0], scale: [-1, 1, 1] });
+    const document = await documentOf(maker.finish());
+    let names: string[] = [];
+    await document.transform(cagecastTransform({ cage: scene.cage, texture: paint, onResult: (_, parts) => (names = parts.map(({ name }) => name)) }));
+    assert.deepEqual(names, ['left', 'right']);
+    const [left, right] = document.getRoot().listNodes().map((node) => node.getMesh()!);
+    assert.notEqual(left, right);
+    assert.deepEqual([left, right].map((one) => one!.listPrimitives().length), [2, 2]);
+    assert.notDeepEqual(arrayOf(left!.listPrimitives()[0]!, 'TEXCOORD_1'), arrayOf(right!.listPrimitives()[0]!, 'TEXCOORD_1'));
+    await io.write(at('twins.glb'), document);
+    assert.deepEqual(await validate(at('twins.glb')), []);
+  });
+
+  test('skins and morph targets go with the overlay', async () => {
+    const maker = new GlbMaker();
+    const mesh = maker.mesh(scene.target);
+    const primitive = maker.json.meshes[mesh]!.primitives[0]!;
+    const vertices = scene.target.positions.length / 3;
+    primitive.attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
+    primitive.attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    primitive.attributes['COLOR_0'] = maker.accessor(new Float32Array(3 * vertices).fill(1), 'VEC3');
+    primitive.targets = [{ POSITION: maker.accessor(scene.target.positions.map((x) => 0.1 * x), 'VEC3') }];
+    maker.json.meshes[mesh]!.weights = [0.5];
+    maker.json.skins = [{ joints: [1] }];
+    maker.node({ mesh, skin: 0, translation: [9, 9, 9] }); // which a skin ignores
+    maker.node({ name: 'bone' });
+    const document = await documentOf(maker.finish());
+    await document.transform(cagecastTransform({ cage: scene.cage, texture: paint }));
+    const [base, overlay] = primitives(document) as [Primitive, Primitive];
+    for (const semantic of ['JOINTS_0', 'WEIGHTS_0']) assert.equal(overlay.getAttribute(semantic), base.getAttribute(semantic));
+    assert.equal(overlay.getAttribute('COLOR_0'), null);
+    assert.deepEqual(overlay.listTargets(), base.listTargets());
+    assert.ok(overlay.getIndices()!.getCount() > 0);
+    await io.write(at('skinned.glb'), document);
+    assert.deepEqual(await validate(at('skinned.glb')), []);
+  });
+
+  test('what cannot be used is said in one error, and the document stays as it was', async () => {
+    const fails = async (make: () => Promise<{ target?: Uint8Array; cage?: Document | Mesh; texture?: Uint8Array; threshold?: number }>, code: string, message: RegExp) => {
+      const { target = glbOf(scene.target), cage = scene.cage, ...more } = await make();
+      const document = await documentOf(target);
+      const before = await io.writeJSON(document);
+      await assert.rejects(document.transform(cagecastTransform({ cage, ...more })), (error) => {
+        assert.ok(error instanceof CagecastError);
+        assert.equal(error.code, code);
+        assert.match(error.message, message);
+        return true;
+      });
+      assert.deepEqual((await io.writeJSON(document)).json, before.json);
+    };
+    const broken = scene.target.positions.slice();
+    broken[16] = NaN;
+    await fails(async () => ({ target: glbOf({ ...scene.target, positions: broken }) }), 'badArgument', /^cagecast: target: meshes\[0\]\.primitives\[0\]: POSITION of vertex 5 has NaN/);
+    await fails(async () => ({ cage: await documentOf(glbOf({ positions: scene.cage.positions, indices: scene.cage.indices })) }), 'missingUvs', /cage\.uvs is missing/);
+    await fails(async () => ({ cage: new Document() }), 'emptyMesh', /cage has no vertices/);
+    await fails(async () => ({ texture: new Uint8Array(100) }), 'badArgument', /^cagecast: texture: is neither a PNG nor a JPEG image/);
+    await fails(async () => ({ texture: paint.subarray(0, 50) }), 'badArgument', /^cagecast: texture: is truncated/);
+    await fails(async () => ({ threshold: 2 }), 'badThreshold', /threshold = 2/);
+  });
+
+  test('compressed files of the wild can be targets', { skip: process.env['CAGECAST_ASSETS'] === undefined && 'CAGECAST_ASSETS is not set' }, async () => {
+    const path = join(process.env['CAGECAST_ASSETS']!, 'formats/cat_meshopt_quantized.glb');
+    assert.ok(existsSync(path));
+    const { MeshoptDecoder, MeshoptEncoder } = await import('meshoptimizer');
+    await Promise.all([MeshoptDecoder.ready, MeshoptEncoder.ready]);
+    const reader = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({ 'meshopt.decoder': MeshoptDecoder, 'meshopt.encoder': MeshoptEncoder });
+    const document = await reader.readBinary(new Uint8Array(readFileSync(path)));
+    await document.transform(cagecastTransform({ cage: scene.cage }));
+    assert.ok(primitives(document).every((primitive) => primitive.getAttribute('_NCZ') !== null));
+  });
+});

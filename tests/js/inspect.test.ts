@@ -1,0 +1,252 @@
+import assert from 'node:assert/strict';
+import { before, describe, test } from 'node:test';
+import { init, transfer, type Mesh } from 'cagecast';
+import { inspect, type FindingCode, type Inspection } from 'cagecast/inspect';
+import { ball, head, join3d } from './scenes.js';
+
+before(init);
+
+type Whole = { [K in keyof Mesh]-?: NonNullable<Mesh[K]> };
+const { cage, target } = head(1, 16) as { cage: Whole; target: Whole };
+const parts = [0, 1, 2].map((group) => ({
+  name: ['skin', 'eye', 'tongue'][group]!,
+  firstVertex: target.groups.indexOf(group),
+  vertexCount: target.groups.filter((one) => one === group).length,
+}));
+const look = (changed: Partial<Mesh>, on: Mesh = target): Inspection => inspect({ ...cage, ...changed }, on, { parts });
+const codes = ({ findings }: Inspection): FindingCode[] => findings.map(({ code }) => code);
+const find = ({ findings }: Inspection, code: FindingCode) => findings.find((finding) => finding.code === code)!;
+const moved = (by: (p: [number, number, number]) => readonly number[]): Float32Array => {
+  const out = cage.positions.slice();
+  for (let v = 0; v < out.length; v += 3) out.set(by([out[v]!, out[v + 1]!, out[v + 2]!]), v);
+  return out;
+};
+const diagonal = (() => {
+  const extent = (k: number) => {
+    const values = [...target.positions].filter((_, i) => i % 3 === k);
+    return Math.max(...values) - Math.min(...values);
+  };
+  return Math.hypot(extent(0), extent(1), extent(2));
+})();
+
+describe('inspect', () => {
+  test('finds a cage that fits good, and tells what it is like', () => {
+    const inspection = look({});
+    assert.equal(inspection.verdict, 'good', JSON.stringify(inspection.findings));
+    assert.equal(inspection.topology.pieces, 1);
+    assert.deepEqual(inspection.inward, { share: 0, triangles: [] });
+    assert.equal(inspection.inside.vertices, 0);
+    assert.equal(inspection.placement.outside.vertices, 0);
+    const [hole, ...others] = inspection.holes;
+    assert.equal(others.length, 0);
+    assert.equal(hole!.kind, 'hole');
+    assert.ok(hole!.beneath.some(({ part }) => part === 'eye'), JSON.stringify(hole));
+    assert.deepEqual(inspection.segments.map(({ part }) => part), ['skin', 'eye', 'tongue']);
+    // One chart round a ball, cut along a meridian; its poles are fans.
+    assert.equal(inspection.uv.charts, 1);
+    assert.ok(inspection.uv.seams.edges > 0);
+    assert.ok(inspection.uv.used > 0.8 && inspection.uv.used <= 1);
+    assert.equal(inspection.uv.overlap.share, 0);
+  });
+
+  test('takes a result that is known, and gives plain data', () => {
+    const result = transfer(cage, target);
+    const again = inspect(cage, target, { result, parts });
+    assert.deepEqual(again, look({}));
+    assert.deepEqual(structuredClone(again), again);
+    assert.deepEqual(inspect(cage, target).segments.map(({ part }) => part), ['group 0', 'group 1', 'group 2']);
+  });
+
+  test('findings come with the heaviest first, a sentence, an advice and numbers', () => {
+    const { findings, verdict } = look({ positions: moved((p) => p.map((x) => 0.9 * x)), uvs: cage.uvs.map((x) => x + 0.5) });
+    assert.equal(verdict, 'unfit');
+    assert.ok(findings.length > 1);
+    findings.forEach(({ weight, sentence, advice, numbers }, i) => {
+      assert.ok(weight <= (findings[i - 1]?.weight ?? Infinity));
+      assert.match(sentence, /^[A-Z0-9].*[^.]$/);
+      assert.match(advice, /^[A-Z].*\.$/);
+      for (const value of Object.values(numbers).flat()) assert.ok(Number.isFinite(value));
+    });
+  });
+});
+
+describe('a cage out of place', () => {
+  test('moved: by how much, and back', () => {
+    for (const axis of [0, 1, 2]) {
+      const by = 0.08 * diagonal;
+      const inspection = look({ positions: moved((p) => p.map((x, k) => (k === axis ? x + by : x))) });
+      assert.equal(inspection.verdict, 'unfit');
+      assert.equal(codes(inspection)[0], 'cageMisplaced');
+      const { move } = inspection.placement.correction;
+      assert.ok(Math.abs(move[axis]! + 0.08) < 0.02, `axis ${axis}: ${move.join()}`);
+      for (const other of [0, 1, 2]) if (other !== axis) assert.ok(Math.abs(move[other]!) < 0.02, move.join());
+    }
+  });
+
+  test('turned: the correction turns it back', () => {
+    // A long head, so that a turn can be seen.
+    const long = (mesh: Whole): Whole => ({ ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 2 * x : x)) });
+    const [wide, around] = [long(target), long(cage)];
+    const angle = (20 * Math.PI) / 180;
+    const turned = around.positions.slice();
+    for (let v = 0; v < turned.length; v += 3) {
+      turned[v] = around.positions[v]! * Math.cos(angle) - around.positions[v + 1]! * Math.sin(angle);
+      turned[v + 1] = around.positions[v]! * Math.sin(angle) + around.positions[v + 1]! * Math.cos(angle);
+    }
+    const inspection = inspect({ ...around, positions: turned }, wide);
+    assert.equal(inspection.verdict, 'unfit');
+    assert.equal(codes(inspection)[0], 'cageMisplaced');
+    const { turn } = inspection.placement.correction;
+    assert.ok(turn[2] < -10 && turn[2] > -30, turn.join());
+  });
+
+  test('too small, too large, elsewhere', () => {
+    assert.equal(codes(look({ positions: moved((p) => p.map((x) => 0.8 * x)) }))[0], 'cageTooSmall');
+    assert.ok(look({ positions: moved((p) => p.map((x) => 0.8 * x)) }).inside.area > 0.5);
+    assert.equal(codes(look({ positions: moved((p) => p.map((x) => 3 * x)) }))[0], 'cageTooFar');
+    assert.equal(codes(look({ positions: moved((p) => p.map((x) => 100 * x)) }))[0], 'cageTooFar');
+    assert.equal(codes(look({ positions: moved(([x, y, z]) => [x + 50, y, z]) }))[0], 'cageElsewhere');
+  });
+
+  test('the verdict does not depend on the unit', () => {
+    for (const scale of [1e-3, 1e3]) {
+      const by = (mesh: Whole) => ({ ...mesh, positions: mesh.positions.map((x) => scale * x) });
+      for (const shift of [0, 0.1]) {
+        const there = { ...cage, positions: moved(([x, y, z]) => [x + shift * diagonal, y, z]) };
+        assert.deepEqual(codes(inspect(by(there), by(target))), codes(inspect(there, target)));
+      }
+    }
+  });
+});
+
+describe('normals', () => {
+  test('all turned inward: that is the one reason, all else is judged as if they were not', () => {
+    const indices = cage.indices.map((_, i, all) => all[i % 3 === 0 ? i : i - (i % 3) + 3 - (i % 3)]!);
+    const inspection = look({ indices });
+    assert.equal(inspection.verdict, 'unfit');
+    assert.equal(codes(inspection)[0], 'normalsInward');
+    assert.ok(Math.abs(inspection.inward.share - 1) < 1e-9);
+    assert.deepEqual(inspection.placement, look({}).placement);
+  });
+
+  test('a few turned inward are found, and which', () => {
+    const indices = cage.indices.slice();
+    for (const t of [20, 21, 22]) [indices[3 * t], indices[3 * t + 1]] = [indices[3 * t + 1]!, indices[3 * t]!];
+    const inspection = look({ indices });
+    assert.deepEqual(inspection.inward.triangles, [20, 21, 22]);
+    assert.equal(find(inspection, 'normalsInward').numbers['triangles'], 3);
+    assert.equal(inspection.verdict, 'usable');
+  });
+
+  test('flat pieces are judged by the target', () => {
+    const plate = (z: number): Whole => {
+      const [positions, uvs, indices]: [number[], number[], number[]] = [[], [], []];
+      for (let y = 0; y <= 8; ++y) for (let x = 0; x <= 8; ++x) positions.push(x / 8, y / 8, z), uvs.push(x / 8, y / 8);
+      for (let y = 0; y < 8; ++y) for (let x = 0; x < 8; ++x) indices.push(9 * y + x, 9 * y + x + 1, 9 * y + x + 10, 9 * y + x, 9 * y + x + 10, 9 * y + x + 9);
+      return { positions: new Float32Array(positions), uvs: new Float32Array(uvs), indices: new Uint32Array(indices), groups: new Uint32Array(81) };
+    };
+    const above = plate(0.05);
+    assert.equal(inspect(above, plate(0)).inward.share, 0);
+    assert.ok(inspect({ ...above, indices: above.indices.slice().reverse() }, plate(0)).inward.share > 1 - 1e-9);
+  });
+});
+
+describe('the surface', () => {
+  test('triangles without area, doubled triangles', () => {
+    const flat = look({ indices: Uint32Array.from([...cage.indices, 5, 5, 6]) });
+    assert.equal(flat.topology.degenerateTriangles, 1);
+    assert.equal(flat.verdict, 'good');
+    const doubled = look({ indices: Uint32Array.from([...cage.indices, ...cage.indices.slice(60, 90)]) });
+    assert.ok(doubled.topology.nonManifoldEdges >= 10);
+    assert.equal(doubled.verdict, 'usable');
+    assert.ok(!codes(doubled).includes('normalsInward'));
+  });
+
+  test('a seam that does not meet is a crack', () => {
+    // The meridian where the UVs meet: the last column of every ring is moved by a hair.
+    const positions = cage.positions.slice();
+    for (let ring = 1; ring < 10; ++ring) positions[3 * (19 * ring + 18) + 1]! += 1e-6;
+    const inspection = look({ positions });
+    assert.ok(inspection.topology.crackEdges >= 8, JSON.stringify(inspection.topology));
+    assert.ok(codes(inspection).includes('cracks'));
+    assert.equal(look({}).topology.crackEdges, 0);
+  });
+});
+
+describe('UVs', () => {
+  test('outside 0..1: a few, in another tile, in pixels', () => {
+    const tile = look({ uvs: cage.uvs.map((x, i) => (i % 2 === 0 ? x + 1 : x)) });
+    assert.equal(tile.verdict, 'usable');
+    assert.ok(tile.uv.outside.share > 0.9);
+    const pixels = look({ uvs: cage.uvs.map((x) => 1024 * x) });
+    assert.equal(pixels.verdict, 'unfit');
+    assert.equal(codes(pixels)[0], 'uvsOutside');
+  });
+
+  test('without area', () => {
+    const inspection = look({ uvs: cage.uvs.map(() => 0.5) });
+    assert.equal(inspection.verdict, 'unfit');
+    assert.equal(codes(inspection)[0], 'uvsWithoutArea');
+    assert.ok(inspection.uv.withoutArea.share > 0.999);
+  });
+
+  test('mirrored: most of the texture is used twice, the cage is usable', () => {
+    const inspection = look({ uvs: cage.uvs.map((x, i) => (i % 2 === 0 ? Math.min(x, 1 - x) : x)) });
+    assert.equal(inspection.verdict, 'usable');
+    // All but the hole, which has no mirror image, and the serrations at the poles.
+    assert.ok(inspection.uv.overlap.share > 0.75, String(inspection.uv.overlap.share));
+    assert.equal(inspection.uv.overlap.layers, 2);
+  });
+
+  test('in crumbs: every triangle a chart', () => {
+    const corners = [...cage.indices];
+    const side = Math.ceil(Math.sqrt(corners.length / 3));
+    const crumbs: Mesh = {
+      positions: Float32Array.from(corners.flatMap((v) => [...cage.positions.subarray(3 * v, 3 * v + 3)])),
+      indices: Uint32Array.from(corners.keys()),
+      uvs: Float32Array.from(corners.flatMap((_, i) => {
+        const t = Math.floor(i / 3);
+        return [((t % side) + [0.1, 0.9, 0.1][i % 3]!) / side, (Math.floor(t / side) + [0.1, 0.1, 0.9][i % 3]!) / side];
+      })),
+    };
+    const inspection = inspect(crumbs, target);
+    assert.equal(inspection.uv.charts, corners.length / 3);
+    assert.equal(inspection.uv.overlap.share, 0);
+    assert.equal(inspection.verdict, 'usable');
+    assert.ok(codes(inspection).includes('uvsInPieces'));
+  });
+});
+
+describe('holes and segments', () => {
+  test('a hole over skin alone is pointed out', () => {
+    const skin = ball([0, 0, 0], () => 1, 24, 48);
+    const inspection = inspect(cage, skin);
+    assert.ok(codes(inspection).includes('holeUnexplained'), JSON.stringify(inspection.holes));
+    assert.equal(inspection.verdict, 'usable');
+  });
+
+  test('a border over nothing is an end of the cage', () => {
+    // The lower half of both is gone.
+    const upper = (mesh: Mesh): Mesh => ({
+      ...mesh,
+      indices: Uint32Array.from(mesh.indices).filter((_, i) => [0, 1, 2].every((k) => mesh.positions[3 * mesh.indices[i - (i % 3) + k]! + 2]! > -0.05)),
+    });
+    const shell = ball([0, 0, 0], () => 1.1, 16, 24);
+    const { holes } = inspect(upper(shell), upper(ball([0, 0, 0], () => 1, 16, 24)));
+    assert.deepEqual(holes.map(({ kind }) => kind), ['end']);
+  });
+
+  test('a segment near the threshold is named', () => {
+    const { segments } = look({});
+    const eye = segments.find(({ part }) => part === 'eye')!;
+    const inspection = inspect(cage, target, { parts, threshold: Math.min(1, eye.coverage + 0.02) });
+    assert.match(find(inspection, 'segmentNearThreshold').sentence, /"eye" \(F = /);
+  });
+
+  test('a target of one triangle, and one without area, can be looked at', () => {
+    const tiny: Mesh = { positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]), indices: new Uint32Array([0, 1, 2]) };
+    assert.equal(inspect(cage, tiny).segments.length, 1);
+    assert.doesNotThrow(() => inspect(cage, { ...tiny, positions: new Float32Array(9) }));
+    assert.doesNotThrow(() => inspect(cage, join3d(tiny, target)));
+  });
+});

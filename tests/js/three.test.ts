@@ -1,0 +1,180 @@
+import assert from 'node:assert/strict';
+import { before, describe, test } from 'node:test';
+import {
+  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float32BufferAttribute, Group, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture, Vector3,
+} from 'three';
+import { CagecastError, classify, init, project, transfer, Zone, type Mesh } from 'cagecast';
+import { applyTransfer, extract } from 'cagecast/three';
+import { ball, head, join3d } from './scenes.js';
+
+before(init);
+
+const scene = head(3, 10);
+const geometryOf = ({ positions, indices, uvs }: Mesh): BufferGeometry => {
+  const geometry = new BufferGeometry().setIndex(new BufferAttribute(Uint32Array.from(indices), 1)).setAttribute('position', new BufferAttribute(positions.slice(), 3));
+  return uvs ? geometry.setAttribute('uv', new BufferAttribute(uvs.slice(), 2)) : geometry;
+};
+const meshOf = (mesh: Mesh): ThreeMesh<BufferGeometry, MeshStandardMaterial> => new ThreeMesh(geometryOf(mesh), new MeshStandardMaterial({ roughness: 0.3 }));
+const attribute = (geometry: BufferGeometry, name: string) => geometry.getAttribute(name).array as Float32Array;
+
+describe('extract', () => {
+  test('a geometry, a mesh and a scene give the arrays that transfer takes', () => {
+    const single = { positions: scene.target.positions, indices: scene.target.indices, uvs: scene.target.uvs, groups: new Uint32Array(scene.target.positions.length / 3) };
+    assert.deepEqual(extract(geometryOf(scene.target)).mesh, single);
+    assert.deepEqual(extract(meshOf(scene.target)).mesh, single);
+    assert.deepEqual(extract(new Group().add(meshOf(scene.target))).mesh, single);
+  });
+
+  test('meshes of a scene are joined, moved, and a group each; mirrored ones keep their outside', () => {
+    const small = ball([0, 0, 0], () => 0.2, 6, 9);
+    const left = meshOf(small);
+    left.position.x = -0.6;
+    left.name = 'left';
+    const right = meshOf(small);
+    right.position.x = 0.6;
+    right.scale.x = -1;
+    const { mesh, parts } = extract(new Group().add(left, right));
+    const vertices = small.positions.length / 3;
+    assert.deepEqual(parts.map(({ firstVertex, vertexCount }) => [firstVertex, vertexCount]), [[0, vertices], [vertices, vertices]]);
+    assert.equal(parts[0]!.name, 'left');
+    assert.deepEqual([...new Set(mesh.groups)], [0, 1]);
+    for (let t = 0; t < mesh.indices.length / 3; ++t) {
+      // Outside is away from the centre of each ball.
+      const [a, b, c] = [0, 1, 2].map((k) => new Vector3().fromArray(mesh.positions, 3 * mesh.indices[3 * t + k]!)) as [Vector3, Vector3, Vector3];
+      const normal = b.clone().sub(a).cross(c.clone().sub(a));
+      const centre = new Vector3(t < mesh.indices.length / 6 ? -0.6 : 0.6, 0, 0);
+      assert.ok(normal.dot(a.add(b).add(c).divideScalar(3).sub(centre)) >= 0, `triangle ${t}`);
+    }
+  });
+
+  test('material groups are groups', () => {
+    const box = new ThreeMesh(new BoxGeometry(), Array.from({ length: 6 }, () => new MeshStandardMaterial()));
+    assert.deepEqual([...new Set(extract(box).mesh.groups)], [0, 1, 2, 3, 4, 5]);
+    assert.deepEqual([...new Set(extract(new ThreeMesh(new BoxGeometry(), new MeshStandardMaterial())).mesh.groups)], [0]);
+  });
+
+  test('not indexed, interleaved and normalised attributes are read', () => {
+    const flat = geometryOf(scene.target).toNonIndexed();
+    assert.equal(extract(flat).mesh.indices.length, scene.target.indices.length);
+    const quantised = new BufferGeometry().setAttribute('position', new BufferAttribute(Int16Array.from([0, 0, 0, 32767, 0, 0, 0, 32767, 0]), 3, true));
+    assert.deepEqual([...extract(quantised).mesh.positions], [0, 0, 0, 1, 0, 0, 0, 1, 0]);
+  });
+
+  test('what cannot be read is named', () => {
+    const bad = geometryOf({ positions: new Float32Array(9), indices: new Uint32Array([0, 1, 7]) });
+    bad.name = 'broken';
+    assert.throws(() => extract(bad), (error) => error instanceof CagecastError && /target: "broken" has indices\[2\] = 7, which is out of range \(3 vertices\)/.test(error.message));
+    const odd = new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 0, 1, 0, 0], 3));
+    assert.throws(() => extract(odd, 'cage'), /cage: "geometry" has 2 corners, not 3 per triangle/);
+    assert.throws(() => applyTransfer(new Group(), meshOf(scene.cage)), (error) => error instanceof CagecastError && error.code === 'emptyMesh');
+  });
+});
+
+describe('applyTransfer', () => {
+  test('adds uv1 and _ncz, as transfer answers', () => {
+    const target = meshOf(scene.target);
+    const { result, overlays } = applyTransfer(target, meshOf(scene.cage));
+    const expected = transfer(scene.cage, { ...scene.target, groups: undefined });
+    assert.deepEqual(result.zones, expected.zones);
+    assert.deepEqual(attribute(target.geometry, 'uv1'), expected.uvs);
+    assert.deepEqual([...attribute(target.geometry, '_ncz')], [...expected.zones]);
+    assert.deepEqual(attribute(target.geometry, 'uv'), scene.target.uvs);
+    assert.deepEqual([overlays.length, target.children.length], [0, 0]);
+  });
+
+  test('with a texture it lays the cosmetic triangles over each mesh, sharing its vertices', () => {
+    const target = meshOf(scene.target);
+    const texture = new Texture();
+    const { result, overlays, update, dispose } = applyTransfer(target, meshOf(scene.cage), { texture, channel: 2 });
+    const [overlay] = overlays as [ThreeMesh<BufferGeometry, MeshStandardMaterial>];
+    assert.equal(overlay.parent, target);
+    assert.equal(texture.channel, 2);
+    assert.equal(overlay.material.map, texture);
+    assert.equal(overlay.material.roughness, 0.3);
+    assert.equal(overlay.geometry.getAttribute('position'), target.geometry.getAttribute('position'));
+    assert.equal(overlay.geometry.getAttribute('uv2'), target.geometry.getAttribute('uv2'));
+    const corners = [...scene.target.indices].filter((_, i) => result.cosmeticTriangles[Math.floor(i / 3)] === 1);
+    assert.deepEqual([...overlay.geometry.index!.array], corners);
+
+    // Another threshold.
+    const decided = classify(project(scene.cage, { ...scene.target, groups: undefined }), { threshold: 1 });
+    update(decided);
+    assert.deepEqual([...attribute(target.geometry, '_ncz')], [...decided.zones]);
+    assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
+    dispose();
+    assert.equal(target.children.length, 0);
+  });
+
+  test('applied again, it does not take its own overlays for the model', () => {
+    const target = new Group().add(meshOf(scene.target));
+    applyTransfer(target, meshOf(scene.cage), { texture: new Texture() });
+    assert.equal(applyTransfer(target, meshOf(scene.cage)).parts.length, 1);
+  });
+
+  test('a result from elsewhere is taken as it is', () => {
+    const target = meshOf(scene.target);
+    const known = transfer(extract(meshOf(scene.cage), 'cage').mesh, extract(target).mesh);
+    assert.equal(applyTransfer(target, meshOf(scene.cage), { result: known }).result, known);
+  });
+
+  test('a geometry that two meshes show is copied for the second', () => {
+    const geometry = geometryOf(ball([0, 0, 0], () => 0.2, 6, 9));
+    const meshes = [-0.6, 0.6].map((x) => {
+      const mesh = new ThreeMesh(geometry, new MeshStandardMaterial());
+      mesh.position.x = x;
+      return mesh;
+    });
+    applyTransfer(new Group().add(...meshes), meshOf(scene.cage), { texture: new Texture() });
+    assert.equal(meshes[0]!.geometry, geometry);
+    assert.notEqual(meshes[1]!.geometry, geometry);
+    assert.notDeepEqual(attribute(meshes[0]!.geometry, 'uv1'), attribute(meshes[1]!.geometry, 'uv1'));
+  });
+
+  test('morph targets go with the overlay', () => {
+    const target = meshOf(scene.target);
+    target.geometry.morphAttributes['position'] = [new BufferAttribute(scene.target.positions.map((x) => 0.5 * x), 3)];
+    target.geometry.morphTargetsRelative = true;
+    target.updateMorphTargets();
+    const { overlays: [overlay] } = applyTransfer(target, meshOf(scene.cage), { texture: new Texture() });
+    const vertex = overlay!.geometry.index!.getX(0);
+    for (const weight of [0, 1]) {
+      target.morphTargetInfluences![0] = weight;
+      const [a, b] = [target, overlay!].map((mesh) => mesh.getVertexPosition(vertex, new Vector3()));
+      assert.deepEqual(b, a);
+      assert.ok(Math.abs(a!.length() - (1 + 0.5 * weight) * new Vector3().fromArray(scene.target.positions, 3 * vertex).length()) < 1e-6);
+    }
+  });
+
+  test('skins go with the overlay; the target is taken in its bind pose', () => {
+    const vertices = scene.target.positions.length / 3;
+    const geometry = geometryOf(scene.target)
+      .setAttribute('skinIndex', new BufferAttribute(new Uint16Array(4 * vertices), 4))
+      .setAttribute('skinWeight', new BufferAttribute(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 4));
+    const bone = new Bone();
+    const target = new SkinnedMesh(geometry, new MeshStandardMaterial());
+    const root = new Group().add(bone, target);
+    target.bind(new Skeleton([bone]));
+    bone.quaternion.copy(new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), 1));
+    root.updateMatrixWorld(true);
+    const { result, overlays } = applyTransfer(root, meshOf(scene.cage), { texture: new Texture() });
+    assert.deepEqual(result.uvs, transfer(scene.cage, { ...scene.target, groups: undefined }).uvs);
+    const [overlay] = overlays as [SkinnedMesh];
+    assert.equal(overlay.skeleton, target.skeleton);
+    root.updateMatrixWorld(true);
+    const vertex = overlay.geometry.index!.getX(0);
+    const [rest, posed, painted] = [new Vector3().fromArray(scene.target.positions, 3 * vertex), target.getVertexPosition(vertex, new Vector3()), overlay.getVertexPosition(vertex, new Vector3())];
+    assert.ok(posed.distanceTo(rest) > 0.1);
+    assert.ok(painted.distanceTo(posed) < 1e-9);
+  });
+
+  test('the parts of a scene keep their own zones', () => {
+    const skin = ball([0, 0, 0], () => 1, 12, 20);
+    const tongue = ball([0, 0, 0], () => 0.3, 6, 9);
+    const target = new Group().add(meshOf(skin), meshOf(tongue));
+    const { result } = applyTransfer(target, meshOf(ball([0, 0, 0], () => 1.1, 10, 16)));
+    assert.deepEqual(result.zones, transfer(ball([0, 0, 0], () => 1.1, 10, 16), join3d(skin, tongue)).zones);
+    const [outer, inner] = target.children as [ThreeMesh, ThreeMesh];
+    assert.ok(attribute(outer.geometry, '_ncz').every((zone) => zone === Zone.Cosmetic));
+    assert.ok(attribute(inner.geometry, '_ncz').every((zone) => zone === Zone.Occluded));
+  });
+});

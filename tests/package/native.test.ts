@@ -1,0 +1,45 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, describe, test } from 'node:test';
+
+const prefix = mkdtempSync(join(tmpdir(), 'cagecast-native-'));
+after(() => rmSync(prefix, { recursive: true, force: true }));
+
+function run(command: string, ...args: string[]): string {
+  const { status, stdout, stderr } = spawnSync(command, args, { encoding: 'utf8' });
+  assert.equal(status, 0, `${command} ${args.join(' ')}:\n${stdout}${stderr}`);
+  return stdout;
+}
+
+// The same answer as examples/node/arrays.js prints.
+const expected = /^vertex 0: u = 0\.25, v = 0\.25, may be painted\nvertex 1: u = 0\.5, v = 0\.25, may be painted\n/;
+
+/** Configures and builds a project in a folder below build/, which the next run finds again. */
+function build(source: string, folder: string, ...options: string[]): string {
+  const out = join('build', folder);
+  run('cmake', '-S', source, '-B', out, '-G', 'Ninja', '-DCMAKE_BUILD_TYPE=Release', '--log-level=WARNING', ...options);
+  run('cmake', '--build', out, '-j2');
+  return out;
+}
+
+describe('examples/native', () => {
+  test('uses the sources, by add_subdirectory', () => {
+    const out = build('examples/native', 'example-sources', '-DCMAKE_DISABLE_FIND_PACKAGE_cagecast=ON');
+    assert.match(run(join(out, 'example')), expected);
+    // What a consumer does not ask for is not built.
+    const targets = run('cmake', '--build', out, '--target', 'help');
+    assert.doesNotMatch(targets, /cagecast_tests|cagecast_bench/);
+  });
+
+  test('uses the installed library, by find_package', () => {
+    const sources = join('build', 'example-sources');
+    build('examples/native', 'example-sources', '-DCMAKE_DISABLE_FIND_PACKAGE_cagecast=ON');
+    run('cmake', '--install', join(sources, 'cagecast'), '--component', 'cagecast', '--prefix', prefix);
+    const out = build('examples/native', 'example-installed', `-DCMAKE_PREFIX_PATH=${prefix}`, '--fresh');
+    assert.ok(readFileSync(join(out, 'CMakeCache.txt'), 'utf8').includes(`cagecast_DIR:PATH=${prefix}`));
+    assert.match(run(join(out, 'example')), expected);
+  });
+});

@@ -1,0 +1,155 @@
+import type { Document, Material, Mesh as DocumentMesh, Node, Primitive, Texture } from '@gltf-transform/core';
+import type { Mesh, TransferResult } from '../index.js';
+import { InputError } from './input-error.js';
+import { identity, localMatrix, multiply } from './matrix.js';
+import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
+import { decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
+
+/** A piece, and its place in the document. */
+export interface DocumentPart extends Piece {
+  node: Node;
+  mesh: DocumentMesh;
+  primitive: Primitive;
+}
+
+/** All triangles of a document's scene as arrays, and the parts they come from. */
+export interface ExtractedDocument {
+  /** With one group per part; with UVs if every primitive has a first set. */
+  mesh: Mesh & { indices: Uint32Array };
+  /** In the order of their vertices. */
+  parts: DocumentPart[];
+}
+
+/**
+ * Collects the triangles of a document's default scene (else its first), depth first, in the scene's space, by the same
+ * rules as the command does from a file: vertices keep their order, every primitive of every node is a group of its own,
+ * skinned meshes are taken in their bind pose.
+ * @throws {InputError} that names the primitive and the element.
+ */
+export function extractDocument(document: Document): ExtractedDocument {
+  const parts = listParts(document);
+  const mesh = joinPieces(parts);
+  const sets = parts.map(({ primitive }) => primitive.getAttribute('TEXCOORD_0'));
+  if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts };
+  const uvs = new Float32Array((mesh.positions.length / 3) * 2);
+  parts.forEach((part, p) => {
+    const set = sets[p]!;
+    if (set.getElementSize() !== 2) throw new InputError(`"${part.name}" has a TEXCOORD_0 of type ${set.getType()}, not VEC2`);
+    if (set.getCount() !== part.vertexCount) throw new InputError(`"${part.name}" has ${set.getCount()} TEXCOORD_0 for ${part.vertexCount} vertices`);
+    uvs.set(decodeFloats(set), 2 * part.firstVertex);
+  });
+  return { mesh: { ...mesh, uvs }, parts };
+}
+
+function listParts(document: Document): DocumentPart[] {
+  const root = document.getRoot();
+  const meshNumbers = new Map(root.listMeshes().map((mesh, m) => [mesh, m]));
+  const scene = root.getDefaultScene() ?? root.listScenes()[0];
+  const roots = scene ? scene.listChildren() : root.listNodes().filter((node) => node.getParentNode() === null);
+  const parts: DocumentPart[] = [];
+  const stack = roots.map((node) => ({ node, parent: identity })).reverse();
+  for (let next = stack.pop(); next; next = stack.pop()) {
+    const { node, parent } = next;
+    const matrix = multiply(parent, localMatrix({ translation: node.getTranslation(), rotation: node.getRotation(), scale: node.getScale() }));
+    for (const child of node.listChildren().reverse()) stack.push({ node: child, parent: matrix });
+    const mesh = node.getMesh();
+    mesh?.listPrimitives().forEach((primitive, p) => {
+      const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
+      const position = primitive.getAttribute('POSITION');
+      if (position === null || !hasTriangles(primitive.getMode())) return;
+      const localPositions = decodePositions(place, position);
+      const localIndices = decodeTriangles(place, primitive.getIndices()?.getArray() ?? null, primitive.getMode(), localPositions.length / 3);
+      const name = node.getName() || mesh.getName() || place;
+      const material = primitive.getMaterial()?.getName() ?? '';
+      const last = parts.at(-1);
+      parts.push({
+        name: material !== '' && material !== name && mesh.listPrimitives().length > 1 ? `${name}/${material}` : name,
+        node,
+        mesh,
+        primitive,
+        matrix: node.getSkin() === null ? matrix : identity,
+        firstVertex: last ? last.firstVertex + last.vertexCount : 0,
+        vertexCount: localPositions.length / 3,
+        firstTriangle: last ? last.firstTriangle + last.triangleCount : 0,
+        triangleCount: localIndices.length / 3,
+        localPositions,
+        localIndices,
+      });
+    });
+  }
+  return parts;
+}
+
+/**
+ * Adds what was transferred to a document, as the command does to a file: to every primitive a new UV set and `_NCZ`, and,
+ * with a texture, an overlay primitive of its cosmetic triangles. A mesh that several nodes show becomes one for each.
+ */
+export function addTransfer(document: Document, { mesh, parts }: ExtractedDocument, result: Pick<TransferResult, 'uvs' | 'zones' | 'cosmeticTriangles'>, paint?: Paint): void {
+  const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
+  const attribute = (array: Float32Array, type: 'SCALAR' | 'VEC2' | 'VEC3') =>
+    // A copy with a buffer of its own: views into one that is shared would be written whole, once for each.
+    document.createAccessor().setType(type).setArray(new Float32Array(array)).setBuffer(buffer);
+  const texture = paint && document.createTexture(paint.name).setMimeType(paint.mimeType).setImage(paint.bytes as Uint8Array<ArrayBuffer>);
+  const materials = new Map<string, Material>();
+  const offset = overlayOffset * diagonal(mesh.positions);
+  const primitiveOf = separatePrimitives(parts);
+
+  parts.forEach((part, p) => {
+    const { node, firstVertex, vertexCount, firstTriangle, triangleCount } = part;
+    const primitive = primitiveOf[p]!;
+    const uvs = attribute(result.uvs.subarray(2 * firstVertex, 2 * (firstVertex + vertexCount)), 'VEC2');
+    primitive.setAttribute(freeUvSet((semantic) => primitive.getAttribute(semantic) !== null), uvs);
+    primitive.setAttribute(zoneAttribute, attribute(Float32Array.from(result.zones.subarray(firstVertex, firstVertex + vertexCount)), 'SCALAR'));
+    const corners = cosmeticCorners(part, result.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount));
+    if (!texture || corners.length === 0) return;
+
+    const overlay = document
+      .createPrimitive()
+      .setAttribute('POSITION', attribute(overlayPositions(part, offset), 'VEC3'))
+      .setAttribute('TEXCOORD_0', uvs)
+      .setIndices(document.createAccessor().setType('SCALAR').setArray(vertexCount < 65536 ? Uint16Array.from(corners) : corners as Uint32Array<ArrayBuffer>).setBuffer(buffer))
+      .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials));
+    for (const semantic of primitive.listSemantics()) if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
+    for (const morph of primitive.listTargets()) overlay.addTarget(morph);
+    node.getMesh()!.addPrimitive(overlay);
+  });
+}
+
+/** Gives every node that shows a mesh one of its own. @returns the primitive of each part. */
+function separatePrimitives(parts: readonly DocumentPart[]): Primitive[] {
+  const shownBy = new Map<DocumentMesh, Node>();
+  const copies = new Map<Node, Map<Primitive, Primitive>>();
+  return parts.map(({ node, mesh, primitive }) => {
+    const owner = shownBy.get(mesh);
+    if (owner === undefined) shownBy.set(mesh, node);
+    if (owner === undefined || owner === node) return primitive;
+    let copied = copies.get(node);
+    if (!copied) {
+      const own = mesh.clone();
+      copied = new Map(mesh.listPrimitives().map((original) => [original, original.clone()]));
+      for (const [original, copy] of copied) own.removePrimitive(original).addPrimitive(copy);
+      node.setMesh(own);
+      copies.set(node, copied);
+    }
+    return copied.get(primitive)!;
+  });
+}
+
+/** A material that shows the texture alone, as rough and as two-sided as the base's. */
+function materialOn(document: Document, texture: Texture, base: Material | null, made: Map<string, Material>): Material {
+  const roughness = base?.getRoughnessFactor() ?? 1;
+  const doubleSided = base?.getDoubleSided() ?? false;
+  const key = `${roughness} ${doubleSided}`;
+  let material = made.get(key);
+  if (!material) {
+    material = document
+      .createMaterial('Cagecast overlay')
+      .setAlphaMode('BLEND')
+      .setDoubleSided(doubleSided)
+      .setMetallicFactor(0)
+      .setRoughnessFactor(roughness)
+      .setBaseColorTexture(texture);
+    made.set(key, material);
+  }
+  return material;
+}

@@ -1,0 +1,92 @@
+import { firstInPlace } from '../inspect/geometry.js';
+import { imageIsWhole, imageType } from './image.js';
+import { InputError } from './input-error.js';
+import { determinant } from './matrix.js';
+import type { Piece } from './pieces.js';
+
+/** The attribute that holds each vertex's `Zone`, as a float: 0 may be painted, all else is a Non-Cosmetic Zone. */
+export const zoneAttribute = '_NCZ';
+
+/**
+ * How far the overlay stands off the surface, as a share of the target's diagonal. Two equal surfaces would do in
+ * viewers that draw a later one of equal depth on top, as most do, but path tracers and strict depth tests make noise
+ * of them. This is half a millimetre on a metre: not seen, and beyond the resolution of a 24-bit depth buffer.
+ */
+export const overlayOffset = 5e-4;
+
+/** The texture to show: a PNG or JPEG file's bytes, in the cage's UVs. */
+export interface Paint {
+  name: string;
+  mimeType: string;
+  bytes: Uint8Array;
+}
+
+/**
+ * Checks an image and says what it is.
+ * @throws {InputError} if it is neither a whole PNG nor a whole JPEG file.
+ */
+export function paintOf(bytes: Uint8Array, name = 'paint'): Paint {
+  const mimeType = imageType(bytes);
+  if (mimeType !== 'image/png' && mimeType !== 'image/jpeg') throw new InputError('is neither a PNG nor a JPEG image');
+  if (!imageIsWhole(bytes)) throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image has no end`);
+  return { name, mimeType, bytes };
+}
+
+/** The first free UV set, as the numbers of sets must not have gaps. */
+export function freeUvSet(has: (semantic: string) => boolean): string {
+  let set = 0;
+  while (has(`TEXCOORD_${set}`)) ++set;
+  return `TEXCOORD_${set}`;
+}
+
+/** The corners of those of a piece's triangles that may be painted; `cosmetic` is 1 per triangle. */
+export function cosmeticCorners({ localIndices }: Piece, cosmetic: Uint8Array): Uint32Array {
+  return localIndices.filter((_, corner) => cosmetic[Math.floor(corner / 3)] === 1);
+}
+
+/**
+ * Whether an overlay takes an attribute over from its base: what it is lit and moved by. Not colours, which would tint the
+ * texture, nor tangents, which its material has no use for.
+ */
+export const isOverlaid = (semantic: string): boolean => semantic === 'NORMAL' || /^(JOINTS|WEIGHTS)_\d+$/.test(semantic);
+
+/** The positions of an overlay: those of the piece, moved a little off the surface along their normals, by `offset` units of the scene. */
+export function overlayPositions(piece: Piece, offset: number): Float32Array {
+  const step = offset / Math.cbrt(Math.abs(determinant(piece.matrix)) || 1);
+  const normals = weldedNormals(piece);
+  return piece.localPositions.map((value, i) => value + step * normals[i]!);
+}
+
+/**
+ * Unit normals, area-weighted, 3 numbers per vertex, the same for all vertices in one place: an overlay that is moved
+ * along them does not open at seams. Zero where triangles cancel out.
+ */
+function weldedNormals({ localPositions: p, localIndices }: Piece): Float64Array {
+  const place = firstInPlace(p);
+  const sums = new Float64Array(p.length);
+  for (let t = 0; t < localIndices.length; t += 3) {
+    const [a, b, c] = [3 * localIndices[t]!, 3 * localIndices[t + 1]!, 3 * localIndices[t + 2]!];
+    const u = [0, 1, 2].map((k) => p[b + k]! - p[a + k]!) as [number, number, number];
+    const v = [0, 1, 2].map((k) => p[c + k]! - p[a + k]!) as [number, number, number];
+    const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    for (const corner of [a, b, c]) for (let k = 0; k < 3; ++k) sums[3 * place[corner / 3]! + k]! += normal[k]!;
+  }
+  const out = new Float64Array(p.length);
+  for (let v = 0; v < place.length; ++v) {
+    const from = 3 * place[v]!;
+    const length = Math.hypot(sums[from]!, sums[from + 1]!, sums[from + 2]!);
+    if (length > 0) for (let k = 0; k < 3; ++k) out[3 * v + k] = sums[from + k]! / length;
+  }
+  return out;
+}
+
+/** The diagonal of the points' box. */
+export function diagonal(positions: Float32Array): number {
+  const min = [Infinity, Infinity, Infinity];
+  const max = [-Infinity, -Infinity, -Infinity];
+  positions.forEach((value, i) => {
+    min[i % 3] = Math.min(min[i % 3]!, value);
+    max[i % 3] = Math.max(max[i % 3]!, value);
+  });
+  return positions.length > 0 ? Math.hypot(max[0]! - min[0]!, max[1]! - min[1]!, max[2]! - min[2]!) : 0;
+}

@@ -1,0 +1,115 @@
+import type { Accessor } from '@gltf-transform/core';
+import type { Mesh } from '../mesh.js';
+import { InputError } from './input-error.js';
+import { determinant, identity, type Matrix } from './matrix.js';
+
+/** One primitive of one node, and where its elements lie in the concatenated arrays. */
+export interface Piece {
+  /** Its node's name, with its material's where that adds something: "head", "head/skin". */
+  name: string;
+  /** From its own space to the scene's, column by column; the identity for a skinned mesh. */
+  matrix: Matrix;
+  firstVertex: number;
+  vertexCount: number;
+  firstTriangle: number;
+  triangleCount: number;
+  /** Its positions as stored, decoded, 3 per vertex. */
+  localPositions: Float32Array;
+  /** Its triangles among its own vertices, with the winding that they have in the file. */
+  localIndices: Uint32Array;
+}
+
+const triangles = 4;
+const triangleStrip = 5;
+const triangleFan = 6;
+
+/** Whether a primitive of this mode consists of triangles: a list, a strip or a fan. */
+export const hasTriangles = (mode: number): boolean => mode >= triangles && mode <= triangleFan;
+
+/**
+ * Joins pieces into arrays in the scene's space, a group for each: vertices keep their order, transforms are applied in
+ * double precision and rounded last, the winding of mirrored pieces is turned, so that outside stays outside.
+ */
+export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Array } {
+  const last = pieces.at(-1);
+  const positions = new Float32Array(3 * (last ? last.firstVertex + last.vertexCount : 0));
+  const indices = new Uint32Array(3 * (last ? last.firstTriangle + last.triangleCount : 0));
+  const groups = new Uint32Array(positions.length / 3);
+  pieces.forEach((piece, group) => {
+    placePositions(piece, positions);
+    placeIndices(piece, indices);
+    groups.fill(group, piece.firstVertex, piece.firstVertex + piece.vertexCount);
+  });
+  return { positions, indices, groups };
+}
+
+/**
+ * The positions of an accessor.
+ * @param place  Its primitive, for messages.
+ * @throws {InputError} that names the vertex.
+ */
+export function decodePositions(place: string, accessor: Accessor): Float32Array {
+  if (accessor.getElementSize() !== 3) throw new InputError(`${place}.attributes.POSITION is ${accessor.getType()}, not VEC3`);
+  const positions = decodeFloats(accessor);
+  const bad = positions.findIndex((value) => !Number.isFinite(value));
+  if (bad >= 0) throw new InputError(`${place}: POSITION of vertex ${Math.floor(bad / 3)} has ${positions[bad]}, which is not a finite number`);
+  return positions;
+}
+
+/**
+ * The triangles of a primitive, 3 corners each, strips and fans expanded.
+ * @param array  Its indices; `null` if it has none.
+ * @throws {InputError} that names the index.
+ */
+export function decodeTriangles(place: string, array: ArrayLike<number> | null, mode: number, vertexCount: number): Uint32Array {
+  const corners = array ? Uint32Array.from(array) : Uint32Array.from({ length: vertexCount }, (_, v) => v);
+  const bad = corners.findIndex((vertex) => vertex >= vertexCount);
+  if (bad >= 0) throw new InputError(`${place}: indices[${bad}] = ${corners[bad]} is out of range (${vertexCount} vertices)`);
+  if (mode === triangles) {
+    if (corners.length % 3 !== 0) throw new InputError(`${place} has ${corners.length} corners, not 3 per triangle`);
+    return corners;
+  }
+  const expanded = new Uint32Array(3 * Math.max(corners.length - 2, 0));
+  for (let t = 0; t < expanded.length / 3; ++t) {
+    // As the specification orders them: every other triangle of a strip turns; a fan goes round its first vertex.
+    const [a, b, c] = mode === triangleStrip ? [t, t + 1 + (t % 2), t + 2 - (t % 2)] : [t + 1, t + 2, 0];
+    expanded.set([corners[a]!, corners[b]!, corners[c]!], 3 * t);
+  }
+  return expanded;
+}
+
+/** All components of an accessor as 32-bit floats, with normalised integers decoded. */
+export function decodeFloats(accessor: Accessor): Float32Array {
+  const array = accessor.getArray()!;
+  if (array instanceof Float32Array) return array;
+  if (!accessor.getNormalized()) return Float32Array.from(array as ArrayLike<number>);
+  const size = accessor.getElementSize();
+  const out = new Float32Array(array.length);
+  const element: number[] = [];
+  for (let i = 0; i < accessor.getCount(); ++i) out.set(accessor.getElement(i, element), i * size);
+  return out;
+}
+
+function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: Float32Array): void {
+  if (m === identity || m.every((value, i) => value === identity[i])) {
+    out.set(localPositions, 3 * firstVertex);
+    return;
+  }
+  for (let at = 0; at < localPositions.length; at += 3) {
+    const [x, y, z] = [localPositions[at]!, localPositions[at + 1]!, localPositions[at + 2]!];
+    const to = 3 * firstVertex + at;
+    out[to] = m[0]! * x + m[4]! * y + m[8]! * z + m[12]!;
+    out[to + 1] = m[1]! * x + m[5]! * y + m[9]! * z + m[13]!;
+    out[to + 2] = m[2]! * x + m[6]! * y + m[10]! * z + m[14]!;
+  }
+}
+
+function placeIndices({ matrix, localIndices, firstVertex, firstTriangle }: Piece, out: Uint32Array): void {
+  const mirrored = determinant(matrix) < 0;
+  for (let at = 0; at < localIndices.length; at += 3) {
+    const to = 3 * firstTriangle + at;
+    out[to] = firstVertex + localIndices[at]!;
+    out[to + (mirrored ? 2 : 1)] = firstVertex + localIndices[at + 1]!;
+    out[to + (mirrored ? 1 : 2)] = firstVertex + localIndices[at + 2]!;
+  }
+}

@@ -1,0 +1,126 @@
+import { percent, type Finding } from './finding.js';
+import { cross, dot, length, minus, pointAt, type Vector } from './geometry.js';
+import type { Reverse } from './reverse.js';
+import type { PartName, Scene } from './scene.js';
+
+/** A hole explains itself if at least this much of what it is meant for lies in it, as a share of what it cuts off. */
+const leastExplained = 0.02;
+/** What the cage cuts off in a hole matters from this share of the exposed area on. */
+const leastCut = 5e-4;
+/** What lies more sideways than this (the sine) of a hole's surface does not lie beneath it. */
+const mostSideways = 0.7;
+
+/** A hole in the cage, or a border where it ends. Lengths are shares of the target's diagonal, areas of the target's exposed area. */
+export interface Hole {
+  /** `end`: nothing of the target lies beneath it, but all beside, as where a neck is cut. */
+  kind: 'hole' | 'end';
+  /** Of its box. */
+  diagonal: number;
+  perimeter: number;
+  /** Of the surface that spans it. */
+  area: number;
+  /** In the middle of its border, in the space of the input. */
+  centre: [number, number, number];
+  /** Parts of the target that lie beneath it, and over what share of it, the largest first. */
+  beneath: { part: string; share: number }[];
+  /** What the hole keeps bare though its segment passes the threshold. */
+  cutOff: number;
+  /** What of segments that may not be painted has its nearest place on the hole's border, hidden or not. */
+  excluded: number;
+}
+
+/** Points on the surfaces that span the cage's holes: of each triangle from an edge to the middle, two. 3 numbers each. */
+export function spanPoints({ surface, cage }: Scene): Float32Array {
+  const points: number[] = [];
+  for (const { edges, centre } of surface.loops) {
+    for (const { a, b } of edges) {
+      const [p, q] = [pointAt(cage.positions, a), pointAt(cage.positions, b)];
+      for (const weight of spanWeights) for (let k = 0; k < 3; ++k) points.push((weight * (p[k]! + q[k]!)) / 2 + (1 - weight) * centre[k]!);
+    }
+  }
+  return Float32Array.from(points);
+}
+/** How much of such a point is its edge; the rest is the middle. They halve the triangle's area, about. */
+const spanWeights = [0.4, 0.85];
+
+/**
+ * Finds the cage's holes, largest first, and what lies beneath them.
+ * @param reversed   The target as seen from the points of `spanPoints`.
+ * @param firstPoint  The number of the first of them.
+ */
+export function holesOf({ surface, cage, target, parts, areas, diagonal, sides, result }: Scene, reversed: Reverse | undefined, firstPoint: number): Hole[] {
+  const { loops } = surface;
+  const partOf = partsOf(parts, areas.length);
+  const [cutOff, excluded] = [new Float64Array(loops.length), new Float64Array(loops.length)];
+  let exposed = 0;
+  for (let v = 0; v < areas.length; ++v) {
+    const l = sides.loops[v]!;
+    if (result.zones[v] !== 1) exposed += areas[v]!;
+    if (l < 0) continue;
+    const { culled, coveredArea } = result.segmentStats[result.segments[v]!]!;
+    if (culled || coveredArea === 0) excluded[l]! += areas[v]!;
+    else if (result.zones[v] === 2) cutOff[l]! += areas[v]!;
+  }
+  let point = firstPoint;
+  const holes = loops.map((loop, l): Hole => {
+    const beneath = new Map<number, number>();
+    let [total, sideways] = [0, 0];
+    for (const { a, b } of loop.edges) {
+      const [p, q] = [pointAt(cage.positions, a), pointAt(cage.positions, b)];
+      const normal = cross(minus(p, loop.centre), minus(q, loop.centre));
+      const area = length(normal) / 2;
+      for (const weight of spanWeights) {
+        total += area;
+        if (reversed && isBeneath(reversed, point, at(p, q, loop.centre, weight), normal)) {
+          const part = partOf[target.indices[3 * reversed.triangles[point]!]!]!;
+          beneath.set(part, (beneath.get(part) ?? 0) + area);
+        } else sideways += area;
+        ++point;
+      }
+    }
+    return {
+      kind: sideways > 0.5 * total ? 'end' : 'hole',
+      diagonal: loop.diagonal / diagonal,
+      perimeter: loop.perimeter / diagonal,
+      area: loop.area / (exposed || 1),
+      centre: [...loop.centre],
+      beneath: [...beneath].map(([part, area]) => ({ part: parts[part]!.name, share: area / total })).sort((x, y) => y.share - x.share),
+      cutOff: cutOff[l]! / (exposed || 1),
+      excluded: excluded[l]! / (exposed || 1),
+    };
+  });
+  return holes.sort((x, y) => y.diagonal - x.diagonal);
+}
+
+const at = (p: Vector, q: Vector, centre: Vector, weight: number): Vector =>
+  [0, 1, 2].map((k) => (weight * (p[k]! + q[k]!)) / 2 + (1 - weight) * centre[k]!) as unknown as Vector;
+
+function isBeneath(reversed: Reverse, point: number, from: Vector, normal: Vector): boolean {
+  const way = minus(reversed.nearest(point), from);
+  const size = length(way) * length(normal);
+  return size === 0 || Math.abs(dot(way, normal)) >= Math.sqrt(1 - mostSideways ** 2) * size;
+}
+
+/** The part of each vertex. */
+export function partsOf(parts: readonly PartName[], vertices: number): Uint32Array {
+  const partOf = new Uint32Array(vertices);
+  parts.forEach(({ firstVertex, vertexCount }, p) => partOf.fill(p, firstVertex, firstVertex + vertexCount));
+  return partOf;
+}
+
+/** Holes that cut the paint off where nothing that must stay bare is seen. */
+export function checkHoles(holes: readonly Hole[]): Finding[] {
+  const unexplained = holes.filter(({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= leastCut && excluded < leastExplained * cutOff);
+  if (unexplained.length === 0) return [];
+  const cut = unexplained.reduce((sum, { cutOff }) => sum + cutOff, 0);
+  const where = [...new Set(unexplained.flatMap(({ beneath }) => beneath.slice(0, 1).map(({ part }) => `"${part}"`)))].slice(0, 3).join(', ');
+  return [
+    {
+      code: 'holeUnexplained',
+      weight: 0.3,
+      sentence: `${unexplained.length === 1 ? 'A hole of the cage lies' : `${unexplained.length} holes of the cage lie`} over ${where} alone: only the hole's outline keeps the paint off what is beneath (${percent(cut)} of the exposed area)`,
+      advice: 'If eyes or the like are there, make them a mesh or material of their own; if not, close the hole.',
+      numbers: { holes: unexplained.length, cutOff: cut },
+    },
+  ];
+}

@@ -1,0 +1,111 @@
+/**
+ * Is this cage fit for this target? Numbers, causes, and what to do.
+ * @module cagecast/inspect
+ */
+import { transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
+import { unfitFrom, usableFrom, verdictOf, type Finding, type FindingCode, type Verdict } from './finding.js';
+import { checkHoles, holesOf, spanPoints, type Hole } from './holes.js';
+import { checkInside, insideOf, type Inside } from './inside.js';
+import { checkNormals, orientationOf, turnedRight } from './normals.js';
+import { checkPlacement, placementOf, type Placement } from './placement.js';
+import { reverse } from './reverse.js';
+import { sceneOf, type PartName } from './scene.js';
+import { checkSegments, segmentsOf, type Segment } from './segments.js';
+import { checkTopology, topologyOf, type Topology } from './topology.js';
+import { checkUvs, uvLayoutOf, type UvLayout } from './uv.js';
+
+export { unfitFrom, usableFrom };
+export type { Finding, FindingCode, Hole, Inside, PartName, Placement, Segment, Topology, UvLayout, Verdict };
+
+/** Options of `inspect`: those of the transfer, and what is known already. */
+export interface InspectOptions extends TransferOptions {
+  /** What `transfer` gave for the same arguments, if it was called already. */
+  result?: TransferResult | undefined;
+  /** Names for ranges of the target's vertices; without, its groups are numbered. */
+  parts?: readonly PartName[] | undefined;
+}
+
+/** What `inspect` found out: plain data. */
+export interface Inspection {
+  verdict: Verdict;
+  /** What the author of the cage should know, the heaviest first. */
+  findings: Finding[];
+  placement: Placement;
+  /** Of the cage's area, how much is turned inward; `triangles` are their numbers. */
+  inward: { share: number; triangles: number[] };
+  inside: Inside;
+  topology: Topology;
+  uv: UvLayout;
+  /** The largest first. */
+  holes: Hole[];
+  /** In the order of their numbers. */
+  segments: Segment[];
+}
+
+/**
+ * Finds out whether a cage fits a target, why not, and what to do about it.
+ *
+ * Takes one transfer and a projection, another transfer if triangles are turned inward, and about as long again.
+ * @throws {CagecastError} as `transfer` does.
+ *
+ * @example
+ * await init();
+ * const { verdict, findings } = inspect(cage, target);
+ * if (verdict === 'unfit') console.warn(findings[0].sentence, findings[0].advice);
+ */
+export function inspect(cage: Mesh, target: Mesh, { result, parts, ...options }: InspectOptions = {}): Inspection {
+  const scene = sceneOf(cage, target, result ?? transfer(cage, target, options), options.threshold ?? 0.5, parts ?? partsByGroup(target));
+  const orientation = orientationOf(scene);
+  const upright = orientation.share > 0 ? uprightScene() : scene;
+  const placement = placementOf(upright);
+  const reversed = reverse(upright, joined(cage.positions, spanPoints(upright)));
+  const inside = insideOf(upright, reversed);
+  const topology = topologyOf(scene);
+  const uv = uvLayoutOf(scene);
+  const holes = holesOf(upright, reversed, cage.positions.length / 3);
+  const segments = segmentsOf(scene);
+  const findings = [
+    ...checkNormals(orientation),
+    ...checkPlacement(upright, placement),
+    ...checkInside(inside),
+    ...checkTopology(scene, topology),
+    ...checkUvs(scene, uv),
+    ...checkHoles(holes),
+    ...checkSegments(scene, segments),
+  ].sort((a, b) => b.weight - a.weight);
+  return {
+    verdict: verdictOf(findings),
+    findings,
+    placement,
+    inward: { share: orientation.share, triangles: [...orientation.inward.keys()].filter((t) => orientation.inward[t] === 1) },
+    inside,
+    topology,
+    uv,
+    holes,
+    segments,
+  };
+
+  // One cause, one finding: all else is judged as if triangles that are turned inward were not.
+  function uprightScene() {
+    const turned = turnedRight(cage, orientation);
+    return sceneOf(turned, target, transfer(turned, target, options), scene.threshold, scene.parts);
+  }
+}
+
+function joined(a: Float32Array, b: Float32Array): Float32Array {
+  const both = new Float32Array(a.length + b.length);
+  both.set(a);
+  both.set(b, a.length);
+  return both;
+}
+
+function partsByGroup({ positions, groups }: Mesh): PartName[] {
+  const vertices = positions.length / 3;
+  const parts: PartName[] = [];
+  for (let v = 0; v < vertices; ++v) {
+    const last = parts.at(-1);
+    if (last && (!groups || groups[v] === groups[v - 1])) ++last.vertexCount;
+    else parts.push({ name: groups ? `group ${groups[v]}` : 'target', firstVertex: v, vertexCount: 1 });
+  }
+  return parts;
+}

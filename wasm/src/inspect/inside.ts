@@ -1,0 +1,66 @@
+import { percent, type Finding } from './finding.js';
+import { cross, dot, minus, pointAt, type Vector } from './geometry.js';
+import type { Reverse } from './reverse.js';
+import type { Scene } from './scene.js';
+
+/** How deep in the target a vertex of the cage lies, as a share of the diagonal, before it counts as inside. */
+const depth = 0.0025;
+/** The most of a fit cage's vertices, by area, that are inside the target. */
+const mostInside = 0.15;
+
+/** The cage's vertices that lie inside the target. */
+export interface Inside {
+  /** How many places of the cage. */
+  vertices: number;
+  /** Their share of the cage's area, that of borders aside. */
+  area: number;
+}
+
+/**
+ * Finds the vertices of the cage that lie inside the target: beneath the nearest of its surface, as the target's normal
+ * says and the cage's too. Borders, which may lie anywhere, are left out.
+ */
+export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse | undefined): Inside {
+  if (!reversed) return { vertices: 0, area: 0 };
+  const { positions, indices } = cage;
+  const { place, loopOfVertex } = surface;
+  const normals = new Float64Array(positions.length);
+  const areas = new Float64Array(place.length);
+  for (let t = 0; t < surface.areas.length; ++t) {
+    const corners = [0, 1, 2].map((k) => place[indices[3 * t + k]!]!) as [number, number, number];
+    const [a, b, c] = corners.map((v) => pointAt(positions, v)) as [Vector, Vector, Vector];
+    const normal = cross(minus(b, a), minus(c, a));
+    for (const v of corners) {
+      areas[v]! += surface.areas[t]! / 3;
+      for (let k = 0; k < 3; ++k) normals[3 * v + k]! += normal[k]!;
+    }
+  }
+  let [vertices, inside, total] = [0, 0, 0];
+  for (let v = 0; v < place.length; ++v) {
+    if (place[v] !== v || areas[v] === 0 || loopOfVertex[v]! >= 0) continue;
+    total += areas[v]!;
+    if (reversed.distances[v]! <= depth * diagonal) continue;
+    const p = pointAt(positions, v);
+    const [a, b, c] = reversed.corners(v);
+    const normal = cross(minus(b, a), minus(c, a));
+    const beneath = dot(normal, minus(a, p)) > 0;
+    if (!beneath || dot(normal, pointAt(normals, v)) <= 0) continue;
+    ++vertices;
+    inside += areas[v]!;
+  }
+  return { vertices, area: total > 0 ? inside / total : 0 };
+}
+
+/** A cage that dives into its target. */
+export function checkInside({ vertices, area }: Inside): Finding[] {
+  if (vertices === 0) return [];
+  return [
+    {
+      code: 'cageInsideTarget',
+      weight: area / mostInside,
+      sentence: `${vertices} of the cage's vertices, ${percent(area)} by area, lie inside the target`,
+      advice: 'Pull them out, until they lie over its surface.',
+      numbers: { vertices, area },
+    },
+  ];
+}

@@ -1,0 +1,176 @@
+import type { Mesh } from '../mesh.js';
+import { percent, type Finding } from './finding.js';
+import { cross, dot, minus, pointAt, type Vector } from './geometry.js';
+import type { Scene } from './scene.js';
+import { middleOf, type Edge, type Surface } from './surface.js';
+
+/** A cage with more of its area than this turned inward is unfit: there the paint is lost. */
+const mostInward = 0.1;
+/**
+ * A piece of a cage, its holes spanned, is a solid if its volume is at least this share of its area to the power of 1.5
+ * (a ball has 0.094, a bowl 0.13 of its own area, a flat patch 0). A flatter one has no inside of its own: then it is
+ * the target that says which side is the inner one.
+ */
+const leastVolume = 0.02;
+
+/** So clear must the target's vote be that a flat piece is turned inward: those against less those for, of all that vote, */
+const clearVote = 0.5;
+/** and so much of the target's area must vote on it: below, a fold of the target decides. */
+const leastVote = 0.005;
+
+/** Which triangles of the cage are turned inward. */
+export interface Orientation {
+  /** 1 per triangle: 1 if it is wound clockwise, seen from outside. */
+  inward: Uint8Array;
+  /** Their share of the cage's area. */
+  share: number;
+}
+
+/**
+ * Tells the cage's outside from its inside, without regard to how its triangles are wound: pieces are joined over edges
+ * of two triangles, and the volume that a piece encloses once its holes are spanned is positive. Doubled triangles are
+ * judged once.
+ */
+export function orientationOf(scene: Scene): Orientation {
+  const { surface } = scene;
+  const turned = new Int8Array(surface.areas.length); // 1 as the piece's first triangle is wound, -1 against it
+  const pieceOf = new Int32Array(surface.areas.length).fill(-1);
+  const pieces = windAlike(surface, turned, pieceOf);
+  const votes = votesOf(scene, pieceOf, pieces.length, turned);
+  const borders = bordersOf(surface, pieceOf, pieces.length);
+  const voters = votes.totals.reduce((sum, total) => sum + total, 0);
+  const inward = new Uint8Array(surface.areas.length);
+  let area = 0;
+  pieces.forEach((triangles, p) => {
+    const pieceArea = triangles.reduce((sum, t) => sum + surface.areas[t]!, 0);
+    const volume = volumeOf(surface, triangles, borders[p]!, pieceOf, p, turned);
+    const outward = Math.abs(volume) >= leastVolume * pieceArea ** 1.5 ? volume > 0 : votes.totals[p]! < leastVote * voters || votes.sums[p]! >= -clearVote * votes.totals[p]!;
+    for (const t of triangles) {
+      if ((turned[t] === 1) === outward) continue;
+      inward[t] = 1;
+      area += surface.areas[t]!;
+    }
+  });
+  return { inward, share: surface.area > 0 ? Math.min(1, area / surface.area) : 0 };
+}
+
+/** The triangles at an edge, doubled ones once. */
+const singleUses = ({ uses }: Edge, doubled: Uint8Array) => uses.filter(({ triangle }) => doubled[triangle] === 0);
+
+/** Collects pieces of triangles joined by edges of two, and says which of a piece are wound alike. */
+function windAlike({ areas, doubled, edges }: Surface, turned: Int8Array, pieceOf: Int32Array): number[][] {
+  const neighbours: { triangle: number; alike: boolean }[][] = Array.from(areas, () => []);
+  for (const edge of edges) {
+    const uses = singleUses(edge, doubled);
+    if (uses.length !== 2) continue;
+    const [one, other] = uses as [Edge['uses'][0], Edge['uses'][0]];
+    const alike = one.forward !== other.forward; // a shared edge is run through both ways
+    neighbours[one.triangle]!.push({ triangle: other.triangle, alike });
+    neighbours[other.triangle]!.push({ triangle: one.triangle, alike });
+  }
+  const pieces: number[][] = [];
+  for (let first = 0; first < areas.length; ++first) {
+    if (pieceOf[first]! >= 0 || areas[first] === 0 || doubled[first] === 1) continue;
+    turned[first] = 1;
+    pieceOf[first] = pieces.length;
+    const piece = [first];
+    for (let i = 0; i < piece.length; ++i) {
+      for (const { triangle, alike } of neighbours[piece[i]!]!) {
+        if (pieceOf[triangle]! >= 0) continue;
+        pieceOf[triangle] = pieces.length;
+        turned[triangle] = (alike ? 1 : -1) * turned[piece[i]!]!;
+        piece.push(triangle);
+      }
+    }
+    pieces.push(piece);
+  }
+  return pieces;
+}
+
+/** The edges at which each piece ends. */
+function bordersOf({ edges, doubled }: Surface, pieceOf: Int32Array, pieces: number): Edge[][] {
+  const borders: Edge[][] = Array.from({ length: pieces }, () => []);
+  for (const edge of edges) {
+    if (singleUses(edge, doubled).length === 2) continue;
+    for (const piece of new Set(edge.uses.map(({ triangle }) => pieceOf[triangle]!))) if (piece >= 0) borders[piece]!.push(edge);
+  }
+  return borders;
+}
+
+/** The volume of a piece with its holes spanned, as its first triangle is wound. */
+function volumeOf({ mesh }: Surface, triangles: readonly number[], border: readonly Edge[], pieceOf: Int32Array, piece: number, turned: Int8Array): number {
+  const { positions, indices } = mesh;
+  const origin = pointAt(positions, indices[3 * triangles[0]!]!);
+  const at = (v: number) => minus(pointAt(positions, v), origin);
+  const tetrahedron = (a: Vector, b: Vector, c: Vector) => dot(a, cross(b, c)) / 6;
+  let volume = 0;
+  for (const t of triangles) volume += turned[t]! * tetrahedron(at(indices[3 * t]!), at(indices[3 * t + 1]!), at(indices[3 * t + 2]!));
+  // Its borders, by connection: each is spanned from its middle.
+  const atPlace = new Map<number, Edge[]>();
+  for (const edge of border) {
+    for (const end of [edge.a, edge.b]) {
+      const there = atPlace.get(end);
+      if (there) there.push(edge);
+      else atPlace.set(end, [edge]);
+    }
+  }
+  const seen = new Set<Edge>();
+  for (const start of border) {
+    if (seen.has(start)) continue;
+    seen.add(start);
+    const chain = [start];
+    for (let i = 0; i < chain.length; ++i) {
+      for (const end of [chain[i]!.a, chain[i]!.b]) {
+        for (const next of atPlace.get(end)!) if (!seen.has(next)) seen.add(next), chain.push(next);
+      }
+    }
+    const middle = minus(middleOf(positions, chain), origin);
+    for (const { a, b, uses } of chain) {
+      for (const { triangle, forward } of uses) {
+        if (pieceOf[triangle] !== piece) continue;
+        const [from, to] = forward === (turned[triangle] === 1) ? [b, a] : [a, b]; // against the triangle
+        volume += tetrahedron(at(from), at(to), middle);
+      }
+    }
+  }
+  return volume;
+}
+
+/** For each piece, the target's area that lies on its inner side less that on its outer side, as its first triangle is wound. */
+function votesOf({ areas, sides, result }: Scene, pieceOf: Int32Array, pieces: number, turned: Int8Array): { sums: Float64Array; totals: Float64Array } {
+  const [sums, totals] = [new Float64Array(pieces), new Float64Array(pieces)];
+  for (let v = 0; v < areas.length; ++v) {
+    const t = result.triangles[v]!;
+    const piece = pieceOf[t]!;
+    if (sides.loops[v]! >= 0 || piece < 0) continue;
+    sums[piece]! -= areas[v]! * turned[t]! * Math.sign(sides.signed[v]!);
+    totals[piece]! += areas[v]!;
+  }
+  return { sums, totals };
+}
+
+/** The cage with the triangles that are turned inward turned round. */
+export function turnedRight(cage: Mesh, { inward }: Orientation): Mesh {
+  const indices = cage.indices.slice();
+  for (let t = 0; t < inward.length; ++t) {
+    if (inward[t] === 1) indices.set([cage.indices[3 * t]!, cage.indices[3 * t + 2]!, cage.indices[3 * t + 1]!], 3 * t);
+  }
+  return { ...cage, indices };
+}
+
+/** Normals that point at the target instead of away from it. */
+export function checkNormals({ inward, share }: Orientation): Finding[] {
+  const triangles = inward.reduce((sum, one) => sum + one, 0);
+  if (triangles === 0) return [];
+  const all = share > 0.99;
+  return [
+    {
+      code: 'normalsInward',
+      // What else follows from it weighs less, however far it goes.
+      weight: share > mostInward ? 20 * share + 1 : Math.max(share / mostInward, 0.25),
+      sentence: all ? 'The cage is inside out: all its triangles face inward' : `${percent(share)} of the cage's area (${triangles} of its triangles) faces inward`,
+      advice: 'Turn these triangles round ("recalculate normals outside"): seen from outside, a cage is wound counter-clockwise. All else here is judged as if they were.',
+      numbers: { share, triangles },
+    },
+  ];
+}

@@ -1,0 +1,29 @@
+import { project } from '../index.js';
+import { nearestPoint, pointAt, type Vector } from './geometry.js';
+import type { Scene } from './scene.js';
+
+/** The target as it is seen from points of the cage. */
+export interface Reverse {
+  /** 1 per point: the nearest triangle of the target. */
+  triangles: Uint32Array;
+  /** 1 per point, in units of the input. */
+  distances: Float32Array;
+  /** The nearest point of the target itself. */
+  nearest(point: number): Vector;
+  /** The nearest triangle's corners. */
+  corners(point: number): [Vector, Vector, Vector];
+}
+
+/**
+ * Projects points near the cage onto the target: target and cage change roles.
+ * @param points  3 per point, the cage's vertices first.
+ * @returns nothing if the target has no triangle with an area.
+ */
+export function reverse({ target, cage, areas }: Scene, points: Float32Array): Reverse | undefined {
+  if (!areas.some((area) => area > 0)) return undefined;
+  // The core wants UVs of what it projects onto; nobody reads them here.
+  const uvs = new Float32Array((target.positions.length / 3) * 2);
+  const { triangles, distances } = project({ positions: target.positions, indices: target.indices, uvs }, { positions: points, indices: cage.indices });
+  const corners = (point: number) => [0, 1, 2].map((k) => pointAt(target.positions, target.indices[3 * triangles[point]! + k]!)) as [Vector, Vector, Vector];
+  return { triangles, distances, corners, nearest: (point) => nearestPoint(pointAt(points, point), ...corners(point)).point };
+}

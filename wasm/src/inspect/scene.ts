@@ -1,0 +1,73 @@
+import type { TransferResult } from '../index.js';
+import type { Mesh } from '../mesh.js';
+import { boxOf, dot, doubleAreaNormal, minus, nearestPoint, pointAt, vertexAreas, type Box } from './geometry.js';
+import { surfaceOf, type Surface } from './surface.js';
+
+/** A named range of a target's vertices. */
+export interface PartName {
+  name: string;
+  firstVertex: number;
+  vertexCount: number;
+}
+
+/** All that the checks look at. */
+export interface Scene {
+  cage: Mesh;
+  surface: Surface;
+  target: Mesh;
+  parts: readonly PartName[];
+  /** 1 per target vertex: a third of the area of each of its triangles. */
+  areas: Float64Array;
+  targetBox: Box;
+  /** Of the target's box; never 0. */
+  diagonal: number;
+  threshold: number;
+  /** What came of the transfer. */
+  result: TransferResult;
+  sides: Sides;
+}
+
+/** Where a target vertex lies as the cage sees it. */
+export interface Sides {
+  /** Distance to the cage, negative on the inner side of the nearest triangle's plane, where a target belongs. */
+  signed: Float64Array;
+  /** The loop of open edges that the nearest point of the cage lies on, so that the cage says nothing of the vertex; -1 without. */
+  loops: Int32Array;
+}
+
+/** Puts together what the checks need. */
+export function sceneOf(cage: Mesh, target: Mesh, result: TransferResult, threshold: number, parts: readonly PartName[]): Scene {
+  const surface = surfaceOf(cage);
+  const targetBox = boxOf(target.positions);
+  return {
+    cage,
+    surface,
+    target,
+    parts,
+    areas: vertexAreas(target),
+    targetBox,
+    diagonal: targetBox.diagonal || 1,
+    threshold,
+    result,
+    sides: sidesOf(surface, target, result),
+  };
+}
+
+function sidesOf(surface: Surface, target: Mesh, { triangles, distances }: Pick<TransferResult, 'triangles' | 'distances'>): Sides {
+  const { mesh, place, loopOfVertex, loopOfEdge, edgeKey } = surface;
+  const signed = new Float64Array(distances.length);
+  const loops = new Int32Array(distances.length).fill(-1);
+  for (let v = 0; v < distances.length; ++v) {
+    const first = 3 * triangles[v]!;
+    const corners = [mesh.indices[first]!, mesh.indices[first + 1]!, mesh.indices[first + 2]!] as const;
+    const [a, b, c] = [pointAt(mesh.positions, corners[0]), pointAt(mesh.positions, corners[1]), pointAt(mesh.positions, corners[2])];
+    const p = pointAt(target.positions, v);
+    signed[v] = Math.sign(dot(doubleAreaNormal(a, b, c), minus(p, a))) * distances[v]!;
+    // Most triangles touch no open edge.
+    if (loopOfVertex[corners[0]]! < 0 && loopOfVertex[corners[1]]! < 0 && loopOfVertex[corners[2]]! < 0) continue;
+    const touched = nearestPoint(p, a, b, c).corners;
+    if (touched.length === 1) loops[v] = loopOfVertex[corners[touched[0]!]!]!;
+    if (touched.length === 2) loops[v] = loopOfEdge.get(edgeKey(place[corners[touched[0]!]!]!, place[corners[touched[1]!]!]!)) ?? -1;
+  }
+  return { signed, loops };
+}

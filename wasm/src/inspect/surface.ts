@@ -1,0 +1,120 @@
+import type { Mesh } from '../mesh.js';
+import { boxOf, doubleAreaNormal, firstInPlace, length, pointAt, UnionFind, type Vector } from './geometry.js';
+
+/** An edge between two places, and the triangles that have it. */
+export interface Edge {
+  /** Places: the first vertex of each. */
+  a: number;
+  b: number;
+  /** Each triangle at it, the corner it begins at there, and whether it runs from `a` to `b`. */
+  uses: { triangle: number; corner: number; forward: boolean }[];
+}
+
+/** A closed chain of open edges, or several that touch: the border of a hole, or where the cage ends. */
+export interface Loop {
+  edges: Edge[];
+  /** Summed length of its edges, in units of the input. */
+  perimeter: number;
+  /** Diagonal of its box. */
+  diagonal: number;
+  /** Area of the surface that spans it from its middle. */
+  area: number;
+  centre: Vector;
+}
+
+/** A cage as a surface. Triangles without area take no part in it, and vertices in one place are one. */
+export interface Surface {
+  mesh: Mesh;
+  /** 1 per vertex: the first vertex in the same place. */
+  place: Uint32Array;
+  /** 1 per triangle: its area, 0 if it takes no part. */
+  areas: Float64Array;
+  /** 1 per triangle: 1 if an earlier one has the same corners, in whatever order. */
+  doubled: Uint8Array;
+  /** Of all triangles. */
+  area: number;
+  edges: Edge[];
+  loops: Loop[];
+  /** 1 per vertex: the loop that its place lies on, -1 without. */
+  loopOfVertex: Int32Array;
+  /** The loop of an open edge between two places, by `edgeKey`. */
+  loopOfEdge: Map<number, number>;
+  /** The key of the edge between two places. */
+  edgeKey(a: number, b: number): number;
+}
+
+/** Finds the edges and the holes of a cage. */
+export function surfaceOf(mesh: Mesh): Surface {
+  const { positions, indices } = mesh;
+  const place = firstInPlace(positions);
+  const count = place.length;
+  const edgeKey = (a: number, b: number) => (a < b ? a * count + b : b * count + a);
+
+  const areas = new Float64Array(indices.length / 3);
+  const doubled = new Uint8Array(areas.length);
+  const seen = new Set<string>();
+  const byKey = new Map<number, Edge>();
+  for (let t = 0; t < areas.length; ++t) {
+    const [i, j, k] = [indices[3 * t]!, indices[3 * t + 1]!, indices[3 * t + 2]!];
+    areas[t] = length(doubleAreaNormal(pointAt(positions, i), pointAt(positions, j), pointAt(positions, k))) / 2;
+    if (areas[t] === 0) continue;
+    const corners = [place[i]!, place[j]!, place[k]!].sort((v, w) => v - w).join(' ');
+    if (seen.has(corners)) doubled[t] = 1;
+    else seen.add(corners);
+    for (let corner = 0; corner < 3; ++corner) {
+      const from = place[indices[3 * t + corner]!]!;
+      const to = place[indices[3 * t + ((corner + 1) % 3)]!]!;
+      const key = edgeKey(from, to);
+      let edge = byKey.get(key);
+      if (!edge) byKey.set(key, (edge = { a: Math.min(from, to), b: Math.max(from, to), uses: [] }));
+      edge.uses.push({ triangle: t, corner, forward: from < to });
+    }
+  }
+  const edges = [...byKey.values()];
+
+  const open = edges.filter(({ uses }) => uses.length === 1);
+  const sets = new UnionFind(count);
+  for (const { a, b } of open) sets.join(a, b);
+  const groups = new Map<number, Edge[]>();
+  for (const edge of open) {
+    const root = sets.root(edge.a);
+    const group = groups.get(root);
+    if (group) group.push(edge);
+    else groups.set(root, [edge]);
+  }
+  const loops = [...groups.values()].map((group) => loopOf(positions, group));
+  const loopOfVertex = new Int32Array(count).fill(-1);
+  const loopOfEdge = new Map<number, number>();
+  loops.forEach((loop, l) => {
+    for (const { a, b } of loop.edges) {
+      loopOfVertex[a] = loopOfVertex[b] = l;
+      loopOfEdge.set(edgeKey(a, b), l);
+    }
+  });
+  for (let v = 0; v < count; ++v) loopOfVertex[v] = loopOfVertex[place[v]!]!;
+  return { mesh, place, areas, doubled, area: areas.reduce((sum, area) => sum + area, 0), edges, loops, loopOfVertex, loopOfEdge, edgeKey };
+}
+
+/** The middle of a chain of edges, each counted by its length. */
+export function middleOf(positions: Float32Array, edges: readonly Edge[]): Vector {
+  const sum = [0, 0, 0];
+  let perimeter = 0;
+  for (const { a, b } of edges) {
+    const [p, q] = [pointAt(positions, a), pointAt(positions, b)];
+    const weight = Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+    perimeter += weight;
+    for (let k = 0; k < 3; ++k) sum[k]! += (weight * (p[k]! + q[k]!)) / 2;
+  }
+  return perimeter > 0 ? [sum[0]! / perimeter, sum[1]! / perimeter, sum[2]! / perimeter] : pointAt(positions, edges[0]!.a);
+}
+
+function loopOf(positions: Float32Array, edges: Edge[]): Loop {
+  const centre = middleOf(positions, edges);
+  let [perimeter, area] = [0, 0];
+  for (const { a, b } of edges) {
+    const [p, q] = [pointAt(positions, a), pointAt(positions, b)];
+    perimeter += Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+    area += length(doubleAreaNormal(p, q, centre)) / 2;
+  }
+  return { edges, perimeter, diagonal: boxOf(positions, edges.flatMap(({ a, b }) => [a, b])).diagonal, area, centre };
+}

@@ -1,0 +1,103 @@
+import { counted, percent, type Finding } from './finding.js';
+import { minus, length, pointAt } from './geometry.js';
+import type { Scene } from './scene.js';
+import type { Surface } from './surface.js';
+
+/** Open edges nearer to each other than this share of the diagonal are a crack: vertices that were meant to be one. */
+const crackWidth = 1e-4;
+/** A hole is a slit if its area is less than this share of its perimeter squared (a circle has 0.08), */
+const narrow = 0.002;
+/** or if its box has a diagonal of less than this share of the target's. */
+const tiny = 0.004;
+/** Finer loops are looked at for cracks one by one; beyond this many open edges it would take too long. */
+const mostCompared = 20000;
+
+/** What is wrong with a cage as a surface. */
+export interface Topology {
+  /** Triangles without area: they take no part. */
+  degenerateTriangles: number;
+  /** Edges of more than two triangles. */
+  nonManifoldEdges: number;
+  /** Open edges that run along another one, so close that a gap cannot be meant. */
+  crackEdges: number;
+  /** Holes that are too narrow or too small to be meant. */
+  slits: number;
+  /** Connected components, over edges. */
+  pieces: number;
+}
+
+/** Looks at a cage's triangles and edges; vertices in one place count as one. */
+export function topologyOf({ surface, diagonal }: Scene): Topology {
+  const degenerateTriangles = surface.areas.reduce((sum, area) => sum + (area === 0 ? 1 : 0), 0);
+  const nonManifoldEdges = surface.edges.filter(({ uses }) => uses.length > 2).length;
+  return { degenerateTriangles, nonManifoldEdges, crackEdges: cracksIn(surface, crackWidth * diagonal), slits: slitsIn(surface, tiny * diagonal), pieces: piecesOf(surface) };
+}
+
+function slitsIn({ loops }: Surface, least: number): number {
+  return loops.filter(({ diagonal, area, perimeter }) => diagonal < least || area < narrow * perimeter ** 2).length;
+}
+
+function piecesOf({ areas, edges }: Surface): number {
+  const piece = Int32Array.from(areas, (_, t) => t);
+  const root = (t: number) => {
+    while (piece[t] !== t) t = piece[t] = piece[piece[t]!]!;
+    return t;
+  };
+  for (const { uses } of edges) for (const { triangle } of uses) piece[root(triangle)] = root(uses[0]!.triangle);
+  return areas.reduce((sum, area, t) => sum + (area > 0 && piece[t] === t ? 1 : 0), 0);
+}
+
+/** Counts open edges both ends of which lie within `width` of the ends of another. */
+function cracksIn({ mesh, edges }: Surface, width: number): number {
+  const open = edges.filter(({ uses }) => uses.length === 1);
+  const ends = [...new Set(open.flatMap(({ a, b }) => [a, b]))].sort((v, w) => mesh.positions[3 * v]! - mesh.positions[3 * w]!);
+  if (open.length > mostCompared) return 0;
+  // Each end gets the first of those beside it, swept along x.
+  const twin = new Map<number, number>();
+  ends.forEach((v, i) => {
+    if (!twin.has(v)) twin.set(v, v);
+    const p = pointAt(mesh.positions, v);
+    for (let k = i + 1; k < ends.length && mesh.positions[3 * ends[k]!]! - p[0] <= width; ++k) {
+      if (!twin.has(ends[k]!) && length(minus(pointAt(mesh.positions, ends[k]!), p)) <= width) twin.set(ends[k]!, twin.get(v)!);
+    }
+  });
+  const counts = new Map<string, number>();
+  const keys = open.map(({ a, b }) => [twin.get(a)!, twin.get(b)!].sort((v, w) => v - w)).map(([a, b]) => (a === b ? '' : `${a} ${b}`));
+  for (const key of keys) counts.set(key, (counts.get(key) ?? 0) + 1);
+  return keys.filter((key) => key !== '' && counts.get(key)! > 1).length;
+}
+
+/** Triangles without area, edges of three triangles, and gaps where vertices almost meet. */
+export function checkTopology({ surface }: Scene, { degenerateTriangles, nonManifoldEdges, crackEdges, slits }: Topology): Finding[] {
+  const findings: Finding[] = [];
+  if (degenerateTriangles > 0) {
+    findings.push({
+      code: 'degenerateTriangles',
+      weight: Math.min(0.9, (2 * degenerateTriangles) / surface.areas.length),
+      sentence: `${counted(degenerateTriangles, 'triangle')} of the cage ${degenerateTriangles === 1 ? 'has' : 'have'} no area and ${degenerateTriangles === 1 ? 'takes' : 'take'} no part`,
+      advice: 'Remove them ("degenerate dissolve").',
+      numbers: { triangles: degenerateTriangles },
+    });
+  }
+  if (nonManifoldEdges > 0) {
+    findings.push({
+      code: 'nonManifoldEdges',
+      weight: Math.min(0.9, 0.25 + (2 * nonManifoldEdges) / surface.edges.length),
+      sentence: `${counted(nonManifoldEdges, 'edge')} of the cage ${nonManifoldEdges === 1 ? 'belongs' : 'belong'} to more than two triangles`,
+      advice: 'Remove inner faces and doubled triangles: a cage is one skin around the target.',
+      numbers: { edges: nonManifoldEdges },
+    });
+  }
+  if (crackEdges > 0 || slits > 0) {
+    const share = crackEdges / surface.edges.length;
+    const edges = `${counted(crackEdges, 'open edge')} of the cage ${crackEdges === 1 ? 'runs' : 'run'} along another one less than ${percent(crackWidth)} of the diagonal away`;
+    findings.push({
+      code: 'cracks',
+      weight: Math.min(0.9, 0.1 + 4 * share),
+      sentence: `The cage has cracks, through which rays slip: ${[crackEdges > 0 ? edges : '', slits > 0 ? `${counted(slits, 'hole')} too narrow or too small to be meant` : ''].filter(Boolean).join('; ')}`,
+      advice: 'Merge vertices by distance, and fill such holes. Vertices that are split for UVs must be in exactly the same place.',
+      numbers: { edges: crackEdges, share, slits },
+    });
+  }
+  return findings;
+}

@@ -1,0 +1,178 @@
+import { counted, percent, type Finding } from './finding.js';
+import { UnionFind } from './geometry.js';
+import type { Scene } from './scene.js';
+
+/** Samples along each side of the texture by which overlaps are found. */
+const samples = 1024;
+/** A UV triangle smaller than this, in units of the texture's area, shows nothing of it: a hundredth of a pixel of 4096². */
+const leastArea = 6e-10;
+/** The most of the cage's area that may be without UVs. */
+const mostWithoutArea = 0.2;
+/** The most of the texture's area in use that may be used twice; a mirrored layout uses all of it twice. */
+const mostOverlap = 0.05;
+
+/** What a cage's UVs are like. Shares are of the area that the UVs of triangles have, where not said otherwise. */
+export interface UvLayout {
+  /** Vertices whose UV lies outside 0 … 1, and the share of the cage's vertices. */
+  outside: { vertices: number; share: number };
+  /** Triangles whose UVs have no area, and their share of the cage's own area. */
+  withoutArea: { triangles: number; share: number };
+  /** Share of the texture's area in use that more than one triangle uses, and how many use it at most. */
+  overlap: { share: number; layers: number };
+  /** Islands: components over edges that both triangles share in UV. */
+  charts: number;
+  /** Edges where charts, or two sides of one, meet; and their share of the length of all inner edges. */
+  seams: { edges: number; share: number };
+  /** Share of the texture 0 … 1 that is in use. */
+  used: number;
+}
+
+/** Measures a cage's UVs. */
+export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
+  const { indices, positions } = cage;
+  const uvs = cage.uvs ?? new Float32Array((positions.length / 3) * 2);
+  let outside = 0;
+  for (let v = 0; v < uvs.length; v += 2) if (Math.min(uvs[v]!, uvs[v + 1]!) < 0 || Math.max(uvs[v]!, uvs[v + 1]!) > 1) ++outside;
+
+  let [flat, flatArea] = [0, 0];
+  for (let t = 0; t < surface.areas.length; ++t) {
+    if (surface.areas[t] === 0) continue;
+    const [a, b, c] = [2 * indices[3 * t]!, 2 * indices[3 * t + 1]!, 2 * indices[3 * t + 2]!];
+    const area = Math.abs((uvs[b]! - uvs[a]!) * (uvs[c + 1]! - uvs[a + 1]!) - (uvs[c]! - uvs[a]!) * (uvs[b + 1]! - uvs[a + 1]!)) / 2;
+    if (area >= leastArea) continue;
+    ++flat;
+    flatArea += surface.areas[t]!;
+  }
+
+  const sameUv = (v: number, w: number) => uvs[2 * v] === uvs[2 * w] && uvs[2 * v + 1] === uvs[2 * w + 1];
+  const charts = new UnionFind(surface.areas.length);
+  let [seams, seamLength, innerLength] = [0, 0, 0];
+  for (const { a, b, uses } of surface.edges) {
+    if (uses.length < 2) continue;
+    const ends = uses.map(({ triangle, corner, forward }) => {
+      const [from, to] = [indices[3 * triangle + corner]!, indices[3 * triangle + ((corner + 1) % 3)]!];
+      return forward ? [from, to] as const : [to, from] as const;
+    });
+    const size = Math.hypot(...[0, 1, 2].map((k) => positions[3 * a + k]! - positions[3 * b + k]!));
+    innerLength += size;
+    const shared = ends.every(([from, to]) => sameUv(from, ends[0]![0]) && sameUv(to, ends[0]![1]));
+    if (shared) for (const { triangle } of uses) charts.join(triangle, uses[0]!.triangle);
+    else {
+      ++seams;
+      seamLength += size;
+    }
+  }
+  const { used, share, layers } = coverageOf(uvs, indices, surface.areas);
+  return {
+    outside: { vertices: outside, share: uvs.length > 0 ? outside / (uvs.length / 2) : 0 },
+    withoutArea: { triangles: flat, share: surface.area > 0 ? flatArea / surface.area : 0 },
+    overlap: { share, layers },
+    charts: surface.areas.reduce((sum, area, t) => sum + (area > 0 && charts.root(t) === t ? 1 : 0), 0),
+    seams: { edges: seams, share: innerLength > 0 ? seamLength / innerLength : 0 },
+    used,
+  };
+}
+
+/**
+ * Counts, at the centres of a grid of pixels over the texture, which repeats, how many UV triangles use each.
+ * A pixel on a shared edge belongs to one of its triangles alone: the edges of each are half open, as in rasterisers.
+ */
+function coverageOf(uvs: Float32Array, indices: ArrayLike<number>, areas: Float64Array): { used: number; share: number; layers: number } {
+  const counts = new Uint16Array(samples * samples);
+  // UVs in pixels, or otherwise far out, would take forever: then the layout as a whole is looked at.
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of uvs) {
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  const vast = low < -8 || high > 9;
+  const scale = vast ? (samples - 1) / (high - low) : samples;
+  const place = (value: number) => (vast ? value - low : value) * scale - 0.5;
+  for (let t = 0; t < areas.length; ++t) {
+    if (areas[t] === 0) continue;
+    const x: number[] = [];
+    const y: number[] = [];
+    for (let k = 0; k < 3; ++k) {
+      const v = 2 * indices[3 * t + k]!;
+      x.push(place(uvs[v]!));
+      y.push(place(uvs[v + 1]!));
+    }
+    fill(x, y, (column, row) => {
+      const at = (((row % samples) + samples) % samples) * samples + (((column % samples) + samples) % samples);
+      if (counts[at]! < 65535) ++counts[at]!;
+    });
+  }
+  let [used, twice, layers] = [0, 0, 0];
+  for (const count of counts) {
+    if (count > 0) ++used;
+    if (count > 1) ++twice;
+    if (count > layers) layers = count;
+  }
+  return { used: vast ? 0 : used / counts.length, share: used > 0 ? twice / used : 0, layers };
+}
+
+/** Calls `pixel` for every whole point inside a triangle, row by row; of its edges, the left ones belong to it. */
+function fill(x: readonly number[], y: readonly number[], pixel: (column: number, row: number) => void): void {
+  const firstRow = Math.ceil(Math.min(...y));
+  const lastRow = Math.ceil(Math.max(...y)) - 1;
+  for (let row = firstRow; row <= lastRow; ++row) {
+    let [left, right] = [Infinity, -Infinity];
+    for (let k = 0; k < 3; ++k) {
+      // From the lower end up, so that both triangles of an edge compute the same crossing.
+      const next = (k + 1) % 3;
+      const upward = y[k]! < y[next]! || (y[k] === y[next] && x[k]! < x[next]!);
+      const [from, to] = upward ? [k, next] : [next, k];
+      if (!(y[from]! <= row && row < y[to]!)) continue;
+      const crossing = x[from]! + ((row - y[from]!) / (y[to]! - y[from]!)) * (x[to]! - x[from]!);
+      if (crossing < left) left = crossing;
+      if (crossing > right) right = crossing;
+    }
+    for (let column = Math.ceil(left); column < right; ++column) pixel(column, row);
+  }
+}
+
+/** UVs outside the texture, without area, one over another, or in crumbs. */
+export function checkUvs({ surface, cage }: Scene, { outside, withoutArea, overlap, charts, seams }: UvLayout): Finding[] {
+  const findings: Finding[] = [];
+  if (withoutArea.triangles > 0) {
+    findings.push({
+      code: 'uvsWithoutArea',
+      weight: withoutArea.share / mostWithoutArea,
+      sentence: `${percent(withoutArea.share)} of the cage's area (${counted(withoutArea.triangles, 'triangle')}) has UVs without area: there a single point of the texture is smeared`,
+      advice: 'Unwrap these triangles.',
+      numbers: { share: withoutArea.share, triangles: withoutArea.triangles },
+    });
+  }
+  if (outside.vertices > 0) {
+    let vast = false;
+    for (const value of cage.uvs!) if (value < -8 || value > 9) vast = true;
+    findings.push({
+      code: 'uvsOutside',
+      weight: vast ? 1.5 : 0.1 + 0.8 * outside.share,
+      sentence: `${counted(outside.vertices, 'vertex', 'vertices')} of the cage (${percent(outside.share)}) ${outside.vertices === 1 ? 'has its UV' : 'have their UVs'} outside 0 … 1${vast ? ', some so far that they may be meant in pixels' : ''}`,
+      advice: 'Fine where the texture is meant to repeat; otherwise move the UVs into 0 … 1.',
+      numbers: { vertices: outside.vertices, share: outside.share },
+    });
+  }
+  // A pixel or two at an edge come of rounding.
+  if (overlap.share > 1e-4) {
+    findings.push({
+      code: 'uvsOverlap',
+      weight: overlap.layers > 4 && overlap.share > 0.5 ? 1.2 : Math.min(0.9, (0.5 * overlap.share) / mostOverlap),
+      sentence: `${percent(overlap.share)} of the texture in use is used by more than one place of the cage, by up to ${overlap.layers}`,
+      advice: 'Fine where both sides are meant to look alike (a mirrored layout); otherwise unwrap without overlaps.',
+      numbers: { share: overlap.share, layers: overlap.layers },
+    });
+  }
+  const perChart = surface.areas.length / charts;
+  if (charts > 8 && perChart < 12) {
+    findings.push({
+      code: 'uvsInPieces',
+      weight: perChart < 3 ? 0.6 : 0.3,
+      sentence: `The cage's UVs are in ${charts} charts of ${perChart.toFixed(1)} triangles on average; ${percent(seams.share)} of its edges, by length, are seams`,
+      advice: 'Unwrap it in fewer, larger charts: every seam may show, and a texture is easier to draw without.',
+      numbers: { charts, seams: seams.share },
+    });
+  }
+  return findings;
+}

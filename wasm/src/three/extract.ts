@@ -1,0 +1,155 @@
+import { BufferGeometry, Matrix4, Mesh as ThreeMesh, SkinnedMesh, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three';
+import { CagecastError, type Mesh } from '../index.js';
+
+/** One mesh of a scene, or a geometry alone, and where its elements lie in the concatenated arrays. */
+export interface Part {
+  /** The mesh's name, or that of the node above it. */
+  name: string;
+  /** The mesh; none if a geometry was given. */
+  mesh: ThreeMesh | undefined;
+  geometry: BufferGeometry;
+  /** From the geometry's space to that of the arrays. */
+  matrix: Matrix4;
+  firstVertex: number;
+  vertexCount: number;
+  firstTriangle: number;
+  triangleCount: number;
+}
+
+/** All triangles of a scene as arrays, and the parts they come from. */
+export interface Extracted {
+  /** With UVs if every part has the attribute `uv`. */
+  mesh: Mesh & { indices: Uint32Array };
+  /** In the order of their vertices. */
+  parts: Part[];
+}
+
+const identity = new Matrix4();
+
+/**
+ * Collects the triangles of a geometry, or of all meshes of a scene, depth first, as arrays for `transfer`.
+ *
+ * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision
+ * and rounded last, the winding of mirrored meshes is turned. A skinned mesh is taken in its bind pose, a morphed one at
+ * rest. Each mesh is a group of its own, and so is each of its material groups.
+ * @param argument  What it is, for messages.
+ * @throws {CagecastError} that names the part and the element.
+ */
+export function extract(object: Object3D | BufferGeometry, argument: 'cage' | 'target' = 'target'): Extracted {
+  const parts = listParts(object, argument);
+  const last = parts.at(-1);
+  const positions = new Float32Array(3 * (last ? last.firstVertex + last.vertexCount : 0));
+  const indices = new Uint32Array(3 * (last ? last.firstTriangle + last.triangleCount : 0));
+  const groups = new Uint32Array(positions.length / 3);
+  let group = 0;
+  for (const part of parts) {
+    placePositions(part, positions);
+    placeIndices(part, indices, argument);
+    group = placeGroups(part, groups, group);
+  }
+  const uvs = readUvs(parts, positions.length / 3);
+  return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts };
+}
+
+type Attribute = BufferAttribute | InterleavedBufferAttribute;
+
+function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
+  const parts: Part[] = [];
+  const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
+    const position = geometry.getAttribute('position') as Attribute | undefined;
+    const vertexCount = position?.count ?? 0;
+    const corners = geometry.index ? geometry.index.count : vertexCount;
+    if (vertexCount === 0 || corners === 0) return;
+    if (corners % 3 !== 0) throw wrong(argument, name, `has ${corners} corners, not 3 per triangle`);
+    const last = parts.at(-1);
+    parts.push({
+      name,
+      mesh,
+      geometry,
+      matrix,
+      firstVertex: last ? last.firstVertex + last.vertexCount : 0,
+      vertexCount,
+      firstTriangle: last ? last.firstTriangle + last.triangleCount : 0,
+      triangleCount: corners / 3,
+    });
+  };
+  if (isGeometry(object)) {
+    add(object.name || 'geometry', undefined, object, identity);
+    return parts;
+  }
+  object.updateWorldMatrix(true, true);
+  object.traverse((child) => {
+    if (!isMesh(child) || child.userData[overlayMark] === true) return;
+    // Three moves the vertices of a skinned mesh by its bind matrix first; the matrix of its node does not count.
+    add(child.name || child.parent?.name || `mesh ${parts.length}`, child, child.geometry, child instanceof SkinnedMesh ? child.bindMatrix : child.matrixWorld);
+  });
+  return parts;
+}
+
+/** In `userData` of the overlays that are added to a scene, so that they are no part of it when it is read again. */
+export const overlayMark = 'cagecastOverlay';
+
+// By three's own marks, not by class: a page may have a second copy of three.
+const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry => (object as BufferGeometry).isBufferGeometry === true;
+const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
+
+const wrong = (argument: string, name: string, text: string, at = 0): CagecastError => new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
+
+function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {
+  const position = geometry.getAttribute('position') as Attribute;
+  const m = matrix.elements;
+  const moves = !matrix.equals(identity);
+  for (let v = 0; v < vertexCount; ++v) {
+    // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
+    const [x, y, z] = [Math.fround(position.getX(v)), Math.fround(position.getY(v)), Math.fround(position.getZ(v))];
+    const to = 3 * (firstVertex + v);
+    out[to] = moves ? m[0]! * x + m[4]! * y + m[8]! * z + m[12]! : x;
+    out[to + 1] = moves ? m[1]! * x + m[5]! * y + m[9]! * z + m[13]! : y;
+    out[to + 2] = moves ? m[2]! * x + m[6]! * y + m[10]! * z + m[14]! : z;
+  }
+}
+
+function placeIndices({ name, geometry, matrix, firstVertex, vertexCount, firstTriangle, triangleCount }: Part, out: Uint32Array, argument: string): void {
+  const { index } = geometry;
+  const mirrored = matrix.determinant() < 0;
+  for (let i = 0; i < 3 * triangleCount; ++i) {
+    // Checked part by part: in the joined arrays an index too large would point into the next part.
+    const vertex = index ? index.getX(i) : i;
+    if (vertex >= vertexCount) throw wrong(argument, name, `has indices[${i}] = ${vertex}, which is out of range (${vertexCount} vertices)`, i);
+    const corner = i % 3;
+    out[3 * firstTriangle + i - corner + (mirrored && corner > 0 ? 3 - corner : corner)] = firstVertex + vertex;
+  }
+}
+
+/** Numbers the part's material groups, from `first` on. @returns the next number. */
+function placeGroups({ mesh, geometry, firstVertex, vertexCount, triangleCount }: Part, out: Uint32Array, first: number): number {
+  out.fill(first, firstVertex, firstVertex + vertexCount);
+  if (!Array.isArray(mesh?.material)) return first + 1;
+  let next = first;
+  const numbers = new Map<number, number>();
+  const taken = new Uint8Array(vertexCount);
+  for (const { start, count, materialIndex = 0 } of geometry.groups) {
+    if (!numbers.has(materialIndex)) numbers.set(materialIndex, next++);
+    const group = numbers.get(materialIndex)!;
+    for (let i = start; i < Math.min(start + count, 3 * triangleCount); ++i) {
+      const vertex = geometry.index ? geometry.index.getX(i) : i;
+      if (vertex >= vertexCount || taken[vertex] === 1) continue; // a vertex of two materials belongs to the first
+      taken[vertex] = 1;
+      out[firstVertex + vertex] = group;
+    }
+  }
+  return Math.max(next, first + 1);
+}
+
+function readUvs(parts: readonly Part[], vertices: number): Float32Array | undefined {
+  if (parts.length === 0 || !parts.every(({ geometry }) => geometry.hasAttribute('uv'))) return undefined;
+  const uvs = new Float32Array(2 * vertices);
+  for (const { geometry, firstVertex, vertexCount } of parts) {
+    const uv = geometry.getAttribute('uv') as Attribute;
+    for (let v = 0; v < Math.min(vertexCount, uv.count); ++v) {
+      uvs[2 * (firstVertex + v)] = uv.getX(v);
+      uvs[2 * (firstVertex + v) + 1] = uv.getY(v);
+    }
+  }
+  return uvs;
+}

@@ -1,0 +1,117 @@
+/**
+ * Cagecast for three.js: a loaded model in, its meshes with new UVs, zones and a cosmetic overlay out.
+ * @module cagecast/three
+ */
+import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3D, type Texture } from 'three';
+import { transfer, type Classification, type TransferOptions, type TransferResult } from '../index.js';
+import { extract, type Extracted, type Part } from './extract.js';
+import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
+
+export { extract, type Extracted, type Part };
+
+/** The attribute that holds each vertex's `Zone`: the name that GLTFLoader gives to `_NCZ`. */
+export const zoneAttribute = '_ncz';
+
+/** Options of `applyTransfer`: those of `transfer`, and what to show. */
+export interface ApplyOptions extends TransferOptions {
+  /** What `transfer` or `cagecast/worker` gave for the meshes that `extract` made of `cage` and `target`, if that is done already. */
+  result?: TransferResult | undefined;
+  /** The paint, in the cage's UVs: shown as an overlay of the cosmetic triangles. Its `channel` and `flipY` are left alone unless `uv` says otherwise. */
+  texture?: Texture | undefined;
+  /** The material of the overlays, in place of one that shows `texture` with the gloss and relief of what it lies on. */
+  material?: Material | undefined;
+  /** The channel of the new UVs, 1 … 3: the attribute `uv1`, `uv2` or `uv3`; 1 by default. `texture.channel` is set to it. */
+  channel?: 1 | 2 | 3 | undefined;
+}
+
+/** What was added to a scene. */
+export interface Applied {
+  result: TransferResult;
+  parts: Part[];
+  /** One for each part that is a mesh, with a texture or a material; children of the meshes they lie on. */
+  overlays: Mesh[];
+  /** Shows another decision of `classify`, in microseconds. */
+  update(classification: Pick<Classification, 'zones' | 'cosmeticTriangles'>): void;
+  /** Takes the overlays away and frees their buffers. The new attributes stay. */
+  dispose(): void;
+}
+
+/**
+ * Carries a cage's UVs to the meshes of a scene: each geometry gets the attributes `uv1` (2 per vertex) and `_ncz` (the
+ * `Zone`: 0 may be painted), and, with a texture, each mesh a child that shows the texture on the cosmetic triangles.
+ * Skins and morph targets keep working: the overlays share them. A geometry that several meshes show is copied for all but
+ * the first.
+ *
+ * `await init()` once before; or leave the main thread free with `extract`, `cagecast/worker` and the option `result`.
+ *
+ * @param target  A loaded scene, a mesh, or a geometry (which gets the attributes, but no overlay).
+ * @param cage    The same, with the attribute `uv`; in the same space as the target.
+ * @throws {CagecastError} as `transfer` does, and for parts that cannot be read.
+ *
+ * @example
+ * import { init } from 'cagecast';
+ * import { applyTransfer } from 'cagecast/three';
+ *
+ * await init();
+ * const [head, cage] = await Promise.all(['head.glb', 'cage.glb'].map((url) => loader.loadAsync(url)));
+ * const paint = await new TextureLoader().loadAsync('paint.png');
+ * paint.flipY = false; // as all textures of glTF
+ * paint.colorSpace = SRGBColorSpace;
+ * applyTransfer(head.scene, cage.scene, { texture: paint });
+ * scene.add(head.scene);
+ */
+export function applyTransfer(
+  target: Object3D | BufferGeometry,
+  cage: Object3D | BufferGeometry,
+  { result: known, texture, material, channel = 1, ...options }: ApplyOptions = {},
+): Applied {
+  const { mesh, parts } = extract(target, 'target');
+  const result = known ?? transfer(extract(cage, 'cage').mesh, mesh, options);
+  const uvName = `uv${channel}`;
+  const taken = new Set<BufferGeometry>();
+  for (const part of parts) {
+    if (part.mesh && taken.has(part.geometry)) part.mesh.geometry = part.geometry = part.geometry.clone();
+    taken.add(part.geometry);
+    const { geometry, firstVertex, vertexCount } = part;
+    geometry.setAttribute(uvName, new BufferAttribute(result.uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2));
+    geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(vertexCount), 1));
+  }
+
+  if (texture) texture.channel = channel;
+  const own: Material[] = [];
+  const layers: { overlay: Mesh; part: Part }[] = [];
+  for (const part of texture || material ? parts : []) {
+    if (!part.mesh) continue;
+    const paint = material ?? paintMaterial([part.mesh.material].flat()[0], texture!);
+    if (paint !== material) {
+      layOnSurface(paint);
+      own.push(paint);
+    }
+    layers.push({ overlay: makeOverlay(part, part.mesh, uvName, paint), part });
+  }
+  const update: Applied['update'] = ({ zones, cosmeticTriangles }) => {
+    for (const { geometry, firstVertex, vertexCount } of parts) {
+      const attribute = geometry.getAttribute(zoneAttribute) as BufferAttribute;
+      (attribute.array as Float32Array).set(zones.subarray(firstVertex, firstVertex + vertexCount));
+      attribute.needsUpdate = true;
+    }
+    for (const { overlay, part } of layers) {
+      showTriangles(overlay, part, cosmeticTriangles.subarray(part.firstTriangle, part.firstTriangle + part.triangleCount));
+    }
+  };
+  update(result);
+  for (const { overlay, part } of layers) part.mesh!.add(overlay);
+  return {
+    result,
+    parts,
+    overlays: layers.map(({ overlay }) => overlay),
+    update,
+    dispose() {
+      for (const { overlay } of layers) {
+        overlay.removeFromParent();
+        overlay.geometry.dispose();
+      }
+      for (const paint of own) paint.dispose();
+    },
+  };
+}
