@@ -160,6 +160,7 @@ Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOpt
 Status checkClassifyOptions(const ClassifyOptions& options) noexcept {
   if (!(options.threshold >= 0.0f && options.threshold <= 1.0f)) return {Code::badThreshold, Argument::options};
   if (!(options.minCovered >= 0.0f && options.minCovered <= 1.0f)) return {Code::badMinCovered, Argument::options};
+  if (!(options.minOfAll >= 0.0f && options.minOfAll <= 1.0f)) return {Code::badMinOfAll, Argument::options};
   return {};
 }
 

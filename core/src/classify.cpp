@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "cagecast/transfer.hpp"
 #include "check.hpp"
@@ -9,12 +10,82 @@ namespace {
 /// SPEC §7: a hole is explained if what fails there is so large a share of what is uncovered there.
 constexpr double kExplaining = 0.02;
 
-/// Step 5: whether a segment falls short of what is asked of it.
-bool fallsShort(const SegmentStats& stats, const ClassifyOptions& options) {
-  if (stats.coveredArea < static_cast<double>(options.threshold) * stats.exposedArea) return true;
-  if (!(options.minCovered > 0)) return false;
-  return !(stats.coveredArea > 0 && stats.coveredArea >= static_cast<double>(options.minCovered) * stats.area);
-}
+/// SPEC §5′: copies within this factor of what is asked of them are judged together.
+constexpr double kDoubt = 2;
+
+/// The areas of a segment, or of several that are judged together.
+struct Tally {
+  double area = 0, exposed = 0, covered = 0, sunk = 0;
+  double segments = 0;
+
+  static Tally of(const SegmentStats& s) { return {s.area, s.exposedArea, s.coveredArea, s.sunkArea, 1}; }
+  void add(const Tally& other) {
+    area += other.area;
+    exposed += other.exposed;
+    covered += other.covered;
+    sunk += other.sunk;
+    segments += other.segments;
+  }
+};
+
+/// Step 5: which segments pass.
+class Verdicts {
+ public:
+  Verdicts(std::span<const SegmentStats> stats, const ClassifyOptions& options) noexcept : stats_(stats), options_(options) {
+    for (const SegmentStats& s : stats) allCovered_ += s.coveredArea;
+  }
+
+  /// @return false if memory ran out.
+  bool decide(Array<std::uint8_t>& culled) const noexcept {
+    const bool hasFloor = options_.floor != Floor::none;
+    bool anyDoubt = false;
+    for (std::size_t s = 0; s < stats_.size(); ++s) {
+      if (!hasFloor) {
+        culled[s] = stats_[s].coveredArea < static_cast<double>(options_.threshold) * stats_[s].exposedArea;
+      } else {
+        const double margin = marginOf(Tally::of(stats_[s]));
+        culled[s] = margin < 1;
+        anyDoubt = anyDoubt || isInDoubt(margin);
+      }
+    }
+    return !(options_.copies && anyDoubt) || judgeCopies(culled);
+  }
+
+ private:
+  static bool isInDoubt(double margin) { return margin >= 1 / kDoubt && margin < kDoubt; }
+
+  /// How many times what is asked of it a tally reaches: it passes from 1 on.
+  [[nodiscard]] double marginOf(const Tally& tally) const {
+    const auto times = [](double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); };
+    if (!(tally.covered > 0)) return 0;
+    const double coverage = times(tally.covered, static_cast<double>(options_.threshold) * tally.exposed);
+    const double ofItself = static_cast<double>(options_.minCovered) * tally.area;
+    if (options_.floor == Floor::area) return std::min(coverage, times(tally.covered, ofItself));
+    // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
+    const double counted = tally.sunk * (tally.covered / tally.exposed);
+    const double ofAll = static_cast<double>(options_.minOfAll) * allCovered_ * tally.segments;
+    return std::min(coverage, std::max(times(counted, ofItself), times(counted, ofAll)));
+  }
+
+  /// Judges copies that are in doubt together, so that twins do not fall on either side by accident.
+  bool judgeCopies(Array<std::uint8_t>& culled) const noexcept {
+    Array<Tally> together;  // By the first of the copies.
+    if (!together.reset(stats_.size())) return false;
+    std::fill(together.begin(), together.end(), Tally{});
+    const auto isDoubted = [&](std::size_t s) { return isInDoubt(marginOf(Tally::of(stats_[s]))); };
+    for (std::size_t s = 0; s < stats_.size(); ++s) {
+      if (isDoubted(s)) together[stats_[s].copyOf].add(Tally::of(stats_[s]));
+    }
+    for (std::size_t s = 0; s < stats_.size(); ++s) {
+      if (isDoubted(s)) culled[s] = marginOf(together[stats_[s].copyOf]) < 1;
+    }
+    return true;
+  }
+
+  std::span<const SegmentStats> stats_;
+  const ClassifyOptions& options_;
+  double allCovered_ = 0;
+};
 
 /// Step 7: which holes are meant for what fails behind them.
 void explainHoles(std::span<const HoleShare> shares, Zones& out) {
@@ -46,9 +117,9 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
     return {Code::outOfMemory};
   }
 
-  for (std::size_t s = 0; s < stats.size(); ++s) {
-    const Lock lock = options.locks.empty() ? Lock::automatic : options.locks[s];
-    out.culledSegments[s] = lock == Lock::automatic ? fallsShort(stats[s], options) : lock == Lock::exclude;
+  if (!Verdicts(stats, options).decide(out.culledSegments)) return {Code::outOfMemory};
+  for (std::size_t s = 0; s < options.locks.size(); ++s) {
+    if (options.locks[s] != Lock::automatic) out.culledSegments[s] = options.locks[s] == Lock::exclude;
   }
   explainHoles(shares, out);
   for (std::size_t v = 0; v < zones.size(); ++v) {

@@ -20,9 +20,8 @@ struct Share {
 }  // namespace
 
 bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, const Units& units, const PointResults& results,
-                    std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept {
+                    const PointAreas& areas, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept {
   const Scratch::Mark mark = scratch.mark();
-  auto* areas = scratch.take<std::int64_t>(points.count);
   auto* rimOf = scratch.take<std::uint32_t>(points.count);
   auto* atRims = scratch.take<std::uint32_t>(points.count);
   auto* starts = scratch.take<std::uint32_t>(std::size_t{rims.count} + 1);
@@ -61,11 +60,6 @@ bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, co
   for (std::uint32_t i = 0; i < points.count; ++i) {
     if (rimOf[i] != Rims::kNone) atRims[starts[rimOf[i]]++] = i;  // A start becomes its end, the next one's start.
   }
-  std::fill(areas, areas + points.count, 0);
-  const AreaUnit unit(points.triangleCount);
-  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
-    for (std::size_t k = 0; k < 3; ++k) areas[points.triangles[std::size_t{3} * t + k]] += unit.third(points.doubleAreas[t]);
-  }
   std::fill(shareOf, shareOf + segmentCount, 0u);
   std::uint32_t count = 0;
   for (std::uint32_t rim = 0, i = 0; rim < rims.count; ++rim) {
@@ -78,11 +72,12 @@ bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, co
         shareOf[s] = count;
         found[count++] = {rim, s, 0, 0};
       }
-      found[shareOf[s]].exposed += areas[p];
-      if (results.zones[p] == Zone::uncovered) found[shareOf[s]].uncovered += areas[p];
+      found[shareOf[s]].exposed += areas.all[p];
+      if (results.zones[p] == Zone::uncovered) found[shareOf[s]].uncovered += areas.all[p];
     }
   }
   if (!shares.reset(count)) return false;
+  const AreaUnit unit(points.triangleCount);
   const double toInput = 1.0 / units.scale / units.scale;
   for (std::uint32_t i = 0; i < count; ++i) {
     shares[i] = {found[i].rim, found[i].segment, unit.summableArea(found[i].exposed) * toInput,

@@ -3,6 +3,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 
 #include "scratch.hpp"
 
@@ -24,7 +26,7 @@ class IndexTable {
 
   /// Finds what was put in and is equal, or else puts this in.
   /// @param index  Of this thing.
-  /// @param hash   Of this thing, from `mix`.
+  /// @param hash   Of this thing.
   /// @param equal  Whether this equals the thing of another index.
   /// @return The index of the first thing equal to this: its own if it is that.
   template <typename Equal>
@@ -35,7 +37,17 @@ class IndexTable {
     return slots_[slot];
   }
 
-  /// Stirs another word into a hash; the high bits depend on all words.
+  /// Hashes the bytes of a thing (it must have no padding); the high bits depend on all of them.
+  template <typename Thing>
+  static std::uint64_t hash(const Thing& thing) noexcept {
+    static_assert(std::is_trivially_copyable_v<Thing> && sizeof(Thing) % 4 == 0);
+    std::uint32_t words[sizeof(Thing) / 4];
+    std::memcpy(words, &thing, sizeof words);
+    std::uint64_t all = 0;
+    for (const std::uint32_t word : words) all = mix(all, word);
+    return all;
+  }
+  /// Stirs another word into a hash.
   static std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
     hash ^= word;
     return (hash ^ hash >> 32) * 0x9E3779B97F4A7C15u;  // 2^64 / the golden ratio.

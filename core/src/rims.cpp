@@ -1,8 +1,7 @@
 #include "rims.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <utility>
+#include <bit>
 
 #include "index_table.hpp"
 #include "union_find.hpp"
@@ -13,9 +12,14 @@ namespace {
 /// A place within this share of the diagonal of an open edge is on it, so that rounding does not decide.
 constexpr double kOnRim = 1e-6;
 
-const float* cornerOf(const Cage& cage, std::uint32_t corner) {
-  const CageTriangle& t = cage.triangles[corner / 3];
-  return corner % 3 == 0 ? t.a : corner % 3 == 1 ? t.b : t.c;
+/// Calls for each side of the cage's triangles with its number (3 · triangle + corner) and the vertices at its ends.
+template <typename Call>
+void eachSide(const MeshView& mesh, const Cage& cage, const std::uint32_t* vertexOf, Call call) {
+  for (std::uint32_t t = 0; t < cage.count; ++t) {
+    const std::uint32_t* index = mesh.indices.data() + std::size_t{3} * cage.triangles[t].index;
+    const std::uint32_t corners[3] = {vertexOf[index[0]], vertexOf[index[1]], vertexOf[index[2]]};
+    for (std::uint32_t k = 0; k < 3; ++k) call(3 * t + k, corners[k], corners[(k + 1) % 3]);
+  }
 }
 
 }  // namespace
@@ -45,66 +49,65 @@ std::uint32_t Rims::at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q,
   return kNone;
 }
 
-bool findRims(const Cage& cage, Scratch& scratch, Rims& out) noexcept {
+bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& out) noexcept {
   const std::uint32_t sideCount = 3 * cage.count;
+  const auto vertexCount = static_cast<std::uint32_t>(mesh.positions.size() / 3);
   auto* ofSides = scratch.take<std::uint32_t>(std::size_t{2} * sideCount);
-  auto* boxes = scratch.take<Rims::Box>(sideCount);
+  auto* boxes = scratch.take<Rims::Box>(std::min(sideCount, vertexCount));
+  auto* vertexOf = scratch.take<std::uint32_t>(vertexCount);
   const Scratch::Mark mark = scratch.mark();
-  // A vertex is named by the first corner there, an edge by the first side there. Side i goes from corner i to the next.
-  auto* vertexAt = scratch.take<std::uint32_t>(sideCount);
   auto* edges = scratch.take<std::uint64_t>(sideCount);
-  auto* parents = scratch.take<std::uint32_t>(sideCount);
+  auto* parents = scratch.take<std::uint32_t>(vertexCount);
   auto* isShared = scratch.take<bool>(sideCount);
-  auto* loopAt = scratch.take<std::uint32_t>(sideCount);
-  IndexTable vertices(sideCount, scratch);
+  auto* loopAt = scratch.take<std::uint32_t>(vertexCount);
+  IndexTable vertices(vertexCount, scratch);
   IndexTable edgeTable(sideCount, scratch);
   if (scratch.failed()) return false;
 
-  for (std::uint32_t i = 0; i < sideCount; ++i) {
-    float p[3];
-    for (int k = 0; k < 3; ++k) p[k] = cornerOf(cage, i)[k] + 0.0f;  // Now −0 is 0.
-    std::uint32_t words[3];
-    std::memcpy(words, p, sizeof words);
-    vertexAt[i] = vertices.firstEqual(i, IndexTable::mix(IndexTable::mix(words[0], words[1]), words[2]), [&](std::uint32_t other) {
-      const float* o = cornerOf(cage, other);
+  for (std::uint32_t v = 0; v < vertexCount; ++v) {
+    const float* p = mesh.positions.data() + std::size_t{3} * v;
+    std::uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) hash = IndexTable::mix(hash, std::bit_cast<std::uint32_t>(p[k] + 0.0f));  // Now −0 is 0.
+    vertexOf[v] = vertices.firstEqual(v, hash, [&](std::uint32_t other) {
+      const float* o = mesh.positions.data() + std::size_t{3} * other;
       return o[0] == p[0] && o[1] == p[1] && o[2] == p[2];
     });
   }
+  // An edge is shared if it is met again. It is named by the first side on it.
   std::fill(isShared, isShared + sideCount, false);
-  for (std::uint32_t i = 0; i < sideCount; ++i) {
-    const std::uint64_t a = vertexAt[i];
-    const std::uint64_t b = vertexAt[i % 3 == 2 ? i - 2 : i + 1];
-    edges[i] = std::min(a, b) << 32 | std::max(a, b);
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
+    edges[side] = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
     const std::uint32_t first =
-        edgeTable.firstEqual(i, IndexTable::mix(0, edges[i]), [&](std::uint32_t other) { return edges[other] == edges[i]; });
-    if (first != i) isShared[i] = isShared[first] = true;
-  }
-  UnionFind sets(parents, sideCount);
-  for (std::uint32_t i = 0; i < sideCount; ++i) {
-    if (!isShared[i]) sets.join(static_cast<std::uint32_t>(edges[i] >> 32), static_cast<std::uint32_t>(edges[i]));
-  }
-  // Only vertices of open edges have been joined with others, so each edge finds its rim at either end.
-  std::fill(loopAt, loopAt + sideCount, Rims::kNone);
+        edgeTable.firstEqual(side, IndexTable::mix(0, edges[side]), [&](std::uint32_t other) { return edges[other] == edges[side]; });
+    if (first != side) isShared[side] = isShared[first] = true;
+  });
+  UnionFind sets(parents, vertexCount);
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
+    if (!isShared[side]) sets.join(a, b);
+  });
+  std::fill(loopAt, loopAt + vertexCount, Rims::kNone);
   out.count = 0;
-  for (std::uint32_t i = 0; i < sideCount; ++i) {
-    if (isShared[i]) continue;
-    std::uint32_t& loop = loopAt[sets.find(vertexAt[i])];
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
+    if (isShared[side]) return;
+    std::uint32_t& loop = loopAt[sets.find(a)];
     if (loop == Rims::kNone) {
       boxes[out.count] = {};
       loop = out.count++;
     }
-    for (const std::uint32_t end : {static_cast<std::uint32_t>(edges[i] >> 32), static_cast<std::uint32_t>(edges[i])}) {
-      boxes[loop].grow(Vec3::from(cornerOf(cage, end)));
-      loopAt[end] = loop;
-    }
-  }
-  for (std::uint32_t i = 0; i < sideCount; ++i) {
-    std::uint32_t* sides = ofSides + std::size_t{6} * (i / 3);
-    sides[3 + i % 3] = loopAt[vertexAt[i]];
-    sides[i % 3] = isShared[i] ? Rims::kNone : loopAt[vertexAt[i]];
-  }
+    loopAt[a] = loopAt[b] = loop;
+    const CageTriangle& t = cage.triangles[side / 3];
+    const float* corners[3] = {t.a, t.b, t.c};
+    boxes[loop].grow(Vec3::from(corners[side % 3]));
+    boxes[loop].grow(Vec3::from(corners[(side % 3 + 1) % 3]));
+  });
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t) {
+    std::uint32_t* sides = ofSides + std::size_t{6} * (side / 3);
+    sides[3 + side % 3] = loopAt[a];
+    sides[side % 3] = isShared[side] ? Rims::kNone : loopAt[a];
+  });
   out.boxes = boxes;
   out.ofSides = ofSides;
+  out.vertexOf = vertexOf;
   scratch.rewind(mark);
   return true;
 }

@@ -29,6 +29,7 @@ struct Rims {
   const Box* boxes = nullptr;
   /// 6 per triangle of the cage: the rim that its edges ab, bc, ca lie on, and the one that its corners a, b, c do.
   const std::uint32_t* ofSides = nullptr;
+  const std::uint32_t* vertexOf = nullptr;  ///< 1 per vertex of the mesh: the first with the same position.
 
   /// The rim that a place lies on, or `kNone`.
   /// @param slot  The triangle of the place.
@@ -50,6 +51,6 @@ inline Vec3 positionOf(const CageTriangle& t, const Place& place) {
 }
 
 /// @return false if memory ran out.
-bool findRims(const Cage& cage, Scratch& scratch, Rims& out) noexcept;
+bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& out) noexcept;
 
 }  // namespace cagecast

@@ -1,14 +1,14 @@
 #include "seams.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <utility>
 
-#include "index_table.hpp"
+#include "atlas.hpp"
+#include "near_kernel.hpp"
 #include "place.hpp"
-#include "union_find.hpp"
 
 namespace cagecast {
 namespace {
@@ -27,85 +27,11 @@ constexpr float kMostUv = 16384;
 /// What the first look allows of the explained length, squared: the exact limit less what floats round.
 constexpr double kFirstLook = 0.99 * kSmear * kSmear;
 
-/// A vertex of the cage as the texture knows it.
-struct Site {
-  float x, y, z, u, v;
-
-  static Site of(const MeshView& mesh, std::size_t vertex) {
-    const float* p = mesh.positions.data() + 3 * vertex;
-    const float* uv = mesh.uvs.data() + 2 * vertex;
-    return {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f, uv[0] + 0.0f, uv[1] + 0.0f};  // Now −0 is 0.
-  }
-  friend bool operator==(const Site& a, const Site& b) { return std::memcmp(&a, &b, sizeof(Site)) == 0; }
-  [[nodiscard]] std::uint64_t hash() const {
-    std::uint32_t words[5];
-    static_assert(sizeof words == sizeof(Site));
-    std::memcpy(words, this, sizeof words);
-    std::uint64_t hash = 0;
-    for (const std::uint32_t word : words) hash = IndexTable::mix(hash, word);
-    return hash;
-  }
+/// What the first look knows of a triangle of the cage.
+struct FirstLook {
+  std::uint32_t island;
+  float explains;  ///< Squared UV length per squared length.
 };
-
-/// How the cage's triangles hang together in the texture: over edges with equal position and UV at both ends.
-/// Side 3 · t + k goes from corner k of triangle t to the next one.
-struct Atlas {
-  std::uint32_t* nextSide;  ///< 1 per side: another side on the same edge; all sides of an edge form a ring.
-  std::uint32_t* islands;   ///< 1 per triangle: equal for those that hang together.
-  double* stretch;          ///< 1 per triangle: the most of its edges' UV length / length, squared.
-  float* explains;          ///< 1 per triangle: what the first look allows per squared length.
-};
-
-bool findAtlas(const MeshView& mesh, const Cage& cage, Scratch& scratch, Atlas& atlas) {
-  const std::size_t sideCount = std::size_t{3} * cage.count;
-  atlas.nextSide = scratch.take<std::uint32_t>(sideCount);
-  atlas.islands = scratch.take<std::uint32_t>(cage.count);
-  atlas.stretch = scratch.take<double>(cage.count);
-  atlas.explains = scratch.take<float>(cage.count);
-  const Scratch::Mark mark = scratch.mark();
-  const std::size_t vertexCount = mesh.positions.size() / 3;
-  auto* siteOf = scratch.take<std::uint32_t>(vertexCount);
-  auto* edges = scratch.take<std::uint64_t>(sideCount);
-  IndexTable sites(vertexCount, scratch);
-  IndexTable edgeTable(sideCount, scratch);
-  if (scratch.failed()) return false;
-
-  for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const Site site = Site::of(mesh, v);
-    siteOf[v] = sites.firstEqual(v, site.hash(), [&](std::uint32_t other) { return Site::of(mesh, other) == site; });
-  }
-  UnionFind sets(atlas.islands, cage.count);
-  float mostUv = 0;
-  for (std::uint32_t t = 0; t < cage.count; ++t) {
-    const CageTriangle& triangle = cage.triangles[t];
-    const std::uint32_t* index = mesh.indices.data() + std::size_t{3} * triangle.index;
-    double stretch = 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t l = (k + 1) % 3;
-      const std::uint32_t side = 3 * t + k;
-      const std::uint64_t low = std::min(siteOf[index[k]], siteOf[index[l]]);
-      const std::uint64_t edge = low << 32 | std::max(siteOf[index[k]], siteOf[index[l]]);
-      edges[side] = edge;
-      const std::uint32_t first =
-          edgeTable.firstEqual(side, IndexTable::mix(0, edge), [&](std::uint32_t other) { return edges[other] == edge; });
-      atlas.nextSide[side] = side;
-      std::swap(atlas.nextSide[side], atlas.nextSide[first]);
-      sets.join(t, first / 3);
-
-      const double du = static_cast<double>(triangle.uvs[2 * l]) - static_cast<double>(triangle.uvs[2 * k]);
-      const double dv = static_cast<double>(triangle.uvs[2 * l + 1]) - static_cast<double>(triangle.uvs[2 * k + 1]);
-      stretch = std::max(stretch, (du * du + dv * dv) * triangle.inverseSquare[k]);
-    }
-    atlas.stretch[t] = stretch;
-    // Below infinity, so that a product with it stays a number.
-    atlas.explains[t] = static_cast<float>(std::min(kFirstLook * stretch, 1e30));
-    for (const float x : triangle.uvs) mostUv = std::max(mostUv, std::abs(x));
-  }
-  sets.flatten(cage.count);
-  if (mostUv > kMostUv) std::fill(atlas.explains, atlas.explains + cage.count, -std::numeric_limits<float>::infinity());
-  scratch.rewind(mark);
-  return true;
-}
 
 /// A corner of a target triangle, and its place on the cage.
 struct Corner {
@@ -118,17 +44,25 @@ struct Corner {
 class Mender {
  public:
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
-  Mender(const Cage& cage, const Atlas& atlas, double diagonal, Scratch& scratch) noexcept
+  Mender(const Cage& cage, const CageTree& tree, const Atlas& atlas, double diagonal, Scratch& scratch) noexcept
       : cage_(cage),
+        tree_(tree),
         atlas_(atlas),
         diagonal_(diagonal),
-        patch_(scratch.take<std::uint32_t>(cage.count)),
-        triangleSeen_(scratch.take<std::uint32_t>(cage.count)),
-        sideSeen_(scratch.take<std::uint32_t>(std::size_t{3} * cage.count)),
-        candidates_(scratch.take<Candidate>(cage.count)) {
+        fixedSlack_(fixedSlack(tree, diagonal)),
+        laneOf_(scratch.take<std::uint32_t>(cage.count)),
+        seen_(scratch.take<std::uint32_t>(cage.count)),
+        sideSeen_(scratch.take<std::uint32_t>(std::size_t{3} * cage.count)) {
+    for (int k = 0; k < 3; ++k) {
+      candidates_[k] = scratch.take<Candidate>(cage.count);
+      patches_[k].triangles = scratch.take<std::uint32_t>(std::size_t{cage.count} + 1);
+      patches_[k].squaredDistances = scratch.take<float>(std::size_t{4} * (std::size_t{cage.count} + 1));
+    }
     if (scratch.failed()) return;
-    std::fill(triangleSeen_, triangleSeen_ + cage.count, 0u);
+    std::fill(seen_, seen_ + cage.count, 0u);
     std::fill(sideSeen_, sideSeen_ + std::size_t{3} * cage.count, 0u);
+    // Leaves are full but for the last.
+    for (std::uint32_t i = 0; i < cage.count; ++i) laneOf_[tree.near[i / 4].slot[i % 4]] = i;
   }
 
   /// Whether the texture is torn or smeared over a triangle, in double.
@@ -154,28 +88,31 @@ class Mender {
   /// @param[out] uvs  6 floats.
   void mend(const Corner (&corners)[3], float* uvs) noexcept {
     double longest = 0;
-    for (int k = 0; k < 3; ++k) longest = std::max(longest, length(corners[(k + 1) % 3].p - corners[k].p));
+    for (int k = 0; k < 3; ++k) {
+      longest = std::max(longest, length(corners[(k + 1) % 3].p - corners[k].p));
+      known_[k].count = 1;
+      known_[k].places[0] = {corners[k].slot, corners[k].place};
+    }
     const double reach = kPatchEdges * longest + kPatchSlack * diagonal_;
 
-    struct Choice {
-      double sum;
-      Candidate corners[3];
-    };
-    Choice choices[3];
-    int count = 0;
+    // In float first: which of the patches might bring the corners nearest.
+    double sums[3];
+    double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
       const bool isKnown = std::any_of(corners, corners + k, [&](const Corner& c) { return c.slot == corners[k].slot; });
-      if (isKnown) continue;
-      const std::uint32_t size = grow(corners[k], reach);
-      Choice& choice = choices[count++];
-      choice.sum = 0;
-      for (int c = 0; c < 3; ++c) {
-        choice.corners[c] = nearestInPatch(size, corners[c].p);
-        choice.sum += choice.corners[c].place.distance;
-      }
+      sums[k] = isKnown ? std::numeric_limits<double>::infinity() : flood(corners, k, reach, patches_[k]);
+      least = std::min(least, sums[k]);
     }
-    double least = choices[0].sum;
-    for (int i = 1; i < count; ++i) least = std::min(least, choices[i].sum);
+    const double unsure = kTieSum * diagonal_ + 6 * (kTieDistance * diagonal_ + kRounding * (tree_.extent + least));
+    Choice choices[3];
+    int count = 0;
+    const double limit = least + unsure;
+    least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      if (sums[k] > limit) continue;
+      project(corners, patches_[k], choices[count]);
+      least = std::min(least, choices[count++].sum);
+    }
     int chosen = 0;
     while (choices[chosen].sum > least + kTieSum * diagonal_) ++chosen;
     for (int c = 0; c < 3; ++c) {
@@ -185,68 +122,157 @@ class Mender {
   }
 
  private:
-  /// Floods the cage from a corner's triangle over edges shared in the texture, as far as it is within reach of the
-  /// corner's place.
-  /// @return How many triangles `patch_` now holds: at least 1.
-  std::uint32_t grow(const Corner& from, double reach) noexcept {
-    const CageTriangle& start = cage_.triangles[from.slot];
+  /// The corners' places on one patch.
+  struct Choice {
+    double sum;  ///< Of the distances.
+    Candidate corners[3];
+  };
+  /// Places of a corner that were decided already: patches of a triangle have most of them in common.
+  struct Known {
+    static constexpr std::uint32_t kMost = 4;
+    std::uint32_t count;
+    Candidate places[kMost];
+  };
+
+  /// Triangles, and how far they are from the three corners and, lane 3, from the place they are around.
+  struct Patch {
+    std::uint32_t size;
+    std::uint32_t* triangles;
+    float* squaredDistances;   ///< 4 per triangle.
+    simd::f32x4 leastSquares;  ///< For each of the four.
+  };
+
+  static constexpr int kPlace = 3;
+
+  /// Floods the cage from the triangle of corner k, over edges shared in the texture, through all that is within reach of
+  /// the corner's place.
+  /// @return The sum of the corners' distances to the patch, in float.
+  double flood(const Corner (&corners)[3], int k, double reach, Patch& patch) noexcept {
+    const std::uint32_t from = corners[k].slot;
+    const CageTriangle& start = cage_.triangles[from];
     const Vec3 a = Vec3::from(start.a);
-    const Vec3 q = a + from.place.v * (Vec3::from(start.b) - a) + from.place.w * (Vec3::from(start.c) - a);
+    const Vec3 q = a + corners[k].place.v * (Vec3::from(start.b) - a) + corners[k].place.w * (Vec3::from(start.c) - a);
+    // One look at a triangle, in float, tells how far it is from the three corners and from q.
+    const auto lanes = [&](double Vec3::*axis) {
+      const float four[4] = {static_cast<float>(corners[0].p.*axis), static_cast<float>(corners[1].p.*axis),
+                             static_cast<float>(corners[2].p.*axis), static_cast<float>(q.*axis)};
+      return simd::load(four);
+    };
+    const simd::f32x4 x = lanes(&Vec3::x);
+    const simd::f32x4 y = lanes(&Vec3::y);
+    const simd::f32x4 z = lanes(&Vec3::z);
+    const double rounding = 2 * kRounding * (tree_.extent + reach + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
+    const double surely = std::max(0.0, reach - rounding);
+    const simd::f32x4 within = simd::splat(static_cast<float>(surely * surely));
+    const simd::f32x4 beyond = simd::splat(static_cast<float>((reach + rounding) * (reach + rounding)));
+
     ++flood_;  // Marks of earlier floods do not count.
-    patch_[0] = from.slot;
-    triangleSeen_[from.slot] = flood_;
-    std::uint32_t size = 1;
-    for (std::uint32_t i = 0; i < size; ++i) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t side = 3 * patch_[i] + k;
-        if (sideSeen_[side] == flood_) continue;
-        sideSeen_[side] = flood_;
-        for (std::uint32_t other = atlas_.nextSide[side]; other != side; other = atlas_.nextSide[other]) {
-          sideSeen_[other] = flood_;
-          const std::uint32_t t = other / 3;
-          if (triangleSeen_[t] == flood_) continue;
-          triangleSeen_[t] = flood_;
-          if (placeOn(cage_.triangles[t], q).distance <= reach) patch_[size++] = t;
+    seen_[from] = flood_;
+    patch.triangles[0] = from;
+    patch.leastSquares = simd::splat(std::numeric_limits<float>::max());
+    std::uint32_t size = 0;
+    std::uint32_t end = 1;
+    const auto meet = [&](std::uint32_t t) {
+      patch.triangles[end] = t;
+      end += seen_[t] != flood_;
+      seen_[t] = flood_;
+    };
+    // Ring by ring: what is next to the last ring is put behind it, looked at, and kept if it is near enough.
+    for (std::uint32_t ring = 0; size < end; ring = size) {
+      for (std::uint32_t i = ring; i < end; ++i) {
+        const std::uint32_t t = patch.triangles[i];
+        const std::uint32_t lane = laneOf_[t] % 4;
+        const simd::f32x4 squared = squaredDistances(tree_.near[laneOf_[t] / 4], x, y, z,
+                                                     [lane](const float (&field)[4]) { return simd::splat(field[lane]); });
+        // No branch that is a coin toss: what is not kept is written over by the next.
+        std::uint32_t isNear = simd::bits(squared <= within) >> kPlace;
+        const std::uint32_t mayBeNear = simd::bits(squared <= beyond) >> kPlace;
+        if (isNear != mayBeNear) isNear = t == from || placeOn(cage_.triangles[t], q).distance <= reach;
+        simd::store(patch.squaredDistances + 4 * size, squared);
+        patch.triangles[size] = t;
+        size += isNear;
+      }
+      end = size;
+      for (std::uint32_t i = ring; i < size; ++i) {
+        patch.leastSquares = simd::min(patch.leastSquares, simd::load(patch.squaredDistances + 4 * i));
+        for (std::uint32_t side = 3 * patch.triangles[i]; side < 3 * patch.triangles[i] + 3; ++side) {
+          const std::uint32_t other = atlas_.nextSide[side];  // Itself if there is no other: met already.
+          meet(other / 3);
+          if (atlas_.nextSide[other] == side || sideSeen_[side] == flood_) continue;
+          // More than two triangles share the edge: one round for all of them, however many.
+          for (std::uint32_t more = atlas_.nextSide[other]; more != side; more = atlas_.nextSide[more]) {
+            sideSeen_[more] = flood_;
+            meet(more / 3);
+          }
         }
       }
     }
-    return size;
+    patch.size = size;
+    float least[4];
+    simd::store(least, patch.leastSquares);
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) sum += std::sqrt(static_cast<double>(least[c]));
+    return sum;
   }
 
-  /// Step 1 once more, with the patch for a cage.
-  [[nodiscard]] Candidate nearestInPatch(std::uint32_t size, Vec3 p) noexcept {
-    std::uint32_t count = 0;
-    double limit = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < size; ++i) {
-      const Place place = placeOn(cage_.triangles[patch_[i]], p);
-      if (place.distance > limit) continue;
-      limit = std::min(limit, place.distance + kTieDistance * diagonal_);
-      candidates_[count++] = {patch_[i], place};
+  /// Projects the corners onto a patch: step 1 once more, with the patch for a cage.
+  void project(const Corner (&corners)[3], const Patch& patch, Choice& out) noexcept {
+    const simd::f32x4 limits = patch.leastSquares * simd::splat(1 + static_cast<float>(kRelativeSlack)) + simd::splat(fixedSlack_);
+    std::uint32_t counts[3] = {};
+    for (std::uint32_t i = 0; i < patch.size; ++i) {
+      unsigned near = simd::bits(simd::load(patch.squaredDistances + 4 * i) <= limits) & 7;
+      for (; near != 0; near &= near - 1) {
+        const auto c = static_cast<std::uint32_t>(std::countr_zero(near));
+        candidates_[c][counts[c]++] = placeOf(corners[c], known_[c], patch.triangles[i]);
+      }
     }
-    return nearestOf(candidates_, count, diagonal_);
+    out.sum = 0;
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      out.corners[c] = counts[c] == 1 ? candidates_[c][0] : nearestOf(candidates_[c], counts[c], diagonal_);
+      out.sum += out.corners[c].place.distance;
+    }
+  }
+
+  [[nodiscard]] Candidate placeOf(const Corner& corner, Known& known, std::uint32_t t) const noexcept {
+    for (std::uint32_t i = 0; i < known.count; ++i) {
+      if (known.places[i].slot == t) return known.places[i];
+    }
+    const Candidate found{t, placeOn(cage_.triangles[t], corner.p)};
+    if (known.count < Known::kMost) known.places[known.count++] = found;
+    return found;
   }
 
   const Cage& cage_;
+  const CageTree& tree_;
   const Atlas& atlas_;
   double diagonal_;
-  std::uint32_t* patch_;         ///< Triangles of the cage.
-  std::uint32_t* triangleSeen_;  ///< 1 per triangle: the last flood that met it.
-  std::uint32_t* sideSeen_;      ///< 1 per side, likewise.
+  float fixedSlack_;
+  std::uint32_t* laneOf_;        ///< 1 per triangle: 4 · its leaf in the tree + its lane.
+  std::uint32_t* seen_;          ///< 1 per triangle: the last flood that met it.
+  std::uint32_t* sideSeen_;      ///< 1 per side of an edge of three or more: the last flood that went around that edge.
   std::uint32_t flood_ = 0;      ///< At most 3 · kMaxTriangles, less than 2^32.
-  Candidate* candidates_;
+  Patch patches_[3];             ///< Around each corner's place,
+  Candidate* candidates_[3];     ///< and what of it might be nearest to each corner.
+  Known known_[3];               ///< Of each corner.
 };
 
 }  // namespace
 
 bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const Points& points, const Cage& cage,
-                   const Units& units, const PointResults& results, Scratch& scratch, float* cornerUvs) noexcept {
+                   const CageTree& tree, const Units& units, const PointResults& results, Scratch& scratch, float* cornerUvs) noexcept {
   const Scratch::Mark mark = scratch.mark();
   Atlas atlas;
   if (!findAtlas(cageMesh, cage, scratch, atlas)) return false;
-  Mender mender(cage, atlas, units.diagonal, scratch);
+  Mender mender(cage, tree, atlas, units.diagonal, scratch);
+  auto* looks = scratch.take<FirstLook>(cage.count);
   if (scratch.failed()) return false;
 
   // A first look in float: most triangles are clearly whole in the texture.
+  for (std::uint32_t t = 0; t < cage.count; ++t) {
+    // Below infinity, so that a product with it stays a number.
+    const double explained = std::min(kFirstLook * atlas.stretch[t], 1e30);
+    looks[t] = {atlas.islands[t], atlas.mostUv <= kMostUv ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity()};
+  }
   const auto edgeIsWhole = [&](std::uint32_t i, std::uint32_t j) {
     const float* p = points.at(i);
     const float* q = points.at(j);
@@ -255,9 +281,9 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     const float z = q[2] - p[2];
     const float u = results.uvs[2 * j] - results.uvs[2 * i];
     const float v = results.uvs[2 * j + 1] - results.uvs[2 * i + 1];
-    const float explains = std::max(atlas.explains[results.triangles[i]], atlas.explains[results.triangles[j]]);
-    return atlas.islands[results.triangles[i]] == atlas.islands[results.triangles[j]] &&
-           u * u + v * v <= explains * (x * x + y * y + z * z);
+    const FirstLook& a = looks[results.triangles[i]];
+    const FirstLook& b = looks[results.triangles[j]];
+    return a.island == b.island && u * u + v * v <= std::max(a.explains, b.explains) * (x * x + y * y + z * z);
   };
   const std::size_t allTriangles = targetMesh.indices.size() / 3;
   std::uint32_t usable = 0;

@@ -12,6 +12,6 @@ namespace cagecast {
 /// Cost: O(N + M) for N triangles of the target and M of the cage; a triangle across a seam costs as much as the cage has
 /// triangles within 1.5 of its edges.
 bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const Points& points, const Cage& cage,
-                   const Units& units, const PointResults& results, Scratch& scratch, float* cornerUvs) noexcept;
+                   const CageTree& tree, const Units& units, const PointResults& results, Scratch& scratch, float* cornerUvs) noexcept;
 
 }  // namespace cagecast

@@ -3,7 +3,6 @@
 #include <limits>
 #include <utility>
 
-#include "areas.hpp"
 #include "steps.hpp"
 #include "triangle.hpp"
 
@@ -37,6 +36,8 @@ constexpr std::uint32_t kChunk = HitSearch::kMostRays / kDirectionCount;
 
 /// Normals that cancel out to this share of the areas are none.
 constexpr double kCancelled = 1e-6;
+/// Triangles that differ in area by less than this share are equally large.
+constexpr double kSameArea = 1e-12;
 
 /// Sums normals as whole numbers, so that they do not depend on the order of the triangles: in units of 2^-34 of the largest
 /// triangle at the point, whose fans have up to 2^28 triangles.
@@ -50,6 +51,8 @@ class NormalSum {
     z_ += static_cast<std::int64_t>(areaNormal.z * perArea);
     all_ += static_cast<std::int64_t>(doubleArea * perArea);
   }
+  /// Begins anew, with triangles no larger.
+  void restart() { x_ = y_ = z_ = all_ = 0; }
   /// Of unit length, or zero if the normals cancel out.
   [[nodiscard]] Vec3 normal() const {
     const Vec3 sum{static_cast<double>(x_), static_cast<double>(y_), static_cast<double>(z_)};
@@ -143,45 +146,77 @@ class Occluded {
   std::uint32_t* triangles_ = nullptr;
 };
 
-/// Finds the unit normal of each point, turned so that those of its segment mostly agree with the cage; zero where there is
-/// none. Only for the segments that `isWanted`.
-bool findNormals(const Points& points, const Cage& cage, const PointResults& results, std::uint32_t segmentCount,
-                 const bool* isWanted, Scratch& scratch, Vec3* normals) noexcept {
+/// Which way a point looks.
+struct Outlook {
+  Vec3 normal;      ///< Unit; zero if it has none.
+  bool isTwoSided;  ///< The other way as well.
+};
+
+/// Finds the outlook of each point: its normal, turned so that those of its segment mostly agree with the cage. Only for the
+/// segments that `isWanted`.
+/// @param toBothSides  Where all triangles have copies in reverse winding, the point looks along the sum of the normals, each
+///                     turned to the side of the largest triangle, and against it.
+bool findOutlooks(const Points& points, const Cage& cage, const PointResults& results, const PointAreas& areas,
+                  std::uint32_t segmentCount, const bool* isWanted, bool toBothSides, Scratch& scratch, Outlook* outlooks) noexcept {
   const Scratch::Mark mark = scratch.mark();
   auto* sums = scratch.take<NormalSum>(points.count);
-  auto* areas = scratch.take<std::int64_t>(points.count);
   auto* agreement = scratch.take<std::int64_t>(segmentCount);
   if (scratch.failed()) return false;
   std::fill(sums, sums + points.count, NormalSum{});
-  std::fill(areas, areas + points.count, 0);
   std::fill(agreement, agreement + segmentCount, 0);
-  const AreaUnit unit(points.triangleCount);
-  const auto eachCorner = [&](auto call) {
+  const auto eachWanted = [&](auto call) {
     for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
       const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
-      if (isWanted[results.segments[corner[0]]]) call(corner, points.doubleAreas[t]);
+      if (isWanted[results.segments[corner[0]]]) call(t, corner);
     }
   };
-  eachCorner([&](const std::uint32_t* corner, double doubleArea) {
-    for (int i = 0; i < 3; ++i) {
-      sums[corner[i]].meet(doubleArea);
-      areas[corner[i]] += unit.third(doubleArea);
-    }
+  const auto normalOf = [&](const std::uint32_t* corner) {
+    return areaNormal(points.at(corner[0]), points.at(corner[1]), points.at(corner[2]));
+  };
+  eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
+    for (int i = 0; i < 3; ++i) sums[corner[i]].meet(points.doubleAreas[t]);
   });
-  eachCorner([&](const std::uint32_t* corner, double doubleArea) {
-    const Vec3 normal = areaNormal(points.at(corner[0]), points.at(corner[1]), points.at(corner[2]));
-    for (int i = 0; i < 3; ++i) sums[corner[i]].add(normal, doubleArea);
+  eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
+    const Vec3 normal = normalOf(corner);
+    for (int i = 0; i < 3; ++i) sums[corner[i]].add(normal, points.doubleAreas[t]);
   });
+  bool anyCancelled = false;
   for (std::uint32_t p = 0; p < points.count; ++p) {
     const std::uint32_t s = results.segments[p];
     if (!isWanted[s]) continue;
-    normals[p] = sums[p].normal();
-    const double agrees = dot(normals[p], cage.triangles[results.triangles[p]].normal.exact);
-    agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas[p]) * agrees);
+    outlooks[p] = {sums[p].normal(), false};
+    anyCancelled = anyCancelled || isZero(outlooks[p].normal);
+    const double agrees = dot(outlooks[p].normal, cage.triangles[results.triangles[p]].normal.exact);
+    agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas.all[p]) * agrees);
   }
   for (std::uint32_t p = 0; p < points.count; ++p) {
     const std::uint32_t s = results.segments[p];
-    if (isWanted[s] && agreement[s] < 0) normals[p] = -1 * normals[p];
+    if (isWanted[s] && agreement[s] < 0) outlooks[p].normal = -1 * outlooks[p].normal;
+  }
+
+  if (anyCancelled && toBothSides) {
+    auto* largest = scratch.take<std::uint32_t>(points.count);
+    if (scratch.failed()) return false;
+    std::fill(largest, largest + points.count, UINT32_MAX);
+    const auto eachCancelled = [&](auto call) {
+      eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
+        for (int i = 0; i < 3; ++i) {
+          if (isZero(outlooks[corner[i]].normal)) call(t, corner, corner[i]);
+        }
+      });
+    };
+    eachCancelled([&](std::uint32_t t, const std::uint32_t*, std::uint32_t p) {
+      if (largest[p] == UINT32_MAX || points.doubleAreas[t] > points.doubleAreas[largest[p]] * (1 + kSameArea)) largest[p] = t;
+      sums[p].restart();
+    });
+    eachCancelled([&](std::uint32_t t, const std::uint32_t* corner, std::uint32_t p) {
+      const Vec3 normal = normalOf(corner);
+      const bool isTurned = dot(normal, normalOf(points.triangles + std::size_t{3} * largest[p])) < 0;
+      sums[p].add(isTurned ? -1 * normal : normal, points.doubleAreas[t]);
+    });
+    for (std::uint32_t p = 0; p < points.count; ++p) {
+      if (isWanted[results.segments[p]] && isZero(outlooks[p].normal)) outlooks[p] = {sums[p].normal(), true};
+    }
   }
   scratch.rewind(mark);
   return true;
@@ -253,7 +288,8 @@ static_assert(kChunk < 256);
 }  // namespace
 
 bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
-               const PointResults& results, const Array<SegmentStats>& stats, Scratch& scratch, std::uint32_t* restores) noexcept {
+               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, bool toBothSides,
+               Scratch& scratch, std::uint32_t* restores) noexcept {
   const auto segmentCount = static_cast<std::uint32_t>(stats.size());
   const Scratch::Mark mark = scratch.mark();
   auto* queue = scratch.take<std::uint32_t>(points.count);
@@ -262,21 +298,24 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
   if (scratch.failed()) return false;
   std::uint32_t end = occluded.queueRim(queue);
   if (end > 0) {
-    auto* normals = scratch.take<Vec3>(points.count);
+    auto* outlooks = scratch.take<Outlook>(points.count);
     Lookout lookout(targetTree, cageTree.rays, units.diagonal, scratch);
     if (scratch.failed()) return false;
     std::fill(isWanted, isWanted + segmentCount, false);
     for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
-    if (!findNormals(points, cage, results, segmentCount, isWanted, scratch, normals)) return false;
+    if (!findOutlooks(points, cage, results, areas, segmentCount, isWanted, toBothSides, scratch, outlooks)) return false;
     // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.
     for (std::uint32_t begin = 0; begin < end;) {
       std::uint32_t chosen[kChunk];
       std::uint8_t good[kChunk];
       std::uint32_t count = 0;
-      for (; begin < end && count < kChunk; ++begin) {
+      for (; begin < end && count + 1 < kChunk; ++begin) {  // A point may need two places.
         const std::uint32_t p = queue[begin];
-        if (isZero(normals[p])) continue;
-        lookout.add(points.exactly(p), normals[p]);
+        if (isZero(outlooks[p].normal)) continue;
+        lookout.add(points.exactly(p), outlooks[p].normal);
+        chosen[count++] = p;
+        if (!outlooks[p].isTwoSided) continue;
+        lookout.add(points.exactly(p), -1 * outlooks[p].normal);
         chosen[count++] = p;
       }
       lookout.count(good);

@@ -40,6 +40,7 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
   if (!stats.reset(count)) return false;
   for (std::uint32_t s = 0; s < count; ++s) {
     stats[s] = {};
+    stats[s].copyOf = s;
     if (!groups.empty()) stats[s].group = groups[firstVertex[s]];
   }
   for (std::uint32_t i = 0; i < points.count; ++i) ++stats[results.segments[i]].points;
@@ -48,11 +49,14 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
 }
 
 bool addUpAreas(const Points& points, const Voters& voters, const Units& units, const PointResults& results, Scratch& scratch,
-                Array<SegmentStats>& stats) noexcept {
+                PointAreas& areas, Array<SegmentStats>& stats) noexcept {
   const Scratch::Mark mark = scratch.mark();
   auto* sums = scratch.take<Sums>(stats.size());
   if (scratch.failed()) return false;
   std::fill(sums, sums + stats.size(), Sums{});
+  for (std::int64_t* ofPoints : {areas.all, areas.votes}) {
+    if (ofPoints != nullptr) std::fill(ofPoints, ofPoints + points.count, 0);
+  }
   const AreaUnit unit(points.triangleCount);
   const auto count = [](Sums& sum, std::int64_t area, Zone zone) {
     sum.exposed += zone != Zone::occluded ? area : 0;
@@ -62,20 +66,29 @@ bool addUpAreas(const Points& points, const Voters& voters, const Units& units, 
   for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
     const std::int64_t third = unit.third(points.doubleAreas[t]);
+    if (areas.all != nullptr) {
+      for (int i = 0; i < 3; ++i) areas.all[corner[i]] += third;
+    }
     Sums& sum = sums[results.segments[corner[0]]];
     sum.all += 3 * third;
     if (voter < voters.count && voters.triangles[voter] == t) {
       const Zone* zones = voters.results.zones + std::size_t{4} * voter++;
       for (int i = 0; i < 4; ++i) count(sum, unit.quarter(points.doubleAreas[t]), zones[i]);
+      if (areas.votes != nullptr) {
+        for (int i = 0; i < 3; ++i) areas.votes[corner[i]] -= third;
+      }
     } else {
       for (int i = 0; i < 3; ++i) count(sum, third, results.zones[corner[i]]);
     }
+  }
+  if (areas.votes != nullptr) {
+    for (std::uint32_t i = 0; i < points.count; ++i) areas.votes[i] += areas.all[i];
   }
   const double toInput = 1.0 / units.scale / units.scale;
   for (std::size_t s = 0; s < stats.size(); ++s) {
     stats[s].area = unit.area(sums[s].all) * toInput;
     stats[s].exposedArea = unit.area(sums[s].exposed) * toInput;
-    stats[s].coveredArea = unit.area(sums[s].covered) * toInput;
+    stats[s].coveredArea = stats[s].sunkArea = unit.area(sums[s].covered) * toInput;
   }
   scratch.rewind(mark);
   return true;

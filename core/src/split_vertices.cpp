@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "cagecast/seams.hpp"
@@ -32,9 +31,7 @@ Status splitVertices(std::span<const std::uint32_t> indices, std::span<const flo
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < cornerCount; ++i) {
     const Corner c = corner(i);
-    const std::uint64_t uv = std::uint64_t{std::bit_cast<std::uint32_t>(c.u)} << 32 | std::bit_cast<std::uint32_t>(c.v);
-    const std::uint64_t hash = IndexTable::mix(IndexTable::mix(0, c.vertex), uv);
-    const std::uint32_t first = known.firstEqual(i, hash, [&](std::uint32_t other) { return corner(other) == c; });
+    const std::uint32_t first = known.firstEqual(i, IndexTable::hash(c), [&](std::uint32_t other) { return corner(other) == c; });
     if (first == i) firstCorners[count++] = i;
     out.indices[i] = first == i ? count - 1 : out.indices[first];
   }

@@ -24,6 +24,7 @@ const char* codeName(Code code) noexcept {
     case Code::badOcclusionReach: return "badOcclusionReach";
     case Code::badPokeThrough: return "badPokeThrough";
     case Code::badMinCovered: return "badMinCovered";
+    case Code::badMinOfAll: return "badMinOfAll";
     case Code::badLocks: return "badLocks";
     case Code::outOfMemory: return "outOfMemory";
   }
@@ -80,6 +81,7 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
     case Code::badOcclusionReach: return "options.occlusionReach is not a number of at least 0";
     case Code::badPokeThrough: return "options.pokeThrough is not within 0..1";
     case Code::badMinCovered: return "options.minCovered is not within 0..1";
+    case Code::badMinOfAll: return "options.minOfAll is not within 0..1";
     case Code::badLocks: return "options.locks has " + std::to_string(status.at) + " entries, not 1 per segment";
     case Code::outOfMemory: return "not enough memory for this target and cage";
   }

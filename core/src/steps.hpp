@@ -78,20 +78,35 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
 bool findVoters(const Points& points, const Rims& rims, const Units& units, const PointResults& results,
                 const Array<SegmentStats>& stats, Scratch& scratch, Voters& out) noexcept;
 
-/// Adds up the areas of the segments for step 5.
+/// Areas of the points, as whole numbers of an `AreaUnit`; or none.
+struct PointAreas {
+  std::int64_t* all = nullptr;    ///< A third of each triangle at the point.
+  std::int64_t* votes = nullptr;  ///< The same without the triangles that vote from within.
+};
+
+/// Adds up the areas of the segments for step 5, and those of the points where that is asked for.
 bool addUpAreas(const Points& points, const Voters& voters, const Units& units, const PointResults& results, Scratch& scratch,
-                Array<SegmentStats>& stats) noexcept;
+                PointAreas& areas, Array<SegmentStats>& stats) noexcept;
+
+/// Step 5′: finds how much of what is covered lies no deeper than its neighbours.
+bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& cage, const Rims& rims, const Voters& voters,
+                   const PointAreas& areas, const Units& units, const PointResults& results, Scratch& scratch,
+                   Array<SegmentStats>& stats) noexcept;
+
+/// Step 5′: finds which segments are copies of others.
+bool findCopies(const Points& points, const PointResults& results, Scratch& scratch, Array<SegmentStats>& stats) noexcept;
 
 /// Step 6: finds the occluded points that are seen from elsewhere, in the segments of which anything is covered: others pass
 /// at a threshold of 0 without a floor alone, or by a lock, and are taken as they are.
 /// @param[out] restores  1 per point: set to `Restores::always` for those.
 bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
-               const PointResults& results, const Array<SegmentStats>& stats, Scratch& scratch, std::uint32_t* restores) noexcept;
+               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, bool toBothSides,
+               Scratch& scratch, std::uint32_t* restores) noexcept;
 
 /// Step 7: finds what brings each uncovered point back, and what the segments have at each hole.
 /// @param[out] restores  1 per point: set for those.
 bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, const Units& units, const PointResults& results,
-                    std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept;
+                    const PointAreas& areas, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept;
 
 /// How far from its origin, as a share of the diagonal, a ray's hit begins to count (step 2), and how far behind it one
 /// still does (step 3).

@@ -74,18 +74,19 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
 
 /// Steps 6 and 7: what brings each point back if its segment passes, handed to its vertices.
 bool findRestores(const Points& points, const Scene& scene, const ProjectOptions& options, const PointResults& results,
-                  std::uint32_t vertexCount, Projection& out, StopWatch& watch) {
+                  const PointAreas& areas, std::uint32_t vertexCount, Projection& out, StopWatch& watch) {
   const auto& [units, cage, cageTree, targetTree, rims] = scene;
   const auto segmentCount = static_cast<std::uint32_t>(out.segmentStats.size());
   auto* restores = scratch.take<std::uint32_t>(points.count);
   if (scratch.failed() || !out.restores.reset(vertexCount)) return false;
   std::fill(restores, restores + points.count, Restores::never);
   if (options.secondLook &&
-      !lookAgain(points, cage, cageTree, targetTree, units, results, out.segmentStats, scratch, restores)) {
+      !lookAgain(points, cage, cageTree, targetTree, units, results, areas, out.segmentStats, options.bothSides,
+                 scratch, restores)) {
     return false;
   }
   out.timings.secondLook = watch.lap();
-  if (options.holes && !lookUnderHoles(points, cage, rims, units, results, segmentCount, scratch, restores, out.holeShares)) {
+  if (options.holes && !lookUnderHoles(points, cage, rims, units, results, areas, segmentCount, scratch, restores, out.holeShares)) {
     return false;
   }
   for (std::uint32_t v = 0; v < vertexCount; ++v) out.restores[v] = restores[points.ofVertex[v]];
@@ -118,9 +119,9 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
     if (!projectToVertices(cageMesh, points, cage, units, scratch, results)) return kOutOfMemory;
     out.timings.project = watch.lap();
   } else {
-    const bool asksForRims = options.pokeThrough > 0 || options.votes || options.holes;
+    const bool asksForRims = options.pokeThrough > 0 || options.votes || options.depths || options.holes;
     if (!buildCageTree(cage, units, scratch, scene.cageTree) || !buildTargetTree(points, units, scratch, scene.targetTree) ||
-        (asksForRims && !findRims(cage, scratch, scene.rims))) {
+        (asksForRims && !findRims(cageMesh, cage, scratch, scene.rims))) {
       return kOutOfMemory;
     }
     out.timings.build = watch.lap();
@@ -138,19 +139,30 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
     StopWatch voterWatch;
     if (voters.count > 0 && !judge(voters.points, scene, options, voters.results, ofVoters, voterWatch)) return kOutOfMemory;
   }
-  if (!addUpAreas(points, voters, units, results, scratch, out.segmentStats)) return kOutOfMemory;
+  PointAreas areas;
+  if (isFiltered && (options.depths || options.secondLook || options.holes)) {
+    areas.all = scratch.take<std::int64_t>(points.count);
+    areas.votes = options.depths ? scratch.take<std::int64_t>(points.count) : nullptr;
+    if (scratch.failed()) return kOutOfMemory;
+  }
+  if (!addUpAreas(points, voters, units, results, scratch, areas, out.segmentStats)) return kOutOfMemory;
+  if (isFiltered && options.depths &&
+      (!findSunkAreas(cageMesh, points, cage, scene.rims, voters, areas, units, results, scratch, out.segmentStats) ||
+       !findCopies(points, results, scratch, out.segmentStats))) {
+    return kOutOfMemory;
+  }
   if (!writeOut(points, cage, units, results, vertexCount, out)) return kOutOfMemory;
   out.timings.segments = watch.lap();
 
   if (!out.restores.reset(0) || !out.holeShares.reset(0)) return kOutOfMemory;
   if (isFiltered && (options.secondLook || options.holes) &&
-      !findRestores(points, scene, options, results, vertexCount, out, watch)) {
+      !findRestores(points, scene, options, results, areas, vertexCount, out, watch)) {
     return kOutOfMemory;
   }
 
   const bool atCorners = options.seams == Seams::corner && options.projection == ProjectionMode::nearestPoint;
   if (!out.cornerUvs.reset(atCorners ? 2 * targetMesh.indices.size() : 0)) return kOutOfMemory;
-  if (atCorners && !findCornerUvs(cageMesh, targetMesh, points, cage, units, results, scratch, out.cornerUvs.data())) return kOutOfMemory;
+  if (atCorners && !findCornerUvs(cageMesh, targetMesh, points, cage, scene.cageTree, units, results, scratch, out.cornerUvs.data())) return kOutOfMemory;
   out.timings.seams = watch.lap();
   const Timings& t = out.timings;
   out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments + t.secondLook + t.holes + t.seams;

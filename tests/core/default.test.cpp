@@ -7,6 +7,7 @@
 
 #include "checks.hpp"
 #include "hash.hpp"
+#include "traps.hpp"
 
 using namespace cagecast;
 
@@ -29,8 +30,11 @@ constexpr Step kSteps[] = {
     {"an end for the self ray", [](TransferOptions& o) { o.occlusionReach = preset().occlusionReach; }},
     {"poke-through", [](TransferOptions& o) { o.pokeThrough = preset().pokeThrough; }},
     {"votes", [](TransferOptions& o) { o.votes = true; }},
-    {"the floor", [](TransferOptions& o) { o.minCovered = preset().minCovered; }},
+    {"the floor of area", [](TransferOptions& o) { o.floor = Floor::area; }},
+    {"the floor of depth", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = true; }},
+    {"copies", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = o.copies = true; }},
     {"the second look", [](TransferOptions& o) { o.secondLook = true; }},
+    {"the second look to both sides", [](TransferOptions& o) { o.secondLook = o.bothSides = true; }},
     {"holes", [](TransferOptions& o) { o.holes = true; }},
     {"partial triangles", [](TransferOptions& o) { o.partialTriangles = true; }},
 };
@@ -94,7 +98,7 @@ TEST_CASE("the preset is the reference's at any threshold, every triangle a segm
         INFO(name << ", threshold " << threshold);
         options.threshold = threshold;
         // The library looks again only where something is covered, which the floor asks of a segment too.
-        if (threshold == 0 && options.secondLook) options.minCovered = preset().minCovered;
+        if (threshold == 0 && options.secondLook && options.floor == Floor::none) options.floor = Floor::area;
         requireSameAsReference(scene.name, scene.cage.view(), apart.view(), options);
       }
     }
@@ -121,6 +125,20 @@ TEST_CASE("the preset is the reference's on heads, as a whole and step by step",
       INFO(name << ", shift " << shift);
       const auto found = requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
       CHECK(found.unstable * 50 <= found.vertices);
+    }
+  }
+}
+
+TEST_CASE("the preset is the reference's on models made to be difficult, as a whole and step by step", "[default]") {
+  for (const scenes::Trap& trap : scenes::traps()) {
+    for (const auto& [name, options] : variants()) {
+      INFO(name);
+      requireSameAsReference(trap.scene.name, trap.scene.cage.view(), trap.scene.target.view(), options);
+    }
+    for (const float threshold : {0.3f, 0.8f}) {
+      TransferOptions options = preset();
+      options.threshold = threshold;
+      requireSameAsReference(trap.scene.name, trap.scene.cage.view(), trap.scene.target.view(), options);
     }
   }
 }
@@ -266,6 +284,7 @@ TEST_CASE("options of the preset that are out of range are named", "[default]") 
     CHECK(codeOf([&](TransferOptions& o) { o.minCovered = bad; }) == Code::badMinCovered);
   }
   CHECK(codeOf([](TransferOptions& o) { o.minCovered = 1.1f; }) == Code::badMinCovered);
+  CHECK(codeOf([](TransferOptions& o) { o.minOfAll = -1; }) == Code::badMinOfAll);
 }
 
 // As for `paper`: the same file is asserted in every build.

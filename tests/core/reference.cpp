@@ -710,9 +710,12 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.pokes = library.pokeThrough > 0;
   options.pokeThrough = static_cast<double>(library.pokeThrough);
   options.votes = library.votes;
-  options.floor = library.minCovered > 0 ? Floor::area : Floor::none;
+  options.floor = library.floor;
   options.minCovered = static_cast<double>(library.minCovered);
+  options.minOfAll = static_cast<double>(library.minOfAll);
+  options.copies = library.copies;
   options.secondLook = library.secondLook;
+  options.bothSides = library.bothSides;
   options.holes = library.holes;
   options.partialTriangles = library.partialTriangles;
   options.seams = library.seams == Seams::corner;

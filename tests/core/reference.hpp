@@ -10,13 +10,6 @@
 /// the library is measured against, so it prefers being readable to being fast.
 namespace cagecast::reference {
 
-/// What keeps a segment out of which hardly anything is covered, however little of it is exposed.
-enum class Floor : std::uint8_t {
-  none,
-  area,   ///< C >= `minCovered` * A.
-  depth,  ///< D F >= `minCovered` * A or D F >= `minOfAll` * the sum of all C; see `SegmentMeasure`.
-};
-
 /// Which steps are taken, and their constants. Lengths are shares of the diagonal of the target's bounding box.
 struct Options {
   ProjectionMode projection = ProjectionMode::nearestPoint;

@@ -9,7 +9,7 @@ namespace cagecast::reference {
 
 Differences compare(const Result& reference, const TransferResult& product, const MeshView& target) {
   constexpr std::size_t kMaxLines = 10;
-  constexpr double kUvTolerance = 1e-5, kDistanceTolerance = 1e-6, kAreaTolerance = 1e-9, kLeastArea = 1e-13;
+  constexpr double kUvTolerance = 1e-5, kDistanceTolerance = 1e-6, kAreaTolerance = 1e-9, kLeastArea = 1e-11;
   Differences found;
   std::size_t lines = 0;
   const auto report = [&](const char* format, auto... values) {

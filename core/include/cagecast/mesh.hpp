@@ -34,7 +34,8 @@ enum class Code : std::uint8_t {
   badWeldTolerance,      ///< The weld tolerance is not within 0..0.01.
   badOcclusionReach,     ///< The occlusion reach is less than 0, or not a number.
   badPokeThrough,        ///< The poke-through distance is not within 0..1.
-  badMinCovered,         ///< The least covered share is not within 0..1.
+  badMinCovered,         ///< The least covered share of a segment is not within 0..1.
+  badMinOfAll,           ///< The least share of all covered area is not within 0..1.
   badLocks,              ///< Locks are given, but not one per segment; `at` says how many there are.
   outOfMemory,           ///< The work or its result does not fit into memory; nothing was computed.
 };

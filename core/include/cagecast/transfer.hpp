@@ -48,9 +48,13 @@ struct ProjectOptions {
   float pokeThrough = 0.0f;
   /// Step 4′: in small segments near a hole, big triangles vote with what is found inside them, not at their corners.
   bool votes = false;
+  /// Step 5′: measures how deep under the cage lies what is covered of each segment, and which segments are copies of others.
+  bool depths = false;
   /// Step 6: occluded points that are seen from the cage in another direction are restored, if their segment passes and
   /// anything of it is covered.
   bool secondLook = false;
+  /// Step 6: points whose triangles all have copies in reverse winding look to both sides; else such points stay as they are.
+  bool bothSides = false;
   /// Step 7: uncovered points are restored unless the hole over them is meant for them.
   bool holes = false;
 
@@ -62,9 +66,16 @@ struct ProjectOptions {
     options.seams = Seams::corner;
     options.occlusionReach = 0.03f;
     options.pokeThrough = 0.0025f;
-    options.votes = options.secondLook = options.holes = true;
+    options.votes = options.depths = options.secondLook = options.bothSides = options.holes = true;
     return options;
   }
+};
+
+/// What a segment needs besides its share of exposed area that is covered, so that no leak is taken for skin: step 5′.
+enum class Floor : std::uint8_t {
+  none,   ///< Nothing.
+  area,   ///< Some covered area, and C ≥ `minCovered` · A.
+  depth,  ///< Some covered area, and, of what lies no deeper than its neighbours, enough of itself or of all: see `minOfAll`.
 };
 
 /// What the user of a model has said about a segment.
@@ -77,8 +88,12 @@ enum class Lock : std::uint8_t {
 /// Options of the decision per segment. The defaults are the method of the poster: `paper()`.
 struct ClassifyOptions {
   float threshold = 0.5f;  ///< A segment passes if at least this share of its exposed area is covered; 0..1.
-  /// Step 5′: it also needs some covered area, and this share of its whole area; 0..1, 0 is off.
-  float minCovered = 0.0f;
+  Floor floor = Floor::none;
+  float minCovered = 0.2f;  ///< With a floor: the least C, or X with `Floor::depth`, as a share of A; 0..1.
+  /// With `Floor::depth` the least X = D · F as a share of the covered area of all segments: that is enough as well; 0..1.
+  float minOfAll = 0.005f;
+  /// Step 5′: copies of one part that are within a factor of two of the limit are judged together. Needs a floor.
+  bool copies = false;
   /// Step 8: a triangle is cosmetic if one corner is and the others are that or occluded; else if all three are.
   bool partialTriangles = false;
   std::span<const Lock> locks = {};  ///< 1 per segment, or none: the last word about it.
@@ -88,8 +103,8 @@ struct ClassifyOptions {
   /// The preset `default`.
   static constexpr ClassifyOptions standard() noexcept {
     ClassifyOptions options;
-    options.minCovered = 0.2f;
-    options.partialTriangles = true;
+    options.floor = Floor::depth;
+    options.copies = options.partialTriangles = true;
     return options;
   }
 };
@@ -124,6 +139,8 @@ struct SegmentStats {
   double exposedArea = 0;    ///< E: area of the points that the target does not occlude.
   double coveredArea = 0;    ///< C: area of the points that the cage covers as well.
   std::uint32_t group = 0;   ///< Of its first vertex: which part of the model it is of.
+  std::uint32_t copyOf = 0;  ///< The first of the segments that it is a copy of, maybe itself; itself without `depths`.
+  double sunkArea = 0;       ///< D: C, less where it lies deeper under the cage than what else lies there; C without `depths`.
 
   /// F = C / E, the share of the exposed area that the cage covers; 0 if nothing is exposed.
   [[nodiscard]] double coverage() const noexcept { return exposedArea > 0 ? coveredArea / exposedArea : 0; }
