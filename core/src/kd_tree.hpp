@@ -144,7 +144,7 @@ struct Ray {
 class HitSearch {
  public:
   /// Rays that go together: enough to share nodes, few enough for their lists to stay in the cache.
-  static constexpr std::uint32_t kMostRays = 1024;
+  static constexpr std::uint32_t kMostRays = 2048;
 
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
   /// @param from  Scaled.

@@ -38,13 +38,16 @@ std::uint32_t Rims::at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q,
   if (!touches(slot)) return kNone;
   const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
   const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
-  const double near = kOnRim * diagonal;
+  const double near = kOnRim * diagonal * kOnRim * diagonal;  // All squared: no roots.
   for (int k = 0; k < 3; ++k) {
     const Vec3 edge = corners[(k + 1) % 3] - corners[k];
-    if (sides[k] != kNone && length(cross(edge, q - corners[k])) <= near * length(edge)) return sides[k];
+    if (sides[k] == kNone) continue;
+    const Vec3 beside = cross(edge, q - corners[k]);
+    if (dot(beside, beside) <= near * dot(edge, edge)) return sides[k];
   }
   for (int k = 0; k < 3; ++k) {
-    if (sides[3 + k] != kNone && length(q - corners[k]) <= near) return sides[3 + k];
+    const Vec3 offset = q - corners[k];
+    if (sides[3 + k] != kNone && dot(offset, offset) <= near) return sides[3 + k];
   }
   return kNone;
 }
@@ -66,9 +69,8 @@ bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& ou
 
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
     const float* p = mesh.positions.data() + std::size_t{3} * v;
-    std::uint64_t hash = 0;
-    for (int k = 0; k < 3; ++k) hash = IndexTable::mix(hash, std::bit_cast<std::uint32_t>(p[k] + 0.0f));  // Now −0 is 0.
-    vertexOf[v] = vertices.firstEqual(v, hash, [&](std::uint32_t other) {
+    const float site[3] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // Now −0 is 0.
+    vertexOf[v] = vertices.firstEqual(v, IndexTable::hash(site), [&](std::uint32_t other) {
       const float* o = mesh.positions.data() + std::size_t{3} * other;
       return o[0] == p[0] && o[1] == p[1] && o[2] == p[2];
     });

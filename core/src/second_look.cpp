@@ -39,31 +39,33 @@ constexpr double kCancelled = 1e-6;
 /// Triangles that differ in area by less than this share are equally large.
 constexpr double kSameArea = 1e-12;
 
-/// Sums normals as whole numbers, so that they do not depend on the order of the triangles: in units of 2^-34 of the largest
-/// triangle at the point, whose fans have up to 2^28 triangles.
+/// Sums normals rounded to 2^-33 of the largest triangle at the point, or more finely: such sums are exact, up to fans of 2^18
+/// triangles, and so do not depend on the order of the triangles.
 class NormalSum {
  public:
   void meet(double doubleArea) { largest_ = std::max(largest_, doubleArea); }
   void add(Vec3 areaNormal, double doubleArea) {
-    const double perArea = kUnits / largest_;
-    x_ += static_cast<std::int64_t>(areaNormal.x * perArea);
-    y_ += static_cast<std::int64_t>(areaNormal.y * perArea);
-    z_ += static_cast<std::int64_t>(areaNormal.z * perArea);
-    all_ += static_cast<std::int64_t>(doubleArea * perArea);
+    // Added to so large a number, and taken from it again, only the bits that all terms have remain.
+    const double large = largest_ * kLarge;
+    sum_ = sum_ + Vec3{areaNormal.x + large - large, areaNormal.y + large - large, areaNormal.z + large - large};
+    all_ += doubleArea + large - large;
   }
   /// Begins anew, with triangles no larger.
-  void restart() { x_ = y_ = z_ = all_ = 0; }
+  void restart() {
+    sum_ = {0, 0, 0};
+    all_ = 0;
+  }
   /// Of unit length, or zero if the normals cancel out.
   [[nodiscard]] Vec3 normal() const {
-    const Vec3 sum{static_cast<double>(x_), static_cast<double>(y_), static_cast<double>(z_)};
-    const double size = length(sum);
-    return size > kCancelled * static_cast<double>(all_) ? 1 / size * sum : Vec3{0, 0, 0};
+    const double size = length(sum_);
+    return size > kCancelled * all_ ? 1 / size * sum_ : Vec3{0, 0, 0};
   }
 
  private:
-  static constexpr double kUnits = 0x1p34;
+  static constexpr double kLarge = 0x1.8p18;
   double largest_ = 0;
-  std::int64_t x_ = 0, y_ = 0, z_ = 0, all_ = 0;
+  Vec3 sum_{0, 0, 0};
+  double all_ = 0;
 };
 
 bool isZero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
@@ -77,29 +79,38 @@ class Occluded {
         isOccluded_(scratch.take<bool>(points.count)),
         isQueued_(scratch.take<bool>(points.count)),
         starts_(scratch.take<std::uint32_t>(std::size_t{points.count} + 1)) {
+    auto* joining = scratch.take<std::uint32_t>(points.triangleCount);
     if (scratch.failed()) return;
     for (std::uint32_t p = 0; p < points.count; ++p) {
       isOccluded_[p] = results.zones[p] == Zone::occluded && stats[results.segments[p]].coveredArea > 0;
     }
     std::fill(isQueued_, isQueued_ + points.count, false);
     std::fill(starts_, starts_ + points.count + 1, 0u);
+    std::uint32_t joiningCount = 0;
+    for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+      const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+      const unsigned occluded = unsigned{isOccluded_[corner[0]]} + unsigned{isOccluded_[corner[1]]} + unsigned{isOccluded_[corner[2]]};
+      if (occluded == 0) continue;
+      for (int i = 0; i < 3; ++i) {
+        isQueued_[corner[i]] = isQueued_[corner[i]] || (occluded < 3 && isOccluded_[corner[i]]);
+        starts_[corner[i]] += occluded > 1;
+      }
+      joining[joiningCount] = t;
+      joiningCount += occluded > 1;
+    }
     std::uint32_t total = 0;
-    eachJoined([&](std::uint32_t p, std::uint32_t) { ++starts_[p]; });
     for (std::uint32_t p = 0; p <= points.count; ++p) total += std::exchange(starts_[p], total);
     triangles_ = scratch.take<std::uint32_t>(total);
     if (scratch.failed()) return;
-    eachJoined([&](std::uint32_t p, std::uint32_t t) { triangles_[starts_[p]++] = t; });
+    for (std::uint32_t i = 0; i < joiningCount; ++i) {
+      const std::uint32_t* corner = points.triangles + std::size_t{3} * joining[i];
+      for (int k = 0; k < 3; ++k) triangles_[starts_[corner[k]]++] = joining[i];
+    }
     // Each start has become its end, which is the next one's start.
   }
 
   /// Queues the points joined by an edge to one that is not occluded, in their order: neighbours look together.
-  std::uint32_t queueRim(std::uint32_t* queue) noexcept {
-    for (std::uint32_t t = 0; t < points_.triangleCount; ++t) {
-      const std::uint32_t* corner = points_.triangles + std::size_t{3} * t;
-      const unsigned occluded = occludedCorners(corner);
-      if (occluded == 0 || occluded == 3) continue;
-      for (int i = 0; i < 3; ++i) isQueued_[corner[i]] = isOccluded_[corner[i]];
-    }
+  std::uint32_t queueRim(std::uint32_t* queue) const noexcept {
     std::uint32_t count = 0;
     for (std::uint32_t p = 0; p < points_.count; ++p) {
       queue[count] = p;
@@ -118,25 +129,11 @@ class Occluded {
   }
 
  private:
-  [[nodiscard]] unsigned occludedCorners(const std::uint32_t* corner) const noexcept {
-    return unsigned{isOccluded_[corner[0]]} + unsigned{isOccluded_[corner[1]]} + unsigned{isOccluded_[corner[2]]};
-  }
   std::uint32_t put(std::uint32_t point, std::uint32_t* queue, std::uint32_t count) noexcept {
     if (isQueued_[point] || !isOccluded_[point]) return count;
     isQueued_[point] = true;
     queue[count] = point;
     return count + 1;
-  }
-  /// Calls for each occluded corner of the triangles that join it to another.
-  template <typename Call>
-  void eachJoined(Call call) const noexcept {
-    for (std::uint32_t t = 0; t < points_.triangleCount; ++t) {
-      const std::uint32_t* corner = points_.triangles + std::size_t{3} * t;
-      if (occludedCorners(corner) < 2) continue;
-      for (int i = 0; i < 3; ++i) {
-        if (isOccluded_[corner[i]]) call(corner[i], t);
-      }
-    }
   }
 
   const Points& points_;

@@ -3,10 +3,10 @@ import { existsSync, readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { after, before, test } from 'node:test'
 import { PNG } from 'pngjs'
-import { reportedCounts } from './cli'
+import { report, reportedCounts } from './cli'
 import { glb, tetrahedron, writeGlb } from './glb'
 import { difference, look, modelArea, shareOfHue } from './picture'
-import { drop, inRepository, settled, setThreshold, shownCounts, shownError, Site, type Upload, type Visit } from './site'
+import { drop, inRepository, settled, setThreshold, shownCounts, shownError, shownParts, Site, type Upload, type Visit } from './site'
 
 /** Pairs of a target and its cage: the samples, and the folders of env CAGECAST_ASSETS that hold one. */
 function pairs(): { name: string; target: string; cage: string }[] {
@@ -34,17 +34,28 @@ async function fresh(): Promise<Visit> {
   const { page } = visit
   await page.getByTestId('sample-select').selectOption({ index: 0 })
   await setThreshold(page, 0.5)
+  await page.getByTestId('preset').selectOption('default')
   await page.locator('input[value=compare]').check({ force: true })
   assert.equal(await settled(page), 'ready', await shownError(page))
   return visit
 }
 
 for (const { name, target, cage } of pairs()) {
-  test(`${name}: the page counts what the command line reports`, async () => {
+  test(`${name}: the page counts what the command line reports, by both presets, and lists the same segments`, async () => {
     const { page, complaints } = await fresh()
     await drop(page, [read(target), read(cage)])
-    assert.equal(await settled(page), 'ready', await shownError(page))
-    assert.deepEqual(await shownCounts(page), await reportedCounts(target, cage))
+    for (const preset of ['default', 'paper'] as const) {
+      await page.getByTestId('preset').selectOption(preset)
+      assert.equal(await settled(page), 'ready', await shownError(page))
+      const { counts, segments } = await report(target, cage, { preset })
+      assert.deepEqual(await shownCounts(page), counts, preset)
+      // What the table says of each segment, whatever its order and the numbers after names.
+      const expected = segments.filter(({ area }) => area > 0).sort((a, b) => b.area - a.area).slice(0, 50)
+      const rows = await shownParts(page)
+      const sorted = (list: { points: number; culled: boolean }[]): string[] => list.map(({ points, culled }) => `${points} ${culled}`).sort()
+      assert.deepEqual(sorted(rows), sorted(expected), preset)
+      for (const { name } of rows) assert.ok(expected.some(({ part }) => name === part || name.startsWith(`${part} `)), `${name} is a part of the report`)
+    }
     assert.deepEqual(complaints, [])
   })
 }
@@ -56,7 +67,7 @@ test('the threshold changes the counts at once, to what a transfer with it gives
   for (const threshold of [0, 0.25, 0.5, 0.75, 1]) {
     await setThreshold(page, threshold)
     const counts = await shownCounts(page)
-    assert.deepEqual(counts, await reportedCounts(target, cage, threshold), `threshold ${threshold}`)
+    assert.deepEqual(counts, await reportedCounts(target, cage, { threshold }), `threshold ${threshold}`)
     assert.equal(await page.getByTestId('status').textContent(), 'ready')
     seen.add(JSON.stringify(counts))
   }
