@@ -16,7 +16,7 @@ export interface Flags {
 /** What of a report the page shows as well. */
 export interface Report {
   counts: Counts
-  segments: { part: string; points: number; area: number; coverage: number; culled: boolean }[]
+  segments: { part: string; points: number; area: number; exposedArea: number; coveredArea: number; culled: boolean }[]
 }
 
 /** What `cagecast transfer` reports for two files. */
