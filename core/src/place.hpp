@@ -44,33 +44,22 @@ struct Candidate {
 
 /// Picks, of the triangles that could be the nearest, the one that SPEC's tie rule names: of those within
 /// `kTieDistance` of the nearest the one whose plane is farthest from p, of equals the first.
-inline const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) {
-  double least = candidates[0].place.distance;
-  for (std::uint32_t i = 1; i < count; ++i) least = std::min(least, candidates[i].place.distance);
-  const auto near = [&](const Candidate& c) { return c.place.distance <= least + kTieDistance * diagonal; };
-  double farthest = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (near(candidates[i])) farthest = std::max(farthest, std::abs(candidates[i].place.height));
-  }
-  const Candidate* first = nullptr;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Candidate& c = candidates[i];
-    if (!near(c) || std::abs(c.place.height) < farthest - kTiePlane * diagonal) continue;
-    if (first == nullptr || c.slot < first->slot) first = &c;
-  }
-  return *first;
-}
+const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) noexcept;
+
+/// A place in the texture.
+struct Uv {
+  double u, v;
+};
 
 /// Blends the UVs of a triangle's corners at a place on it.
-/// @param[out] uv  2 floats, or doubles.
-template <typename Number>
-void uvAt(const CageTriangle& t, const Place& place, Number* uv) {
-  for (int k = 0; k < 2; ++k) {
+inline Uv uvAt(const CageTriangle& t, const Place& place) {
+  const auto blend = [&](int k) {
     const double a = static_cast<double>(t.uvs[k]);
     const double ab = static_cast<double>(t.uvs[2 + k]) - a;
     const double ac = static_cast<double>(t.uvs[4 + k]) - a;
-    uv[k] = static_cast<Number>(a + place.v * ab + place.w * ac);
-  }
+    return a + place.v * ab + place.w * ac;
+  };
+  return {blend(0), blend(1)};
 }
 
 }  // namespace cagecast

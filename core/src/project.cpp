@@ -24,6 +24,23 @@ Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept {
   return place;
 }
 
+const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) noexcept {
+  double least = candidates[0].place.distance;
+  for (std::uint32_t i = 1; i < count; ++i) least = std::min(least, candidates[i].place.distance);
+  const auto near = [&](const Candidate& c) { return c.place.distance <= least + kTieDistance * diagonal; };
+  double farthest = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (near(candidates[i])) farthest = std::max(farthest, std::abs(candidates[i].place.height));
+  }
+  const Candidate* first = nullptr;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Candidate& c = candidates[i];
+    if (!near(c) || std::abs(c.place.height) < farthest - kTiePlane * diagonal) continue;
+    if (first == nullptr || c.slot < first->slot) first = &c;
+  }
+  return *first;
+}
+
 bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
                    PointResults& results) noexcept {
   const Scratch::Mark mark = scratch.mark();
@@ -47,7 +64,9 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
 
     const CageTriangle& t = cage.triangles[nearest.slot];
     const Place& q = nearest.place;
-    uvAt(t, q, results.uvs + std::size_t{2} * i);
+    const Uv uv = uvAt(t, q);
+    results.uvs[2 * i] = static_cast<float>(uv.u);
+    results.uvs[2 * i + 1] = static_cast<float>(uv.v);
     results.distances[i] = static_cast<float>(q.distance);
     results.triangles[i] = nearest.slot;
     results.zones[i] = Zone::cosmetic;

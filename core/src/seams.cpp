@@ -36,8 +36,7 @@ struct FirstLook {
 /// A corner of a target triangle, and its place on the cage.
 struct Corner {
   Vec3 p;
-  std::uint32_t slot;
-  Place place;
+  Candidate at;
 };
 
 /// Finds the patch of the cage that serves a triangle across a seam.
@@ -65,20 +64,20 @@ class Mender {
     for (std::uint32_t i = 0; i < cage.count; ++i) laneOf_[tree.near[i / 4].slot[i % 4]] = i;
   }
 
+  [[nodiscard]] Candidate placeOf(Vec3 p, std::uint32_t t) const noexcept { return {t, placeOn(cage_.triangles[t], p)}; }
+
   /// Whether the texture is torn or smeared over a triangle, in double.
   [[nodiscard]] bool isAcross(const Corner (&corners)[3]) const noexcept {
     for (int k = 0; k < 3; ++k) {
       const Corner& a = corners[k];
       const Corner& b = corners[(k + 1) % 3];
-      if (atlas_.islands[a.slot] != atlas_.islands[b.slot]) return true;
-      double uvA[2];
-      double uvB[2];
-      uvAt(cage_.triangles[a.slot], a.place, uvA);
-      uvAt(cage_.triangles[b.slot], b.place, uvB);
-      const double du = uvB[0] - uvA[0];
-      const double dv = uvB[1] - uvA[1];
-      const double path = length(b.p - a.p) + std::abs(b.place.distance - a.place.distance);
-      const double explained = std::sqrt(std::max(atlas_.stretch[a.slot], atlas_.stretch[b.slot])) * path;
+      if (atlas_.islands[a.at.slot] != atlas_.islands[b.at.slot]) return true;
+      const Uv from = uvOf(a.at);
+      const Uv to = uvOf(b.at);
+      const double du = to.u - from.u;
+      const double dv = to.v - from.v;
+      const double path = length(b.p - a.p) + std::abs(b.at.place.distance - a.at.place.distance);
+      const double explained = std::sqrt(std::max(atlas_.stretch[a.at.slot], atlas_.stretch[b.at.slot])) * path;
       if (std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack) return true;
     }
     return false;
@@ -91,7 +90,7 @@ class Mender {
     for (int k = 0; k < 3; ++k) {
       longest = std::max(longest, length(corners[(k + 1) % 3].p - corners[k].p));
       known_[k].count = 1;
-      known_[k].places[0] = {corners[k].slot, corners[k].place};
+      known_[k].places[0] = corners[k].at;
     }
     const double reach = kPatchEdges * longest + kPatchSlack * diagonal_;
 
@@ -99,7 +98,7 @@ class Mender {
     double sums[3];
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
-      const bool isKnown = std::any_of(corners, corners + k, [&](const Corner& c) { return c.slot == corners[k].slot; });
+      const bool isKnown = std::any_of(corners, corners + k, [&](const Corner& c) { return c.at.slot == corners[k].at.slot; });
       sums[k] = isKnown ? std::numeric_limits<double>::infinity() : flood(corners, k, reach, patches_[k]);
       least = std::min(least, sums[k]);
     }
@@ -116,8 +115,9 @@ class Mender {
     int chosen = 0;
     while (choices[chosen].sum > least + kTieSum * diagonal_) ++chosen;
     for (int c = 0; c < 3; ++c) {
-      const Candidate& corner = choices[chosen].corners[c];
-      uvAt(cage_.triangles[corner.slot], corner.place, uvs + 2 * c);
+      const Uv uv = uvOf(choices[chosen].corners[c]);
+      uvs[2 * c] = static_cast<float>(uv.u);
+      uvs[2 * c + 1] = static_cast<float>(uv.v);
     }
   }
 
@@ -148,10 +148,10 @@ class Mender {
   /// the corner's place.
   /// @return The sum of the corners' distances to the patch, in float.
   double flood(const Corner (&corners)[3], int k, double reach, Patch& patch) noexcept {
-    const std::uint32_t from = corners[k].slot;
+    const auto& [from, place] = corners[k].at;
     const CageTriangle& start = cage_.triangles[from];
     const Vec3 a = Vec3::from(start.a);
-    const Vec3 q = a + corners[k].place.v * (Vec3::from(start.b) - a) + corners[k].place.w * (Vec3::from(start.c) - a);
+    const Vec3 q = a + place.v * (Vec3::from(start.b) - a) + place.w * (Vec3::from(start.c) - a);
     // One look at a triangle, in float, tells how far it is from the three corners and from q.
     const auto lanes = [&](double Vec3::*axis) {
       const float four[4] = {static_cast<float>(corners[0].p.*axis), static_cast<float>(corners[1].p.*axis),
@@ -187,7 +187,7 @@ class Mender {
         // No branch that is a coin toss: what is not kept is written over by the next.
         std::uint32_t isNear = simd::bits(squared <= within) >> kPlace;
         const std::uint32_t mayBeNear = simd::bits(squared <= beyond) >> kPlace;
-        if (isNear != mayBeNear) isNear = t == from || placeOn(cage_.triangles[t], q).distance <= reach;
+        if (isNear != mayBeNear) isNear = t == from || placeOf(q, t).place.distance <= reach;
         simd::store(patch.squaredDistances + 4 * size, squared);
         patch.triangles[size] = t;
         size += isNear;
@@ -233,11 +233,13 @@ class Mender {
     }
   }
 
+  [[nodiscard]] Uv uvOf(const Candidate& at) const noexcept { return uvAt(cage_.triangles[at.slot], at.place); }
+
   [[nodiscard]] Candidate placeOf(const Corner& corner, Known& known, std::uint32_t t) const noexcept {
     for (std::uint32_t i = 0; i < known.count; ++i) {
       if (known.places[i].slot == t) return known.places[i];
     }
-    const Candidate found{t, placeOn(cage_.triangles[t], corner.p)};
+    const Candidate found = placeOf(corner.p, t);
     if (known.count < Known::kMost) known.places[known.count++] = found;
     return found;
   }
@@ -300,8 +302,7 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     Corner corners[3];
     for (int c = 0; c < 3; ++c) {
       const Vec3 p = Vec3::from(points.at(point[c]));
-      const std::uint32_t slot = results.triangles[point[c]];
-      corners[c] = {p, slot, placeOn(cage.triangles[slot], p)};
+      corners[c] = {p, mender.placeOf(p, results.triangles[point[c]])};
     }
     if (mender.isAcross(corners)) mender.mend(corners, uvs);
   }
