@@ -196,7 +196,7 @@ int main(int argc, char** argv) {
     return fail("usage: cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked] [--product]");
   for (const std::string& step : without) {
     if (step == "floor") {
-      plain.floor = reference::Floor::none;
+      plain.floor = Floor::none;
       continue;
     }
     const auto known = std::find_if(std::begin(kSteps), std::end(kSteps), [&](const auto& s) { return s.first == step; });
