@@ -1,10 +1,11 @@
 import assert from 'node:assert/strict'
 import { after, before, test } from 'node:test'
 import type { Locator } from 'playwright-core'
+import { reportedCounts } from './cli'
 import { glb, tetrahedron, writeGlb } from './glb'
 import { balls, islandCage } from './models'
 import { difference, look, modelArea } from './picture'
-import { drop, settled, setThreshold, shownCounts, shownError, shownParts, Site, type ShownPart, type Visit } from './site'
+import { drop, inRepository, settled, setThreshold, shownCounts, shownError, shownParts, Site, type ShownPart, type Visit } from './site'
 
 let site: Site
 let visit: Visit
@@ -16,6 +17,9 @@ before(async () => {
 after(() => site?.close())
 
 const table = (): Locator => visit.page.getByTestId('segment-table')
+/** What the command line counts on the sample that the page opens with. */
+const counted = (flags: { keep?: string; exclude?: string }) =>
+  reportedCounts(inRepository('build/assets/lizard/target.glb'), inRepository('build/assets/lizard/cage.glb'), { preset: 'default', ...flags })
 /** The choice in a row, found by what a screen reader says. */
 const choice = ({ name }: ShownPart): Locator => table().getByRole('combobox', { name: `Say about ${name}`, exact: true })
 
@@ -62,6 +66,7 @@ test('excluding and keeping a part acts at once on counts and picture, lasts ove
   const excluded = await shownCounts(page)
   assert.equal(await page.getByTestId('status').textContent(), 'ready', 'without another transfer')
   assert.equal(await verdictOf(skin), true)
+  assert.deepEqual(excluded, await counted({ exclude: skin.name }))
   assert.ok(excluded.cosmetic < counts.cosmetic && excluded.culled > counts.culled, JSON.stringify(excluded))
   await choice(skin).blur()
   assert.ok(difference(picture, await look(page, area)) > 0.05, 'its paint is gone')
@@ -82,6 +87,7 @@ test('excluding and keeping a part acts at once on counts and picture, lasts ove
   assert.equal(await verdictOf(eye), false, 'whatever the threshold')
   await setThreshold(page, 0.5)
   const kept = await shownCounts(page)
+  assert.deepEqual(kept, await counted({ keep: eye.name }))
   assert.ok(kept.culled < counts.culled && kept.cosmetic > counts.cosmetic, JSON.stringify(kept))
   await choice(eye).selectOption('auto')
   await choice(eye).blur()
@@ -119,10 +125,10 @@ test('the keyboard opens the table, and chooses in it', async () => {
   await page.keyboard.press('Tab')
   const first = (await shownParts(page))[0]!
   assert.equal(await page.evaluate(() => document.activeElement!.getAttribute('aria-label')), `Say about ${first.name}`)
-  await page.keyboard.press('k')
+  await page.keyboard.press('ArrowDown')
   assert.equal((await shownParts(page))[0]!.lock, 'keep')
   assert.equal((await shownParts(page))[0]!.culled, false)
-  await page.keyboard.press('a')
+  await page.keyboard.press('ArrowUp')
   assert.deepEqual(await shownCounts(page), counts)
 })
 
