@@ -65,11 +65,12 @@ function splitPrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMesh
     const known = made.get(accessor);
     if (known !== undefined) return known;
     const decoded = file.geometry.getRoot().listAccessors()[accessor]!;
-    const { normalized, min, max, name, extras } = file.json.accessors![accessor]!;
+    const { normalized, min, name, extras } = file.json.accessors![accessor]!;
     const size = decoded.getElementSize();
-    // The vertices are the same, so what bounds them is, too.
-    const more = { type: decoded.getType(), ...(normalized && { normalized }), ...(min && { min }), ...(max && { max }), ...(name !== undefined && { name }), ...(extras && { extras }) };
-    const number = writer.addAttribute(gather(decoded.getArray()!, size, sources), size, more);
+    const values = gather(decoded.getArray()!, size, sources);
+    // The bounds are not those in the file where Draco has rounded what lies between them.
+    const more = { type: decoded.getType(), ...(normalized && { normalized }), ...(min && boundsOf(values, size)), ...(name !== undefined && { name }), ...(extras && { extras }) };
+    const number = writer.addAttribute(values, size, more);
     made.set(accessor, number);
     return number;
   };
@@ -82,6 +83,17 @@ function splitPrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMesh
   delete primitive.mode; // strips and fans have become lists
   delete primitive.extensions?.[draco];
   if (primitive.extensions && Object.keys(primitive.extensions).length === 0) delete primitive.extensions;
+}
+
+/** The least and the greatest value of each component. */
+function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max: number[] } {
+  const min = new Array<number>(size).fill(Infinity);
+  const max = new Array<number>(size).fill(-Infinity);
+  for (let i = 0; i < values.length; ++i) {
+    min[i % size] = Math.min(min[i % size]!, values[i]!);
+    max[i % size] = Math.max(max[i % size]!, values[i]!);
+  }
+  return { min, max };
 }
 
 const draco = 'KHR_draco_mesh_compression';
@@ -157,13 +169,7 @@ class Painter {
   /** The part's positions, moved a little off the surface along their normals. */
   #positions(part: Part, sources: Uint32Array): number {
     const positions = gather(overlayPositions(part, this.#offset), 3, sources);
-    const min = [Infinity, Infinity, Infinity];
-    const max = [-Infinity, -Infinity, -Infinity];
-    positions.forEach((value, i) => {
-      min[i % 3] = Math.min(min[i % 3]!, value);
-      max[i % 3] = Math.max(max[i % 3]!, value);
-    });
-    return this.#writer.addAttribute(positions, 3, { min, max });
+    return this.#writer.addAttribute(positions, 3, boundsOf(positions, 3));
   }
 
   /** A material that shows the texture alone, as rough and as two-sided as the base's. */
