@@ -85,7 +85,8 @@ common(program.command('transfer'))
     'after',
     `
 _NCZ is 0 for a vertex that may be painted, else the reason why not: 1 the target lies over it, 2 the cage has a hole
-over it, 3 too little of its segment is covered.
+over it, 3 too little of its segment is covered. Where triangles that share a vertex have different UVs there, copies of the
+vertex are added after those that there are, with all that belongs to it; --seams vertex does not.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
