@@ -129,7 +129,9 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
   }
   for (std::size_t v = 0; v < restores.size(); ++v) {
     if (restores[v] == Restores::never || out.culledSegments[segments[v]]) continue;
-    if (restores[v] == Restores::always || out.explainedHoles[restores[v] - Restores::throughHole]) out.zones[v] = Zone::cosmetic;
+    const std::size_t hole = restores[v] - Restores::throughHole;
+    const bool isExplained = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
+    if (restores[v] == Restores::always || isExplained) out.zones[v] = Zone::cosmetic;
   }
 
   // The depth buffer hides what is occluded of a triangle.
