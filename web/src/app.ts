@@ -215,8 +215,8 @@ class App {
     this.#viewer?.setCage(cage)
     this.#parts.list(projection.segmentStats, target.mesh.parts, this.#locks)
     const spent = this.#classify()
-    const { timings } = projection
-    showTimings({ ...timings, classify: spent, total: timings.total + spent })
+    const { timings, preset } = projection
+    showTimings({ ...timings, classify: spent, total: timings.total + spent }, preset)
   }
 
   /** Decides by the threshold and the locks as they stand, and returns the milliseconds it took. */
@@ -331,9 +331,10 @@ function targetArrays({ mesh: { positions, indices, groups } }: Model): Mesh {
 
 /** Splits a target's vertices at the seams of the paint; where the projection has no UVs per corner, nowhere. */
 function splitOf({ mesh }: Model, { cornerUvs, uvs }: Projection): SplitVertices {
-  const { indices } = mesh
-  const ofVertices = (): Float32Array => Float32Array.from({ length: 2 * indices.length }, (_, at) => uvs[2 * indices[at >> 1]! + (at & 1)]!)
-  return splitVertices(mesh, cornerUvs.length > 0 ? cornerUvs : ofVertices())
+  if (cornerUvs.length > 0) return splitVertices(mesh, cornerUvs)
+  const ofVertices = new Float32Array(2 * mesh.indices.length)
+  mesh.indices.forEach((vertex, corner) => ofVertices.set(uvs.subarray(2 * vertex, 2 * vertex + 2), 2 * corner))
+  return splitVertices(mesh, ofVertices)
 }
 
 /** Without WebGL the page still transfers; it then says why there is no picture. */

@@ -1,8 +1,8 @@
-import type { Classification, Timings } from 'cagecast'
+import type { Classification, Preset, Timings } from 'cagecast'
 import { announce, element } from './page'
 
 const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const
-/** What each step is called. Those that only a preset takes are left out where they took no time. */
+/** What each step is called. */
 const kSteps = {
   weld: 'weld',
   build: 'build',
@@ -15,7 +15,7 @@ const kSteps = {
   seams: 'seams',
   classify: 'classify',
 } as const
-const kOptional: readonly string[] = ['secondLook', 'holes', 'seams']
+const kBeyondPaper: readonly string[] = ['secondLook', 'holes', 'seams']
 
 /** Writes how many vertices fall into each zone. */
 export function showCounts({ zones, segmentStats }: Classification): void {
@@ -34,10 +34,10 @@ export function showCounts({ zones, segmentStats }: Classification): void {
   )
 }
 
-/** Writes how long the transfer took, step by step. */
-export function showTimings(timings: Timings): void {
+/** Writes how long the transfer took, step by step, as far as the preset takes them. */
+export function showTimings(timings: Timings, preset: Preset): void {
   element('time-total', HTMLElement).textContent = round(timings.total)
-  const steps = (Object.keys(kSteps) as (keyof typeof kSteps)[]).filter((step) => timings[step] > 0 || !kOptional.includes(step))
+  const steps = (Object.keys(kSteps) as (keyof typeof kSteps)[]).filter((step) => preset !== 'paper' || !kBeyondPaper.includes(step))
   const longest = Math.max(...steps.map((step) => timings[step]), Number.MIN_VALUE)
   element('timings', HTMLElement).replaceChildren(
     ...steps.map((step) => {
