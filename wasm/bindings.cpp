@@ -68,68 +68,39 @@ val answer(const cagecast::Status& status) {
 
 val outOfMemory() { return answer({cagecast::Code::outOfMemory, cagecast::Argument::none, 0}); }
 
-/// Calls `visit` with the name of each option, as JavaScript spells it, and the option itself.
+/// Calls `visit` with each option. They go to and from JavaScript as numbers in this order, which is that of
+/// wasm/src/options.ts as well; so names stay out of here.
 template <typename Visit>
-void eachOption(cagecast::ProjectOptions& options, const Visit& visit) {
-  visit("projection", options.projection);
-  visit("weldTolerance", options.weldTolerance);
-  visit("seams", options.seams);
-  visit("occlusionReach", options.occlusionReach);
-  visit("pokeThrough", options.pokeThrough);
-  visit("votes", options.votes);
-  visit("depths", options.depths);
-  visit("secondLook", options.secondLook);
-  visit("bothSides", options.bothSides);
-  visit("holes", options.holes);
+void eachOption(cagecast::TransferOptions& o, const Visit& visit) {
+  visit(o.projection), visit(o.weldTolerance), visit(o.seams), visit(o.occlusionReach), visit(o.pokeThrough);
+  visit(o.votes), visit(o.depths), visit(o.secondLook), visit(o.bothSides), visit(o.holes);
+  visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.copies), visit(o.partialTriangles);
 }
+constexpr std::size_t kOptions = 16;
 
-template <typename Visit>
-void eachOption(cagecast::ClassifyOptions& options, const Visit& visit) {
-  visit("threshold", options.threshold);
-  visit("floor", options.floor);
-  visit("minCovered", options.minCovered);
-  visit("minOfAll", options.minOfAll);
-  visit("copies", options.copies);
-  visit("partialTriangles", options.partialTriangles);
-}
-
-/// The core's options of a preset: 0 `paper`, 1 `default`.
-template <typename Options>
-Options presetOf(unsigned number) {
-  return number == 0 ? Options::paper() : Options::standard();
-}
-
-/// Reads `{ preset, … }`: the options of the preset, but for those that are given. Choices are numbers, as in the core.
-template <typename Options>
-Options optionsFrom(const val& given) {
-  Options options = presetOf<Options>(given["preset"].as<unsigned>());
-  eachOption(options, [&]<typename T>(const char* name, T& option) {
-    const val value = given[name];
-    if (value.isUndefined()) return;
+/// @param numbers  kOptions numbers.
+cagecast::TransferOptions optionsFrom(const val& numbers) {
+  double values[kOptions];
+  val(typed_memory_view(kOptions, values)).call<void>("set", numbers);
+  cagecast::TransferOptions options;
+  const double* next = values;
+  eachOption(options, [&]<typename T>(T& option) {
     if constexpr (std::is_enum_v<T>) {
-      option = static_cast<T>(value.as<unsigned>());
+      option = static_cast<T>(static_cast<unsigned>(*next++));
     } else {
-      option = value.as<T>();
+      option = static_cast<T>(*next++);
     }
   });
   return options;
 }
 
-/// `{ projection, …, threshold, … }` of a preset, choices as numbers.
+/// The options of a preset: 0 `paper`, 1 `default`.
 val presetOptions(unsigned preset) {
-  val out = val::object();
-  const auto give = [&]<typename T>(const char* name, const T& option) {
-    if constexpr (std::is_enum_v<T>) {
-      out.set(name, static_cast<unsigned>(option));
-    } else {
-      out.set(name, option);
-    }
-  };
-  auto project = presetOf<cagecast::ProjectOptions>(preset);
-  auto classify = presetOf<cagecast::ClassifyOptions>(preset);
-  eachOption(project, give);
-  eachOption(classify, give);
-  return out;
+  auto options = preset == 0 ? cagecast::TransferOptions::paper() : cagecast::TransferOptions::standard();
+  double values[kOptions];
+  double* next = values;
+  eachOption(options, [&](const auto& option) { *next++ = static_cast<double>(option); });
+  return copyOut("Float64Array", values, kOptions);
 }
 
 /// Numbers per segment on the way to and from JavaScript: points, A, E, C, D, group, the first of its copies.
@@ -181,7 +152,7 @@ val project(const val& cage, const val& target, const val& options) {
   if (!copyIn(cage, cageMesh) || !copyIn(target, targetMesh)) return outOfMemory();
   cagecast::Projection result;
   const cagecast::Status status =
-      cagecast::project(cageMesh.view(), targetMesh.view(), optionsFrom<cagecast::ProjectOptions>(options), result);
+      cagecast::project(cageMesh.view(), targetMesh.view(), optionsFrom(options), result);
   val out = answer(status);
   if (!status.ok()) return out;
   if (!addProjection(out, result)) return outOfMemory();
@@ -193,9 +164,7 @@ val transfer(const val& cage, const val& target, const val& options) {
   Mesh cageMesh, targetMesh;
   if (!copyIn(cage, cageMesh) || !copyIn(target, targetMesh)) return outOfMemory();
   cagecast::TransferResult result;
-  const cagecast::TransferOptions both{optionsFrom<cagecast::ProjectOptions>(options),
-                                       optionsFrom<cagecast::ClassifyOptions>(options)};
-  const cagecast::Status status = cagecast::transfer(cageMesh.view(), targetMesh.view(), both, result);
+  const cagecast::Status status = cagecast::transfer(cageMesh.view(), targetMesh.view(), optionsFrom(options), result);
   val out = answer(status);
   if (!status.ok()) return out;
   if (!addProjection(out, result.projection)) return outOfMemory();
@@ -239,7 +208,7 @@ val classify(const val& projection, const val& options, const val& locks) {
     const double* n = shareNumbers.data() + i * kShareStride;
     shares[i] = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1]), n[2], n[3]};
   }
-  auto classifyOptions = optionsFrom<cagecast::ClassifyOptions>(options);
+  cagecast::ClassifyOptions classifyOptions = optionsFrom(options);
   classifyOptions.locks = lockValues;
   cagecast::Zones result;
   const cagecast::Status status = cagecast::classify({zones, segments, stats, restores, shares}, indices, classifyOptions, result);

@@ -1,7 +1,7 @@
 import { dropInstance, type Answer } from './engine.js';
 import { CagecastError, coreCodes } from './error.js';
 import { count, type CheckedMesh } from './mesh.js';
-import { ranges, type CheckedOptions, type CoreOptions } from './options.js';
+import { numberOf, ranges, type CheckedOptions } from './options.js';
 
 /** Throws what the core reports, in words: function, argument, element, value and limit. */
 export function checkAnswer(fn: string, answer: Answer, cage: CheckedMesh | undefined, target: CheckedMesh | undefined, options?: CheckedOptions): void {
@@ -13,9 +13,9 @@ export function checkAnswer(fn: string, answer: Answer, cage: CheckedMesh | unde
   throw new CagecastError(code, `${fn}: ${describe(code, at, name, name === 'cage' ? cage : target, options?.core)}`, at);
 }
 
-function describe(code: string, at: number, name: string, mesh: CheckedMesh | undefined, options: CoreOptions | undefined): string {
+function describe(code: string, at: number, name: string, mesh: CheckedMesh | undefined, options: Float64Array | undefined): string {
   const range = (ranges as Record<string, (typeof ranges)[keyof typeof ranges]>)[code];
-  if (range) return `options.${range[0]} = ${options?.[range[0]]} is not within ${range[1]}`;
+  if (range && options) return `options.${range[0]} = ${numberOf(options, range[0])} is not within ${range[1]}`;
   if (code === 'outOfMemory') return `not enough memory for this target${options ? ' and cage' : ''}`;
   if (mesh === undefined) return `failed (${code})`;
   const { positions, indices, uvs, groups } = mesh;

@@ -2,7 +2,6 @@ import createModule from '#glue';
 import { compile } from '#wasm';
 import { CagecastError } from './error.js';
 import type { CheckedMesh } from './mesh.js';
-import type { CoreOptions } from './options.js';
 
 /** How a call into the core ended: numbers of `Code` and `Argument` in core/include/cagecast/mesh.hpp; 0 is success. */
 export interface Answer {
@@ -53,12 +52,12 @@ export interface CoreProjection {
   indices: Uint32Array | Uint16Array | Uint8Array;
 }
 
-/** The functions of bindings.cpp. All arrays they return are copies. */
+/** The functions of bindings.cpp. All arrays they return are copies; `options` are numbers in the order of options.ts. */
 export interface Bindings {
-  presetOptions(preset: number): Record<string, number | boolean>;
-  project(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions): ProjectAnswer;
-  transfer(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions): ProjectAnswer & ClassifyAnswer;
-  classify(projection: CoreProjection, options: CoreOptions, locks: Uint8Array): ClassifyAnswer;
+  presetOptions(preset: number): Float64Array<ArrayBuffer>;
+  project(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer;
+  transfer(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer & ClassifyAnswer;
+  classify(projection: CoreProjection, options: Float64Array, locks: Uint8Array): ClassifyAnswer;
   splitVertices(indices: Uint32Array | Uint16Array | Uint8Array, cornerUvs: Float32Array, vertexCount: number): SplitAnswer;
 }
 

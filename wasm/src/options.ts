@@ -83,13 +83,11 @@ export interface TransferOptions extends ProjectOptions, ClassifyOptions {
 /** Everything that a preset stands for. */
 export type PresetOptions = { [Name in Exclude<keyof TransferOptions, 'preset' | 'locks'>]-?: NonNullable<TransferOptions[Name]> };
 
-/** Options for the core: choices as its numbers; what is not there is as the preset says. */
-export type CoreOptions = { preset: number } & Partial<Record<keyof PresetOptions, number | boolean>>;
-
 /** Options that were checked. */
 export interface CheckedOptions {
   preset: Preset;
-  core: CoreOptions;
+  /** All of them in numbers, for the core: in the order of bindings.cpp, which is that of `allKinds`. */
+  core: Float64Array;
   locks: Locks;
 }
 
@@ -120,6 +118,10 @@ const classifyKinds = {
   partialTriangles: 'boolean',
 } as const satisfies Partial<Record<keyof PresetOptions, Kind>>;
 const allKinds: Record<keyof PresetOptions, Kind> = { ...projectKinds, ...classifyKinds };
+const allNames = Object.keys(allKinds) as (keyof PresetOptions)[];
+
+/** The value of an option in numbers for the core. */
+export const numberOf = (core: Float64Array, name: keyof PresetOptions): number => core[allNames.indexOf(name)]!;
 
 /** The numbers that the core takes, by the code of its error. */
 export const ranges = {
@@ -136,15 +138,22 @@ export const ranges = {
  * @throws {CagecastError} `notInitialised`, `badOption`
  */
 export function presetOptions(preset: Preset = 'default'): PresetOptions {
-  const number = numberOfPreset('presetOptions', 'preset', preset);
-  const values = callCore('presetOptions', (core) => core.presetOptions(number));
-  const entries = Object.entries(allKinds).map(([name, kind]) => {
-    const value = values[name]!;
-    if (typeof kind === 'object') return [name, kind[Number(value)]];
+  const numbers = numbersOf('presetOptions', 'preset', preset);
+  const entries = allNames.map((name, i) => {
+    const kind = allKinds[name];
+    const number = numbers[i]!;
+    if (typeof kind === 'object') return [name, kind[number]];
     // The core's numbers have 24 bits: what was 0.2 there is 0.2 here.
-    return [name, kind === 'number' ? Number(Number(value).toPrecision(7)) : value];
+    return [name, kind === 'boolean' ? number === 1 : Number(number.toPrecision(7))];
   });
   return Object.fromEntries(entries) as PresetOptions;
+}
+
+/** What a preset stands for, as the core says. */
+function numbersOf(fn: string, name: string, preset: unknown): Float64Array {
+  const number = presets.indexOf(preset as Preset);
+  if (number < 0) throw new CagecastError('badOption', `${fn}: ${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`);
+  return callCore(fn, (core) => core.presetOptions(number));
 }
 
 /**
@@ -156,8 +165,7 @@ export function checkOptions(fn: 'project' | 'classify' | 'transfer', options: u
   if (typeof options !== 'object' || options === null) {
     throw new CagecastError('badOption', `${fn}: options is ${show(options)}, not an object`);
   }
-  const kinds: Partial<Record<string, Kind>> = { ...(fn !== 'classify' && projectKinds), ...(fn !== 'project' && classifyKinds) };
-  const known = ['preset', ...Object.keys(kinds), ...(fn === 'project' ? [] : ['locks'])];
+  const known = ['preset', ...(fn === 'classify' ? [] : Object.keys(projectKinds)), ...(fn === 'project' ? [] : [...Object.keys(classifyKinds), 'locks'])];
   for (const name of Object.keys(options)) {
     if (!known.includes(name)) {
       throw new CagecastError('badOption', `${fn}: options.${name} is not an option; there are: ${known.join(', ')}`);
@@ -165,14 +173,14 @@ export function checkOptions(fn: 'project' | 'classify' | 'transfer', options: u
   }
   const given = options as Record<string, unknown>;
   const chosen = (given['preset'] ?? preset) as Preset;
-  const core: Record<string, number | boolean> = { preset: numberOfPreset(fn, 'options.preset', chosen) };
-  for (const [name, kind] of Object.entries(kinds)) {
-    if (given[name] !== undefined) core[name] = checkOption(fn, name, kind!, given[name]);
-  }
-  return { preset: chosen, core: core as CoreOptions, locks: checkLocks(fn, given['locks']) };
+  const core = numbersOf(fn, 'options.preset', chosen);
+  allNames.forEach((name, i) => {
+    if (given[name] !== undefined) core[i] = checkOption(fn, name, allKinds[name], given[name]);
+  });
+  return { preset: chosen, core, locks: checkLocks(fn, given['locks']) };
 }
 
-function checkOption(fn: string, name: string, kind: Kind, value: unknown): number | boolean {
+function checkOption(fn: string, name: string, kind: Kind, value: unknown): number {
   const wrong = (code: 'badOption' | keyof typeof ranges, is: string) => new CagecastError(code, `${fn}: options.${name} = ${show(value)} is ${is}`);
   if (typeof kind === 'object') {
     const number = kind.indexOf(value as string);
@@ -181,17 +189,11 @@ function checkOption(fn: string, name: string, kind: Kind, value: unknown): numb
   }
   if (kind === 'boolean') {
     if (typeof value !== 'boolean') throw wrong('badOption', 'not true or false');
-    return value;
+    return Number(value);
   }
   if (typeof value === 'number') return value;
   const [code, [, range]] = Object.entries(ranges).find(([, [option]]) => option === name)!;
   throw wrong(code as keyof typeof ranges, `not a number within ${range}`);
-}
-
-function numberOfPreset(fn: string, name: string, preset: unknown): number {
-  const number = presets.indexOf(preset as Preset);
-  if (number < 0) throw new CagecastError('badOption', `${fn}: ${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`);
-  return number;
 }
 
 function checkLocks(fn: string, locks: unknown = {}): Locks {
@@ -215,8 +217,8 @@ function checkLocks(fn: string, locks: unknown = {}): Locks {
 export function locksOf(fn: string, { segments = {}, groups = {} }: Locks, stats: readonly { group: number }[]): Uint8Array {
   const [bySegment, byGroup] = [Object.entries(segments), Object.entries(groups)];
   if (bySegment.length === 0 && byGroup.length === 0) return new Uint8Array(0);
-  const numberOf = new Map(byGroup.map(([group, lock]) => [group, lockNames.indexOf(lock)]));
-  const out = Uint8Array.from(stats, ({ group }) => numberOf.get(String(group)) ?? 0);
+  const lockOf = new Map(byGroup.map(([group, lock]) => [group, lockNames.indexOf(lock)]));
+  const out = Uint8Array.from(stats, ({ group }) => lockOf.get(String(group)) ?? 0);
   const known = new Set(stats.map(({ group }) => String(group)));
   const stray = byGroup.find(([group]) => !known.has(group));
   if (stray) throw new CagecastError('badOption', `${fn}: options.locks.groups[${stray[0]}] = ${show(stray[1])}, but no segment is of that group`);
