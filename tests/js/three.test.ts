@@ -174,7 +174,13 @@ describe('applyTransfer', () => {
   test('a result from elsewhere is taken as it is', () => {
     const target = meshOf(scene.target);
     const known = transfer(extract(meshOf(scene.cage), 'cage').mesh, extract(target).mesh);
-    assert.equal(applyTransfer(target, meshOf(scene.cage), { result: known }).result, known);
+    const applied = applyTransfer(target, meshOf(scene.cage), { result: known });
+    assert.equal(applied.result, known);
+    assert.ok(applied.splitVertices > 0);
+    // It is not of what the target has become.
+    assert.throws(() => applyTransfer(target, meshOf(scene.cage), { result: known }), (error) => error instanceof CagecastError && /result is of \d+ vertices, the target has \d+/.test(error.message));
+    // Of which a transfer of its own splits no vertex again.
+    assert.equal(applyTransfer(target, meshOf(scene.cage)).splitVertices, 0);
   });
 
   test('a geometry that two meshes show is copied for the second', () => {

@@ -3,7 +3,7 @@
  * @module cagecast/three
  */
 import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3D, type Texture } from 'three';
-import { transfer, type Classification, type TransferOptions, type TransferResult } from '../index.js';
+import { CagecastError, transfer, type Classification, type TransferOptions, type TransferResult } from '../index.js';
 import { splitPart } from '../split-part.js';
 import { extract, isTurned, type Extracted, type Part } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
@@ -73,6 +73,10 @@ export function applyTransfer(
 ): Applied {
   const { mesh, parts } = extract(target, 'target');
   const result = known ?? transfer(extract(cage, 'cage').mesh, mesh, options);
+  const vertices = mesh.positions.length / 3;
+  if (result.zones.length !== vertices || result.cosmeticTriangles.length !== mesh.indices.length / 3) {
+    throw new CagecastError('badArgument', `cagecast/three: result is of ${result.zones.length} vertices, the target has ${vertices}: extract it before vertices are split`);
+  }
   const uvName = `uv${channel}`;
   const taken = new Set<BufferGeometry>();
   for (const part of parts) {
