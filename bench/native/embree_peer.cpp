@@ -127,7 +127,7 @@ Closest closestPoint(Vec3f p, const CageTriangle& t) {
   return at(vb * scale, vc * scale, true);
 }
 
-/// The search for one point: the nearest triangle so far, and those that are as near (SPEC's ties).
+/// The search for one point: the nearest triangle so far, and those that are as near (the tie rule).
 class Query {
  public:
   Query(const std::vector<CageTriangle>& triangles, float diagonal)

@@ -242,7 +242,7 @@ function place(i: number, t: number, px: number, py: number, pz: number, start: 
   out.meetsCage[i] = Number(inside && height < start);
 }
 
-/** Step 1, with SPEC's tie rule. */
+/** Step 1, with the tie rule. */
 function project(welded: Welded, order: Uint32Array, patches: Patches, tree: Tree): PointResults {
   const { count: pointCount, positions } = welded;
   const out = {

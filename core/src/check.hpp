@@ -15,7 +15,7 @@ struct Units {
   float reach = 0;        ///< The longest side of the box around cage and target together, scaled.
 };
 
-/// Checks everything that SPEC's "Input" asks for; after it, nothing inside can fail but memory.
+/// Checks everything that is asked of an input; after it, nothing inside can fail but memory.
 /// @param[out] units  Valid if the status is ok.
 Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOptions& options, Units& units) noexcept;
 

@@ -72,7 +72,7 @@ struct CageTree {
 bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch, RayTree& out) noexcept;
 bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageTree& out) noexcept;
 
-/// SPEC §1: a cage triangle can be the answer if its distance is within this share of the diagonal of the least.
+/// docs/method.md, step 1: a cage triangle can be the answer if its distance is within this share of the diagonal of the least.
 inline constexpr double kTieDistance = 1e-6;
 
 /// Searches the cage's triangles for the nearest to a few points at once.
@@ -91,7 +91,7 @@ class NearestSearch {
   /// @param positions  As in `Points`.
   void search(const float* positions, std::uint32_t count) noexcept;
 
-  /// The triangles that could be the nearest to point i of the last search by SPEC's tie rule: all whose distance is within
+  /// The triangles that could be the nearest to point i of the last search by the tie rule: all whose distance is within
   /// `kTieDistance` of the least, and some that rounding cannot tell from them.
   /// @param[out] found  Room for every triangle of the cage.
   /// @return How many were found: at least 1.

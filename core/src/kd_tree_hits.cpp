@@ -12,7 +12,8 @@ using simd::mask4;
 using simd::splat;
 
 /// The sine of the angle between a ray and a plane under which the ray lies in the plane: less cannot be told from nothing
-/// in double precision between vertices that are floats. Aligned lattices give false hits without it.
+/// in double precision between vertices that are floats. (In exact arithmetic such a ray has edge functions of 0 and is turned
+/// away by their sum; this is for what rounding leaves of them. No test has needed it yet.)
 constexpr double kParallel = 1e-10;
 
 /// The rounding of a distance in `mightHit`: three times that of an edge function, times a corner's distance from the ray's

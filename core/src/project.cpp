@@ -7,7 +7,7 @@
 namespace cagecast {
 namespace {
 
-/// SPEC §1: planes whose distance is within this share of the diagonal of the farthest are equally far.
+/// docs/method.md, step 1: planes whose distance is within this share of the diagonal of the farthest are equally far.
 constexpr double kTiePlane = 1e-7;
 
 /// The nearest point of one cage triangle.
@@ -54,7 +54,7 @@ struct Candidate {
   Place place;
 };
 
-/// Picks, of the triangles that could be the nearest, the one that SPEC's tie rule names: of those within
+/// Picks, of the triangles that could be the nearest, the one that the tie rule of docs/method.md, step 1, names: of those within
 /// `kTieDistance` of the nearest the one whose plane is farthest from p, of equals the first.
 const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) {
   double least = candidates[0].place.distance;

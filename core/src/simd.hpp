@@ -26,17 +26,6 @@ namespace cagecast::simd {
 
 inline constexpr int kWidth = 4;
 
-/// The instruction set this build uses.
-#if defined(CAGECAST_SSE)
-inline constexpr const char* kBackend = "SSE2";
-#elif defined(CAGECAST_NEON)
-inline constexpr const char* kBackend = "NEON";
-#elif defined(CAGECAST_WASM)
-inline constexpr const char* kBackend = "WebAssembly SIMD";
-#else
-inline constexpr const char* kBackend = "scalar";
-#endif
-
 #if defined(CAGECAST_SSE)
 
 struct f32x4 {
@@ -61,8 +50,6 @@ inline mask4 operator&(mask4 a, mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
 inline mask4 operator|(mask4 a, mask4 b) { return {_mm_or_ps(a.v, b.v)}; }
 /// a where the mask is set, else 0.
 inline f32x4 keep(mask4 m, f32x4 a) { return {_mm_and_ps(m.v, a.v)}; }
-/// 0 where the mask is set, else a.
-inline f32x4 drop(mask4 m, f32x4 a) { return {_mm_andnot_ps(m.v, a.v)}; }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) {
 #if defined(__SSE4_1__)
   return {_mm_blendv_ps(b.v, a.v, m.v)};
@@ -106,7 +93,6 @@ inline mask4 operator<=(f32x4 a, f32x4 b) { return {vcleq_f32(a.v, b.v)}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {vandq_u32(a.v, b.v)}; }
 inline mask4 operator|(mask4 a, mask4 b) { return {vorrq_u32(a.v, b.v)}; }
 inline f32x4 keep(mask4 m, f32x4 a) { return {vreinterpretq_f32_u32(vandq_u32(m.v, vreinterpretq_u32_f32(a.v)))}; }
-inline f32x4 drop(mask4 m, f32x4 a) { return {vreinterpretq_f32_u32(vbicq_u32(vreinterpretq_u32_f32(a.v), m.v))}; }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {vbslq_f32(m.v, a.v, b.v)}; }
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {
@@ -149,7 +135,6 @@ inline mask4 operator<=(f32x4 a, f32x4 b) { return {wasm_f32x4_le(a.v, b.v)}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {wasm_v128_and(a.v, b.v)}; }
 inline mask4 operator|(mask4 a, mask4 b) { return {wasm_v128_or(a.v, b.v)}; }
 inline f32x4 keep(mask4 m, f32x4 a) { return {wasm_v128_and(m.v, a.v)}; }
-inline f32x4 drop(mask4 m, f32x4 a) { return {wasm_v128_andnot(a.v, m.v)}; }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {wasm_v128_bitselect(a.v, b.v, m.v)}; }
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {
@@ -199,7 +184,6 @@ inline mask4 operator<=(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[
 inline mask4 operator&(mask4 a, mask4 b) { return test([&](int i) { return a.v[i] && b.v[i]; }); }
 inline mask4 operator|(mask4 a, mask4 b) { return test([&](int i) { return a.v[i] || b.v[i]; }); }
 inline f32x4 keep(mask4 m, f32x4 a) { return lanes([&](int i) { return m.v[i] ? a.v[i] : 0.0f; }); }
-inline f32x4 drop(mask4 m, f32x4 a) { return lanes([&](int i) { return m.v[i] ? 0.0f : a.v[i]; }); }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return lanes([&](int i) { return m.v[i] ? a.v[i] : b.v[i]; }); }
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {

@@ -23,7 +23,7 @@ struct PointResults {
   std::uint32_t* segments = nullptr;
 };
 
-/// The ray of SPEC §1: from the point, along the normal of its nearest cage triangle.
+/// The ray of docs/method.md, step 1: from the point, along the normal of its nearest cage triangle.
 inline Ray rayOf(const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
   const float* p = points.at(point);
   return {{p[0], p[1], p[2]}, &cage.triangles[results.triangles[point]].normal};

@@ -44,6 +44,9 @@ function fail(message) {
   process.exit(1);
 }
 
+/** @param {string} version  As `node --version` prints it. */
+const isNewEnough = (version) => Number(version.replace('v', '').split('.')[0]) >= kOldestNode;
+
 function installSystemPackages(names) {
   const missing = names.filter((name) => !kNeeds[name].there());
   if (missing.length === 0) return;
@@ -62,6 +65,9 @@ function installSystemPackages(names) {
   }
   const still = missing.filter((name) => !kNeeds[name].there());
   if (still.length > 0) fail(`Installed, but still not found: ${still.map((name) => kNeeds[name].what).join(', ')}`);
+  // Emscripten brings Debian's own Node along, which replaces one that was put into /usr/bin by hand.
+  const node = spawnSync('node', ['--version'], { encoding: 'utf8' }).stdout?.trim() ?? 'none';
+  if (!isNewEnough(node)) fail(`The node in your PATH is now ${node}, from a Debian package; Cagecast needs ${kOldestNode} or newer. Put yours before it, in /usr/local/bin say, and run this again.`);
 }
 
 function installNpmPackages() {
@@ -75,6 +81,6 @@ function installNpmPackages() {
 
 const purpose = process.argv[2];
 if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
-if (Number(process.versions.node.split('.')[0]) < kOldestNode) fail(`Cagecast needs Node ${kOldestNode} or newer; this is ${process.versions.node}.`);
+if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kOldestNode} or newer; this is ${process.versions.node}.`);
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();

@@ -41,7 +41,7 @@ struct ClassifyOptions {
 
 struct TransferOptions : ProjectOptions, ClassifyOptions {};
 
-/// CPU time of each step in milliseconds.
+/// CPU time of each step in milliseconds; wall time in WebAssembly, which has no other clock.
 struct Timings {
   double weld = 0;      ///< Checking the input and welding the target's vertices.
   double build = 0;     ///< Building the search trees of cage and target.
