@@ -4,10 +4,12 @@
 /// No view into WebAssembly memory leaves: such a view is cut to length 0 when the memory grows.
 
 #include <iterator>
+#include <type_traits>
 
 #include <emscripten/bind.h>
 #include <emscripten/val.h>
 
+#include <cagecast/seams.hpp>
 #include <cagecast/transfer.hpp>
 
 namespace {
@@ -66,27 +68,74 @@ val answer(const cagecast::Status& status) {
 
 val outOfMemory() { return answer({cagecast::Code::outOfMemory, cagecast::Argument::none, 0}); }
 
-constexpr std::size_t kStatsStride = 4;  ///< Numbers per segment on the way to and from JavaScript: points, A, E, C.
+/// Calls `visit` with each option. They go to and from JavaScript as numbers in this order, which is that of
+/// wasm/src/options.ts as well; so names stay out of here.
+template <typename Visit>
+void eachOption(cagecast::TransferOptions& o, const Visit& visit) {
+  visit(o.projection), visit(o.weldTolerance), visit(o.seams), visit(o.occlusionReach), visit(o.pokeThrough);
+  visit(o.votes), visit(o.depths), visit(o.secondLook), visit(o.bothSides), visit(o.holes);
+  visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.maxUncovered), visit(o.copies), visit(o.partialTriangles);
+}
+constexpr std::size_t kOptions = 17;
+
+/// @param numbers  kOptions numbers.
+cagecast::TransferOptions optionsFrom(const val& numbers) {
+  double values[kOptions];
+  val(typed_memory_view(kOptions, values)).call<void>("set", numbers);
+  cagecast::TransferOptions options;
+  const double* next = values;
+  eachOption(options, [&]<typename T>(T& option) {
+    if constexpr (std::is_enum_v<T>) {
+      option = static_cast<T>(static_cast<unsigned>(*next++));
+    } else {
+      option = static_cast<T>(*next++);
+    }
+  });
+  return options;
+}
+
+/// The options of a preset: 0 `paper`, 1 `default`.
+val presetOptions(unsigned preset) {
+  auto options = preset == 0 ? cagecast::TransferOptions::paper() : cagecast::TransferOptions::standard();
+  double values[kOptions];
+  double* next = values;
+  eachOption(options, [&](const auto& option) { *next++ = static_cast<double>(option); });
+  return copyOut("Float64Array", values, kOptions);
+}
+
+/// Numbers per segment on the way to and from JavaScript: points, A, E, C, D, group, the first of its copies.
+constexpr std::size_t kStatsStride = 7;
+/// Numbers per share of a hole: hole, segment, exposed area, uncovered area.
+constexpr std::size_t kShareStride = 4;
 
 /// @return false if there is not enough memory.
 bool addProjection(val& out, const cagecast::Projection& projection) {
-  Array<double> numbers;
-  if (!numbers.reset(projection.segmentStats.size() * kStatsStride)) return false;
-  double* next = numbers.data();
-  for (const cagecast::SegmentStats& segment : projection.segmentStats) {
-    *next++ = segment.points;
-    *next++ = segment.area;
-    *next++ = segment.exposedArea;
-    *next++ = segment.coveredArea;
+  Array<double> stats, shares;
+  if (!stats.reset(projection.segmentStats.size() * kStatsStride) || !shares.reset(projection.holeShares.size() * kShareStride)) {
+    return false;
+  }
+  double* next = stats.data();
+  for (const cagecast::SegmentStats& s : projection.segmentStats) {
+    for (const double number : {double(s.points), s.area, s.exposedArea, s.coveredArea, s.sunkArea, double(s.group), double(s.copyOf)}) {
+      *next++ = number;
+    }
+  }
+  next = shares.data();
+  for (const cagecast::HoleShare& s : projection.holeShares) {
+    for (const double number : {double(s.hole), double(s.segment), s.exposedArea, s.uncoveredArea}) *next++ = number;
   }
   const cagecast::Timings& t = projection.timings;
-  const double timings[] = {t.weld, t.build, t.project, t.occluded, t.covered, t.segments, t.classify, t.total};
+  const double timings[] = {t.weld,     t.build,      t.project, t.occluded, t.covered, t.segments,
+                            t.secondLook, t.holes, t.seams,   t.classify, t.total};
 
   out.set("uvs", copyOut(projection.uvs));
+  out.set("cornerUvs", copyOut(projection.cornerUvs));
   out.set("triangles", copyOut(projection.triangles));
   out.set("distances", copyOut(projection.distances));
   out.set("segments", copyOut(projection.segments));
-  out.set("segmentStats", copyOut("Float64Array", numbers.data(), numbers.size()));
+  out.set("segmentStats", copyOut("Float64Array", stats.data(), stats.size()));
+  out.set("restores", copyOut(projection.restores));
+  out.set("holeShares", copyOut("Float64Array", shares.data(), shares.size()));
   out.set("timings", copyOut("Float64Array", timings, std::size(timings)));
   out.set("peakBytes", static_cast<double>(projection.peakBytes));
   return true;
@@ -98,12 +147,12 @@ void addZones(val& out, const cagecast::Zones& zones) {
   out.set("culledSegments", copyOut(zones.culledSegments));
 }
 
-val project(const val& cage, const val& target, unsigned projection, float weldTolerance) {
+val project(const val& cage, const val& target, const val& options) {
   Mesh cageMesh, targetMesh;
   if (!copyIn(cage, cageMesh) || !copyIn(target, targetMesh)) return outOfMemory();
   cagecast::Projection result;
-  const cagecast::ProjectOptions options{static_cast<cagecast::ProjectionMode>(projection), weldTolerance};
-  const cagecast::Status status = cagecast::project(cageMesh.view(), targetMesh.view(), options, result);
+  const cagecast::Status status =
+      cagecast::project(cageMesh.view(), targetMesh.view(), optionsFrom(options), result);
   val out = answer(status);
   if (!status.ok()) return out;
   if (!addProjection(out, result)) return outOfMemory();
@@ -111,13 +160,11 @@ val project(const val& cage, const val& target, unsigned projection, float weldT
   return out;
 }
 
-val transfer(const val& cage, const val& target, unsigned projection, float weldTolerance, float threshold) {
+val transfer(const val& cage, const val& target, const val& options) {
   Mesh cageMesh, targetMesh;
   if (!copyIn(cage, cageMesh) || !copyIn(target, targetMesh)) return outOfMemory();
   cagecast::TransferResult result;
-  const cagecast::TransferOptions options{{static_cast<cagecast::ProjectionMode>(projection), weldTolerance},
-                                          {threshold}};
-  const cagecast::Status status = cagecast::transfer(cageMesh.view(), targetMesh.view(), options, result);
+  const cagecast::Status status = cagecast::transfer(cageMesh.view(), targetMesh.view(), optionsFrom(options), result);
   val out = answer(status);
   if (!status.ok()) return out;
   if (!addProjection(out, result.projection)) return outOfMemory();
@@ -125,33 +172,71 @@ val transfer(const val& cage, const val& target, unsigned projection, float weld
   return out;
 }
 
-val classify(const val& zones, const val& segments, const val& segmentStats, const val& indices, float threshold) {
-  Array<std::uint8_t> zoneNumbers;
-  Array<std::uint32_t> segmentIds, corners;
-  Array<double> numbers;
-  if (!copyIn(zones, zoneNumbers) || !copyIn(segments, segmentIds) || !copyIn(segmentStats, numbers) ||
-      !copyIn(indices, corners)) {
+/// Classifies `{ zones, segments, segmentStats, restores, holeShares, indices }`, the latter three in numbers as
+/// `addProjection` gives them. `locks` has a number per segment, or none.
+val classify(const val& projection, const val& options, const val& locks) {
+  Array<std::uint8_t> zoneNumbers, lockNumbers;
+  Array<std::uint32_t> segments, restores, indices;
+  Array<double> statNumbers, shareNumbers;
+  if (!copyIn(projection["zones"], zoneNumbers) || !copyIn(projection["segments"], segments) ||
+      !copyIn(projection["segmentStats"], statNumbers) || !copyIn(projection["restores"], restores) ||
+      !copyIn(projection["holeShares"], shareNumbers) || !copyIn(projection["indices"], indices) ||
+      !copyIn(locks, lockNumbers)) {
     return outOfMemory();
   }
-  Array<cagecast::Zone> zoneValues;
+  Array<cagecast::Zone> zones;
+  Array<cagecast::Lock> lockValues;
   Array<cagecast::SegmentStats> stats;
-  if (!zoneValues.reset(zoneNumbers.size()) || !stats.reset(numbers.size() / kStatsStride)) return outOfMemory();
-  for (std::size_t v = 0; v < zoneNumbers.size(); ++v) zoneValues[v] = static_cast<cagecast::Zone>(zoneNumbers[v]);
-  for (std::size_t s = 0; s < stats.size(); ++s) {
-    const double* n = numbers.data() + s * kStatsStride;
-    stats[s] = {static_cast<std::uint32_t>(n[0]), false, n[1], n[2], n[3]};
+  Array<cagecast::HoleShare> shares;
+  if (!zones.reset(zoneNumbers.size()) || !lockValues.reset(lockNumbers.size()) ||
+      !stats.reset(statNumbers.size() / kStatsStride) || !shares.reset(shareNumbers.size() / kShareStride)) {
+    return outOfMemory();
   }
+  for (std::size_t v = 0; v < zones.size(); ++v) zones[v] = static_cast<cagecast::Zone>(zoneNumbers[v]);
+  for (std::size_t s = 0; s < lockValues.size(); ++s) lockValues[s] = static_cast<cagecast::Lock>(lockNumbers[s]);
+  for (std::size_t s = 0; s < stats.size(); ++s) {
+    const double* n = statNumbers.data() + s * kStatsStride;
+    stats[s] = {.points = static_cast<std::uint32_t>(n[0]),
+                .area = n[1],
+                .exposedArea = n[2],
+                .coveredArea = n[3],
+                .group = static_cast<std::uint32_t>(n[5]),
+                .copyOf = static_cast<std::uint32_t>(n[6]),
+                .sunkArea = n[4]};
+  }
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double* n = shareNumbers.data() + i * kShareStride;
+    shares[i] = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1]), n[2], n[3]};
+  }
+  cagecast::ClassifyOptions classifyOptions = optionsFrom(options);
+  classifyOptions.locks = lockValues;
   cagecast::Zones result;
-  const cagecast::Status status = cagecast::classify(zoneValues, segmentIds, stats, corners, {threshold}, result);
+  const cagecast::Status status = cagecast::classify({zones, segments, stats, restores, shares}, indices, classifyOptions, result);
   val out = answer(status);
   if (status.ok()) addZones(out, result);
+  return out;
+}
+
+val splitVertices(const val& indices, const val& cornerUvs, unsigned vertexCount) {
+  Array<std::uint32_t> corners;
+  Array<float> uvs;
+  if (!copyIn(indices, corners) || !copyIn(cornerUvs, uvs)) return outOfMemory();
+  cagecast::SplitVertices result;
+  const cagecast::Status status = cagecast::splitVertices(corners, uvs, vertexCount, result);
+  val out = answer(status);
+  if (!status.ok()) return out;
+  out.set("sources", copyOut(result.sources));
+  out.set("indices", copyOut(result.indices));
+  out.set("uvs", copyOut(result.uvs));
   return out;
 }
 
 }  // namespace
 
 EMSCRIPTEN_BINDINGS(cagecast) {
+  emscripten::function("presetOptions", &presetOptions);
   emscripten::function("project", &project);
   emscripten::function("transfer", &transfer);
   emscripten::function("classify", &classify);
+  emscripten::function("splitVertices", &splitVertices);
 }

@@ -12,6 +12,9 @@ namespace {
 /// Farthest a coordinate may be from the origin, in diagonals of the target: fourth powers of it still fit a float with
 /// room to spare, and at this distance a float no longer resolves the target anyway.
 constexpr float kMaxProportion = 1e8f;
+/// Rays may begin between floats, and then round with the distance from the origin of coordinates; where that is so many
+/// times the scene, it is what the kernels must allow for.
+constexpr float kRestReach = 0.25f;
 /// Largest weld tolerance, as a share of the diagonal: beyond it a head is a handful of points.
 constexpr float kMaxWeldTolerance = 0.01f;
 
@@ -121,6 +124,8 @@ Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOpt
   if (!(options.weldTolerance >= 0.0f && options.weldTolerance <= kMaxWeldTolerance)) {
     return {Code::badWeldTolerance, Argument::options};
   }
+  if (!(options.occlusionReach >= 0.0f)) return {Code::badOcclusionReach, Argument::options};
+  if (!(options.pokeThrough >= 0.0f && options.pokeThrough <= 1.0f)) return {Code::badPokeThrough, Argument::options};
 
   // A target that is a single point has no size; then the cage's serves.
   const double size = targetBox.diagonal() > 0 ? targetBox.diagonal() : cageBox.diagonal();
@@ -142,7 +147,9 @@ Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOpt
     }
     units.low[k] = scaled(targetBox.low[k]);
     units.high[k] = scaled(targetBox.high[k]);
-    reach = std::max(reach, std::max(units.high[k], scaled(cageBox.high[k])) - std::min(units.low[k], scaled(cageBox.low[k])));
+    const float low = std::min(units.low[k], scaled(cageBox.low[k]));
+    const float high = std::max(units.high[k], scaled(cageBox.high[k]));
+    reach = std::max({reach, high - low, high * kRestReach, -low * kRestReach});
   }
   units.scale = static_cast<float>(scale);
   units.diagonal = targetBox.diagonal() * scale;
@@ -152,6 +159,9 @@ Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOpt
 
 Status checkClassifyOptions(const ClassifyOptions& options) noexcept {
   if (!(options.threshold >= 0.0f && options.threshold <= 1.0f)) return {Code::badThreshold, Argument::options};
+  if (!(options.minCovered >= 0.0f && options.minCovered <= 1.0f)) return {Code::badMinCovered, Argument::options};
+  if (!(options.minOfAll >= 0.0f && options.minOfAll <= 1.0f)) return {Code::badMinOfAll, Argument::options};
+  if (!(options.maxUncovered >= 0.0f && options.maxUncovered <= 1.0f)) return {Code::badMaxUncovered, Argument::options};
   return {};
 }
 

@@ -12,7 +12,7 @@ struct Units {
   double diagonal = 0;    ///< Of the target's bounding box, scaled: 1..2 (0 if the target is one point).
   float low[3] = {};      ///< The target's bounding box, scaled.
   float high[3] = {};
-  float reach = 0;        ///< The longest side of the box around cage and target together, scaled.
+  float reach = 0;        ///< The longest side of the box around cage and target together, scaled; more if that is far off.
 };
 
 /// Checks everything that is asked of an input; after it, nothing inside can fail but memory.

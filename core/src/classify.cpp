@@ -1,28 +1,146 @@
+#include <algorithm>
+#include <limits>
+
 #include "cagecast/transfer.hpp"
 #include "check.hpp"
 
 namespace cagecast {
+namespace {
 
-Status classify(std::span<const Zone> zones, std::span<const std::uint32_t> segments,
-                std::span<const SegmentStats> stats, std::span<const std::uint32_t> indices,
-                const ClassifyOptions& options, Zones& out) noexcept {
+/// docs/method.md, step 7: a hole is explained if what fails there is so large a share of what is uncovered there.
+constexpr double kExplaining = 0.02;
+
+/// docs/method.md, step 5′: copies within this factor of what is asked of them are judged together.
+constexpr double kDoubt = 2;
+
+/// The areas of a segment, or of several that are judged together.
+struct Tally {
+  double area = 0, exposed = 0, covered = 0, sunk = 0;
+  double segments = 0;
+
+  static Tally of(const SegmentStats& s) { return {s.area, s.exposedArea, s.coveredArea, s.sunkArea, 1}; }
+  void add(const Tally& other) {
+    area += other.area;
+    exposed += other.exposed;
+    covered += other.covered;
+    sunk += other.sunk;
+    segments += other.segments;
+  }
+};
+
+/// Step 5: which segments pass.
+class Verdicts {
+ public:
+  Verdicts(std::span<const SegmentStats> stats, const ClassifyOptions& options) noexcept : stats_(stats), options_(options) {
+    for (const SegmentStats& s : stats) allCovered_ += s.coveredArea;
+  }
+
+  /// @return false if memory ran out.
+  bool decide(Array<std::uint8_t>& culled) const noexcept {
+    const bool hasFloor = options_.floor != Floor::none;
+    bool anyDoubt = false;
+    for (std::size_t s = 0; s < stats_.size(); ++s) {
+      if (!hasFloor) {
+        culled[s] = stats_[s].coveredArea < static_cast<double>(options_.threshold) * stats_[s].exposedArea;
+      } else {
+        const double margin = marginOf(Tally::of(stats_[s]));
+        culled[s] = margin < 1;
+        anyDoubt = anyDoubt || isInDoubt(margin);
+      }
+    }
+    return !(options_.copies && anyDoubt) || judgeCopies(culled);
+  }
+
+ private:
+  static bool isInDoubt(double margin) { return margin >= 1 / kDoubt && margin < kDoubt; }
+
+  /// How many times what is asked of it a tally reaches: it passes from 1 on.
+  [[nodiscard]] double marginOf(const Tally& tally) const {
+    const auto times = [](double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); };
+    if (!(tally.covered > 0)) return 0;
+    const double coverage = times(tally.covered, static_cast<double>(options_.threshold) * tally.exposed);
+    const double ofItself = static_cast<double>(options_.minCovered) * tally.area;
+    if (options_.floor == Floor::area) return std::min(coverage, times(tally.covered, ofItself));
+    // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
+    const double counted = tally.sunk * (tally.covered / tally.exposed);
+    // A part that is mostly hidden passes for what it is of the whole, if where it is exposed it is covered beyond doubt.
+    const double ofAll = std::min(times(counted, static_cast<double>(options_.minOfAll) * allCovered_ * tally.segments),
+                                  times(static_cast<double>(options_.maxUncovered) * tally.exposed, tally.exposed - tally.covered));
+    return std::min(coverage, std::max(times(counted, ofItself), ofAll));
+  }
+
+  /// Judges copies that are in doubt together, so that twins do not fall on either side by accident.
+  bool judgeCopies(Array<std::uint8_t>& culled) const noexcept {
+    Array<Tally> together;  // By the first of the copies.
+    if (!together.reset(stats_.size())) return false;
+    std::fill(together.begin(), together.end(), Tally{});
+    const auto isDoubted = [&](std::size_t s) { return isInDoubt(marginOf(Tally::of(stats_[s]))); };
+    for (std::size_t s = 0; s < stats_.size(); ++s) {
+      if (isDoubted(s)) together[stats_[s].copyOf].add(Tally::of(stats_[s]));
+    }
+    for (std::size_t s = 0; s < stats_.size(); ++s) {
+      if (isDoubted(s)) culled[s] = marginOf(together[stats_[s].copyOf]) < 1;
+    }
+    return true;
+  }
+
+  std::span<const SegmentStats> stats_;
+  const ClassifyOptions& options_;
+  double allCovered_ = 0;
+};
+
+/// Step 7: which holes are meant for what fails behind them.
+void explainHoles(std::span<const HoleShare> shares, Zones& out) {
+  std::fill(out.explainedHoles.begin(), out.explainedHoles.end(), std::uint8_t{0});
+  for (std::size_t i = 0; i < shares.size();) {
+    const std::uint32_t hole = shares[i].hole;
+    double failing = 0;
+    double uncovered = 0;
+    for (; i < shares.size() && shares[i].hole == hole; ++i) {
+      (out.culledSegments[shares[i].segment] ? failing : uncovered) +=
+          out.culledSegments[shares[i].segment] ? shares[i].exposedArea : shares[i].uncoveredArea;
+    }
+    out.explainedHoles[hole] = failing > 0 && failing >= kExplaining * uncovered;
+  }
+}
+
+}  // namespace
+
+Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices, const ClassifyOptions& options,
+                Zones& out) noexcept {
   if (const Status status = checkClassifyOptions(options); !status.ok()) return status;
+  const auto& [zones, segments, stats, restores, shares] = projection;
+  if (!options.locks.empty() && options.locks.size() != stats.size()) {
+    return {Code::badLocks, Argument::options, static_cast<std::uint32_t>(options.locks.size())};
+  }
   const std::size_t triangles = indices.size() / 3;
-  if (!out.zones.reset(zones.size()) || !out.cosmeticTriangles.reset(triangles) || !out.culledSegments.reset(stats.size())) {
+  if (!out.zones.reset(zones.size()) || !out.cosmeticTriangles.reset(triangles) || !out.culledSegments.reset(stats.size()) ||
+      !out.explainedHoles.reset(shares.empty() ? 0 : std::size_t{shares.back().hole} + 1)) {
     return {Code::outOfMemory};
   }
-  const double threshold = static_cast<double>(options.threshold);
-  for (std::size_t s = 0; s < stats.size(); ++s) {
-    out.culledSegments[s] = stats[s].coveredArea < threshold * stats[s].exposedArea;
+
+  if (!Verdicts(stats, options).decide(out.culledSegments)) return {Code::outOfMemory};
+  for (std::size_t s = 0; s < options.locks.size(); ++s) {
+    if (options.locks[s] != Lock::automatic) out.culledSegments[s] = options.locks[s] == Lock::exclude;
   }
+  explainHoles(shares, out);
   for (std::size_t v = 0; v < zones.size(); ++v) {
     // As numbers: clang takes a `&` of truth values for a mistake, and `&&` branches.
     const int culled = static_cast<int>(zones[v] == Zone::cosmetic) & static_cast<int>(out.culledSegments[segments[v]] != 0);
     out.zones[v] = culled != 0 ? Zone::culled : zones[v];
   }
+  for (std::size_t v = 0; v < restores.size(); ++v) {
+    if (restores[v] == Restores::never || out.culledSegments[segments[v]]) continue;
+    const std::size_t hole = restores[v] - Restores::throughHole;
+    const bool isExplained = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
+    if (restores[v] == Restores::always || isExplained) out.zones[v] = Zone::cosmetic;
+  }
+
+  // The depth buffer hides what is occluded of a triangle.
+  const unsigned counting = options.partialTriangles ? ~(1u << static_cast<unsigned>(Zone::occluded)) : ~0u;
   for (std::size_t t = 0; t < triangles; ++t) {
-    const auto zone = [&](std::size_t corner) { return static_cast<unsigned>(out.zones[indices[3 * t + corner]]); };
-    out.cosmeticTriangles[t] = (zone(0) | zone(1) | zone(2)) == static_cast<unsigned>(Zone::cosmetic);
+    const auto zone = [&](std::size_t corner) { return 1u << static_cast<unsigned>(out.zones[indices[3 * t + corner]]); };
+    out.cosmeticTriangles[t] = ((zone(0) | zone(1) | zone(2)) & counting) == 1u << static_cast<unsigned>(Zone::cosmetic);
   }
   return {};
 }

@@ -1,9 +1,15 @@
+#include <limits>
+
 #include "steps.hpp"
 
 namespace cagecast {
+namespace {
 
-bool markUncovered(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
-                   PointResults& results) noexcept {
+/// Sends the rays of the points that a predicate picks to the cage.
+/// @param take  Takes a point and its ray, after it was sent, and whether it hit.
+template <typename Picks, typename Take>
+bool sendToCage(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, HitSearch::Find find,
+                Scratch& scratch, const PointResults& results, Picks picks, Take take) {
   const Scratch::Mark mark = scratch.mark();
   auto* rays = scratch.take<Ray>(HitSearch::kMostRays);
   auto* ofRay = scratch.take<std::uint32_t>(HitSearch::kMostRays);
@@ -12,21 +18,54 @@ bool markUncovered(const Points& points, const Cage& cage, const CageTree& tree,
   if (scratch.failed()) return false;
   std::uint32_t count = 0;
   const auto send = [&] {
-    search.search(rays, count, hit);
-    for (std::uint32_t r = 0; r < count; ++r) {
-      if (!hit[r]) results.zones[ofRay[r]] = Zone::uncovered;
-    }
+    search.search(rays, count, hit, find);
+    for (std::uint32_t r = 0; r < count; ++r) take(ofRay[r], rays[r], hit[r]);
     count = 0;
   };
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    if (results.zones[i] != Zone::cosmetic || results.meetsCage[i]) continue;
+    if (!picks(i)) continue;
     ofRay[count] = i;
-    rays[count++] = rayOf(points, cage, results, i);
+    setRay(rays[count++], points, cage, results, i);
     if (count == HitSearch::kMostRays) send();
   }
   send();
   scratch.rewind(mark);
   return true;
+}
+
+}  // namespace
+
+bool findCageDistances(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
+                       PointResults& results) noexcept {
+  return sendToCage(points, cage, tree, units, HitSearch::Find::nearest, scratch, results,
+                    [&](std::uint32_t i) { return !results.meetsCage[i]; },
+                    [&](std::uint32_t i, const Ray& ray, bool hit) {
+                      results.meetsCage[i] = hit;
+                      results.cageDistances[i] = hit ? std::max(0.0, ray.end) : std::numeric_limits<double>::infinity();
+                    });
+}
+
+bool markUncovered(const Points& points, const Cage& cage, const CageTree& tree, const Rims& rims, const Units& units,
+                   double pokeThrough, Scratch& scratch, PointResults& results) noexcept {
+  const auto pokesThrough = [&](std::uint32_t i) {
+    const std::uint32_t slot = results.triangles[i];
+    const CageTriangle& t = cage.triangles[slot];
+    const Vec3 p = points.exactly(i);
+    const Place place = placeOn(t, p);
+    return place.distance <= pokeThrough && place.height > 0 && rims.at(t, slot, positionOf(t, place), units.diagonal) == Rims::kNone;
+  };
+  const auto mark = [&](std::uint32_t i, bool hit) {
+    if (!hit && !(pokeThrough > 0 && pokesThrough(i))) results.zones[i] = Zone::uncovered;
+  };
+  if (results.cageDistances != nullptr) {  // The rays have been sent.
+    for (std::uint32_t i = 0; i < points.count; ++i) {
+      if (results.zones[i] == Zone::cosmetic) mark(i, results.meetsCage[i]);
+    }
+    return true;
+  }
+  return sendToCage(points, cage, tree, units, HitSearch::Find::any, scratch, results,
+                    [&](std::uint32_t i) { return results.zones[i] == Zone::cosmetic && !results.meetsCage[i]; },
+                    [&](std::uint32_t i, const Ray&, bool hit) { mark(i, hit); });
 }
 
 }  // namespace cagecast

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "cage.hpp"
 #include "scratch.hpp"
@@ -126,13 +127,15 @@ class NearestSearch {
   Near near_[kGroup][kRoom + 1];
 };
 
-/// A ray: r(t) = origin + t · direction.
+/// A ray: r(t) = origin + rest + t · direction.
 struct Ray {
   float origin[3];
+  float rest[3];  ///< What the exact origin has beyond the floats.
   const RayDirection* direction;
+  double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
 };
 
-/// Finds which rays hit a triangle at a distance greater than `from`, from either side. Watertight: a ray through an edge
+/// Finds which rays hit a triangle at a distance greater than `from` and up to their end, from either side. Watertight: a ray through an edge
 /// or a corner that triangles share hits at least one of them. A triangle that holds the origin as a corner is hit at
 /// distance 0, exactly; one that holds the whole ray in its plane is not hit.
 ///
@@ -141,21 +144,29 @@ struct Ray {
 class HitSearch {
  public:
   /// Rays that go together: enough to share nodes, few enough for their lists to stay in the cache.
-  static constexpr std::uint32_t kMostRays = 1024;
+  static constexpr std::uint32_t kMostRays = 2048;
 
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
   /// @param from  Scaled.
   HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcept;
 
+  /// What is asked about a ray.
+  enum class Find : std::uint8_t {
+    any,      ///< Whether it hits anything.
+    nearest,  ///< And at what distance the first: that becomes the ray's end.
+  };
+
   /// @param rays      Up to `kMostRays`.
   /// @param[out] hit  1 per ray.
-  void search(const Ray* rays, std::uint32_t count, bool* hit) noexcept;
+  void search(Ray* rays, std::uint32_t count, bool* hit, Find find = Find::any) noexcept;
 
  private:
   /// What the box test needs of a ray.
   struct alignas(16) Slabs {
-    float inverse[4];
-    float offset[4];  ///< origin · inverse.
+    float inverse[4];  ///< The last is the end.
+    float offset[4];   ///< origin · inverse.
+    /// Not before the ray's end; less than anything once there is no more to find.
+    float& end() noexcept { return inverse[3]; }
   };
 
   void enter(std::uint32_t child, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept;
@@ -170,10 +181,10 @@ class HitSearch {
   float zero_;              ///< 0 if a hit at distance 0 is none, else less.
   float distanceRounding_;  ///< What to multiply `RayLeaf::rounding` with for the rounding of a distance.
   Slabs* slabs_;            ///< 1 per ray.
-  std::uint8_t* alive_;     ///< 1 per ray: all bits while it has hit nothing, else 0.
   std::uint16_t* lists_;
-  const Ray* rays_ = nullptr;
+  Ray* rays_ = nullptr;
   bool* hit_ = nullptr;
+  Find find_ = Find::any;
   unsigned octant_ = 0;     ///< Where the rays of this pass point to.
 };
 

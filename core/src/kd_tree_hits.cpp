@@ -1,4 +1,5 @@
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "kd_tree.hpp"
@@ -20,11 +21,17 @@ constexpr double kParallel = 1e-10;
 /// origin (the reach), times the stretch of the shear (less than 2).
 constexpr float kDistanceRounding = 8.0f;
 
-/// Whether a ray hits a triangle beyond `from`, decided in double: the watertight edge test of Woop, Benthin, Wald (2013).
+/// The distance of a ray that hits nothing, and the end of one that need not look any further.
+constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+
+/// An end in float that is not before the exact one.
+float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end)); }
+
+/// At what distance a ray hits a triangle, or `kNowhere`, decided in double: the watertight edge test of Woop, Benthin, Wald (2013).
 /// A corner is moved to the ray's origin and sheared so that the ray is the z-axis; the signs of the three edge functions
 /// then say on which side of each edge the ray runs. Two triangles that share an edge compute the same number with opposite
 /// signs, and 0 counts for both, so a ray cannot slip between them.
-bool hitsBeyond(const RayLeaf& leaf, int lane, const Ray& ray, double from) {
+double hitDistance(const RayLeaf& leaf, int lane, const Ray& ray) {
   const RayDirection& direction = *ray.direction;
   const auto corner = [&](int i) {
     return Vec3{static_cast<double>(leaf.corner[i][0][lane]), static_cast<double>(leaf.corner[i][1][lane]),
@@ -33,14 +40,15 @@ bool hitsBeyond(const RayLeaf& leaf, int lane, const Ray& ray, double from) {
   const Vec3 a = corner(0);
   const Vec3 normal = cross(corner(1) - a, corner(2) - a);
   const double slope = dot(normal, direction.exact);
-  if (slope * slope <= kParallel * kParallel * dot(normal, normal)) return false;
+  if (slope * slope <= kParallel * kParallel * dot(normal, normal)) return kNowhere;
   const double d[3] = {direction.exact.x, direction.exact.y, direction.exact.z};
   double x[3];
   double y[3];
   double z[3];
   for (int i = 0; i < 3; ++i) {
     const auto offset = [&](std::uint32_t axis) {
-      return static_cast<double>(leaf.corner[i][axis][lane]) - static_cast<double>(ray.origin[axis]);
+      return static_cast<double>(leaf.corner[i][axis][lane]) -
+             (static_cast<double>(ray.origin[axis]) + static_cast<double>(ray.rest[axis]));
     };
     z[i] = offset(direction.z) / d[direction.z];
     x[i] = offset(direction.x) - z[i] * d[direction.x];
@@ -49,9 +57,9 @@ bool hitsBeyond(const RayLeaf& leaf, int lane, const Ray& ray, double from) {
   const double u = x[2] * y[1] - y[2] * x[1];
   const double v = x[0] * y[2] - y[0] * x[2];
   const double w = x[1] * y[0] - y[1] * x[0];
-  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
+  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return kNowhere;
   const double sum = u + v + w;
-  return sum != 0 && (u * z[0] + v * z[1] + w * z[2]) / sum > from;
+  return sum != 0 ? (u * z[0] + v * z[1] + w * z[2]) / sum : kNowhere;
 }
 
 }  // namespace
@@ -63,12 +71,12 @@ HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcep
       zero_(from > 0 ? 0.0f : -1.0f),
       distanceRounding_(kDistanceRounding * tree.reach),
       slabs_(scratch.take<Slabs>(kMostRays)),
-      alive_(scratch.take<std::uint8_t>(kMostRays)),
       lists_(scratch.take<std::uint16_t>(kMostRays * (std::size_t{4} * tree.levels + 1))) {}
 
-void HitSearch::search(const Ray* rays, std::uint32_t count, bool* hit) noexcept {
+void HitSearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noexcept {
   rays_ = rays;
   hit_ = hit;
+  find_ = find;
   const auto octant = [rays](std::uint32_t i) {
     const float* d = rays[i].direction->inverse;
     return unsigned{d[0] < 0} | unsigned{d[1] < 0} << 1 | unsigned{d[2] < 0} << 2;
@@ -80,7 +88,7 @@ void HitSearch::search(const Ray* rays, std::uint32_t count, bool* hit) noexcept
       slabs_[i].inverse[k] = rays[i].direction->inverse[k];
       slabs_[i].offset[k] = rays[i].origin[k] * rays[i].direction->inverse[k];
     }
-    alive_[i] = 0xF;
+    slabs_[i].end() = looseEnd(rays[i].end);
     hit[i] = false;
   }
   std::uint32_t sum = 0;
@@ -107,7 +115,7 @@ void HitSearch::enter(std::uint32_t child, const std::uint16_t* ids, std::uint32
   }
 }
 
-/// Lists, for each of four boxes, the rays that enter it at a distance that is not less than `from`.
+/// Lists, for each of four boxes, the rays that enter it at a distance that is not less than `from`, before their end.
 void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* const (&lists)[4],
                           std::uint32_t (&counts)[4]) const noexcept {
   // All rays of a pass point to the same octant, so the near and far sides of the boxes are the same for all.
@@ -132,8 +140,9 @@ void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint3
     const f32x4 offsets[3] = {simd::splatLane<0>(offset), simd::splatLane<1>(offset), simd::splatLane<2>(offset)};
     const auto distance = [&](const f32x4 (&sides)[3], int k) { return sides[k] * inverses[k] - offsets[k]; };
     const f32x4 first = simd::max(simd::max(distance(near, 0), distance(near, 1)), simd::max(distance(near, 2), from));
-    const f32x4 last = simd::min(simd::min(distance(far, 0), distance(far, 1)), distance(far, 2));
-    const unsigned entered = simd::bits(first <= last) & alive_[id];
+    const f32x4 last =
+        simd::min(simd::min(distance(far, 0), distance(far, 1)), simd::min(distance(far, 2), simd::splatLane<3>(inverse)));
+    const unsigned entered = simd::bits(first <= last);
     lists[0][c0] = lists[1][c1] = lists[2][c2] = lists[3][c3] = id;
     c0 += entered & 1;
     c1 += entered >> 1 & 1;
@@ -147,17 +156,23 @@ void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint3
 void HitSearch::testLeaf(const RayLeaf& leaf, const std::uint16_t* ids, std::uint32_t count) noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t id = ids[i];
-    if (!alive_[id]) continue;
-    for (unsigned close = mightHit(leaf, rays_[id]); close != 0; close &= close - 1) {
-      if (!hitsBeyond(leaf, std::countr_zero(close), rays_[id], from_)) continue;
+    if (slabs_[id].end() < loose_) continue;
+    Ray& ray = rays_[id];
+    for (unsigned close = mightHit(leaf, ray); close != 0; close &= close - 1) {
+      const double distance = hitDistance(leaf, std::countr_zero(close), ray);
+      if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
-      alive_[id] = 0;
-      break;
+      if (find_ == Find::any) {
+        slabs_[id].end() = static_cast<float>(kNowhere);
+        break;
+      }
+      ray.end = distance;
+      slabs_[id].end() = looseEnd(distance);
     }
   }
 }
 
-/// Which of four triangles the ray might hit: the test of `hitsBeyond` in float, with room for its rounding.
+/// Which of four triangles the ray might hit: the test of `hitDistance` in float, with room for its rounding.
 unsigned HitSearch::mightHit(const RayLeaf& leaf, const Ray& ray) const noexcept {
   const RayDirection& direction = *ray.direction;
   const f32x4 shearX = splat(direction.shearX);

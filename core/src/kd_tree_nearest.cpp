@@ -4,22 +4,14 @@
 #include <limits>
 #include <utility>
 
-#include "kd_tree.hpp"
+#include "near_kernel.hpp"
 
 namespace cagecast {
 namespace {
 
 using simd::f32x4;
 using simd::load;
-using simd::mask4;
 using simd::splat;
-
-/// What the kernels below may be off, as a share of the distance and of the cage's extent: they round a dozen times, each
-/// time by 2^-24 of one of them.
-constexpr double kRounding = 1e-6;
-/// A squared distance of interest is (d + s)² for the nearest distance d and the slack s. It is at most
-/// d² · (1 + r) + s² · (1 + 1/r) for any r, which needs no root; this r is good where d is a few thousandths of the diagonal.
-constexpr double kRelativeSlack = 1e-4;
 
 /// Squared distance of a box to four boxes.
 f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x4 (&high)[3]) {
@@ -43,44 +35,19 @@ f32x4 squaredDistanceToChild(const Node& node, std::uint32_t child, const float*
   return sum;
 }
 
-/// Squared distance of p to four triangles, each in its own frame.
+/// Squared distance of p to four triangles.
 f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
-  const f32x4 dx = simd::splatLane<0>(p) - load(leaf.origin[0]);
-  const f32x4 dy = simd::splatLane<1>(p) - load(leaf.origin[1]);
-  const f32x4 dz = simd::splatLane<2>(p) - load(leaf.origin[2]);
-  const auto coordinate = [&](const float (&axis)[3][4]) { return dx * load(axis[0]) + dy * load(axis[1]) + dz * load(axis[2]); };
-  const f32x4 x = coordinate(leaf.axes[0]);
-  const f32x4 y = coordinate(leaf.axes[1]);
-  const f32x4 z = coordinate(leaf.axes[2]);
-  const f32x4 zero = splat(0);
-
-  // A perpendicular through C parts the points that can be nearest to the left edge from those that can be to the right
-  // one. Mirrored if need be, x counts from the lower end of that edge.
-  const mask4 isLeft = x < load(leaf.foot);
-  const auto side = [&](const float (&left)[4], const float (&right)[4]) { return simd::select(isLeft, load(left), load(right)); };
-  const f32x4 fromCorner = simd::select(isLeft, x, load(leaf.base) - x);
-  const f32x4 edgeX = side(leaf.left.x, leaf.right.x);
-  const f32x4 edgeY = side(leaf.left.y, leaf.right.y);
-  // Above AB: beyond the edge by `beyond`, and past one of its ends by `past`; or inside.
-  const f32x4 along = fromCorner * edgeX + y * edgeY;
-  const f32x4 past = along - simd::clamp(along, zero, side(leaf.left.length, leaf.right.length));
-  const f32x4 beyond = y * edgeX - fromCorner * edgeY;
-  const f32x4 toEdge = simd::keep(zero < beyond, beyond * beyond + past * past);
-  // Below AB: nearest to AB, or to its end.
-  const f32x4 outside = simd::min(fromCorner, zero);
-  const f32x4 toBase = outside * outside + y * y;
-  return z * z + simd::select(y < zero, toBase, toEdge);
+  return squaredDistances(leaf, simd::splatLane<0>(p), simd::splatLane<1>(p), simd::splatLane<2>(p),
+                          [](const float (&field)[4]) { return load(field); });
 }
 
 }  // namespace
 
 NearestSearch::NearestSearch(const CageTree& tree, double diagonal, Scratch& scratch) noexcept
     : tree_(tree),
+      fixedSlack_(fixedSlack(tree, diagonal)),
       list_(scratch.take<std::uint32_t>(std::size_t{tree.rays.leafCount} + RayTree::kMostEntries + 4)),
-      otherList_(scratch.take<std::uint32_t>(std::size_t{tree.rays.leafCount} + RayTree::kMostEntries + 4)) {
-  const double slack = kTieDistance * diagonal + kRounding * tree.extent;
-  fixedSlack_ = static_cast<float>(slack * slack * (1 + 1 / kRelativeSlack));
-}
+      otherList_(scratch.take<std::uint32_t>(std::size_t{tree.rays.leafCount} + RayTree::kMostEntries + 4)) {}
 
 std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
   const RayTree& rays = tree_.rays;

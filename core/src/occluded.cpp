@@ -2,8 +2,8 @@
 
 namespace cagecast {
 
-bool markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units, Scratch& scratch,
-                  PointResults& results) noexcept {
+bool markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units, double reach,
+                  Scratch& scratch, PointResults& results) noexcept {
   const Scratch::Mark mark = scratch.mark();
   auto* rays = scratch.take<Ray>(HitSearch::kMostRays);
   auto* hit = scratch.take<bool>(HitSearch::kMostRays);
@@ -12,7 +12,10 @@ bool markOccluded(const Points& points, const Cage& cage, const RayTree& target,
   if (scratch.failed()) return false;
   for (std::uint32_t begin = 0; begin < points.count; begin += HitSearch::kMostRays) {
     const std::uint32_t count = std::min(HitSearch::kMostRays, points.count - begin);
-    for (std::uint32_t i = 0; i < count; ++i) rays[i] = rayOf(points, cage, results, begin + i);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      setRay(rays[i], points, cage, results, begin + i);
+      if (results.cageDistances != nullptr) rays[i].end = results.cageDistances[begin + i] + reach;
+    }
     search.search(rays, count, hit);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (hit[i]) results.zones[begin + i] = Zone::occluded;

@@ -1,26 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "place.hpp"
 #include "steps.hpp"
-#include "triangle.hpp"
 
 namespace cagecast {
-namespace {
 
-/// docs/method.md, step 1: planes whose distance is within this share of the diagonal of the farthest are equally far.
-constexpr double kTiePlane = 1e-7;
-
-/// The nearest point of one cage triangle.
-struct Place {
-  double distance;
-  double v, w;     ///< Barycentrics of corners b and c.
-  double height;   ///< Of p over the triangle's plane.
-  bool inside;     ///< Strictly: not on an edge or a corner.
-};
-
-/// The place on a triangle of a point that lies beside it: on one of the edges.
-/// @param height  Of p over the plane.
-Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) {
+Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept {
   const Vec3 corners[3] = {Vec3::from(t.a), Vec3::from(t.b), Vec3::from(t.c)};
   double along[3];
   double squared[3];
@@ -38,25 +24,7 @@ Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) {
   return place;
 }
 
-Place placeOn(const CageTriangle& t, Vec3 p) {
-  const Vec3 offset = p - Vec3::from(t.a);
-  const double height = dot(offset, t.normal.exact);
-  // Most points lie straight under their triangle.
-  const double v = dot(offset, t.towardsB);
-  const double w = dot(offset, t.towardsC);
-  if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
-  return placeOnEdge(t, p, height);
-}
-
-/// A triangle that could be the nearest.
-struct Candidate {
-  std::uint32_t slot;
-  Place place;
-};
-
-/// Picks, of the triangles that could be the nearest, the one that the tie rule of docs/method.md, step 1, names: of those within
-/// `kTieDistance` of the nearest the one whose plane is farthest from p, of equals the first.
-const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) {
+const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) noexcept {
   double least = candidates[0].place.distance;
   for (std::uint32_t i = 1; i < count; ++i) least = std::min(least, candidates[i].place.distance);
   const auto near = [&](const Candidate& c) { return c.place.distance <= least + kTieDistance * diagonal; };
@@ -73,20 +41,19 @@ const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, dou
   return *first;
 }
 
-}  // namespace
-
 bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
                    PointResults& results) noexcept {
   const Scratch::Mark mark = scratch.mark();
   auto* found = scratch.take<std::uint32_t>(cage.count);
   auto* candidates = scratch.take<Candidate>(cage.count);
-  NearestSearch search(tree, units.diagonal, scratch);
+  // Where positions are rounded, so is the search, by less than what a reach more makes it allow for.
+  NearestSearch search(tree, points.rests == nullptr ? units.diagonal : units.diagonal + static_cast<double>(units.reach), scratch);
   if (scratch.failed()) return false;
 
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const std::uint32_t member = i % NearestSearch::kGroup;
     if (member == 0) search.search(points.at(i), std::min(NearestSearch::kGroup, points.count - i));
-    const Vec3 p = Vec3::from(points.at(i));
+    const Vec3 p = points.exactly(i);
     const std::uint32_t count = search.candidates(member, found);
     Candidate nearest{found[0], placeOn(cage.triangles[found[0]], p)};
     if (count > 1) {
@@ -97,17 +64,15 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
 
     const CageTriangle& t = cage.triangles[nearest.slot];
     const Place& q = nearest.place;
-    for (std::uint32_t k = 0; k < 2; ++k) {
-      const double a = static_cast<double>(t.uvs[k]);
-      const double ab = static_cast<double>(t.uvs[2 + k]) - a;
-      const double ac = static_cast<double>(t.uvs[4 + k]) - a;
-      results.uvs[2 * i + k] = static_cast<float>(a + q.v * ab + q.w * ac);
-    }
+    const Uv uv = uvAt(t, q);
+    results.uvs[2 * i] = static_cast<float>(uv.u);
+    results.uvs[2 * i + 1] = static_cast<float>(uv.v);
     results.distances[i] = static_cast<float>(q.distance);
     results.triangles[i] = nearest.slot;
     results.zones[i] = Zone::cosmetic;
     // Strictly inside its triangle, q = p − height · n, so the ray hits it at −height.
     results.meetsCage[i] = q.inside && -q.height > -kRayStart * units.diagonal;
+    if (results.cageDistances != nullptr) results.cageDistances[i] = std::max(0.0, -q.height);
   }
   scratch.rewind(mark);
   return true;

@@ -1,23 +1,9 @@
-#include <bit>
-#include <cmath>
-
+#include "areas.hpp"
 #include "steps.hpp"
 #include "union_find.hpp"
 
 namespace cagecast {
 namespace {
-
-/// Areas are added up as whole numbers of a tiny unit, so that the sums do not depend on the order of the triangles.
-/// A triangle inside the box of a target of diagonal < 2 has an area < 2; the sum of all stays within 63 bits.
-class AreaUnit {
- public:
-  explicit AreaUnit(std::uint32_t triangleCount) : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)))) {}
-  [[nodiscard]] std::int64_t third(double doubleArea) const { return static_cast<std::int64_t>(doubleArea / 6 * perArea_); }
-  [[nodiscard]] double area(std::int64_t units) const { return static_cast<double>(units) / perArea_; }
-
- private:
-  double perArea_;
-};
 
 struct Sums {
   std::int64_t all, exposed, covered;
@@ -25,10 +11,11 @@ struct Sums {
 
 }  // namespace
 
-bool findSegments(const Points& points, std::uint32_t vertexCount, const Units& units, Scratch& scratch,
+bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<const std::uint32_t> groups, Scratch& scratch,
                   PointResults& results, Array<SegmentStats>& stats) noexcept {
   const Scratch::Mark mark = scratch.mark();
   auto* parents = scratch.take<std::uint32_t>(points.count);
+  auto* firstVertex = scratch.take<std::uint32_t>(points.count);
   if (scratch.failed()) return false;
   UnionFind sets(parents, points.count);
   for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
@@ -44,36 +31,64 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, const Units& 
   std::uint32_t count = 0;
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
     const std::uint32_t root = parents[points.ofVertex[v]];
-    if (results.segments[root] == UINT32_MAX) results.segments[root] = count++;
+    if (results.segments[root] != UINT32_MAX) continue;
+    firstVertex[count] = v;
+    results.segments[root] = count++;
   }
   for (std::uint32_t i = 0; i < points.count; ++i) results.segments[i] = results.segments[parents[i]];
 
-  auto* sums = scratch.take<Sums>(count);
-  if (scratch.failed() || !stats.reset(count)) return false;
-  std::fill(sums, sums + count, Sums{});
-  std::fill(stats.begin(), stats.end(), SegmentStats{});
+  if (!stats.reset(count)) return false;
+  for (std::uint32_t s = 0; s < count; ++s) {
+    stats[s] = {};
+    stats[s].copyOf = s;
+    if (!groups.empty()) stats[s].group = groups[firstVertex[s]];
+  }
+  for (std::uint32_t i = 0; i < points.count; ++i) ++stats[results.segments[i]].points;
+  scratch.rewind(mark);
+  return true;
+}
+
+bool addUpAreas(const Points& points, const Voters& voters, const Units& units, const PointResults& results, Scratch& scratch,
+                PointAreas& areas, Array<SegmentStats>& stats) noexcept {
+  const Scratch::Mark mark = scratch.mark();
+  auto* sums = scratch.take<Sums>(stats.size());
+  if (scratch.failed()) return false;
+  std::fill(sums, sums + stats.size(), Sums{});
+  for (std::int64_t* ofPoints : {areas.all, areas.votes}) {
+    if (ofPoints != nullptr) std::fill(ofPoints, ofPoints + points.count, 0);
+  }
   const AreaUnit unit(points.triangleCount);
+  const auto count = [](Sums& sum, std::int64_t area, Zone zone) {
+    sum.exposed += zone != Zone::occluded ? area : 0;
+    sum.covered += zone == Zone::cosmetic ? area : 0;
+  };
+  std::uint32_t voter = 0;
   for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
     const std::int64_t third = unit.third(points.doubleAreas[t]);
-    Sums& sum = sums[results.segments[corner[0]]];
-    std::int64_t exposed = 0;
-    std::int64_t covered = 0;
-    for (int i = 0; i < 3; ++i) {
-      const Zone zone = results.zones[corner[i]];
-      exposed += zone != Zone::occluded;
-      covered += zone == Zone::cosmetic;
+    if (areas.all != nullptr) {
+      for (int i = 0; i < 3; ++i) areas.all[corner[i]] += third;
     }
+    Sums& sum = sums[results.segments[corner[0]]];
     sum.all += 3 * third;
-    sum.exposed += exposed * third;
-    sum.covered += covered * third;
+    if (voter < voters.count && voters.triangles[voter] == t) {
+      const Zone* zones = voters.results.zones + std::size_t{4} * voter++;
+      for (int i = 0; i < 4; ++i) count(sum, unit.quarter(points.doubleAreas[t]), zones[i]);
+      if (areas.votes != nullptr) {
+        for (int i = 0; i < 3; ++i) areas.votes[corner[i]] -= third;
+      }
+    } else {
+      for (int i = 0; i < 3; ++i) count(sum, third, results.zones[corner[i]]);
+    }
   }
-  for (std::uint32_t i = 0; i < points.count; ++i) ++stats[results.segments[i]].points;
+  if (areas.votes != nullptr) {
+    for (std::uint32_t i = 0; i < points.count; ++i) areas.votes[i] += areas.all[i];
+  }
   const double toInput = 1.0 / units.scale / units.scale;
-  for (std::uint32_t s = 0; s < count; ++s) {
+  for (std::size_t s = 0; s < stats.size(); ++s) {
     stats[s].area = unit.area(sums[s].all) * toInput;
     stats[s].exposedArea = unit.area(sums[s].exposed) * toInput;
-    stats[s].coveredArea = unit.area(sums[s].covered) * toInput;
+    stats[s].coveredArea = stats[s].sunkArea = unit.area(sums[s].covered) * toInput;
   }
   scratch.rewind(mark);
   return true;

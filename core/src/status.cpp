@@ -13,6 +13,7 @@ const char* codeName(Code code) noexcept {
     case Code::missingUvs: return "missingUvs";
     case Code::uvCountMismatch: return "uvCountMismatch";
     case Code::groupCountMismatch: return "groupCountMismatch";
+    case Code::cornerUvCountMismatch: return "cornerUvCountMismatch";
     case Code::indexOutOfRange: return "indexOutOfRange";
     case Code::nonFinitePosition: return "nonFinitePosition";
     case Code::nonFiniteUv: return "nonFiniteUv";
@@ -20,6 +21,12 @@ const char* codeName(Code code) noexcept {
     case Code::tooLarge: return "tooLarge";
     case Code::badThreshold: return "badThreshold";
     case Code::badWeldTolerance: return "badWeldTolerance";
+    case Code::badOcclusionReach: return "badOcclusionReach";
+    case Code::badPokeThrough: return "badPokeThrough";
+    case Code::badMinCovered: return "badMinCovered";
+    case Code::badMinOfAll: return "badMinOfAll";
+    case Code::badMaxUncovered: return "badMaxUncovered";
+    case Code::badLocks: return "badLocks";
     case Code::outOfMemory: return "outOfMemory";
   }
   return "unknown";
@@ -54,6 +61,8 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
       return name + ".uvs has " + std::to_string(mesh.uvs.size()) + " numbers, not 2 for each of " + vertices;
     case Code::groupCountMismatch:
       return name + ".groups has " + std::to_string(mesh.groups.size()) + " entries, not 1 for each of " + vertices;
+    case Code::cornerUvCountMismatch:
+      return "cornerUvs has not 2 numbers for each of " + std::to_string(mesh.indices.size()) + " indices";
     case Code::indexOutOfRange:
       return name + ".indices" + at + " = " + std::to_string(mesh.indices[status.at]) + " is out of range (" + vertices + ")";
     case Code::nonFinitePosition:
@@ -70,6 +79,12 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
              " is out of all proportion (farther from the origin than 1e8 diagonals of the target)";
     case Code::badThreshold: return "options.threshold is not within 0..1";
     case Code::badWeldTolerance: return "options.weldTolerance is not within 0..0.01";
+    case Code::badOcclusionReach: return "options.occlusionReach is not a number of at least 0";
+    case Code::badPokeThrough: return "options.pokeThrough is not within 0..1";
+    case Code::badMinCovered: return "options.minCovered is not within 0..1";
+    case Code::badMinOfAll: return "options.minOfAll is not within 0..1";
+    case Code::badMaxUncovered: return "options.maxUncovered is not within 0..1";
+    case Code::badLocks: return "options.locks has " + std::to_string(status.at) + " entries, not 1 per segment";
     case Code::outOfMemory: return "not enough memory for this target and cage";
   }
   return "unknown";

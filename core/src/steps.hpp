@@ -7,6 +7,7 @@
 #include "cagecast/transfer.hpp"
 #include "check.hpp"
 #include "kd_tree.hpp"
+#include "rims.hpp"
 #include "scratch.hpp"
 #include "weld.hpp"
 
@@ -20,13 +21,28 @@ struct PointResults {
   std::uint32_t* triangles = nullptr;  ///< The place of the nearest triangle in `Cage::triangles`.
   Zone* zones = nullptr;
   bool* meetsCage = nullptr;           ///< Step 1 knows already that step 3's ray hits.
+  double* cageDistances = nullptr;     ///< How far along the ray the cage is, from 0; infinity: nowhere. Only with step 2′.
   std::uint32_t* segments = nullptr;
 };
 
-/// The ray of docs/method.md, step 1: from the point, along the normal of its nearest cage triangle.
-inline Ray rayOf(const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
+/// Big triangles of small segments, in order, each with four places inside it whose zones count instead of the corners'.
+struct Voters {
+  std::uint32_t count = 0;
+  const std::uint32_t* triangles = nullptr;  ///< In `Points::triangles`.
+  Points points;                             ///< 4 per triangle.
+  PointResults results;                      ///< Of these points.
+};
+
+/// Makes the ray of docs/method.md, step 1: from the point, along the normal of its nearest cage triangle, without end.
+inline void setRay(Ray& ray, const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
+  // In place, field by field: a ray that is copied as a whole right after it was written stalls.
   const float* p = points.at(point);
-  return {{p[0], p[1], p[2]}, &cage.triangles[results.triangles[point]].normal};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ray.origin[k] = p[k];
+    ray.rest[k] = points.rests == nullptr ? 0.0f : points.rests[std::size_t{3} * point + k];
+  }
+  ray.direction = &cage.triangles[results.triangles[point]].normal;
+  ray.end = std::numeric_limits<double>::infinity();
 }
 
 /// All steps return false if memory ran out.
@@ -39,17 +55,58 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
 bool projectToVertices(const MeshView& cageMesh, const Points& points, const Cage& cage, const Units& units,
                        Scratch& scratch, PointResults& results) noexcept;
 
-/// Step 2: marks the points over which the target itself lies.
-bool markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units, Scratch& scratch,
-                  PointResults& results) noexcept;
+/// Before step 2′: finds how far along its ray the cage is, for the points of which step 1 does not know it.
+bool findCageDistances(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
+                       PointResults& results) noexcept;
 
-/// Step 3: marks the points left whose ray leaves through a hole of the cage.
-bool markUncovered(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Scratch& scratch,
-                   PointResults& results) noexcept;
+/// Step 2: marks the points over which the target itself lies; with distances to the cage only up to `reach` beyond it.
+/// @param reach  Scaled.
+bool markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units, double reach,
+                  Scratch& scratch, PointResults& results) noexcept;
 
-/// Step 4: finds the connected components, numbered by their first vertex, and adds up their areas for step 5.
-bool findSegments(const Points& points, std::uint32_t vertexCount, const Units& units, Scratch& scratch,
+/// Step 3: marks the points left whose ray leaves through a hole of the cage, but for those that step 3′ lets poke through.
+/// @param pokeThrough  Scaled; 0: none.
+bool markUncovered(const Points& points, const Cage& cage, const CageTree& tree, const Rims& rims, const Units& units,
+                   double pokeThrough, Scratch& scratch, PointResults& results) noexcept;
+
+/// Step 4: finds the connected components, numbered by their first vertex. Of `stats` the points and groups are filled in.
+/// @param groups  1 per vertex, or none.
+bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<const std::uint32_t> groups, Scratch& scratch,
                   PointResults& results, Array<SegmentStats>& stats) noexcept;
+
+/// Step 4′: finds the triangles that vote from within, and the places inside them, not yet judged.
+bool findVoters(const Points& points, const Rims& rims, const Units& units, const PointResults& results,
+                const Array<SegmentStats>& stats, Scratch& scratch, Voters& out) noexcept;
+
+/// Areas of the points, as whole numbers of an `AreaUnit`; or none.
+struct PointAreas {
+  std::int64_t* all = nullptr;    ///< A third of each triangle at the point.
+  std::int64_t* votes = nullptr;  ///< The same without the triangles that vote from within.
+};
+
+/// Adds up the areas of the segments for step 5, and those of the points where that is asked for.
+bool addUpAreas(const Points& points, const Voters& voters, const Units& units, const PointResults& results, Scratch& scratch,
+                PointAreas& areas, Array<SegmentStats>& stats) noexcept;
+
+/// Step 5′: finds how much of what is covered lies no deeper than its neighbours.
+bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& cage, const Rims& rims, const Voters& voters,
+                   const PointAreas& areas, const Units& units, const PointResults& results, Scratch& scratch,
+                   Array<SegmentStats>& stats) noexcept;
+
+/// Step 5′: finds which segments are copies of others.
+bool findCopies(const Points& points, const PointResults& results, Scratch& scratch, Array<SegmentStats>& stats) noexcept;
+
+/// Step 6: finds the occluded points that are seen from elsewhere, in the segments of which anything is covered: others pass
+/// at a threshold of 0 without a floor alone, or by a lock, and are taken as they are.
+/// @param[out] restores  1 per point: set to `Restores::always` for those.
+bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
+               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, bool toBothSides,
+               Scratch& scratch, std::uint32_t* restores) noexcept;
+
+/// Step 7: finds what brings each uncovered point back, and what the segments have at each hole.
+/// @param[out] restores  1 per point: set for those.
+bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, const Units& units, const PointResults& results,
+                    const PointAreas& areas, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept;
 
 /// How far from its origin, as a share of the diagonal, a ray's hit begins to count (step 2), and how far behind it one
 /// still does (step 3).

@@ -1,9 +1,11 @@
 #include "cagecast/transfer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "check.hpp"
 #include "cpu_clock.hpp"
+#include "seams.hpp"
 #include "steps.hpp"
 
 namespace cagecast {
@@ -13,7 +15,17 @@ thread_local Scratch scratch;
 
 constexpr Status kOutOfMemory{Code::outOfMemory};
 
-bool takeResults(std::uint32_t count, PointResults& results) {
+/// What the steps look at.
+struct Scene {
+  Units units;
+  Cage cage;
+  CageTree cageTree;
+  RayTree targetTree;
+  Rims rims;
+};
+
+bool takeResults(std::uint32_t count, const ProjectOptions& options, PointResults& results) {
+  if (std::isfinite(options.occlusionReach)) results.cageDistances = scratch.take<double>(count);
   results.uvs = scratch.take<float>(std::size_t{2} * count);
   results.distances = scratch.take<float>(count);
   results.triangles = scratch.take<std::uint32_t>(count);
@@ -21,6 +33,23 @@ bool takeResults(std::uint32_t count, PointResults& results) {
   results.meetsCage = scratch.take<bool>(count);
   results.segments = scratch.take<std::uint32_t>(count);
   return !scratch.failed();
+}
+
+/// Steps 1 to 3: where points lie on the cage, and what lies over them.
+bool judge(const Points& points, const Scene& scene, const ProjectOptions& options, PointResults& results, Timings& timings,
+           StopWatch& watch) {
+  const auto& [units, cage, cageTree, targetTree, rims] = scene;
+  if (!projectPoints(points, cage, cageTree, units, scratch, results)) return false;
+  timings.project += watch.lap();
+  if (results.cageDistances != nullptr && !findCageDistances(points, cage, cageTree, units, scratch, results)) return false;
+  timings.covered += watch.lap();
+  const double reach = static_cast<double>(options.occlusionReach) * units.diagonal;
+  if (!markOccluded(points, cage, targetTree, units, reach, scratch, results)) return false;
+  timings.occluded += watch.lap();
+  const double pokeThrough = static_cast<double>(options.pokeThrough) * units.diagonal;
+  if (!markUncovered(points, cage, cageTree, rims, units, pokeThrough, scratch, results)) return false;
+  timings.covered += watch.lap();
+  return true;
 }
 
 /// Hands the results of the points to their vertices, in the caller's units and numbering.
@@ -43,6 +72,28 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
   return true;
 }
 
+/// Steps 6 and 7: what brings each point back if its segment passes, handed to its vertices.
+bool findRestores(const Points& points, const Scene& scene, const ProjectOptions& options, const PointResults& results,
+                  const PointAreas& areas, std::uint32_t vertexCount, Projection& out, StopWatch& watch) {
+  const auto& [units, cage, cageTree, targetTree, rims] = scene;
+  const auto segmentCount = static_cast<std::uint32_t>(out.segmentStats.size());
+  auto* restores = scratch.take<std::uint32_t>(points.count);
+  if (scratch.failed() || !out.restores.reset(vertexCount)) return false;
+  std::fill(restores, restores + points.count, Restores::never);
+  if (options.secondLook &&
+      !lookAgain(points, cage, cageTree, targetTree, units, results, areas, out.segmentStats, options.bothSides,
+                 scratch, restores)) {
+    return false;
+  }
+  out.timings.secondLook = watch.lap();
+  if (options.holes && !lookUnderHoles(points, cage, rims, units, results, areas, segmentCount, scratch, restores, out.holeShares)) {
+    return false;
+  }
+  for (std::uint32_t v = 0; v < vertexCount; ++v) out.restores[v] = restores[points.ofVertex[v]];
+  out.timings.holes = watch.lap();
+  return true;
+}
+
 }  // namespace
 
 Status project(const MeshView& cageMesh, const MeshView& targetMesh, const ProjectOptions& options, Projection& out) noexcept {
@@ -51,40 +102,73 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   out.timings = {};
   const auto vertexCount = static_cast<std::uint32_t>(targetMesh.positions.size() / 3);
 
-  Units units;
+  Scene scene;
+  Units& units = scene.units;
+  Cage& cage = scene.cage;
   if (const Status status = checkInput(cageMesh, targetMesh, options, units); !status.ok()) return status;
-  Cage cage;
   if (!gatherCage(cageMesh, units, scratch, cage)) return kOutOfMemory;
   if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
   Points points;
   if (!weld(targetMesh, units, options.weldTolerance, scratch, points)) return kOutOfMemory;
   PointResults results;
-  if (!takeResults(points.count, results)) return kOutOfMemory;
+  if (!takeResults(points.count, options, results)) return kOutOfMemory;
   out.timings.weld = watch.lap();
 
-  if (options.projection == ProjectionMode::nearestVertex) {
+  const bool isFiltered = options.projection == ProjectionMode::nearestPoint;
+  if (!isFiltered) {
     if (!projectToVertices(cageMesh, points, cage, units, scratch, results)) return kOutOfMemory;
     out.timings.project = watch.lap();
   } else {
-    CageTree cageTree;
-    RayTree targetTree;
-    if (!buildCageTree(cage, units, scratch, cageTree) || !buildTargetTree(points, units, scratch, targetTree)) return kOutOfMemory;
+    const bool asksForRims = options.pokeThrough > 0 || options.votes || options.depths || options.holes;
+    if (!buildCageTree(cage, units, scratch, scene.cageTree) || !buildTargetTree(points, units, scratch, scene.targetTree) ||
+        (asksForRims && !findRims(cageMesh, cage, scratch, scene.rims))) {
+      return kOutOfMemory;
+    }
     out.timings.build = watch.lap();
-    if (!projectPoints(points, cage, cageTree, units, scratch, results)) return kOutOfMemory;
-    out.timings.project = watch.lap();
-    if (!markOccluded(points, cage, targetTree, units, scratch, results)) return kOutOfMemory;
-    out.timings.occluded = watch.lap();
-    if (!markUncovered(points, cage, cageTree, units, scratch, results)) return kOutOfMemory;
-    out.timings.covered = watch.lap();
+    if (!judge(points, scene, options, results, out.timings, watch)) return kOutOfMemory;
   }
 
-  if (!findSegments(points, vertexCount, units, scratch, results, out.segmentStats)) return kOutOfMemory;
+  if (!findSegments(points, vertexCount, targetMesh.groups, scratch, results, out.segmentStats)) return kOutOfMemory;
+  Voters voters;
+  if (isFiltered && options.votes) {
+    if (!findVoters(points, scene.rims, units, results, out.segmentStats, scratch, voters) ||
+        !takeResults(voters.points.count, options, voters.results)) {
+      return kOutOfMemory;
+    }
+    Timings ofVoters;
+    StopWatch voterWatch;
+    if (voters.count > 0 && !judge(voters.points, scene, options, voters.results, ofVoters, voterWatch)) return kOutOfMemory;
+  }
+  PointAreas areas;
+  if (isFiltered && (options.depths || options.secondLook || options.holes)) {
+    areas.all = scratch.take<std::int64_t>(points.count);
+    areas.votes = options.depths ? scratch.take<std::int64_t>(points.count) : nullptr;
+    if (scratch.failed()) return kOutOfMemory;
+  }
+  if (!addUpAreas(points, voters, units, results, scratch, areas, out.segmentStats)) return kOutOfMemory;
+  if (isFiltered && options.depths &&
+      (!findSunkAreas(cageMesh, points, cage, scene.rims, voters, areas, units, results, scratch, out.segmentStats) ||
+       !findCopies(points, results, scratch, out.segmentStats))) {
+    return kOutOfMemory;
+  }
   if (!writeOut(points, cage, units, results, vertexCount, out)) return kOutOfMemory;
   out.timings.segments = watch.lap();
+
+  if (!out.restores.reset(0) || !out.holeShares.reset(0)) return kOutOfMemory;
+  if (isFiltered && (options.secondLook || options.holes) &&
+      !findRestores(points, scene, options, results, areas, vertexCount, out, watch)) {
+    return kOutOfMemory;
+  }
+
+  const bool atCorners = options.seams == Seams::corner && options.projection == ProjectionMode::nearestPoint;
+  if (!out.cornerUvs.reset(atCorners ? 2 * targetMesh.indices.size() : 0)) return kOutOfMemory;
+  if (atCorners && !findCornerUvs(cageMesh, targetMesh, points, cage, scene.cageTree, units, results, scratch, out.cornerUvs.data())) return kOutOfMemory;
+  out.timings.seams = watch.lap();
   const Timings& t = out.timings;
-  out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments;
+  out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments + t.secondLook + t.holes + t.seams;
   out.peakBytes = scratch.peak() + vertexCount * (2 * sizeof(float) + sizeof(Zone) + 2 * sizeof(std::uint32_t) + sizeof(float)) +
-                  out.segmentStats.size() * sizeof(SegmentStats);
+                  out.segmentStats.size() * sizeof(SegmentStats) + out.cornerUvs.size() * sizeof(float) +
+                  out.restores.size() * sizeof(std::uint32_t) + out.holeShares.size() * sizeof(HoleShare);
   return {};
 }
 
@@ -93,8 +177,7 @@ Status transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   Projection& projection = out.projection;
   if (const Status status = project(cage, target, options, projection); !status.ok()) return status;
   StopWatch watch;
-  if (const Status status = classify(projection.zones, projection.segments, projection.segmentStats, target.indices, options, out.zones);
-      !status.ok()) {
+  if (const Status status = classify(projection.view(), target.indices, options, out.zones); !status.ok()) {
     return status;
   }
   for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) projection.segmentStats[s].culled = out.zones.culledSegments[s] != 0;

@@ -5,6 +5,7 @@
 #include "cagecast/mesh.hpp"
 #include "check.hpp"
 #include "scratch.hpp"
+#include "vec3.hpp"
 
 namespace cagecast {
 
@@ -18,8 +19,13 @@ struct Points {
   std::uint32_t triangleCount = 0;           ///< Triangles with an area; the others take no part in anything.
   const std::uint32_t* triangles = nullptr;  ///< 3 points per triangle with an area.
   const double* doubleAreas = nullptr;       ///< Twice the area of each of them, scaled.
+  const float* rests = nullptr;              ///< 3 per point, or none: what the exact position has beyond `positions`.
 
   [[nodiscard]] const float* at(std::uint32_t point) const { return positions + kStride * point; }
+  [[nodiscard]] Vec3 exactly(std::uint32_t point) const {
+    const Vec3 p = Vec3::from(at(point));
+    return rests == nullptr ? p : p + Vec3::from(rests + std::size_t{3} * point);
+  }
 };
 
 /// Welds the vertices that have equal positions (−0 is 0) and equal groups into points, and drops triangles without area.

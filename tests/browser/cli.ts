@@ -5,17 +5,35 @@ import path from 'node:path'
 import { promisify } from 'node:util'
 import { inRepository, type Counts } from './site'
 
-/** The counts that `cagecast transfer` reports for two files. */
-export async function reportedCounts(target: string, cage: string, threshold = 0.5): Promise<Counts> {
+/** Flags of `cagecast transfer`. */
+export interface Flags {
+  threshold?: number
+  preset?: 'default' | 'paper'
+  keep?: string
+  exclude?: string
+}
+
+/** What of a report the page shows as well. */
+export interface Report {
+  counts: Counts
+  segments: { part: string; points: number; area: number; exposedArea: number; coveredArea: number; culled: boolean }[]
+}
+
+/** What `cagecast transfer` reports for two files. */
+export async function report(target: string, cage: string, flags: Flags = {}): Promise<Report> {
   const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-report-'))
   try {
-    const report = path.join(folder, 'report.json')
-    const args = ['transfer', target, '--cage', cage, '--threshold', String(threshold), '--report', report]
-    await promisify(execFile)(process.execPath, [inRepository('dist/cli.js'), ...args])
-    const { counts } = JSON.parse(await readFile(report, 'utf8'))
-    const { cosmetic, occluded, uncovered, culled } = counts
-    return { cosmetic, occluded, uncovered, culled }
+    const file = path.join(folder, 'report.json')
+    const words = Object.entries(flags).flatMap(([name, value]) => [`--${name}`, String(value)])
+    await promisify(execFile)(process.execPath, [inRepository('dist/cli.js'), 'transfer', target, '--cage', cage, ...words, '--report', file])
+    return JSON.parse(await readFile(file, 'utf8'))
   } finally {
     await rm(folder, { recursive: true, force: true })
   }
+}
+
+/** The counts that `cagecast transfer` reports for two files. */
+export async function reportedCounts(target: string, cage: string, flags: Flags = {}): Promise<Counts> {
+  const { cosmetic, occluded, uncovered, culled } = (await report(target, cage, flags)).counts
+  return { cosmetic, occluded, uncovered, culled }
 }

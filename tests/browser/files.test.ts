@@ -2,11 +2,12 @@ import assert from 'node:assert/strict'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
 import path from 'node:path'
 import { after, before, test } from 'node:test'
+import type { Page } from 'playwright-core'
 import { PNG } from 'pngjs'
-import { reportedCounts } from './cli'
+import { report, reportedCounts, type Report } from './cli'
 import { glb, tetrahedron, writeGlb } from './glb'
 import { difference, look, modelArea, shareOfHue } from './picture'
-import { drop, inRepository, settled, setThreshold, shownCounts, shownError, Site, type Upload, type Visit } from './site'
+import { drop, inRepository, settled, setThreshold, shownCounts, shownError, shownParts, Site, type Upload, type Visit } from './site'
 
 /** Pairs of a target and its cage: the samples, and the folders of env CAGECAST_ASSETS that hold one. */
 function pairs(): { name: string; target: string; cage: string }[] {
@@ -29,22 +30,47 @@ before(async () => {
 })
 after(() => site?.close())
 
+/** What the table says of parts, as far as a report knows it: without the numbers after their names, in some order. */
+async function shownRows(page: Page): Promise<string[]> {
+  const parts = await shownParts(page)
+  return parts.map(({ name, points, culled }) => `${name.replace(/( \d+)?(, \d+ pieces)?$/, '')}: ${points}, ${culled}`).toSorted()
+}
+
+/** The same of a report: one row for each segment, and one for all of a part of which nothing is covered, or nothing even exposed. */
+function reportedRows(segments: Report['segments']): string[] {
+  const rows = new Map<string, Report['segments'][number]>()
+  segments.forEach((segment, s) => {
+    if (segment.area === 0) return
+    const key = segment.coveredArea > 0 ? String(s) : `${segment.part} ${segment.exposedArea > 0}`
+    const row = rows.get(key) ?? { ...segment, points: 0, area: 0 }
+    rows.set(key, { ...row, points: row.points + segment.points, area: row.area + segment.area })
+  })
+  const largest = [...rows.values()].toSorted((a, b) => b.area - a.area).slice(0, 50)
+  return largest.map(({ part, points, culled }) => `${part.replace(/ \d+$/, '')}: ${points}, ${culled}`).toSorted()
+}
+
 /** Goes back to what the page opens with. */
 async function fresh(): Promise<Visit> {
   const { page } = visit
   await page.getByTestId('sample-select').selectOption({ index: 0 })
   await setThreshold(page, 0.5)
+  await page.getByTestId('preset').selectOption('default')
   await page.locator('input[value=compare]').check({ force: true })
   assert.equal(await settled(page), 'ready', await shownError(page))
   return visit
 }
 
 for (const { name, target, cage } of pairs()) {
-  test(`${name}: the page counts what the command line reports`, async () => {
+  test(`${name}: the page counts what the command line reports, by both presets, and lists the same segments`, async () => {
     const { page, complaints } = await fresh()
     await drop(page, [read(target), read(cage)])
-    assert.equal(await settled(page), 'ready', await shownError(page))
-    assert.deepEqual(await shownCounts(page), await reportedCounts(target, cage))
+    for (const preset of ['default', 'paper'] as const) {
+      await page.getByTestId('preset').selectOption(preset)
+      assert.equal(await settled(page), 'ready', await shownError(page))
+      const { counts, segments } = await report(target, cage, { preset })
+      assert.deepEqual(await shownCounts(page), counts, preset)
+      assert.deepEqual(await shownRows(page), reportedRows(segments), preset)
+    }
     assert.deepEqual(complaints, [])
   })
 }
@@ -56,7 +82,7 @@ test('the threshold changes the counts at once, to what a transfer with it gives
   for (const threshold of [0, 0.25, 0.5, 0.75, 1]) {
     await setThreshold(page, threshold)
     const counts = await shownCounts(page)
-    assert.deepEqual(counts, await reportedCounts(target, cage, threshold), `threshold ${threshold}`)
+    assert.deepEqual(counts, await reportedCounts(target, cage, { threshold }), `threshold ${threshold}`)
     assert.equal(await page.getByTestId('status').textContent(), 'ready')
     seen.add(JSON.stringify(counts))
   }

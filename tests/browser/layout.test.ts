@@ -22,10 +22,16 @@ const kSizes = [
 /** Everything that is pressed or moved; for a box hidden behind its label, the label. */
 const kControls = 'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, #threshold, .knob, summary, #view'
 
+/** Opens the cards that are closed at first. */
+async function openAll({ page }: Visit, open = true): Promise<void> {
+  await page.locator('details').evaluateAll((all, open) => all.forEach((details) => details.toggleAttribute('open', open)), open)
+}
+
 for (const { name, ...viewport } of kSizes) {
   test(`${name}: nothing sticks out sideways, and every control can be reached and hit`, async () => {
     const { page, complaints } = visit
     await page.setViewportSize(viewport)
+    await openAll(visit)
     assert.equal(await page.evaluate(() => innerWidth), viewport.width)
     const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)
     assert.equal(wide, 0, 'no horizontal scroll')
@@ -52,6 +58,7 @@ for (const { name, ...viewport } of kSizes) {
 test('the Tab key reaches every control, and each says what it is', async () => {
   const { page } = visit
   await page.setViewportSize({ width: 1440, height: 900 })
+  await openAll(visit, false)
   await page.evaluate(() => document.body.focus())
   const reached: string[] = []
   for (let presses = 0; presses < 30; presses++) {
@@ -60,9 +67,9 @@ test('the Tab key reaches every control, and each says what it is', async () => 
     if (id === 'body') break
     reached.push(id)
   }
-  const expected = ['view', 'divider', 'view-mode', 'show-paint', 'show-zones', 'show-cage', 'sample-select', 'target-input', 'cage-input', 'texture-input', 'paint', 'threshold', 'summary']
+  const expected = ['view', 'divider', 'view-mode', 'show-paint', 'show-zones', 'show-cage', 'sample-select', 'target-input', 'cage-input', 'texture-input', 'paint', 'preset', 'threshold', 'summary', 'summary']
   assert.deepEqual(reached.filter((id) => expected.includes(id)), expected)
-  for (const [role, name] of [['slider', /Compare/], ['slider', /Threshold/], ['combobox', /Sample/], ['radio', /Result/], ['checkbox', /Zones/], ['radiogroup', /shown/]] as const) {
+  for (const [role, name] of [['slider', /Compare/], ['slider', /Threshold/], ['combobox', /Sample/], ['combobox', /Rules/], ['radio', /Result/], ['checkbox', /Zones/], ['radiogroup', /shown/]] as const) {
     assert.equal(await page.getByRole(role, { name }).count(), 1, `${role} ${name}`)
   }
   for (const label of [/Target/, /Cage/, /Paint/]) {
@@ -74,7 +81,7 @@ for (const colorScheme of ['light', 'dark'] as const) {
   test(`${colorScheme}: text stands out from its ground by 4.5 to 1 or more`, async () => {
     const { page } = visit
     await page.emulateMedia({ colorScheme })
-    await page.locator('details').evaluate((details) => details.setAttribute('open', ''))
+    await openAll(visit)
     const faint = await page.evaluate(`(${contrastFaults})()`)
     assert.deepEqual(faint, [])
   })

@@ -131,6 +131,26 @@ export async function shownCounts(page: Page): Promise<Counts> {
   return { cosmetic: await count('cosmetic'), occluded: await count('occluded'), uncovered: await count('uncovered'), culled: await count('culled') }
 }
 
+/** A row of the table of parts, as the page shows it. */
+export interface ShownPart {
+  name: string
+  points: number
+  /** As a text, such as “97 %”. */
+  covered: string
+  culled: boolean
+  lock: string
+}
+
+/** The table of parts, from top to bottom; it may be closed. */
+export function shownParts(page: Page): Promise<ShownPart[]> {
+  return page.getByTestId('segment-table').locator('tbody tr').evaluateAll((rows) =>
+    rows.map((row) => {
+      const [name, points, covered, verdict] = [...row.children].map((cell) => cell.textContent ?? '')
+      return { name: name!, points: Number(points!.replaceAll(',', '')), covered: covered!, culled: verdict === 'culled', lock: row.querySelector('select')!.value }
+    }),
+  )
+}
+
 /** The message the page shows, or an empty string. */
 export async function shownError(page: Page): Promise<string> {
   const error = page.getByTestId('error')

@@ -33,10 +33,14 @@ TEST_CASE("the answer is the reference's on real models", "[assets]") {
         if (!grouped) view.groups = {};
         const std::string name = entry.path().filename().string() + "/" + file.path().filename().string() +
                                  (grouped ? ", parts apart" : ", welded across parts");
-        const reference::Differences found = requireSameAsReference(name, cage.view(), view);
-        std::cout << name << ": " << found.total() << " differences at " << found.vertices << " vertices, "
-                  << found.unstable << " unstable\n";
-        CHECK(found.unstable * 100 <= found.vertices);
+        for (const bool isPreset : {false, true}) {
+          TransferOptions options = isPreset ? TransferOptions::standard() : TransferOptions::paper();
+          options.seams = Seams::vertex;  // They have tests of their own.
+          const reference::Differences found = requireSameAsReference(name, cage.view(), view, options);
+          std::cout << name << (isPreset ? ", default" : ", paper") << ": " << found.total() << " differences at "
+                    << found.vertices << " vertices, " << found.unstable << " unstable\n";
+          CHECK(found.unstable * 100 <= found.vertices);
+        }
       }
     }
   }

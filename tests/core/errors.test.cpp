@@ -199,7 +199,7 @@ TEST_CASE("options out of range are errors", "[errors]") {
     Zones zones;
     ClassifyOptions options;
     options.threshold = bad;
-    CHECK(classify({}, {}, {}, {}, options, zones).code == Code::badThreshold);
+    CHECK(classify({}, {}, options, zones).code == Code::badThreshold);
   }
   for (const float bad : {-0.01f, 0.011f, kNaN, kInfinity}) {
     Case call;

@@ -646,12 +646,16 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
   for (std::size_t t = 0; t < scene.corners.size(); ++t)
     for (const std::uint32_t p : scene.corners[t]) state.areas[p] += scene.target.triangles()[t].area / 3;
   result.segmentStats.resize(state.segmentCount);
+  result.firmAreas.assign(state.segmentCount, 1);
   for (std::size_t p = 0; p < pointCount; ++p) {
     ++result.segmentStats[state.segments[p]].points;
     result.segmentStats[state.segments[p]].area += state.areas[p];
   }
   if (filtered) {
-    decide(scene, options, findVoters(scene, options, state), state, result.segmentStats, result.measures);
+    const std::vector<Voter> voters = findVoters(scene, options, state);
+    for (const Voter& voter : voters)
+      if (!single(voter.finding.nearby)) result.firmAreas[voter.segment] = 0;
+    decide(scene, options, voters, state, result.segmentStats, result.measures);
   } else {
     state.passes.assign(state.segmentCount, {true, true, true});
     for (SegmentStats& stats : result.segmentStats) stats.exposedArea = stats.coveredArea = stats.area;
@@ -704,6 +708,21 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.projection = library.projection;
   options.threshold = static_cast<double>(library.threshold);
   options.weldTolerance = static_cast<double>(library.weldTolerance);
+  options.endOfSelfRay = std::isfinite(library.occlusionReach);
+  options.occlusionReach = static_cast<double>(library.occlusionReach);
+  options.pokes = library.pokeThrough > 0;
+  options.pokeThrough = static_cast<double>(library.pokeThrough);
+  options.votes = library.votes;
+  options.floor = library.floor;
+  options.minCovered = static_cast<double>(library.minCovered);
+  options.minOfAll = static_cast<double>(library.minOfAll);
+  options.maxUncovered = static_cast<double>(library.maxUncovered);
+  options.copies = library.copies;
+  options.secondLook = library.secondLook;
+  options.bothSides = library.bothSides;
+  options.holes = library.holes;
+  options.partialTriangles = library.partialTriangles;
+  options.seams = library.seams == Seams::corner;
   return transfer(cage, target, options);
 }
 

@@ -10,13 +10,6 @@
 /// the library is measured against, so it prefers being readable to being fast.
 namespace cagecast::reference {
 
-/// What keeps a segment out of which hardly anything is covered, however little of it is exposed.
-enum class Floor : std::uint8_t {
-  none,
-  area,   ///< C >= `minCovered` * A.
-  depth,  ///< D F >= `minCovered` * A, or D F >= `minOfAll` * all C and E - C <= `maxUncovered` * E.
-};
-
 /// Which steps are taken, and their constants. Lengths are shares of the diagonal of the target's bounding box.
 struct Options {
   ProjectionMode projection = ProjectionMode::nearestPoint;
@@ -60,6 +53,7 @@ struct Result {
   std::vector<float> distances;                  ///< 1 per target vertex.
   std::vector<std::uint32_t> segments;           ///< 1 per target vertex.
   std::vector<SegmentStats> segmentStats;        ///< 1 per segment; exposed and covered areas are those that voted.
+  std::vector<std::uint8_t> firmAreas;           ///< 1 per segment: 0 where what a voter found hangs on rounding.
   std::vector<SegmentMeasure> measures;          ///< 1 per segment.
   std::vector<std::uint8_t> cosmeticTriangles;   ///< 1 per target triangle.
   std::vector<float> cornerUvs;                  ///< 6 per target triangle, with `seams`; else empty.
@@ -78,7 +72,7 @@ struct Result {
 /// @pre The meshes are valid, and the cage has a triangle that is not degenerate.
 Result transfer(const MeshView& cage, const MeshView& target, const Options& options);
 
-/// The same for the options of the library.
+/// The same for the options of the library, without its locks.
 Result transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options = {});
 
 /// How an answer of the library differs from the reference, counted over the vertices where the reference is stable.
@@ -90,10 +84,11 @@ struct Differences {
   std::size_t uvs = 0;        ///< Vertices with a UV more than 1e-5 off.
   std::size_t distances = 0;  ///< Vertices with a distance more than 1e-6 of the target's diagonal off.
   std::size_t segments = 0;   ///< Vertices (stable or not) with another segment.
-  std::size_t stats = 0;      ///< Segments with other counts, or, all their vertices being stable, other areas.
+  std::size_t painted = 0;    ///< Triangles, all their corners being stable, that are cosmetic for one of the two only.
+  std::size_t stats = 0;      ///< Segments with other counts, or, all their vertices and areas being firm, other areas.
   std::string details;        ///< A line for each of the first few.
   [[nodiscard]] std::size_t total() const noexcept {
-    return zones + triangles + uvs + distances + segments + stats;
+    return zones + triangles + uvs + distances + segments + painted + stats;
   }
 };
 

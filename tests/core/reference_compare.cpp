@@ -9,7 +9,7 @@ namespace cagecast::reference {
 
 Differences compare(const Result& reference, const TransferResult& product, const MeshView& target) {
   constexpr std::size_t kMaxLines = 10;
-  constexpr double kUvTolerance = 1e-5, kDistanceTolerance = 1e-6, kAreaTolerance = 1e-9, kLeastArea = 1e-13;
+  constexpr double kUvTolerance = 1e-5, kDistanceTolerance = 1e-6, kAreaTolerance = 1e-9, kLeastArea = 1e-11;
   Differences found;
   std::size_t lines = 0;
   const auto report = [&](const char* format, auto... values) {
@@ -32,7 +32,7 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     found.stats = 1;
     return found;
   }
-  std::vector<std::uint8_t> firm(reference.segmentStats.size(), 1);
+  std::vector<std::uint8_t> firm = reference.firmAreas;
   for (std::size_t v = 0; v < found.vertices; ++v) {
     if (projection.segments[v] != reference.segments[v]) {
       ++found.segments;
@@ -73,6 +73,13 @@ Differences compare(const Result& reference, const TransferResult& product, cons
       ++found.distances;
       report("%s: distance %.9g, expected %.9g", at().c_str(), got, expected);
     }
+  }
+  for (std::size_t t = 0; t < reference.cosmeticTriangles.size(); ++t) {
+    const auto isStable = [&](std::size_t corner) { return reference.stable[target.indices[3 * t + corner]] != 0; };
+    if (!isStable(0) || !isStable(1) || !isStable(2)) continue;
+    if (product.zones.cosmeticTriangles[t] == reference.cosmeticTriangles[t]) continue;
+    ++found.painted;
+    report("triangle %zu: cosmetic %d, expected %d", t, int{product.zones.cosmeticTriangles[t]}, int{reference.cosmeticTriangles[t]});
   }
   for (std::size_t s = 0; s < reference.segmentStats.size(); ++s) {
     const SegmentStats& expected = reference.segmentStats[s];

@@ -8,7 +8,7 @@
 /// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
 /// votes, floor, copies, second-look, both-sides, holes, triangles, seams. --preset earlier is `default` with the floor and
 /// the second look as they were first written down. --unchecked does not ask which vertices are stable. --product asks
-/// the library instead, whose preset is `paper`. The second form writes the scenes of the golden hash as FOLDER/0.scene,
+/// the library instead, which knows nothing of --without. The second form writes the scenes of the golden hash as FOLDER/0.scene,
 /// FOLDER/1.scene and so on, in their order; the third the models made to be difficult as FOLDER/NAME.scene, each with
 /// the truth about its vertices in FOLDER/NAME.truth: u8 per target vertex, 0 to be painted, 1 not to be, 2 either.
 ///
@@ -155,6 +155,7 @@ int main(int argc, char** argv) {
   if (argc == 3 && std::string_view(argv[1]) == "--golden") return writeGolden(argv[2]);
   if (argc == 3 && std::string_view(argv[1]) == "--traps") return writeTraps(argv[2]);
   TransferOptions options;
+  float threshold = options.threshold;
   reference::Options plain = reference::Options::paper();
   std::vector<std::string> without;
   bool useProduct = false, isChecked = true;
@@ -167,15 +168,25 @@ int main(int argc, char** argv) {
       isChecked = false;
     } else if (argument == "--preset" && i + 1 < argc) {
       const std::string_view preset = argv[++i];
-      if (preset == "paper") plain = reference::Options::paper();
-      else if (preset == "default") plain = reference::Options::standard();
-      else if (preset == "earlier") plain = reference::Options::earlier();
-      else return fail("--preset " + std::string(preset) + ": there are paper, default and earlier");
+      if (preset == "paper") {
+        options = TransferOptions::paper();
+        plain = reference::Options::paper();
+      } else if (preset == "default") {
+        options = TransferOptions::standard();
+        plain = reference::Options::standard();
+      } else if (preset == "earlier") {
+        options = TransferOptions::standard();
+        options.floor = Floor::area;
+        options.copies = options.bothSides = options.depths = false;
+        plain = reference::Options::earlier();
+      } else {
+        return fail("--preset " + std::string(preset) + ": there are paper, default and earlier");
+      }
     } else if (argument == "--without" && i + 1 < argc) {
       without.emplace_back(argv[++i]);
     } else if (argument == "--threshold" && i + 1 < argc) {
       char* end = nullptr;
-      options.threshold = static_cast<float>(std::strtod(argv[++i], &end));
+      threshold = static_cast<float>(std::strtod(argv[++i], &end));
       if (*end != '\0') return fail("--threshold " + std::string(argv[i]) + " is not a number");
     } else {
       files.emplace_back(argument);
@@ -185,14 +196,15 @@ int main(int argc, char** argv) {
     return fail("usage: cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked] [--product]");
   for (const std::string& step : without) {
     if (step == "floor") {
-      plain.floor = reference::Floor::none;
+      plain.floor = Floor::none;
       continue;
     }
     const auto known = std::find_if(std::begin(kSteps), std::end(kSteps), [&](const auto& s) { return s.first == step; });
     if (known == std::end(kSteps)) return fail("--without " + step + ": there is no such step");
     plain.*(known->second) = false;
   }
-  plain.threshold = static_cast<double>(options.threshold);
+  options.threshold = threshold;
+  plain.threshold = static_cast<double>(threshold);
   plain.stability = isChecked;
 
   std::ifstream file(files[0], std::ios::binary);
@@ -204,6 +216,7 @@ int main(int argc, char** argv) {
   Mesh cage, target;
   if (!takeMesh(in, cage) || !takeMesh(in, target)) return fail(files[0] + " is truncated");
 
+  if (useProduct && !without.empty()) return fail("--product does not go with --without");
   // The reference takes valid meshes only, so the library is asked first either way.
   TransferResult product;
   const Status status = transfer(cage.view(), target.view(), options, product);
@@ -238,7 +251,7 @@ int main(int argc, char** argv) {
   };
   if (useProduct) {
     write(product.projection, product.zones.zones, std::vector<std::uint8_t>(product.zones.zones.size(), 1),
-          product.zones.cosmeticTriangles, {}, {});
+          product.zones.cosmeticTriangles, {product.projection.cornerUvs.begin(), product.projection.cornerUvs.end()}, {});
   } else {
     const reference::Result result = reference::transfer(cage.view(), target.view(), plain);
     write(result, result.zones, result.stable, result.cosmeticTriangles, result.cornerUvs, result.stableCorners);

@@ -235,7 +235,7 @@ TEST_CASE("classify with another threshold equals transfer with it", "[classify]
     Zones zones;
     ClassifyOptions decide;
     decide.threshold = threshold;
-    REQUIRE(classify(projection.zones, projection.segments, projection.segmentStats, scene.target.indices, decide, zones).ok());
+    REQUIRE(classify(projection.view(), scene.target.indices, decide, zones).ok());
     INFO("threshold " << threshold);
     CHECK(copied(zones.zones) == copied(whole.zones.zones));
     CHECK(copied(zones.cosmeticTriangles) == copied(whole.zones.cosmeticTriangles));

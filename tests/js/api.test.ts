@@ -1,10 +1,11 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
-import { classify, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
+import { CagecastError, classify, init, presetOptions, project, splitVertices, transfer, Zone, type Lock, type Locks, type Mesh, type Preset, type TransferResult } from 'cagecast';
 import { head, smallest, soup } from './scenes.js';
 
-const arrays = ['uvs', 'zones', 'triangles', 'distances', 'segments', 'cosmeticTriangles'] as const;
+const arrays = ['uvs', 'zones', 'triangles', 'distances', 'segments', 'cosmeticTriangles', 'cornerUvs'] as const;
+const presets: Preset[] = ['paper', 'default'];
 
 function bytes(result: Pick<TransferResult, (typeof arrays)[number]>): Buffer[] {
   return arrays.map((name) => Buffer.from(new Uint8Array(result[name].buffer)));
@@ -48,41 +49,55 @@ describe('init', () => {
 describe('transfer', () => {
   before(init);
 
-  test('gives every array its documented type and length', () => {
-    const { cage, target } = head(1);
-    const result = transfer(cage, target);
-    const vertices = target.positions.length / 3;
-    assert.ok(result.uvs instanceof Float32Array && result.uvs.length === 2 * vertices);
-    assert.ok(result.zones instanceof Uint8Array && result.zones.length === vertices);
-    assert.ok(result.triangles instanceof Uint32Array && result.triangles.length === vertices);
-    assert.ok(result.distances instanceof Float32Array && result.distances.length === vertices);
-    assert.ok(result.segments instanceof Uint32Array && result.segments.length === vertices);
-    assert.ok(result.cosmeticTriangles instanceof Uint8Array && result.cosmeticTriangles.length === target.indices.length / 3);
-    assert.equal(result.segmentStats.length, 1 + Math.max(...result.segments));
-    for (const { points, area, exposedArea, coveredArea, coverage, culled } of result.segmentStats) {
-      assert.ok(points > 0 && area > 0 && exposedArea <= area * (1 + 1e-9) && coveredArea <= exposedArea * (1 + 1e-9));
-      assert.equal(coverage, exposedArea > 0 ? coveredArea / exposedArea : 0);
-      assert.equal(culled, coveredArea < 0.5 * exposedArea);
-    }
-    assert.deepEqual(Object.keys(result.timings), ['weld', 'build', 'project', 'occluded', 'covered', 'segments', 'classify', 'total']);
-    for (const time of Object.values(result.timings)) assert.ok(time >= 0 && Number.isFinite(time));
-    assert.ok(result.peakBytes > 0);
-  });
+  for (const preset of presets) {
+    test(`gives every array its documented type and length: ${preset}`, () => {
+      const { cage, target } = head(1);
+      const result = transfer(cage, target, { preset });
+      const vertices = target.positions.length / 3;
+      assert.ok(result.uvs instanceof Float32Array && result.uvs.length === 2 * vertices);
+      assert.ok(result.cornerUvs instanceof Float32Array && result.cornerUvs.length === (preset === 'paper' ? 0 : 2 * target.indices.length));
+      assert.ok(result.zones instanceof Uint8Array && result.zones.length === vertices);
+      assert.ok(result.triangles instanceof Uint32Array && result.triangles.length === vertices);
+      assert.ok(result.distances instanceof Float32Array && result.distances.length === vertices);
+      assert.ok(result.segments instanceof Uint32Array && result.segments.length === vertices);
+      assert.ok(result.cosmeticTriangles instanceof Uint8Array && result.cosmeticTriangles.length === target.indices.length / 3);
+      assert.equal(result.segmentStats.length, 1 + Math.max(...result.segments));
+      for (const [s, { points, area, exposedArea, coveredArea, coverage, sunkArea, group, copyOf, culled }] of result.segmentStats.entries()) {
+        assert.ok(points > 0 && area > 0 && exposedArea <= area * (1 + 1e-9) && coveredArea <= exposedArea * (1 + 1e-9) && sunkArea <= coveredArea * (1 + 1e-9));
+        assert.equal(coverage, exposedArea > 0 ? coveredArea / exposedArea : 0);
+        if (preset === 'paper') assert.equal(culled, coveredArea < 0.5 * exposedArea);
+        assert.equal(group, target.groups![result.segments.indexOf(s)]);
+        assert.ok(copyOf <= s);
+      }
+      assert.deepEqual(Object.keys(result.timings), ['weld', 'build', 'project', 'occluded', 'covered', 'segments', 'secondLook', 'holes', 'seams', 'classify', 'total']);
+      for (const time of Object.values(result.timings)) assert.ok(time >= 0 && Number.isFinite(time));
+      assert.ok(result.peakBytes > 0);
+    });
 
-  test('paints the skin, not the eye under the hole nor the tongue inside', () => {
-    const { cage, target } = head(1);
-    const { zones, cosmeticTriangles } = transfer(cage, target);
-    const share = (group: number, zone: number) => {
-      const own = [...zones].filter((_, v) => target.groups![v] === group);
-      return own.filter((one) => one === zone).length / own.length;
-    };
-    assert.ok(share(0, Zone.Cosmetic) > 0.9, `skin ${share(0, Zone.Cosmetic)}`);
-    assert.equal(share(1, Zone.Cosmetic), 0);
-    assert.equal(share(2, Zone.Occluded), 1);
-    for (let t = 0; t < cosmeticTriangles.length; ++t) {
-      const corners = [...target.indices.subarray(3 * t, 3 * t + 3)];
-      assert.equal(cosmeticTriangles[t], corners.every((v) => zones[v] === Zone.Cosmetic) ? 1 : 0);
+    test(`paints the skin, not the eye under the hole nor the tongue inside: ${preset}`, () => {
+      const { cage, target } = head(1);
+      const { zones, cosmeticTriangles } = transfer(cage, target, { preset });
+      const share = (group: number, zone: number) => {
+        const own = [...zones].filter((_, v) => target.groups![v] === group);
+        return own.filter((one) => one === zone).length / own.length;
+      };
+      assert.ok(share(0, Zone.Cosmetic) > 0.9, `skin ${share(0, Zone.Cosmetic)}`);
+      assert.equal(share(1, Zone.Cosmetic), 0);
+      assert.equal(share(2, Zone.Occluded), 1);
+      for (let t = 0; t < cosmeticTriangles.length; ++t) {
+        const corners = [...target.indices.subarray(3 * t, 3 * t + 3)].map((v) => zones[v]);
+        const some = corners.includes(Zone.Cosmetic) && corners.every((zone) => zone === Zone.Cosmetic || zone === Zone.Occluded);
+        assert.equal(cosmeticTriangles[t], (preset === 'paper' ? corners.every((zone) => zone === Zone.Cosmetic) : some) ? 1 : 0);
+      }
+    });
+  }
+
+  test('the preset is default unless another is named', () => {
+    for (const { cage, target } of [head(1), soup(3)]) {
+      assert.deepEqual(bytes(transfer(cage, target)), bytes(transfer(cage, target, { preset: 'default' })));
     }
+    const { cage, target } = head(1);
+    assert.notDeepEqual(transfer(cage, target).cosmeticTriangles, transfer(cage, target, { preset: 'paper' }).cosmeticTriangles);
   });
 
   test('gives the same bits every time', () => {
@@ -102,6 +117,7 @@ describe('transfer', () => {
     assert.deepEqual(bytes(result), copy);
     for (const name of arrays) assert.ok(result[name].byteOffset === 0 && result[name].byteLength === result[name].buffer.byteLength, name);
     assert.equal(new Set(arrays.map((name) => result[name].buffer)).size, arrays.length);
+    assert.ok(result.cornerUvs.length > 0);
   });
 
   test('inputs are only read', () => {
@@ -157,21 +173,32 @@ describe('transfer', () => {
 describe('project and classify', () => {
   before(init);
 
-  test('give together what transfer gives, for any threshold', () => {
-    for (const { name, cage, target } of [head(8), soup(9)]) {
-      const projection = project(cage, target);
-      assert.ok(projection.zones.every((zone) => zone !== Zone.Culled));
-      assert.ok(projection.segmentStats.every(({ culled }) => !culled));
-      assert.deepEqual(projection.indices, new Uint32Array(target.indices));
-      for (const threshold of [0, 0.1, 0.37, 0.5, 0.9, 1]) {
-        const expected = transfer(cage, target, { threshold });
-        const decided = classify(projection, { threshold });
-        assert.deepEqual(decided.zones, expected.zones, name);
-        assert.deepEqual(decided.cosmeticTriangles, expected.cosmeticTriangles, name);
-        assert.deepEqual(decided.segmentStats, expected.segmentStats, name);
+  for (const preset of presets) {
+    test(`give together what transfer gives, for any threshold: ${preset}`, () => {
+      for (const { name, cage, target } of [head(8), soup(9)]) {
+        const projection = project(cage, target, { preset });
+        assert.ok(projection.zones.every((zone) => zone !== Zone.Culled));
+        assert.ok(projection.segmentStats.every(({ culled }) => !culled));
+        assert.deepEqual(projection.indices, new Uint32Array(target.indices));
+        for (const threshold of [0, 0.1, 0.37, 0.5, 0.9, 1]) {
+          const expected = transfer(cage, target, { preset, threshold });
+          const decided = classify(projection, { threshold });
+          assert.deepEqual(decided.zones, expected.zones, name);
+          assert.deepEqual(decided.cosmeticTriangles, expected.cosmeticTriangles, name);
+          assert.deepEqual(decided.segmentStats, expected.segmentStats, name);
+        }
+        assert.deepEqual(classify(projection).zones, transfer(cage, target, { preset }).zones);
       }
-      assert.deepEqual(classify(projection).zones, transfer(cage, target).zones);
-    }
+    });
+  }
+
+  test('classify goes on by the rules of the projection, or by those it is told', () => {
+    const { cage, target } = head(8);
+    const projection = project(cage, target);
+    assert.deepEqual(classify(projection), classify(projection, { preset: 'default' }));
+    const { floor, copies, partialTriangles } = presetOptions('paper');
+    assert.deepEqual(classify(projection, { preset: 'paper' }), classify(projection, { floor, copies, partialTriangles }));
+    assert.notDeepEqual(classify(projection, { preset: 'paper' }).cosmeticTriangles, classify(projection).cosmeticTriangles);
   });
 
   test('a projection is plain data: it can be cloned and sent', () => {
@@ -186,5 +213,117 @@ describe('project and classify', () => {
     const copy = structuredClone(projection);
     classify(projection, { threshold: 1 });
     assert.deepEqual(projection, copy);
+  });
+});
+
+describe('options', () => {
+  before(init);
+
+  test('a preset is the sum of its single options', () => {
+    assert.equal(presetOptions().seams, 'corner');
+    assert.deepEqual(presetOptions(), presetOptions('default'));
+    const paper = presetOptions('paper');
+    assert.deepEqual(
+      [paper.seams, paper.occlusionReach, paper.floor, paper.votes, paper.depths, paper.secondLook, paper.bothSides, paper.holes, paper.copies, paper.partialTriangles],
+      ['vertex', Infinity, 'none', false, false, false, false, false, false, false],
+    );
+    for (const { cage, target } of [head(1), soup(3)]) {
+      for (const preset of presets) {
+        const other = presets.find((one) => one !== preset)!;
+        assert.deepEqual(bytes(transfer(cage, target, { preset: other, ...presetOptions(preset) })), bytes(transfer(cage, target, { preset })), preset);
+      }
+    }
+  });
+
+  test('each single option reaches the core', () => {
+    const { cage, target } = head(4);
+    const plain = transfer(cage, target, { preset: 'paper' });
+    assert.equal(transfer(cage, target, { preset: 'paper', seams: 'corner' }).cornerUvs.length, 2 * target.indices.length);
+    assert.equal(transfer(cage, target, { seams: 'vertex' }).cornerUvs.length, 0);
+    const painted = (options: object) => transfer(cage, target, { preset: 'paper', ...options }).cosmeticTriangles.filter((one) => one === 1).length;
+    assert.ok(painted({ partialTriangles: true }) >= painted({}));
+    assert.ok(painted({ holes: true }) > painted({}));
+    assert.ok(painted({ floor: 'area', minCovered: 1 }) < painted({}));
+    assert.ok(painted({ threshold: 0, floor: 'depth', depths: true, minCovered: 1, minOfAll: 1 }) < painted({}));
+    assert.ok(transfer(cage, target, { preset: 'paper', occlusionReach: 0 }).zones.filter((zone) => zone === Zone.Occluded).length <= plain.zones.filter((zone) => zone === Zone.Occluded).length);
+  });
+});
+
+describe('locks', () => {
+  before(init);
+  const { cage, target } = head(5);
+  const vertices = (result: { zones: Uint8Array }, group: number) => [...result.zones].filter((_, v) => target.groups![v] === group);
+  /** The same locks in transfer and in classify. */
+  const locked = (locks: Locks) => {
+    const result = transfer(cage, target, { locks });
+    const decided = classify(project(cage, target), { locks });
+    assert.deepEqual(decided.zones, result.zones);
+    assert.deepEqual(decided.cosmeticTriangles, result.cosmeticTriangles);
+    assert.deepEqual(decided.segmentStats, result.segmentStats);
+    assert.ok(result.timings.total >= result.timings.classify);
+    return result;
+  };
+
+  test('exclude and keep a group whatever its areas', () => {
+    assert.ok(vertices(locked({}), 0).includes(Zone.Cosmetic));
+    const excluded = locked({ groups: { 0: 'exclude' } });
+    assert.ok(!vertices(excluded, 0).includes(Zone.Cosmetic));
+    assert.ok(excluded.segmentStats.filter(({ group }) => group === 0).every(({ culled }) => culled));
+    assert.ok(!vertices(locked({}), 1).includes(Zone.Cosmetic));
+    const kept = locked({ groups: { 1: 'keep', 2: 'auto' } });
+    assert.ok(kept.segmentStats.filter(({ group }) => group === 1).every(({ culled }) => !culled));
+    assert.ok(!vertices(kept, 1).includes(Zone.Culled));
+  });
+
+  test('a lock of a segment outdoes one of its group', () => {
+    const segment = transfer(cage, target).segments[0]!;
+    const locks = (lock: Lock) => ({ groups: { 0: 'exclude' }, segments: { [segment]: lock } }) as const;
+    assert.ok(vertices(locked(locks('keep')), 0).includes(Zone.Cosmetic));
+    assert.deepEqual(locked(locks('auto')).zones, locked({}).zones);
+    assert.deepEqual(locked({ segments: { [segment]: 'exclude' } }).zones, locked({ groups: { 0: 'exclude' } }).zones);
+  });
+
+  test('what is not there cannot be locked', () => {
+    const fails = (locks: unknown, message: RegExp) => {
+      for (const call of [() => transfer(cage, target, { locks: locks as Locks }), () => classify(project(cage, target), { locks: locks as Locks })]) {
+        assert.throws(call, (error) => error instanceof CagecastError && error.code === 'badOption' && message.test(error.message));
+      }
+    };
+    fails({ groups: { 7: 'keep' } }, /options\.locks\.groups\[7\] = "keep", but no segment is of that group$/);
+    fails({ segments: { 99: 'exclude' } }, /options\.locks\.segments\[99\] = "exclude", but there are \d+ segments$/);
+    fails({ segments: { 0: 'maybe' } }, /options\.locks\.segments\[0\] = "maybe" is unknown; there are: "auto", "keep", "exclude"$/);
+    fails({ segment: {} }, /options\.locks\.segment is unknown; there are: segments, groups$/);
+    fails('keep', /options\.locks is "keep", not an object$/);
+    fails({ groups: 1 }, /options\.locks\.groups is 1, not an object/);
+  });
+});
+
+describe('splitVertices', () => {
+  before(init);
+
+  test('gives every corner its UV, and copies no vertex more often than it must', () => {
+    for (const { name, cage, target } of [head(6), soup(7)]) {
+      const { cornerUvs } = transfer(cage, target);
+      const { sources, indices, uvs } = splitVertices(target, cornerUvs);
+      assert.equal(indices.length, target.indices.length);
+      assert.equal(uvs.length, 2 * sources.length);
+      const kinds = new Set<string>();
+      indices.forEach((vertex, corner) => {
+        assert.equal(sources[vertex], target.indices[corner], name);
+        assert.deepEqual([uvs[2 * vertex]! + 0, uvs[2 * vertex + 1]! + 0], [cornerUvs[2 * corner]! + 0, cornerUvs[2 * corner + 1]! + 0], name);
+        kinds.add(`${sources[vertex]} ${cornerUvs[2 * corner]! + 0} ${cornerUvs[2 * corner + 1]! + 0}`);
+      });
+      assert.equal(sources.length, kinds.size);
+      if (name.startsWith('head')) assert.ok(sources.length > new Set(target.indices).size, 'the cage has a seam');
+    }
+  });
+
+  test('what cannot be split is said', () => {
+    const { target } = smallest();
+    const fails = (call: () => unknown, code: string, message: RegExp) =>
+      assert.throws(call, (error) => error instanceof CagecastError && error.code === code && message.test(error.message));
+    fails(() => splitVertices(target, new Float32Array(4)), 'cornerUvCountMismatch', /^splitVertices: cornerUvs has 4 numbers, not 2 for each of 3 corners$/);
+    fails(() => splitVertices(target, [] as unknown as Float32Array), 'badArgument', /^splitVertices: cornerUvs is of type Array, not a Float32Array$/);
+    fails(() => splitVertices({ ...target, indices: new Uint32Array([0, 1, 9]) }, new Float32Array(6)), 'indexOutOfRange', /^splitVertices: target\.indices\[2\] = 9 is out of range \(3 vertices\)$/);
   });
 });

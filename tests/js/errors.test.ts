@@ -30,7 +30,7 @@ describe('errors', () => {
     const script = `
       import { transfer, project, classify } from 'cagecast';
       const mesh = { positions: new Float32Array(9), indices: new Uint32Array(3), uvs: new Float32Array(6) };
-      const projection = { zones: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), segmentStats: [{ points: 1, area: 0, exposedArea: 0, coveredArea: 0 }] };
+      const projection = { zones: new Uint8Array(1), segments: new Uint32Array(1), indices: new Uint32Array(0), preset: 'paper', restores: new Uint32Array(0), holeShares: [], segmentStats: [{ points: 1, area: 0, exposedArea: 0, coveredArea: 0, sunkArea: 0, group: 0, copyOf: 0 }] };
       for (const call of [() => transfer(mesh, mesh), () => project(mesh, mesh), () => classify(projection)]) {
         try { call(); } catch (error) { console.log(error.code, error.message); }
       }`;
@@ -85,7 +85,7 @@ describe('errors', () => {
 
   test('of options', () => {
     fails(untyped(cage, target, 0.5), 'badOption', 'transfer: options is 0.5, not an object');
-    fails(untyped(cage, target, { treshold: 0.5 }), 'badOption', 'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, threshold');
+    fails(untyped(cage, target, { treshold: 0.5 }), 'badOption', 'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, seams, occlusionReach, pokeThrough, votes, depths, secondLook, bothSides, holes, threshold, floor, minCovered, minOfAll, maxUncovered, copies, partialTriangles, locks');
     fails(untyped(cage, target, { preset: 'deflaut' }), 'badOption', /^transfer: options\.preset = "deflaut" is unknown/);
     fails(untyped(cage, target, { projection: 'nearest' }), 'badOption', /^transfer: options\.projection = "nearest" is unknown; there are: "nearestPoint", "nearestVertex"$/);
     fails(untyped(cage, target, { threshold: '0.5' }), 'badThreshold', 'transfer: options.threshold = "0.5" is not a number within 0..1');
@@ -96,6 +96,15 @@ describe('errors', () => {
     for (const weldTolerance of [-1, 0.02, NaN]) {
       fails(() => transfer(cage, target, { weldTolerance }), 'badWeldTolerance', `transfer: options.weldTolerance = ${weldTolerance} is not within 0..0.01`);
     }
+    fails(untyped(cage, target, { seams: 'none' }), 'badOption', 'transfer: options.seams = "none" is unknown; there are: "vertex", "corner"');
+    fails(untyped(cage, target, { floor: 1 }), 'badOption', 'transfer: options.floor = 1 is unknown; there are: "none", "area", "depth"');
+    fails(untyped(cage, target, { votes: 1 }), 'badOption', 'transfer: options.votes = 1 is not true or false');
+    fails(untyped(cage, target, { occlusionReach: '1' }), 'badOcclusionReach', 'transfer: options.occlusionReach = "1" is not a number within 0..Infinity');
+    fails(() => transfer(cage, target, { occlusionReach: -1 }), 'badOcclusionReach', 'transfer: options.occlusionReach = -1 is not within 0..Infinity');
+    fails(() => transfer(cage, target, { pokeThrough: 2 }), 'badPokeThrough', 'transfer: options.pokeThrough = 2 is not within 0..1');
+    fails(() => transfer(cage, target, { minCovered: NaN }), 'badMinCovered', 'transfer: options.minCovered = NaN is not within 0..1');
+    fails(() => transfer(cage, target, { minOfAll: -1 }), 'badMinOfAll', 'transfer: options.minOfAll = -1 is not within 0..1');
+    fails(() => transfer(cage, target, { maxUncovered: 2 }), 'badMaxUncovered', 'transfer: options.maxUncovered = 2 is not within 0..1');
     assert.throws(() => (project as (...args: unknown[]) => unknown)(cage, target, { threshold: 0.5 }), /project: options\.threshold is not an option/);
     transfer(cage, target, { threshold: undefined, preset: undefined });
     worksAgain();
@@ -110,6 +119,11 @@ describe('errors', () => {
     fails(call({ segments: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 segments/);
     fails(call({ zones: new Uint8Array([0, 9, 0]) }), 'badArgument', /projection\.zones\[1\] = 9/, 1);
     fails(call({ indices: new Uint32Array([0, 1, 3]) }), 'badArgument', /projection\.indices\[2\] = 3 is out of range/, 2);
+    fails(call({ restores: new Uint32Array([0, 5, 0]) }), 'badArgument', /projection\.restores\[1\] = 5 is out of range \(\d+ holes\)/, 1);
+    fails(call({ restores: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 restores/);
+    fails(call({ holeShares: [{ hole: 0, segment: 4, exposedArea: 0, uncoveredArea: 0 }] }), 'badArgument', /projection\.holeShares\[0\]/);
+    fails(call({ preset: 'none' }), 'badOption', /options\.preset = "none" is unknown/);
+    fails(call({ segmentStats: [{ ...projection.segmentStats[0], copyOf: 9 }] }), 'badArgument', /projection\.segmentStats\[0\]/);
     fails(call({ segmentStats: [null] }), 'badArgument', /projection\.segmentStats\[0\]/);
     fails(() => classify(projection, { threshold: 2 }), 'badThreshold', 'classify: options.threshold = 2 is not within 0..1');
     worksAgain();

@@ -1,8 +1,9 @@
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import type { GLTF } from '@gltf-transform/core';
-import type { Mesh } from 'cagecast';
+import assert from 'node:assert/strict';
+import type { Accessor, GLTF, Primitive } from '@gltf-transform/core';
+import type { Mesh, TransferResult } from 'cagecast';
 
 /** A GLB taken apart. */
 export interface Glb {
@@ -111,3 +112,46 @@ export async function validate(path: string): Promise<string[]> {
   return issues.messages.filter(({ severity }) => severity === 0).map(({ code, message, pointer }) => `${pointer}: ${code}: ${message}`);
 }
 
+
+/**
+ * Asserts that a primitive has what was transferred to it: the UV and the zone of each corner; and what it had before: its
+ * vertices in their order, with copies after them that are like their sources in all attributes and morph targets.
+ * @param first  Where the primitive begins in the arrays of the result.
+ * @returns how many vertices were added.
+ */
+export function assertTransferred(before: Primitive, written: Primitive, result: TransferResult, first = { vertex: 0, triangle: 0 }): number {
+  const vertices = before.getAttribute('POSITION')!.getCount();
+  const all = written.getAttribute('POSITION')!.getCount();
+  const cornersOf = (primitive: Primitive) => [...(primitive.getIndices()?.getArray() ?? Array(primitive.getAttribute('POSITION')!.getCount()).keys())] as number[];
+  const [old, corners] = [cornersOf(before), cornersOf(written)];
+  assert.equal(corners.length, old.length);
+  const sources = Array.from({ length: all }, (_, v) => v);
+  corners.forEach((vertex, i) => {
+    if (vertex < vertices) assert.equal(vertex, old[i]);
+    else sources[vertex] = old[i]!;
+  });
+
+  const uvSet = written.listSemantics().find((name) => name.startsWith('TEXCOORD_') && before.getAttribute(name) === null);
+  assert.ok(uvSet);
+  const [uvs, zones] = [written.getAttribute(uvSet)!.getArray()!, written.getAttribute('_NCZ')!.getArray()!];
+  corners.forEach((vertex, i) => {
+    const at = result.cornerUvs.length > 0 ? 2 * (3 * first.triangle + i) : -1;
+    const expected = at >= 0 ? result.cornerUvs.subarray(at, at + 2) : result.uvs.subarray(2 * (first.vertex + vertex), 2 * (first.vertex + vertex) + 2);
+    assert.deepEqual([uvs[2 * vertex]! + 0, uvs[2 * vertex + 1]! + 0], [expected[0]! + 0, expected[1]! + 0], `corner ${i}`);
+  });
+  assert.deepEqual([...zones], sources.map((v) => result.zones[first.vertex + v]));
+
+  const sameAs = (a: Accessor, b: Accessor, name: string) => {
+    assert.equal(b.getNormalized(), a.getNormalized(), name);
+    const size = a.getElementSize();
+    const [from, to] = [a.getArray()!, b.getArray()!];
+    assert.equal(to.constructor, from.constructor, name);
+    assert.equal(to.length, size * all, name);
+    sources.forEach((source, v) => assert.deepEqual(to.subarray(size * v, size * (v + 1)), from.subarray(size * source, size * (source + 1)), `${name} of vertex ${v}`));
+  };
+  for (const name of before.listSemantics()) sameAs(before.getAttribute(name)!, written.getAttribute(name)!, name);
+  before.listTargets().forEach((target, t) => {
+    for (const name of target.listSemantics()) sameAs(target.getAttribute(name)!, written.listTargets()[t]!.getAttribute(name)!, `target ${t}: ${name}`);
+  });
+  return all - vertices;
+}

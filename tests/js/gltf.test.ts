@@ -8,7 +8,7 @@ import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { CagecastError, init, transfer, type Mesh, type TransferResult } from 'cagecast';
 import { cagecast as cagecastTransform } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
-import { cagecast, GlbMaker, glbOf, validate } from './glb.js';
+import { assertTransferred, cagecast, GlbMaker, glbOf, validate } from './glb.js';
 import { ball, head, modelFolders } from './scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-gltf-'));
@@ -34,15 +34,14 @@ describe('document.transform(cagecast(…))', () => {
     const expected = transfer(scene.cage, { ...scene.target, groups: undefined });
     const [primitive, ...others] = primitives(document);
     assert.equal(others.length, 0);
-    assert.deepEqual(arrayOf(primitive!, 'TEXCOORD_1'), expected.uvs);
-    assert.deepEqual([...arrayOf(primitive!, '_NCZ')], [...expected.zones]);
-    assert.deepEqual(arrayOf(primitive!, 'TEXCOORD_0'), scene.target.uvs);
+    const before = primitives(await documentOf(glbOf(scene.target)))[0]!;
+    assert.ok(assertTransferred(before, primitive!, expected) > 0);
     assert.deepEqual(seen!.zones, expected.zones);
   });
 
   test('options are those of transfer', async () => {
     const document = await documentOf(glbOf(scene.target));
-    await document.transform(cagecastTransform({ cage: await documentOf(glbOf(scene.cage)), threshold: 1 }));
+    await document.transform(cagecastTransform({ cage: await documentOf(glbOf(scene.cage)), threshold: 1, seams: 'vertex' }));
     assert.deepEqual([...arrayOf(primitives(document)[0]!, '_NCZ')], [...transfer(scene.cage, { ...scene.target, groups: undefined }, { threshold: 1 }).zones]);
   });
 

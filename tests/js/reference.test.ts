@@ -7,7 +7,7 @@ import { basename, join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import * as simd from 'cagecast';
-import type { Mesh, TransferResult } from 'cagecast';
+import type { Mesh, Preset, TransferResult } from 'cagecast';
 import { head, modelFolders, readPlain, soup, type Scene } from './scenes.js';
 
 /** The brute-force reference and the native library behind one command; its source tells the formats of its files. */
@@ -23,6 +23,11 @@ interface Answer {
   segments: Uint32Array;
   stable: Uint8Array;
   stats: { points: number; culled: boolean; exposedArea: number; coveredArea: number }[];
+  cosmeticTriangles: Uint8Array;
+  /** 6 per triangle, with the preset `default`; else none. */
+  cornerUvs: Float32Array;
+  /** 1 per triangle with corner UVs, by the reference alone: 0 where rounding decides them. */
+  stableCorners: Uint8Array;
 }
 
 function writeScene(path: string, { cage, target }: Scene): void {
@@ -52,7 +57,7 @@ function readAnswer(path: string): Answer {
     return part;
   };
   const [vertices, segments] = [u32(), u32()];
-  return {
+  const perVertex = {
     uvs: new Float32Array(take(8 * vertices).buffer),
     zones: take(vertices),
     triangles: new Uint32Array(take(4 * vertices).buffer),
@@ -61,19 +66,23 @@ function readAnswer(path: string): Answer {
     stable: take(vertices),
     stats: Array.from({ length: segments }, () => ({ points: u32(), culled: u32() === 1, exposedArea: f64(), coveredArea: f64() })),
   };
+  const [triangles, corners] = [u32(), u32()];
+  const cosmeticTriangles = take(triangles);
+  const cornerUvs = new Float32Array(take(4 * corners).buffer);
+  return { ...perVertex, cosmeticTriangles, cornerUvs, stableCorners: at < bytes.length && corners > 0 ? take(triangles) : new Uint8Array(0) };
 }
 
 /** What the reference, or with `--product` the native library, answers. */
-function ask(scene: Scene, threshold: number, ...flags: string[]): Answer {
+function ask(scene: Scene, preset: Preset, threshold: number, ...flags: string[]): Answer {
   const [sceneFile, resultFile] = [join(folder, 'scene'), join(folder, 'result')];
   writeScene(sceneFile, scene);
-  const { status, stderr } = spawnSync(native, [sceneFile, resultFile, '--threshold', String(threshold), ...flags], { encoding: 'utf8' });
+  const { status, stderr } = spawnSync(native, [sceneFile, resultFile, '--preset', preset, '--threshold', String(threshold), ...flags], { encoding: 'utf8' });
   assert.equal(status, 0, `${native} failed: ${stderr}`);
   return readAnswer(resultFile);
 }
 
-/** Asserts that every stable vertex has the reference's zone, triangle and UV. @returns a line about it. */
-function compare(reference: Answer, result: TransferResult): string {
+/** Asserts that every stable vertex has the reference's zone, triangle and UV, every stable triangle its verdict and its corners' UVs. @returns a line about it. */
+function compare(reference: Answer, result: TransferResult, indices: Mesh['indices']): string {
   const vertices = reference.zones.length;
   assert.equal(result.zones.length, vertices);
   let unstable = 0;
@@ -90,7 +99,21 @@ function compare(reference: Answer, result: TransferResult): string {
       Math.abs(reference.uvs[2 * v + 1]! - result.uvs[2 * v + 1]!) <= 1e-5;
     if (!same) differences.push(`vertex ${v}: zone ${result.zones[v]} for ${reference.zones[v]}, triangle ${result.triangles[v]} for ${reference.triangles[v]}, uv ${result.uvs.subarray(2 * v, 2 * v + 2)} for ${reference.uvs.subarray(2 * v, 2 * v + 2)}`);
   }
-  const line = `${vertices} vertices, ${differences.length} differences, ${unstable} unstable`;
+  let unstableTriangles = 0;
+  assert.equal(result.cornerUvs.length, reference.cornerUvs.length);
+  for (let t = 0; t < indices.length / 3; ++t) {
+    if ([0, 1, 2].every((k) => reference.stable[indices[3 * t + k]!]) && result.cosmeticTriangles[t] !== reference.cosmeticTriangles[t]) {
+      differences.push(`triangle ${t}: cosmetic ${result.cosmeticTriangles[t]} for ${reference.cosmeticTriangles[t]}`);
+    }
+    if (reference.cornerUvs.length === 0) continue;
+    if (!reference.stableCorners[t]) {
+      ++unstableTriangles;
+      continue;
+    }
+    const [ours, theirs] = [result.cornerUvs, reference.cornerUvs].map((all) => [...all.subarray(6 * t, 6 * t + 6)]) as [number[], number[]];
+    if (ours.some((value, i) => Math.abs(value - theirs[i]!) > 1e-5)) differences.push(`triangle ${t}: corners ${ours} for ${theirs}`);
+  }
+  const line = `${vertices} vertices, ${differences.length} differences, ${unstable} vertices and the corners of ${unstableTriangles} triangles unstable`;
   assert.equal(differences.length, 0, `${line}\n${differences.slice(0, 5).join('\n')}`);
   assert.deepEqual(result.segments, reference.segments);
   return line;
@@ -101,9 +124,9 @@ function unstableShare({ stable }: Answer): number {
 }
 
 /** A hash of the bits of an answer. */
-function hash({ uvs, zones, triangles, distances, segments }: Pick<Answer, 'uvs' | 'zones' | 'triangles' | 'distances' | 'segments'>): string {
+function hash({ uvs, zones, triangles, distances, segments, cosmeticTriangles, cornerUvs }: Omit<Answer, 'stable' | 'stats' | 'stableCorners'>): string {
   const sum = createHash('sha256');
-  for (const array of [uvs, zones, triangles, distances, segments]) sum.update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+  for (const array of [uvs, zones, triangles, distances, segments, cosmeticTriangles, cornerUvs]) sum.update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
   return sum.digest('hex');
 }
 
@@ -132,23 +155,25 @@ describe('the package gives the answer of the reference, and the bits of the nat
   for (const [i, makeScene] of scenes.entries()) {
     const isModel = i >= 12;
     const name = isModel ? basename(modelFolders()[i - 12]!) : `${i < 6 ? 'head' : 'soup'}, seed ${(i % 6) + 1}`;
-    test(name, async (context) => {
-      const scene = await makeScene();
-      for (const threshold of isModel ? [0.5] : [0.5, 0.2]) {
-        const reference = ask(scene, threshold);
-        const product = ask(scene, threshold, '--product');
-        for (const [build, { transfer }] of builds) {
-          const result = transfer(scene.cage, scene.target, { threshold });
-          assert.equal(hash(result), hash(product), `${build}: not the bits of the native library`);
-          assert.deepEqual(
-            result.segmentStats.map(({ points, culled, exposedArea, coveredArea }) => ({ points, culled, exposedArea, coveredArea })),
-            product.stats,
-            `${build}: not the segments of the native library`,
-          );
-          context.diagnostic(`${name}, ${build}, threshold ${threshold}: ${compare(reference, result)}`);
+    for (const preset of ['paper', 'default'] as const) {
+      test(`${name}, ${preset}`, async (context) => {
+        const scene = await makeScene();
+        for (const threshold of isModel ? [0.5] : [0.5, 0.2]) {
+          const reference = ask(scene, preset, threshold);
+          const product = ask(scene, preset, threshold, '--product');
+          for (const [build, { transfer }] of builds) {
+            const result = transfer(scene.cage, scene.target, { preset, threshold });
+            assert.equal(hash(result), hash(product), `${build}: not the bits of the native library`);
+            assert.deepEqual(
+              result.segmentStats.map(({ points, culled, exposedArea, coveredArea }) => ({ points, culled, exposedArea, coveredArea })),
+              product.stats,
+              `${build}: not the segments of the native library`,
+            );
+            context.diagnostic(`${name}, ${preset}, ${build}, threshold ${threshold}: ${compare(reference, result, scene.target.indices)}`);
+          }
+          if (isModel) assert.ok(unstableShare(reference) <= 0.01, `${unstableShare(reference)} of the vertices are unstable`);
         }
-        if (isModel) assert.ok(unstableShare(reference) <= 0.01, `${unstableShare(reference)} of the vertices are unstable`);
-      }
-    });
+      });
+    }
   }
 });

@@ -1,9 +1,10 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import {
-  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float32BufferAttribute, Group, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture, Vector3,
+  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InterleavedBuffer, InterleavedBufferAttribute, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
+  Uint16BufferAttribute, Vector3,
 } from 'three';
-import { CagecastError, classify, init, project, transfer, Zone, type Mesh } from 'cagecast';
+import { CagecastError, classify, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
 import { applyTransfer, extract } from 'cagecast/three';
 import { ball, head, join3d } from './scenes.js';
 
@@ -70,10 +71,69 @@ describe('extract', () => {
   });
 });
 
+/** Asserts that a geometry shows the UV and zone of a result at each corner, and is what it was, with copies of vertices at the end. */
+function assertSplit(geometry: BufferGeometry, before: BufferGeometry, result: TransferResult): void {
+  const vertices = before.getAttribute('position').count;
+  const corners = [...geometry.index!.array];
+  const source = new Map<number, number>();
+  corners.forEach((vertex, i) => {
+    const old = before.index!.getX(i);
+    assert.equal(source.get(vertex) ?? old, old);
+    source.set(vertex, old);
+    if (vertex < vertices) assert.equal(vertex, old);
+    const uv = geometry.getAttribute('uv1');
+    assert.deepEqual([uv.getX(vertex) + 0, uv.getY(vertex) + 0], [result.cornerUvs[2 * i]! + 0, result.cornerUvs[2 * i + 1]! + 0]);
+    assert.equal(geometry.getAttribute('_ncz').getX(vertex), result.zones[old]);
+  });
+  const elements = ({ itemSize }: { itemSize: number }) => Array.from({ length: itemSize }, (_, k) => k);
+  for (const [vertex, old] of source) {
+    for (const [name, attribute] of Object.entries(before.attributes)) {
+      for (const k of elements(attribute)) assert.equal(geometry.getAttribute(name).getComponent(vertex, k), attribute.getComponent(old, k), name);
+    }
+    for (const [name, morphs] of Object.entries(before.morphAttributes)) {
+      morphs!.forEach((morph, m) => {
+        for (const k of elements(morph)) assert.equal(geometry.morphAttributes[name as 'position']![m]!.getComponent(vertex, k), morph.getComponent(old, k), name);
+      });
+    }
+  }
+}
+
 describe('applyTransfer', () => {
-  test('adds uv1 and _ncz, as transfer answers', () => {
+  test('splits vertices at the seams of the texture, with all that belongs to them', () => {
+    const vertices = scene.target.positions.length / 3;
     const target = meshOf(scene.target);
-    const { result, overlays } = applyTransfer(target, meshOf(scene.cage));
+    const { geometry } = target;
+    const interleaved = new InterleavedBuffer(Float32Array.from({ length: 5 * vertices }, (_, i) => i), 5);
+    geometry.setAttribute('normal', new InterleavedBufferAttribute(interleaved, 3, 1));
+    geometry.setAttribute('skinIndex', new Uint16BufferAttribute(Uint16Array.from({ length: 4 * vertices }, (_, i) => i % 999), 4));
+    geometry.setAttribute('color', new BufferAttribute(Uint8Array.from({ length: 3 * vertices }, (_, i) => i % 255), 3, true));
+    geometry.setAttribute('half', new Float16BufferAttribute(Uint16Array.from({ length: vertices }, (_, i) => i % 999), 1));
+    geometry.morphAttributes['position'] = [new BufferAttribute(scene.target.positions.map((x) => 0.5 * x), 3)];
+    const before = geometry.clone();
+    let disposed = 0;
+    geometry.addEventListener('dispose', () => ++disposed);
+    const { result, splitVertices } = applyTransfer(target, meshOf(scene.cage));
+    assert.ok(splitVertices > 0 && disposed === 1);
+    assert.equal(target.geometry, geometry);
+    assert.equal(geometry.getAttribute('position').count, vertices + splitVertices);
+    assertSplit(geometry, before, result);
+  });
+
+  test('a mirrored mesh is split as it is seen', () => {
+    const target = meshOf({ ...scene.target, positions: scene.target.positions.map((x, i) => (i % 3 === 0 ? -x : x)), indices: scene.target.indices.slice().reverse() });
+    target.scale.x = -1;
+    const before = target.geometry.clone();
+    const { result, splitVertices } = applyTransfer(target, meshOf(scene.cage));
+    assert.ok(splitVertices > 0);
+    // In the arrays of the result the second and third corners of mirrored triangles have changed places.
+    const cornerUvs = Float32Array.from(result.cornerUvs, (_, i) => result.cornerUvs[i - (i % 6) + ([0, 1, 4, 5, 2, 3][i % 6]!)]!);
+    assertSplit(target.geometry, before, { ...result, cornerUvs });
+  });
+
+  test("seams: 'vertex' adds uv1 and _ncz, as transfer answers", () => {
+    const target = meshOf(scene.target);
+    const { result, overlays, splitVertices } = applyTransfer(target, meshOf(scene.cage), { seams: 'vertex' });
+    assert.equal(splitVertices, 0);
     const expected = transfer(scene.cage, { ...scene.target, groups: undefined });
     assert.deepEqual(result.zones, expected.zones);
     assert.deepEqual(attribute(target.geometry, 'uv1'), expected.uvs);
@@ -93,13 +153,13 @@ describe('applyTransfer', () => {
     assert.equal(overlay.material.roughness, 0.3);
     assert.equal(overlay.geometry.getAttribute('position'), target.geometry.getAttribute('position'));
     assert.equal(overlay.geometry.getAttribute('uv2'), target.geometry.getAttribute('uv2'));
-    const corners = [...scene.target.indices].filter((_, i) => result.cosmeticTriangles[Math.floor(i / 3)] === 1);
+    const corners = [...target.geometry.index!.array].filter((_, i) => result.cosmeticTriangles[Math.floor(i / 3)] === 1);
     assert.deepEqual([...overlay.geometry.index!.array], corners);
 
     // Another threshold.
     const decided = classify(project(scene.cage, { ...scene.target, groups: undefined }), { threshold: 1 });
     update(decided);
-    assert.deepEqual([...attribute(target.geometry, '_ncz')], [...decided.zones]);
+    assert.deepEqual([...attribute(target.geometry, '_ncz')].slice(0, decided.zones.length), [...decided.zones]);
     assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
     dispose();
     assert.equal(target.children.length, 0);
@@ -114,7 +174,13 @@ describe('applyTransfer', () => {
   test('a result from elsewhere is taken as it is', () => {
     const target = meshOf(scene.target);
     const known = transfer(extract(meshOf(scene.cage), 'cage').mesh, extract(target).mesh);
-    assert.equal(applyTransfer(target, meshOf(scene.cage), { result: known }).result, known);
+    const applied = applyTransfer(target, meshOf(scene.cage), { result: known });
+    assert.equal(applied.result, known);
+    assert.ok(applied.splitVertices > 0);
+    // It is not of what the target has become.
+    assert.throws(() => applyTransfer(target, meshOf(scene.cage), { result: known }), (error) => error instanceof CagecastError && /result is of \d+ vertices, the target has \d+/.test(error.message));
+    // Of which a transfer of its own splits no vertex again.
+    assert.equal(applyTransfer(target, meshOf(scene.cage)).splitVertices, 0);
   });
 
   test('a geometry that two meshes show is copied for the second', () => {

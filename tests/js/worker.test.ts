@@ -4,7 +4,7 @@ import { before, describe, test } from 'node:test';
 import * as direct from 'cagecast';
 import { CagecastError } from 'cagecast';
 import * as slim from 'cagecast/slim';
-import { classify, init, project, terminate, transfer } from 'cagecast/worker';
+import { classify, init, presetOptions, project, splitVertices, terminate, transfer } from 'cagecast/worker';
 import { head } from './scenes.js';
 
 const scene = head(30, 12);
@@ -25,10 +25,14 @@ describe('the worker', () => {
   test('answers as the package does, without init', async () => {
     const projection = await project(scene.cage, scene.target);
     const expected = direct.project(scene.cage, scene.target);
-    for (const name of ['uvs', 'zones', 'triangles', 'distances', 'segments', 'indices', 'segmentStats'] as const) assert.deepEqual(projection[name], expected[name], name);
+    for (const name of ['uvs', 'zones', 'triangles', 'distances', 'segments', 'indices', 'segmentStats', 'cornerUvs', 'restores', 'holeShares', 'preset'] as const) assert.deepEqual(projection[name], expected[name], name);
     assert.deepEqual(await classify(projection, { threshold: 0.3 }), direct.classify(expected, { threshold: 0.3 }));
     const result = await transfer(scene.cage, scene.target, { threshold: 0.3 });
     assert.deepEqual(result.zones, direct.transfer(scene.cage, scene.target, { threshold: 0.3 }).zones);
+    const locks = { groups: { 0: 'exclude' } } as const;
+    assert.deepEqual((await transfer(scene.cage, scene.target, { locks })).zones, direct.transfer(scene.cage, scene.target, { locks }).zones);
+    assert.deepEqual(await splitVertices(scene.target, result.cornerUvs), direct.splitVertices(scene.target, result.cornerUvs));
+    assert.deepEqual(await presetOptions('paper'), direct.presetOptions('paper'));
     await init();
   });
 
@@ -45,6 +49,9 @@ describe('the worker', () => {
     await transfer(cage, target, { move: true });
     assert.equal(target.positions.length, 0);
     assert.equal(cage.indices.length, 0);
+    const { cornerUvs } = direct.transfer(scene.cage, scene.target);
+    await splitVertices(structuredClone(scene.target), cornerUvs, { move: true });
+    assert.equal(cornerUvs.length, 0);
     // What was moved away cannot be sent again.
     const error = await failure(transfer(cage, target, { move: true }));
     assert.ok(error instanceof CagecastError, String(error));

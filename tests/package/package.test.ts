@@ -117,13 +117,14 @@ describe('the packed package', () => {
       await init();
       const scene = new Group().add(new Mesh(new BoxGeometry(1, 1, 1, 3, 3, 3)));
       const cage = new SphereGeometry(1);
+      // Before its vertices are split.
+      const { positions, indices, ...rest } = extract(scene).mesh;
       const applied: Applied = applyTransfer(scene, cage, { texture: new Texture(), threshold: 0.3 });
       const arrays: Arrays = extract(cage, 'cage').mesh;
-      const inspection: Inspection = inspect(arrays, extract(scene).mesh, { result: applied.result });
+      const inspection: Inspection = inspect(arrays, { positions, indices, ...rest }, { result: applied.result });
       const verdict: Verdict = inspection.verdict;
       const document = new Document();
       const buffer = document.createBuffer();
-      const { positions, indices } = extract(scene).mesh;
       const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'SCALAR') => document.createAccessor().setType(type).setArray(new (array.constructor as Float32ArrayConstructor)(array)).setBuffer(buffer);
       const primitive = document.createPrimitive().setAttribute('POSITION', accessor(positions, 'VEC3')).setIndices(accessor(indices, 'SCALAR'));
       document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));

@@ -10,14 +10,20 @@ export interface Answer {
   at: number;
 }
 
-/** What bindings.cpp adds to an answer for steps 1 to 4. `segmentStats`: points, A, E, C of each segment. */
+/**
+ * What bindings.cpp adds to an answer for what does not depend on the threshold. `segmentStats`: points, A, E, C, D, group and
+ * first copy of each segment; `holeShares`: hole, segment, exposed and uncovered area of each share.
+ */
 export interface ProjectAnswer extends Answer {
   uvs: Float32Array<ArrayBuffer>;
+  cornerUvs: Float32Array<ArrayBuffer>;
   zones: Uint8Array<ArrayBuffer>;
   triangles: Uint32Array<ArrayBuffer>;
   distances: Float32Array<ArrayBuffer>;
   segments: Uint32Array<ArrayBuffer>;
   segmentStats: Float64Array<ArrayBuffer>;
+  restores: Uint32Array<ArrayBuffer>;
+  holeShares: Float64Array<ArrayBuffer>;
   timings: Float64Array<ArrayBuffer>;
   peakBytes: number;
 }
@@ -29,11 +35,30 @@ export interface ClassifyAnswer extends Answer {
   culledSegments: Uint8Array<ArrayBuffer>;
 }
 
-/** The functions of bindings.cpp. All arrays they return are copies. */
+/** What bindings.cpp adds to an answer of `splitVertices`. */
+export interface SplitAnswer extends Answer {
+  sources: Uint32Array<ArrayBuffer>;
+  indices: Uint32Array<ArrayBuffer>;
+  uvs: Float32Array<ArrayBuffer>;
+}
+
+/** What the core needs to classify; `segmentStats` and `holeShares` in numbers, as in `ProjectAnswer`. */
+export interface CoreProjection {
+  zones: Uint8Array;
+  segments: Uint32Array;
+  segmentStats: Float64Array;
+  restores: Uint32Array;
+  holeShares: Float64Array;
+  indices: Uint32Array | Uint16Array | Uint8Array;
+}
+
+/** The functions of bindings.cpp. All arrays they return are copies; `options` are numbers in the order of options.ts. */
 export interface Bindings {
-  project(cage: CheckedMesh, target: CheckedMesh, projection: number, weldTolerance: number): ProjectAnswer;
-  transfer(cage: CheckedMesh, target: CheckedMesh, projection: number, weldTolerance: number, threshold: number): ProjectAnswer & ClassifyAnswer;
-  classify(zones: Uint8Array, segments: Uint32Array, segmentStats: Float64Array, indices: Uint32Array, threshold: number): ClassifyAnswer;
+  presetOptions(preset: number): Float64Array<ArrayBuffer>;
+  project(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer;
+  transfer(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer & ClassifyAnswer;
+  classify(projection: CoreProjection, options: Float64Array, locks: Uint8Array): ClassifyAnswer;
+  splitVertices(indices: Uint32Array | Uint16Array | Uint8Array, cornerUvs: Float32Array, vertexCount: number): SplitAnswer;
 }
 
 let starting: Promise<void> | undefined;
@@ -81,7 +106,7 @@ async function start(): Promise<void> {
  * Calls the core, and outlives its end: a call that runs out of memory or traps costs its instance, not the next call.
  * @throws {CagecastError} `notInitialised`, `outOfMemory`, `internal`
  */
-export function callCore<A extends Answer>(fn: string, call: (bindings: Bindings) => A): A {
+export function callCore<A>(fn: string, call: (bindings: Bindings) => A): A {
   if (compiled === undefined) {
     throw new CagecastError('notInitialised', `${fn}: Cagecast is not ready; await init() once before the first call`);
   }

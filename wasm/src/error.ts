@@ -6,6 +6,7 @@ export const coreCodes = [
   'missingUvs',
   'uvCountMismatch',
   'groupCountMismatch',
+  'cornerUvCountMismatch',
   'indexOutOfRange',
   'nonFinitePosition',
   'nonFiniteUv',
@@ -13,6 +14,12 @@ export const coreCodes = [
   'tooLarge',
   'badThreshold',
   'badWeldTolerance',
+  'badOcclusionReach',
+  'badPokeThrough',
+  'badMinCovered',
+  'badMinOfAll',
+  'badMaxUncovered',
+  'badLocks',
   'outOfMemory',
 ] as const;
 
@@ -23,11 +30,13 @@ export const coreCodes = [
  * - `positionsNotTriples`, `indicesNotTriples`: an array whose length is not a multiple of three.
  * - `missingUvs`: the cage has no UVs.
  * - `uvCountMismatch`, `groupCountMismatch`: UVs are not two, groups not one per vertex.
+ * - `cornerUvCountMismatch`: UVs per corner are not two per index.
  * - `indexOutOfRange`, `nonFinitePosition`, `nonFiniteUv`: `at` is the place in the array.
  * - `noUsableCageTriangle`: every triangle of the cage has zero area.
  * - `tooLarge`: too many elements, or (`at`: the place in `positions`) coordinates out of all proportion.
- * - `badThreshold`, `badWeldTolerance`, `badOption`: an option of a wrong type or value, or of no known name.
- * - `badArgument`: an argument of a wrong type.
+ * - `badThreshold`, `badWeldTolerance`, `badOcclusionReach`, `badPokeThrough`, `badMinCovered`, `badMinOfAll`, `badMaxUncovered`: that
+ *   option is not a number, or not within its limits. `badOption`: another one of a wrong type or value, or of no known name.
+ * - `badArgument`: an argument of a wrong type. `badLocks`: locks that are not one per segment.
  * - `outOfMemory`: the work does not fit into memory; the next call starts afresh.
  * - `notInitialised`: `init()` has not resolved yet.
  * - `unsupported`: this host cannot run the WebAssembly module.

@@ -5,12 +5,14 @@
 export { CagecastError, type Code } from './error.js';
 export { init } from './engine.js';
 export type { Mesh } from './mesh.js';
-export type { ClassifyOptions, Preset, ProjectOptions, TransferOptions } from './options.js';
+export { presetOptions, type ClassifyOptions, type Lock, type Locks, type Preset, type PresetOptions, type ProjectOptions, type TransferOptions } from './options.js';
+export { splitVertices, type SplitVertices } from './split.js';
 export {
   classify,
   project,
   transfer,
   type Classification,
+  type HoleShare,
   type Projected,
   type Projection,
   type SegmentStats,

@@ -1,7 +1,8 @@
-import { callCore, dropInstance, type Answer, type ProjectAnswer } from './engine.js';
-import { CagecastError, coreCodes, show } from './error.js';
-import { checkMesh, count, type CheckedMesh, type Mesh } from './mesh.js';
-import { resolveOptions, type ClassifyOptions, type ProjectOptions, type ResolvedOptions, type TransferOptions } from './options.js';
+import { checkAnswer } from './answer.js';
+import { callCore, type CoreProjection, type ProjectAnswer } from './engine.js';
+import { CagecastError, show } from './error.js';
+import { checkMesh, count, type Mesh } from './mesh.js';
+import { checkOptions, locksOf, type ClassifyOptions, type Preset, type ProjectOptions, type TransferOptions } from './options.js';
 
 /** CPU time of each step, in milliseconds. */
 export interface Timings {
@@ -15,9 +16,15 @@ export interface Timings {
   occluded: number;
   /** Step 3: cage intersection. */
   covered: number;
-  /** Step 4: connected components, and their areas. */
+  /** Step 4: connected components, and their areas; with `votes` and `depths` what they need. */
   segments: number;
-  /** Step 5: the threshold; 0 after `project`. */
+  /** Step 6: the occluded points that are seen from elsewhere. */
+  secondLook: number;
+  /** Step 7: what lies under the holes of the cage. */
+  holes: number;
+  /** Step 9: UVs per triangle corner. */
+  seams: number;
+  /** Step 5, and writing the answer out to vertices and triangles; 0 after `project`. */
   classify: number;
   /** All of it, from raw arrays to the answer. */
   total: number;
@@ -35,6 +42,12 @@ export interface SegmentStats {
   coveredArea: number;
   /** F = C / E, the share of the exposed area that the cage covers; 0 if nothing is exposed. */
   coverage: number;
+  /** D: C, less where it lies deeper under the cage than what else lies there; C without the option `depths`. */
+  sunkArea: number;
+  /** Of its first vertex, in `target.groups`; 0 if the target has none. */
+  group: number;
+  /** The first of the segments that it is a copy of, maybe itself; itself without the option `depths`. */
+  copyOf: number;
   /** Too little of it is covered: none of it may be painted. `false` until decided. */
   culled: boolean;
 }
@@ -43,6 +56,11 @@ export interface SegmentStats {
 export interface Projected {
   /** 2 per target vertex: its place in the cage's texture, NCZ or not. */
   uvs: Float32Array<ArrayBuffer>;
+  /**
+   * 2 per triangle corner, in the order of `target.indices`, with `seams: 'corner'`; else empty. Those of the vertices, but
+   * where a seam of the cage's texture runs through a triangle. `splitVertices` makes a mesh of them.
+   */
+  cornerUvs: Float32Array<ArrayBuffer>;
   /** 1 per vertex, a `Zone`. After `project` nothing is `Culled` yet. */
   zones: Uint8Array<ArrayBuffer>;
   /** 1 per vertex: the nearest triangle of the cage. */
@@ -59,8 +77,28 @@ export interface Projected {
   peakBytes: number;
 }
 
+/** What of a segment lies nearest to the rim of a hole of the cage. Areas are in squared units of the input. */
+export interface HoleShare {
+  /** A connected component of the cage's open edges. */
+  hole: number;
+  segment: number;
+  /** Of points that the target does not occlude. */
+  exposedArea: number;
+  /** Of those of them that the cage does not cover. */
+  uncoveredArea: number;
+}
+
 /** The part of the answer that does not depend on the threshold; plain data that can be kept, sent or stored. */
 export interface Projection extends Projected {
+  /** The set of rules that it was made by, and that `classify` goes on with. */
+  preset: Preset;
+  /**
+   * 1 per vertex, with `secondLook` or `holes`; else empty. Whether the vertex becomes cosmetic if its segment passes: 0 not, 1
+   * always, 2 and on if the hole of that number less 2 is meant for what fails behind it.
+   */
+  restores: Uint32Array<ArrayBuffer>;
+  /** With `holes`, ordered by hole: what `classify` needs to know of them. */
+  holeShares: HoleShare[];
   /** The target's, 3 per triangle: what `classify` needs to decide per triangle. */
   indices: Uint32Array<ArrayBuffer>;
 }
@@ -69,7 +107,7 @@ export interface Projection extends Projected {
 export interface Classification {
   /** 1 per target vertex, a `Zone`. */
   zones: Uint8Array<ArrayBuffer>;
-  /** 1 per target triangle: 1 if all three corners may be painted. */
+  /** 1 per target triangle: 1 if it may be painted; see the option `partialTriangles`. */
   cosmeticTriangles: Uint8Array<ArrayBuffer>;
   /** 1 per segment, with `culled` decided. */
   segmentStats: SegmentStats[];
@@ -78,7 +116,9 @@ export interface Classification {
 /** Everything about a transfer. */
 export interface TransferResult extends Projected, Classification {}
 
-const statsStride = 4;
+/** Numbers per segment, and per share of a hole, on the way to and from the core. */
+const statsStride = 7;
+const shareStride = 4;
 
 /**
  * Carries the cage's UVs to the target and finds its Non-Cosmetic Zones, the vertices that must not be painted.
@@ -92,149 +132,148 @@ const statsStride = 4;
  * const { uvs, zones } = transfer(cage, target, { threshold: 0.5 });
  */
 export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions): TransferResult {
-  const resolved = resolveOptions('transfer', options);
-  const cageMesh = checkMesh('transfer', 'cage', cage);
-  const targetMesh = checkMesh('transfer', 'target', target);
-  const answer = callCore('transfer', (core) =>
-    core.transfer(cageMesh, targetMesh, resolved.projection, resolved.weldTolerance, resolved.threshold),
-  );
-  check('transfer', answer, cageMesh, targetMesh, resolved);
+  const checked = checkOptions('transfer', options);
+  const [cageMesh, targetMesh] = [checkMesh('transfer', 'cage', cage), checkMesh('transfer', 'target', target)];
+  const { segments, groups } = checked.locks;
+  const isLocked = Object.keys({ ...segments, ...groups }).length > 0;
+  if (!isLocked) {
+    const answer = callCore('transfer', (core) => core.transfer(cageMesh, targetMesh, checked.core));
+    checkAnswer('transfer', answer, cageMesh, targetMesh, checked);
+    return { ...projected(answer, answer.culledSegments), cosmeticTriangles: answer.cosmeticTriangles };
+  }
+  // Which segments there are is known after the projection.
+  const answer = callCore('transfer', (core) => core.project(cageMesh, targetMesh, checked.core));
+  checkAnswer('transfer', answer, cageMesh, targetMesh, checked);
+  const result = projected(answer);
+  const locks = locksOf('transfer', checked.locks, result.segmentStats);
+  const start = performance.now();
+  const decided = callCore('transfer', (core) => core.classify({ ...answer, indices: targetMesh.indices }, checked.core, locks));
+  checkAnswer('transfer', decided, cageMesh, targetMesh, checked);
+  const classify = performance.now() - start;
   return {
-    ...projected(answer, answer.culledSegments),
-    cosmeticTriangles: answer.cosmeticTriangles,
+    ...result,
+    zones: decided.zones,
+    cosmeticTriangles: decided.cosmeticTriangles,
+    segmentStats: segmentStats(answer.segmentStats, decided.culledSegments),
+    timings: { ...result.timings, classify, total: result.timings.total + classify },
   };
 }
 
 /**
- * Does the costly part of `transfer`, which does not depend on the threshold: steps 1 to 4 of the method.
- * Give the result to `classify`, for as many thresholds as you like.
+ * Does the costly part of `transfer`, which does not depend on the threshold: steps 1 to 4 of the method, and what the later
+ * ones need. Give the result to `classify`, for as many thresholds as you like.
  * @throws {CagecastError} as `transfer` does.
  */
 export function project(cage: Mesh, target: Mesh, options?: ProjectOptions): Projection {
-  const resolved = resolveOptions('project', options);
-  const cageMesh = checkMesh('project', 'cage', cage);
-  const targetMesh = checkMesh('project', 'target', target);
-  const answer = callCore('project', (core) => core.project(cageMesh, targetMesh, resolved.projection, resolved.weldTolerance));
-  check('project', answer, cageMesh, targetMesh, resolved);
-  return { ...projected(answer), indices: Uint32Array.from<number>(targetMesh.indices) };
+  const checked = checkOptions('project', options);
+  const [cageMesh, targetMesh] = [checkMesh('project', 'cage', cage), checkMesh('project', 'target', target)];
+  const answer = callCore('project', (core) => core.project(cageMesh, targetMesh, checked.core));
+  checkAnswer('project', answer, cageMesh, targetMesh, checked);
+  return {
+    ...projected(answer),
+    preset: checked.preset,
+    restores: answer.restores,
+    holeShares: holeShares(answer.holeShares),
+    indices: Uint32Array.from<number>(targetMesh.indices),
+  };
 }
 
 /**
  * Decides which segments pass the threshold, and so the zone of every vertex, in microseconds.
- * @throws {CagecastError} `badArgument` if `projection` is not what `project` returned, `badThreshold`.
+ * @throws {CagecastError} `badArgument` if `projection` is not what `project` returned; and for unusable options.
  */
 export function classify(projection: Projection, options?: ClassifyOptions): Classification {
-  const resolved = resolveOptions('classify', options);
-  const stats = checkProjection(projection);
-  const answer = callCore('classify', (core) =>
-    core.classify(projection.zones, projection.segments, stats, projection.indices, resolved.threshold),
-  );
-  check('classify', answer, undefined, undefined, resolved);
+  const whole = checkProjection(projection);
+  const checked = checkOptions('classify', options, projection.preset);
+  const locks = locksOf('classify', checked.locks, projection.segmentStats);
+  const answer = callCore('classify', (core) => core.classify(whole, checked.core, locks));
+  checkAnswer('classify', answer, undefined, undefined, checked);
   return {
     zones: answer.zones,
     cosmeticTriangles: answer.cosmeticTriangles,
-    segmentStats: segmentStats(stats, answer.culledSegments),
+    segmentStats: segmentStats(whole.segmentStats, answer.culledSegments),
   };
 }
 
 function projected(answer: ProjectAnswer, culled?: Uint8Array): Projected {
-  const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, classify = 0, total = 0] = answer.timings;
+  const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, secondLook = 0, holes = 0, seams = 0, classify = 0, total = 0] = answer.timings;
   return {
     uvs: answer.uvs,
+    cornerUvs: answer.cornerUvs,
     zones: answer.zones,
     triangles: answer.triangles,
     distances: answer.distances,
     segments: answer.segments,
     segmentStats: segmentStats(answer.segmentStats, culled),
-    timings: { weld, build, project, occluded, covered, segments, classify, total },
+    timings: { weld, build, project, occluded, covered, segments, secondLook, holes, seams, classify, total },
     peakBytes: answer.peakBytes,
   };
 }
 
 function segmentStats(numbers: Float64Array, culled?: Uint8Array): SegmentStats[] {
   return Array.from({ length: numbers.length / statsStride }, (_, s) => {
-    const [points = 0, area = 0, exposedArea = 0, coveredArea = 0] = numbers.subarray(s * statsStride, (s + 1) * statsStride);
+    const [points = 0, area = 0, exposedArea = 0, coveredArea = 0, sunkArea = 0, group = 0, copyOf = 0] = numbers.subarray(s * statsStride, (s + 1) * statsStride);
     const coverage = exposedArea > 0 ? coveredArea / exposedArea : 0;
-    return { points, area, exposedArea, coveredArea, coverage, culled: culled?.[s] === 1 };
+    return { points, area, exposedArea, coveredArea, coverage, sunkArea, group, copyOf, culled: culled?.[s] === 1 };
+  });
+}
+
+function holeShares(numbers: Float64Array): HoleShare[] {
+  return Array.from({ length: numbers.length / shareStride }, (_, i) => {
+    const [hole = 0, segment = 0, exposedArea = 0, uncoveredArea = 0] = numbers.subarray(i * shareStride, (i + 1) * shareStride);
+    return { hole, segment, exposedArea, uncoveredArea };
   });
 }
 
 /**
  * Checks that `projection` is whole: it is plain data, which may have been stored or sent, and the core trusts it.
- * @returns its `segmentStats` as numbers for the core.
+ * @returns it as the core takes it.
  */
-function checkProjection(projection: Projection): Float64Array {
+function checkProjection(projection: Projection): CoreProjection {
   const wrong = (text: string, at = 0) => new CagecastError('badArgument', `classify: projection${text}; pass what project() returned`, at);
   if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
-  const { zones, segments, segmentStats, indices } = projection;
+  const { zones, segments, segmentStats, restores, holeShares, indices } = projection;
   if (!(zones instanceof Uint8Array)) throw wrong(`.zones is ${show(zones)}, not a Uint8Array`);
   if (!(segments instanceof Uint32Array)) throw wrong(`.segments is ${show(segments)}, not a Uint32Array`);
+  if (!(restores instanceof Uint32Array)) throw wrong(`.restores is ${show(restores)}, not a Uint32Array`);
   if (!(indices instanceof Uint32Array)) throw wrong(`.indices is ${show(indices)}, not a Uint32Array`);
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
+  if (!Array.isArray(holeShares)) throw wrong(`.holeShares is ${show(holeShares)}, not an array`);
   if (zones.length !== segments.length) throw wrong(` has ${zones.length} zones but ${segments.length} segments`);
+  if (restores.length !== 0 && restores.length !== zones.length) throw wrong(` has ${zones.length} zones but ${restores.length} restores`);
   if (indices.length % 3 !== 0) throw wrong(`.indices has ${indices.length} entries, not 3 per triangle`);
+  const isSegment = (s: unknown) => Number.isInteger(s) && (s as number) >= 0 && (s as number) < segmentStats.length;
+
+  const stats = new Float64Array(segmentStats.length * statsStride);
+  segmentStats.forEach((segment, s) => {
+    const { points, area, exposedArea, coveredArea, sunkArea, group, copyOf } = segment ?? {};
+    const row = [points, area, exposedArea, coveredArea, sunkArea, group, copyOf];
+    if (!row.every(Number.isFinite) || !isSegment(copyOf)) throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
+    stats.set(row, s * statsStride);
+  });
+  const shares = new Float64Array(holeShares.length * shareStride);
+  let holes = 0;
+  holeShares.forEach((share, i) => {
+    const { hole, segment, exposedArea, uncoveredArea } = share ?? {};
+    // Holes are numbered and in order; more than there are vertices would only ask for memory.
+    if (!Number.isInteger(hole) || hole < holes - 1 || hole > 2 ** 28 || !isSegment(segment) || !Number.isFinite(exposedArea) || !Number.isFinite(uncoveredArea)) {
+      throw wrong(`.holeShares[${i}] is not { hole, segment, exposedArea, uncoveredArea } in the order of holes`, i);
+    }
+    holes = hole + 1;
+    shares.set([hole, segment, exposedArea, uncoveredArea], i * shareStride);
+  });
+
   for (let v = 0; v < segments.length; ++v) {
     if (segments[v]! >= segmentStats.length) {
       throw wrong(`.segments[${v}] = ${segments[v]} is out of range (${segmentStats.length} segments)`, v);
     }
     if (zones[v]! > 2) throw wrong(`.zones[${v}] = ${zones[v]} is not a zone that project() gives (0..2)`, v);
   }
+  for (let v = 0; v < restores.length; ++v) {
+    if (restores[v]! >= 2 + holes) throw wrong(`.restores[${v}] = ${restores[v]} is out of range (${holes} holes)`, v);
+  }
   for (let i = 0; i < indices.length; ++i) {
     if (indices[i]! >= zones.length) throw wrong(`.indices[${i}] = ${indices[i]} is out of range (${count(zones.length, 'vertex')})`, i);
   }
-  const numbers = new Float64Array(segmentStats.length * statsStride);
-  segmentStats.forEach((stats, s) => {
-    const { points, area, exposedArea, coveredArea } = stats ?? {};
-    const row = [points, area, exposedArea, coveredArea];
-    if (!row.every(Number.isFinite)) throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
-    numbers.set(row, s * statsStride);
-  });
-  return numbers;
-}
-
-/** Throws what the core reports, in words: function, argument, element, value and limit. */
-function check(fn: string, answer: Answer, cage: CheckedMesh | undefined, target: CheckedMesh | undefined, options: ResolvedOptions): void {
-  if (answer.code === 0) return;
-  const code = coreCodes[answer.code - 1] ?? 'internal';
-  if (code === 'outOfMemory') dropInstance();
-  const name = answer.argument === 1 ? 'cage' : 'target';
-  const { at } = answer;
-  throw new CagecastError(code, `${fn}: ${describe(code, at, name, name === 'cage' ? cage : target, options)}`, at);
-}
-
-function describe(code: string, at: number, name: string, mesh: CheckedMesh | undefined, options: ResolvedOptions): string {
-  if (code === 'badThreshold') return `options.threshold = ${options.threshold} is not within 0..1`;
-  if (code === 'badWeldTolerance') return `options.weldTolerance = ${options.weldTolerance} is not within 0..0.01`;
-  if (code === 'outOfMemory') return 'not enough memory for this target and cage';
-  if (mesh === undefined) return `failed (${code})`;
-  const { positions, indices, uvs, groups } = mesh;
-  const vertices = count(positions.length / 3, 'vertex');
-  switch (code) {
-    case 'emptyMesh':
-      return `${name} has no ${positions.length === 0 ? 'vertices' : 'triangles'}; at least one is needed`;
-    case 'positionsNotTriples':
-      return `${name}.positions has ${positions.length} numbers, not 3 per vertex`;
-    case 'indicesNotTriples':
-      return `${name}.indices has ${indices.length} entries, not 3 per triangle`;
-    case 'missingUvs':
-      return `${name}.uvs is missing: the texture is drawn in the cage's UVs, 2 per vertex`;
-    case 'uvCountMismatch':
-      return `${name}.uvs has ${uvs.length} numbers, not 2 for each of ${vertices}`;
-    case 'groupCountMismatch':
-      return `${name}.groups has ${groups.length} entries, not 1 for each of ${vertices}`;
-    case 'indexOutOfRange':
-      return `${name}.indices[${at}] = ${indices[at]} is out of range (${vertices})`;
-    case 'nonFinitePosition':
-      return `${name}.positions[${at}] = ${positions[at]} is not a finite number`;
-    case 'nonFiniteUv':
-      return `${name}.uvs[${at}] = ${uvs[at]} is not a finite number`;
-    case 'noUsableCageTriangle':
-      return 'cage has no triangle with an area';
-    case 'tooLarge':
-      return at < positions.length && positions.length / 3 <= 2 ** 28 && indices.length / 3 <= 2 ** 28
-        ? `${name}.positions[${at}] = ${positions[at]} is out of all proportion (farther from the origin than 1e8 diagonals of the target)`
-        : `${name} has ${vertices} and ${count(indices.length / 3, 'triangle')}, more than ${2 ** 28} of a kind`;
-    default:
-      return `failed (${code})`;
-  }
+  return { zones, segments, segmentStats: stats, restores, holeShares: shares, indices };
 }

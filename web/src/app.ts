@@ -1,10 +1,11 @@
-import { CagecastError, classify, init, type Mesh, type Projection } from 'cagecast'
+import { CagecastError, classify, init, splitVertices, type Lock, type Mesh, type Preset, type Projection, type SplitVertices } from 'cagecast'
 import { setUpDivider } from './compare'
 import { setUpFiles, type Intake } from './files'
 import { loadModel, type Model } from './load'
 import { clearError, element, showError, showNotice, showStatus } from './page'
 import { loadPaint, makeChecker, type Paint } from './paint'
 import { offerPaints, type Choice } from './paints'
+import { PartsTable, type Locks } from './parts'
 import { showCounts, showTimings } from './results'
 import { fetchFile, loadSamples, type Sample } from './samples'
 import { Superseded, TransferClient } from './transfer-client'
@@ -30,12 +31,16 @@ class App {
   readonly #viewer: Viewer | undefined
   readonly #checker = makeChecker()
   readonly #select = element('sample-select', HTMLSelectElement)
+  readonly #preset = element('preset', HTMLSelectElement)
   readonly #threshold = element('threshold', HTMLInputElement)
+  readonly #parts: PartsTable
   readonly #divider: { show(visible: boolean): void }
   #samples: Sample[] = []
   #view: View = { mode: 'compare', split: 0.5, paint: true, zones: false, cage: false }
   #wanted: Wanted = {}
   #shown: (Scene & { projection: Projection }) | undefined
+  /** What was said about parts of the target that is shown. */
+  #locks: Locks = {}
   /** Which sample something belongs to; the visitor's own things to none. */
   readonly #origin = new WeakMap<Model | Paint, Sample>()
   /** The last paint of the visitor's own, to choose from beside the sample's. */
@@ -46,8 +51,13 @@ class App {
     this.#viewer = startViewer()
     this.#divider = setUpDivider((split) => this.#show({ split }))
     this.#setUpView()
+    this.#parts = new PartsTable({
+      onLock: (segments, lock) => this.#onLock(segments, lock),
+      onPoint: (segments) => this.#highlight(segments),
+    })
     setUpFiles((intake) => this.#take(intake))
     this.#select.addEventListener('change', () => this.#openSample(this.#select.value))
+    this.#preset.addEventListener('change', () => this.#onPreset())
     this.#threshold.addEventListener('input', () => this.#onThreshold())
     element('swap', HTMLButtonElement).addEventListener('click', () => this.#swap())
   }
@@ -151,9 +161,12 @@ class App {
       // A sample's paint means nothing on another cage: there the checker takes its place.
       const ofPaint = this.#origin.get(scene.paint)
       if (ofPaint && ofPaint !== this.#origin.get(scene.cage)) scene.paint = this.#checker
-      const same = scene.target === this.#shown?.target && scene.cage === this.#shown.cage
-      const projection = same ? this.#shown!.projection : await this.#project(scene, superseded)
+      const preset = this.#preset.value as Preset
+      const same = scene.target === this.#shown?.target && scene.cage === this.#shown.cage && preset === this.#shown.projection.preset
+      const projection = same ? this.#shown!.projection : await this.#project(scene, preset, superseded)
       if (superseded()) return
+      // Segments are the target's alone: what was said about them holds for another cage and preset too.
+      if (scene.target !== this.#shown?.target) this.#locks = {}
       this.#shown = { ...scene, projection }
       if (same) this.#viewer?.setPaint(scene.paint.texture)
       else this.#showProjection()
@@ -180,10 +193,10 @@ class App {
     return t && c && p ? { target: t, cage: c, paint: p } : undefined
   }
 
-  async #project({ target, cage }: Scene, superseded: () => boolean): Promise<Projection> {
+  async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<Projection> {
     try {
       // The threshold is decided here on the page, the rest in the worker: both start at once.
-      const [projection] = await Promise.all([this.#client.project(cageArrays(cage), targetArrays(target)), init()])
+      const [projection] = await Promise.all([this.#client.project(cageArrays(cage), targetArrays(target), { preset }), init()])
       return projection
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error
@@ -198,20 +211,22 @@ class App {
 
   #showProjection(): void {
     const { target, cage, paint, projection } = this.#shown!
-    this.#viewer?.setTarget(target, projection.uvs, paint.texture)
+    this.#viewer?.setTarget(target, projection.uvs, splitOf(target, projection), paint.texture)
     this.#viewer?.setCage(cage)
+    this.#parts.list(projection.segmentStats, target.mesh.parts, this.#locks)
     const spent = this.#classify()
-    const { timings } = projection
-    showTimings({ ...timings, classify: spent, total: timings.total + spent })
+    const { timings, preset } = projection
+    showTimings({ ...timings, classify: spent, total: timings.total + spent }, preset)
   }
 
-  /** Decides by the threshold as it stands, and returns the milliseconds it took. */
+  /** Decides by the threshold and the locks as they stand, and returns the milliseconds it took. */
   #classify(): number {
     const { projection } = this.#shown!
     const started = performance.now()
-    const classification = classify(projection, { threshold: Number(this.#threshold.value) })
+    const classification = classify(projection, { threshold: Number(this.#threshold.value), locks: { segments: this.#locks } })
     const spent = performance.now() - started
     this.#viewer?.classify(classification)
+    this.#parts.showVerdicts(classification)
     showCounts(classification)
     return spent
   }
@@ -227,6 +242,28 @@ class App {
     const threshold = Number(this.#threshold.value)
     element('threshold-value', HTMLOutputElement).value = threshold.toFixed(2)
     if (this.#shown) this.#classify()
+  }
+
+  #onPreset(): void {
+    // Before the first sample is chosen there is nothing to do again; it will be read with the preset as it is.
+    if (this.#runs > 0) void this.#run()
+  }
+
+  #onLock(segments: readonly number[], lock: Lock): void {
+    for (const segment of segments) this.#locks[segment] = lock
+    if (this.#shown) this.#classify()
+  }
+
+  /** Lights up segments of one part of the target, or none. */
+  #highlight(segments: readonly number[]): void {
+    const [first] = segments
+    if (!this.#shown || first === undefined) return this.#viewer?.highlight(undefined)
+    const { target, projection } = this.#shown
+    const part = target.mesh.parts[projection.segmentStats[first]!.group]!
+    const corners = target.mesh.indices.subarray(3 * part.firstTriangle, 3 * (part.firstTriangle + part.triangleCount))
+    const chosen = new Set(segments)
+    const lit = corners.filter((vertex) => chosen.has(projection.segments[vertex]!)) // the corners of a triangle are of one segment
+    this.#viewer?.highlight(part, lit.map((vertex) => vertex - part.firstVertex))
   }
 
   #askForRest(): void {
@@ -290,6 +327,14 @@ function cageArrays({ mesh: { positions, indices, uvs } }: Model): Mesh {
 
 function targetArrays({ mesh: { positions, indices, groups } }: Model): Mesh {
   return { positions, indices, groups }
+}
+
+/** Splits a target's vertices at the seams of the paint; where the projection has no UVs per corner, nowhere. */
+function splitOf({ mesh }: Model, { cornerUvs, uvs }: Projection): SplitVertices {
+  if (cornerUvs.length > 0) return splitVertices(mesh, cornerUvs)
+  const ofVertices = new Float32Array(2 * mesh.indices.length)
+  mesh.indices.forEach((vertex, corner) => ofVertices.set(uvs.subarray(2 * vertex, 2 * vertex + 2), 2 * corner))
+  return splitVertices(mesh, ofVertices)
 }
 
 /** Without WebGL the page still transfers; it then says why there is no picture. */

@@ -4,12 +4,14 @@ import { Matrix4, Mesh, SkinnedMesh, Vector3, type BufferAttribute, type Interle
 export interface Part {
   /** The mesh these elements were read from. */
   mesh: Mesh
-  /** Its name, for messages. */
+  /** Its name, for people. */
   name: string
   firstVertex: number
   vertexCount: number
   firstTriangle: number
   triangleCount: number
+  /** Whether its winding was turned, as its place in the scene mirrors it. */
+  mirrored: boolean
 }
 
 /** All triangles of a scene as raw arrays in world space, in the shape the transfer takes. */
@@ -38,12 +40,13 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute
  * Reads all triangle meshes below `root`, depth first, into one set of arrays.
  * Vertices keep their number and order; world matrices are applied in double precision and rounded last; the winding of
  * mirrored parts is flipped, so that every triangle keeps its outside.
- * @param root A scene that has not been moved since it was loaded.
+ * @param root   A scene that has not been moved since it was loaded.
+ * @param nameOf What its file calls a mesh, if it does.
  * @throws Error that names the part and the element, where a part cannot be read on its own.
  */
-export function extractMesh(root: Object3D): ExtractedMesh {
+export function extractMesh(root: Object3D, nameOf: (mesh: Mesh) => string | undefined = () => undefined): ExtractedMesh {
   root.updateMatrixWorld(true)
-  const parts = listParts(root)
+  const parts = listParts(root, nameOf)
   const last = parts.at(-1)
   const vertexCount = last ? last.firstVertex + last.vertexCount : 0
   const triangleCount = last ? last.firstTriangle + last.triangleCount : 0
@@ -61,13 +64,13 @@ export function extractMesh(root: Object3D): ExtractedMesh {
   return { positions, indices, groups, parts, ...(hasUvs && { uvs: copyUvs(parts, vertexCount) }) }
 }
 
-function listParts(root: Object3D): Part[] {
+function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): Part[] {
   const parts: Part[] = []
   let firstVertex = 0
   let firstTriangle = 0
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return
-    const name = object.name || object.parent?.name || `part ${parts.length}`
+    const name = nameOf(object) || object.name || object.parent?.name || `part ${parts.length}`
     const { index, attributes } = object.geometry as Mesh['geometry']
     const vertexCount = attributes.position?.count ?? 0
     const cornerCount = index ? index.count : vertexCount
@@ -75,7 +78,8 @@ function listParts(root: Object3D): Part[] {
       throw new Error(`“${name}” has ${cornerCount} triangle corners, which is not a multiple of three`)
     }
     const triangleCount = cornerCount / 3
-    parts.push({ mesh: object, name, firstVertex, vertexCount, firstTriangle, triangleCount })
+    const mirrored = matrixOf(object).determinant() < 0
+    parts.push({ mesh: object, name, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored })
     firstVertex += vertexCount
     firstTriangle += triangleCount
   })
@@ -96,9 +100,8 @@ function copyPositions({ mesh, firstVertex, vertexCount }: Part, out: Float32Arr
   }
 }
 
-function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, triangleCount }: Part, out: Uint32Array): void {
+function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored }: Part, out: Uint32Array): void {
   const { index } = mesh.geometry
-  const mirrored = matrixOf(mesh).determinant() < 0
   const base = 3 * firstTriangle
   for (let corner = 0; corner < 3 * triangleCount; corner++) {
     const vertex = index ? index.getX(corner) : corner
@@ -108,11 +111,15 @@ function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, tria
     }
     out[base + corner] = firstVertex + vertex
   }
-  if (!mirrored) return
-  for (let at = base; at < base + 3 * triangleCount; at += 3) {
-    const second = out[at + 1]!
-    out[at + 1] = out[at + 2]!
-    out[at + 2] = second
+  if (mirrored) turnWinding(out.subarray(base, base + 3 * triangleCount))
+}
+
+/** Swaps the last two corners of every triangle. */
+export function turnWinding(indices: Uint32Array): void {
+  for (let at = 0; at < indices.length; at += 3) {
+    const second = indices[at + 1]!
+    indices[at + 1] = indices[at + 2]!
+    indices[at + 2] = second
   }
 }
 

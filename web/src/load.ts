@@ -1,4 +1,4 @@
-import { Group, LoadingManager, type Object3D } from 'three'
+import { Group, LoadingManager, type Mesh, type Object3D } from 'three'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
@@ -28,8 +28,9 @@ export async function loadModel(file: File, companions: readonly File[] = []): P
     const loader = new GLTFLoader(manager)
     const release = await addDecoders(loader, manager, head.extensions)
     try {
-      const scene = await sceneOf(await loader.parseAsync(bytes, ''))
-      return { name: file.name, scene, mesh: extractMesh(scene) }
+      const gltf = await loader.parseAsync(bytes, '')
+      const scene = await sceneOf(gltf)
+      return { name: file.name, scene, mesh: extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
     } finally {
       release()
     }
@@ -63,6 +64,18 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
     object.matrix.fromArray(matrix)
   })
   return root
+}
+
+/** The name of a mesh's node as the file has it, with its material's where a node has several: as the command line says it. */
+function nameOf(mesh: Mesh, { parser }: GLTF): string | undefined {
+  const { nodes = [], meshes = [], materials = [] } = parser.json
+  const place = parser.associations.get(mesh)
+  const primitives: { material?: number }[] = meshes[place?.meshes ?? -1]?.primitives ?? []
+  // The loader makes one object of a node and its mesh, unless that has several primitives.
+  const node = nodes[(place?.nodes ?? (mesh.parent && parser.associations.get(mesh.parent)?.nodes)) ?? -1]
+  const name: string | undefined = node?.name ?? meshes[place?.meshes ?? -1]?.name
+  const material: string | undefined = materials[primitives[place?.primitives ?? -1]?.material ?? -1]?.name
+  return name !== undefined && material !== undefined && material !== name && primitives.length > 1 ? `${name}/${material}` : name
 }
 
 function findCompanion(uri: string, companions: readonly File[]): File {

@@ -1,4 +1,4 @@
-import type { Classification } from 'cagecast'
+import type { Classification, SplitVertices } from 'cagecast'
 import {
   BufferAttribute,
   BufferGeometry,
@@ -13,7 +13,7 @@ import {
   type Material,
   type Texture,
 } from 'three'
-import type { Part } from './extract'
+import { turnWinding, type ExtractedMesh, type Part } from './extract'
 
 /** What lies over the target: the paint alone, everywhere, or what the filter leaves of it. */
 export type Look = 'naive' | 'filtered'
@@ -37,19 +37,21 @@ const kHidden = 3
 const kClay = 7
 
 /**
- * The paint and the zones over a target, one mesh for each of its parts. They share its vertices, skin and morphs, and
- * differ in their UVs and in which triangles they draw.
+ * The paint and the zones over a target: over each of its parts two meshes, one for each look, with the part's skin and
+ * morphs. The naive one shares the part's vertices; the other has them split wherever a seam of the paint runs.
  */
 export class Overlay {
   readonly #layers: Layer[]
 
   /**
    * Lays nothing yet: call `classify`.
-   * @param parts The target's, in the order they were extracted.
-   * @param uvs   2 per target vertex, in the paint.
+   * @param target The target.
+   * @param uvs    2 per target vertex, in the paint: for the naive look.
+   * @param split  The target's vertices, split at the seams of the paint.
    */
-  constructor(parts: readonly Part[], uvs: Float32Array, paint: Texture) {
-    this.#layers = parts.filter((part) => part.triangleCount > 0).map((part) => new Layer(part, uvs, paint))
+  constructor(target: ExtractedMesh, uvs: Float32Array, split: SplitVertices, paint: Texture) {
+    const parts = target.parts.filter((part) => part.triangleCount > 0)
+    this.#layers = parts.map((part) => new Layer(part, target.indices, uvs, split, paint))
   }
 
   /** Chooses which triangles are painted, and which are which zone. */
@@ -73,47 +75,60 @@ export class Overlay {
 
 class Layer {
   readonly #part: Part
-  readonly #mesh: Mesh
-  readonly #geometry = new BufferGeometry()
+  /** The part's corners as vertices of the target, and as vertices of the filtered mesh. */
+  readonly #vertices: Uint32Array
+  readonly #corners: Uint32Array
+  readonly #naive: Mesh
+  readonly #filtered: Mesh
   readonly #paint: MeshStandardMaterial
   readonly #nothing = new MeshBasicMaterial({ visible: false })
   readonly #reasons = kReasons.map((zone) => reasonMaterial(kReasonColors[zone]))
   readonly #clay = onSurface(new MeshStandardMaterial({ color: kClayColor, roughness: 0.85 }))
   readonly #hidden = kReasons.map((zone) => hiddenMaterial(kReasonColors[zone]))
 
-  constructor(part: Part, uvs: Float32Array, paint: Texture) {
+  constructor(part: Part, indices: Uint32Array, uvs: Float32Array, split: SplitVertices, paint: Texture) {
     this.#part = part
-    const { mesh, firstVertex, vertexCount, triangleCount } = part
-    const source = mesh.geometry
-    for (const [name, attribute] of Object.entries(source.attributes)) this.#geometry.setAttribute(name, attribute)
-    this.#geometry.morphAttributes = source.morphAttributes
-    this.#geometry.morphTargetsRelative = source.morphTargetsRelative
-    this.#geometry.boundingSphere = source.boundingSphere
-    this.#geometry.setAttribute(kUvName, new BufferAttribute(uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2))
-    this.#geometry.setIndex(new BufferAttribute(new Uint32Array(3 * triangleCount), 1))
+    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = part
+    const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)]
+    this.#vertices = indices.subarray(from, to)
+
+    // Split vertices are in the order of their use: those of a part follow each other.
+    const first = split.indices[from]!
+    this.#corners = split.indices.slice(from, to).map((vertex) => vertex - first)
+    const count = 1 + this.#corners.reduce((most, vertex) => Math.max(most, vertex), 0)
+    const sources = split.sources.slice(first, first + count).map((vertex) => vertex - firstVertex)
+    // The mesh hangs below the part, where the renderer turns the winding of what is mirrored by itself.
+    if (mirrored) turnWinding(this.#corners)
 
     this.#paint = paintMaterial([mesh.material].flat()[0]!)
     this.setPaint(paint)
-    this.#mesh = overlayMesh(mesh, this.#geometry)
-    mesh.add(this.#mesh)
+    const naive = shareVertices(mesh.geometry)
+    naive.setAttribute(kUvName, new BufferAttribute(uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2))
+    this.#naive = overlayMesh(mesh, naive)
+    this.#naive.material = this.#paint
+
+    const filtered = copyVertices(mesh.geometry, sources)
+    filtered.setAttribute(kUvName, new BufferAttribute(split.uvs.slice(2 * first, 2 * (first + count)), 2))
+    filtered.setIndex(new BufferAttribute(new Uint32Array(3 * triangleCount), 1))
+    this.#filtered = overlayMesh(mesh, filtered)
+    mesh.add(this.#naive, this.#filtered)
   }
 
   classify(classification: Classification): void {
-    const { mesh, triangleCount } = this.#part
-    const source = mesh.geometry.index
-    const index = this.#geometry.index!
+    const { geometry } = this.#filtered
+    const index = geometry.index!
     const reasons = this.#reasonsOf(classification)
 
-    this.#geometry.clearGroups()
+    geometry.clearGroups()
     let filled = 0
     for (const zone of kZones) {
       const start = filled
-      for (let triangle = 0; triangle < triangleCount; triangle++) {
+      for (let triangle = 0; triangle < reasons.length; triangle++) {
         if (reasons[triangle] !== zone) continue
-        for (let corner = 3 * triangle; corner < 3 * triangle + 3; corner++) index.array[filled++] = source ? source.array[corner]! : corner
+        for (let corner = 3 * triangle; corner < 3 * triangle + 3; corner++) index.array[filled++] = this.#corners[corner]!
       }
       if (filled === start) continue
-      const draw = (material: number): void => this.#geometry.addGroup(start, filled - start, material)
+      const draw = (material: number): void => geometry.addGroup(start, filled - start, material)
       draw(zone)
       if (zone === 0) draw(kClay)
       // Drawn a second time where something lies in front of it: most zones are inside.
@@ -124,9 +139,8 @@ class Layer {
 
   /** 1 per triangle: 0 where it may be painted, else the zone, of those of its corners, that was decided last. */
   #reasonsOf({ zones, cosmeticTriangles }: Classification): Uint8Array {
-    const { mesh, firstVertex, firstTriangle, triangleCount } = this.#part
-    const source = mesh.geometry.index
-    const zoneAt = (corner: number): number => zones[firstVertex + (source ? source.array[corner]! : corner)]!
+    const { firstTriangle, triangleCount } = this.#part
+    const zoneAt = (corner: number): number => zones[this.#vertices[corner]!]!
     const reasons = new Uint8Array(triangleCount)
     for (let triangle = 0; triangle < triangleCount; triangle++) {
       if (cosmeticTriangles[firstTriangle + triangle]) continue
@@ -141,22 +155,41 @@ class Layer {
   }
 
   show(look: Look, paint: boolean, zones: boolean): void {
-    const painted = paint ? this.#paint : this.#nothing
+    this.#naive.visible = look === 'naive' && paint
+    this.#filtered.visible = look === 'filtered' && (paint || zones)
     // A group whose material is missing here is not drawn.
-    if (look === 'naive') this.#mesh.material = [painted, painted, painted, painted]
-    else if (zones) this.#mesh.material = [this.#nothing, ...this.#reasons, ...this.#hidden, this.#clay]
-    else this.#mesh.material = [painted]
+    this.#filtered.material = zones ? [this.#nothing, ...this.#reasons, ...this.#hidden, this.#clay] : [this.#paint]
   }
 
   dispose(): void {
-    this.#mesh.removeFromParent()
-    this.#geometry.dispose()
+    for (const mesh of [this.#naive, this.#filtered]) {
+      mesh.removeFromParent()
+      mesh.geometry.dispose()
+    }
     for (const material of [this.#paint, this.#nothing, this.#clay, ...this.#reasons, ...this.#hidden]) material.dispose()
   }
 }
 
+/** A geometry of the same vertices, morphs and triangles, to which more can be added. */
+export function shareVertices(source: BufferGeometry): BufferGeometry {
+  const geometry = new BufferGeometry()
+  for (const [name, attribute] of Object.entries(source.attributes)) geometry.setAttribute(name, attribute)
+  geometry.morphAttributes = source.morphAttributes
+  geometry.morphTargetsRelative = source.morphTargetsRelative
+  geometry.boundingSphere = source.boundingSphere
+  geometry.setIndex(source.index)
+  return geometry
+}
+
+/** A geometry of copies of vertices, with all their attributes and morphs. @param sources 1 per copy: the vertex it is of. */
+function copyVertices(source: BufferGeometry, sources: Uint32Array): BufferGeometry {
+  const copy = shareVertices(source).setIndex(new BufferAttribute(sources, 1)).toNonIndexed()
+  copy.boundingSphere = source.boundingSphere
+  return copy
+}
+
 /** Makes a mesh that moves, bends and morphs as `base` does. */
-function overlayMesh(base: Mesh, geometry: BufferGeometry): Mesh {
+export function overlayMesh(base: Mesh, geometry: BufferGeometry): Mesh {
   let mesh: Mesh
   if (base instanceof SkinnedMesh) {
     const skinned = new SkinnedMesh(geometry)
@@ -205,7 +238,7 @@ function hiddenMaterial(color: string): Material {
 }
 
 /** Lets a material lie on the surface it shares its vertices with. */
-function onSurface<M extends Material>(material: M): M {
+export function onSurface<M extends Material>(material: M): M {
   material.transparent = true
   material.depthWrite = false
   material.depthFunc = LessEqualDepth

@@ -1,8 +1,21 @@
-import type { Classification, Timings } from 'cagecast'
+import type { Classification, Preset, Timings } from 'cagecast'
 import { announce, element } from './page'
 
 const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const
-const kSteps = ['weld', 'build', 'project', 'occluded', 'covered', 'segments', 'classify'] as const
+/** What each step is called. */
+const kSteps = {
+  weld: 'weld',
+  build: 'build',
+  project: 'project',
+  occluded: 'occluded',
+  covered: 'covered',
+  segments: 'segments',
+  secondLook: 'look again',
+  holes: 'holes',
+  seams: 'seams',
+  classify: 'classify',
+} as const
+const kBeyondPaper: readonly string[] = ['secondLook', 'holes', 'seams']
 
 /** Writes how many vertices fall into each zone. */
 export function showCounts({ zones, segmentStats }: Classification): void {
@@ -21,16 +34,17 @@ export function showCounts({ zones, segmentStats }: Classification): void {
   )
 }
 
-/** Writes how long the transfer took, step by step. */
-export function showTimings(timings: Timings): void {
+/** Writes how long the transfer took, step by step, as far as the preset takes them. */
+export function showTimings(timings: Timings, preset: Preset): void {
   element('time-total', HTMLElement).textContent = round(timings.total)
-  const longest = Math.max(...kSteps.map((step) => timings[step]), Number.MIN_VALUE)
+  const steps = (Object.keys(kSteps) as (keyof typeof kSteps)[]).filter((step) => preset !== 'paper' || !kBeyondPaper.includes(step))
+  const longest = Math.max(...steps.map((step) => timings[step]), Number.MIN_VALUE)
   element('timings', HTMLElement).replaceChildren(
-    ...kSteps.map((step) => {
+    ...steps.map((step) => {
       const row = document.createElement('div')
       const name = document.createElement('dt')
       const time = document.createElement('dd')
-      name.textContent = step
+      name.textContent = kSteps[step]
       time.textContent = round(timings[step])
       row.style.setProperty('--share', String(timings[step] / longest))
       row.append(name, time)

@@ -1,4 +1,4 @@
-import { CagecastError, type Mesh, type Projection } from 'cagecast'
+import { CagecastError, type Mesh, type Projection, type ProjectOptions } from 'cagecast'
 import type { Reply, Request } from './transfer-messages'
 
 /** A request that a later one made pointless. Not a failure: nothing is to be told. */
@@ -14,12 +14,12 @@ export class TransferClient {
   #pending: { id: number; resolve(projection: Projection): void; reject(error: Error): void } | undefined
 
   /** Finds each target vertex's place on the cage. @throws CagecastError, or Superseded if another request came. */
-  project(cage: Mesh, target: Mesh): Promise<Projection> {
+  project(cage: Mesh, target: Mesh, options: ProjectOptions): Promise<Projection> {
     this.cancel()
     return new Promise((resolve, reject) => {
       const id = ++this.#lastId
       this.#pending = { id, resolve, reject }
-      this.#worker.postMessage({ id, cage, target } satisfies Request)
+      this.#worker.postMessage({ id, cage, target, options } satisfies Request)
     })
   }
 

@@ -3,12 +3,12 @@ import type { Reply, Request } from './transfer-messages'
 
 init().catch(() => {}) // begun before the first request; told with it
 
-addEventListener('message', async ({ data: { id, cage, target } }: MessageEvent<Request>) => {
+addEventListener('message', async ({ data: { id, cage, target, options } }: MessageEvent<Request>) => {
   try {
     await init()
-    const projection = project(cage, target)
-    const { uvs, zones, triangles, distances, segments, indices } = projection
-    const transfer = [uvs, zones, triangles, distances, segments, indices].map((array) => array.buffer)
+    const projection = project(cage, target, options)
+    const arrays = Object.values(projection).filter((value): value is ArrayBufferView<ArrayBuffer> => ArrayBuffer.isView(value))
+    const transfer = arrays.map((array) => array.buffer)
     postMessage({ id, projection } satisfies Reply, { transfer })
   } catch (error) {
     const code = error instanceof CagecastError ? error.code : 'internal'

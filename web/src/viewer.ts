@@ -1,7 +1,9 @@
-import type { Classification } from 'cagecast'
+import type { Classification, SplitVertices } from 'cagecast'
 import { Box3, MathUtils, Mesh, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Spherical, Vector3, WebGLRenderer, type Texture } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { CageLines } from './cage-lines'
+import type { Part } from './extract'
+import { Highlight } from './highlight'
 import { disposeModel, type Model } from './load'
 import { Overlay, type Look } from './overlay'
 import { Studio } from './studio'
@@ -36,6 +38,7 @@ export class Viewer {
   #model: Model | undefined
   #overlay: Overlay | undefined
   #cage: CageLines | undefined
+  #highlight: Highlight | undefined
   #paint: Texture | undefined
   #frame = 0
   #stale = true
@@ -75,13 +78,23 @@ export class Viewer {
 
   /**
    * Shows another target; call `classify` for its zones. The one before it is freed, unless it is the same.
-   * @param uvs 2 per vertex, in the paint.
+   * @param uvs   2 per vertex, in the paint.
+   * @param split The vertices, split at the seams of the paint.
    */
-  setTarget(model: Model, uvs: Float32Array, paint: Texture): void {
+  setTarget(model: Model, uvs: Float32Array, split: SplitVertices, paint: Texture): void {
+    this.highlight(undefined)
     this.#overlay?.dispose()
     this.#exchange(paint)
     if (model !== this.#model) this.#place(model)
-    this.#overlay = new Overlay(model.mesh.parts, uvs, paint)
+    this.#overlay = new Overlay(model.mesh, uvs, split, paint)
+    this.#invalidate()
+  }
+
+  /** Lights up triangles of one part of the target, in place of those before. @param vertices 3 per triangle, of the part's own. */
+  highlight(part: Part | undefined, vertices = new Uint32Array(0)): void {
+    if (!part && !this.#highlight) return
+    this.#highlight?.dispose()
+    this.#highlight = part && new Highlight(part, vertices)
     this.#invalidate()
   }
 

@@ -23,6 +23,7 @@ enum class Code : std::uint8_t {
   missingUvs,            ///< The cage has no UVs.
   uvCountMismatch,       ///< UVs are not two per vertex.
   groupCountMismatch,    ///< Groups are not one per vertex.
+  cornerUvCountMismatch, ///< UVs per corner are not two per index.
   indexOutOfRange,       ///< `at` is the place in `indices`.
   nonFinitePosition,     ///< `at` is the place in `positions`.
   nonFiniteUv,           ///< `at` is the place in `uvs`.
@@ -31,6 +32,12 @@ enum class Code : std::uint8_t {
                          ///< all proportion to the target (`at` is the place in `positions`).
   badThreshold,          ///< The threshold is not within 0..1.
   badWeldTolerance,      ///< The weld tolerance is not within 0..0.01.
+  badOcclusionReach,     ///< The occlusion reach is less than 0, or not a number.
+  badPokeThrough,        ///< The poke-through distance is not within 0..1.
+  badMinCovered,         ///< The least covered share of a segment is not within 0..1.
+  badMinOfAll,           ///< The least share of all covered area is not within 0..1.
+  badMaxUncovered,       ///< The most that may be uncovered is not within 0..1.
+  badLocks,              ///< Locks are given, but not one per segment; `at` says how many there are.
   outOfMemory,           ///< The work or its result does not fit into memory; nothing was computed.
 };
 

@@ -1,9 +1,9 @@
 import { inspect, unfitFrom, usableFrom, type Inspection, type Verdict } from '../inspect/index.js';
-import type { TransferOptions } from '../index.js';
 import { counted } from '../inspect/finding.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import { diagonal } from '../gltf/overlay.js';
 import { inspectionPage } from './inspect-page.js';
+import { effectiveOptions, type EffectiveOptions, type Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { run, type Run } from './run.js';
@@ -16,7 +16,7 @@ export interface InspectCommand {
   cage: string;
   json: boolean;
   html?: string | undefined;
-  options: Required<Pick<TransferOptions, 'preset' | 'threshold' | 'weldTolerance'>>;
+  rules: Rules;
 }
 
 /** What it prints as JSON: the inspection, and what it was made of. */
@@ -24,7 +24,7 @@ export interface InspectionReport extends Inspection {
   versions: { cagecast: string; node: string };
   target: { file: string; vertices: number; triangles: number; points: number; diagonal: number };
   cage: { file: string; vertices: number; triangles: number };
-  options: InspectCommand['options'];
+  options: EffectiveOptions;
   /** Vertices of the target in each zone. */
   counts: PerZone;
   /** Share of the target's area in each zone. */
@@ -37,7 +37,7 @@ export interface InspectionReport extends Inspection {
  * @throws {InputError} that names the file at fault.
  */
 export async function inspectCommand(command: InspectCommand, progress: Progress): Promise<{ text: string; verdict: Verdict }> {
-  const done = await run(command.target, command.cage, command.options, progress);
+  const done = await run(command.target, command.cage, command.rules, progress);
   progress.step('inspecting');
   const report = makeReport(command, done);
   if (command.html !== undefined) {
@@ -47,7 +47,7 @@ export async function inspectCommand(command: InspectCommand, progress: Progress
   return { text: command.json ? JSON.stringify(report, null, 2) : describe(report, command.html), verdict: report.verdict };
 }
 
-function makeReport({ target: targetFile, cage: cageFile, options }: InspectCommand, { target, cage, result }: Run): InspectionReport {
+function makeReport({ target: targetFile, cage: cageFile, rules }: InspectCommand, { target, cage, options, result }: Run): InspectionReport {
   const { mesh, parts } = target;
   const areas = perZone(result.zones, vertexAreas(mesh));
   const total = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled || 1;
@@ -62,7 +62,7 @@ function makeReport({ target: targetFile, cage: cageFile, options }: InspectComm
       diagonal: diagonal(mesh.positions),
     },
     cage: { file: cageFile, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
-    options,
+    options: effectiveOptions(rules),
     counts: perZone(result.zones),
     coverage: { cosmetic: areas.cosmetic / total, occluded: areas.occluded / total, uncovered: areas.uncovered / total, culled: areas.culled / total },
   };

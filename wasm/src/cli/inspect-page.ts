@@ -32,7 +32,7 @@ const views: readonly { name: string; view: View }[] = [
 /** Writes an inspection as a page of its own, with pictures of zones, fit and UVs; it needs nothing else. */
 export function inspectionPage(report: InspectionReport, { target, cage, result }: Run): string {
   const { verdict, findings, holes, segments, placement, uv, options } = report;
-  const scene = sceneOf(cage.mesh, target.mesh, result, options.threshold ?? 0.5, target.parts);
+  const scene = sceneOf(cage.mesh, target.mesh, result, options.threshold, target.parts);
   const title = text(`${report.cage.file} on ${report.target.file}`);
   const mark = (weight: number): string => (weight >= unfitFrom ? 'unfit' : weight >= usableFrom ? 'usable' : 'good');
   return `<!doctype html>
@@ -57,7 +57,7 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
   .key:first-child { margin-left: 0; }
 </style>
 <h1><span class="verdict ${verdict}">${verdict}</span> ${title}</h1>
-<p>${integer(report.target.triangles)} triangles under a cage of ${integer(report.cage.triangles)}; preset ${text(options.preset ?? '')}, threshold ${options.threshold}. Cagecast ${text(report.versions.cagecast)}.</p>
+<p>${integer(report.target.triangles)} triangles under a cage of ${integer(report.cage.triangles)}; preset ${text(options.preset)}, threshold ${options.threshold}. Cagecast ${text(report.versions.cagecast)}.</p>
 ${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<li><i class="${mark(weight)}"></i>${text(sentence)}.<small>${text(advice)}</small></li>`).join('')}</ol>` : '<p>Nothing to find fault with.</p>'}
 <h2>Zones</h2>
 <p>${(['cosmetic', 'occluded', 'uncovered', 'culled'] as const).map((zone, z) => `<span class="key" style="background:rgb(${zoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>

@@ -1,8 +1,9 @@
 import { resolve } from 'node:path';
 import { Command, CommanderError, InvalidArgumentError, Option } from 'commander';
-import { CagecastError } from '../index.js';
+import { CagecastError, type Preset, type PresetOptions } from '../index.js';
 import { InputError, firstLine } from '../gltf/input-error.js';
 import { inspectCommand } from './inspect-command.js';
+import type { Rules } from './options.js';
 import { Progress } from './progress.js';
 import { transferCommand } from './transfer-command.js';
 
@@ -28,24 +29,34 @@ function endingIn(ending: string): (text: string) => string {
   };
 }
 
-interface CommonFlags {
+interface CommonFlags extends Partial<Pick<PresetOptions, 'threshold' | 'seams' | 'weldTolerance' | 'occlusionReach' | 'pokeThrough' | 'minCovered'>> {
   cage: string;
-  threshold: number;
-  weldTolerance: number;
-  preset: 'paper';
+  preset: Preset;
+  keep: string[];
+  exclude: string[];
 }
 
 function common(command: Command): Command {
+  const oneMore = (name: string, before: string[]) => [...before, name];
   return command
     .argument('<TARGET>', 'GLB or glTF that receives the texture')
     .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it needs UVs')
-    .addOption(new Option('--threshold <SHARE>', 'a segment is painted if at least this share of its exposed area is covered').default(0.5).argParser(numberWithin(0, 1)))
-    .addOption(new Option('--preset <NAME>', 'the set of rules').choices(['paper']).default('paper'))
-    .addOption(new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").default(0).argParser(numberWithin(0, 0.01)))
+    .addOption(new Option('--preset <NAME>', 'the set of rules; the options below change single ones').choices(['default', 'paper']).default('default'))
+    .addOption(new Option('--threshold <SHARE>', 'a segment is painted if at least this share of its exposed area is covered').argParser(numberWithin(0, 1)))
+    .addOption(new Option('--seams <WHERE>', 'let no triangle stretch across seams of the texture (corner), or do not split vertices (vertex)').choices(['corner', 'vertex']))
+    .addOption(new Option('--keep <NAME>', 'paint parts of this node or material, * for any text, whatever their areas; may be repeated').default([], '').argParser(oneMore))
+    .addOption(new Option('--exclude <NAME>', 'never paint parts of this node or material; may be repeated').default([], '').argParser(oneMore))
+    .addOption(new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").argParser(numberWithin(0, 0.01)))
+    .addOption(new Option('--occlusion-reach <SHARE>', 'the target hides a point only up to this share of the diagonal beyond the cage').argParser(numberWithin(0, Infinity)))
+    .addOption(new Option('--poke-through <SHARE>', 'what is up to this share of the diagonal outside the cage is covered').argParser(numberWithin(0, 1)))
+    .addOption(new Option('--min-covered <SHARE>', "the least share of a segment's area that must be covered").argParser(numberWithin(0, 1)))
     .allowExcessArguments(false);
 }
 
-const optionsOf = ({ threshold, weldTolerance, preset }: CommonFlags) => ({ preset, threshold, weldTolerance });
+function rulesOf({ preset, keep, exclude, threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered }: CommonFlags): Rules {
+  const given = Object.entries({ threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered }).filter(([, value]) => value !== undefined);
+  return { preset, keep, exclude, single: Object.fromEntries(given) };
+}
 
 const program = new Command('cagecast')
   .description('Carries a texture drawn once for a cage onto any mesh, and keeps it off what must not be painted.')
@@ -74,11 +85,13 @@ common(program.command('transfer'))
     'after',
     `
 _NCZ is 0 for a vertex that may be painted, else the reason why not: 1 the target lies over it, 2 the cage has a hole
-over it, 3 too little of its segment is covered.
+over it, 3 too little of its segment is covered. Where triangles that share a vertex have different UVs there, copies of the
+vertex are added after those that there are, with all that belongs to it; --seams vertex does not.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
-  cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json`,
+  cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
+  cagecast transfer body.glb --cage cage.glb --keep skin --exclude 'eye*' -o painted.glb`,
   )
   .action(async (target: string, flags: CommonFlags & { texture?: string; output?: string; report?: string }, command: Command) => {
     const { cage, texture, output, report } = flags;
@@ -87,7 +100,7 @@ Examples:
     const outputs = [output, report].filter((path) => path !== undefined).map((path) => resolve(path));
     const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
     if (clash !== undefined) command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
-    const text = await transferCommand({ target, cage, texture, output, report, options: optionsOf(flags) }, progress);
+    const text = await transferCommand({ target, cage, texture, output, report, rules: rulesOf(flags) }, progress);
     progress.clear();
     console.log(text);
   });
@@ -112,7 +125,7 @@ Examples:
     if (html !== undefined && [target, cage].some((path) => resolve(path) === resolve(html))) {
       command.error(`${resolve(html)} would be written over another file of this command`, { exitCode: wrongUsage });
     }
-    const { text, verdict } = await inspectCommand({ target, cage, json, html, options: optionsOf(flags) }, progress);
+    const { text, verdict } = await inspectCommand({ target, cage, json, html, rules: rulesOf(flags) }, progress);
     progress.clear();
     console.log(text);
     if (verdict === 'unfit') process.exitCode = unfit;

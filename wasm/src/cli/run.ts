@@ -2,6 +2,7 @@ import { CagecastError, init, transfer, type TransferOptions, type TransferResul
 import { extract, partOf, placeOf, type Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { readGltf, type GltfFile } from '../gltf/read.js';
+import { transferOptions, type Rules } from './options.js';
 import type { Progress } from './progress.js';
 
 /** Two files, read and transferred. */
@@ -10,6 +11,8 @@ export interface Run {
   target: Extracted;
   cageFile: GltfFile;
   cage: Extracted;
+  /** What `transfer` was called with. */
+  options: TransferOptions;
   result: TransferResult;
 }
 
@@ -17,10 +20,11 @@ export interface Run {
  * Reads target and cage and runs the transfer.
  * @throws {InputError} that names the file at fault.
  */
-export async function run(targetPath: string, cagePath: string, options: TransferOptions, progress: Progress): Promise<Run> {
+export async function run(targetPath: string, cagePath: string, rules: Rules, progress: Progress): Promise<Run> {
   progress.step(`reading ${targetPath}`);
   const targetFile = await readGltf(targetPath);
   const target = usable(targetFile, extract(targetFile));
+  const options = optionsFor(targetFile, target, rules);
   progress.step(`reading ${cagePath}`);
   const cageFile = await readGltf(cagePath);
   const cage = usable(cageFile, extract(cageFile));
@@ -32,9 +36,17 @@ export async function run(targetPath: string, cagePath: string, options: Transfe
   progress.step(`transferring to ${vertices.toLocaleString('en')} vertices`);
   await init();
   try {
-    return { targetFile, target, cageFile, cage, result: transfer(cage.mesh, target.mesh, options) };
+    return { targetFile, target, cageFile, cage, options, result: transfer(cage.mesh, target.mesh, options) };
   } catch (error) {
     throw error instanceof CagecastError ? inFile(error, targetFile, target, cageFile, cage) : error;
+  }
+}
+
+function optionsFor({ path }: GltfFile, target: Extracted, rules: Rules): TransferOptions {
+  try {
+    return transferOptions(rules, target);
+  } catch (error) {
+    throw error instanceof InputError ? error.in(path) : error;
   }
 }
 

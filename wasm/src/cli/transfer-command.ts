@@ -1,5 +1,4 @@
 import { basename } from 'node:path';
-import type { TransferOptions } from '../index.js';
 import { placeOf } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { readBytes } from '../gltf/read.js';
@@ -7,6 +6,7 @@ import { diagonal, paintOf, zoneAttribute, type Paint } from '../gltf/overlay.js
 import { writeTransfer, type Added } from '../gltf/write.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import { perZone, type PerZone } from './zones.js';
+import { effectiveOptions, type EffectiveOptions, type Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { run, type Run } from './run.js';
@@ -19,7 +19,7 @@ export interface TransferCommand {
   texture?: string | undefined;
   output?: string | undefined;
   report?: string | undefined;
-  options: Required<Pick<TransferOptions, 'preset' | 'threshold' | 'weldTolerance'>>;
+  rules: Rules;
 }
 
 /**
@@ -29,7 +29,7 @@ export interface TransferCommand {
  */
 export async function transferCommand(command: TransferCommand, progress: Progress): Promise<string> {
   const paint = command.texture === undefined ? undefined : await readPaint(command.texture);
-  const done = await run(command.target, command.cage, command.options, progress);
+  const done = await run(command.target, command.cage, command.rules, progress);
   let added: Added[] | undefined;
   const files: { path: string; data: Uint8Array | string }[] = [];
   if (command.output !== undefined) {
@@ -61,16 +61,19 @@ export interface Report {
   cage: { file: string; vertices: number; triangles: number };
   texture: string | null;
   output: string | null;
-  options: TransferCommand['options'];
+  options: EffectiveOptions;
   /** Vertices of the target in each zone. */
   counts: PerZone;
   /** Area of the target in each zone: a third of each triangle for each of its corners. */
   areas: PerZone & { total: number };
   triangles: { total: number; cosmetic: number };
-  /** E, C and F of every connected component, in the order of their first vertices. */
-  segments: { part: string; vertices: number; points: number; area: number; exposedArea: number; coveredArea: number; coverage: number; culled: boolean }[];
-  /** Every primitive of every node, in scene order. `uvSet` is the attribute added, `null` without output. */
-  parts: { name: string; place: string; vertices: number; triangles: number; counts: PerZone; uvSet: string | null; overlayTriangles: number }[];
+  /** A, E, C, F and D of every connected component, in the order of their first vertices. */
+  segments: { part: string; vertices: number; points: number; area: number; exposedArea: number; coveredArea: number; coverage: number; sunkArea: number; culled: boolean }[];
+  /**
+   * Every primitive of every node, in scene order. Without output `uvSet`, the attribute added, is `null`; so is
+   * `splitVertices`, how many vertices were added because the corners that shared one have different UVs.
+   */
+  parts: { name: string; place: string; vertices: number; triangles: number; counts: PerZone; uvSet: string | null; overlayTriangles: number; splitVertices: number | null }[];
   /** Milliseconds of CPU time. */
   timings: Run['result']['timings'];
   peakBytes: number;
@@ -93,11 +96,11 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
     cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
     texture: command.texture ?? null,
     output: command.output ?? null,
-    options: command.options,
+    options: effectiveOptions(command.rules),
     counts: perZone(result.zones),
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
     triangles: { total: mesh.indices.length / 3, cosmetic: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0) },
-    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, culled }, s) => ({
+    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, culled }, s) => ({
       part: parts[segmentPart[s]!]!.name,
       vertices: segmentVertices[s]!,
       points,
@@ -105,6 +108,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
       exposedArea,
       coveredArea,
       coverage,
+      sunkArea,
       culled,
     })),
     parts: parts.map((part, p) => ({
@@ -115,6 +119,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
       counts: perZone(result.zones, undefined, part.firstVertex, part.firstVertex + part.vertexCount),
       uvSet: added?.[p]?.uvSet ?? null,
       overlayTriangles: added?.[p]?.overlayTriangles ?? 0,
+      splitVertices: added?.[p]?.splitVertices ?? null,
     })),
     timings: result.timings,
     peakBytes: result.peakBytes,
@@ -128,12 +133,13 @@ function summary(command: TransferCommand, { target, counts, areas, triangles, s
     ...zones.map((zone) => [zone, integer(counts[zone]), percent(areas.total > 0 ? areas[zone] / areas.total : 0)]),
   ];
   const sets = [...new Set(parts.map((part) => part.uvSet))].join(', ');
+  const splits = parts.reduce((sum, { splitVertices }) => sum + (splitVertices ?? 0), 0);
   const culled = segments.filter((segment) => segment.culled).length;
   const lines = [
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted; ${timings.total.toFixed(1)} ms`,
-    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}`,
+    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
     command.report === undefined ? '' : `wrote ${command.report}`,
     output === null && command.report === undefined ? 'nothing written; -o OUT.glb and --report R.json keep the result' : '',
   ];

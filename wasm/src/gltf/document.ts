@@ -1,9 +1,10 @@
-import type { Document, Material, Mesh as DocumentMesh, Node, Primitive, Texture } from '@gltf-transform/core';
+import type { Accessor, Document, Material, Mesh as DocumentMesh, Node, Primitive, Property, Texture } from '@gltf-transform/core';
 import type { Mesh, TransferResult } from '../index.js';
+import { gather, splitPart, type SplitPart } from '../split-part.js';
 import { InputError } from './input-error.js';
-import { identity, localMatrix, multiply } from './matrix.js';
+import { identity, isTurned, localMatrix, multiply } from './matrix.js';
 import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
-import { decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
+import { aliasesOf, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 
 /** A piece, and its place in the document. */
 export interface DocumentPart extends Piece {
@@ -61,9 +62,11 @@ function listParts(document: Document): DocumentPart[] {
       const localIndices = decodeTriangles(place, primitive.getIndices()?.getArray() ?? null, primitive.getMode(), localPositions.length / 3);
       const name = node.getName() || mesh.getName() || place;
       const material = primitive.getMaterial()?.getName() ?? '';
+      const fullName = material !== '' && material !== name && mesh.listPrimitives().length > 1 ? `${name}/${material}` : name;
       const last = parts.at(-1);
       parts.push({
-        name: material !== '' && material !== name && mesh.listPrimitives().length > 1 ? `${name}/${material}` : name,
+        name: fullName,
+        aliases: aliasesOf(node.getName(), mesh.getName(), material, fullName),
         node,
         mesh,
         primitive,
@@ -82,9 +85,10 @@ function listParts(document: Document): DocumentPart[] {
 
 /**
  * Adds what was transferred to a document, as the command does to a file: to every primitive a new UV set and `_NCZ`, and,
- * with a texture, an overlay primitive of its cosmetic triangles. A mesh that several nodes show becomes one for each.
+ * with a texture, an overlay primitive of its cosmetic triangles; and copies of vertices whose triangles have different UVs
+ * there, after those that it has. A mesh that several nodes show becomes one for each.
  */
-export function addTransfer(document: Document, { mesh, parts }: ExtractedDocument, result: Pick<TransferResult, 'uvs' | 'zones' | 'cosmeticTriangles'>, paint?: Paint): void {
+export function addTransfer(document: Document, { mesh, parts }: ExtractedDocument, result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>, paint?: Paint): void {
   const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
   const attribute = (array: Float32Array, type: 'SCALAR' | 'VEC2' | 'VEC3') =>
     // A copy with a buffer of its own: views into one that is shared would be written whole, once for each.
@@ -97,23 +101,52 @@ export function addTransfer(document: Document, { mesh, parts }: ExtractedDocume
   parts.forEach((part, p) => {
     const { node, firstVertex, vertexCount, firstTriangle, triangleCount } = part;
     const primitive = primitiveOf[p]!;
-    const uvs = attribute(result.uvs.subarray(2 * firstVertex, 2 * (firstVertex + vertexCount)), 'VEC2');
+    const split = splitPart({ ...part, turned: isTurned(part.matrix) }, result);
+    const indices = (corners: Uint32Array) =>
+      document.createAccessor().setType('SCALAR').setArray(split.sources.length < 65536 ? Uint16Array.from(corners) : Uint32Array.from(corners)).setBuffer(buffer);
+    if (split.copies > 0) splitPrimitive(primitive, split, indices(split.indices));
+    const uvs = attribute(split.uvs, 'VEC2');
+    const zones = result.zones.subarray(firstVertex, firstVertex + vertexCount);
     primitive.setAttribute(freeUvSet((semantic) => primitive.getAttribute(semantic) !== null), uvs);
-    primitive.setAttribute(zoneAttribute, attribute(Float32Array.from(result.zones.subarray(firstVertex, firstVertex + vertexCount)), 'SCALAR'));
-    const corners = cosmeticCorners(part, result.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount));
+    primitive.setAttribute(zoneAttribute, attribute(Float32Array.from(split.sources, (v) => zones[v]!), 'SCALAR'));
+    const corners = cosmeticCorners(split.indices, result.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount));
     if (!texture || corners.length === 0) return;
 
     const overlay = document
       .createPrimitive()
-      .setAttribute('POSITION', attribute(overlayPositions(part, offset), 'VEC3'))
+      .setAttribute('POSITION', attribute(gather(overlayPositions(part, offset), 3, split.sources), 'VEC3'))
       .setAttribute('TEXCOORD_0', uvs)
-      .setIndices(document.createAccessor().setType('SCALAR').setArray(vertexCount < 65536 ? Uint16Array.from(corners) : corners as Uint32Array<ArrayBuffer>).setBuffer(buffer))
+      .setIndices(indices(corners))
       .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials));
     for (const semantic of primitive.listSemantics()) if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
     for (const morph of primitive.listTargets()) overlay.addTarget(morph);
     node.getMesh()!.addPrimitive(overlay);
   });
 }
+
+/** Gives a primitive copies of vertices, in all of its attributes and morph targets. What nothing else uses is let go. */
+function splitPrimitive(primitive: Primitive, { sources }: SplitPart, indices: Accessor): void {
+  const made = new Map<Accessor, Accessor>();
+  const splitAccessor = (accessor: Accessor): Accessor => {
+    const known = made.get(accessor);
+    if (known) return known;
+    const own = accessor.clone().setSparse(false).setArray(gather(accessor.getArray()!, accessor.getElementSize(), sources));
+    made.set(accessor, own);
+    return own;
+  };
+  const before = primitive.getIndices();
+  primitive.setIndices(indices).setMode(4); // strips and fans have become lists
+  for (const semantic of primitive.listSemantics()) primitive.setAttribute(semantic, splitAccessor(primitive.getAttribute(semantic)!));
+  for (const target of primitive.listTargets()) {
+    const own = target.clone();
+    for (const semantic of own.listSemantics()) own.setAttribute(semantic, splitAccessor(own.getAttribute(semantic)!));
+    primitive.removeTarget(target).addTarget(own);
+    if (isUnused(target)) target.dispose();
+  }
+  for (const accessor of [...made.keys(), ...(before ? [before] : [])]) if (isUnused(accessor)) accessor.dispose();
+}
+
+const isUnused = (property: Property): boolean => property.listParents().every((parent) => parent.propertyType === 'Root');
 
 /** Gives every node that shows a mesh one of its own. @returns the primitive of each part. */
 function separatePrimitives(parts: readonly DocumentPart[]): Primitive[] {

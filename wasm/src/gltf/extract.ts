@@ -2,7 +2,7 @@ import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../mesh.js';
 import { InputError } from './input-error.js';
 import { identity, localMatrix, multiply } from './matrix.js';
-import { decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
+import { aliasesOf, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 
 /** A piece, and its place in the file's JSON. */
@@ -71,8 +71,10 @@ function listParts(file: GltfFile): Part[] {
       if (localIndices === undefined) return;
       const name = nodeDef.name ?? meshDef.name ?? `nodes[${next.node}]`;
       const material = primitive.material === undefined ? undefined : materials[primitive.material]?.name;
+      const fullName = material !== undefined && material !== name && meshDef.primitives.length > 1 ? `${name}/${material}` : name;
       const part: Part = {
-        name: material !== undefined && material !== name && meshDef.primitives.length > 1 ? `${name}/${material}` : name,
+        name: fullName,
+        aliases: aliasesOf(nodeDef.name, meshDef.name, material, fullName),
         node: next.node,
         mesh: nodeDef.mesh!,
         primitive: p,

@@ -9,6 +9,26 @@ const arrayBuffer = 34962;
 const elementArrayBuffer = 34963;
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
+type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
+
+function componentTypeOf(values: AttributeArray): GLTF.AccessorComponentType {
+  if (values instanceof Int8Array) return 5120;
+  if (values instanceof Uint8Array) return 5121;
+  if (values instanceof Int16Array) return 5122;
+  if (values instanceof Uint16Array) return 5123;
+  return values instanceof Uint32Array ? 5125 : 5126;
+}
+
+/** Pads the elements of an attribute, which begin at multiples of four bytes. */
+function align(values: AttributeArray, size: number): { aligned: AttributeArray; byteStride?: number } {
+  const perWord = 4 / values.BYTES_PER_ELEMENT;
+  const stride = Math.ceil(size / perWord) * perWord;
+  if (stride === size) return { aligned: values };
+  const aligned = new (values.constructor as new (length: number) => AttributeArray)((values.length / size) * stride);
+  for (let i = 0; i < values.length; ++i) aligned[Math.floor(i / size) * stride + (i % size)] = values[i]!;
+  return { aligned, byteStride: stride * values.BYTES_PER_ELEMENT };
+}
+
 /**
  * A glTF file about to become a GLB with something added to it.
  *
@@ -79,20 +99,17 @@ export class GlbWriter {
     return offset;
   }
 
-  #addView(bytes: Uint8Array, target?: number): number {
+  #addView(bytes: Uint8Array, target?: number, byteStride?: number): number {
     const byteOffset = this.#append(bytes);
-    const view = { buffer: 0, byteOffset, byteLength: bytes.byteLength, ...(target !== undefined && { target }) };
+    const view = { buffer: 0, byteOffset, byteLength: bytes.byteLength, ...(byteStride !== undefined && { byteStride }), ...(target !== undefined && { target }) };
     return (this.json.bufferViews ??= []).push(view as GLTF.IBufferView) - 1;
   }
 
   /** Adds a vertex attribute of `size` numbers per vertex. @returns the number of its accessor. */
-  addAttribute(values: Float32Array | Uint8Array | Uint16Array, size: 1 | 2 | 3 | 4, more: Partial<GLTF.IAccessor> = {}): number {
-    return this.#addAccessor(values, arrayBuffer, {
-      componentType: values instanceof Float32Array ? 5126 : values instanceof Uint8Array ? 5121 : 5123,
-      count: values.length / size,
-      type: types[size],
-      ...more,
-    });
+  addAttribute(values: AttributeArray, size: number, more: Partial<GLTF.IAccessor> = {}): number {
+    const count = values.length / size;
+    const { aligned, byteStride } = align(values, size);
+    return this.#addAccessor(aligned, arrayBuffer, { componentType: componentTypeOf(values), count, type: types[size as keyof typeof types], ...more }, byteStride);
   }
 
   /** Adds the indices of triangles, as small as they can be. @returns the number of their accessor. */
@@ -106,9 +123,9 @@ export class GlbWriter {
     });
   }
 
-  #addAccessor(values: Float32Array | Uint8Array | Uint16Array | Uint32Array, target: number, accessor: Omit<GLTF.IAccessor, 'bufferView'>): number {
+  #addAccessor(values: AttributeArray, target: number, accessor: Omit<GLTF.IAccessor, 'bufferView'>, byteStride?: number): number {
     const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
-    return (this.json.accessors ??= []).push({ bufferView: this.#addView(bytes, target), ...accessor } as GLTF.IAccessor) - 1;
+    return (this.json.accessors ??= []).push({ bufferView: this.#addView(bytes, target, byteStride), ...accessor } as GLTF.IAccessor) - 1;
   }
 
   /** Adds a texture of a PNG or JPEG file's bytes. @returns the number of the texture. */

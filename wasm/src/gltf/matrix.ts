@@ -38,3 +38,6 @@ export function determinant(m: Matrix): number {
   const [a, b, c, , d, e, f, , g, h, i] = m as number[] as [number, number, number, number, number, number, number, number, number, number, number];
   return a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
 }
+
+/** Whether a matrix mirrors, so that triangles have to be turned for their outside to stay outside. */
+export const isTurned = (matrix: Matrix): boolean => determinant(matrix) < 0;

@@ -39,9 +39,9 @@ export function freeUvSet(has: (semantic: string) => boolean): string {
   return `TEXCOORD_${set}`;
 }
 
-/** The corners of those of a piece's triangles that may be painted; `cosmetic` is 1 per triangle. */
-export function cosmeticCorners({ localIndices }: Piece, cosmetic: Uint8Array): Uint32Array {
-  return localIndices.filter((_, corner) => cosmetic[Math.floor(corner / 3)] === 1);
+/** The corners of those triangles that may be painted; `cosmetic` is 1 per triangle. */
+export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uint32Array {
+  return indices.filter((_, corner) => cosmetic[Math.floor(corner / 3)] === 1);
 }
 
 /**

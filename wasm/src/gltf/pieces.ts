@@ -1,12 +1,14 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../mesh.js';
 import { InputError } from './input-error.js';
-import { determinant, identity, type Matrix } from './matrix.js';
+import { identity, isTurned, type Matrix } from './matrix.js';
 
 /** One primitive of one node, and where its elements lie in the concatenated arrays. */
 export interface Piece {
   /** Its node's name, with its material's where that adds something: "head", "head/skin". */
   name: string;
+  /** What it can be called by: its node, its mesh, its material, and `name`. */
+  aliases: string[];
   /** From its own space to the scene's, column by column; the identity for a skinned mesh. */
   matrix: Matrix;
   firstVertex: number;
@@ -18,6 +20,9 @@ export interface Piece {
   /** Its triangles among its own vertices, with the winding that they have in the file. */
   localIndices: Uint32Array;
 }
+
+/** The names among some, each once. */
+export const aliasesOf = (...names: (string | undefined)[]): string[] => [...new Set(names.filter((name) => name !== undefined && name !== ''))] as string[];
 
 const triangles = 4;
 const triangleStrip = 5;
@@ -105,7 +110,7 @@ function placePositions({ matrix: m, localPositions, firstVertex }: Piece, out: 
 }
 
 function placeIndices({ matrix, localIndices, firstVertex, firstTriangle }: Piece, out: Uint32Array): void {
-  const mirrored = determinant(matrix) < 0;
+  const mirrored = isTurned(matrix);
   for (let at = 0; at < localIndices.length; at += 3) {
     const to = 3 * firstTriangle + at;
     out[to] = firstVertex + localIndices[at]!;

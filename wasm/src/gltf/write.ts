@@ -1,8 +1,10 @@
 import type { GLTF } from '@gltf-transform/core';
+import { gather, splitPart, type SplitPart } from '../split-part.js';
 import type { TransferResult } from '../transfer.js';
 import { dracoOf } from './check.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
+import { isTurned } from './matrix.js';
 import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
 import { decodeFloats } from './pieces.js';
 import type { GltfFile } from './read.js';
@@ -13,11 +15,15 @@ export interface Added {
   uvSet: string;
   /** Triangles of the overlay; 0 if there is none. */
   overlayTriangles: number;
+  /** Vertices that were added because the corners that shared one have different UVs. */
+  splitVertices: number;
 }
 
 /**
  * Writes the target with what was transferred: to every primitive a new UV set and `_NCZ`, and, with a texture, an
- * overlay primitive of its cosmetic triangles. All that the file had stays as it was, also its compression.
+ * overlay primitive of its cosmetic triangles. All that the file had stays as it was, also its compression; but where
+ * triangles that share a vertex have different UVs there, the primitive gets copies of that vertex after those that it has,
+ * with all that belongs to it, and is no longer compressed by Draco.
  * A mesh that several nodes show becomes one mesh for each of them.
  * @returns the bytes of a GLB, and what was added to each part.
  * @throws {InputError} if an image beside the target cannot be read.
@@ -25,7 +31,7 @@ export interface Added {
 export async function writeTransfer(
   file: GltfFile,
   { mesh, parts }: Extracted,
-  result: Pick<TransferResult, 'uvs' | 'zones' | 'cosmeticTriangles'>,
+  result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   paint?: Paint,
 ): Promise<{ glb: Uint8Array; added: Added[] }> {
   const writer = await GlbWriter.from(file);
@@ -36,18 +42,70 @@ export async function writeTransfer(
   const added = parts.map((part) => {
     const primitives = json.meshes![meshOfNode.get(part.node)!]!.primitives;
     const primitive = primitives[part.primitive]!;
-    const uvs = result.uvs.slice(2 * part.firstVertex, 2 * (part.firstVertex + part.vertexCount));
+    const split = splitPart({ ...part, turned: isTurned(part.matrix) }, result);
+    if (split.copies > 0) splitPrimitive(writer, file, primitive, split);
     const zones = result.zones.subarray(part.firstVertex, part.firstVertex + part.vertexCount);
     const uvSet = freeUvSet((semantic) => primitive.attributes[semantic] !== undefined);
-    const uvAccessor = writer.addAttribute(uvs, 2);
+    const uvAccessor = writer.addAttribute(split.uvs, 2);
     primitive.attributes[uvSet] = uvAccessor;
-    primitive.attributes[zoneAttribute] = writer.addAttribute(Float32Array.from(zones), 1);
+    primitive.attributes[zoneAttribute] = writer.addAttribute(Float32Array.from(split.sources, (v) => zones[v]!), 1);
     const cosmetic = result.cosmeticTriangles.subarray(part.firstTriangle, part.firstTriangle + part.triangleCount);
-    const overlay = painter?.overlay(part, primitive, cosmetic, uvAccessor);
+    const overlay = painter?.overlay(part, split, primitive, cosmetic, uvAccessor);
     if (overlay) primitives.push(overlay);
-    return { uvSet, overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0 };
+    return { uvSet, overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0, splitVertices: split.copies };
   });
+  dropDraco(json);
   return { glb: writer.finish(), added };
+}
+
+/** Gives a primitive copies of vertices: in all of its attributes and morph targets, uncompressed. */
+function splitPrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive, { sources, indices }: SplitPart): void {
+  const made = new Map<number, number>();
+  const splitAccessor = (accessor: number): number => {
+    const known = made.get(accessor);
+    if (known !== undefined) return known;
+    const decoded = file.geometry.getRoot().listAccessors()[accessor]!;
+    const { normalized, min, name, extras } = file.json.accessors![accessor]!;
+    const size = decoded.getElementSize();
+    const values = gather(decoded.getArray()!, size, sources);
+    // The bounds are not those in the file where Draco has rounded what lies between them.
+    const more = { type: decoded.getType(), ...(normalized && { normalized }), ...(min && boundsOf(values, size)), ...(name !== undefined && { name }), ...(extras && { extras }) };
+    const number = writer.addAttribute(values, size, more);
+    made.set(accessor, number);
+    return number;
+  };
+  const splitAll = (attributes: Record<string, number>) => {
+    for (const [semantic, accessor] of Object.entries(attributes)) attributes[semantic] = splitAccessor(accessor);
+  };
+  splitAll(primitive.attributes);
+  primitive.targets?.forEach(splitAll);
+  primitive.indices = writer.addIndices(indices, sources.length);
+  delete primitive.mode; // strips and fans have become lists
+  delete primitive.extensions?.[draco];
+  if (primitive.extensions && Object.keys(primitive.extensions).length === 0) delete primitive.extensions;
+}
+
+/** The least and the greatest value of each component. */
+function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max: number[] } {
+  const min = new Array<number>(size).fill(Infinity);
+  const max = new Array<number>(size).fill(-Infinity);
+  for (let i = 0; i < values.length; ++i) {
+    min[i % size] = Math.min(min[i % size]!, values[i]!);
+    max[i % size] = Math.max(max[i % size]!, values[i]!);
+  }
+  return { min, max };
+}
+
+const draco = 'KHR_draco_mesh_compression';
+
+/** Says no more that the file is compressed by Draco if no primitive is. */
+function dropDraco(json: GLTF.IGLTF): void {
+  if (json.meshes?.some(({ primitives }) => primitives.some(dracoOf))) return;
+  for (const list of ['extensionsUsed', 'extensionsRequired'] as const) {
+    const left = json[list]?.filter((name) => name !== draco);
+    if (left?.length === 0) delete json[list];
+    else if (left) json[list] = left;
+  }
 }
 
 /** Gives every node that shows a mesh one of its own. @returns the mesh of each node. */
@@ -82,16 +140,16 @@ class Painter {
   }
 
   /** A primitive of the cosmetic triangles of `base`, moved and deformed as it is; none if there are none. */
-  overlay(part: Part, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
-    const corners = cosmeticCorners(part, cosmetic);
+  overlay(part: Part, { sources, indices }: SplitPart, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
+    const corners = cosmeticCorners(indices, cosmetic);
     if (corners.length === 0) return undefined;
-    const attributes: Record<string, number> = { POSITION: this.#positions(part), TEXCOORD_0: uvAccessor };
+    const attributes: Record<string, number> = { POSITION: this.#positions(part, sources), TEXCOORD_0: uvAccessor };
     for (const [semantic, accessor] of Object.entries(base.attributes)) {
       if (isOverlaid(semantic)) attributes[semantic] = this.#shared(base, semantic, accessor);
     }
     return {
       attributes,
-      indices: this.#writer.addIndices(corners, part.vertexCount),
+      indices: this.#writer.addIndices(corners, sources.length),
       material: this.#material(base),
       ...(base.targets && { targets: base.targets }),
     };
@@ -109,15 +167,9 @@ class Painter {
   }
 
   /** The part's positions, moved a little off the surface along their normals. */
-  #positions(part: Part): number {
-    const positions = overlayPositions(part, this.#offset);
-    const min = [Infinity, Infinity, Infinity];
-    const max = [-Infinity, -Infinity, -Infinity];
-    positions.forEach((value, i) => {
-      min[i % 3] = Math.min(min[i % 3]!, value);
-      max[i % 3] = Math.max(max[i % 3]!, value);
-    });
-    return this.#writer.addAttribute(positions, 3, { min, max });
+  #positions(part: Part, sources: Uint32Array): number {
+    const positions = gather(overlayPositions(part, this.#offset), 3, sources);
+    return this.#writer.addAttribute(positions, 3, boundsOf(positions, 3));
   }
 
   /** A material that shows the texture alone, as rough and as two-sided as the base's. */

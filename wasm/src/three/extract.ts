@@ -95,6 +95,9 @@ const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).
 
 const wrong = (argument: string, name: string, text: string, at = 0): CagecastError => new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
 
+/** Whether a matrix mirrors, so that triangles have to be turned for their outside to stay outside. */
+export const isTurned = (matrix: Matrix4): boolean => matrix.determinant() < 0;
+
 function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {
   const position = geometry.getAttribute('position') as Attribute;
   const m = matrix.elements;
@@ -111,7 +114,7 @@ function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, ou
 
 function placeIndices({ name, geometry, matrix, firstVertex, vertexCount, firstTriangle, triangleCount }: Part, out: Uint32Array, argument: string): void {
   const { index } = geometry;
-  const mirrored = matrix.determinant() < 0;
+  const mirrored = isTurned(matrix);
   for (let i = 0; i < 3 * triangleCount; ++i) {
     // Checked part by part: in the joined arrays an index too large would point into the next part.
     const vertex = index ? index.getX(i) : i;

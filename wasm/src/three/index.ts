@@ -3,9 +3,11 @@
  * @module cagecast/three
  */
 import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3D, type Texture } from 'three';
-import { transfer, type Classification, type TransferOptions, type TransferResult } from '../index.js';
-import { extract, type Extracted, type Part } from './extract.js';
+import { CagecastError, transfer, type Classification, type TransferOptions, type TransferResult } from '../index.js';
+import { splitPart } from '../split-part.js';
+import { extract, isTurned, type Extracted, type Part } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
+import { splitGeometry } from './split.js';
 
 export { extract, type Extracted, type Part };
 
@@ -26,7 +28,10 @@ export interface ApplyOptions extends TransferOptions {
 
 /** What was added to a scene. */
 export interface Applied {
+  /** For the vertices that the target had. */
   result: TransferResult;
+  /** How many vertices were added because triangles that share one have different UVs there; 0 with `seams: 'vertex'`. */
+  splitVertices: number;
   parts: Part[];
   /** One for each part that is a mesh, with a texture or a material; children of the meshes they lie on. */
   overlays: Mesh[];
@@ -40,7 +45,8 @@ export interface Applied {
  * Carries a cage's UVs to the meshes of a scene: each geometry gets the attributes `uv1` (2 per vertex) and `_ncz` (the
  * `Zone`: 0 may be painted), and, with a texture, each mesh a child that shows the texture on the cosmetic triangles.
  * Skins and morph targets keep working: the overlays share them. A geometry that several meshes show is copied for all but
- * the first.
+ * the first. Where triangles that share a vertex have different UVs there, the geometry gets copies of it after the vertices
+ * that it has, with all of its attributes and morph deltas, so that no triangle stretches across the texture.
  *
  * `await init()` once before; or leave the main thread free with `extract`, `cagecast/worker` and the option `result`.
  *
@@ -67,15 +73,25 @@ export function applyTransfer(
 ): Applied {
   const { mesh, parts } = extract(target, 'target');
   const result = known ?? transfer(extract(cage, 'cage').mesh, mesh, options);
+  const vertices = mesh.positions.length / 3;
+  if (result.zones.length !== vertices || result.cosmeticTriangles.length !== mesh.indices.length / 3) {
+    throw new CagecastError('badArgument', `cagecast/three: result is of ${result.zones.length} vertices, the target has ${vertices}: extract it before vertices are split`);
+  }
   const uvName = `uv${channel}`;
   const taken = new Set<BufferGeometry>();
   for (const part of parts) {
     if (part.mesh && taken.has(part.geometry)) part.mesh.geometry = part.geometry = part.geometry.clone();
     taken.add(part.geometry);
-    const { geometry, firstVertex, vertexCount } = part;
-    geometry.setAttribute(uvName, new BufferAttribute(result.uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2));
-    geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(vertexCount), 1));
   }
+  const splits = parts.map((part) => {
+    const { geometry, matrix, vertexCount, triangleCount } = part;
+    const localIndices = geometry.index?.array ?? Uint32Array.from({ length: vertexCount }, (_, v) => v);
+    const split = splitPart({ ...part, turned: isTurned(matrix), localIndices: localIndices.subarray(0, 3 * triangleCount) }, result);
+    if (split.copies > 0) splitGeometry(geometry, split);
+    geometry.setAttribute(uvName, new BufferAttribute(split.uvs, 2));
+    geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
+    return split;
+  });
 
   if (texture) texture.channel = channel;
   const own: Material[] = [];
@@ -90,11 +106,11 @@ export function applyTransfer(
     layers.push({ overlay: makeOverlay(part, part.mesh, uvName, paint), part });
   }
   const update: Applied['update'] = ({ zones, cosmeticTriangles }) => {
-    for (const { geometry, firstVertex, vertexCount } of parts) {
+    parts.forEach(({ geometry, firstVertex }, p) => {
       const attribute = geometry.getAttribute(zoneAttribute) as BufferAttribute;
-      (attribute.array as Float32Array).set(zones.subarray(firstVertex, firstVertex + vertexCount));
+      splits[p]!.sources.forEach((source, v) => (attribute.array[v] = zones[firstVertex + source]!));
       attribute.needsUpdate = true;
-    }
+    });
     for (const { overlay, part } of layers) {
       showTriangles(overlay, part, cosmeticTriangles.subarray(part.firstTriangle, part.firstTriangle + part.triangleCount));
     }
@@ -103,6 +119,7 @@ export function applyTransfer(
   for (const { overlay, part } of layers) part.mesh!.add(overlay);
   return {
     result,
+    splitVertices: splits.reduce((sum, { copies }) => sum + copies, 0),
     parts,
     overlays: layers.map(({ overlay }) => overlay),
     update,

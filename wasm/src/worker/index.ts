@@ -10,8 +10,11 @@ import {
   type Classification,
   type ClassifyOptions,
   type Mesh,
+  type Preset,
+  type PresetOptions,
   type Projection,
   type ProjectOptions,
+  type SplitVertices,
   type TransferOptions,
   type TransferResult,
 } from '../index.js';
@@ -58,6 +61,16 @@ export function project(cage: Mesh, target: Mesh, options: ProjectOptions & Call
 /** As `classify` of `cagecast`, off the main thread. It takes microseconds, less than the way there and back. */
 export function classify(projection: Projection, options: ClassifyOptions & CallOptions = {}): Promise<Classification> {
   return withOptions('classify', [projection], options);
+}
+
+/** As `splitVertices` of `cagecast`, off the main thread. */
+export function splitVertices(target: Mesh, cornerUvs: Float32Array, options: CallOptions = {}): Promise<SplitVertices> {
+  return withOptions('splitVertices', [target, cornerUvs], options);
+}
+
+/** As `presetOptions` of `cagecast`, off the main thread. */
+export function presetOptions(preset?: Preset, options: CallOptions = {}): Promise<PresetOptions> {
+  return withOptions('presetOptions', [preset], options);
 }
 
 /** Ends the worker and gives its memory back. Calls that wait are given up, with code `aborted`; the next one starts afresh. */
@@ -143,7 +156,7 @@ function stop(): void {
 }
 
 function buffersOf(args: unknown[]): ArrayBuffer[] {
-  const values = args.flatMap((arg) => (typeof arg === 'object' && arg !== null ? Object.values(arg) : []));
+  const values = args.flatMap((arg) => (ArrayBuffer.isView(arg) ? [arg] : typeof arg === 'object' && arg !== null ? Object.values(arg) : []));
   const buffers = values.filter((value) => ArrayBuffer.isView(value)).map((view) => view.buffer);
   // An empty one may have been moved away before. Listed, it would be lost on the way; left to be copied, it throws.
   return [...new Set(buffers)].filter((buffer): buffer is ArrayBuffer => buffer instanceof ArrayBuffer && buffer.byteLength > 0);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace cagecast {
+
+/// Areas are added up as whole numbers of a tiny unit, so that the sums do not depend on the order of the triangles.
+/// A triangle inside the box of a target of diagonal < 2 has an area < 2; the sum of all stays within 63 bits.
+class AreaUnit {
+ public:
+  explicit AreaUnit(std::uint32_t triangleCount) : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)))) {}
+  /// What a triangle gives to each of its corners.
+  [[nodiscard]] std::int64_t third(double doubleArea) const { return static_cast<std::int64_t>(doubleArea / 6 * perArea_); }
+  /// What it gives to each of its four quarters.
+  [[nodiscard]] std::int64_t quarter(double doubleArea) const { return static_cast<std::int64_t>(doubleArea / 8 * perArea_); }
+  [[nodiscard]] double area(std::int64_t units) const { return static_cast<double>(units) / perArea_; }
+  /// Cut to so few bits that doubles add such areas up exactly.
+  [[nodiscard]] double summableArea(std::int64_t units) const { return area(units >> kCutBits << kCutBits); }
+
+ private:
+  static constexpr int kCutBits = 10;
+  double perArea_;
+};
+
+}  // namespace cagecast

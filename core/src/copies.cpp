@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "steps.hpp"
+
+namespace cagecast {
+namespace {
+
+/// docs/method.md, step 5′: how much larger a copy may be, and how much its extent may differ.
+constexpr double kSameArea = 0.01;
+constexpr double kSameExtent = 0.02;
+/// docs/method.md, step 5′: parts of equal area and another shape may lie between copies; not many do.
+constexpr std::uint32_t kRuns = 8;
+
+}  // namespace
+
+bool findCopies(const Points& points, const PointResults& results, Scratch& scratch, Array<SegmentStats>& stats) noexcept {
+  const Scratch::Mark mark = scratch.mark();
+  const auto count = static_cast<std::uint32_t>(stats.size());
+  auto* centres = scratch.take<Vec3>(count);
+  auto* extents = scratch.take<double>(count);  // Sums of squared distances of the points from their mean.
+  auto* order = scratch.take<std::uint32_t>(count);
+  auto* runs = scratch.take<std::uint32_t>(count);  // By their first.
+  if (scratch.failed()) return false;
+  std::fill(centres, centres + count, Vec3{0, 0, 0});
+  std::fill(extents, extents + count, 0.0);
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const std::uint32_t s = results.segments[i];
+    centres[s] = centres[s] + 1.0 / stats[s].points * Vec3::from(points.at(i));
+  }
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const Vec3 offset = Vec3::from(points.at(i)) - centres[results.segments[i]];
+    extents[results.segments[i]] += dot(offset, offset);
+  }
+
+  for (std::uint32_t s = 0; s < count; ++s) order[s] = s;
+  const auto before = [&](std::uint32_t s, std::uint32_t t) {
+    return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
+  };
+  std::make_heap(order, order + count, before);  // By heap: std::sort is 5 KB of WebAssembly.
+  std::sort_heap(order, order + count, before);
+  std::uint32_t runCount = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t s = order[i];
+    const auto isLike = [&](std::uint32_t first) {
+      return stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
+             std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];
+    };
+    const std::uint32_t oldest = runCount - std::min(kRuns, runCount);
+    std::uint32_t run = runCount;
+    while (run > oldest && !isLike(runs[run - 1])) --run;
+    if (run == oldest) runs[runCount++] = s;
+    stats[s].copyOf = run == oldest ? s : runs[run - 1];
+  }
+  scratch.rewind(mark);
+  return true;
+}
+
+}  // namespace cagecast

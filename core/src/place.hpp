@@ -1,0 +1,65 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "cage.hpp"
+#include "kd_tree.hpp"
+
+/// Places on the cage, decided in double: which triangle is nearest, and where on it.
+namespace cagecast {
+
+/// docs/method.md, step 1: planes whose distance is within this share of the diagonal of the farthest are equally far.
+inline constexpr double kTiePlane = 1e-7;
+
+/// The point of a cage triangle that is nearest to a point p.
+struct Place {
+  double distance;
+  double v, w;     ///< Barycentrics of corners b and c.
+  double height;   ///< Of p over the triangle's plane.
+  bool inside;     ///< Strictly: not on an edge or a corner.
+};
+
+/// The place on a triangle of a point that lies beside it: on one of the edges.
+/// @param height  Of p over the plane.
+Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept;
+
+/// Finds the point of a triangle that is nearest to p.
+inline Place placeOn(const CageTriangle& t, Vec3 p) {
+  const Vec3 offset = p - Vec3::from(t.a);
+  const double height = dot(offset, t.normal.exact);
+  // Most points lie straight under their triangle.
+  const double v = dot(offset, t.towardsB);
+  const double w = dot(offset, t.towardsC);
+  if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
+  return placeOnEdge(t, p, height);
+}
+
+/// A triangle that could be the nearest.
+struct Candidate {
+  std::uint32_t slot;
+  Place place;
+};
+
+/// Picks, of the triangles that could be the nearest, the one that the tie rule of docs/method.md, step 1, names: of those within
+/// `kTieDistance` of the nearest the one whose plane is farthest from p, of equals the first.
+const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) noexcept;
+
+/// A place in the texture.
+struct Uv {
+  double u, v;
+};
+
+/// Blends the UVs of a triangle's corners at a place on it.
+inline Uv uvAt(const CageTriangle& t, const Place& place) {
+  const auto blend = [&](int k) {
+    const double a = static_cast<double>(t.uvs[k]);
+    const double ab = static_cast<double>(t.uvs[2 + k]) - a;
+    const double ac = static_cast<double>(t.uvs[4 + k]) - a;
+    return a + place.v * ab + place.w * ac;
+  };
+  return {blend(0), blend(1)};
+}
+
+}  // namespace cagecast

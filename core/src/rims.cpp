@@ -1,0 +1,117 @@
+#include "rims.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "index_table.hpp"
+#include "union_find.hpp"
+
+namespace cagecast {
+namespace {
+
+/// A place within this share of the diagonal of an open edge is on it, so that rounding does not decide.
+constexpr double kOnRim = 1e-6;
+
+/// Calls for each side of the cage's triangles with its number (3 · triangle + corner) and the vertices at its ends.
+template <typename Call>
+void eachSide(const MeshView& mesh, const Cage& cage, const std::uint32_t* vertexOf, Call call) {
+  for (std::uint32_t t = 0; t < cage.count; ++t) {
+    const std::uint32_t* index = mesh.indices.data() + std::size_t{3} * cage.triangles[t].index;
+    const std::uint32_t corners[3] = {vertexOf[index[0]], vertexOf[index[1]], vertexOf[index[2]]};
+    for (std::uint32_t k = 0; k < 3; ++k) call(3 * t + k, corners[k], corners[(k + 1) % 3]);
+  }
+}
+
+}  // namespace
+
+void Rims::Box::grow(Vec3 p) noexcept {
+  const double at[3] = {p.x, p.y, p.z};
+  for (int k = 0; k < 3; ++k) {
+    low[k] = std::min(low[k], at[k]);
+    high[k] = std::max(high[k], at[k]);
+  }
+}
+
+double Rims::Box::diagonal() const noexcept { return length({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
+
+std::uint32_t Rims::at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept {
+  if (!touches(slot)) return kNone;
+  const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
+  const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
+  const double near = kOnRim * diagonal * kOnRim * diagonal;  // All squared: no roots.
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+    if (sides[k] == kNone) continue;
+    const Vec3 beside = cross(edge, q - corners[k]);
+    if (dot(beside, beside) <= near * dot(edge, edge)) return sides[k];
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 offset = q - corners[k];
+    if (sides[3 + k] != kNone && dot(offset, offset) <= near) return sides[3 + k];
+  }
+  return kNone;
+}
+
+bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& out) noexcept {
+  const std::uint32_t sideCount = 3 * cage.count;
+  const auto vertexCount = static_cast<std::uint32_t>(mesh.positions.size() / 3);
+  auto* ofSides = scratch.take<std::uint32_t>(std::size_t{2} * sideCount);
+  auto* boxes = scratch.take<Rims::Box>(std::min(sideCount, vertexCount));
+  auto* vertexOf = scratch.take<std::uint32_t>(vertexCount);
+  const Scratch::Mark mark = scratch.mark();
+  auto* edges = scratch.take<std::uint64_t>(sideCount);
+  auto* parents = scratch.take<std::uint32_t>(vertexCount);
+  auto* isShared = scratch.take<bool>(sideCount);
+  auto* loopAt = scratch.take<std::uint32_t>(vertexCount);
+  IndexTable vertices(vertexCount, scratch);
+  IndexTable edgeTable(sideCount, scratch);
+  if (scratch.failed()) return false;
+
+  for (std::uint32_t v = 0; v < vertexCount; ++v) {
+    const float* p = mesh.positions.data() + std::size_t{3} * v;
+    const float site[3] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // Now −0 is 0.
+    vertexOf[v] = vertices.firstEqual(v, IndexTable::hash(site), [&](std::uint32_t other) {
+      const float* o = mesh.positions.data() + std::size_t{3} * other;
+      return o[0] == p[0] && o[1] == p[1] && o[2] == p[2];
+    });
+  }
+  // An edge is shared if it is met again. It is named by the first side on it.
+  std::fill(isShared, isShared + sideCount, false);
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
+    edges[side] = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+    const std::uint32_t first =
+        edgeTable.firstEqual(side, IndexTable::mix(0, edges[side]), [&](std::uint32_t other) { return edges[other] == edges[side]; });
+    if (first != side) isShared[side] = isShared[first] = true;
+  });
+  UnionFind sets(parents, vertexCount);
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
+    if (!isShared[side]) sets.join(a, b);
+  });
+  std::fill(loopAt, loopAt + vertexCount, Rims::kNone);
+  out.count = 0;
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
+    if (isShared[side]) return;
+    std::uint32_t& loop = loopAt[sets.find(a)];
+    if (loop == Rims::kNone) {
+      boxes[out.count] = {};
+      loop = out.count++;
+    }
+    loopAt[a] = loopAt[b] = loop;
+    const CageTriangle& t = cage.triangles[side / 3];
+    const float* corners[3] = {t.a, t.b, t.c};
+    boxes[loop].grow(Vec3::from(corners[side % 3]));
+    boxes[loop].grow(Vec3::from(corners[(side % 3 + 1) % 3]));
+  });
+  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t) {
+    std::uint32_t* sides = ofSides + std::size_t{6} * (side / 3);
+    sides[3 + side % 3] = loopAt[a];
+    sides[side % 3] = isShared[side] ? Rims::kNone : loopAt[a];
+  });
+  out.boxes = boxes;
+  out.ofSides = ofSides;
+  out.vertexOf = vertexOf;
+  scratch.rewind(mark);
+  return true;
+}
+
+}  // namespace cagecast

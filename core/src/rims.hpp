@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "cage.hpp"
+#include "place.hpp"
+#include "scratch.hpp"
+
+namespace cagecast {
+
+/// The rims of the cage: the connected components of its open edges, those of exactly one triangle. Vertices with equal
+/// positions are one, so that a seam of the texture is no rim.
+struct Rims {
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+
+  /// A box around a rim, scaled.
+  struct Box {
+    double low[3] = {kFar, kFar, kFar};
+    double high[3] = {-kFar, -kFar, -kFar};
+    void grow(Vec3 p) noexcept;
+    [[nodiscard]] double diagonal() const noexcept;
+
+   private:
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
+  };
+
+  std::uint32_t count = 0;
+  const Box* boxes = nullptr;
+  /// 6 per triangle of the cage: the rim that its edges ab, bc, ca lie on, and the one that its corners a, b, c do.
+  const std::uint32_t* ofSides = nullptr;
+  const std::uint32_t* vertexOf = nullptr;  ///< 1 per vertex of the mesh: the first with the same position.
+
+  /// The rim that a place lies on, or `kNone`.
+  /// @param slot  The triangle of the place.
+  /// @param q     Where it is: see `positionOf`.
+  [[nodiscard]] std::uint32_t at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept;
+
+  /// Whether a triangle of the cage comes to a rim at all.
+  [[nodiscard]] bool touches(std::uint32_t slot) const noexcept {
+    const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
+    // A rim at an edge is one at its corners.
+    return (sides[3] & sides[4] & sides[5]) != kNone;
+  }
+};
+
+/// Where a place is.
+inline Vec3 positionOf(const CageTriangle& t, const Place& place) {
+  const Vec3 a = Vec3::from(t.a);
+  return a + place.v * (Vec3::from(t.b) - a) + place.w * (Vec3::from(t.c) - a);
+}
+
+/// @return false if memory ran out.
+bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& out) noexcept;
+
+}  // namespace cagecast

@@ -1,0 +1,330 @@
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "steps.hpp"
+#include "triangle.hpp"
+
+namespace cagecast {
+namespace {
+
+/// docs/method.md, step 6: where a ray begins above its point, as a share of the diagonal, and how many good ones restore it.
+constexpr double kLift = 1e-4;
+constexpr unsigned kEnough = 2;
+
+/// docs/method.md, step 6: the directions, evenly over the hemisphere about z by the golden angle: z = 1 − (k + 0.5) / 12, azimuth
+/// k · 2.399963229728653.
+constexpr double kDirections[][3] = {
+    {0.28565227501671, 0.0, 0.9583333333333334},
+    {-0.3569771731011225, 0.32702033252495366, 0.875},
+    {0.05341303173720899, -0.6086139473669074, 0.7916666666666666},
+    {0.42948366578740593, 0.5601853886979745, 0.7083333333333333},
+    {-0.7686917180988453, -0.13597074143449128, 0.625},
+    {0.7092551110048801, -0.4511700452553088, 0.5416666666666667},
+    {-0.23073121154526574, 0.8583086062567528, 0.45833333333333337},
+    {-0.4272722474213815, -0.8226867122930099, 0.375},
+    {0.8984796285317633, 0.3281233193008084, 0.29166666666666663},
+    {-0.9040634576660739, 0.37318425306420056, 0.20833333333333337},
+    {0.42052166140780717, -0.8986303646588055, 0.125},
+    {0.2990239565674109, 0.9533354930388671, 0.04166666666666663},
+};
+constexpr unsigned kDirectionCount = static_cast<unsigned>(std::size(kDirections));
+/// Points that look at once, in all directions: to stop at the second good ray saves less than many rays that begin close
+/// together do.
+constexpr std::uint32_t kChunk = HitSearch::kMostRays / kDirectionCount;
+
+/// Normals that cancel out to this share of the areas are none.
+constexpr double kCancelled = 1e-6;
+/// Triangles that differ in area by less than this share are equally large.
+constexpr double kSameArea = 1e-12;
+
+/// Sums normals rounded to 2^-33 of the largest triangle at the point, or more finely: such sums are exact, up to fans of 2^18
+/// triangles, and so do not depend on the order of the triangles.
+class NormalSum {
+ public:
+  void meet(double doubleArea) { largest_ = std::max(largest_, doubleArea); }
+  void add(Vec3 areaNormal, double doubleArea) {
+    // Added to so large a number, and taken from it again, only the bits that all terms have remain.
+    const double large = largest_ * kLarge;
+    sum_ = sum_ + Vec3{areaNormal.x + large - large, areaNormal.y + large - large, areaNormal.z + large - large};
+    all_ += doubleArea + large - large;
+  }
+  /// Begins anew, with triangles no larger.
+  void restart() {
+    sum_ = {0, 0, 0};
+    all_ = 0;
+  }
+  /// Of unit length, or zero if the normals cancel out.
+  [[nodiscard]] Vec3 normal() const {
+    const double size = length(sum_);
+    return size > kCancelled * all_ ? 1 / size * sum_ : Vec3{0, 0, 0};
+  }
+
+ private:
+  static constexpr double kLarge = 0x1.8p18;
+  double largest_ = 0;
+  Vec3 sum_{0, 0, 0};
+  double all_ = 0;
+};
+
+bool isZero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+
+/// The occluded points of the segments that are looked at, and which triangles join them.
+class Occluded {
+ public:
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
+  Occluded(const Points& points, const PointResults& results, const Array<SegmentStats>& stats, Scratch& scratch) noexcept
+      : points_(points),
+        isOccluded_(scratch.take<bool>(points.count)),
+        isQueued_(scratch.take<bool>(points.count)),
+        starts_(scratch.take<std::uint32_t>(std::size_t{points.count} + 1)) {
+    auto* joining = scratch.take<std::uint32_t>(points.triangleCount);
+    if (scratch.failed()) return;
+    for (std::uint32_t p = 0; p < points.count; ++p) {
+      isOccluded_[p] = results.zones[p] == Zone::occluded && stats[results.segments[p]].coveredArea > 0;
+    }
+    std::fill(isQueued_, isQueued_ + points.count, false);
+    std::fill(starts_, starts_ + points.count + 1, 0u);
+    std::uint32_t joiningCount = 0;
+    for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+      const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+      const unsigned occluded = unsigned{isOccluded_[corner[0]]} + unsigned{isOccluded_[corner[1]]} + unsigned{isOccluded_[corner[2]]};
+      if (occluded == 0) continue;
+      for (int i = 0; i < 3; ++i) {
+        isQueued_[corner[i]] = isQueued_[corner[i]] || (occluded < 3 && isOccluded_[corner[i]]);
+        starts_[corner[i]] += occluded > 1;
+      }
+      joining[joiningCount] = t;
+      joiningCount += occluded > 1;
+    }
+    std::uint32_t total = 0;
+    for (std::uint32_t p = 0; p <= points.count; ++p) total += std::exchange(starts_[p], total);
+    triangles_ = scratch.take<std::uint32_t>(total);
+    if (scratch.failed()) return;
+    for (std::uint32_t i = 0; i < joiningCount; ++i) {
+      const std::uint32_t* corner = points.triangles + std::size_t{3} * joining[i];
+      for (int k = 0; k < 3; ++k) triangles_[starts_[corner[k]]++] = joining[i];
+    }
+    // Each start has become its end, which is the next one's start.
+  }
+
+  /// Queues the points joined by an edge to one that is not occluded, in their order: neighbours look together.
+  std::uint32_t queueRim(std::uint32_t* queue) const noexcept {
+    std::uint32_t count = 0;
+    for (std::uint32_t p = 0; p < points_.count; ++p) {
+      queue[count] = p;
+      count += isQueued_[p];
+    }
+    return count;
+  }
+
+  /// Queues the occluded neighbours of a point that were never queued.
+  std::uint32_t queueNeighbours(std::uint32_t point, std::uint32_t* queue, std::uint32_t count) noexcept {
+    for (std::uint32_t i = point == 0 ? 0 : starts_[point - 1]; i < starts_[point]; ++i) {
+      const std::uint32_t* corner = points_.triangles + std::size_t{3} * triangles_[i];
+      for (int k = 0; k < 3; ++k) count = put(corner[k], queue, count);
+    }
+    return count;
+  }
+
+ private:
+  std::uint32_t put(std::uint32_t point, std::uint32_t* queue, std::uint32_t count) noexcept {
+    if (isQueued_[point] || !isOccluded_[point]) return count;
+    isQueued_[point] = true;
+    queue[count] = point;
+    return count + 1;
+  }
+
+  const Points& points_;
+  bool* isOccluded_;
+  bool* isQueued_;
+  std::uint32_t* starts_;     ///< 1 per point: the end of its triangles.
+  std::uint32_t* triangles_ = nullptr;
+};
+
+/// Which way a point looks.
+struct Outlook {
+  Vec3 normal;      ///< Unit; zero if it has none.
+  bool isTwoSided;  ///< The other way as well.
+};
+
+/// Finds the outlook of each point: its normal, turned so that those of its segment mostly agree with the cage. Only for the
+/// segments that `isWanted`.
+/// @param toBothSides  Where all triangles have copies in reverse winding, the point looks along the sum of the normals, each
+///                     turned to the side of the largest triangle, and against it.
+bool findOutlooks(const Points& points, const Cage& cage, const PointResults& results, const PointAreas& areas,
+                  std::uint32_t segmentCount, const bool* isWanted, bool toBothSides, Scratch& scratch, Outlook* outlooks) noexcept {
+  const Scratch::Mark mark = scratch.mark();
+  auto* sums = scratch.take<NormalSum>(points.count);
+  auto* agreement = scratch.take<std::int64_t>(segmentCount);
+  if (scratch.failed()) return false;
+  std::fill(sums, sums + points.count, NormalSum{});
+  std::fill(agreement, agreement + segmentCount, 0);
+  const auto eachWanted = [&](auto call) {
+    for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+      const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+      if (isWanted[results.segments[corner[0]]]) call(t, corner);
+    }
+  };
+  const auto normalOf = [&](const std::uint32_t* corner) {
+    return areaNormal(points.at(corner[0]), points.at(corner[1]), points.at(corner[2]));
+  };
+  eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
+    for (int i = 0; i < 3; ++i) sums[corner[i]].meet(points.doubleAreas[t]);
+  });
+  eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
+    const Vec3 normal = normalOf(corner);
+    for (int i = 0; i < 3; ++i) sums[corner[i]].add(normal, points.doubleAreas[t]);
+  });
+  bool anyCancelled = false;
+  for (std::uint32_t p = 0; p < points.count; ++p) {
+    const std::uint32_t s = results.segments[p];
+    if (!isWanted[s]) continue;
+    outlooks[p] = {sums[p].normal(), false};
+    anyCancelled = anyCancelled || isZero(outlooks[p].normal);
+    const double agrees = dot(outlooks[p].normal, cage.triangles[results.triangles[p]].normal.exact);
+    agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas.all[p]) * agrees);
+  }
+  for (std::uint32_t p = 0; p < points.count; ++p) {
+    const std::uint32_t s = results.segments[p];
+    if (isWanted[s] && agreement[s] < 0) outlooks[p].normal = -1 * outlooks[p].normal;
+  }
+
+  if (anyCancelled && toBothSides) {
+    auto* largest = scratch.take<std::uint32_t>(points.count);
+    if (scratch.failed()) return false;
+    std::fill(largest, largest + points.count, UINT32_MAX);
+    const auto eachCancelled = [&](auto call) {
+      eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
+        for (int i = 0; i < 3; ++i) {
+          if (isZero(outlooks[corner[i]].normal)) call(t, corner, corner[i]);
+        }
+      });
+    };
+    eachCancelled([&](std::uint32_t t, const std::uint32_t*, std::uint32_t p) {
+      if (largest[p] == UINT32_MAX || points.doubleAreas[t] > points.doubleAreas[largest[p]] * (1 + kSameArea)) largest[p] = t;
+      sums[p].restart();
+    });
+    eachCancelled([&](std::uint32_t t, const std::uint32_t* corner, std::uint32_t p) {
+      const Vec3 normal = normalOf(corner);
+      const bool isTurned = dot(normal, normalOf(points.triangles + std::size_t{3} * largest[p])) < 0;
+      sums[p].add(isTurned ? -1 * normal : normal, points.doubleAreas[t]);
+    });
+    for (std::uint32_t p = 0; p < points.count; ++p) {
+      if (isWanted[results.segments[p]] && isZero(outlooks[p].normal)) outlooks[p] = {sums[p].normal(), true};
+    }
+  }
+  scratch.rewind(mark);
+  return true;
+}
+
+/// Looks from points to the cage.
+class Lookout {
+ public:
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
+  Lookout(const RayTree& target, const RayTree& cage, double diagonal, Scratch& scratch) noexcept
+      : lift_(kLift * diagonal),
+        pastTarget_(target, kRayStart * diagonal, scratch),
+        toCage_(cage, -kRayStart * diagonal, scratch),
+        directions_(scratch.take<RayDirection>(HitSearch::kMostRays)),
+        rays_(scratch.take<Ray>(HitSearch::kMostRays)),
+        ofRay_(scratch.take<std::uint8_t>(HitSearch::kMostRays)),
+        hit_(scratch.take<bool>(HitSearch::kMostRays)) {}
+
+  /// Looks from a point.
+  /// @pre Fewer than `kChunk` have been added since the last `count`.
+  void add(Vec3 point, Vec3 normal) noexcept {
+    const Vec3 across = cross(normal, std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+    const Vec3 t1 = 1 / length(across) * across;
+    const Vec3 t2 = cross(normal, t1);
+    const Vec3 origin = point + lift_ * normal;
+    const double at[3] = {origin.x, origin.y, origin.z};
+    for (const double(&d)[3] : kDirections) {
+      directions_[rayCount_] = RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2));
+      Ray& ray = rays_[rayCount_];
+      for (int axis = 0; axis < 3; ++axis) {
+        ray.origin[axis] = static_cast<float>(at[axis]);
+        ray.rest[axis] = static_cast<float>(at[axis] - static_cast<double>(ray.origin[axis]));
+      }
+      ray.direction = &directions_[rayCount_];
+      ray.end = std::numeric_limits<double>::infinity();
+      ofRay_[rayCount_++] = pointCount_;
+    }
+    ++pointCount_;
+  }
+
+  /// Counts the good rays of each point added, and forgets them.
+  void count(std::uint8_t (&good)[kChunk]) noexcept {
+    std::fill(good, good + pointCount_, std::uint8_t{0});
+    pastTarget_.search(rays_, rayCount_, hit_);
+    std::uint32_t free = 0;
+    for (std::uint32_t r = 0; r < rayCount_; ++r) {
+      if (hit_[r]) continue;
+      ofRay_[free] = ofRay_[r];
+      rays_[free++] = rays_[r];
+    }
+    toCage_.search(rays_, free, hit_);
+    for (std::uint32_t r = 0; r < free; ++r) good[ofRay_[r]] = static_cast<std::uint8_t>(good[ofRay_[r]] + hit_[r]);
+    rayCount_ = pointCount_ = 0;
+  }
+
+ private:
+  double lift_;
+  HitSearch pastTarget_;
+  HitSearch toCage_;
+  RayDirection* directions_;
+  Ray* rays_;
+  std::uint8_t* ofRay_;  ///< The place of its point among those added.
+  bool* hit_;
+  std::uint32_t rayCount_ = 0;
+  std::uint8_t pointCount_ = 0;
+};
+static_assert(kChunk < 256);
+
+}  // namespace
+
+bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
+               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, bool toBothSides,
+               Scratch& scratch, std::uint32_t* restores) noexcept {
+  const auto segmentCount = static_cast<std::uint32_t>(stats.size());
+  const Scratch::Mark mark = scratch.mark();
+  auto* queue = scratch.take<std::uint32_t>(points.count);
+  auto* isWanted = scratch.take<bool>(segmentCount);
+  Occluded occluded(points, results, stats, scratch);
+  if (scratch.failed()) return false;
+  std::uint32_t end = occluded.queueRim(queue);
+  if (end > 0) {
+    auto* outlooks = scratch.take<Outlook>(points.count);
+    Lookout lookout(targetTree, cageTree.rays, units.diagonal, scratch);
+    if (scratch.failed()) return false;
+    std::fill(isWanted, isWanted + segmentCount, false);
+    for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
+    if (!findOutlooks(points, cage, results, areas, segmentCount, isWanted, toBothSides, scratch, outlooks)) return false;
+    // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.
+    for (std::uint32_t begin = 0; begin < end;) {
+      std::uint32_t chosen[kChunk];
+      std::uint8_t good[kChunk];
+      std::uint32_t count = 0;
+      for (; begin < end && count + 1 < kChunk; ++begin) {  // A point may need two places.
+        const std::uint32_t p = queue[begin];
+        if (isZero(outlooks[p].normal)) continue;
+        lookout.add(points.exactly(p), outlooks[p].normal);
+        chosen[count++] = p;
+        if (!outlooks[p].isTwoSided) continue;
+        lookout.add(points.exactly(p), -1 * outlooks[p].normal);
+        chosen[count++] = p;
+      }
+      lookout.count(good);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (good[i] < kEnough) continue;
+        restores[chosen[i]] = Restores::always;
+        end = occluded.queueNeighbours(chosen[i], queue, end);
+      }
+    }
+  }
+  scratch.rewind(mark);
+  return true;
+}
+
+}  // namespace cagecast

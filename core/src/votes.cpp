@@ -1,0 +1,84 @@
+#include "steps.hpp"
+
+namespace cagecast {
+namespace {
+
+/// docs/method.md, step 4′: what a small segment has less of, how near to a hole it must be, and what a big triangle is; shares of the diagonal.
+constexpr std::uint32_t kFewPoints = 32;
+constexpr double kNearHole = 0.01;
+constexpr double kBigEdge = 0.06;
+
+bool meets(const Rims::Box& box, const Rims::Box& rim, double margin) {
+  for (int k = 0; k < 3; ++k) {
+    if (box.low[k] - margin > rim.high[k] || rim.low[k] > box.high[k] + margin) return false;
+  }
+  return true;
+}
+
+/// Splits a position into floats and what is left.
+void put(Vec3 p, float* position, float* rest) {
+  const double at[3] = {p.x, p.y, p.z};
+  for (int k = 0; k < 3; ++k) {
+    position[k] = static_cast<float>(at[k]);
+    rest[k] = static_cast<float>(at[k] - static_cast<double>(position[k]));
+  }
+  position[3] = 0;
+}
+
+}  // namespace
+
+bool findVoters(const Points& points, const Rims& rims, const Units& units, const PointResults& results,
+                const Array<SegmentStats>& stats, Scratch& scratch, Voters& out) noexcept {
+  if (rims.count == 0) return true;
+  const double margin = kNearHole * units.diagonal;
+  const double bigEdge = kBigEdge * units.diagonal;
+  const Scratch::Mark mark = scratch.mark();
+  auto* boxes = scratch.take<Rims::Box>(stats.size());
+  auto* triangles = scratch.take<std::uint32_t>(points.triangleCount);
+  if (scratch.failed()) return false;
+
+  std::fill(boxes, boxes + stats.size(), Rims::Box{});
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const std::uint32_t s = results.segments[i];
+    if (stats[s].points < kFewPoints) boxes[s].grow(Vec3::from(points.at(i)));
+  }
+  // Big triangles are few; only their segments are held against the rims.
+  std::uint32_t count = 0;
+  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+    const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+    const std::uint32_t s = results.segments[corner[0]];
+    if (stats[s].points >= kFewPoints) continue;
+    const Vec3 a = Vec3::from(points.at(corner[0]));
+    const Vec3 b = Vec3::from(points.at(corner[1]));
+    const Vec3 c = Vec3::from(points.at(corner[2]));
+    if (std::max({length(b - a), length(c - b), length(a - c)}) < bigEdge) continue;
+    if (std::any_of(rims.boxes, rims.boxes + rims.count, [&](const Rims::Box& rim) { return meets(boxes[s], rim, margin); })) {
+      triangles[count++] = t;
+    }
+  }
+  if (count == 0) {
+    scratch.rewind(mark);
+    return true;
+  }
+  scratch.shrink(triangles, count);
+  auto* positions = scratch.take<float>(std::size_t{4} * count * Points::kStride);
+  auto* rests = scratch.take<float>(std::size_t{4} * count * 3);
+  if (scratch.failed()) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t* corner = points.triangles + std::size_t{3} * triangles[i];
+    const Vec3 a = Vec3::from(points.at(corner[0]));
+    const Vec3 b = Vec3::from(points.at(corner[1]));
+    const Vec3 c = Vec3::from(points.at(corner[2]));
+    const Vec3 sum = a + b + c;
+    const Vec3 centroids[4] = {1.0 / 6 * (sum + 3 * a), 1.0 / 6 * (sum + 3 * b), 1.0 / 6 * (sum + 3 * c), 1.0 / 3 * sum};
+    for (std::size_t k = 0; k < 4; ++k) put(centroids[k], positions + (4 * i + k) * Points::kStride, rests + (4 * i + k) * 3);
+  }
+  out.count = count;
+  out.triangles = triangles;
+  out.points.count = 4 * count;
+  out.points.positions = positions;
+  out.points.rests = rests;
+  return true;
+}
+
+}  // namespace cagecast

@@ -1,0 +1,102 @@
+import { Document, NodeIO } from '@gltf-transform/core'
+import { PNG } from 'pngjs'
+import { BoxGeometry, SphereGeometry, type BufferGeometry } from 'three'
+import { glb } from './glb'
+import type { Upload } from './site'
+
+/** The margins around an island, as shares of its cell in the atlas: what it is painted beyond its border, and all of it. */
+const kBleed = 0.1
+const kInset = 0.2
+const kCells = { columns: 3, rows: 2 }
+
+/** Where the six sides of a cube lie in the atlas: the left lower corner of each cell. */
+const cellOf = (side: number): [number, number] => [(side % kCells.columns) / kCells.columns, Math.floor(side / kCells.columns) / kCells.rows]
+
+/** A cage: a closed cube about the origin, whose six sides are islands of their own in the atlas. */
+export async function islandCage(halfSize: number): Promise<Upload> {
+  const box = new BoxGeometry(2 * halfSize, 2 * halfSize, 2 * halfSize) // 4 vertices for each side, one after the other
+  const uv = box.getAttribute('uv')
+  for (let vertex = 0; vertex < uv.count; vertex++) {
+    const [u, v] = cellOf(Math.floor(vertex / 4))
+    const inset = (value: number): number => kInset + (1 - 2 * kInset) * value
+    uv.setXY(vertex, u + inset(uv.getX(vertex)) / kCells.columns, v + inset(uv.getY(vertex)) / kCells.rows)
+  }
+  const document = new Document()
+  document.createBuffer()
+  document.createScene().addChild(document.createNode('cage').setMesh(meshOf(document, box, true)))
+  return glb('cage.glb', Buffer.from(await new NodeIO().writeBinary(document)))
+}
+
+/** A paint for that cage: green on its islands, violet between them. */
+export function islandPaint(): Upload {
+  const png = new PNG({ width: 384, height: 256 })
+  const near = (share: number, cells: number): boolean => Math.abs(((share * cells) % 1) - 0.5) < 0.5 - kInset + kBleed
+  for (let y = 0; y < png.height; y++) {
+    for (let x = 0; x < png.width; x++) {
+      const inside = near((x + 0.5) / png.width, kCells.columns) && near((y + 0.5) / png.height, kCells.rows)
+      png.data.set(inside ? [0, 192, 64, 255] : [200, 0, 220, 255], 4 * (y * png.width + x))
+    }
+  }
+  return { name: 'islands.png', mimeType: 'image/png', buffer: PNG.sync.write(png) }
+}
+
+/** A blue ball of radius 0.9. With `pose` it is skinned to two joints that pull it apart, and half morphed into a flat one. */
+export async function ball({ pose = false, mirrored = false } = {}): Promise<Upload> {
+  const document = new Document()
+  const buffer = document.createBuffer()
+  const sphere = new SphereGeometry(0.9, 22, 15)
+  const mesh = meshOf(document, sphere, false)
+  const blue = document.createMaterial('blue').setBaseColorFactor([0.02, 0.05, 0.9, 1]).setRoughnessFactor(1).setMetallicFactor(0)
+  const primitive = mesh.listPrimitives()[0]!.setMaterial(blue)
+  const node = document.createNode('ball').setMesh(mesh)
+  if (mirrored) node.setScale([-1, 1, 1])
+  const scene = document.createScene().addChild(node)
+  if (pose) {
+    const positions = sphere.getAttribute('position').array as Float32Array
+    const accessor = (type: 'VEC3' | 'VEC4', array: Float32Array | Uint8Array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer)
+    const flat = positions.map((value, at) => (at % 3 === 1 ? -0.8 * value : 0))
+    primitive.addTarget(document.createPrimitiveTarget().setAttribute('POSITION', accessor('VEC3', flat)))
+    mesh.setWeights([0.5])
+    const count = positions.length / 3
+    const weights = new Float32Array(4 * count)
+    for (let vertex = 0; vertex < count; vertex++) {
+      const right = Math.min(1, Math.max(0, 0.5 + positions[3 * vertex]!))
+      weights.set([1 - right, right, 0, 0], 4 * vertex)
+    }
+    primitive.setAttribute('JOINTS_0', accessor('VEC4', Uint8Array.from({ length: 4 * count }, (_, at) => (at % 4 === 1 ? 1 : 0))))
+    primitive.setAttribute('WEIGHTS_0', accessor('VEC4', weights))
+    const joints = [-0.7, 0.7].map((x) => document.createNode('joint').setTranslation([x, 0, 0]))
+    const skin = document.createSkin()
+    for (const joint of joints) {
+      skin.addJoint(joint)
+      scene.addChild(joint)
+    }
+    node.setSkin(skin)
+  }
+  return glb('ball.glb', Buffer.from(await new NodeIO().writeBinary(document)))
+}
+
+/** A target of many separate balls, each a node of its own, the later the smaller. */
+export async function balls(count: number): Promise<Upload> {
+  const document = new Document()
+  document.createBuffer()
+  const mesh = meshOf(document, new SphereGeometry(0.04, 4, 3), false)
+  const scene = document.createScene()
+  for (let i = 0; i < count; i++) {
+    const place = (digit: number): number => (Math.floor(i / digit) % 6) * 0.3 - 0.75
+    const scale = 1 - (0.5 * i) / count
+    scene.addChild(document.createNode(`ball ${i}`).setMesh(mesh).setTranslation([place(1), place(6), place(36)]).setScale([scale, scale, scale]))
+  }
+  return glb('balls.glb', Buffer.from(await new NodeIO().writeBinary(document)))
+}
+
+function meshOf(document: Document, geometry: BufferGeometry, withUvs: boolean) {
+  const buffer = document.getRoot().listBuffers()[0]!
+  const accessor = (type: 'VEC2' | 'VEC3' | 'SCALAR', array: Float32Array | Uint16Array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer)
+  const primitive = document.createPrimitive().setIndices(accessor('SCALAR', Uint16Array.from(geometry.index!.array)))
+  for (const [name, semantic, type] of [['position', 'POSITION', 'VEC3'], ['normal', 'NORMAL', 'VEC3'], ['uv', 'TEXCOORD_0', 'VEC2']] as const) {
+    if (name === 'uv' && !withUvs) continue
+    primitive.setAttribute(semantic, accessor(type, Float32Array.from(geometry.getAttribute(name).array)))
+  }
+  return document.createMesh(primitive.getName()).addPrimitive(primitive)
+}

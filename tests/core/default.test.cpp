@@ -1,0 +1,306 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <set>
+
+#include "checks.hpp"
+#include "hash.hpp"
+#include "traps.hpp"
+
+using namespace cagecast;
+
+namespace {
+
+/// The preset without its seams, which have tests of their own.
+TransferOptions preset() {
+  TransferOptions options = TransferOptions::standard();
+  options.seams = Seams::vertex;
+  return options;
+}
+
+struct Step {
+  const char* name;
+  void (*take)(TransferOptions&);
+};
+
+/// Each step of the preset, as something to add to `paper`.
+constexpr Step kSteps[] = {
+    {"an end for the self ray", [](TransferOptions& o) { o.occlusionReach = preset().occlusionReach; }},
+    {"poke-through", [](TransferOptions& o) { o.pokeThrough = preset().pokeThrough; }},
+    {"votes", [](TransferOptions& o) { o.votes = true; }},
+    {"the floor of area", [](TransferOptions& o) { o.floor = Floor::area; }},
+    {"the floor of depth", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = true; }},
+    {"copies", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = o.copies = true; }},
+    {"the second look", [](TransferOptions& o) { o.secondLook = true; }},
+    {"the second look to both sides", [](TransferOptions& o) { o.secondLook = o.bothSides = true; }},
+    {"holes", [](TransferOptions& o) { o.holes = true; }},
+    {"partial triangles", [](TransferOptions& o) { o.partialTriangles = true; }},
+};
+
+/// The preset, and each of its steps alone.
+std::vector<std::pair<std::string, TransferOptions>> variants() {
+  std::vector<std::pair<std::string, TransferOptions>> all{{"the preset", preset()}};
+  for (const Step& step : kSteps) {
+    TransferOptions options;
+    step.take(options);
+    all.emplace_back(step.name, options);
+  }
+  return all;
+}
+
+/// A scene in which every step has something to do: a head in a cage that is too small at one side, with panes of two
+/// triangles in front of its holes.
+scenes::Scene crowdedHead(int cells, float shift) {
+  scenes::Scene scene = scenes::head(cells);
+  const auto pane = [&](scenes::Point centre, float half) {
+    const auto corner = [&](float x, float y) { return scenes::Point{centre[0] + half * x, centre[1] + half * y, centre[2]}; };
+    const std::uint32_t group = static_cast<std::uint32_t>(scene.target.vertexCount());
+    const std::uint32_t first = scene.target.addVertex(corner(-1, -1), 0, 0, group);
+    scene.target.addVertex(corner(1, -1), 0, 0, group);
+    scene.target.addVertex(corner(1, 1), 0, 0, group);
+    scene.target.addVertex(corner(-1, 1), 0, 0, group);
+    scene.target.addTriangle(first, first + 1, first + 2);
+    scene.target.addTriangle(first, first + 2, first + 3);
+  };
+  pane({0.35f, 0.25f, 0.9f}, 0.2f);
+  pane({-0.35f, 0.25f, 0.8f}, 0.25f);
+  pane({0, -0.4f, 0.9f}, 0.18f);
+  scene.cage = mapped(scene.cage, [&](scenes::Point p) { return scenes::Point{p[0] + shift, p[1], p[2] - shift / 2}; });
+  scene.name += " crowded";
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the preset is the reference's on strewn triangles, as a whole and step by step", "[default]") {
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 12; ++seed) {
+    const scenes::Scene scene = scenes::strewn(seed, seed % 4 == 0 ? 800 : 60);
+    INFO("CAGECAST_SEED=" << seed);
+    for (const auto& [name, options] : variants()) {
+      INFO(name);
+      requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
+    }
+  }
+}
+
+TEST_CASE("the preset is the reference's at any threshold, every triangle a segment of its own", "[default]") {
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 3; ++seed) {
+    const scenes::Scene scene = scenes::strewn(seed, 200);
+    scenes::Mesh apart;
+    for (const std::uint32_t index : scene.target.indices)
+      apart.addVertex(scene.target.vertex(index), 0, 0, static_cast<std::uint32_t>(apart.vertexCount() / 3));
+    for (std::uint32_t i = 0; i < apart.vertexCount(); i += 3) apart.addTriangle(i, i + 1, i + 2);
+    INFO("CAGECAST_SEED=" << seed);
+    for (auto& [name, options] : variants()) {
+      for (const float threshold : {0.0f, 0.3f, 0.5f, 1.0f}) {
+        INFO(name << ", threshold " << threshold);
+        options.threshold = threshold;
+        // The library looks again only where something is covered, which the floor asks of a segment too.
+        if (threshold == 0 && options.secondLook && options.floor == Floor::none) options.floor = Floor::area;
+        requireSameAsReference(scene.name, scene.cage.view(), apart.view(), options);
+      }
+    }
+  }
+}
+
+TEST_CASE("the preset is the reference's where everything lies on a grid", "[default]") {
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 8; ++seed) {
+    const scenes::Scene scene = scenes::gridded(seed, seed % 2 == 0 ? 60 : 300);
+    INFO("CAGECAST_SEED=" << seed);
+    for (const auto& [name, options] : variants()) {
+      INFO(name);
+      requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
+    }
+    const std::array<int, 4> turn{3, 1, -2, 1};
+    requireSameAsReference(scene.name + " rotated", rotated(scene.cage, turn).view(), rotated(scene.target, turn).view(), preset());
+  }
+}
+
+TEST_CASE("the preset is the reference's on heads, as a whole and step by step", "[default]") {
+  for (const float shift : {0.0f, 0.06f, -0.1f}) {
+    const scenes::Scene scene = crowdedHead(16, shift);
+    for (const auto& [name, options] : variants()) {
+      INFO(name << ", shift " << shift);
+      const auto found = requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
+      CHECK(found.unstable * 50 <= found.vertices);
+    }
+  }
+}
+
+TEST_CASE("the preset is the reference's on models made to be difficult, as a whole and step by step", "[default]") {
+  for (const scenes::Trap& trap : scenes::traps()) {
+    for (const auto& [name, options] : variants()) {
+      INFO(name);
+      requireSameAsReference(trap.scene.name, trap.scene.cage.view(), trap.scene.target.view(), options);
+    }
+    for (const float threshold : {0.3f, 0.8f}) {
+      TransferOptions options = preset();
+      options.threshold = threshold;
+      requireSameAsReference(trap.scene.name, trap.scene.cage.view(), trap.scene.target.view(), options);
+    }
+  }
+}
+
+TEST_CASE("the preset is the reference's on all fixed scenes", "[default]") {
+  for (const scenes::Scene& scene : scenes::golden())
+    requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), preset());
+}
+
+TEST_CASE("the preset is the reference's far from the origin of coordinates", "[default]") {
+  const auto moved = [](scenes::Point p) {
+    for (float& x : p) x = std::round(x * 1024) / 1024;
+    return scenes::Point{p[0] + 512, p[1] - 1024, p[2] + 256};
+  };
+  for (const scenes::Scene& scene : {scenes::strewn(firstSeed(), 300), crowdedHead(14, 0.06f)})
+    requireSameAsReference(scene.name, mapped(scene.cage, moved).view(), mapped(scene.target, moved).view(), preset());
+}
+
+TEST_CASE("no step of the preset depends on the order of the target's vertices and triangles", "[default]") {
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 4; ++seed) {
+    for (const scenes::Scene& scene : {scenes::strewn(seed, 400), crowdedHead(14, 0.06f), scenes::stairs()}) {
+      scenes::Random random(seed);
+      std::vector<std::uint32_t> order;
+      const scenes::Mesh target = scenes::shuffled(scene.target, random, order);
+      INFO(scene.name << ", CAGECAST_SEED=" << seed);
+      for (const auto& [name, options] : variants()) {
+        INFO(name);
+        const TransferResult before = transferred(scene.cage.view(), scene.target.view(), options);
+        const TransferResult after = transferred(scene.cage.view(), target.view(), options);
+        std::size_t zones = 0;
+        for (std::size_t v = 0; v < order.size(); ++v) zones += after.zones.zones[v] != before.zones.zones[order[v]];
+        CHECK(zones == 0);
+        std::multiset<std::array<double, 3>> areas[2];
+        for (const TransferResult* result : {&before, &after}) {
+          for (const SegmentStats& s : result->projection.segmentStats)
+            areas[result == &after].insert({s.area, s.exposedArea, s.coveredArea});
+        }
+        CHECK(areas[0] == areas[1]);
+      }
+    }
+  }
+}
+
+TEST_CASE("a new threshold decides what a new transfer would", "[default]") {
+  const scenes::Scene scene = crowdedHead(20, 0.06f);
+  TransferOptions options = preset();
+  const TransferResult first = transferred(scene.cage.view(), scene.target.view(), options);
+  for (const float threshold : {0.0f, 0.2f, 0.9f, 1.0f}) {
+    options.threshold = threshold;
+    Zones again;
+    REQUIRE(classify(first.projection.view(), scene.target.indices, options, again).ok());
+    const TransferResult anew = transferred(scene.cage.view(), scene.target.view(), options);
+    CHECK(copied(again.zones) == copied(anew.zones.zones));
+    CHECK(copied(again.cosmeticTriangles) == copied(anew.zones.cosmeticTriangles));
+  }
+}
+
+TEST_CASE("a lock is the last word about its segment", "[default]") {
+  const scenes::Scene scene = crowdedHead(16, 0);
+  const TransferResult result = transferred(scene.cage.view(), scene.target.view(), preset());
+  const std::size_t segments = result.projection.segmentStats.size();
+  REQUIRE(segments > 3);
+  const auto decided = [&](std::size_t segment, Lock lock) {
+    std::vector<Lock> locks(segments, Lock::automatic);
+    locks[segment] = lock;
+    TransferOptions options = preset();
+    options.locks = locks;
+    Zones zones;
+    REQUIRE(classify(result.projection.view(), scene.target.indices, options, zones).ok());
+    return zones;
+  };
+  for (std::size_t s = 0; s < segments; ++s) {
+    INFO("segment " << s);
+    const Zones kept = decided(s, Lock::keep), excluded = decided(s, Lock::exclude);
+    CHECK(kept.culledSegments[s] == 0);
+    CHECK(excluded.culledSegments[s] == 1);
+    for (std::size_t v = 0; v < scene.target.vertexCount(); ++v) {
+      if (result.projection.segments[v] != s) continue;
+      if (result.projection.zones[v] == Zone::cosmetic) {
+        CHECK(kept.zones[v] == Zone::cosmetic);
+        CHECK(excluded.zones[v] == Zone::culled);
+      } else {
+        CHECK(excluded.zones[v] == result.projection.zones[v]);
+      }
+    }
+  }
+  SECTION("but there must be one for each") {
+    const Lock locks[2] = {};
+    TransferOptions options = preset();
+    options.locks = locks;
+    Zones zones;
+    const Status status = classify(result.projection.view(), scene.target.indices, options, zones);
+    CHECK(status.code == Code::badLocks);
+    CHECK(status.at == 2);
+  }
+}
+
+TEST_CASE("an excluded segment explains the hole it lies under, a kept one does not", "[default]") {
+  const scenes::Scene scene = crowdedHead(16, 0);
+  const TransferResult result = transferred(scene.cage.view(), scene.target.view(), preset());
+  const auto restored = [&](Lock lock) {
+    // All but the skin, which has most points, are locked.
+    std::vector<Lock> locks(result.projection.segmentStats.size(), lock);
+    std::size_t skin = 0;
+    for (std::size_t s = 0; s < locks.size(); ++s)
+      if (result.projection.segmentStats[s].points > result.projection.segmentStats[skin].points) skin = s;
+    locks[skin] = Lock::keep;
+    TransferOptions options = preset();
+    options.locks = locks;
+    Zones zones;
+    REQUIRE(classify(result.projection.view(), scene.target.indices, options, zones).ok());
+    std::size_t explained = 0;
+    for (const std::uint8_t hole : zones.explainedHoles) explained += hole;
+    return explained;
+  };
+  CHECK(restored(Lock::exclude) > 0);
+  CHECK(restored(Lock::keep) == 0);
+}
+
+TEST_CASE("a segment knows the group of its first vertex", "[default]") {
+  const scenes::Scene scene = scenes::head(10);
+  const TransferResult result = transferred(scene.cage.view(), scene.target.view());
+  for (std::size_t v = scene.target.vertexCount(); v-- > 0;) {
+    const std::uint32_t s = result.projection.segments[v];
+    if (std::find(result.projection.segments.begin(), result.projection.segments.begin() + v, s) ==
+        result.projection.segments.begin() + v)
+      CHECK(result.projection.segmentStats[s].group == scene.target.groups[v]);
+  }
+}
+
+TEST_CASE("options of the preset that are out of range are named", "[default]") {
+  const scenes::Scene scene = scenes::head(8);
+  const auto codeOf = [&](auto change) {
+    TransferOptions options;
+    change(options);
+    TransferResult result;
+    return transfer(scene.cage.view(), scene.target.view(), options, result).code;
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float bad : {-0.1f, nan}) {
+    CHECK(codeOf([&](TransferOptions& o) { o.occlusionReach = bad; }) == Code::badOcclusionReach);
+    CHECK(codeOf([&](TransferOptions& o) { o.pokeThrough = bad; }) == Code::badPokeThrough);
+    CHECK(codeOf([&](TransferOptions& o) { o.minCovered = bad; }) == Code::badMinCovered);
+  }
+  CHECK(codeOf([](TransferOptions& o) { o.minCovered = 1.1f; }) == Code::badMinCovered);
+  CHECK(codeOf([](TransferOptions& o) { o.minOfAll = -1; }) == Code::badMinOfAll);
+  CHECK(codeOf([](TransferOptions& o) { o.maxUncovered = 2; }) == Code::badMaxUncovered);
+}
+
+// As for `paper`: the same file is asserted in every build.
+TEST_CASE("the preset's answer on fixed scenes has the golden hash", "[default][golden]") {
+  Hash hash;
+  for (const scenes::Scene& scene : scenes::golden()) hash.add(transferred(scene.cage.view(), scene.target.view(), preset()));
+  for (const float shift : {0.0f, 0.06f, -0.1f}) {
+    const scenes::Scene scene = crowdedHead(18, shift);
+    const TransferResult result = transferred(scene.cage.view(), scene.target.view(), preset());
+    hash.add(result);
+    hash.add(result.zones.cosmeticTriangles);
+    hash.add(result.projection.restores);
+  }
+  std::ifstream file(CAGECAST_GOLDEN_DEFAULT);
+  std::string expected;
+  file >> expected;
+  CHECK(hash.text() == expected);
+}

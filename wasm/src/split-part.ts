@@ -1,0 +1,67 @@
+import { splitVertices, type TransferResult } from './index.js';
+
+/** Where a part lies in the arrays of a result, and which triangles it has. */
+export interface PartGeometry {
+  firstVertex: number;
+  vertexCount: number;
+  firstTriangle: number;
+  triangleCount: number;
+  /** Whether its triangles were turned on the way into the arrays: their second and third corners changed places. */
+  turned: boolean;
+  /** 3 per triangle, among the part's own vertices, as they are before they are turned. */
+  localIndices: ArrayLike<number>;
+}
+
+/** A part's vertices with UVs that fit every corner: those that it has keep their numbers, copies come after them. */
+export interface SplitPart {
+  /** 2 per vertex, copies included. */
+  uvs: Float32Array<ArrayBuffer>;
+  /** 1 per vertex, copies included: the vertex that it is like, but for its UV. */
+  sources: Uint32Array<ArrayBuffer>;
+  /** As many as before. */
+  indices: Uint32Array<ArrayBuffer>;
+  /** Vertices that had to be added; with none the part is as it was. */
+  copies: number;
+}
+
+/** Splits the vertices of a part of a target where the UVs of a result's corners differ. */
+export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs' | 'cornerUvs'>): SplitPart {
+  const { firstVertex, vertexCount, firstTriangle, triangleCount } = part;
+  const localIndices = Uint32Array.from(part.localIndices);
+  const uvs = result.uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount));
+  const own = { uvs, sources: Uint32Array.from({ length: vertexCount }, (_, v) => v), indices: localIndices, copies: 0 };
+  if (result.cornerUvs.length === 0) return own;
+
+  const cornerUvs = result.cornerUvs.slice(6 * firstTriangle, 6 * (firstTriangle + triangleCount));
+  if (part.turned) {
+    for (let t = 0; t < cornerUvs.length; t += 6) {
+      const [second, third] = [cornerUvs.slice(t + 2, t + 4), cornerUvs.slice(t + 4, t + 6)];
+      cornerUvs.set(third, t + 2);
+      cornerUvs.set(second, t + 4);
+    }
+  }
+  const split = splitVertices({ positions: new Float32Array(3 * vertexCount), indices: localIndices }, cornerUvs);
+  const taken = new Uint8Array(vertexCount);
+  const added: number[] = [];
+  const place = Uint32Array.from(split.sources, (source, n) => {
+    if (taken[source] === 1) return vertexCount + added.push(n) - 1;
+    taken[source] = 1;
+    return source;
+  });
+  const all = new Float32Array(2 * (vertexCount + added.length));
+  all.set(uvs);
+  place.forEach((to, n) => all.set(split.uvs.subarray(2 * n, 2 * n + 2), 2 * to));
+  return {
+    uvs: all,
+    sources: Uint32Array.from({ length: vertexCount + added.length }, (_, v) => (v < vertexCount ? v : split.sources[added[v - vertexCount]!]!)),
+    indices: split.indices.map((n) => place[n]!),
+    copies: added.length,
+  };
+}
+
+/** Elements of `size` numbers each, in the order of `sources`. */
+export function gather<A extends Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array>(values: A, size: number, sources: Uint32Array): A {
+  const out = new (values.constructor as new (length: number) => A)(size * sources.length);
+  for (let v = 0; v < sources.length; ++v) for (let k = 0; k < size; ++k) out[size * v + k] = values[size * sources[v]! + k]!;
+  return out;
+}

@@ -1,0 +1,150 @@
+import type { Classification, Lock, SegmentStats } from 'cagecast'
+import type { Part } from './extract'
+import { element } from './page'
+
+/** What the visitor said about segments, by their number; nothing about all others. */
+export type Locks = Record<number, Lock>
+
+/** Rows enough to read; a scan may fall into thousands of pieces. */
+const kMostRows = 50
+const kLocks: Record<Lock, string> = { auto: 'auto', keep: 'keep', exclude: 'exclude' }
+
+/** What the table tells its page. */
+export interface PartsEvents {
+  /** Something was said about segments. */
+  onLock(segments: readonly number[], lock: Lock): void
+  /** The segments of a row are pointed at, or none any more. */
+  onPoint(segments: readonly number[]): void
+}
+
+/** Segments that are listed as one, and their numbers together. */
+interface Entry {
+  name: string
+  segments: number[]
+  points: number
+  area: number
+  exposedArea: number
+  coveredArea: number
+  lock: Lock
+}
+
+interface Row {
+  segments: readonly number[]
+  row: HTMLTableRowElement
+  verdict: HTMLElement
+}
+
+/**
+ * The table of a target's segments, which its panel calls parts: how each fared, and what the visitor says about it.
+ * Segments of one mesh of which the cage covers nothing, as thirty teeth in a mouth, share a row.
+ */
+export class PartsTable {
+  readonly #body = element('segment-rows', HTMLTableSectionElement)
+  readonly #events: PartsEvents
+  #rows: Row[] = []
+
+  constructor(events: PartsEvents) {
+    this.#events = events
+    this.#body.addEventListener('pointerleave', () => events.onPoint([]))
+    this.#body.addEventListener('focusout', () => events.onPoint([]))
+    // A card that is closed under the pointer no longer points at anything.
+    element('parts', HTMLDetailsElement).addEventListener('toggle', () => events.onPoint([]))
+  }
+
+  /**
+   * Lists the segments of another target, or of another projection of it: the largest, those that are covered least first.
+   * Call `showVerdicts` for what became of them.
+   */
+  list(stats: readonly SegmentStats[], parts: readonly Part[], locks: Locks): void {
+    const entries = entriesOf(stats, parts, locks)
+    const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMostRows))
+    // Sorting is stable: the larger of two that are covered alike stays before the smaller.
+    const listed = largest.toSorted((a, b) => coverageOf(a) - coverageOf(b))
+    this.#rows = listed.map((entry) => this.#row(entry))
+    this.#body.replaceChildren(...this.#rows.map(({ row }) => row))
+    element('segment-caption', HTMLElement).textContent =
+      listed.length < entries.length
+        ? `The ${listed.length} largest of ${entries.length.toLocaleString('en')} connected parts, those the cage covers least first.`
+        : 'Each connected part, those the cage covers least first.'
+  }
+
+  /** Writes which segments may be painted, and which may not. */
+  showVerdicts({ segmentStats }: Classification): void {
+    for (const { segments, verdict } of this.#rows) {
+      // Those that share a row share its verdict: nothing of any of them is covered, and the same was said about all.
+      const { culled } = segmentStats[segments[0]!]!
+      verdict.textContent = culled ? 'culled' : 'passes'
+      verdict.dataset.verdict = verdict.textContent
+    }
+    const real = segmentStats.filter(({ area }) => area > 0)
+    const culled = real.filter((segment) => segment.culled).length
+    element('segment-summary', HTMLElement).textContent = `${real.length.toLocaleString('en')}, ${culled.toLocaleString('en')} culled`
+  }
+
+  #row(entry: Entry): Row {
+    const { name, segments, points, exposedArea } = entry
+    const row = document.createElement('tr')
+    const head = cell('th', name)
+    head.scope = 'row'
+    const verdict = cell('td', '')
+    const choice = document.createElement('td')
+    choice.append(this.#select(entry))
+    row.append(head, cell('td', points.toLocaleString('en')), cell('td', exposedArea > 0 ? percent(coverageOf(entry)) : 'hidden'), verdict, choice)
+    row.addEventListener('pointerenter', () => this.#events.onPoint(segments))
+    row.addEventListener('focusin', () => this.#events.onPoint(segments))
+    return { segments, row, verdict }
+  }
+
+  #select({ name, segments, lock }: Entry): HTMLSelectElement {
+    const select = document.createElement('select')
+    select.name = 'lock'
+    select.setAttribute('aria-label', `Say about ${name}`)
+    for (const [value, text] of Object.entries(kLocks)) select.add(new Option(text, value, false, value === lock))
+    select.addEventListener('change', () => this.#events.onLock(segments, select.value as Lock))
+    return select
+  }
+}
+
+/** The segments that have triangles, as they are listed, in the order of their vertices. */
+function entriesOf(stats: readonly SegmentStats[], parts: readonly Part[], locks: Locks): Entry[] {
+  const entries = new Map<string, Entry>()
+  stats.forEach(({ points, area, exposedArea, coveredArea, group }, segment) => {
+    if (area === 0) return
+    const lock = locks[segment] ?? 'auto'
+    const key = coveredArea > 0 ? `segment ${segment}` : `group ${group} ${exposedArea > 0} ${lock}`
+    const entry = entries.get(key) ?? { name: parts[group]!.name, segments: [], points: 0, area: 0, exposedArea: 0, coveredArea: 0, lock }
+    entry.segments.push(segment)
+    entry.points += points
+    entry.area += area
+    entry.exposedArea += exposedArea
+    entry.coveredArea += coveredArea
+    entries.set(key, entry)
+  })
+  return [...entries.values()]
+}
+
+/** Numbers those of one name, in the order they come in, and says how many pieces each is of. */
+function named(entries: Entry[]): Entry[] {
+  return entries.map((entry) => {
+    const namesakes = entries.filter(({ name }) => name === entry.name)
+    const number = namesakes.length > 1 ? ` ${namesakes.indexOf(entry) + 1}` : ''
+    const pieces = entry.segments.length > 1 ? `, ${entry.segments.length} pieces` : ''
+    return { ...entry, name: `${entry.name}${number}${pieces}` }
+  })
+}
+
+function coverageOf({ exposedArea, coveredArea }: Entry): number {
+  return exposedArea > 0 ? coveredArea / exposedArea : 0
+}
+
+function cell(type: 'td' | 'th', text: string): HTMLTableCellElement {
+  const made = document.createElement(type)
+  made.textContent = text
+  return made
+}
+
+/** Up to 100 % only where nothing is missing, and 0 % only where nothing is there. */
+function percent(share: number): string {
+  if (share > 0 && share < 0.01) return '< 1 %'
+  return `${Math.floor(100 * share)} %`
+}
