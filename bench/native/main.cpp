@@ -1,11 +1,12 @@
 /// Measures the library, and peers beside it, in CPU time.
 ///
-///     cagecast_bench TARGET.glb CAGE.glb [--runs 101] [--peers embree,nanoflann] [--json]
+///     cagecast_bench TARGET.glb CAGE.glb [--preset paper|default] [--seams vertex|corner] [--runs 101] [--peers embree,nanoflann] [--json]
 ///     cagecast_bench FILE.scene [...]
 ///     cagecast_bench TARGET.glb CAGE.glb --save FILE.scene
 ///
 /// Every run is the whole work from raw arrays to zones. With peers, the runs alternate (library, peer, library, peer, …)
-/// and a ratio is the median of the ratios of such pairs, so that what else the machine does falls on both alike.
+/// and a ratio is the median of the ratios of such pairs, so that what else the machine does falls on both alike. The library
+/// is its own peer with other options: `paper`, `default`, and `default-vertex`, which is `default` with seams per vertex.
 /// Exit code 1 if the input is unusable, 2 for wrong usage; a line on stderr says why.
 
 #include <sched.h>
@@ -13,6 +14,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +32,7 @@ using bench::Peer;
 struct Arguments {
   std::vector<std::string> files;
   std::vector<std::string> peers;
+  TransferOptions options = TransferOptions::paper();
   std::string save;  ///< Write the input to this scene file, and measure nothing.
   int runs = 101;
   bool json = false;
@@ -41,6 +45,7 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
+  std::optional<Seams> seams;  // Those of the preset.
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     const auto value = [&] {
@@ -54,6 +59,14 @@ Arguments parse(int argc, char** argv) {
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), arguments.runs);
       if (error != std::errc{} || end != text.data() + text.size() || arguments.runs < 1)
         stop(2, "--runs " + std::string(text) + " is not a whole number of at least 1");
+    } else if (argument == "--preset") {
+      const std::string_view preset = value();
+      if (preset != "paper" && preset != "default") stop(2, "no preset \"" + std::string(preset) + "\"; there are: paper, default");
+      arguments.options = preset == "paper" ? TransferOptions::paper() : TransferOptions::standard();
+    } else if (argument == "--seams") {
+      const std::string_view text = value();
+      if (text != "vertex" && text != "corner") stop(2, "no seams \"" + std::string(text) + "\"; there are: vertex, corner");
+      seams = text == "vertex" ? Seams::vertex : Seams::corner;
     } else if (argument == "--save") {
       arguments.save = value();
     } else if (argument == "--peers") {
@@ -70,13 +83,36 @@ Arguments parse(int argc, char** argv) {
     }
   }
   if (arguments.files.empty() || arguments.files.size() > 2)
-    stop(2, "usage: cagecast_bench TARGET.glb CAGE.glb | FILE.scene [--runs 101] [--peers embree,nanoflann] [--json] [--save FILE.scene]");
+    stop(2,
+         "usage: cagecast_bench TARGET.glb CAGE.glb | FILE.scene [--preset paper|default] [--seams vertex|corner] [--runs 101]\n"
+         "       [--peers embree,nanoflann,paper,default,default-vertex] [--json] [--save FILE.scene]");
+  if (seams) arguments.options.seams = *seams;
   return arguments;
 }
 
+/// The library with other options.
+class OtherOptions : public Peer {
+ public:
+  explicit OtherOptions(const TransferOptions& options) : options_(options) {}
+  Timings run(const MeshView& cage, const MeshView& target) override {
+    if (const Status status = transfer(cage, target, options_, result_); !status.ok()) stop(1, describe(status, cage, target));
+    return result_.projection.timings;
+  }
+
+ private:
+  TransferOptions options_;
+  TransferResult result_;
+};
+
 std::unique_ptr<Peer> makePeer(const std::string& name) {
+  if (name == "paper") return std::make_unique<OtherOptions>(TransferOptions::paper());
+  if (name == "default" || name == "default-vertex") {
+    TransferOptions options = TransferOptions::standard();
+    if (name == "default-vertex") options.seams = Seams::vertex;
+    return std::make_unique<OtherOptions>(options);
+  }
   if (name == "nanoflann") return bench::makeNanoflannPeer();
-  if (name != "embree") stop(2, "no peer \"" + name + "\"; there are: embree, nanoflann");
+  if (name != "embree") stop(2, "no peer \"" + name + "\"; there are: embree, nanoflann, paper, default, default-vertex");
   std::unique_ptr<Peer> peer = bench::makeEmbreePeer();
   if (!peer) stop(2, "this benchmark was built without Embree (Debian: libembree-dev); configure again once it is installed");
   return peer;
@@ -87,8 +123,9 @@ struct Stage {
   const char* name;
   double Timings::*time;
 };
-constexpr Stage kStages[] = {{"weld", &Timings::weld},         {"build", &Timings::build},       {"project", &Timings::project},
-                             {"occluded", &Timings::occluded}, {"covered", &Timings::covered},   {"segments", &Timings::segments},
+constexpr Stage kStages[] = {{"weld", &Timings::weld},         {"build", &Timings::build},     {"project", &Timings::project},
+                             {"occluded", &Timings::occluded}, {"covered", &Timings::covered}, {"segments", &Timings::segments},
+                             {"secondLook", &Timings::secondLook}, {"holes", &Timings::holes}, {"seams", &Timings::seams},
                              {"classify", &Timings::classify}, {"total", &Timings::total}};
 
 struct Spread {
@@ -187,12 +224,12 @@ void printJson(const Arguments& arguments, const bench::Model& model, const Tran
 void printTable(const bench::Model& model, const TransferResult& result, const std::vector<Timings>& runs, const std::vector<Contest>& contests) {
   std::printf("%zu triangles, %u points, cage of %zu triangles; %zu runs, CPU time in ms\n\n", model.target.indices.size() / 3,
               pointCount(result.projection), model.cage.indices.size() / 3, runs.size());
-  std::printf("%-10s%10s%10s%10s", "", "median", "min", "max");
+  std::printf("%-11s%10s%10s%10s", "", "median", "min", "max");
   for (const Contest& contest : contests) std::printf("%14s%10s", contest.name.c_str(), "ratio");
   std::printf("\n");
   for (const Stage& stage : kStages) {
     const Spread s = spread(runs, stage.time);
-    std::printf("%-10s%10.4f%10.4f%10.4f", stage.name, s.median, s.min, s.max);
+    std::printf("%-11s%10.4f%10.4f%10.4f", stage.name, s.median, s.min, s.max);
     for (const Contest& contest : contests) std::printf("%14.4f%10.3f", spread(contest.theirs, stage.time).median, contest.ratio(stage.time));
     std::printf("\n");
   }
@@ -224,7 +261,7 @@ int main(int argc, char** argv) {
   pinToOneCore();
   TransferResult result;
   const auto runOurs = [&] {
-    if (const Status status = transfer(cage, target, {}, result); !status.ok()) stop(1, describe(status, cage, target));
+    if (const Status status = transfer(cage, target, arguments.options, result); !status.ok()) stop(1, describe(status, cage, target));
     return result.projection.timings;
   };
   // The first run takes memory, which later runs keep; it is not counted.
