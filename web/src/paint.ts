@@ -39,37 +39,58 @@ async function decode(file: File): Promise<ImageBitmap> {
   return createImageBitmap(bitmap, { resizeWidth, resizeHeight, resizeQuality: 'high' })
 }
 
-/** Draws a lettered checker, which shows where each place of the texture lands and how it is stretched. */
+/** Makes a lettered checker, which shows where each place of the texture lands and how it is stretched. */
 export function makeChecker(): Paint {
-  const cells = 8
+  let texture: Texture | undefined
+  return {
+    name: 'UV checker',
+    picture: checkerPicture(),
+    get texture() {
+      // Drawn when it is wanted: a browser's first canvas and first font take 0.2 s.
+      return (texture ??= checkerTexture())
+    },
+  }
+}
+
+/** A cell of the checker, by its place in cells. */
+interface Cell {
+  row: number
+  column: number
+  color: string
+  dark: boolean
+}
+
+const kCells = 8 // to a side
+
+const checkerCells: readonly Cell[] = Array.from({ length: kCells ** 2 }, (_, number) => {
+  const [row, column] = [Math.floor(number / kCells), number % kCells]
+  const dark = (row + column) % 2 === 0
+  return { row, column, dark, color: `hsl(${(360 * number) / kCells ** 2} 62% ${dark ? 42 : 76}%)` }
+})
+
+function checkerPicture(): string {
+  const cells = checkerCells.map(({ row, column, color }) => `<path fill="${color}" d="M${column} ${row}h1v1h-1"/>`)
+  return `data:image/svg+xml,${encodeURIComponent(`<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${kCells} ${kCells}">${cells.join('')}</svg>`)}`
+}
+
+function checkerTexture(): Texture {
   const size = 1024
-  const cell = size / cells
+  const cell = size / kCells
   const canvas = document.createElement('canvas')
   canvas.width = canvas.height = size
   const context = canvas.getContext('2d')!
   context.font = `600 ${cell * 0.36}px system-ui, sans-serif`
   context.textAlign = 'center'
   context.textBaseline = 'middle'
-  for (let row = 0; row < cells; row++) {
-    for (let column = 0; column < cells; column++) {
-      const hue = (360 * (row * cells + column)) / cells ** 2
-      const dark = (row + column) % 2 === 0
-      context.fillStyle = `hsl(${hue} 62% ${dark ? 42 : 76}%)`
-      context.fillRect(column * cell, row * cell, cell, cell)
-      context.fillStyle = dark ? '#fff' : '#1b1b1b'
-      context.fillText('ABCDEFGH'[column]! + (row + 1), (column + 0.5) * cell, (row + 0.52) * cell)
-    }
+  for (const { row, column, color, dark } of checkerCells) {
+    context.fillStyle = color
+    context.fillRect(column * cell, row * cell, cell, cell)
+    context.fillStyle = dark ? '#fff' : '#1b1b1b'
+    context.fillText('ABCDEFGH'[column]! + (row + 1), (column + 0.5) * cell, (row + 0.52) * cell)
   }
   const texture = new CanvasTexture(canvas)
   texture.flipY = false
-  return { name: 'UV checker', texture: prepare(texture), picture: thumbnail(canvas) }
-}
-
-function thumbnail(canvas: HTMLCanvasElement): string {
-  const small = document.createElement('canvas')
-  small.width = small.height = 160
-  small.getContext('2d')!.drawImage(canvas, 0, 0, small.width, small.height)
-  return small.toDataURL()
+  return prepare(texture)
 }
 
 function prepare(texture: Texture): Texture {

@@ -3,13 +3,11 @@ import {
   Group,
   Mesh,
   PlaneGeometry,
-  PMREMGenerator,
   Scene,
   ShadowMaterial,
   type Camera,
-  type WebGLRenderer,
 } from 'three'
-import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js'
+import { studioLight } from './light'
 
 /**
  * The room a model is shown in: light from all around, a key light that stays over the viewer's shoulder, and a floor
@@ -22,9 +20,8 @@ export class Studio {
   readonly #floor = new Mesh(new PlaneGeometry(12, 12), new ShadowMaterial({ opacity: 0.28 }))
   readonly #key = new DirectionalLight(0xfff4e6, 2.1)
 
-  constructor(renderer: WebGLRenderer) {
-    this.light(renderer)
-    this.scene.environmentIntensity = 0.62
+  constructor() {
+    this.scene.environment = studioLight()
 
     this.#floor.rotation.x = -Math.PI / 2
     this.#floor.receiveShadow = true
@@ -39,13 +36,6 @@ export class Studio {
     shadow.camera.left = shadow.camera.bottom = -1.6
     shadow.camera.right = shadow.camera.top = 1.6
     this.scene.add(this.stage, this.#floor, this.#key)
-  }
-
-  /** Makes the surrounding light; again after the graphics context was lost. */
-  light(renderer: WebGLRenderer): void {
-    const generator = new PMREMGenerator(renderer)
-    this.scene.environment = generator.fromScene(new RoomEnvironment(), 0.04).texture
-    generator.dispose()
   }
 
   /** Puts the floor under a model whose lowest point is at `height`. */

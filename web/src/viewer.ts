@@ -55,7 +55,7 @@ export class Viewer {
     this.#renderer.shadowMap.enabled = true
     this.#renderer.shadowMap.type = PCFShadowMap
     this.#renderer.shadowMap.autoUpdate = false
-    this.#studio = new Studio(this.#renderer)
+    this.#studio = new Studio()
 
     this.#controls = new OrbitControls(this.#camera, canvas)
     this.#controls.enableDamping = true
@@ -67,10 +67,7 @@ export class Viewer {
     this.#controls.addEventListener('change', () => this.#invalidate())
     this.#controls.addEventListener('start', () => this.turn(false))
     canvas.addEventListener('keydown', (event) => this.#onKey(event))
-    canvas.addEventListener('webglcontextrestored', () => {
-      this.#studio.light(this.#renderer)
-      this.#invalidate()
-    })
+    canvas.addEventListener('webglcontextrestored', () => this.#invalidate())
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!)
     this.#resize()
     this.home()
