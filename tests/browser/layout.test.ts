@@ -20,7 +20,7 @@ const kSizes = [
 ]
 
 /** Everything that is pressed or moved; for a box hidden behind its label, the label. */
-const kControls = 'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, #threshold, .knob, summary, #view'
+const kControls = 'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, .jump a, .rail label, #threshold, .knob, summary, #view'
 
 /** Opens the cards that are closed at first. */
 async function openAll({ page }: Visit, open = true): Promise<void> {
@@ -61,15 +61,15 @@ test('the Tab key reaches every control, and each says what it is', async () => 
   await openAll(visit, false)
   await page.evaluate(() => document.body.focus())
   const reached: string[] = []
-  for (let presses = 0; presses < 30; presses++) {
+  for (let presses = 0; presses < 80; presses++) {
     await page.keyboard.press('Tab')
     const id = await page.evaluate(() => document.activeElement!.id || (document.activeElement as HTMLInputElement).name || document.activeElement!.tagName.toLowerCase())
     if (id === 'body') break
     reached.push(id)
   }
-  const expected = ['view', 'divider', 'view-mode', 'show-paint', 'show-zones', 'show-cage', 'sample-select', 'target-input', 'cage-input', 'texture-input', 'paint', 'preset', 'threshold', 'summary', 'summary']
+  const expected = ['view', 'divider', 'view-mode', 'show-paint', 'show-cage', 'sample-select', 'target-input', 'cage-input', 'texture-input', 'paint', 'preset', 'threshold', 'summary', 'summary']
   assert.deepEqual(reached.filter((id) => expected.includes(id)), expected)
-  for (const [role, name] of [['slider', /Compare/], ['slider', /Threshold/], ['combobox', /Sample/], ['combobox', /Rules/], ['radio', /Result/], ['checkbox', /Zones/], ['radiogroup', /shown/]] as const) {
+  for (const [role, name] of [['slider', /Compare/], ['slider', /Threshold/], ['combobox', /Sample/], ['combobox', /Rules/], ['radio', /Result/], ['radio', /Zones/], ['checkbox', /Cage/], ['radiogroup', /shown/]] as const) {
     assert.equal(await page.getByRole(role, { name }).count(), 1, `${role} ${name}`)
   }
   for (const label of [/Target/, /Cage/, /Paint/]) {

@@ -45,11 +45,11 @@ test('paint, zones and cage are really drawn, and the line shows naive and filte
   await layer('paint', false)
   const bare = await look(page, area)
   assert.ok(difference(result, bare) > 0.05, 'paint covers the model')
-  await layer('zones', true)
+  await mode('zones')
   const zones = await look(page, area)
   const [blue, orange] = [shareOfHue(zones, 202), shareOfHue(zones, 41)]
   assert.ok(blue > 0.005 && orange > 0.005, `occluded in blue (${blue}), uncovered in orange (${orange})`)
-  await layer('zones', false)
+  await mode('result')
   assert.ok(difference(bare, await look(page, area)) < 0.002, 'zones leave no trace when switched off')
   await layer('cage', true)
   assert.ok(difference(bare, await look(page, area)) > 0.02, 'the cage is drawn')

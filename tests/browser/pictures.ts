@@ -37,16 +37,8 @@ async function samples(site: Site): Promise<void> {
   for (const model of kModels) {
     await choose(page, model)
     const row: string[] = []
-    for (const [view, zones] of [['Naive', false], ['Result', true], ['Result', false]] as const) {
-      await page.evaluate(
-        ([name, shown]) => {
-          const radio = [...document.querySelectorAll<HTMLLabelElement>('#view-mode label')].find((label) => label.textContent?.trim() === name)!
-          radio.click()
-          const box = document.querySelector<HTMLInputElement>('#show-zones')!
-          if (box.checked !== shown) box.click()
-        },
-        [view, zones] as const,
-      )
+    for (const view of ['naive', 'zones', 'result']) {
+      await page.locator(`#view-mode input[value=${view}]`).check({ force: true })
       await rest(page)
       row.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })))
     }

@@ -2,6 +2,7 @@ import { Group, LoadingManager, type Mesh, type Object3D } from 'three'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
+import type { Sample } from './samples'
 
 /** A model that was read: the scene to show, and its triangles to transfer with. */
 export interface Model {
@@ -9,6 +10,8 @@ export interface Model {
   name: string
   scene: Object3D
   mesh: ExtractedMesh
+  /** Which sample it belongs to; the visitor's own to none. */
+  sample?: Sample
 }
 
 /**

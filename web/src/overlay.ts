@@ -1,4 +1,4 @@
-import type { Classification, SplitVertices } from 'cagecast'
+import { splitVertices, type Classification, type Projection, type SplitVertices } from 'cagecast'
 import {
   BufferAttribute,
   BufferGeometry,
@@ -10,13 +10,17 @@ import {
   MeshBasicMaterial,
   MeshStandardMaterial,
   SkinnedMesh,
+  SRGBColorSpace,
   type Material,
   type Texture,
 } from 'three'
 import { turnWinding, type ExtractedMesh, type Part } from './extract'
 
-/** What lies over the target: the paint alone, everywhere, or what the filter leaves of it. */
-export type Look = 'naive' | 'filtered'
+/**
+ * What lies over the target: nothing, the paint everywhere, what the filter leaves of it, the zones by reason, or colours of
+ * one's own.
+ */
+export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'tint'
 
 /** Colours of the reasons, by zone. After Okabe and Ito, so that colour-blind eyes tell them apart; see style.css. */
 const kReasonColors = { 1: '#0072b2', 2: '#e69f00', 3: '#cc79a7' } as const
@@ -28,6 +32,9 @@ const kClayColor = '#9aa7b3'
 const kUvChannel = 3
 const kUvName = `uv${kUvChannel}`
 
+/** Linear light, in shares of 65535, for each byte of sRGB. */
+const kLinear = Uint16Array.from({ length: 256 }, (_, byte) => Math.round(65535 * new Color().setRGB(byte / 255, 0, 0, SRGBColorSpace).r))
+
 /** The order of a part's triangles: those that may be painted, then the NCZ ones by reason. */
 const kZones = [0, 1, 2, 3] as const
 const kReasons = [1, 2, 3] as const
@@ -37,21 +44,21 @@ const kHidden = 3
 const kClay = 7
 
 /**
- * The paint and the zones over a target: over each of its parts two meshes, one for each look, with the part's skin and
- * morphs. The naive one shares the part's vertices; the other has them split wherever a seam of the paint runs.
+ * What lies over a target: meshes over each of its parts, with the part's skin and morphs. The naive one shares the part's
+ * vertices; the filtered one has them split wherever a seam of the paint runs; the tinted one, made when it is needed, has
+ * vertices of its own for each triangle, so that no colour bleeds into the next.
  */
 export class Overlay {
   readonly #layers: Layer[]
 
   /**
    * Lays nothing yet: call `classify`.
-   * @param target The target.
-   * @param uvs    2 per target vertex, in the paint: for the naive look.
-   * @param split  The target's vertices, split at the seams of the paint.
+   * @param paint In the cage's UVs. It may be a render target's, drawn anew at any time.
    */
-  constructor(target: ExtractedMesh, uvs: Float32Array, split: SplitVertices, paint: Texture) {
+  constructor(target: ExtractedMesh, projection: Projection, paint: Texture | undefined) {
     const parts = target.parts.filter((part) => part.triangleCount > 0)
-    this.#layers = parts.map((part) => new Layer(part, target.indices, uvs, split, paint))
+    const split = splitAtSeams(target, projection)
+    this.#layers = parts.map((part) => new Layer(part, target.indices, projection.uvs, split, paint))
   }
 
   /** Chooses which triangles are painted, and which are which zone. */
@@ -63,9 +70,14 @@ export class Overlay {
     for (const layer of this.#layers) layer.setPaint(paint)
   }
 
-  /** Chooses what the next frame draws. Zones show in the filtered look only, and there in place of the paint. */
-  show(look: Look, paint: boolean, zones: boolean): void {
-    for (const layer of this.#layers) layer.show(look, paint, zones)
+  /** Gives the look `tint` its colours. @param colors 3 bytes per triangle corner of the target, sRGB. */
+  setTint(colors: Uint8Array): void {
+    for (const layer of this.#layers) layer.setTint(colors)
+  }
+
+  /** Chooses what the next frame draws. */
+  show(look: Look): void {
+    for (const layer of this.#layers) layer.show(look)
   }
 
   dispose(): void {
@@ -80,13 +92,15 @@ class Layer {
   readonly #corners: Uint32Array
   readonly #naive: Mesh
   readonly #filtered: Mesh
+  #tinted: Mesh | undefined
   readonly #paint: MeshStandardMaterial
   readonly #nothing = new MeshBasicMaterial({ visible: false })
   readonly #reasons = kReasons.map((zone) => reasonMaterial(kReasonColors[zone]))
   readonly #clay = onSurface(new MeshStandardMaterial({ color: kClayColor, roughness: 0.85 }))
+  readonly #tint = onSurface(new MeshStandardMaterial({ vertexColors: true, roughness: 1 }))
   readonly #hidden = kReasons.map((zone) => hiddenMaterial(kReasonColors[zone]))
 
-  constructor(part: Part, indices: Uint32Array, uvs: Float32Array, split: SplitVertices, paint: Texture) {
+  constructor(part: Part, indices: Uint32Array, uvs: Float32Array, split: SplitVertices, paint: Texture | undefined) {
     this.#part = part
     const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = part
     const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)]
@@ -101,7 +115,7 @@ class Layer {
     if (mirrored) turnWinding(this.#corners)
 
     this.#paint = paintMaterial([mesh.material].flat()[0]!)
-    this.setPaint(paint)
+    if (paint) this.setPaint(paint)
     const naive = shareVertices(mesh.geometry)
     naive.setAttribute(kUvName, new BufferAttribute(uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2))
     this.#naive = overlayMesh(mesh, naive)
@@ -154,20 +168,51 @@ class Layer {
     this.#paint.map = paint
   }
 
-  show(look: Look, paint: boolean, zones: boolean): void {
-    this.#naive.visible = look === 'naive' && paint
-    this.#filtered.visible = look === 'filtered' && (paint || zones)
+  setTint(colors: Uint8Array): void {
+    const { mesh, firstTriangle, firstVertex, triangleCount, mirrored } = this.#part
+    if (!this.#tinted) {
+      const geometry = copyVertices(mesh.geometry, this.#vertices.map((vertex) => vertex - firstVertex))
+      if (mirrored) {
+        const corners = Uint32Array.from({ length: 3 * triangleCount }, (_, corner) => corner)
+        turnWinding(corners)
+        geometry.setIndex(new BufferAttribute(corners, 1))
+      }
+      geometry.setAttribute('color', new BufferAttribute(new Uint16Array(9 * triangleCount), 3, true))
+      this.#tinted = overlayMesh(mesh, geometry)
+      this.#tinted.material = this.#tint
+      this.#tinted.visible = false
+      mesh.add(this.#tinted)
+    }
+    const attribute = this.#tinted.geometry.getAttribute('color') as BufferAttribute
+    const { array } = attribute
+    const from = 9 * firstTriangle
+    for (let i = 0; i < array.length; i++) array[i] = kLinear[colors[from + i]!]!
+    attribute.needsUpdate = true
+  }
+
+  show(look: Look): void {
+    this.#naive.visible = look === 'naive'
+    this.#filtered.visible = look === 'result' || look === 'zones'
+    if (this.#tinted) this.#tinted.visible = look === 'tint'
     // A group whose material is missing here is not drawn.
-    this.#filtered.material = zones ? [this.#nothing, ...this.#reasons, ...this.#hidden, this.#clay] : [this.#paint]
+    this.#filtered.material = look === 'zones' ? [this.#nothing, ...this.#reasons, ...this.#hidden, this.#clay] : [this.#paint]
   }
 
   dispose(): void {
-    for (const mesh of [this.#naive, this.#filtered]) {
+    for (const mesh of [this.#naive, this.#filtered, ...(this.#tinted ? [this.#tinted] : [])]) {
       mesh.removeFromParent()
       mesh.geometry.dispose()
     }
-    for (const material of [this.#paint, this.#nothing, this.#clay, ...this.#reasons, ...this.#hidden]) material.dispose()
+    for (const material of [this.#paint, this.#nothing, this.#clay, this.#tint, ...this.#reasons, ...this.#hidden]) material.dispose()
   }
+}
+
+/** Splits a target's vertices at the seams of the paint; where the projection has no UVs per corner, nowhere. */
+function splitAtSeams(mesh: ExtractedMesh, { cornerUvs, uvs }: Projection): SplitVertices {
+  if (cornerUvs.length > 0) return splitVertices(mesh, cornerUvs)
+  const ofVertices = new Float32Array(2 * mesh.indices.length)
+  mesh.indices.forEach((vertex, corner) => ofVertices.set(uvs.subarray(2 * vertex, 2 * vertex + 2), 2 * corner))
+  return splitVertices(mesh, ofVertices)
 }
 
 /** A geometry of the same vertices, morphs and triangles, to which more can be added. */

@@ -5,18 +5,9 @@ export function element<T extends HTMLElement>(id: string, type: new () => T): T
   return found
 }
 
-/** How far along the page is; the words are what people, and tests, read. */
-export type Status = 'loading' | 'working' | 'ready' | 'error'
-
-const status = element('status', HTMLElement)
 const alertBox = element('alert', HTMLElement)
 const alertText = element('error', HTMLElement)
 const summary = element('summary', HTMLElement)
-
-export function showStatus(to: Status): void {
-  status.textContent = to
-  status.dataset.state = to
-}
 
 /** Tells what went wrong, until the next thing is tried or the message is dismissed. */
 export function showError(message: string): void {

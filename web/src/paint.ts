@@ -1,4 +1,5 @@
 import { CanvasTexture, RepeatWrapping, SRGBColorSpace, Texture } from 'three'
+import type { Sample } from './samples'
 
 /** A texture in the cage's UV space. */
 export interface Paint {
@@ -7,6 +8,8 @@ export interface Paint {
   texture: Texture
   /** The address of its picture. */
   picture: string
+  /** Which sample it belongs to; the visitor's own and the checker to none. */
+  sample?: Sample
 }
 
 const kLargest = 4096 // texels a side: what every WebGL 2 phone can hold with its mipmaps

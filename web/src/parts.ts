@@ -1,21 +1,12 @@
 import type { Classification, Lock, SegmentStats } from 'cagecast'
 import type { Part } from './extract'
 import { element } from './page'
-
-/** What the visitor said about segments, by their number; nothing about all others. */
-export type Locks = Record<number, Lock>
+import type { Locks, Session, Shown } from './session'
+import type { Viewer } from './viewer'
 
 /** Rows enough to read; a scan may fall into thousands of pieces. */
 const kMostRows = 50
 const kLocks: Record<Lock, string> = { auto: 'auto', keep: 'keep', exclude: 'exclude' }
-
-/** What the table tells its page. */
-export interface PartsEvents {
-  /** Something was said about segments. */
-  onLock(segments: readonly number[], lock: Lock): void
-  /** The segments of a row are pointed at, or none any more. */
-  onPoint(segments: readonly number[]): void
-}
 
 /** Segments that are listed as one, and their numbers together. */
 interface Entry {
@@ -40,22 +31,23 @@ interface Row {
  */
 export class PartsTable {
   readonly #body = element('segment-rows', HTMLTableSectionElement)
-  readonly #events: PartsEvents
+  readonly #session: Session
+  readonly #viewer: Viewer | undefined
   #rows: Row[] = []
 
-  constructor(events: PartsEvents) {
-    this.#events = events
-    this.#body.addEventListener('pointerleave', () => events.onPoint([]))
-    this.#body.addEventListener('focusout', () => events.onPoint([]))
+  constructor(session: Session, viewer: Viewer | undefined) {
+    this.#session = session
+    this.#viewer = viewer
+    this.#body.addEventListener('pointerleave', () => this.#light([]))
+    this.#body.addEventListener('focusout', () => this.#light([]))
     // A card that is closed under the pointer no longer points at anything.
-    element('parts', HTMLDetailsElement).addEventListener('toggle', () => events.onPoint([]))
+    element('parts', HTMLDetailsElement).addEventListener('toggle', () => this.#light([]))
+    session.on('transfer', ({ target, projection }) => this.#list(projection.segmentStats, target.mesh.parts, session.locks))
+    session.on('zones', ({ classification }) => this.#showVerdicts(classification))
   }
 
-  /**
-   * Lists the segments of another target, or of another projection of it: the largest, those that are covered least first.
-   * Call `showVerdicts` for what became of them.
-   */
-  list(stats: readonly SegmentStats[], parts: readonly Part[], locks: Locks): void {
+  /** Lists the segments of another target, or of another projection of it: the largest, those that are covered least first. */
+  #list(stats: readonly SegmentStats[], parts: readonly Part[], locks: Locks): void {
     const entries = entriesOf(stats, parts, locks)
     const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMostRows))
     // Sorting is stable: the larger of two that are covered alike stays before the smaller.
@@ -69,7 +61,7 @@ export class PartsTable {
   }
 
   /** Writes which segments may be painted, and which may not. */
-  showVerdicts({ segmentStats }: Classification): void {
+  #showVerdicts({ segmentStats }: Classification): void {
     for (const { segments, verdict } of this.#rows) {
       // Those that share a row share its verdict: nothing of any of them is covered, and the same was said about all.
       const { culled } = segmentStats[segments[0]!]!
@@ -90,8 +82,8 @@ export class PartsTable {
     const choice = document.createElement('td')
     choice.append(this.#select(entry))
     row.append(head, cell('td', points.toLocaleString('en')), cell('td', exposedArea > 0 ? percent(coverageOf(entry)) : 'hidden'), verdict, choice)
-    row.addEventListener('pointerenter', () => this.#events.onPoint(segments))
-    row.addEventListener('focusin', () => this.#events.onPoint(segments))
+    row.addEventListener('pointerenter', () => this.#light(segments))
+    row.addEventListener('focusin', () => this.#light(segments))
     return { segments, row, verdict }
   }
 
@@ -100,9 +92,26 @@ export class PartsTable {
     select.name = 'lock'
     select.setAttribute('aria-label', `Say about ${name}`)
     for (const [value, text] of Object.entries(kLocks)) select.add(new Option(text, value, false, value === lock))
-    select.addEventListener('change', () => this.#events.onLock(segments, select.value as Lock))
+    select.addEventListener('change', () => this.#session.lock(segments, select.value as Lock))
     return select
   }
+
+  /** Lights up segments of the target, or none. */
+  #light(segments: readonly number[]): void {
+    const { shown } = this.#session
+    this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : [])
+  }
+}
+
+/** The triangles of segments. */
+function trianglesOf({ target, projection }: Shown, segments: readonly number[]): number[] {
+  const triangles: number[] = []
+  if (segments.length === 0) return triangles
+  const chosen = new Set(segments)
+  const { indices } = target.mesh
+  // The corners of a triangle are of one segment.
+  for (let t = 0; 3 * t < indices.length; t++) if (chosen.has(projection.segments[indices[3 * t]!]!)) triangles.push(t)
+  return triangles
 }
 
 /** The segments that have triangles, as they are listed, in the order of their vertices. */

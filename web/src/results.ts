@@ -1,5 +1,6 @@
 import type { Classification, Preset, Timings } from 'cagecast'
 import { announce, element } from './page'
+import type { Session } from './session'
 
 const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const
 /** What each step is called. */
@@ -17,8 +18,17 @@ const kSteps = {
 } as const
 const kBeyondPaper: readonly string[] = ['secondLook', 'holes', 'seams']
 
+/** Writes what came of each transfer: the zones in numbers, and how long it took. */
+export function showResults(session: Session): void {
+  session.on('zones', ({ classification, spent }) => {
+    const { timings, preset } = session.shown!.projection
+    showCounts(classification)
+    showTimings({ ...timings, classify: spent, total: timings.total + spent }, preset)
+  })
+}
+
 /** Writes how many vertices fall into each zone. */
-export function showCounts({ zones, segmentStats }: Classification): void {
+function showCounts({ zones, segmentStats }: Classification): void {
   const counts = [0, 0, 0, 0]
   for (const zone of zones) counts[zone]!++
   element('count-total', HTMLElement).textContent = zones.length.toLocaleString('en')
@@ -35,7 +45,7 @@ export function showCounts({ zones, segmentStats }: Classification): void {
 }
 
 /** Writes how long the transfer took, step by step, as far as the preset takes them. */
-export function showTimings(timings: Timings, preset: Preset): void {
+function showTimings(timings: Timings, preset: Preset): void {
   element('time-total', HTMLElement).textContent = round(timings.total)
   const steps = (Object.keys(kSteps) as (keyof typeof kSteps)[]).filter((step) => preset !== 'paper' || !kBeyondPaper.includes(step))
   const longest = Math.max(...steps.map((step) => timings[step]), Number.MIN_VALUE)

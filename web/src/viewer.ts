@@ -1,23 +1,27 @@
-import type { Classification, SplitVertices } from 'cagecast'
-import { Box3, MathUtils, Mesh, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Spherical, Vector3, WebGLRenderer, type Texture } from 'three'
+import type { Classification, Projection } from 'cagecast'
+import {
+  Box3,
+  Group,
+  MathUtils,
+  Mesh,
+  NeutralToneMapping,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Spherical,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+  type Texture,
+} from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { CageLines } from './cage-lines'
-import type { Part } from './extract'
 import { Highlight } from './highlight'
 import { disposeModel, type Model } from './load'
 import { Overlay, type Look } from './overlay'
+import { pick, type Spot } from './pick'
+import { Pointing, type Tool } from './pointing'
 import { Studio } from './studio'
-
-/** What of the result is shown. */
-export interface View {
-  /** One look over the whole picture, or both with a line between them. */
-  mode: 'compare' | 'result' | 'naive'
-  /** Where that line is: 0 at the left edge, 1 at the right. */
-  split: number
-  paint: boolean
-  zones: boolean
-  cage: boolean
-}
+import { kFirstView, kLooks, type View } from './view'
 
 const kFieldOfView = 28 // degrees
 const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14))
@@ -25,16 +29,21 @@ const kFill = 0.86 // below 1, as models seldom reach into the corners of their 
 const kToolbar = 96 // pixels of the picture's lower edge that controls lie on
 const kSway = MathUtils.degToRad(40) // how far the model turns to either side
 const kSwaySeconds = 16 // there and back
+const kPainted: ReadonlySet<Look> = new Set(['naive', 'result']) // what the switch for the paint takes away
 const kKeyStep = MathUtils.degToRad(6)
 
 /** Shows one target with its paint and its cage on a canvas, and lets people turn it. Draws only when something changed. */
 export class Viewer {
-  readonly #renderer: WebGLRenderer
+  /** Draws the picture; features may draw textures with it, and call `redraw` when what is shown has changed. */
+  readonly renderer: WebGLRenderer
+  /** What features add to the picture, in the space of the target as it was transferred. */
+  readonly marks = new Group()
   readonly #canvas: HTMLCanvasElement
   readonly #studio: Studio
   readonly #camera = new PerspectiveCamera(kFieldOfView, 1, 0.05, 50)
   readonly #controls: OrbitControls
-  #view: View = { mode: 'compare', split: 0.5, paint: true, zones: false, cage: false }
+  readonly #pointing: Pointing
+  #view = kFirstView
   #model: Model | undefined
   #overlay: Overlay | undefined
   #cage: CageLines | undefined
@@ -47,16 +56,19 @@ export class Viewer {
   /** @throws Error where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas
-    this.#renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true })
+    this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true })
     // Asking for each shader's log waits until it is compiled: seconds, on a slow machine.
-    this.#renderer.debug.checkShaderErrors = import.meta.env.DEV
-    this.#renderer.toneMapping = NeutralToneMapping
-    this.#renderer.toneMappingExposure = 1.05
-    this.#renderer.shadowMap.enabled = true
-    this.#renderer.shadowMap.type = PCFShadowMap
-    this.#renderer.shadowMap.autoUpdate = false
+    this.renderer.debug.checkShaderErrors = import.meta.env.DEV
+    this.renderer.toneMapping = NeutralToneMapping
+    this.renderer.toneMappingExposure = 1.05
+    this.renderer.shadowMap.enabled = true
+    this.renderer.shadowMap.type = PCFShadowMap
+    this.renderer.shadowMap.autoUpdate = false
     this.#studio = new Studio()
+    this.#studio.stage.add(this.marks)
 
+    // Before the controls, which get what it leaves to them.
+    this.#pointing = new Pointing(canvas, (x, y) => this.pick(x, y))
     this.#controls = new OrbitControls(this.#camera, canvas)
     this.#controls.enableDamping = true
     this.#controls.dampingFactor = 0.12
@@ -64,35 +76,49 @@ export class Viewer {
     this.#controls.minDistance = 0.8
     this.#controls.maxDistance = 12
     this.#controls.maxPolarAngle = MathUtils.degToRad(150)
-    this.#controls.addEventListener('change', () => this.#invalidate())
+    this.#controls.addEventListener('change', () => this.redraw())
     this.#controls.addEventListener('start', () => this.turn(false))
     canvas.addEventListener('keydown', (event) => this.#onKey(event))
-    canvas.addEventListener('webglcontextrestored', () => this.#invalidate())
+    canvas.addEventListener('webglcontextrestored', () => this.redraw())
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!)
     this.#resize()
     this.home()
   }
 
-  /**
-   * Shows another target; call `classify` for its zones. The one before it is freed, unless it is the same.
-   * @param uvs   2 per vertex, in the paint.
-   * @param split The vertices, split at the seams of the paint.
-   */
-  setTarget(model: Model, uvs: Float32Array, split: SplitVertices, paint: Texture): void {
-    this.highlight(undefined)
+  /** Shows another target; call `classify` for its zones. The one before it is freed, unless it is the same. */
+  setTarget(model: Model, projection: Projection): void {
+    this.highlight([])
     this.#overlay?.dispose()
-    this.#exchange(paint)
     if (model !== this.#model) this.#place(model)
-    this.#overlay = new Overlay(model.mesh, uvs, split, paint)
-    this.#invalidate()
+    this.#overlay = new Overlay(model.mesh, projection, this.#paint)
+    this.redraw()
   }
 
-  /** Lights up triangles of one part of the target, in place of those before. @param vertices 3 per triangle, of the part's own. */
-  highlight(part: Part | undefined, vertices = new Uint32Array(0)): void {
-    if (!part && !this.#highlight) return
+  /** Lights up triangles of the target, in place of those before. */
+  highlight(triangles: readonly number[]): void {
+    if (triangles.length === 0 && !this.#highlight) return
     this.#highlight?.dispose()
-    this.#highlight = part && new Highlight(part, vertices)
-    this.#invalidate()
+    this.#highlight = triangles.length > 0 && this.#model ? new Highlight(this.#model.mesh, triangles) : undefined
+    this.redraw()
+  }
+
+  /** Colours the target for the modes that show colours of their own. @param colors 3 bytes per triangle corner, sRGB. */
+  setTint(colors: Uint8Array): void {
+    this.#overlay?.setTint(colors)
+    this.redraw()
+  }
+
+  /** What of the target is seen at a place on the screen. @param x,y As in a pointer's event: `clientX`, `clientY`. */
+  pick(x: number, y: number): Spot | undefined {
+    if (!this.#model) return undefined
+    const { left, top, width, height } = this.#canvas.getBoundingClientRect()
+    return pick(this.#model.mesh, this.#camera, new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height))
+  }
+
+  /** Hands the pointer to a tool; what the tool leaves alone turns the model. Without one everything does. */
+  setTool(tool: Tool | undefined): void {
+    this.#pointing.tool = tool
+    if (tool) this.turn(false)
   }
 
   /** Shows another cage, in the space of the target. */
@@ -100,37 +126,34 @@ export class Viewer {
     this.#cage?.dispose()
     this.#cage = new CageLines(model.mesh)
     this.#studio.stage.add(this.#cage.object)
-    this.#invalidate()
+    this.redraw()
   }
 
+  /** Shows another paint. It may be a render target's texture: call `redraw` when that was drawn anew. */
   setPaint(paint: Texture): void {
-    this.#exchange(paint)
-    this.#overlay?.setPaint(paint)
-    this.#invalidate()
-  }
-
-  /** Frees the graphics memory of the paint before; it comes back by itself if that is used again. */
-  #exchange(paint: Texture): void {
-    if (paint !== this.#paint) this.#paint?.dispose()
+    // Frees the graphics memory of an image; it comes back by itself if that is used again.
+    if (paint !== this.#paint && !this.#paint?.isRenderTargetTexture) this.#paint?.dispose()
     this.#paint = paint
+    this.#overlay?.setPaint(paint)
+    this.redraw()
   }
 
   /** Shows the decision for another threshold. */
   classify(classification: Classification): void {
     this.#overlay?.classify(classification)
-    this.#invalidate()
+    this.redraw()
   }
 
   setView(view: View): void {
     this.#view = view
-    this.#invalidate()
+    this.redraw()
   }
 
   /** Turns the model slowly to and fro, until it is touched. */
   turn(on: boolean): void {
     if (on === (this.#turnStarted !== undefined)) return
     this.#turnStarted = on ? performance.now() : undefined
-    this.#invalidate()
+    this.redraw()
   }
 
   /** Looks at the model from where it is seen best, all of it. */
@@ -173,7 +196,7 @@ export class Viewer {
     this.#controls.enableDamping = false
     move()
     this.#controls.enableDamping = true
-    this.#invalidate()
+    this.redraw()
   }
 
   #onKey(event: KeyboardEvent): void {
@@ -198,8 +221,8 @@ export class Viewer {
     const { clientWidth: width, clientHeight: height } = this.#canvas.parentElement!
     if (width === 0 || height === 0) return
     const before = this.#camera.aspect
-    this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2))
-    this.#renderer.setSize(width, height, false)
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2))
+    this.renderer.setSize(width, height, false)
     this.#camera.aspect = width / height
     // The model stands in the middle of what the toolbar leaves free.
     this.#camera.setViewOffset(width, height, 0, kToolbar / 2, width, height)
@@ -208,7 +231,8 @@ export class Viewer {
     this.#draw()
   }
 
-  #invalidate(): void {
+  /** Asks for a new picture in the next frame. */
+  redraw(): void {
     this.#stale = true
     this.#frame ||= requestAnimationFrame((now) => this.#onFrame(now))
   }
@@ -227,20 +251,21 @@ export class Viewer {
 
   #draw(): void {
     this.#stale = false
-    const { mode, split, paint, zones, cage } = this.#view
+    const { mode, split, paint, cage } = this.#view
     this.#studio.follow(this.#camera)
     this.#cage?.show(cage)
     const draw = (look: Look, from: number, to: number): void => {
       const { clientWidth: width, clientHeight: height } = this.#canvas
-      this.#renderer.setScissor(from * width, 0, (to - from) * width, height)
-      this.#overlay?.show(look, paint, zones)
-      this.#renderer.render(this.#studio.scene, this.#camera)
+      this.renderer.setScissor(from * width, 0, (to - from) * width, height)
+      this.#overlay?.show(look)
+      this.renderer.render(this.#studio.scene, this.#camera)
     }
     // The light moved with the camera; its shadow is the same on both sides of the line.
-    this.#renderer.shadowMap.needsUpdate = true
-    this.#renderer.setScissorTest(true)
-    const line = mode === 'compare' ? split : mode === 'naive' ? 1 : 0
-    if (line > 0) draw('naive', 0, line)
-    if (line < 1) draw('filtered', line, 1)
+    this.renderer.shadowMap.needsUpdate = true
+    this.renderer.setScissorTest(true)
+    const look = (side: keyof typeof kLooks): Look => (paint || !kPainted.has(kLooks[side]) ? kLooks[side] : 'bare')
+    if (mode !== 'compare') return draw(look(mode), 0, 1)
+    if (split > 0) draw(look('naive'), 0, split)
+    if (split < 1) draw(look('result'), split, 1)
   }
 }

@@ -1,0 +1,107 @@
+import { setUpFiles, type Intake } from './files'
+import { loadModel, type Model } from './load'
+import { element } from './page'
+import { loadPaint, type Paint } from './paint'
+import { offerPaints, type Choice } from './paints'
+import { fetchFile, type Sample } from './samples'
+import type { Session, Shown, Wanted } from './session'
+
+const kOwn = 'own'
+
+/** Opens samples and the visitor's own files, and says what is open. */
+export class Opener {
+  readonly #session: Session
+  readonly #select = element('sample-select', HTMLSelectElement)
+  #samples: Sample[] = []
+  /** The last paint of the visitor's own, to choose from beside the sample's. */
+  #ownPaint: Paint | undefined
+
+  constructor(session: Session) {
+    this.#session = session
+    setUpFiles((intake) => this.#take(intake))
+    this.#select.addEventListener('change', () => this.openSample(this.#select.value))
+    element('swap', HTMLButtonElement).addEventListener('click', () => session.swap())
+    session.on('progress', ({ state }) => state === 'ready' && this.#describe(session.shown!))
+  }
+
+  /** Lists the samples, and opens the first unless files of one's own have come in meanwhile. */
+  listSamples(samples: Sample[]): void {
+    this.#samples = samples
+    this.#select.replaceChildren(...samples.map(({ name, title }) => new Option(title, name)))
+    if (!this.#session.begun) this.openSample(samples[0]!.name)
+  }
+
+  /** Opens the sample of that name, with the first of its paints; there may be none of that name. */
+  openSample(name: string): void {
+    const sample = this.#samples.find((candidate) => candidate.name === name)
+    if (!sample) return
+    this.#select.value = name
+    const { target, cage, paints } = sample
+    const model = async (address: string): Promise<Model> => ({ ...(await loadModel(await fetchFile(address))), sample })
+    this.#session.want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, paints[0]) })
+  }
+
+  async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {
+    return paint ? { ...(await loadPaint(await fetchFile(paint.file), paint.file)), sample } : this.#session.checker
+  }
+
+  /** Takes in files of the visitor's own. */
+  #take({ target, cage, texture, unclear, all }: Intake): void {
+    const wanted: Wanted = {}
+    if (target) wanted.target = loadModel(target, all)
+    if (cage) wanted.cage = loadModel(cage, all)
+    const [one, other] = unclear
+    if (!target && one && other) {
+      // Nothing in their names tells: the cage is the one with fewer triangles.
+      const pair = Promise.all([loadModel(one, all), loadModel(other, all)]).then((models) =>
+        models.sort((a, b) => b.mesh.indices.length - a.mesh.indices.length),
+      )
+      wanted.target = pair.then(([larger]) => larger!)
+      wanted.cage = pair.then(([, smaller]) => smaller!)
+    }
+    if (texture) wanted.paint = loadPaint(texture)
+    this.#session.want(wanted)
+  }
+
+  #describe({ target, cage, paint }: Shown): void {
+    for (const [slot, { name }] of Object.entries({ target, cage, texture: paint })) {
+      const label = element(`${slot}-name`, HTMLElement)
+      label.textContent = label.title = name
+    }
+    const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`
+    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`
+    this.#describeOrigin(target.sample !== undefined, cage.sample !== undefined)
+    this.#offerPaints(cage.sample, paint)
+  }
+
+  /** Tells what is still a sample's among files of one's own. */
+  #describeOrigin(target: boolean, cage: boolean): void {
+    const own = this.#select.querySelector<HTMLOptionElement>(`option[value=${kOwn}]`)
+    if (target && cage) own?.remove()
+    else {
+      if (!own) this.#select.append(new Option('Your own files', kOwn))
+      this.#select.value = kOwn
+    }
+    element('swap', HTMLButtonElement).hidden = target || cage
+    element('hint', HTMLElement).textContent =
+      target === cage
+        ? 'Choose your own, or drop files anywhere on the page. They stay on this device.'
+        : target
+          ? 'The cage is yours, the target is still the sample’s: add the target this cage was made for.'
+          : 'The target is yours, the cage is still the sample’s: add the cage made for it.'
+  }
+
+  /** Offers what there is to paint with: one's own, the sample's, and the checker. */
+  #offerPaints(sample: Sample | undefined, shown: Paint): void {
+    const { checker } = this.#session
+    if (shown !== checker && !shown.sample) this.#ownPaint = shown
+    const own = this.#ownPaint
+    const choices: (Choice & { load(): Promise<Paint> })[] = [
+      ...(own ? [{ title: own.name, picture: own.picture, load: async () => own }] : []),
+      ...(sample?.paints ?? []).map((paint) => ({ title: paint.title, picture: paint.file, load: () => this.#fetchPaint(sample!, paint) })),
+      { title: checker.name, picture: checker.picture, load: async () => checker },
+    ]
+    const chosen = choices.findIndex(({ picture }) => picture === shown.picture)
+    offerPaints(choices, chosen, (index) => this.#session.want({ paint: choices[index]!.load() }))
+  }
+}

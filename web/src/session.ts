@@ -1,0 +1,229 @@
+import { CagecastError, classify, init, type Classification, type Lock, type Mesh, type Preset, type Projection } from 'cagecast'
+import { Emitter } from './events'
+import type { Model } from './load'
+import { makeChecker, type Paint } from './paint'
+import { Superseded, TransferClient } from './transfer-client'
+import { kFirstView, type View } from './view'
+
+/** A target, its cage, and what to paint it with. */
+export interface Scene {
+  target: Model
+  cage: Model
+  paint: Paint
+}
+
+/** A scene that was transferred. */
+export interface Shown extends Scene {
+  projection: Projection
+}
+
+/** A scene while it is still being read. */
+export type Wanted = { [Slot in keyof Scene]?: Promise<Scene[Slot]> }
+
+/** The rules of the transfer. */
+export interface Rules {
+  preset: Preset
+  threshold: number
+}
+
+/** What the visitor said about segments of the target, by their number; nothing about all others. */
+export type Locks = Record<number, Lock>
+
+/** What became of the latest wish. */
+export type Progress =
+  | { state: 'working' }
+  | { state: 'ready' }
+  /** Nothing is wrong, but there is no transfer without these. */
+  | { state: 'waiting'; missing: ('target' | 'cage')[] }
+  | { state: 'failed'; error: Error }
+
+/** What happens in a session, in the order in which it does when another model is opened. */
+export interface SessionEvents {
+  progress: Progress
+  /** Another target, cage or projection is shown. Its zones follow at once; its paint may have changed as well. */
+  transfer: Shown
+  /** The zones were decided: after a transfer, and for another threshold or lock. `spent` is in milliseconds. */
+  zones: { classification: Classification; spent: number }
+  /** The scene on show has another paint; after `transfer` if both are new. */
+  paint: Paint
+  rules: Rules
+  view: View
+}
+
+/**
+ * What the page is about: the scene on show, its transfer, the rules it is made by and how it is looked at. Features change
+ * it by its methods, and follow it by its events; they do not know each other.
+ */
+export class Session extends Emitter<SessionEvents> {
+  /** What a cage is painted with that has no paint of its own. */
+  readonly checker = makeChecker()
+  readonly #client = new TransferClient()
+  #wanted: Wanted = {}
+  #shown: Shown | undefined
+  #classification: Classification | undefined
+  #rules: Rules = { preset: 'default', threshold: 0.5 }
+  #locks: Locks = {}
+  #view = kFirstView
+  #runs = 0
+
+  /** What is on show; undefined before the first transfer. */
+  get shown(): Shown | undefined {
+    return this.#shown
+  }
+
+  /** The zones of what is on show. */
+  get classification(): Classification | undefined {
+    return this.#classification
+  }
+
+  get rules(): Readonly<Rules> {
+    return this.#rules
+  }
+
+  get locks(): Readonly<Locks> {
+    return this.#locks
+  }
+
+  get view(): Readonly<View> {
+    return this.#view
+  }
+
+  /** Whether anything was asked for yet. */
+  get begun(): boolean {
+    return this.#runs > 0
+  }
+
+  /** Which slots are filled, or being filled. */
+  wants(slot: keyof Scene): boolean {
+    return this.#wanted[slot] !== undefined
+  }
+
+  /** Asks for other input; whatever was under way and is replaced by it no longer counts. Without a paint the checker is taken. */
+  want(change: Wanted): void {
+    for (const slot of Object.values(change)) slot.catch(() => {}) // told when it is waited for
+    this.#wanted = { paint: Promise.resolve(this.checker), ...this.#wanted, ...change }
+    void this.#run()
+  }
+
+  /** Takes the target for the cage, and the cage for the target. */
+  swap(): void {
+    const { target, cage } = this.#wanted
+    if (target && cage) this.want({ target: cage, cage: target })
+  }
+
+  /** Goes by other rules. A threshold acts at once, another preset takes a transfer. */
+  setRules(change: Partial<Rules>): void {
+    const before = this.#rules
+    this.#rules = { ...before, ...change }
+    this.emit('rules', this.#rules)
+    if (this.#rules.preset !== before.preset) {
+      // Before anything was asked for there is nothing to do again.
+      if (this.begun) void this.#run()
+    } else if (this.#shown) this.#classify()
+  }
+
+  /** Says of segments whether they are to be painted; acts at once. */
+  lock(segments: readonly number[], lock: Lock): void {
+    for (const segment of segments) this.#locks[segment] = lock
+    if (this.#shown) this.#classify()
+  }
+
+  /** Looks at the model in another way. */
+  setView(change: Partial<View>): void {
+    this.#view = { ...this.#view, ...change }
+    this.emit('view', this.#view)
+  }
+
+  /** Tells that something went wrong; what is on show stays. */
+  fail(error: unknown): void {
+    this.emit('progress', { state: 'failed', error: error instanceof Error ? error : new Error(String(error)) })
+  }
+
+  async #run(): Promise<void> {
+    const run = ++this.#runs
+    const superseded = (): boolean => run !== this.#runs
+    this.emit('progress', { state: 'working' })
+    this.#client.cancel()
+    try {
+      const scene = await this.#read(superseded)
+      if (superseded()) return
+      if (!scene) {
+        const missing = (['target', 'cage'] as const).filter((slot) => !this.wants(slot))
+        return this.emit('progress', { state: 'waiting', missing })
+      }
+      const before = this.#shown
+      // A sample's paint means nothing on another cage: there the checker takes its place.
+      if (scene.paint.sample && scene.paint.sample !== scene.cage.sample) scene.paint = this.checker
+      const { preset } = this.#rules
+      const same = scene.target === before?.target && scene.cage === before.cage && preset === before.projection.preset
+      const projection = same ? before.projection : await this.#project(scene, preset, superseded)
+      if (superseded()) return
+      // Segments are the target's alone: what was said about them holds for another cage and preset too.
+      if (scene.target !== before?.target) this.#locks = {}
+      this.#shown = { ...scene, projection }
+      if (!same) {
+        this.emit('transfer', this.#shown)
+        this.#classify()
+      }
+      if (scene.paint !== before?.paint) this.emit('paint', scene.paint)
+      this.emit('progress', { state: 'ready' })
+    } catch (error) {
+      if (superseded() || error instanceof Superseded) return
+      this.fail(error)
+    }
+  }
+
+  /** Waits for the wanted files. One that cannot be read gives way to the one shown before it. */
+  async #read(superseded: () => boolean): Promise<Scene | undefined> {
+    const { target, cage, paint } = this.#wanted
+    const results = await Promise.allSettled([target, cage, paint])
+    const failed = results.find((result) => result.status === 'rejected')
+    if (failed && !superseded()) {
+      ;(['target', 'cage', 'paint'] as const).forEach((slot, index) => {
+        if (results[index]!.status === 'rejected') this.#giveUp(slot)
+      })
+      throw failed.reason
+    }
+    const [t, c, p] = results.map((result) => (result.status === 'fulfilled' ? result.value : undefined)) as [Model?, Model?, Paint?]
+    return t && c && p ? { target: t, cage: c, paint: p } : undefined
+  }
+
+  async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<Projection> {
+    try {
+      // The threshold is decided here on the page, the rest in the worker: both start at once.
+      const [projection] = await Promise.all([this.#client.project(cageArrays(cage), targetArrays(target), { preset }), init()])
+      return projection
+    } catch (error) {
+      if (!(error instanceof CagecastError) || superseded()) throw error
+      const blamed = /\b(cage|target)\b/.exec(error.message)?.[0] as 'cage' | 'target' | undefined
+      // One that was accepted before stays: then it is the other that does not go with it, and a third file may come.
+      const files = { target, cage }
+      if (blamed && files[blamed] !== this.#shown?.[blamed]) this.#giveUp(blamed)
+      const name = blamed ? files[blamed].name : `${target.name} with ${cage.name}`
+      throw new Error(`${name}: ${error.message.replace(/^\w+: /, '')}`, { cause: error })
+    }
+  }
+
+  /** Goes back to what is shown, where what was wanted proved unusable. */
+  #giveUp(slot: keyof Scene): void {
+    const { [slot]: _, ...rest } = this.#wanted
+    this.#wanted = rest
+    if (this.#shown) this.#wanted = { ...rest, [slot]: Promise.resolve(this.#shown[slot]) }
+  }
+
+  /** Decides by the threshold and the locks as they stand. */
+  #classify(): void {
+    const started = performance.now()
+    const classification = classify(this.#shown!.projection, { threshold: this.#rules.threshold, locks: { segments: this.#locks } })
+    this.#classification = classification
+    this.emit('zones', { classification, spent: performance.now() - started })
+  }
+}
+
+function cageArrays({ mesh: { positions, indices, uvs } }: Model): Mesh {
+  return { positions, indices, uvs }
+}
+
+function targetArrays({ mesh: { positions, indices, groups } }: Model): Mesh {
+  return { positions, indices, groups }
+}

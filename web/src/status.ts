@@ -1,0 +1,39 @@
+import { clearError, element, showError, showNotice } from './page'
+import type { Session } from './session'
+
+const kBlind =
+  'This browser draws no 3D here: WebGL 2 is missing or switched off. The transfer works all the same, its numbers are in the panel.'
+
+/** How far along the page is; the words are what people, and tests, read. */
+type Status = 'loading' | 'working' | 'ready' | 'error'
+
+/** Tells how far along the session is, and what went wrong. @param blind Whether there is no picture, for want of WebGL. */
+export function showStatus(session: Session, blind: boolean): void {
+  const status = element('status', HTMLElement)
+  const show = (to: Status): void => {
+    status.textContent = to
+    status.dataset.state = to
+  }
+  if (blind) {
+    element('stage', HTMLElement).classList.add('blind')
+    element('view', HTMLCanvasElement).hidden = true
+    showNotice('stage-notice', kBlind)
+  }
+  session.on('progress', (progress) => {
+    switch (progress.state) {
+      case 'working':
+        clearError()
+        return show('working')
+      case 'ready':
+        showNotice('stage-notice', blind ? kBlind : '')
+        return show('ready')
+      case 'waiting':
+        showNotice('stage-notice', `Now add a ${progress.missing.join(' and a ')}.`)
+        return show('loading')
+      case 'failed':
+        showError(progress.error.message)
+        if (!session.shown) showNotice('stage-notice', 'Nothing to show yet: drop a target and its cage here.')
+        return show('error')
+    }
+  })
+}

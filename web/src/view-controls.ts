@@ -1,0 +1,22 @@
+import { setUpDivider } from './compare'
+import { element } from './page'
+import type { Session } from './session'
+import type { Mode } from './view'
+
+/** Lets it be chosen what the picture shows. */
+export function setUpViewControls(session: Session): void {
+  const modes = [...element('view-mode', HTMLElement).querySelectorAll('input')]
+  const switches = (['paint', 'cage'] as const).map((name) => ({ name, input: element(`show-${name}`, HTMLInputElement) }))
+  const divider = setUpDivider((split) => session.setView({ split }))
+  for (const input of modes) input.addEventListener('change', () => session.setView({ mode: input.value as Mode }))
+  for (const { name, input } of switches) input.addEventListener('change', () => session.setView({ [name]: input.checked }))
+
+  session.on('view', (view) => {
+    for (const input of modes) input.checked = input.value === view.mode
+    for (const { name, input } of switches) input.checked = view[name]
+    divider.show(view.mode === 'compare')
+  })
+  // A reloaded page keeps its fields as they were.
+  const mode = modes.find(({ checked }) => checked)!.value as Mode
+  session.setView({ mode, ...Object.fromEntries(switches.map(({ name, input }) => [name, input.checked])) })
+}

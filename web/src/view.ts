@@ -1,0 +1,19 @@
+import type { Look } from './overlay'
+
+/** What the picture can show; `compare` is naive and result with a line between them. */
+export const kModes = ['compare', 'result', 'naive', 'zones'] as const
+export type Mode = (typeof kModes)[number]
+
+/** How the model is looked at. */
+export interface View {
+  mode: Mode
+  /** Where the line of `compare` is: 0 at the left edge, 1 at the right. */
+  split: number
+  paint: boolean
+  cage: boolean
+}
+
+export const kFirstView: View = { mode: 'compare', split: 0.5, paint: true, cage: false }
+
+/** What lies over the model in each mode but `compare`. */
+export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = { result: 'result', naive: 'naive', zones: 'zones' }
