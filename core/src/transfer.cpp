@@ -11,7 +11,11 @@
 namespace cagecast {
 namespace {
 
+#ifdef __wasm__  // One thread, which does not end: nothing to make for each, or to clean up.
+[[clang::no_destroy]] constinit Scratch scratch;
+#else
 thread_local Scratch scratch;
+#endif
 
 constexpr Status kOutOfMemory{Code::outOfMemory};
 

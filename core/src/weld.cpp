@@ -68,13 +68,14 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   float side = 0;
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
+  const HilbertCurve curve;
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
     const float* p = target.positions.data() + std::size_t{3} * v;
     const Site s{p[0] * units.scale + 0.0f, p[1] * units.scale + 0.0f, p[2] * units.scale + 0.0f,
                  target.groups.empty() ? 0 : target.groups[v]};
     const auto cell = [cells](float x, float low) { return static_cast<std::uint32_t>(static_cast<std::int32_t>((x - low) * cells)); };
     sites[v] = s;
-    placed[v] = {HilbertCurve::key(cell(s.x, units.low[0]), cell(s.y, units.low[1]), cell(s.z, units.low[2]), levels), v};
+    placed[v] = {curve.key(cell(s.x, units.low[0]), cell(s.y, units.low[1]), cell(s.z, units.low[2]), levels), v};
   }
   if (Placed* sorted = sortByKey(placed, spare, vertexCount, 3 * levels); sorted != placed) std::swap(placed, spare);
 

@@ -1,4 +1,5 @@
-import { dropInstance, type Answer } from './engine.js';
+import type { Answer } from './bindings.js';
+import { dropInstance } from './engine.js';
 import { CagecastError, coreCodes } from './error.js';
 import { count, type CheckedMesh } from './mesh.js';
 import { numberOf, ranges, type CheckedOptions } from './options.js';

@@ -1,65 +1,7 @@
 import createModule from '#glue';
 import { compile } from '#wasm';
+import { bind, type Bindings, type Glue } from './bindings.js';
 import { CagecastError } from './error.js';
-import type { CheckedMesh } from './mesh.js';
-
-/** How a call into the core ended: numbers of `Code` and `Argument` in core/include/cagecast/mesh.hpp; 0 is success. */
-export interface Answer {
-  code: number;
-  argument: number;
-  at: number;
-}
-
-/**
- * What bindings.cpp adds to an answer for what does not depend on the threshold. `segmentStats`: points, A, E, C, D, group and
- * first copy of each segment; `holeShares`: hole, segment, exposed and uncovered area of each share.
- */
-export interface ProjectAnswer extends Answer {
-  uvs: Float32Array<ArrayBuffer>;
-  cornerUvs: Float32Array<ArrayBuffer>;
-  zones: Uint8Array<ArrayBuffer>;
-  triangles: Uint32Array<ArrayBuffer>;
-  distances: Float32Array<ArrayBuffer>;
-  segments: Uint32Array<ArrayBuffer>;
-  segmentStats: Float64Array<ArrayBuffer>;
-  restores: Uint32Array<ArrayBuffer>;
-  holeShares: Float64Array<ArrayBuffer>;
-  timings: Float64Array<ArrayBuffer>;
-  peakBytes: number;
-}
-
-/** What bindings.cpp adds to an answer for step 5. */
-export interface ClassifyAnswer extends Answer {
-  zones: Uint8Array<ArrayBuffer>;
-  cosmeticTriangles: Uint8Array<ArrayBuffer>;
-  culledSegments: Uint8Array<ArrayBuffer>;
-}
-
-/** What bindings.cpp adds to an answer of `splitVertices`. */
-export interface SplitAnswer extends Answer {
-  sources: Uint32Array<ArrayBuffer>;
-  indices: Uint32Array<ArrayBuffer>;
-  uvs: Float32Array<ArrayBuffer>;
-}
-
-/** What the core needs to classify; `segmentStats` and `holeShares` in numbers, as in `ProjectAnswer`. */
-export interface CoreProjection {
-  zones: Uint8Array;
-  segments: Uint32Array;
-  segmentStats: Float64Array;
-  restores: Uint32Array;
-  holeShares: Float64Array;
-  indices: Uint32Array | Uint16Array | Uint8Array;
-}
-
-/** The functions of bindings.cpp. All arrays they return are copies; `options` are numbers in the order of options.ts. */
-export interface Bindings {
-  presetOptions(preset: number): Float64Array<ArrayBuffer>;
-  project(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer;
-  transfer(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer & ClassifyAnswer;
-  classify(projection: CoreProjection, options: Float64Array, locks: Uint8Array): ClassifyAnswer;
-  splitVertices(indices: Uint32Array | Uint16Array | Uint8Array, cornerUvs: Float32Array, vertexCount: number): SplitAnswer;
-}
 
 let starting: Promise<void> | undefined;
 let compiled: WebAssembly.Module | undefined;
@@ -67,19 +9,22 @@ let instance: Bindings | undefined;
 
 /** Makes a fresh instance of the compiled module: about a millisecond. */
 function instantiate(module: WebAssembly.Module): Bindings {
-  const bindings: Partial<Bindings> = {};
+  const glue: Partial<Glue> = {};
+  let memory: WebAssembly.Memory | undefined;
   // The glue takes the instance and registers the functions at once; what it returns is a promise for the same object.
   void createModule(
-    Object.assign(bindings, {
+    Object.assign(glue, {
       instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
         const made = new WebAssembly.Instance(module, imports);
+        // It goes by another name with every release of Emscripten.
+        memory = Object.values(made.exports).find((entry) => entry instanceof WebAssembly.Memory);
         receive(made);
         return made.exports;
       },
     }),
   );
-  if (bindings.transfer === undefined) throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
-  return bindings as Bindings;
+  if (glue.transfer === undefined || memory === undefined) throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
+  return bind(glue as Glue, memory);
 }
 
 /**

@@ -1,5 +1,6 @@
 import { checkAnswer } from './answer.js';
-import { callCore, type CoreProjection, type ProjectAnswer } from './engine.js';
+import type { CoreProjection, ProjectAnswer } from './bindings.js';
+import { callCore } from './engine.js';
 import { CagecastError, show } from './error.js';
 import { checkMesh, count, type Mesh } from './mesh.js';
 import { checkOptions, locksOf, type ClassifyOptions, type Preset, type ProjectOptions, type TransferOptions } from './options.js';
@@ -196,7 +197,7 @@ export function classify(projection: Projection, options?: ClassifyOptions): Cla
 }
 
 function projected(answer: ProjectAnswer, culled?: Uint8Array): Projected {
-  const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, secondLook = 0, holes = 0, seams = 0, classify = 0, total = 0] = answer.timings;
+  const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, secondLook = 0, holes = 0, seams = 0, classify = 0, total = 0, peakBytes = 0] = answer.numbers;
   return {
     uvs: answer.uvs,
     cornerUvs: answer.cornerUvs,
@@ -206,7 +207,7 @@ function projected(answer: ProjectAnswer, culled?: Uint8Array): Projected {
     segments: answer.segments,
     segmentStats: segmentStats(answer.segmentStats, culled),
     timings: { weld, build, project, occluded, covered, segments, secondLook, holes, seams, classify, total },
-    peakBytes: answer.peakBytes,
+    peakBytes,
   };
 }
 

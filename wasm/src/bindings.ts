@@ -1,0 +1,128 @@
+import type { CheckedMesh } from './mesh.js';
+
+/** What Emscripten's glue makes of bindings.cpp: numbers in, the address of an answer's table out. */
+export interface Glue {
+  room(place: number, bytes: number): number;
+  presetOptions(preset: number): number;
+  project(): number;
+  transfer(): number;
+  classify(): number;
+  splitVertices(vertexCount: number): number;
+  release(): void;
+}
+
+/** How a call into the core ended: numbers of `Code` and `Argument` in core/include/cagecast/mesh.hpp; 0 is success. */
+export interface Answer {
+  code: number;
+  argument: number;
+  at: number;
+}
+
+const u8 = (bytes: ArrayBuffer) => new Uint8Array(bytes);
+const u32 = (bytes: ArrayBuffer) => new Uint32Array(bytes);
+const f32 = (bytes: ArrayBuffer) => new Float32Array(bytes);
+const f64 = (bytes: ArrayBuffer) => new Float64Array(bytes);
+
+// The arrays of answers, in the order of bindings.cpp.
+const presetArrays = { options: f64 };
+const classifyArrays = { zones: u8, cosmeticTriangles: u8, culledSegments: u8 };
+const splitArrays = { sources: u32, indices: u32, uvs: f32 };
+const projectArrays = {
+  uvs: f32,
+  cornerUvs: f32,
+  zones: u8,
+  triangles: u32,
+  distances: f32,
+  segments: u32,
+  /** Points, A, E, C, D, group and first copy of each segment. */
+  segmentStats: f64,
+  restores: u32,
+  /** Hole, segment, exposed and uncovered area of each share. */
+  holeShares: f64,
+  /** The timings, in their order, and the peak of memory. */
+  numbers: f64,
+  /** This and the next one after `transfer` only; else empty. */
+  cosmeticTriangles: u8,
+  culledSegments: u8,
+};
+
+type Layout = Record<string, (bytes: ArrayBuffer) => object>;
+/** An answer and its arrays, which are copies. Those of a failure are missing. */
+type AnswerOf<L extends Layout> = Answer & { [Name in keyof L]: ReturnType<L[Name]> };
+export type ProjectAnswer = AnswerOf<typeof projectArrays>;
+export type ClassifyAnswer = AnswerOf<typeof classifyArrays>;
+export type SplitAnswer = AnswerOf<typeof splitArrays>;
+
+type Indices = Uint32Array | Uint16Array | Uint8Array;
+
+/** What the core needs to classify; `segmentStats` and `holeShares` in numbers, as in `ProjectAnswer`. */
+export interface CoreProjection {
+  zones: Uint8Array;
+  segments: Uint32Array;
+  segmentStats: Float64Array;
+  restores: Uint32Array;
+  holeShares: Float64Array;
+  indices: Indices;
+}
+
+/** The functions of the core, on arrays; `options` are numbers in the order of options.ts. */
+export interface Bindings {
+  presetOptions(preset: number): Float64Array;
+  project(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer;
+  transfer(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer;
+  classify(projection: CoreProjection, options: Float64Array, locks: Uint8Array): ClassifyAnswer;
+  splitVertices(indices: Indices, cornerUvs: Float32Array, vertexCount: number): SplitAnswer;
+}
+
+/** Brings arrays into WebAssembly memory and out of it. No view of it leaves: it is cut to length 0 when the memory grows. */
+export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
+  type Source = ArrayLike<number>;
+  type View = { new (buffer: ArrayBuffer, at: number, length: number): { set(source: Source): void }; BYTES_PER_ELEMENT: number };
+
+  const put = (...inputs: [View, Source][]) => {
+    inputs.forEach(([Type, source], place) => {
+      if (source.length === 0) return;
+      const at = core.room(place, source.length * Type.BYTES_PER_ELEMENT);
+      if (at === 0) throw new RangeError('WebAssembly memory is full');
+      new Type(memory.buffer, at, source.length).set(source);
+    });
+  };
+  const putMeshes = (options: Float64Array, ...meshes: CheckedMesh[]) => {
+    const arrays = meshes.flatMap(({ positions, indices, uvs, groups }): [View, Source][] => [
+      [Float32Array, positions],
+      [Uint32Array, indices],
+      [Float32Array, uvs],
+      [Uint32Array, groups],
+    ]);
+    put([Float64Array, options], ...arrays);
+  };
+  const take = <L extends Layout>(table: number, layout: L): AnswerOf<L> => {
+    const names = Object.keys(layout);
+    const [code = 0, argument = 0, at = 0, ...places] = new Uint32Array(memory.buffer, table, 3 + 2 * names.length);
+    const array = (name: string, i: number) => layout[name]!(memory.buffer.slice(places[2 * i]!, places[2 * i]! + places[2 * i + 1]!));
+    const arrays = code === 0 ? Object.fromEntries(names.map((name, i) => [name, array(name, i)])) : {};
+    core.release();
+    return { code, argument, at, ...arrays } as AnswerOf<L>;
+  };
+
+  return {
+    presetOptions: (preset) => take(core.presetOptions(preset), presetArrays).options,
+    project(cage, target, options) {
+      putMeshes(options, cage, target);
+      return take(core.project(), projectArrays);
+    },
+    transfer(cage, target, options) {
+      putMeshes(options, cage, target);
+      return take(core.transfer(), projectArrays);
+    },
+    classify({ zones, segments, segmentStats, restores, holeShares, indices }, options, locks) {
+      const parts: [View, Source][] = [[Uint8Array, zones], [Uint32Array, segments], [Float64Array, segmentStats], [Uint32Array, restores]];
+      put([Float64Array, options], ...parts, [Float64Array, holeShares], [Uint32Array, indices], [Uint8Array, locks]);
+      return take(core.classify(), classifyArrays);
+    },
+    splitVertices(indices, cornerUvs, vertexCount) {
+      put([Uint32Array, indices], [Float32Array, cornerUvs]);
+      return take(core.splitVertices(vertexCount), splitArrays);
+    },
+  };
+}
