@@ -10,7 +10,7 @@ interface Series {
 }
 
 // Okabe and Ito's colours, which the colour-blind can tell apart.
-const colours = { ours: '#0072b2', wasm: '#56b4e9', embree: '#d55e00', nanoflann: '#999999', bvh: '#e69f00', fixed: '#009e73' };
+export const colours = { ours: '#0072b2', wasm: '#56b4e9', embree: '#d55e00', nanoflann: '#999999', bvh: '#e69f00', fixed: '#009e73' };
 const stageColours: Record<Exclude<Stage, 'total'>, string> = {
   weld: '#999999',
   build: '#e69f00',
@@ -30,17 +30,24 @@ const stageNames: Record<Exclude<Stage, 'total'>, string> = {
   classify: 'threshold',
 };
 
-const width = 760;
+export const width = 760;
 const number = (value: number): string => (value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toPrecision(2));
 const short = (n: number): string => (n >= 1e6 ? `${n / 1e6}M` : n >= 1e3 ? `${+(n / 1e3).toFixed(1)}k` : `${n}`);
 const escape = (text: string): string => text.replace(/[&<>]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;' })[c]!);
-const text = (x: number, y: number, content: string, rest = ''): string => `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" ${rest}>${escape(content)}</text>`;
+export const text = (x: number, y: number, content: string, rest = ''): string => `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" ${rest}>${escape(content)}</text>`;
 
-function picture(height: number, title: string, body: string[]): string {
+// Light or dark as the reader's screen is; the classes are those of the elements that follow it.
+const style = `<style>
+svg { background: #fff; fill: #222 } .grid { stroke: #ddd } .frame { stroke: #999; fill: none }
+@media (prefers-color-scheme: dark) { svg { background: #0d1117; fill: #e6edf3 } .grid { stroke: #30363d } .frame { stroke: #6e7681 } }
+</style>`;
+
+/** An SVG of the plots' width, with a title. */
+export function picture(height: number, title: string, body: string[]): string {
   return [
-    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" font-family="system-ui, sans-serif" font-size="12" fill="#222">`,
+    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" font-family="system-ui, sans-serif" font-size="12">`,
     `<title>${escape(title)}</title>`,
-    `<rect width="${width}" height="${height}" fill="#fff"/>`,
+    style,
     text(16, 24, title, 'font-size="15" font-weight="600"'),
     ...body,
     '</svg>\n',
@@ -89,10 +96,10 @@ export function scalingPlot(results: Results): string {
   const body: string[] = [];
   for (let e = y0; e <= y1; ++e) {
     const y = py(10 ** e);
-    body.push(`<line x1="${frame.left}" x2="${frame.right}" y1="${y.toFixed(1)}" y2="${y.toFixed(1)}" stroke="#ddd"/>`, text(frame.left - 8, y + 4, `${10 ** e >= 1 ? 10 ** e : (10 ** e).toFixed(-e)}`, 'text-anchor="end"'));
+    body.push(`<line x1="${frame.left}" x2="${frame.right}" y1="${y.toFixed(1)}" y2="${y.toFixed(1)}" class="grid"/>`, text(frame.left - 8, y + 4, `${10 ** e >= 1 ? 10 ** e : (10 ** e).toFixed(-e)}`, 'text-anchor="end"'));
   }
   for (const n of [...new Set(points.map(([x]) => x))]) {
-    if (Object.values(results.native ?? {}).some((r) => r.triangles === n)) body.push(`<line x1="${px(n).toFixed(1)}" x2="${px(n).toFixed(1)}" y1="${frame.top}" y2="${frame.bottom}" stroke="#eee"/>`, text(px(n), frame.bottom + 18, short(Number(n.toPrecision(2))), 'text-anchor="middle"'));
+    if (Object.values(results.native ?? {}).some((r) => r.triangles === n)) body.push(`<line x1="${px(n).toFixed(1)}" x2="${px(n).toFixed(1)}" y1="${frame.top}" y2="${frame.bottom}" class="grid"/>`, text(px(n), frame.bottom + 18, short(Number(n.toPrecision(2))), 'text-anchor="middle"'));
   }
   body.push(text(frame.left - 8, frame.top - 14, 'ms', 'text-anchor="end"'), text(frame.right, frame.bottom + 36, 'triangles of the target', 'text-anchor="end"'));
   series.forEach(({ name, colour, points: line, dashed }, i) => {

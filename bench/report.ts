@@ -2,14 +2,10 @@ import { writeFile } from 'node:fs/promises';
 import { goalsOf, isReached, phone } from './goals.js';
 import { scalingPlot, stagesPlot, totalsPlot } from './plots.js';
 import { resultsFolder, type Results } from './results.js';
+import { table } from './table.js';
 
 const ms = (value: number | undefined): string => (value === undefined ? '–' : value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(value < 0.1 ? 3 : 2));
 const times = (value: number | undefined): string => (value === undefined ? '–' : `${value >= 10 ? value.toFixed(1) : value.toFixed(2)}×`);
-
-function table(head: string[], rows: string[][]): string {
-  const line = (cells: string[]): string => `| ${cells.join(' | ')} |`;
-  return [line(head), line(head.map((_, i) => (i === 0 ? '---' : '---:'))), ...rows.map(line), ''].join('\n');
-}
 
 /** Writes the table and the plots of results, over those of earlier ones. */
 export async function writeReport(results: Results): Promise<void> {

@@ -1,8 +1,12 @@
-import { existsSync, readdirSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
-import { output, root, saveScene } from '../native.js';
-import { readScene, type Scene } from '../scene-file.js';
-import { reference } from './reference.js';
+import { NodeIO, type Document } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import draco from 'draco3dgltf';
+import { MeshoptDecoder } from 'meshoptimizer';
+import { decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from '../../wasm/src/gltf/pieces.js';
+import { output, root } from '../native.js';
+import { readScene, type Scene, type SceneMesh } from '../scene-file.js';
 
 /** What is known of each vertex of a target; see `examples/assets/truth.ts`. */
 export interface Truth {
@@ -17,59 +21,119 @@ export interface Truth {
 /** A target with its cage, and the truth about it. */
 export interface Model {
   name: string;
-  /** `asset`: of a folder given by the user; `sample`: of the project; `trap`: made to be difficult; `spoiled`: a sample that goes wrong on purpose. */
-  kind: 'asset' | 'sample' | 'trap' | 'spoiled';
+  /** `sample`: of the project; `asset`: of a folder given by the user; `trap`: made to be difficult; `spoiled`: a sample that goes wrong on purpose. */
+  kind: 'sample' | 'asset' | 'trap' | 'spoiled';
   scene: Scene;
   truth: Truth;
+  /** Where its files are; none if it was made without. */
+  folder?: string;
 }
 
-const folder = `${root}build/bench/quality`;
+const samplesFolder = `${root}build/assets`;
+
+/** A model that lies in a folder. */
+export type ModelFiles = Pick<Model, 'name' | 'kind'> & { folder: string };
+
+/** The project's samples, and the models of the folder that CAGECAST_ASSETS names: folders with target.glb, cage.glb and truth.json. */
+export function listFiles(): ModelFiles[] {
+  const samples = (JSON.parse(readFileSync(`${samplesFolder}/index.json`, 'utf8')) as { name: string }[]).map(({ name }): ModelFiles => {
+    // Named after the model they were spoiled from.
+    return { name, kind: name.includes('-') ? 'spoiled' : 'sample', folder: `${samplesFolder}/${name}` };
+  });
+  const assets = process.env['CAGECAST_ASSETS'];
+  const given = (assets === undefined ? [] : readdirSync(assets).sort())
+    .filter((name) => existsSync(`${assets}/${name}/truth.json`))
+    .map((name): ModelFiles => ({ name, kind: 'asset', folder: `${assets}/${name}` }));
+  return [...samples, ...given].sort((a, b) => Number(a.kind === 'spoiled') - Number(b.kind === 'spoiled'));
+}
 
 /**
- * All models there are: those of the folder that CAGECAST_ASSETS names (folders with target.glb, cage.glb, truth.json), the
- * project's samples, and the models made to be difficult.
+ * All models there are: of files, and those made to be difficult.
  * @param only  Names; all if undefined.
+ * @throws {Error} if a name is of no model, or a truth is not of its target.
  */
-export async function loadModels(only: readonly string[] | undefined): Promise<Model[]> {
-  await mkdir(folder, { recursive: true });
-  const wanted = (name: string): boolean => only?.includes(name) ?? true;
-  const models: Model[] = [];
-  const add = async (name: string, kind: Model['kind'], path: string): Promise<void> => {
-    if (!wanted(name)) return;
-    const scene = `${folder}/${name}.scene`;
-    await saveScene(`${path}/target.glb`, `${path}/cage.glb`, scene);
-    const truth = JSON.parse(await readFile(`${path}/truth.json`, 'utf8')) as Truth;
-    models.push({ name, kind, truth, scene: await load(scene, truth.ncz.length) });
-  };
-
-  const assets = process.env['CAGECAST_ASSETS'];
-  for (const name of assets === undefined ? [] : readdirSync(assets).sort())
-    if (existsSync(`${assets}/${name}/truth.json`)) await add(name, 'asset', `${assets}/${name}`);
-  const samples = `${root}build/assets`;
-  for (const { name } of JSON.parse(await readFile(`${samples}/index.json`, 'utf8')) as { name: string }[])
-    // Named after the model they were spoiled from.
-    await add(name, name.includes('-') ? 'spoiled' : 'sample', `${samples}/${name}`);
-
-  const traps = `${folder}/traps`;
-  await mkdir(traps, { recursive: true });
-  await output(reference, ['--traps', traps]);
-  for (const file of readdirSync(traps).filter((name) => name.endsWith('.scene')).sort()) {
-    const name = file.replace('.scene', '');
-    if (!wanted(name)) continue;
-    // Per vertex 0: to be painted, 1: not to be, 2: either; padded to whole words.
-    const labels = new Uint8Array(await readFile(`${traps}/${name}.truth`));
-    const scene = readScene(bufferOf(await readFile(`${traps}/${file}`)));
-    const truth: Truth = { ncz: labels.map((label) => +(label === 1)), ignore: labels.map((label) => +(label === 2)), offCage: new Uint8Array(labels.length) };
-    models.push({ name, kind: 'trap', scene, truth });
-  }
-  return models;
+export async function loadModels(only?: readonly string[]): Promise<Model[]> {
+  const files = listFiles();
+  const traps = only?.every((name) => files.some((file) => file.name === name)) ? [] : await loadTraps();
+  const names = [...files, ...traps].map(({ name }) => name);
+  const unknown = only?.find((name) => !names.includes(name));
+  if (unknown !== undefined) throw new Error(`--only ${unknown}: there are ${names.join(', ')}`);
+  const isWanted = ({ name }: { name: string }): boolean => only?.includes(name) ?? true;
+  return [...(await Promise.all(files.filter(isWanted).map(loadFiles))), ...traps.filter(isWanted)];
 }
 
-const bufferOf = (bytes: Buffer): ArrayBuffer => bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) as ArrayBuffer;
+/**
+ * Reads the files of a model.
+ * @throws {Error} if its truth is not of its target.
+ */
+export async function loadFiles({ name, kind, folder }: ModelFiles): Promise<Model> {
+  const [target, cage] = await Promise.all(['target', 'cage'].map((file) => readMesh(`${folder}/${file}.glb`)));
+  const truth = JSON.parse(await readFile(`${folder}/truth.json`, 'utf8')) as Truth;
+  const found = target!.positions.length / 3;
+  if (found !== truth.ncz.length) throw new Error(`${folder}: the target has ${found} vertices, its truth.json speaks of ${truth.ncz.length}`);
+  return { name, kind, truth, folder, scene: { cage: cage!, target: target! } };
+}
 
-async function load(path: string, vertices: number): Promise<Scene> {
-  const scene = readScene(bufferOf(await readFile(path)));
-  const found = scene.target.positions.length / 3;
-  if (found !== vertices) throw new Error(`${path}: the target has ${found} vertices, its truth.json speaks of ${vertices}`);
-  return scene;
+/** The models of tests/core/traps.cpp, which the reference writes. */
+async function loadTraps(): Promise<Model[]> {
+  let reference = process.env['CAGECAST_REFERENCE'];
+  if (reference === undefined) {
+    await output('cmake', ['--preset', 'release', '-Wno-dev', '--log-level=WARNING']);
+    await output('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference']);
+    reference = `${root}build/release/tests/core/cagecast_reference`;
+  }
+  const folder = `${root}build/bench/traps`;
+  await mkdir(folder, { recursive: true });
+  await output(reference, ['--traps', folder]);
+  const names = readdirSync(folder).flatMap((file) => (file.endsWith('.scene') ? [file.replace('.scene', '')] : []));
+  return Promise.all(
+    names.sort().map(async (name): Promise<Model> => {
+      const bytes = await readFile(`${folder}/${name}.scene`);
+      const scene = readScene(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) as ArrayBuffer);
+      // Per vertex 0: to be painted, 1: not to be, 2: either; padded to whole words.
+      const labels = new Uint8Array(await readFile(`${folder}/${name}.truth`)).subarray(0, scene.target.positions.length / 3);
+      return { name, kind: 'trap', scene, truth: { ncz: labels.map((label) => +(label === 1)), ignore: labels.map((label) => +(label === 2)), offCage: new Uint8Array(labels.length) } };
+    }),
+  );
+}
+
+/** Reads a glTF file as the adapters do: all triangles of its scene, a group for each primitive. */
+async function readMesh(path: string): Promise<SceneMesh> {
+  const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
+  await MeshoptDecoder.ready;
+  io.registerDependencies({ 'meshopt.decoder': MeshoptDecoder, 'draco3d.decoder': await draco.createDecoderModule() });
+  const pieces = piecesOf(await io.read(path));
+  const mesh = joinPieces(pieces) as SceneMesh;
+  const sets = pieces.map(({ set }) => set);
+  if (sets.every((set) => set !== undefined)) mesh.uvs = Float32Array.from(sets.flatMap((set) => [...set]));
+  return mesh;
+}
+
+function piecesOf(document: Document): (Piece & { set: Float32Array | undefined })[] {
+  const pieces: (Piece & { set: Float32Array | undefined })[] = [];
+  const scene = document.getRoot().getDefaultScene() ?? document.getRoot().listScenes()[0]!;
+  scene.traverse((node) => {
+    for (const primitive of node.getMesh()?.listPrimitives() ?? []) {
+      const position = primitive.getAttribute('POSITION');
+      if (position === null || !hasTriangles(primitive.getMode())) continue;
+      const name = node.getName();
+      const localPositions = decodePositions(name, position);
+      const localIndices = decodeTriangles(name, primitive.getIndices()?.getArray() ?? null, primitive.getMode(), localPositions.length / 3);
+      const uv = primitive.getAttribute('TEXCOORD_0');
+      const last = pieces.at(-1);
+      pieces.push({
+        name,
+        aliases: [],
+        matrix: node.getWorldMatrix(),
+        firstVertex: last ? last.firstVertex + last.vertexCount : 0,
+        vertexCount: localPositions.length / 3,
+        firstTriangle: last ? last.firstTriangle + last.triangleCount : 0,
+        triangleCount: localIndices.length / 3,
+        localPositions,
+        localIndices,
+        set: uv === null ? undefined : decodeFloats(uv),
+      });
+    }
+  });
+  return pieces;
 }

@@ -1,34 +1,51 @@
+import type { TransferResult } from 'cagecast';
+import { boxOf, doubleAreaNormal, length, minus, pointAt } from '../../wasm/src/inspect/geometry.js';
 import type { Scene, SceneMesh } from '../scene-file.js';
+import type { Decision } from './methods.js';
 import type { Model } from './models.js';
-import type { Answer } from './reference.js';
 
-/** Shares of area; 1 is perfect. A third of each triangle goes to each of its corners. */
+/** How well a decision agrees with the truth. */
 export interface Score {
-  /** Of what must not be painted, the share that is not. */
+  /** Of the area that must not be painted, the share whose vertices are not. A third of each triangle goes to each corner. */
   suppressed: number;
-  /** Of what is to be painted, where the cage speaks of it, the share that is. */
+  /** Of the area that is to be painted, where the cage speaks of it, the share whose vertices are. */
   kept: number;
+  /** Of the pixels that show the model, the share that shows paint where none must be. */
+  forbidden: number;
+  /** Of the pixels that show what is to be painted, where the cage speaks of it, the share that shows no paint. */
+  bare: number;
 }
 
-/** How well zones agree with the truth. @param zones  1 per vertex; undefined: everything is painted. */
-export function score({ scene, truth }: Model, zones: Uint8Array | undefined): Score {
+/** Scores a decision. @param pixels  1 per triangle corner, of `visiblePixels`. */
+export function score({ scene, truth }: Model, pixels: Uint32Array, { zones, cosmeticTriangles }: Decision): Score {
   const { indices } = scene.target;
-  let [bare, suppressed, skin, kept] = [0, 0, 0, 0];
-  for (let t = 0; t < indices.length; t += 3) {
-    const area = areaOf(scene.target, t);
-    for (const v of indices.subarray(t, t + 3)) {
-      if (truth.ignore[v] === 1) continue;
-      const isPainted = zones === undefined || zones[v] === 0;
-      if (truth.ncz[v] === 1) {
-        bare += area;
-        if (!isPainted) suppressed += area;
-      } else if (truth.offCage[v] !== 1) {
-        skin += area;
-        if (isPainted) kept += area;
-      }
+  const areas = triangleAreas(scene.target);
+  const byArea = tally(truth, indices, (corner) => areas[Math.floor(corner / 3)]!, (corner) => zones[indices[corner]!] === 0);
+  const byPixel = tally(truth, indices, (corner) => pixels[corner]!, (corner) => cosmeticTriangles[Math.floor(corner / 3)] === 1);
+  const seen = pixels.reduce((sum, count) => sum + count, 0);
+  return {
+    suppressed: byArea.ncz > 0 ? 1 - byArea.nczPainted / byArea.ncz : 1,
+    kept: byArea.skin > 0 ? byArea.skinPainted / byArea.skin : 1,
+    forbidden: seen > 0 ? byPixel.nczPainted / seen : 0,
+    bare: byPixel.skin > 0 ? 1 - byPixel.skinPainted / byPixel.skin : 0,
+  };
+}
+
+/** Adds up the weights of the corners that must not be painted, and of those that are to be: all of them, and the painted ones. */
+function tally({ ignore, ncz, offCage }: Model['truth'], indices: Uint32Array, weightOf: (corner: number) => number, isPainted: (corner: number) => boolean) {
+  const sums = { ncz: 0, nczPainted: 0, skin: 0, skinPainted: 0 };
+  indices.forEach((v, corner) => {
+    if (ignore[v] === 1) return;
+    const weight = weightOf(corner);
+    if (ncz[v] === 1) {
+      sums.ncz += weight;
+      if (isPainted(corner)) sums.nczPainted += weight;
+    } else if (offCage[v] !== 1) {
+      sums.skin += weight;
+      if (isPainted(corner)) sums.skinPainted += weight;
     }
-  }
-  return { suppressed: bare > 0 ? suppressed / bare : 1, kept: skin > 0 ? kept / skin : 1 };
+  });
+  return sums;
 }
 
 /** How a segment stands to the floor of step 5'. */
@@ -46,33 +63,32 @@ export interface SegmentMeasure {
 }
 
 /** The floor's constants: shares of the segment's own area, and of all that is covered, where little enough is uncovered. */
-const floor = { own: 0.2, all: 0.005, uncovered: 0.25 };
+export type FloorLimits = Record<'minCovered' | 'minOfAll' | 'maxUncovered', number>;
 
 /** Measures every segment that covers anything. */
-export function measureSegments({ scene, truth }: Model, answer: Answer): SegmentMeasure[] {
+export function measureSegments({ scene, truth }: Model, { segments, segmentStats }: TransferResult, limits: FloorLimits): SegmentMeasure[] {
   const { indices } = scene.target;
-  const wishes = answer.sums.map(() => ({ painted: 0, bare: 0 }));
-  const first = answer.sums.map(() => Infinity);
-  for (let t = 0; t < indices.length; t += 3) {
-    const area = areaOf(scene.target, t);
-    for (const v of indices.subarray(t, t + 3)) {
-      const segment = answer.segments[v]!;
-      first[segment] = Math.min(first[segment]!, v);
-      if (truth.ignore[v] !== 1) wishes[segment]![truth.ncz[v] === 1 ? 'bare' : 'painted'] += area;
-    }
-  }
-  const allCovered = answer.sums.reduce((sum, { covered }) => sum + covered, 0);
-  return answer.sums.flatMap(({ area, exposed, covered, sunk, culled }, s) => {
-    if (!(covered > 0)) return [];
+  const areas = triangleAreas(scene.target);
+  const wishes = segmentStats.map(() => ({ painted: 0, bare: 0 }));
+  const first = segmentStats.map(() => Infinity);
+  indices.forEach((v, corner) => {
+    const segment = segments[v]!;
+    first[segment] = Math.min(first[segment]!, v);
+    if (truth.ignore[v] !== 1) wishes[segment]![truth.ncz[v] === 1 ? 'bare' : 'painted'] += areas[Math.floor(corner / 3)]!;
+  });
+  const allCovered = segmentStats.reduce((sum, { coveredArea }) => sum + coveredArea, 0);
+  return segmentStats.flatMap(({ area, exposedArea, coveredArea, coverage, sunkArea, culled }, s) => {
+    if (!(coveredArea > 0)) return [];
     const { painted, bare } = wishes[s]!;
-    const counted = (sunk * covered) / exposed;
+    const counted = sunkArea * coverage;
+    const ofAll = Math.min(counted / (limits.minOfAll * allCovered), (limits.maxUncovered * exposedArea) / (exposedArea - coveredArea));
     return [
       {
         firstVertex: first[s]!,
         wanted: painted + bare === 0 ? 'either' : bare > painted ? 'bare' : 'painted',
-        coverage: covered / exposed,
-        coveredShare: covered / area,
-        reach: Math.max(counted / (floor.own * area), Math.min(counted / (floor.all * allCovered), (floor.uncovered * exposed) / (exposed - covered))),
+        coverage,
+        coveredShare: coveredArea / area,
+        reach: Math.max(counted / (limits.minCovered * area), ofAll),
         culled,
       },
     ];
@@ -90,24 +106,24 @@ const kSmear = 4;
 const kSlack = 0.005; // in UV
 
 /** How much of what is painted is smeared. */
-export function smear({ cage, target }: Scene, answer: Answer): Smear {
+export function smear({ cage, target }: Scene, { cosmeticTriangles, triangles, distances, uvs, cornerUvs }: TransferResult): Smear {
   const stretches = stretchesOf(cage);
+  const { positions, indices } = target;
   let [painted, byVertex, byCorner] = [0, 0, 0];
-  for (let t = 0; t < target.indices.length; t += 3) {
-    if (answer.cosmeticTriangles[t / 3] !== 1) continue;
-    const area = areaOf(target, t);
+  triangleAreas(target).forEach((area, t) => {
+    if (cosmeticTriangles[t] !== 1) return;
     painted += area;
     const isSmeared = (u: (corner: number, k: number) => number): boolean =>
       [0, 1, 2].some((c) => {
         const d = (c + 1) % 3;
-        const [v, w] = [target.indices[t + c]!, target.indices[t + d]!];
-        const stretch = Math.max(stretches[answer.triangles[v]!]!, stretches[answer.triangles[w]!]!);
-        const explained = stretch * (distance(target.positions, v, w) + Math.abs(answer.distances[v]! - answer.distances[w]!));
+        const [v, w] = [indices[3 * t + c]!, indices[3 * t + d]!];
+        const stretch = Math.max(stretches[triangles[v]!]!, stretches[triangles[w]!]!);
+        const explained = stretch * (distance(positions, v, w) + Math.abs(distances[v]! - distances[w]!));
         return Math.hypot(u(c, 0) - u(d, 0), u(c, 1) - u(d, 1)) > kSmear * explained + kSlack;
       });
-    if (isSmeared((c, k) => answer.uvs[target.indices[t + c]! * 2 + k]!)) byVertex += area;
-    if (isSmeared((c, k) => answer.cornerUvs[(t + c) * 2 + k]!)) byCorner += area;
-  }
+    if (isSmeared((c, k) => uvs[indices[3 * t + c]! * 2 + k]!)) byVertex += area;
+    if (isSmeared((c, k) => cornerUvs[(3 * t + c) * 2 + k]!)) byCorner += area;
+  });
   return painted > 0 ? { vertex: byVertex / painted, corner: byCorner / painted } : { vertex: 0, corner: 0 };
 }
 
@@ -118,31 +134,24 @@ function stretchesOf({ indices, positions, uvs }: SceneMesh): Float64Array {
   for (let i = 0; i < indices.length; i++) {
     const t = Math.floor(i / 3);
     const [v, w] = [indices[i]!, indices[3 * t + ((i + 1) % 3)]!];
-    const length = distance(positions, v, w);
-    if (length > 0) stretches[t] = Math.max(stretches[t]!, Math.hypot(uvs[2 * v]! - uvs[2 * w]!, uvs[2 * v + 1]! - uvs[2 * w + 1]!) / length);
+    const edge = distance(positions, v, w);
+    if (edge > 0) stretches[t] = Math.max(stretches[t]!, Math.hypot(uvs[2 * v]! - uvs[2 * w]!, uvs[2 * v + 1]! - uvs[2 * w + 1]!) / edge);
   }
   return stretches;
 }
 
-function distance(p: Float32Array, v: number, w: number): number {
-  return Math.hypot(p[3 * v]! - p[3 * w]!, p[3 * v + 1]! - p[3 * w + 1]!, p[3 * v + 2]! - p[3 * w + 2]!);
-}
+const distance = (p: Float32Array, v: number, w: number): number => length(minus(pointAt(p, v), pointAt(p, w)));
 
-/** The area of the triangle whose corners begin at `indices[t]`. */
-function areaOf({ positions: p, indices }: SceneMesh, t: number): number {
-  const [a, b, c] = [indices[t]! * 3, indices[t + 1]! * 3, indices[t + 2]! * 3];
-  const e = [0, 1, 2].map((k) => p[b + k]! - p[a + k]!) as [number, number, number];
-  const f = [0, 1, 2].map((k) => p[c + k]! - p[a + k]!) as [number, number, number];
-  return Math.hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]) / 2;
-}
-
-/** The diagonal of the box of a mesh. */
-export function diagonalOf({ positions }: SceneMesh): number {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  positions.forEach((x, i) => {
-    low[i % 3] = Math.min(low[i % 3]!, x);
-    high[i % 3] = Math.max(high[i % 3]!, x);
+function triangleAreas({ positions: p, indices }: SceneMesh): Float64Array {
+  return Float64Array.from({ length: indices.length / 3 }, (_, t) => {
+    const [a, b, c] = [0, 1, 2].map((k) => pointAt(p, indices[3 * t + k]!)) as [Corner, Corner, Corner];
+    return length(doubleAreaNormal(a, b, c)) / 2;
   });
-  return Math.hypot(...high.map((x, k) => x - low[k]!));
+}
+type Corner = ReturnType<typeof pointAt>;
+
+/** The same scene with its cage moved along an axis. @param by  Share of the target's diagonal. */
+export function shifted(scene: Scene, axis: number, by: number): Scene {
+  const { diagonal } = boxOf(scene.target.positions);
+  return { ...scene, cage: { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === axis ? x + by * diagonal : x)) } };
 }

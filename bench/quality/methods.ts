@@ -1,0 +1,82 @@
+import { classify, presetOptions, project, transfer, Zone, type PresetOptions, type Projection, type TransferOptions } from 'cagecast';
+import { median } from '../statistics.js';
+import type { Scene } from '../scene-file.js';
+
+/** What a way to transfer paints. */
+export interface Decision {
+  /** 1 per vertex, a `Zone`. */
+  zones: Uint8Array;
+  /** 1 per triangle: 1 if it is painted. */
+  cosmeticTriangles: Uint8Array;
+}
+
+/** The ways that are compared, each with the steps of the one before it. */
+export const methodNames = ['naive', 'step 2', 'step 3', 'paper', 'default'] as const;
+export type MethodName = (typeof methodNames)[number];
+
+/**
+ * Transfers in each of the ways: everything painted (`naive`), without what the target occludes (`step 2`), without what the
+ * cage does not cover either (`step 3`), and by the two presets.
+ */
+export function decide({ cage, target }: Scene): Record<MethodName, Decision> {
+  const { zones } = project(cage, target, { preset: 'paper' });
+  const only = (...ncz: Zone[]): Decision => wholeTriangles(zones.map((zone) => (ncz.includes(zone as Zone) ? zone : Zone.Cosmetic)), target.indices);
+  return {
+    naive: only(),
+    'step 2': only(Zone.Occluded),
+    'step 3': only(Zone.Occluded, Zone.Uncovered),
+    paper: transfer(cage, target, { preset: 'paper' }),
+    default: transfer(cage, target),
+  };
+}
+
+/** As the poster has it: a triangle is painted if its three corners are. */
+function wholeTriangles(zones: Uint8Array, indices: Uint32Array): Decision {
+  const isPainted = (t: number): boolean => [0, 1, 2].every((k) => zones[indices[3 * t + k]!] === Zone.Cosmetic);
+  return { zones, cosmeticTriangles: Uint8Array.from({ length: indices.length / 3 }, (_, t) => +isPainted(t)) };
+}
+
+/** Decides anew by other thresholds. */
+export function atThresholds(projection: Projection, thresholds: readonly number[]): [threshold: string, Decision][] {
+  return thresholds.map((threshold) => [threshold.toFixed(1), classify(projection, { threshold })]);
+}
+
+/**
+ * The preset `default` with each of its steps left out: `groups` welds across parts, `depth` measures the floor as it was at
+ * first, and every option in which the presets differ is as in `paper`.
+ */
+export function withoutEachStep({ cage, target }: Scene): [step: string, Decision][] {
+  const { groups: _, ...whole } = target;
+  const [paper, ours] = [presetOptions('paper'), presetOptions('default')];
+  const differs = (name: keyof PresetOptions): boolean => paper[name] !== ours[name] && name !== 'seams'; // it is about UVs, not zones
+  const leftOut = (Object.keys(ours) as (keyof PresetOptions)[]).filter(differs).map((name): [string, TransferOptions] => [name, { [name]: paper[name] }]);
+  return [
+    ['groups', transfer(cage, whole)],
+    ['depth', transfer(cage, target, { floor: 'area' })],
+    ...leftOut.map(([name, options]): [string, Decision] => [name, transfer(cage, target, options)]),
+  ];
+}
+
+/**
+ * Milliseconds that each way takes with the package in this process: the median of runs in turns, after warming up. The first
+ * three are the first steps of `paper`: weld, trees and nearest points; with the self rays; with the cage rays as well.
+ */
+export function latencies({ cage, target }: Scene, runs: number): Record<MethodName, number> {
+  const warmUp = Math.ceil(runs / 2); // until the engine has optimised the WebAssembly
+  const times: Record<MethodName, number[]> = { naive: [], 'step 2': [], 'step 3': [], paper: [], default: [] };
+  for (let run = -warmUp; run < runs; ++run) {
+    for (const preset of ['paper', 'default'] as const) {
+      const began = performance.now();
+      const { timings } = transfer(cage, target, { preset });
+      const ended = performance.now();
+      if (run < 0) continue;
+      times[preset].push(ended - began);
+      if (preset === 'default') continue;
+      const nearest = timings.weld + timings.build + timings.project;
+      times['naive'].push(nearest);
+      times['step 2'].push(nearest + timings.occluded);
+      times['step 3'].push(nearest + timings.occluded + timings.covered);
+    }
+  }
+  return Object.fromEntries(methodNames.map((name) => [name, median(times[name])])) as Record<MethodName, number>;
+}

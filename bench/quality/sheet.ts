@@ -1,0 +1,76 @@
+import { mkdir, readFile } from 'node:fs/promises';
+import { dirname } from 'node:path';
+import { build } from 'esbuild';
+import { chromium } from 'playwright-core';
+import { output, root } from '../native.js';
+import type { Model } from './models.js';
+import type { Look, Row } from './sheet-page.js';
+
+/** How models are shown; those that are not here from their left, with a board of squares for a paint. */
+const views: Record<string, { paint: string; turn: number; rise: number }> = {
+  lizard: { paint: 'paint-tiger.png', turn: 38, rise: 12 },
+  human: { paint: 'paint-harlequin.png', turn: 20, rise: 6 },
+  car: { paint: 'paint-racing.png', turn: 38, rise: 16 },
+};
+const otherView = { turn: 30, rise: 10 };
+
+/** Pixels along the sides of each picture. */
+const cell = { width: 400, height: 300 };
+
+/** What the columns are called. */
+const heads: Record<Look, string> = {
+  cage: 'cage',
+  naive: 'naive transfer',
+  removed: 'removed, in red',
+  paper: 'preset <i>paper</i>',
+  default: 'result',
+};
+
+/**
+ * Draws models with the package's own three.js adapter in Chromium, a row for each, all looks of a model from the same side.
+ * @param models  Those that have a folder; the others are left out.
+ * @param path    A JPEG or PNG, by its name.
+ */
+export async function drawSheet(models: readonly Model[], looks: readonly Look[], path: string): Promise<void> {
+  const script = await build({ entryPoints: [`${root}bench/quality/sheet-page.ts`], bundle: true, format: 'iife', target: 'es2022', write: false, absWorkingDir: root, logLevel: 'error' });
+  const executablePath = process.env['CHROMIUM'] ?? (await output('sh', ['-c', 'command -v chromium'])).stdout.trim();
+  const browser = await chromium.launch({
+    executablePath,
+    args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+  });
+  try {
+    // Its files are those of the models, and nothing else is there.
+    const files = new Map<string, string>();
+    const serve = (file: string): string => {
+      const url = `/${files.size}`;
+      files.set(url, file);
+      return url;
+    };
+    const rows = models.flatMap(({ name, folder }): Row[] => {
+      if (folder === undefined) return [];
+      const { paint, ...view } = { paint: undefined, ...(views[name] ?? otherView) };
+      return [{ target: serve(`${folder}/target.glb`), cage: serve(`${folder}/cage.glb`), paint: paint === undefined ? undefined : serve(`${folder}/${paint}`), ...view }];
+    });
+    const page = await browser.newPage({ viewport: { width: looks.length * cell.width, height: rows.length * cell.height + 48 } });
+    page.setDefaultTimeout(120_000);
+    await page.route('**/*', async (route) => {
+      const file = files.get(new URL(route.request().url()).pathname);
+      await route.fulfill(file === undefined ? { contentType: 'text/html', body: pageOf(looks) } : { contentType: 'application/octet-stream', body: await readFile(file) });
+    });
+    await page.goto('http://sheet.test/sheet');
+    await page.addScriptTag({ content: script.outputFiles[0]!.text });
+    for (const row of rows) await page.evaluate(([model, columns, size]) => drawRow(model, columns, size), [row, looks, cell] as const);
+    await mkdir(dirname(path), { recursive: true });
+    await page.screenshot({ path, fullPage: true, ...(path.endsWith('.jpg') && { type: 'jpeg', quality: 82 }) });
+  } finally {
+    await browser.close();
+  }
+}
+
+const pageOf = (looks: readonly Look[]): string => `<!doctype html><meta charset="utf-8">
+<style>
+  body { margin: 0; background: #fff; font: 600 20px/48px system-ui, sans-serif; color: #333 }
+  main { display: grid; grid-template-columns: repeat(${looks.length}, ${cell.width}px); text-align: center }
+  canvas { display: block; width: ${cell.width}px; height: ${cell.height}px }
+</style>
+<main>${looks.map((look) => `<div>${heads[look]}</div>`).join('')}</main>`;
