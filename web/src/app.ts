@@ -11,6 +11,7 @@ import { Session } from './session'
 import { showStatus } from './status'
 import { Tools } from './tools'
 import { setUpViewControls } from './view-controls'
+import { showViewModes } from './view-modes'
 import { Viewer } from './viewer'
 
 /** Without WebGL the page still transfers. */
@@ -37,8 +38,11 @@ await painted()
 const session = new Session()
 const viewer = startViewer()
 // Each feature follows the session by itself. The picture comes first: what others lay on it needs it up to date.
-if (viewer) showPicture(session, viewer)
-if (viewer) new Tools(viewer, element('stage', HTMLElement))
+if (viewer) {
+  showPicture(session, viewer)
+  showViewModes(session, viewer)
+  new Tools(viewer, element('stage', HTMLElement))
+}
 showStatus(session, viewer === undefined)
 showResults(session)
 new PartsTable(session, viewer)

@@ -17,10 +17,10 @@ import {
 import { turnWinding, type ExtractedMesh, type Part } from './extract'
 
 /**
- * What lies over the target: nothing, the paint everywhere, what the filter leaves of it, the zones by reason, or colours of
- * one's own.
+ * What lies over the target: nothing, the paint everywhere, what the filter leaves of it, the zones by reason, a checker on
+ * all of it, or colours of one's own.
  */
-export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'tint'
+export type Look = 'bare' | 'naive' | 'result' | 'zones' | 'checker' | 'tint'
 
 /** Colours of the reasons, by zone. After Okabe and Ito, so that colour-blind eyes tell them apart; see style.css. */
 const kReasonColors = { 1: '#0072b2', 2: '#e69f00', 3: '#cc79a7' } as const
@@ -70,6 +70,11 @@ export class Overlay {
     for (const layer of this.#layers) layer.setPaint(paint)
   }
 
+  /** Gives the look `checker` its texture. */
+  setChecker(checker: Texture): void {
+    for (const layer of this.#layers) layer.setChecker(checker)
+  }
+
   /** Gives the look `tint` its colours. @param colors 3 bytes per triangle corner of the target, sRGB. */
   setTint(colors: Uint8Array): void {
     for (const layer of this.#layers) layer.setTint(colors)
@@ -97,7 +102,8 @@ class Layer {
   readonly #nothing = new MeshBasicMaterial({ visible: false })
   readonly #reasons = kReasons.map((zone) => reasonMaterial(kReasonColors[zone]))
   readonly #clay = onSurface(new MeshStandardMaterial({ color: kClayColor, roughness: 0.85 }))
-  readonly #tint = onSurface(new MeshStandardMaterial({ vertexColors: true, roughness: 1 }))
+  readonly #checker = onSurface(new MeshStandardMaterial({ roughness: 0.9 }))
+  readonly #tint = tintMaterial()
   readonly #hidden = kReasons.map((zone) => hiddenMaterial(kReasonColors[zone]))
 
   constructor(part: Part, indices: Uint32Array, uvs: Float32Array, split: SplitVertices, paint: Texture | undefined) {
@@ -168,6 +174,11 @@ class Layer {
     this.#paint.map = paint
   }
 
+  setChecker(checker: Texture): void {
+    checker.channel = kUvChannel
+    this.#checker.map = checker
+  }
+
   setTint(colors: Uint8Array): void {
     const { mesh, firstTriangle, firstVertex, triangleCount, mirrored } = this.#part
     if (!this.#tinted) {
@@ -192,10 +203,24 @@ class Layer {
 
   show(look: Look): void {
     this.#naive.visible = look === 'naive'
-    this.#filtered.visible = look === 'result' || look === 'zones'
     if (this.#tinted) this.#tinted.visible = look === 'tint'
-    // A group whose material is missing here is not drawn.
-    this.#filtered.material = look === 'zones' ? [this.#nothing, ...this.#reasons, ...this.#hidden, this.#clay] : [this.#paint]
+    const materials = this.#materials(look)
+    this.#filtered.visible = materials.length > 0
+    this.#filtered.material = materials
+  }
+
+  /** Of the filtered mesh. A group whose material is missing is not drawn. */
+  #materials(look: Look): Material[] {
+    switch (look) {
+      case 'result':
+        return [this.#paint]
+      case 'zones':
+        return [this.#nothing, ...this.#reasons, ...this.#hidden, this.#clay]
+      case 'checker':
+        return kZones.map(() => this.#checker)
+      default:
+        return []
+    }
   }
 
   dispose(): void {
@@ -203,7 +228,7 @@ class Layer {
       mesh.removeFromParent()
       mesh.geometry.dispose()
     }
-    for (const material of [this.#paint, this.#nothing, this.#clay, this.#tint, ...this.#reasons, ...this.#hidden]) material.dispose()
+    for (const material of [this.#paint, this.#nothing, this.#clay, this.#checker, this.#tint, ...this.#reasons, ...this.#hidden]) material.dispose()
   }
 }
 
@@ -269,10 +294,23 @@ function paintMaterial(base: Material): MeshStandardMaterial {
   return onSurface(paint)
 }
 
+// Glowing a little and lit less than the rest, so that the legend's colour is met in the light and in the shade.
+const kLit = 0.6
+const kGlow = 0.3
+
 function reasonMaterial(color: string): Material {
-  // Glowing a little and lit less than the rest, so that the legend's colour is met in the light and in the shade.
-  const lit = { color: new Color(color).multiplyScalar(0.6), emissive: color, emissiveIntensity: 0.3, roughness: 1 }
+  const lit = { color: new Color(color).multiplyScalar(kLit), emissive: color, emissiveIntensity: kGlow, roughness: 1 }
   return onSurface(new MeshStandardMaterial({ ...lit, side: DoubleSide }))
+}
+
+/** The same with a colour for each vertex. */
+function tintMaterial(): Material {
+  const material = onSurface(new MeshStandardMaterial({ vertexColors: true, color: new Color().setScalar(kLit), roughness: 1, side: DoubleSide }))
+  material.onBeforeCompile = (shader) => {
+    const glow = '#include <emissivemap_fragment>'
+    shader.fragmentShader = shader.fragmentShader.replace(glow, `${glow}\ntotalEmissiveRadiance += vColor.rgb * ${kGlow};`)
+  }
+  return material
 }
 
 function hiddenMaterial(color: string): Material {

@@ -1,7 +1,7 @@
 import type { Look } from './overlay'
 
 /** What the picture can show; `compare` is naive and result with a line between them. */
-export const kModes = ['compare', 'result', 'naive', 'zones'] as const
+export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const
 export type Mode = (typeof kModes)[number]
 
 /** How the model is looked at. */
@@ -16,4 +16,15 @@ export interface View {
 export const kFirstView: View = { mode: 'compare', split: 0.5, paint: true, cage: false }
 
 /** What lies over the model in each mode but `compare`. */
-export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = { result: 'result', naive: 'naive', zones: 'zones' }
+export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
+  result: 'result',
+  naive: 'naive',
+  zones: 'zones',
+  segments: 'tint',
+  checker: 'checker',
+  distance: 'tint',
+  stretch: 'tint',
+}
+
+/** Whether a mode shows the paint, which can then be switched off. */
+export const showsPaint = (mode: Mode): boolean => mode === 'compare' || mode === 'result' || mode === 'naive'

@@ -21,7 +21,7 @@ import { Overlay, type Look } from './overlay'
 import { pick, type Spot } from './pick'
 import { Pointing, type Tool } from './pointing'
 import { Studio } from './studio'
-import { kFirstView, kLooks, type View } from './view'
+import { kFirstView, kLooks, showsPaint, type View } from './view'
 
 const kFieldOfView = 28 // degrees
 const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14))
@@ -29,7 +29,6 @@ const kFill = 0.86 // below 1, as models seldom reach into the corners of their 
 const kToolbar = 96 // pixels of the picture's lower edge that controls lie on
 const kSway = MathUtils.degToRad(40) // how far the model turns to either side
 const kSwaySeconds = 16 // there and back
-const kPainted: ReadonlySet<Look> = new Set(['naive', 'result']) // what the switch for the paint takes away
 const kKeyStep = MathUtils.degToRad(6)
 
 /** Shows one target with its paint and its cage on a canvas, and lets people turn it. Draws only when something changed. */
@@ -105,6 +104,12 @@ export class Viewer {
   /** Colours the target for the modes that show colours of their own. @param colors 3 bytes per triangle corner, sRGB. */
   setTint(colors: Uint8Array): void {
     this.#overlay?.setTint(colors)
+    this.redraw()
+  }
+
+  /** Shows another texture in the mode that lays one over all of the target, painted or not. */
+  setChecker(checker: Texture): void {
+    this.#overlay?.setChecker(checker)
     this.redraw()
   }
 
@@ -263,7 +268,7 @@ export class Viewer {
     // The light moved with the camera; its shadow is the same on both sides of the line.
     this.renderer.shadowMap.needsUpdate = true
     this.renderer.setScissorTest(true)
-    const look = (side: keyof typeof kLooks): Look => (paint || !kPainted.has(kLooks[side]) ? kLooks[side] : 'bare')
+    const look = (side: keyof typeof kLooks): Look => (paint || !showsPaint(side) ? kLooks[side] : 'bare')
     if (mode !== 'compare') return draw(look(mode), 0, 1)
     if (split > 0) draw(look('naive'), 0, split)
     if (split < 1) draw(look('result'), split, 1)
