@@ -22,7 +22,7 @@ const began = performance.now();
 const say = (line: string): void => console.error(`[${((performance.now() - began) / 1000).toFixed(0).padStart(3)} s] ${line}`);
 
 /** How often each way is timed. */
-const runs = 51;
+const runs = 31;
 const largeRuns = 7;
 
 async function main(): Promise<void> {

@@ -33,7 +33,7 @@ const percent = (share: number): string => {
   const rounded = Math.min(Math.max(100 * share, share > 0 ? 0.01 : 0), share < 1 ? 99.99 : 100);
   return `${Number(rounded.toFixed(2))} %`;
 };
-const ms = (value: number): string => (value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(2));
+const ms = (value: number): string => value.toFixed(value >= 10 ? 0 : 1);
 const both = ({ suppressed, kept }: Score): string => `${percent(suppressed)} · ${percent(kept)}`;
 const inPicture = ({ forbidden, bare }: Score): string => `${percent(forbidden)} · ${percent(bare)}`;
 const worst = (scores: Iterable<Score>): Score => {
@@ -88,7 +88,7 @@ export function qualityReport(results: QualityResults): string {
     [
       '- *suppressed*: of the area that must not be painted, the share whose vertices are not; *kept*: of the area that is to be painted, the share whose vertices are, where the cage speaks of it (not where its nearest place is on an open border).',
       '- *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where none must be; *bare*: of those that show what is to be painted, those without.',
-      '- *latency*: the package in Node, raw arrays in, answer out; medians. That of the first rows is that of the first steps of `paper`.',
+      '- *latency*: the package in Node, raw arrays in, answer out; CPU time, medians. The first rows are the first steps of `paper`.',
     ].join('\n'),
     posterTable(results),
     missed.length === 0 ? 'All goals are reached.' : `Goals missed:\n\n${missed.map((line) => `- ${line}`).join('\n')}`,

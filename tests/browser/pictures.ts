@@ -5,7 +5,6 @@ import type { Page } from 'playwright-core'
 import { inRepository, settled, Site } from './site.js'
 
 const kFolder = inRepository('docs/pictures')
-const kModels = ['Lizard head', 'Human bust', 'Saloon car']
 
 /** The model alone, naive beside filtered. */
 async function compare(site: Site): Promise<void> {
@@ -22,30 +21,11 @@ async function desktopAndPhone(site: Site): Promise<void> {
   const shots: string[] = []
   for (const [width, height, colorScheme] of [[1440, 900, 'light'], [390, 900, 'dark']] as const) {
     const { page } = await site.visit({ viewport: { width, height }, colorScheme })
-    if (width < 600) await choose(page, kModels[1]!)
+    if (width < 600) await choose(page, 'Human bust')
     await rest(page)
     shots.push(dataUri(await page.screenshot({ type: 'png' })))
   }
   await compose(site, 'page', `<div style="display:flex;gap:24px">${shots.map((shot) => `<img src="${shot}" style="height:640px;border-radius:10px">`).join('')}</div>`)
-}
-
-/** Each model three times: what the naive transfer paints, why not, and the result. */
-async function samples(site: Site): Promise<void> {
-  const rows: string[] = []
-  const { page } = await site.visit({ viewport: { width: 900, height: 520 } })
-  await hideControls(page)
-  for (const model of kModels) {
-    await choose(page, model)
-    const row: string[] = []
-    for (const view of ['naive', 'zones', 'result']) {
-      await page.locator(`#view-mode input[value=${view}]`).check({ force: true })
-      await rest(page)
-      row.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })))
-    }
-    rows.push(row.map((shot) => `<img src="${shot}" style="width:420px;height:340px;object-fit:cover;object-view-box:inset(6% 25% 17% 25%)">`).join(''))
-  }
-  const heads = ['naive', 'zones', 'Cagecast'].map((head) => `<b style="width:420px;text-align:center">${head}</b>`).join('')
-  await compose(site, 'samples', [heads, ...rows].map((row) => `<div style="display:flex">${row}</div>`).join(''))
 }
 
 async function choose(page: Page, model: string): Promise<void> {
@@ -75,7 +55,6 @@ try {
   await mkdir(kFolder, { recursive: true })
   await compare(site)
   await desktopAndPhone(site)
-  await samples(site)
 } finally {
   await site.close()
 }
