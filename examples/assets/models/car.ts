@@ -108,6 +108,11 @@ const panel = (half: Mesh, keep: (p: Vec3) => number, triangles: number, inset =
   return { positions: whole.positions.map((x, i) => x - inset * normals![i]!), indices: whole.indices, normals: normals! }
 }
 
+/** The same surface with its other side outside. */
+const turned = ({ positions, indices, normals }: Mesh): Mesh => {
+  return { positions, indices: indices.map((_, i) => indices[i - (i % 3) + [0, 2, 1][i % 3]!]!), normals: normals!.map((x) => -x) }
+}
+
 const tyreProfile: [number, number][] = [
   [0.2, 0.07], [0.235, 0.098], [0.3, 0.1], [0.328, 0.08], [0.335, 0.04], [0.335, -0.04], [0.328, -0.08], [0.3, -0.1], [0.235, -0.098], [0.2, -0.075], [0.01, -0.07],
 ]
@@ -277,6 +282,8 @@ export const car = (): Model => {
   const half = clip(surface(shell, bounds, 0.026), (p) => p[0])
   const onBody = (p: Vec3): number => Math.min(p[1] - kSill, arch(0)(...p), ...openings.map((o) => o.field(...p)))
   const body = panel(half, (p) => Math.min(onBody(p), -bumperLine(p)), 3500)
+  const inCabin = (p: Vec3): number => Math.min(p[1] - 0.45, p[2] + 1.75, 1.1 - p[2])
+  const lining = turned(panel(half, (p) => Math.min(onBody(p), inCabin(p)), 900, 0.02))
   const bumpers = panel(half, (p) => Math.min(onBody(p), bumperLine(p)), 900)
   const opening = (name: string, triangles: number, inset = 0.008): Mesh => {
     const { field } = openings.find((o) => o.name === name)!
@@ -303,7 +310,7 @@ export const car = (): Model => {
   }
   const glass = (name: string, triangles: number): Part => plain(name, opening(name, triangles), rgb('#10161c', 0.55), 0.05, true, { doubleSided: true })
   const parts: Part[] = [
-    { ...textured('body', boxAtlas(body), bodyShade, 1024, 0.35, false), metallic: 0.2, doubleSided: true },
+    { ...textured('body', boxAtlas(body), bodyShade, 1024, 0.35, false), metallic: 0.2 },
     plain('bumpers', bumpers, rgb('#2b2f33'), 0.7, false, { doubleSided: true }),
     plain('mirrors', join(oneMirror, reflected(oneMirror)), rgb('#2b2f33'), 0.5, false),
     textured('headlights', boxAtlas(opening('headlights', 120)), headlightShade, 128, 0.1, true),
@@ -313,6 +320,7 @@ export const car = (): Model => {
       plain(`${name}-tyre`, tyre, rgb('#17181a'), 0.9, true),
       plain(`${name}-rim`, rim, rgb('#c3c7cb'), 0.35, true, { metallic: 0.6 }),
     ]),
+    plain('lining', lining, rgb('#2a2d30'), 0.95, true),
     plain('floor', solid(floorSolid, [-0.05, 0.15, -2.2], [0.95, 0.75, 2.2], 0.05, 700), rgb('#1c1e20'), 0.95, true),
     plain('seats', solid(seatsSolid, [-0.05, 0.25, -1.5], [0.75, 1.35, 0.5], 0.028, 900), rgb('#4a3a30'), 0.8, true),
     plain('dashboard', solid(dashboardSolid, [-0.05, 0.3, 0.5], [0.75, 1.0, 1.1], 0.03, 160), rgb('#26282b'), 0.8, true),
