@@ -13,6 +13,7 @@ import { Tools } from './tools'
 import { setUpViewControls } from './view-controls'
 import { showViewModes } from './view-modes'
 import { Viewer } from './viewer'
+import { Why } from './why/why'
 
 /** Without WebGL the page still transfers. */
 function startViewer(): Viewer | undefined {
@@ -41,8 +42,9 @@ const viewer = startViewer()
 if (viewer) {
   showPicture(session, viewer)
   showViewModes(session, viewer)
-  new Tools(viewer, element('stage', HTMLElement))
-}
+  const tools = new Tools(viewer, element('stage', HTMLElement))
+  new Why(session, viewer, tools)
+} else element('why', HTMLElement).hidden = true
 showStatus(session, viewer === undefined)
 showResults(session)
 new PartsTable(session, viewer)

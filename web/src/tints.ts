@@ -2,6 +2,7 @@ import type { Classification } from 'cagecast'
 import { colorAt, distinctColor, kDiverging, kSequential, type ColorMap, type Rgb } from './colors'
 import type { ExtractedMesh } from './extract'
 import type { Shown } from './session'
+import { diagonalOf } from './surface'
 
 /** What colours stand for: a scale from one end to the other. */
 export interface Scale {
@@ -92,17 +93,6 @@ function perCorner({ indices }: ExtractedMesh, colorOf: (vertex: number, triangl
   const colors = new Uint8Array(3 * indices.length)
   indices.forEach((vertex, corner) => colors.set(colorOf(vertex, Math.floor(corner / 3)), 3 * corner))
   return colors
-}
-
-/** Of the box around all vertices. */
-export function diagonalOf({ positions }: ExtractedMesh): number {
-  const low = [Infinity, Infinity, Infinity]
-  const high = [-Infinity, -Infinity, -Infinity]
-  positions.forEach((value, i) => {
-    low[i % 3] = Math.min(low[i % 3]!, value)
-    high[i % 3] = Math.max(high[i % 3]!, value)
-  })
-  return Math.hypot(...high.map((value, axis) => value - low[axis]!))
 }
 
 function medianOf(values: Float64Array): number {

@@ -33,6 +33,11 @@ export class Tools {
     })
   }
 
+  /** The tool that is chosen; undefined while the pointer turns the model. */
+  get chosen(): Offer | undefined {
+    return this.#chosen
+  }
+
   /** Adds a tool at the rail's end. */
   add(offer: Offer): void {
     this.#add(offer, offer.title, offer.key, offer.icon)

@@ -120,6 +120,12 @@ export class Viewer {
     return pick(this.#model.mesh, this.#camera, new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height))
   }
 
+  /** The place on the screen that the model stands at, as `pick` takes it. */
+  get middle(): { x: number; y: number } {
+    const { left, top, width, height } = this.#canvas.getBoundingClientRect()
+    return { x: left + width / 2, y: top + (height - kToolbar) / 2 }
+  }
+
   /** Hands the pointer to a tool; what the tool leaves alone turns the model. Without one everything does. */
   setTool(tool: Tool | undefined): void {
     this.#pointing.tool = tool
