@@ -2,6 +2,7 @@ import { cp, readFile } from 'node:fs/promises'
 import path from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { defineConfig, type Plugin } from 'vite'
+import { precache } from './precache'
 
 const kRepository = fileURLToPath(new URL('..', import.meta.url))
 const kSamples = path.join(kRepository, 'build/assets')
@@ -38,12 +39,34 @@ async function sampleFiles(): Promise<string[]> {
   return samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)])
 }
 
+/** Takes the package with its WebAssembly in a file of its own: page and worker share it, and it compiles while it loads. */
+function slim(): Plugin {
+  const inlined = path.join(kRepository, 'dist/index.js')
+  return {
+    name: 'cagecast-slim',
+    enforce: 'pre',
+    async resolveId(source, importer, options) {
+      const found = await this.resolve(source, importer, { ...options, skipSelf: true })
+      return found?.id === inlined ? path.join(kRepository, 'dist/slim.js') : found
+    },
+  }
+}
+
+/** Leaves out Draco's decoders for other files than glTF, which the loader names but the page never asks for: a megabyte. */
+function onlyGltfDraco(): Plugin {
+  const spare = /new URL\( '\.\.\/libs\/draco\/draco_[^']+', import\.meta\.url \)\.toString\(\)/g
+  return {
+    name: 'cagecast-only-gltf-draco',
+    transform: (code, id) => (/\/DRACOLoader\.js$/.test(id) ? code.replaceAll(spare, "''") : undefined),
+  }
+}
+
 export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the built page can lie in any folder of any host.
   base: './',
-  plugins: [samples()],
+  plugins: [slim(), samples(), onlyGltfDraco(), precache()],
   build: { outDir: path.join(kRepository, 'build/web'), emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 900 },
-  worker: { format: 'es' },
+  worker: { format: 'es', plugins: () => [slim()] },
   preview: { headers: { 'X-Content-Type-Options': 'nosniff' } },
 })

@@ -90,10 +90,25 @@ export async function balls(count: number): Promise<Upload> {
   return glb('balls.glb', Buffer.from(await new NodeIO().writeBinary(document)))
 }
 
+/** A lumpy ball of 2 · `side`² triangles, indexed, with normals and UVs of its own. */
+export async function lumpyBall(side: number): Promise<Upload> {
+  const document = new Document()
+  document.createBuffer()
+  const sphere = new SphereGeometry(0.9, side, side + 1)
+  const position = sphere.getAttribute('position')
+  for (let vertex = 0; vertex < position.count; vertex++) {
+    const [x, y, z] = [position.getX(vertex), position.getY(vertex), position.getZ(vertex)]
+    const lump = 0.92 + 0.08 * Math.sin(9 * x) * Math.sin(7 * y + 1) * Math.sin(8 * z + 2)
+    position.setXYZ(vertex, lump * x, lump * y, lump * z)
+  }
+  document.createScene().addChild(document.createNode('lumps').setMesh(meshOf(document, sphere, true)))
+  return glb('lumps.glb', Buffer.from(await new NodeIO().writeBinary(document)))
+}
+
 function meshOf(document: Document, geometry: BufferGeometry, withUvs: boolean) {
   const buffer = document.getRoot().listBuffers()[0]!
-  const accessor = (type: 'VEC2' | 'VEC3' | 'SCALAR', array: Float32Array | Uint16Array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer)
-  const primitive = document.createPrimitive().setIndices(accessor('SCALAR', Uint16Array.from(geometry.index!.array)))
+  const accessor = (type: 'VEC2' | 'VEC3' | 'SCALAR', array: Float32Array | Uint16Array | Uint32Array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer)
+  const primitive = document.createPrimitive().setIndices(accessor('SCALAR', geometry.index!.array as Uint16Array | Uint32Array))
   for (const [name, semantic, type] of [['position', 'POSITION', 'VEC3'], ['normal', 'NORMAL', 'VEC3'], ['uv', 'TEXCOORD_0', 'VEC2']] as const) {
     if (name === 'uv' && !withUvs) continue
     primitive.setAttribute(semantic, accessor(type, Float32Array.from(geometry.getAttribute(name).array)))

@@ -3,13 +3,15 @@ import { mkdtemp, rm } from 'node:fs/promises'
 import { tmpdir } from 'node:os'
 import path from 'node:path'
 import { fileURLToPath } from 'node:url'
-import { chromium, type Browser, type BrowserContext, type BrowserContextOptions, type Page } from 'playwright-core'
+import { chromium, type Browser, type BrowserContext, type BrowserContextOptions, type CDPSession, type Page } from 'playwright-core'
 import { build, preview } from 'vite'
 
 const kRoot = fileURLToPath(new URL('../..', import.meta.url))
 const kConfig = path.join(kRoot, 'web/vite.config.ts')
 /** Long enough for software rendering on a busy machine; a page that hangs still ends the test. */
 const kPatience = 60_000
+/** What Playwright itself logs where a visit has no service workers. */
+const kBlocked = 'Service Worker registration blocked by Playwright'
 
 /** A file inside the repository. */
 export const inRepository = (...names: string[]): string => path.join(kRoot, ...names)
@@ -29,7 +31,9 @@ export class Site {
 
   private constructor(
     readonly url: string,
-    private readonly browser: Browser,
+    /** Where the built page lies. */
+    readonly folder: string,
+    readonly browser: Browser,
     private readonly stop: () => Promise<void>,
   ) {}
 
@@ -39,7 +43,7 @@ export class Site {
     await build({ configFile: kConfig, logLevel: 'error', build: { outDir } })
     const server = await preview({ configFile: kConfig, logLevel: 'error', build: { outDir }, preview: { host: '127.0.0.1', port: 0 } })
     const browser = await chromium.launch({ executablePath: findChromium(), args: kFlags })
-    return new Site(server.resolvedUrls!.local[0]!, browser, async () => {
+    return new Site(server.resolvedUrls!.local[0]!, outDir, browser, async () => {
       await browser.close()
       await server.close()
       await rm(outDir, { recursive: true, force: true })
@@ -52,21 +56,23 @@ export class Site {
 
   /**
    * Opens the page and waits until it shows the first sample. One visit at a time: a new one ends the last.
-   * @param options   A still picture 1000 × 700 in light colours unless they say otherwise.
-   * @param prepare   A script that runs in the page before its own.
+   * @param options   A still picture 1000 × 700 in light colours, nothing kept for later, unless they say otherwise.
+   * @param prepare   A script that runs in the page before its own, or what is to be done with the page before it goes there.
    */
-  async visit(options: BrowserContextOptions = {}, prepare?: string): Promise<Visit> {
+  async visit(options: BrowserContextOptions = {}, prepare?: string | ((page: Page) => Promise<void>)): Promise<Visit> {
     await this.visitor?.close()
     this.visitor = await this.browser.newContext({
       viewport: { width: 1000, height: 700 },
       colorScheme: 'light',
       reducedMotion: 'reduce',
+      serviceWorkers: 'block',
       ...options,
     })
     const page = await this.visitor.newPage()
     page.setDefaultTimeout(kPatience)
     const visit: Visit = { page, complaints: [], foreign: [] }
     page.on('console', (message) => {
+      if (message.text() === kBlocked) return
       if (message.type() === 'error' || message.type() === 'warning') visit.complaints.push(message.text())
     })
     page.on('pageerror', (error) => visit.complaints.push(String(error)))
@@ -74,11 +80,76 @@ export class Site {
       const { origin, protocol } = new URL(request.url())
       if (protocol.startsWith('http') && origin !== new URL(this.url).origin) visit.foreign.push(request.url())
     })
-    if (prepare) await page.addInitScript({ content: prepare })
+    if (typeof prepare === 'string') await page.addInitScript({ content: prepare })
+    else await prepare?.(page)
     await page.goto(this.url)
     await settled(page)
     return visit
   }
+}
+
+/** What the page's main thread did. Milliseconds of its own processor time: a busy machine does not count against it. */
+export interface Work {
+  /** Of the longest task; between tasks the page takes input and draws. */
+  longest: number
+  total: number
+}
+
+/** Measures the tasks of the page's main thread while something is done. */
+export async function mainThreadWork(page: Page, action: () => Promise<void>): Promise<Work> {
+  const browser = page.context().browser()!
+  await browser.startTracing(page, { categories: ['toplevel'] })
+  let trace: { traceEvents: TraceEvent[] }
+  try {
+    await action()
+  } finally {
+    trace = JSON.parse((await browser.stopTracing()).toString())
+  }
+  const threads = trace.traceEvents.filter(({ name, args }) => name === 'thread_name' && args?.name === 'CrRendererMain')
+  const isMain = ({ pid, tid }: TraceEvent): boolean => threads.some((thread) => thread.pid === pid && thread.tid === tid)
+  // The page's own process is the busiest of its kind.
+  const byProcess = new Map<number, number[]>()
+  for (const event of trace.traceEvents) {
+    if (event.name !== 'ThreadControllerImpl::RunTask' || event.tdur === undefined || !isMain(event)) continue
+    byProcess.set(event.pid, [...(byProcess.get(event.pid) ?? []), event.tdur / 1000])
+  }
+  const work = [...byProcess.values()].map((tasks) => ({ longest: Math.max(...tasks), total: tasks.reduce((sum, task) => sum + task, 0) }))
+  const busiest = work.toSorted((a, b) => b.total - a.total)[0]
+  if (!busiest) throw new Error('the trace has no tasks of a main thread')
+  return busiest
+}
+
+/** Opens the page and returns the seconds of processor time until its first picture: of the page's thread, and of the graphics process. */
+export async function processorTime(site: Site): Promise<{ page: number; graphics: number }> {
+  const { browser } = site
+  const system = await browser.newBrowserCDPSession()
+  const graphics = async (): Promise<number> => {
+    const { processInfo } = await system.send('SystemInfo.getProcessInfo')
+    return processInfo.find(({ type }) => type === 'GPU')?.cpuTime ?? 0
+  }
+  const before = await graphics()
+  let session: CDPSession | undefined
+  const { page } = await site.visit({}, async (page) => {
+    session = await page.context().newCDPSession(page)
+    await session.send('Performance.enable', { timeDomain: 'threadTicks' })
+  })
+  // Reading a pixel waits until everything before it is drawn.
+  await page.evaluate(async () => {
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))
+    const gl = document.querySelector('canvas')!.getContext('webgl2')!
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4))
+  })
+  const { metrics } = await session!.send('Performance.getMetrics')
+  return { page: metrics.find(({ name }) => name === 'ThreadTime')!.value, graphics: (await graphics()) - before }
+}
+
+interface TraceEvent {
+  name: string
+  pid: number
+  tid: number
+  /** Processor time, in microseconds. */
+  tdur?: number
+  args?: { name?: string }
 }
 
 const kFlags = [

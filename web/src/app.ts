@@ -1,12 +1,13 @@
 import { init } from 'cagecast'
 import { setUpJump } from './jump'
+import { keepOffline } from './offline'
 import { Opener } from './open'
 import { element } from './page'
 import { PartsTable } from './parts'
 import { showPicture } from './picture'
 import { showResults } from './results'
 import { setUpRules } from './rules'
-import { loadSamples } from './samples'
+import { fetchAhead, loadSamples } from './samples'
 import { Session } from './session'
 import { showStatus } from './status'
 import { Tools } from './tools'
@@ -33,7 +34,7 @@ function painted(): Promise<unknown> {
 
 const samples = loadSamples()
 // Begun while the files are on their way; told when they are waited for.
-for (const early of [samples, init()]) early.catch(() => {})
+for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {})
 await painted()
 
 const session = new Session()
@@ -52,6 +53,7 @@ setUpRules(session)
 setUpViewControls(session)
 setUpJump()
 const opener = new Opener(session)
+keepOffline(session)
 
 try {
   opener.listSamples(await samples)

@@ -324,6 +324,8 @@ function hiddenMaterial(color: string): Material {
 export function onSurface<M extends Material>(material: M): M {
   material.transparent = true
   material.depthWrite = false
+  // What lies on a surface has nothing to sort: one pass for both sides, where transparent materials get two.
+  material.forceSinglePass = true
   material.depthFunc = LessEqualDepth
   material.polygonOffset = true
   material.polygonOffsetFactor = -1

@@ -29,10 +29,20 @@ export async function loadSamples(): Promise<Sample[]> {
   }))
 }
 
+const begun = new Map<string, Promise<Response | undefined>>()
+
+/** Begins to fetch what a sample opens with, before anything can be done with it. */
+export function fetchAhead({ target, cage, paints }: Sample): void {
+  for (const address of [target, cage, ...paints.slice(0, 1).map(({ file }) => file)]) begun.set(address, ask(address))
+}
+
+const ask = (address: string): Promise<Response | undefined> => fetch(address).catch(() => undefined)
+
 /** Fetches one file of a sample. @throws Error that names it. */
 export async function fetchFile(address: string): Promise<File> {
   const name = new URL(address).pathname.split('/').slice(-2).join('/')
-  const response = await fetch(address).catch(() => undefined)
+  const response = await (begun.get(address) ?? ask(address))
+  begun.delete(address) // its body can be read once
   if (!response?.ok) throw new Error(`${name}: the file cannot be fetched`)
   return new File([await response.blob()], name.split('/').at(-1)!)
 }

@@ -79,9 +79,9 @@ export class Viewer {
     this.#controls.addEventListener('start', () => this.turn(false))
     canvas.addEventListener('keydown', (event) => this.#onKey(event))
     canvas.addEventListener('webglcontextrestored', () => this.redraw())
-    new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!)
-    this.#resize()
     this.home()
+    // Tells the size at once.
+    new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!)
   }
 
   /** Shows another target; call `classify` for its zones. The one before it is freed, unless it is the same. */
@@ -262,6 +262,7 @@ export class Viewer {
 
   #draw(): void {
     this.#stale = false
+    if (!this.#model) return // an empty room takes as long to draw as a full one
     const { mode, split, paint, cage } = this.#view
     this.#studio.follow(this.#camera)
     this.#cage?.show(cage)
