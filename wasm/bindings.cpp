@@ -149,7 +149,7 @@ std::uintptr_t projection(const Status& status, const Array<cagecast::Zone>& zon
   }
   return answer(status, {bytes(p.uvs), bytes(p.cornerUvs), bytes(zones), bytes(p.triangles), bytes(p.distances), bytes(p.segments),
                          bytes(call.stats), bytes(p.restores), bytes(call.shares), bytes(call.numbers),
-                         bytes(call.result.zones.cosmeticTriangles), bytes(call.result.zones.culledSegments)});
+                         bytes(call.result.zones.cosmeticTriangles), bytes(call.result.zones.culledSegments), bytes(call.result.zones.margins)});
 }
 
 /// Of the inputs: options, cage, target.
@@ -179,7 +179,7 @@ std::uintptr_t classify() {
   cagecast::Zones& zones = call.result.zones;
   const Status status = cagecast::classify({input<cagecast::Zone>(1), input<std::uint32_t>(2), stats, input<std::uint32_t>(4), shares},
                                            input<std::uint32_t>(6), classifyOptions, zones);
-  return answer(status, {bytes(zones.zones), bytes(zones.cosmeticTriangles), bytes(zones.culledSegments)});
+  return answer(status, {bytes(zones.zones), bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.margins)});
 }
 
 /// Of the inputs: indices, UVs per corner.

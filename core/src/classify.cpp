@@ -35,20 +35,15 @@ class Verdicts {
     for (const SegmentStats& s : stats) allCovered_ += s.coveredArea;
   }
 
+  /// @param[out] margins  1 per segment: it passes from 1 on.
   /// @return false if memory ran out.
-  bool decide(Array<std::uint8_t>& culled) const noexcept {
-    const bool hasFloor = options_.floor != Floor::none;
+  bool decide(Array<double>& margins) const noexcept {
     bool anyDoubt = false;
     for (std::size_t s = 0; s < stats_.size(); ++s) {
-      if (!hasFloor) {
-        culled[s] = stats_[s].coveredArea < static_cast<double>(options_.threshold) * stats_[s].exposedArea;
-      } else {
-        const double margin = marginOf(Tally::of(stats_[s]));
-        culled[s] = margin < 1;
-        anyDoubt = anyDoubt || isInDoubt(margin);
-      }
+      margins[s] = marginOf(Tally::of(stats_[s]));
+      anyDoubt = anyDoubt || isInDoubt(margins[s]);
     }
-    return !(options_.copies && anyDoubt) || judgeCopies(culled);
+    return !(options_.copies && options_.floor != Floor::none && anyDoubt) || judgeCopies(margins);
   }
 
  private:
@@ -57,8 +52,9 @@ class Verdicts {
   /// How many times what is asked of it a tally reaches: it passes from 1 on.
   [[nodiscard]] double marginOf(const Tally& tally) const {
     const auto times = [](double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); };
-    if (!(tally.covered > 0)) return 0;
     const double coverage = times(tally.covered, static_cast<double>(options_.threshold) * tally.exposed);
+    if (options_.floor == Floor::none) return coverage;
+    if (!(tally.covered > 0)) return 0;
     const double ofItself = static_cast<double>(options_.minCovered) * tally.area;
     if (options_.floor == Floor::area) return std::min(coverage, times(tally.covered, ofItself));
     // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
@@ -70,7 +66,7 @@ class Verdicts {
   }
 
   /// Judges copies that are in doubt together, so that twins do not fall on either side by accident.
-  bool judgeCopies(Array<std::uint8_t>& culled) const noexcept {
+  bool judgeCopies(Array<double>& margins) const noexcept {
     Array<Tally> together;  // By the first of the copies.
     if (!together.reset(stats_.size())) return false;
     std::fill(together.begin(), together.end(), Tally{});
@@ -79,7 +75,7 @@ class Verdicts {
       if (isDoubted(s)) together[stats_[s].copyOf].add(Tally::of(stats_[s]));
     }
     for (std::size_t s = 0; s < stats_.size(); ++s) {
-      if (isDoubted(s)) culled[s] = marginOf(together[stats_[s].copyOf]) < 1;
+      if (isDoubted(s)) margins[s] = marginOf(together[stats_[s].copyOf]);
     }
     return true;
   }
@@ -115,11 +111,13 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
   }
   const std::size_t triangles = indices.size() / 3;
   if (!out.zones.reset(zones.size()) || !out.cosmeticTriangles.reset(triangles) || !out.culledSegments.reset(stats.size()) ||
+      !out.margins.reset(stats.size()) ||
       !out.explainedHoles.reset(shares.empty() ? 0 : std::size_t{shares.back().hole} + 1)) {
     return {Code::outOfMemory};
   }
 
-  if (!Verdicts(stats, options).decide(out.culledSegments)) return {Code::outOfMemory};
+  if (!Verdicts(stats, options).decide(out.margins)) return {Code::outOfMemory};
+  for (std::size_t s = 0; s < stats.size(); ++s) out.culledSegments[s] = out.margins[s] < 1;
   for (std::size_t s = 0; s < options.locks.size(); ++s) {
     if (options.locks[s] != Lock::automatic) out.culledSegments[s] = options.locks[s] == Lock::exclude;
   }

@@ -187,7 +187,8 @@ Status transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) projection.segmentStats[s].culled = out.zones.culledSegments[s] != 0;
   projection.timings.classify = watch.lap();
   projection.timings.total += projection.timings.classify;
-  projection.peakBytes += out.zones.zones.size() + out.zones.cosmeticTriangles.size() + out.zones.culledSegments.size();
+  projection.peakBytes += out.zones.zones.size() + out.zones.cosmeticTriangles.size() + out.zones.culledSegments.size() +
+                          out.zones.margins.size() * sizeof(double);
   return {};
 }
 

@@ -215,6 +215,8 @@ TEST_CASE("a lock is the last word about its segment", "[default]") {
     const Zones kept = decided(s, Lock::keep), excluded = decided(s, Lock::exclude);
     CHECK(kept.culledSegments[s] == 0);
     CHECK(excluded.culledSegments[s] == 1);
+    CHECK((result.zones.margins[s] < 1) == (result.zones.culledSegments[s] == 1));
+    CHECK(copied(kept.margins) == copied(result.zones.margins));
     for (std::size_t v = 0; v < scene.target.vertexCount(); ++v) {
       if (result.projection.segments[v] != s) continue;
       if (result.projection.zones[v] == Zone::cosmetic) {

@@ -243,6 +243,11 @@ TEST_CASE("classify with another threshold equals transfer with it", "[classify]
     CHECK(copied(projection.zones) == copied(whole.projection.zones));
     for (std::size_t s = 0; s < zones.culledSegments.size(); ++s)
       CHECK((zones.culledSegments[s] != 0) == whole.projection.segmentStats[s].culled);
+    for (std::size_t s = 0; s < zones.margins.size(); ++s) {
+      const SegmentStats& stats = projection.segmentStats[s];
+      CHECK((zones.culledSegments[s] != 0) == (zones.margins[s] < 1));
+      CHECK((zones.culledSegments[s] != 0) == (stats.coveredArea < static_cast<double>(threshold) * stats.exposedArea));
+    }
     requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
   }
 }

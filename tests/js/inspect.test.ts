@@ -141,7 +141,11 @@ describe('a cage for a part of the target', () => {
     const cap = { ...cage, indices: Uint32Array.from(cage.indices).filter((_, i) => [0, 1, 2].every((k) => cage.positions[3 * cage.indices[i - (i % 3) + k]! + 2]! > 0.6)) };
     const inspection = inspect(cap, target, { parts });
     assert.match(find(inspection, 'nothingToPaint').sentence, /of "skin" \d+\.\d % is covered, less than the threshold of 0\.5/);
-    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05 }).verdict, 'unfit');
+    // At a lower threshold it is the floor that it misses.
+    assert.match(find(inspect(cap, target, { parts, threshold: 0.05 }), 'nothingToPaint').sentence, /and it reaches 0\.\d+ times what the floor asks/);
+    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, floor: 'none' }).verdict, 'unfit');
+    const { locks } = find(inspection, 'nothingToPaint');
+    assert.notEqual(inspect(cap, target, { parts, locks }).verdict, 'unfit', 'as the advice says');
   });
 });
 
@@ -280,8 +284,8 @@ describe('holes and segments', () => {
   test('a segment near the threshold is named', () => {
     const { segments } = look({});
     const eye = segments.find(({ part }) => part === 'eye')!;
-    const inspection = inspect(cage, target, { parts, threshold: Math.min(1, eye.coverage + 0.02) });
-    assert.match(find(inspection, 'segmentNearThreshold').sentence, /"eye" \(F = /);
+    const inspection = inspect(cage, target, { parts, threshold: Math.min(1, eye.coverage + 0.02), floor: 'none' });
+    assert.match(find(inspection, 'segmentInDoubt').sentence, /"eye" is not painted, but nearly: F = 0\.\d\d, less than the threshold/);
   });
 
   test('a target of one triangle, and one without area, can be looked at', () => {

@@ -25,7 +25,7 @@ const f64 = (bytes: ArrayBuffer) => new Float64Array(bytes);
 
 // The arrays of answers, in the order of bindings.cpp.
 const presetArrays = { options: f64 };
-const classifyArrays = { zones: u8, cosmeticTriangles: u8, culledSegments: u8 };
+const classifyArrays = { zones: u8, cosmeticTriangles: u8, culledSegments: u8, margins: f64 };
 const splitArrays = { sources: u32, indices: u32, uvs: f32 };
 const projectArrays = {
   uvs: f32,
@@ -41,9 +41,10 @@ const projectArrays = {
   holeShares: f64,
   /** The timings, in their order, and the peak of memory. */
   numbers: f64,
-  /** This and the next one after `transfer` only; else empty. */
+  /** This and the next ones after `transfer` only; else empty. */
   cosmeticTriangles: u8,
   culledSegments: u8,
+  margins: f64,
 };
 
 type Layout = Record<string, (bytes: ArrayBuffer) => object>;

@@ -1,5 +1,5 @@
 import { checkAnswer } from './answer.js';
-import type { CoreProjection, ProjectAnswer } from './bindings.js';
+import type { ClassifyAnswer, CoreProjection, ProjectAnswer } from './bindings.js';
 import { callCore } from './engine.js';
 import { CagecastError, show } from './error.js';
 import { checkMesh, count, type Mesh } from './mesh.js';
@@ -51,6 +51,11 @@ export interface SegmentStats {
   copyOf: number;
   /** Too little of it is covered: none of it may be painted. `false` until decided. */
   culled: boolean;
+  /**
+   * How many times what is asked of it, or of it and its copies, it reaches: by its areas it is culled below 1. Infinity where
+   * nothing is asked, and until decided.
+   */
+  margin: number;
 }
 
 /** What `project` and `transfer` both find out. Every array is the caller's own. */
@@ -140,7 +145,7 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions): T
   if (!isLocked) {
     const answer = callCore('transfer', (core) => core.transfer(cageMesh, targetMesh, checked.core));
     checkAnswer('transfer', answer, cageMesh, targetMesh, checked);
-    return { ...projected(answer, answer.culledSegments), cosmeticTriangles: answer.cosmeticTriangles };
+    return { ...projected(answer, answer), cosmeticTriangles: answer.cosmeticTriangles };
   }
   // Which segments there are is known after the projection.
   const answer = callCore('transfer', (core) => core.project(cageMesh, targetMesh, checked.core));
@@ -155,7 +160,7 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions): T
     ...result,
     zones: decided.zones,
     cosmeticTriangles: decided.cosmeticTriangles,
-    segmentStats: segmentStats(answer.segmentStats, decided.culledSegments),
+    segmentStats: segmentStats(answer.segmentStats, decided),
     timings: { ...result.timings, classify, total: result.timings.total + classify },
   };
 }
@@ -192,11 +197,14 @@ export function classify(projection: Projection, options?: ClassifyOptions): Cla
   return {
     zones: answer.zones,
     cosmeticTriangles: answer.cosmeticTriangles,
-    segmentStats: segmentStats(whole.segmentStats, answer.culledSegments),
+    segmentStats: segmentStats(whole.segmentStats, answer),
   };
 }
 
-function projected(answer: ProjectAnswer, culled?: Uint8Array): Projected {
+/** What step 5 decided of each segment. */
+type Decided = Pick<ClassifyAnswer, 'culledSegments' | 'margins'>;
+
+function projected(answer: ProjectAnswer, decided?: Decided): Projected {
   const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, secondLook = 0, holes = 0, seams = 0, classify = 0, total = 0, peakBytes = 0] = answer.numbers;
   return {
     uvs: answer.uvs,
@@ -205,17 +213,17 @@ function projected(answer: ProjectAnswer, culled?: Uint8Array): Projected {
     triangles: answer.triangles,
     distances: answer.distances,
     segments: answer.segments,
-    segmentStats: segmentStats(answer.segmentStats, culled),
+    segmentStats: segmentStats(answer.segmentStats, decided),
     timings: { weld, build, project, occluded, covered, segments, secondLook, holes, seams, classify, total },
     peakBytes,
   };
 }
 
-function segmentStats(numbers: Float64Array, culled?: Uint8Array): SegmentStats[] {
+function segmentStats(numbers: Float64Array, decided?: Decided): SegmentStats[] {
   return Array.from({ length: numbers.length / statsStride }, (_, s) => {
     const [points = 0, area = 0, exposedArea = 0, coveredArea = 0, sunkArea = 0, group = 0, copyOf = 0] = numbers.subarray(s * statsStride, (s + 1) * statsStride);
     const coverage = exposedArea > 0 ? coveredArea / exposedArea : 0;
-    return { points, area, exposedArea, coveredArea, coverage, sunkArea, group, copyOf, culled: culled?.[s] === 1 };
+    return { points, area, exposedArea, coveredArea, coverage, sunkArea, group, copyOf, culled: decided?.culledSegments[s] === 1, margin: decided?.margins[s] ?? Infinity };
   });
 }
 

@@ -196,6 +196,9 @@ struct Zones {
   Array<Zone> zones;                    ///< 1 per target vertex.
   Array<std::uint8_t> cosmeticTriangles;  ///< 1 per target triangle: 1 if it may be painted; see `partialTriangles`.
   Array<std::uint8_t> culledSegments;   ///< 1 per segment: 1 if it does not pass.
+  /// 1 per segment: how many times what is asked of it, or of it and its copies, it reaches. It passes from 1 on, but for
+  /// locks; infinity: nothing is asked.
+  Array<double> margins;
   Array<std::uint8_t> explainedHoles;   ///< 1 per hole up to the last of `holeShares`: 1 if it is meant for what fails there.
 };
 

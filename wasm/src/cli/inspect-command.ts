@@ -7,7 +7,7 @@ import { effectiveOptions, type EffectiveOptions, type Rules } from './options.j
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { run, type Run } from './run.js';
-import { cut, integer, percent, short, table } from './table.js';
+import { cut, integer, marginText, percent, short, table } from './table.js';
 import { perZone, type PerZone } from './zones.js';
 
 /** What `cagecast inspect` was asked for. */
@@ -117,8 +117,8 @@ function describe(report: InspectionReport, html: string | undefined): string {
     '',
     `segments: ${integer(segments.length)}${more(segments.length)}`,
     table([
-      ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', ''],
-      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, culled }) => [cut(part, 40), String(s), integer(points), short(exposedArea), short(coveredArea), f.toFixed(3), culled ? 'culled' : '']),
+      ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
+      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, margin, culled }) => [cut(part, 40), String(s), integer(points), short(exposedArea), short(coveredArea), f.toFixed(3), marginText(margin), culled ? 'culled' : '']),
     ]),
     '',
     conclusions[verdict],

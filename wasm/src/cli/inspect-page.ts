@@ -6,7 +6,7 @@ import { sceneOf, type Scene } from '../inspect/scene.js';
 import type { InspectionReport } from './inspect-command.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
-import { integer, percent, short } from './table.js';
+import { integer, marginText, percent, short } from './table.js';
 
 /** Pixels along each side of a picture. */
 const size = 420;
@@ -72,8 +72,8 @@ ${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<
 ${holes.length > 0 ? rows(['beneath', 'kind', 'size', 'cut off'], holes.map(({ beneath, kind, diagonal, cutOff }) => [beneath.map(({ part, share }) => `${part} ${Math.round(100 * share)} %`).join(', ') || 'nothing', kind, percent(diagonal), percent(cutOff)])) : '<p>None.</p>'}
 <h2>Segments</h2>
 ${rows(
-  ['part', 'points', 'exposed E', 'covered C', 'F = C/E', ''],
-  [...segments].sort((a, b) => b.exposedArea - a.exposedArea).slice(0, mostSegments).map(({ part, points, exposedArea, coveredArea, coverage, culled }) => [part, integer(points), short(exposedArea), short(coveredArea), coverage.toFixed(3), culled ? 'culled' : '']),
+  ['part', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
+  [...segments].sort((a, b) => b.exposedArea - a.exposedArea).slice(0, mostSegments).map(({ part, points, exposedArea, coveredArea, coverage, margin, culled }) => [part, integer(points), short(exposedArea), short(coveredArea), coverage.toFixed(3), marginText(margin), culled ? 'culled' : '']),
 )}
 </html>
 `;

@@ -22,3 +22,8 @@ export function short(n: number): string {
 export function cut(text: string, length: number): string {
   return text.length > length ? `${text.slice(0, length - 1)}…` : text;
 }
+
+/** How many times what is asked of it a segment reaches: "0.93", "12", "∞" where nothing is asked. */
+export function marginText(margin: number | null): string {
+  return margin === null ? '∞' : Number(margin.toPrecision(2)).toString();
+}

@@ -100,7 +100,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
     counts: perZone(result.zones),
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
     triangles: { total: mesh.indices.length / 3, cosmetic: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0) },
-    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, culled }, s) => ({
+    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled }, s) => ({
       part: parts[segmentPart[s]!]!.name,
       vertices: segmentVertices[s]!,
       points,
@@ -109,6 +109,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
       coveredArea,
       coverage,
       sunkArea,
+      margin: Number.isFinite(margin) ? margin : null, // nothing is asked of it
       culled,
     })),
     parts: parts.map((part, p) => ({

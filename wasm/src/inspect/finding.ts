@@ -1,4 +1,16 @@
-/** Something about a cage that its author should know. */
+import type { Locks } from '../index.js';
+
+/** A segment of the target, and where it is. */
+export interface Place {
+  /** Its number in `result.segments`. */
+  segment: number;
+  /** Of its first vertex, in `target.groups`. */
+  group: number;
+  /** The part that it begins in. */
+  part: string;
+}
+
+/** Something about a cage, or what comes of it, that its author should know. */
 export interface Finding {
   /** What it is, for programs. */
   code: FindingCode;
@@ -10,6 +22,10 @@ export interface Finding {
   advice: string;
   /** The measures behind it; shares are of 1, lengths are shares of the target's diagonal. */
   numbers: Record<string, number | number[]>;
+  /** The segments that it is about, if it is about some: the largest first. */
+  places?: Place[];
+  /** What decides these segments the other way, if that is what is wanted: an option of `transfer` and `classify`. */
+  locks?: Locks;
 }
 
 /** Every finding there is, by what it is about. */
@@ -35,7 +51,8 @@ export type FindingCode =
   // What comes of it.
   | 'nothingToPaint'
   | 'holeUnexplained'
-  | 'segmentNearThreshold'
+  | 'segmentInDoubt'
+  | 'copiesDiffer'
   | 'muchCulled';
 
 /** Whether a cage fits its target: as it should, with reservations, or not. */

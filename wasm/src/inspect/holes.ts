@@ -1,7 +1,8 @@
 import { percent, type Finding } from './finding.js';
 import { cross, dot, length, minus, pointAt, type Vector } from './geometry.js';
 import type { Reverse } from './reverse.js';
-import type { PartName, Scene } from './scene.js';
+import { partsOf, type Scene } from './scene.js';
+import { placeOf, type Segment } from './segments.js';
 
 /** A hole explains itself if at least this much of what it is meant for lies in it, as a share of what it cuts off. */
 const leastExplained = 0.02;
@@ -23,8 +24,10 @@ export interface Hole {
   centre: [number, number, number];
   /** Parts of the target that lie beneath it, and over what share of it, the largest first. */
   beneath: { part: string; share: number }[];
-  /** What the hole keeps bare though its segment passes the threshold. */
+  /** What the hole keeps bare though its segment passes. */
   cutOff: number;
+  /** The numbers of the segments that this is of, that with the most first. */
+  cuts: number[];
   /** What of segments that may not be painted has its nearest place on the hole's border, hidden or not. */
   excluded: number;
 }
@@ -51,15 +54,17 @@ const spanWeights = [0.4, 0.85];
 export function holesOf({ surface, cage, target, parts, areas, diagonal, sides, result }: Scene, reversed: Reverse | undefined, firstPoint: number): Hole[] {
   const { loops } = surface;
   const partOf = partsOf(parts, areas.length);
-  const [cutOff, excluded] = [new Float64Array(loops.length), new Float64Array(loops.length)];
+  const excluded = new Float64Array(loops.length);
+  const cuts = loops.map(() => new Map<number, number>());
   let exposed = 0;
   for (let v = 0; v < areas.length; ++v) {
     const l = sides.loops[v]!;
     if (result.zones[v] !== 1) exposed += areas[v]!;
     if (l < 0) continue;
-    const { culled, coveredArea } = result.segmentStats[result.segments[v]!]!;
+    const segment = result.segments[v]!;
+    const { culled, coveredArea } = result.segmentStats[segment]!;
     if (culled || coveredArea === 0) excluded[l]! += areas[v]!;
-    else if (result.zones[v] === 2) cutOff[l]! += areas[v]!;
+    else if (result.zones[v] === 2) cuts[l]!.set(segment, (cuts[l]!.get(segment) ?? 0) + areas[v]!);
   }
   let point = firstPoint;
   const holes = loops.map((loop, l): Hole => {
@@ -85,7 +90,8 @@ export function holesOf({ surface, cage, target, parts, areas, diagonal, sides, 
       area: loop.area / (exposed || 1),
       centre: [...loop.centre],
       beneath: [...beneath].map(([part, area]) => ({ part: parts[part]!.name, share: area / total })).sort((x, y) => y.share - x.share),
-      cutOff: cutOff[l]! / (exposed || 1),
+      cutOff: [...cuts[l]!.values()].reduce((sum, area) => sum + area, 0) / (exposed || 1),
+      cuts: [...cuts[l]!].sort(([, a], [, b]) => b - a).map(([segment]) => segment),
       excluded: excluded[l]! / (exposed || 1),
     };
   });
@@ -101,15 +107,8 @@ function isBeneath(reversed: Reverse, point: number, from: Vector, normal: Vecto
   return size === 0 || Math.abs(dot(way, normal)) >= Math.sqrt(1 - mostSideways ** 2) * size;
 }
 
-/** The part of each vertex. */
-export function partsOf(parts: readonly PartName[], vertices: number): Uint32Array {
-  const partOf = new Uint32Array(vertices);
-  parts.forEach(({ firstVertex, vertexCount }, p) => partOf.fill(p, firstVertex, firstVertex + vertexCount));
-  return partOf;
-}
-
 /** Holes that cut the paint off where nothing that must stay bare is seen. */
-export function checkHoles(holes: readonly Hole[]): Finding[] {
+export function checkHoles(holes: readonly Hole[], segments: readonly Segment[]): Finding[] {
   const unexplained = holes.filter(({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= leastCut && excluded < leastExplained * cutOff);
   if (unexplained.length === 0) return [];
   const cut = unexplained.reduce((sum, { cutOff }) => sum + cutOff, 0);
@@ -121,6 +120,7 @@ export function checkHoles(holes: readonly Hole[]): Finding[] {
       sentence: `${unexplained.length === 1 ? 'A hole of the cage lies' : `${unexplained.length} holes of the cage lie`} over ${where} alone: only the hole's outline keeps the paint off what is beneath (${percent(cut)} of the exposed area)`,
       advice: 'If eyes or the like are there, make them a mesh or material of their own; if not, close the hole.',
       numbers: { holes: unexplained.length, cutOff: cut },
+      places: [...new Set(unexplained.flatMap(({ cuts }) => cuts))].map((s) => placeOf(s, segments[s]!)),
     },
   ];
 }

@@ -71,3 +71,10 @@ function sidesOf(surface: Surface, target: Mesh, { triangles, distances }: Pick<
   }
   return { signed, loops };
 }
+
+/** The part of each vertex. */
+export function partsOf(parts: readonly PartName[], vertices: number): Uint32Array {
+  const partOf = new Uint32Array(vertices);
+  parts.forEach(({ firstVertex, vertexCount }, p) => partOf.fill(p, firstVertex, firstVertex + vertexCount));
+  return partOf;
+}

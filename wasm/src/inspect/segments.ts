@@ -1,10 +1,10 @@
-import { percent, type Finding } from './finding.js';
-import { partsOf } from './holes.js';
-import type { Scene } from './scene.js';
+import type { Locks } from '../index.js';
+import { counted, percent, type Finding, type Place } from './finding.js';
+import { partsOf, type Scene } from './scene.js';
 
-/** A segment whose coverage is this near to the threshold could as well be decided the other way. */
-const near = 0.1;
-/** Of at least this share of the exposed area. */
+/** A segment whose margin is within this factor of 1 could as well be decided the other way. */
+const doubt = 1.25;
+/** Of at least this share of the exposed area, with others of its part. */
 const leastArea = 0.001;
 /** From this share of the exposed area on, culling is worth a remark. */
 const muchCulled = 0.3;
@@ -15,11 +15,16 @@ const leastCosmetic = 0.02;
 export interface Segment {
   /** The part that it begins in. */
   part: string;
+  /** Of its first vertex, in `target.groups`. */
+  group: number;
   points: number;
-  /** E and C, in squared units of the input, and F = C/E. */
+  /** A, E and C, in squared units of the input, and F = C/E. */
+  area: number;
   exposedArea: number;
   coveredArea: number;
   coverage: number;
+  /** How many times what is asked of it it reaches; `null` where nothing is asked. */
+  margin: number | null;
   culled: boolean;
 }
 
@@ -28,20 +33,33 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
   const partOf = partsOf(parts, result.segments.length);
   const partOfSegment = new Uint32Array(result.segmentStats.length);
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;
-  return result.segmentStats.map(({ points, exposedArea, coveredArea, coverage, culled }, s) => ({
+  return result.segmentStats.map(({ points, group, area, exposedArea, coveredArea, coverage, margin, culled }, s) => ({
     part: parts[partOfSegment[s]!]?.name ?? '',
+    group,
     points,
+    area,
     exposedArea,
     coveredArea,
     coverage,
+    margin: Number.isFinite(margin) ? margin : null,
     culled,
   }));
 }
 
-/** Segments that the threshold barely decides, and what is left to paint. */
-export function checkSegments({ threshold, areas, sides, result }: Scene, segments: readonly Segment[]): Finding[] {
-  const findings: Finding[] = [];
-  const exposed = segments.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
+/** A segment and its number. */
+type Numbered = Segment & { s: number };
+
+/** What is left to paint, what is barely decided, what is decided unlike its like. */
+export function checkSegments(scene: Scene, segments: readonly Segment[]): Finding[] {
+  const numbered = segments.map((segment, s) => ({ ...segment, s })).sort((a, b) => b.exposedArea - a.exposedArea);
+  const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
+  if (exposed === 0) return [];
+  const left = checkLeft(scene, numbered);
+  return [...left, ...checkDoubt(scene, numbered, exposed), ...checkCopies(scene, numbered, exposed), ...(left.length > 0 ? [] : checkCulled(numbered, exposed))];
+}
+
+/** Too little is left to paint. */
+function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonly Numbered[]): Finding[] {
   let [cosmetic, over, cut] = [0, 0, 0];
   for (let v = 0; v < areas.length; ++v) {
     if (result.zones[v] === 1 || sides.loops[v]! >= 0) continue;
@@ -50,43 +68,111 @@ export function checkSegments({ threshold, areas, sides, result }: Scene, segmen
     if (result.zones[v] === 3) cut += areas[v]!;
   }
   const share = over > 0 ? cosmetic / over : 0;
-  if (share < leastCosmetic) {
-    const only = cosmetic === 0 ? 'Nothing of the target' : `Only ${percent(share)} of what is exposed of the target, beneath the cage,`;
-    const largest = segments.filter(({ culled }) => culled).sort((a, b) => b.exposedArea - a.exposedArea)[0];
-    const culling = cut > 0.5 * over && largest !== undefined;
-    findings.push({
+  if (share >= leastCosmetic) return [];
+  const only = cosmetic === 0 ? 'Nothing of the target' : `Only ${percent(share)} of what is exposed of the target, beneath the cage,`;
+  const largest = cut > 0.5 * over ? numbered.find(({ culled }) => culled) : undefined;
+  return [
+    {
       code: 'nothingToPaint',
       weight: 2,
-      sentence: culling
-        ? `${only} may be painted: of "${largest.part}" ${percent(largest.coverage)} is covered, less than the threshold of ${threshold}`
-        : `${only} may be painted`,
-      advice: culling
-        ? 'If the cage is meant for a part of it only, lower the threshold, or make that part a mesh of its own; otherwise extend the cage.'
+      sentence: largest ? `${only} may be painted: of "${largest.part}" ${percent(largest.coverage)} is covered, ${reason(largest, threshold)}` : `${only} may be painted`,
+      advice: largest
+        ? `If the cage is meant for a part of it only, lock it (${option(largest)}), or make that part a mesh of its own; otherwise extend the cage.`
         : 'See the other findings and the zones for the reason: uncovered means that the cage is not over it.',
       numbers: { share, culled: over > 0 ? cut / over : 0 },
-    });
-  }
-  const doubtful = segments.filter(({ coverage, exposedArea }) => Math.abs(coverage - threshold) < near && exposedArea >= leastArea * exposed && exposedArea > 0);
-  if (doubtful.length > 0) {
-    const area = doubtful.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
-    const names = [...new Set(doubtful.map(({ part, coverage }) => `"${part}" (F = ${coverage.toFixed(2)})`))];
-    findings.push({
-      code: 'segmentNearThreshold',
-      weight: Math.min(0.9, 0.2 + 2 * area),
-      sentence: `${doubtful.length === 1 ? 'A segment lies' : `${doubtful.length} segments lie`} near the threshold of ${threshold}: ${names.slice(0, 4).join(', ')}${names.length > 4 ? ', …' : ''}; ${percent(area)} of the exposed area`,
-      advice: 'Look whether they are painted as they should be; widen or close the holes over them, or choose another threshold.',
-      numbers: { segments: doubtful.length, area },
-    });
-  }
-  const culled = segments.reduce((sum, segment) => sum + (segment.culled ? segment.exposedArea : 0), 0);
-  if (exposed > 0 && culled > muchCulled * exposed && share >= leastCosmetic) {
-    findings.push({
+      ...(largest && { places: [placeOf(largest.s, largest)], locks: locksFor([largest]) }),
+    },
+  ];
+}
+
+/** Parts that the areas barely decide: those that pass and those that do not, each by itself. */
+function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
+  const doubtful = numbered.filter(({ margin }) => margin !== null && margin > 1 / doubt && margin < doubt);
+  return grouped(doubtful, ({ group, part, culled }) => `${group} ${culled} ${part}`).flatMap((alike): Finding[] => {
+    const [largest] = alike;
+    const area = alike.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
+    if (area < leastArea) return [];
+    const { part, coverage, culled } = largest;
+    const one = alike.length === 1 ? `"${part}"` : `${alike.length} segments of "${part}"`;
+    const is = alike.length === 1 ? 'is' : 'are';
+    return [
+      {
+        code: 'segmentInDoubt',
+        weight: Math.min(0.9, 0.2 + 2 * area),
+        sentence: `${one} ${is} ${culled ? 'not painted, but nearly' : 'painted, but barely'}: F = ${coverage.toFixed(2)}, ${reason(largest, threshold)}; ${percent(area)} of the exposed area`,
+        advice: `If that is wrong, lock ${alike.length === 1 ? 'it' : 'them'} (${option(largest)}); or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
+        numbers: { segments: alike.length, area, margin: largest.margin! },
+        places: alike.map((segment) => placeOf(segment.s, segment)),
+        locks: locksFor(alike),
+      },
+    ];
+  });
+}
+
+/** Copies of one part of which some are painted and some not. */
+function checkCopies({ result }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
+  const seen = numbered.filter(({ exposedArea }) => exposedArea >= leastArea * exposed);
+  return grouped(seen, ({ s }) => result.segmentStats[s]!.copyOf).flatMap((copies): Finding[] => {
+    const culled = copies.filter((copy) => copy.culled);
+    if (culled.length === 0 || culled.length === copies.length) return [];
+    const [largest] = copies;
+    const [painted, bare] = [copies.length - culled.length, culled.length];
+    return [
+      {
+        code: 'copiesDiffer',
+        weight: 0.2,
+        sentence: `Of ${copies.length} equal pieces like "${largest.part}" ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${bare} ${bare === 1 ? 'is' : 'are'} not`,
+        advice: 'If they should be alike, lock some of them; see whether the cage lies alike over them.',
+        numbers: { painted, bare },
+        places: copies.map((copy) => placeOf(copy.s, copy)),
+        locks: locksFor(culled),
+      },
+    ];
+  });
+}
+
+/** Much is exposed and yet not painted. */
+function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] {
+  const all = numbered.filter(({ culled, exposedArea }) => culled && exposedArea > 0);
+  const share = all.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
+  if (share <= muchCulled) return [];
+  const largest = all[0]!;
+  return [
+    {
       code: 'muchCulled',
       weight: 0.2,
-      sentence: `${percent(culled / exposed)} of what is exposed of the target is culled, as too little of its segments is covered`,
-      advice: 'If some of it should be painted, close the holes of the cage over it, or lower the threshold.',
-      numbers: { share: culled / exposed },
-    });
+      sentence: `${percent(share)} of what is exposed of the target is culled, as too little of its ${counted(all.length, 'segment')} is covered; most of it of "${largest.part}"`,
+      advice: `If some of it should be painted, lock it (${option(largest)}), or close the holes of the cage over it.`,
+      numbers: { share },
+      places: all.filter(({ exposedArea }) => exposedArea >= leastArea * exposed).map((segment) => placeOf(segment.s, segment)),
+      locks: locksFor([largest]),
+    },
+  ];
+}
+
+/** What the areas of a segment are held against, and how near they come. */
+function reason({ coverage, culled, margin }: Segment, threshold: number): string {
+  const byThreshold = culled ? coverage < threshold : margin !== null && Math.abs(margin * threshold - coverage) <= 1e-6;
+  if (byThreshold) return `${culled ? 'less than' : 'against'} the threshold of ${threshold}`;
+  return `and it reaches ${margin === null ? 'more than' : `${margin.toPrecision(2)} times`} what the floor asks`;
+}
+
+/** Where a segment is. */
+export const placeOf = (segment: number, { group, part }: Segment): Place => ({ segment, group, part });
+
+/** The lock that decides a segment the other way, as an option of the command. */
+const option = ({ part, culled }: Segment): string => `--${culled ? 'keep' : 'exclude'} "${part}"`;
+
+const locksFor = (segments: readonly Numbered[]): Locks => ({ segments: Object.fromEntries(segments.map(({ s, culled }) => [s, culled ? 'keep' : 'exclude'])) });
+
+/** Things with the same key together, in the order of the first of each. */
+function grouped<T, Key>(things: readonly T[], keyOf: (thing: T) => Key): [T, ...T[]][] {
+  const groups = new Map<Key, [T, ...T[]]>();
+  for (const thing of things) {
+    const key = keyOf(thing);
+    const group = groups.get(key);
+    if (group) group.push(thing);
+    else groups.set(key, [thing]);
   }
-  return findings;
+  return [...groups.values()];
 }

@@ -1,0 +1,129 @@
+import assert from 'node:assert/strict';
+import { before, describe, test } from 'node:test';
+import { init, transfer, type Mesh, type TransferOptions } from 'cagecast';
+import { inspect, suggest, type Finding } from 'cagecast/inspect';
+import { ball, head, join3d, readPlain } from './scenes.js';
+
+before(init);
+
+const { cage, target } = head(1, 16);
+const codes = (findings: readonly Finding[]): string[] => findings.map(({ code }) => code);
+const find = (findings: readonly Finding[], code: string): Finding => {
+  const found = findings.find((finding) => finding.code === code);
+  assert.ok(found, `${code} is missing: ${JSON.stringify(findings)}`);
+  return found;
+};
+const sample = async (name: string): Promise<{ cage: Mesh; target: Mesh }> => ({
+  cage: await readPlain(`build/assets/${name}/cage.glb`),
+  target: await readPlain(`build/assets/${name}/target.glb`),
+});
+const culled = (options: TransferOptions): boolean[] => transfer(cage, target, options).segmentStats.map((segment) => segment.culled);
+
+describe('margin', () => {
+  test('is at least 1 where a segment passes, less where it is culled, whatever locks say', () => {
+    for (const options of [{}, { preset: 'paper' }, { threshold: 0.9 }, { floor: 'area' }, { threshold: 0 }] satisfies TransferOptions[]) {
+      const { segmentStats } = transfer(cage, target, options);
+      for (const segment of segmentStats) assert.equal(segment.margin < 1, segment.culled, JSON.stringify({ options, segment }));
+      const locked = transfer(cage, target, { ...options, locks: { segments: { 0: 'exclude', 1: 'keep' } } });
+      assert.deepEqual(locked.segmentStats.map(({ margin }) => margin), segmentStats.map(({ margin }) => margin));
+    }
+  });
+
+  test('without a floor is the coverage by the threshold', () => {
+    for (const { exposedArea, coverage, margin } of transfer(cage, target, { preset: 'paper', threshold: 0.4 }).segmentStats) {
+      const expected = exposedArea > 0 ? coverage / Math.fround(0.4) : Infinity; // nothing is asked of what is hidden
+      assert.ok(margin === expected || Math.abs(margin - expected) < 1e-9, String(margin));
+    }
+  });
+});
+
+describe('suggest', () => {
+  test('has nothing to say where the cage fits and nothing is in doubt', async () => {
+    assert.deepEqual(suggest(cage, target), []);
+    for (const name of ['lizard', 'human']) {
+      const scene = await sample(name);
+      assert.deepEqual(suggest(scene.cage, scene.target), [], name);
+    }
+  });
+
+  test('says what inspect says of the outcome, no more and no less', async () => {
+    for (const name of ['human-fused', 'human-misaligned', 'car']) {
+      const scene = await sample(name);
+      const suggestions = suggest(scene.cage, scene.target);
+      const { findings } = inspect(scene.cage, scene.target);
+      assert.deepEqual(suggestions, findings.filter(({ code }) => codes(suggestions).includes(code)));
+      assert.ok(findings.every(({ code }) => codes(suggestions).includes(code) || /^(uvs|cracks|nonManifold|degenerate|doubled)/.test(code)), JSON.stringify(findings));
+    }
+  });
+
+  test('eyes fused with the skin: the holes over them, and whose skin they cut', async () => {
+    const scene = await sample('human-fused');
+    const { places, sentence } = find(suggest(scene.cage, scene.target), 'holeUnexplained');
+    assert.match(sentence, /^2 holes/);
+    const { segmentStats } = transfer(scene.cage, scene.target);
+    assert.deepEqual(places!.map(({ segment }) => segmentStats[segment]!.culled), [false]);
+  });
+
+  test('a cage out of place: that first, then the skin in doubt, and the lock that decides it', async () => {
+    const scene = await sample('human-misaligned');
+    const suggestions = suggest(scene.cage, scene.target);
+    assert.equal(suggestions[0]!.code, 'cageMisplaced');
+    const { places, locks } = find(suggestions, 'segmentInDoubt');
+    const { segment } = places![0]!;
+    assert.equal(transfer(scene.cage, scene.target).segmentStats[segment]!.culled, false);
+    assert.equal(transfer(scene.cage, scene.target, { locks }).segmentStats[segment]!.culled, true);
+  });
+
+  test('a cage inside the skin', () => {
+    const shrunk = { ...cage, positions: cage.positions.map((x) => 0.85 * x) };
+    assert.equal(suggest(shrunk, target)[0]!.code, 'cageTooSmall');
+  });
+
+  test('near the threshold on either side: what it is held against, and the lock that turns it', () => {
+    const [, eye] = transfer(cage, target).segmentStats;
+    for (const [threshold, words] of [[eye!.coverage - 0.02, /is painted, but barely: .* against the threshold/], [eye!.coverage + 0.02, /is not painted, but nearly: .* less than the threshold/]] as const) {
+      const options = { threshold, floor: 'none' } as const;
+      const { sentence, advice, places, locks } = find(suggest(cage, target, options), 'segmentInDoubt');
+      assert.match(sentence, words);
+      assert.deepEqual(places, [{ segment: 1, group: 1, part: 'group 1' }]);
+      const isCulled = culled(options)[1]!;
+      assert.ok(advice.includes(`--${isCulled ? 'keep' : 'exclude'} "group 1"`), advice);
+      assert.equal(culled({ ...options, locks })[1], !isCulled);
+    }
+  });
+
+  test('near the floor: it says so', () => {
+    const [skin] = transfer(cage, target).segmentStats;
+    const options = { threshold: 0.1, floor: 'area', minCovered: (0.95 * skin!.coveredArea) / skin!.area } as const;
+    assert.match(find(suggest(cage, target, options), 'segmentInDoubt').sentence, /"group 0" is painted, but barely: F = \d\.\d\d, and it reaches 1\.1 times what the floor asks/);
+  });
+
+  test('many pieces of one part are one suggestion', () => {
+    // Balls under the rim of a cage that ends at the equator: half of each is covered.
+    const balls = join3d(...[0, 1, 2, 3, 4].map((i) => ball([2 * i, 0, 0], () => 0.5, 24, 24)));
+    const shells = join3d(...[0, 1, 2, 3, 4].map((i) => ball([2 * i, 0, 0], () => 0.55, 24, 24)));
+    const upper = { ...shells, indices: shells.indices.filter((_, i) => [0, 1, 2].every((k) => shells.positions[3 * shells.indices[i - (i % 3) + k]! + 2]! > -0.01)) };
+    const one = { ...balls, groups: undefined };
+    const found = suggest(upper, one, { preset: 'paper' }).filter(({ code }) => code === 'segmentInDoubt');
+    assert.equal(found.length, 1);
+    assert.match(found[0]!.sentence, /^5 segments of "target" are painted, but barely/);
+    assert.equal(found[0]!.places!.length, 5);
+  });
+
+  test('copies of which some are painted and some not', () => {
+    const shell = ball([0, 0, 0], () => 1.1, 16, 24);
+    const twins = join3d(ball([0, 0, 0], () => 1, 16, 24), ball([4, 0, 0], () => 1, 16, 24));
+    const { places, locks, sentence } = find(suggest(shell, twins), 'copiesDiffer');
+    assert.equal(sentence, 'Of 2 equal pieces like "group 0" 1 is painted and 1 is not');
+    assert.deepEqual(places!.map(({ segment }) => segment).sort(), [0, 1]);
+    assert.deepEqual(locks, { segments: { 1: 'keep' } });
+  });
+
+  test('takes a result that is known, and gives plain data', () => {
+    const options = { threshold: 0.99, parts: [{ name: 'all', firstVertex: 0, vertexCount: target.positions.length / 3 }] };
+    const again = suggest(cage, target, { ...options, result: transfer(cage, target, { threshold: 0.99 }) });
+    assert.ok(again.length > 0);
+    assert.deepEqual(again, suggest(cage, target, options));
+    assert.deepEqual(structuredClone(again), again);
+  });
+});
