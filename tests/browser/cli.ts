@@ -37,3 +37,14 @@ export async function reportedCounts(target: string, cage: string, flags: Flags 
   const { cosmetic, occluded, uncovered, culled } = (await report(target, cage, flags)).counts
   return { cosmetic, occluded, uncovered, culled }
 }
+
+/** What `cagecast inspect` says of two files. */
+export async function inspection(target: string, cage: string): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {
+  const words = [inRepository('dist/cli.js'), 'inspect', target, '--cage', cage, '--json']
+  // It ends with 3 where the cage is unfit.
+  const { stdout } = await promisify(execFile)(process.execPath, words).catch((error: { code: number; stdout: string }) => {
+    if (error.code === 3) return error
+    throw error
+  })
+  return JSON.parse(stdout)
+}

@@ -1,4 +1,5 @@
 import { init } from 'cagecast'
+import { FitPanel } from './fit'
 import { setUpJump } from './jump'
 import { keepOffline } from './offline'
 import { Opener } from './open'
@@ -49,6 +50,7 @@ if (viewer) {
 showStatus(session, viewer === undefined)
 showResults(session)
 new PartsTable(session, viewer)
+new FitPanel(session)
 setUpRules(session)
 setUpViewControls(session)
 setUpJump()

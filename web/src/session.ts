@@ -1,4 +1,4 @@
-import { CagecastError, classify, init, type Classification, type Lock, type Mesh, type Preset, type Projection } from 'cagecast'
+import { CagecastError, classify, init, type Classification, type Lock, type Preset, type Projection } from 'cagecast'
 import { Emitter } from './events'
 import type { Model } from './load'
 import { makeChecker, type Paint } from './paint'
@@ -191,7 +191,7 @@ export class Session extends Emitter<SessionEvents> {
   async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<Projection> {
     try {
       // The threshold is decided here on the page, the rest in the worker: both start at once.
-      const [projection] = await Promise.all([this.#client.project(cageArrays(cage), targetArrays(target), { preset }), init()])
+      const [projection] = await Promise.all([this.#client.ask('project', cage, target, { preset }), init()])
       return projection
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error
@@ -218,12 +218,4 @@ export class Session extends Emitter<SessionEvents> {
     this.#classification = classification
     this.emit('zones', { classification, spent: performance.now() - started })
   }
-}
-
-function cageArrays({ mesh: { positions, indices, uvs } }: Model): Mesh {
-  return { positions, indices, uvs }
-}
-
-function targetArrays({ mesh: { positions, indices, groups } }: Model): Mesh {
-  return { positions, indices, groups }
 }

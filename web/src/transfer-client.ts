@@ -1,25 +1,26 @@
-import { CagecastError, type Mesh, type Projection, type ProjectOptions } from 'cagecast'
-import type { Reply, Request } from './transfer-messages'
+import { CagecastError, type Mesh } from 'cagecast'
+import type { Model } from './load'
+import type { Reply, Request, Tasks } from './transfer-messages'
 
 /** A request that a later one made pointless. Not a failure: nothing is to be told. */
 export class Superseded extends Error {}
 
 /**
- * Runs the costly part of transfers in a worker, off the main thread.
+ * Runs what is costly about transfers in a worker, off the main thread.
  * The latest request wins: it ends the one under way at once.
  */
 export class TransferClient {
   #worker = this.#start()
   #lastId = 0
-  #pending: { id: number; resolve(projection: Projection): void; reject(error: Error): void } | undefined
+  #pending: { id: number; resolve(answer: Tasks[keyof Tasks]['answer']): void; reject(error: Error): void } | undefined
 
-  /** Finds each target vertex's place on the cage. @throws CagecastError, or Superseded if another request came. */
-  project(cage: Mesh, target: Mesh, options: ProjectOptions): Promise<Projection> {
+  /** Asks for what is to be known of a cage and a target. @throws CagecastError, or Superseded if another request came. */
+  ask<Task extends keyof Tasks>(task: Task, cage: Model, target: Model, options: Tasks[Task]['options']): Promise<Tasks[Task]['answer']> {
     this.cancel()
     return new Promise((resolve, reject) => {
       const id = ++this.#lastId
       this.#pending = { id, resolve, reject }
-      this.#worker.postMessage({ id, cage, target, options } satisfies Request)
+      this.#worker.postMessage({ id, task, cage: cageArrays(cage), target: targetArrays(target), options } as Request)
     })
   }
 
@@ -37,7 +38,7 @@ export class TransferClient {
     worker.onmessage = ({ data }: MessageEvent<Reply>) => {
       if (data.id !== this.#pending?.id) return
       if ('code' in data) return this.#fail(new CagecastError(data.code, data.message))
-      this.#pending.resolve(data.projection)
+      this.#pending.resolve(data.answer)
       this.#pending = undefined
     }
     worker.onerror = (event) => {
@@ -51,4 +52,12 @@ export class TransferClient {
     this.#pending?.reject(error)
     this.#pending = undefined
   }
+}
+
+function cageArrays({ mesh: { positions, indices, uvs } }: Model): Mesh {
+  return { positions, indices, uvs }
+}
+
+function targetArrays({ mesh: { positions, indices, groups } }: Model): Mesh {
+  return { positions, indices, groups }
 }

@@ -1,12 +1,14 @@
 import type { Code, Mesh, Projection, ProjectOptions } from 'cagecast'
+import type { InspectOptions, Inspection } from 'cagecast/inspect'
 
-/** What the page asks of the worker. */
-export interface Request {
-  id: number
-  cage: Mesh
-  target: Mesh
-  options: ProjectOptions
+/** What the worker can do, and what it answers. */
+export interface Tasks {
+  project: { options: ProjectOptions; answer: Projection }
+  inspect: { options: InspectOptions; answer: Inspection }
 }
 
+/** What the page asks of the worker. */
+export type Request = { [Task in keyof Tasks]: { id: number; task: Task; cage: Mesh; target: Mesh; options: Tasks[Task]['options'] } }[keyof Tasks]
+
 /** What the worker replies, with the id it was asked with. */
-export type Reply = { id: number; projection: Projection } | { id: number; code: Code; message: string }
+export type Reply = { id: number; answer: Tasks[keyof Tasks]['answer'] } | { id: number; code: Code; message: string }

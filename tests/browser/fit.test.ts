@@ -1,0 +1,48 @@
+import assert from 'node:assert/strict'
+import { readFileSync } from 'node:fs'
+import { after, before, test } from 'node:test'
+import { inspection } from './cli'
+import { glb, tetrahedron, writeGlb } from './glb'
+import { drop, inRepository, settled, shownError, Site, type Visit } from './site'
+
+let site: Site
+let visit: Visit
+before(async () => {
+  site = await Site.open()
+  visit = await site.visit({ viewport: { width: 700, height: 500 } })
+})
+after(() => site?.close())
+
+const asset = (...names: string[]): string => inRepository('build/assets', ...names)
+
+/** What the page finds, once it has looked. */
+async function found(): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {
+  const panel = visit.page.getByTestId('inspect-panel')
+  await visit.page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '')
+  const items = await panel.locator('li').evaluateAll((all) => all.map((item) => [...item.querySelectorAll('p')].map(({ textContent }) => textContent!)))
+  return { verdict: (await panel.locator('#fit-verdict').textContent())!, findings: items.map(([sentence, advice]) => ({ sentence: sentence!.replace(/\.$/, ''), advice: advice! })) }
+}
+
+for (const name of ['car', 'human-misaligned', 'lizard']) {
+  test(`${name}: the page finds of its cage what the command finds`, async () => {
+    const { page, complaints } = visit
+    await drop(page, [glb('target.glb', readFileSync(asset(name, 'target.glb'))), glb('cage.glb', readFileSync(asset(name, 'cage.glb')))])
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    const { verdict, findings } = await inspection(asset(name, 'target.glb'), asset(name, 'cage.glb'))
+    assert.deepEqual(await found(), { verdict, findings: findings.map(({ sentence, advice }) => ({ sentence, advice })) })
+    assert.deepEqual(complaints, [])
+  })
+}
+
+test('a large model is inspected when that is asked for', async () => {
+  const { page } = visit
+  const small = tetrahedron()
+  // Most of them without area, which cost no time to draw.
+  const indices = Uint16Array.from({ length: 3 * 70_000 }, (_, i) => small.indices[i] ?? 0)
+  await drop(page, [glb('target.glb', writeGlb({ ...small, indices })), glb('cage.glb', writeGlb(tetrahedron(2)))])
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  await page.waitForTimeout(1500)
+  assert.equal(await page.locator('#fit-verdict').textContent(), '')
+  await page.getByRole('button', { name: 'Inspect it' }).click()
+  assert.match((await found()).verdict, /^(good|usable|unfit)$/)
+})
