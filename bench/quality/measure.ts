@@ -17,6 +17,8 @@ export interface Quality {
   /** `default` with the cage moved by 1 % of the diagonal, by axis and sign. */
   shifted: Record<string, Score>;
   smear: Smear;
+  /** Most memory that a transfer uses beyond cage and target, in bytes. */
+  peakBytes: Record<'paper' | 'default', number>;
   segments: SegmentMeasure[];
 }
 
@@ -53,6 +55,7 @@ export function measure(model: Model): Quality {
     without: scores(withoutEachStep(scene)),
     shifted: scores(moved),
     smear: smear(scene, result),
+    peakBytes: { paper: transfer(cage, target, { preset: 'paper' }).peakBytes, default: result.peakBytes },
     segments: measureSegments(model, result, presetOptions('default')),
   };
 }

@@ -105,13 +105,13 @@ export function qualityReport(results: QualityResults): string {
       entries.map(([name, q]) => [name, ...methodNames.map((method) => inPicture(q.methods[method])), inPicture(worst(Object.values(q.thresholds.default))), inPicture(worst(Object.values(q.shifted)))]),
     ),
     '## Why vertices are left out, and what it takes',
-    'Vertices occluded / uncovered / culled; milliseconds; painted area whose texture is smeared, with UVs per vertex and per corner.',
+    'Vertices occluded / uncovered / culled; milliseconds; most memory beyond cage and target (the poster: “~20 MB”); painted area whose texture is smeared, with UVs per vertex and per corner.',
     table(
-      ['', 'vertices', '`paper`', '`default`', 'naive, ms', '`paper`, ms', '`default`, ms', 'smeared: vertex', 'corner'],
+      ['', 'vertices', '`paper`', '`default`', 'naive, ms', '`paper`, ms', '`default`, ms', '`paper`, MB', '`default`, MB', 'smeared: vertex', 'corner'],
       entries.map(([name, q]) => {
         const counts = (method: MethodName): string => [q.methods[method].vertices].map(({ occluded, uncovered, culled }) => `${occluded} / ${uncovered} / ${culled}`)[0]!;
         const vertices = Object.values(q.methods.naive.vertices).reduce((sum, count) => sum + count, 0);
-        return [name, String(vertices), counts('paper'), counts('default'), ...(['naive', 'paper', 'default'] as const).map((method) => ms(times[name]![method])), percent(q.smear.vertex), percent(q.smear.corner)];
+        return [name, String(vertices), counts('paper'), counts('default'), ...(['naive', 'paper', 'default'] as const).map((method) => ms(times[name]![method])), ...(['paper', 'default'] as const).map((preset) => (q.peakBytes[preset] / 1e6).toFixed(1)), percent(q.smear.vertex), percent(q.smear.corner)];
       }),
     ),
     '## `default` without one step',
