@@ -39,7 +39,11 @@ async function main(): Promise<void> {
   };
   for (const model of models) {
     say(model.name);
-    results.models[model.name] = measure(model);
+    try {
+      results.models[model.name] = measure(model);
+    } catch (error) {
+      throw new Error(`${model.folder ?? model.name}: ${(error as Error).message}`, { cause: error });
+    }
   }
   // After all else, which has warmed up the engine.
   say('times');

@@ -1,4 +1,4 @@
-import { classify, presetOptions, project, transfer, Zone, type PresetOptions, type Projection, type TransferOptions } from 'cagecast';
+import { classify, presetOptions, project, transfer, Zone, type PresetOptions, type Projection, type Timings, type TransferOptions } from 'cagecast';
 import { median } from '../statistics.js';
 import type { Scene } from '../scene-file.js';
 
@@ -57,28 +57,32 @@ export function withoutEachStep({ cage, target }: Scene): [step: string, Decisio
   ];
 }
 
+/** The steps that the first ways consist of. */
+const stepsOf = { naive: ['weld', 'build', 'project'], 'step 2': ['occluded'], 'step 3': ['covered'], paper: ['segments', 'classify'] } as const;
+
 /**
  * Milliseconds that each way takes with the package in this process: CPU time, on which other work on the machine does not
- * tell, the median of runs in turns, after warming up. The first three are the first steps of `paper`: weld, trees and nearest
- * points; with the self rays; with the cage rays as well.
+ * tell, the median of runs in turns, after warming up. The first three are the first steps of `paper`, by their shares of its
+ * time: weld, trees and nearest points; with the self rays; with the cage rays as well.
  */
 export function latencies({ cage, target }: Scene, runs: number): Record<MethodName, number> {
   const warmUp = Math.ceil(runs / 2); // until the engine has optimised the WebAssembly
-  const times: Record<MethodName, number[]> = { naive: [], 'step 2': [], 'step 3': [], paper: [], default: [] };
+  const times: Record<'paper' | 'default', number[]> = { paper: [], default: [] };
+  const timings: Timings[] = [];
   for (let run = -warmUp; run < runs; ++run) {
     for (const preset of ['paper', 'default'] as const) {
       const began = process.cpuUsage();
-      const { timings } = transfer(cage, target, { preset });
+      const result = transfer(cage, target, { preset });
       const { user, system } = process.cpuUsage(began);
       if (run < 0) continue;
-      const all = (user + system) / 1e3;
-      times[preset].push(all);
-      if (preset === 'default') continue;
-      const nearest = timings.weld + timings.build + timings.project;
-      times['naive'].push((all * nearest) / timings.total);
-      times['step 2'].push((all * (nearest + timings.occluded)) / timings.total);
-      times['step 3'].push((all * (nearest + timings.occluded + timings.covered)) / timings.total);
+      times[preset].push((user + system) / 1e3);
+      if (preset === 'paper') timings.push(result.timings);
     }
   }
-  return Object.fromEntries(methodNames.map((name) => [name, median(times[name])])) as Record<MethodName, number>;
+  // By step, because a short one is seldom interrupted.
+  const spent = (steps: readonly (keyof Timings)[]): number => steps.reduce((sum, step) => sum + median(timings.map((one) => one[step])), 0);
+  const [nearest, second, third, last] = [stepsOf.naive, stepsOf['step 2'], stepsOf['step 3'], stepsOf.paper].map(spent) as [number, number, number, number];
+  const paper = median(times.paper);
+  const share = paper / (nearest + second + third + last);
+  return { naive: nearest * share, 'step 2': (nearest + second) * share, 'step 3': (nearest + second + third) * share, paper, default: median(times.default) };
 }
