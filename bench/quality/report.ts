@@ -86,8 +86,8 @@ export function qualityReport(results: QualityResults): string {
     `# Quality, measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores, Node ${machine.node}. Written by \`npm run quality\`; all numbers: [quality.json](quality.json).`,
     [
-      '- *suppressed*: of the area that must not be painted, the share whose vertices are not; *kept*: of the area that is to be painted, the share whose vertices are, where the cage speaks of it (not where its nearest place is on an open border).',
-      '- *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where none must be; *bare*: of those that show what is to be painted, those without.',
+      '- *suppressed*: of the area that must not be painted, the share whose vertices are not; *kept*: of the area that is to be painted, the share whose vertices are. Left out is what the truth leaves open (hidden, or a matter of taste), and of *kept* what the cage does not speak of (its nearest place is on an open border).',
+      '- *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where none must be; *bare*: of those that show what is to be painted (in the same sense), those without.',
       '- *latency*: the package in Node, raw arrays in, answer out; CPU time, medians. The first rows are the first steps of `paper`.',
     ].join('\n'),
     posterTable(results),
