@@ -64,7 +64,7 @@ bool findAtlas(const MeshView& mesh, const Cage& cage, Scratch& scratch, Atlas& 
       const double dv = static_cast<double>(triangle.uvs[2 * l + 1]) - static_cast<double>(triangle.uvs[2 * k + 1]);
       stretch = std::max(stretch, (du * du + dv * dv) * triangle.inverseSquare[k]);
     }
-    out.stretch[t] = stretch;
+    out.stretch[t] = std::sqrt(stretch);
     for (const float x : triangle.uvs) out.mostUv = std::max(out.mostUv, std::abs(x));
   }
   sets.flatten(cage.count);

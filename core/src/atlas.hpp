@@ -12,7 +12,7 @@ namespace cagecast {
 struct Atlas {
   std::uint32_t* nextSide;  ///< 1 per side: another side on the same edge; all sides of an edge form a ring.
   std::uint32_t* islands;   ///< 1 per triangle: equal for those that hang together.
-  double* stretch;          ///< 1 per triangle: the most of its edges' UV length / length, squared.
+  double* stretch;          ///< 1 per triangle: the most of its edges' UV length / length.
   float mostUv;             ///< The largest UV, without its sign.
 };
 

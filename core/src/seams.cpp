@@ -9,6 +9,7 @@
 #include "atlas.hpp"
 #include "near_kernel.hpp"
 #include "place.hpp"
+#include "rims.hpp"
 
 namespace cagecast {
 namespace {
@@ -27,10 +28,11 @@ constexpr float kMostUv = 16384;
 /// What the first look allows of the explained length, squared: the exact limit less what floats round.
 constexpr double kFirstLook = 0.99 * kSmear * kSmear;
 
-/// What the first look knows of a triangle of the cage.
+/// What the first look knows of a point of the target.
 struct FirstLook {
-  std::uint32_t island;
-  float explains;  ///< Squared UV length per squared length.
+  float u, v;
+  float explains;  ///< Squared UV length per squared length, on the triangle of the cage under it.
+  float unused;
 };
 
 /// A corner of a target triangle, and its place on the cage.
@@ -50,18 +52,30 @@ class Mender {
         diagonal_(diagonal),
         fixedSlack_(fixedSlack(tree, diagonal)),
         laneOf_(scratch.take<std::uint32_t>(cage.count)),
-        seen_(scratch.take<std::uint32_t>(cage.count)),
-        sideSeen_(scratch.take<std::uint32_t>(std::size_t{3} * cage.count)) {
+        across_(scratch.take<Across>(cage.count)) {
     for (int k = 0; k < 3; ++k) {
       candidates_[k] = scratch.take<Candidate>(cage.count);
-      patches_[k].triangles = scratch.take<std::uint32_t>(std::size_t{cage.count} + 1);
-      patches_[k].squaredDistances = scratch.take<float>(std::size_t{4} * (std::size_t{cage.count} + 1));
+      Patch& patch = patches_[k];
+      patch.lanes = scratch.take<std::uint32_t>(std::size_t{cage.count} + 3);
+      patch.squaredDistances = scratch.take<float>(std::size_t{4} * (std::size_t{cage.count} + 1));
+      patch.seen = scratch.take<std::uint32_t>(cage.count);
+      patch.sideSeen = scratch.take<std::uint32_t>(std::size_t{3} * cage.count);
+      if (scratch.failed()) return;
+      std::fill(patch.seen, patch.seen + cage.count, 0u);
+      std::fill(patch.sideSeen, patch.sideSeen + std::size_t{3} * cage.count, 0u);
     }
-    if (scratch.failed()) return;
-    std::fill(seen_, seen_ + cage.count, 0u);
-    std::fill(sideSeen_, sideSeen_ + std::size_t{3} * cage.count, 0u);
     // Leaves are full but for the last.
-    for (std::uint32_t i = 0; i < cage.count; ++i) laneOf_[tree.near[i / 4].slot[i % 4]] = i;
+    for (std::uint32_t i = 0; i < cage.count; ++i) laneOf_[slotOf(i)] = i;
+    for (std::uint32_t i = 0; i < cage.count; ++i) {
+      across_[i].isOnFan = 0;
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t side = 3 * slotOf(i) + k;
+        const std::uint32_t other = atlas.nextSide[side];  // Itself if there is no other.
+        const bool isOnFan = atlas.nextSide[other] != side;
+        across_[i].lanes[k] = isOnFan ? i : laneOf_[other / 3];
+        across_[i].isOnFan |= unsigned{isOnFan};
+      }
+    }
   }
 
   [[nodiscard]] Candidate placeOf(Vec3 p, std::uint32_t t) const noexcept { return {t, placeOn(cage_.triangles[t], p)}; }
@@ -77,7 +91,7 @@ class Mender {
       const double du = to.u - from.u;
       const double dv = to.v - from.v;
       const double path = length(b.p - a.p) + std::abs(b.at.place.distance - a.at.place.distance);
-      const double explained = std::sqrt(std::max(atlas_.stretch[a.at.slot], atlas_.stretch[b.at.slot])) * path;
+      const double explained = std::max(atlas_.stretch[a.at.slot], atlas_.stretch[b.at.slot]) * path;
       if (std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack) return true;
     }
     return false;
@@ -86,20 +100,36 @@ class Mender {
   /// Projects the corners onto the patch around that one of them which brings all of them nearest.
   /// @param[out] uvs  6 floats.
   void mend(const Corner (&corners)[3], float* uvs) noexcept {
-    double longest = 0;
+    double longest = 0;  // Squared.
     for (int k = 0; k < 3; ++k) {
-      longest = std::max(longest, length(corners[(k + 1) % 3].p - corners[k].p));
+      const Vec3 edge = corners[(k + 1) % 3].p - corners[k].p;
+      longest = std::max(longest, dot(edge, edge));
       known_[k].count = 1;
       known_[k].places[0] = corners[k].at;
     }
-    const double reach = kPatchEdges * longest + kPatchSlack * diagonal_;
+    const double reach = kPatchEdges * std::sqrt(longest) + kPatchSlack * diagonal_;
 
-    // In float first: which of the patches might bring the corners nearest.
+    // In float first: which of the patches might bring the corners nearest. They grow in turn, because rings wait for each
+    // other, but not for those of another patch.
+    ++triangle_;
+    const auto isKnown = [&](int k) {
+      return std::any_of(corners, corners + k, [&](const Corner& c) { return c.at.slot == corners[k].at.slot; });
+    };
+    for (int k = 0; k < 3; ++k) {
+      if (isKnown(k)) {
+        patches_[k].size = patches_[k].end = 0;
+        patches_[k].leastSquares = simd::splat(std::numeric_limits<float>::infinity());
+      } else {
+        begin(corners, k, reach, patches_[k]);
+      }
+    }
+    while (patches_[0].isGrowing() || patches_[1].isGrowing() || patches_[2].isGrowing()) {
+      for (Patch& patch : patches_) grow(patch);
+    }
     double sums[3];
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
-      const bool isKnown = std::any_of(corners, corners + k, [&](const Corner& c) { return c.at.slot == corners[k].at.slot; });
-      sums[k] = isKnown ? std::numeric_limits<double>::infinity() : flood(corners, k, reach, patches_[k]);
+      sums[k] = patches_[k].sum();
       least = std::min(least, sums[k]);
     }
     const double unsure = kTieSum * diagonal_ + 6 * (kTieDistance * diagonal_ + kRounding * (tree_.extent + least));
@@ -134,85 +164,106 @@ class Mender {
     Candidate places[kMost];
   };
 
-  /// Triangles, and how far they are from the three corners and, lane 3, from the place they are around.
+  /// What a triangle of the cage shares its edges with, in the texture.
+  struct Across {
+    std::uint32_t lanes[3];  ///< One per edge: itself if no other triangle has the edge, or more than one.
+    std::uint32_t isOnFan;   ///< Whether more than one other has any of them.
+  };
+
+  /// What hangs together in the texture with the triangle under a corner, within reach of the corner's place: rings of
+  /// triangles, and how far they are from the three corners and, lane 3, from the place.
   struct Patch {
-    std::uint32_t size;
-    std::uint32_t* triangles;
-    float* squaredDistances;   ///< 4 per triangle.
-    simd::f32x4 leastSquares;  ///< For each of the four.
+    Vec3 place;
+    double reach;
+    std::uint32_t first;         ///< The lane of the triangle that the place is on.
+    std::uint32_t size;          ///< Triangles so far; behind them, up to `end`, those next to the last ring.
+    std::uint32_t end;
+    std::uint32_t* lanes;
+    float* squaredDistances;     ///< 4 per triangle.
+    simd::f32x4 leastSquares;    ///< For each of the four.
+    simd::f32x4 x, y, z;         ///< The corners and the place.
+    simd::f32x4 within, beyond;  ///< Squared distances that are surely within reach, and surely beyond it.
+    std::uint32_t* seen;         ///< 1 per lane: the last triangle of the target for which it was met.
+    std::uint32_t* sideSeen;     ///< 1 per side: the last one for which a round about its edge was made.
+
+    [[nodiscard]] bool isGrowing() const noexcept { return size < end; }
+    /// Of the corners' distances to the patch, in float.
+    [[nodiscard]] double sum() const noexcept {
+      float least[4];
+      simd::store(least, leastSquares);
+      double all = 0;
+      for (int c = 0; c < 3; ++c) all += std::sqrt(static_cast<double>(least[c]));
+      return all;
+    }
   };
 
   static constexpr int kPlace = 3;
 
-  /// Floods the cage from the triangle of corner k, over edges shared in the texture, through all that is within reach of
-  /// the corner's place.
-  /// @return The sum of the corners' distances to the patch, in float.
-  double flood(const Corner (&corners)[3], int k, double reach, Patch& patch) noexcept {
+  /// Begins the patch of corner k.
+  void begin(const Corner (&corners)[3], int k, double reach, Patch& patch) noexcept {
     const auto& [from, place] = corners[k].at;
-    const CageTriangle& start = cage_.triangles[from];
-    const Vec3 a = Vec3::from(start.a);
-    const Vec3 q = a + place.v * (Vec3::from(start.b) - a) + place.w * (Vec3::from(start.c) - a);
+    const Vec3 q = positionOf(cage_.triangles[from], place);
     // One look at a triangle, in float, tells how far it is from the three corners and from q.
-    const auto lanes = [&](double Vec3::*axis) {
-      const float four[4] = {static_cast<float>(corners[0].p.*axis), static_cast<float>(corners[1].p.*axis),
-                             static_cast<float>(corners[2].p.*axis), static_cast<float>(q.*axis)};
-      return simd::load(four);
+    const auto four = [&](double Vec3::*axis) {
+      const float lanes[4] = {static_cast<float>(corners[0].p.*axis), static_cast<float>(corners[1].p.*axis),
+                              static_cast<float>(corners[2].p.*axis), static_cast<float>(q.*axis)};
+      return simd::load(lanes);
     };
-    const simd::f32x4 x = lanes(&Vec3::x);
-    const simd::f32x4 y = lanes(&Vec3::y);
-    const simd::f32x4 z = lanes(&Vec3::z);
+    patch.x = four(&Vec3::x);
+    patch.y = four(&Vec3::y);
+    patch.z = four(&Vec3::z);
     const double rounding = 2 * kRounding * (tree_.extent + reach + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
     const double surely = std::max(0.0, reach - rounding);
-    const simd::f32x4 within = simd::splat(static_cast<float>(surely * surely));
-    const simd::f32x4 beyond = simd::splat(static_cast<float>((reach + rounding) * (reach + rounding)));
-
-    ++flood_;  // Marks of earlier floods do not count.
-    seen_[from] = flood_;
-    patch.triangles[0] = from;
+    patch.within = simd::splat(static_cast<float>(surely * surely));
+    patch.beyond = simd::splat(static_cast<float>((reach + rounding) * (reach + rounding)));
     patch.leastSquares = simd::splat(std::numeric_limits<float>::max());
-    std::uint32_t size = 0;
-    std::uint32_t end = 1;
-    const auto meet = [&](std::uint32_t t) {
-      patch.triangles[end] = t;
-      end += seen_[t] != flood_;
-      seen_[t] = flood_;
+    patch.place = q;
+    patch.reach = reach;
+    patch.first = laneOf_[from];
+    patch.seen[patch.first] = triangle_;
+    patch.lanes[0] = patch.first;
+    patch.size = 0;
+    patch.end = 1;
+  }
+
+  /// Looks at the triangles next to the last ring, keeps those near enough, and finds what is next to them.
+  void grow(Patch& patch) noexcept {
+    std::uint32_t size = patch.size;
+    for (std::uint32_t i = size; i < patch.end; ++i) {
+      const std::uint32_t lane = patch.lanes[i];
+      const simd::f32x4 squared = squaredDistances(tree_.near[lane / 4], patch.x, patch.y, patch.z,
+                                                   [lane](const float (&field)[4]) { return simd::splat(field[lane % 4]); });
+      // No branch that is a coin toss: what is not kept is written over by the next.
+      std::uint32_t isNear = simd::bits(squared <= patch.within) >> kPlace;
+      const std::uint32_t mayBeNear = simd::bits(squared <= patch.beyond) >> kPlace;
+      if (isNear != mayBeNear) isNear = lane == patch.first || placeOf(patch.place, slotOf(lane)).place.distance <= patch.reach;
+      simd::store(patch.squaredDistances + 4 * size, squared);
+      patch.lanes[size] = lane;
+      size += isNear;
+    }
+    std::uint32_t end = size;
+    const auto meet = [&](std::uint32_t lane) {
+      patch.lanes[end] = lane;
+      end += patch.seen[lane] != triangle_;
+      patch.seen[lane] = triangle_;
     };
-    // Ring by ring: what is next to the last ring is put behind it, looked at, and kept if it is near enough.
-    for (std::uint32_t ring = 0; size < end; ring = size) {
-      for (std::uint32_t i = ring; i < end; ++i) {
-        const std::uint32_t t = patch.triangles[i];
-        const std::uint32_t lane = laneOf_[t] % 4;
-        const simd::f32x4 squared = squaredDistances(tree_.near[laneOf_[t] / 4], x, y, z,
-                                                     [lane](const float (&field)[4]) { return simd::splat(field[lane]); });
-        // No branch that is a coin toss: what is not kept is written over by the next.
-        std::uint32_t isNear = simd::bits(squared <= within) >> kPlace;
-        const std::uint32_t mayBeNear = simd::bits(squared <= beyond) >> kPlace;
-        if (isNear != mayBeNear) isNear = t == from || placeOf(q, t).place.distance <= reach;
-        simd::store(patch.squaredDistances + 4 * size, squared);
-        patch.triangles[size] = t;
-        size += isNear;
-      }
-      end = size;
-      for (std::uint32_t i = ring; i < size; ++i) {
-        patch.leastSquares = simd::min(patch.leastSquares, simd::load(patch.squaredDistances + 4 * i));
-        for (std::uint32_t side = 3 * patch.triangles[i]; side < 3 * patch.triangles[i] + 3; ++side) {
-          const std::uint32_t other = atlas_.nextSide[side];  // Itself if there is no other: met already.
-          meet(other / 3);
-          if (atlas_.nextSide[other] == side || sideSeen_[side] == flood_) continue;
-          // More than two triangles share the edge: one round for all of them, however many.
-          for (std::uint32_t more = atlas_.nextSide[other]; more != side; more = atlas_.nextSide[more]) {
-            sideSeen_[more] = flood_;
-            meet(more / 3);
-          }
+    for (std::uint32_t i = patch.size; i < size; ++i) {
+      patch.leastSquares = simd::min(patch.leastSquares, simd::load(patch.squaredDistances + 4 * i));
+      const Across& across = across_[patch.lanes[i]];
+      for (const std::uint32_t lane : across.lanes) meet(lane);
+      if (across.isOnFan == 0) continue;
+      const std::uint32_t sides = 3 * slotOf(patch.lanes[i]);
+      for (std::uint32_t side = sides; side < sides + 3; ++side) {
+        if (patch.sideSeen[side] == triangle_) continue;
+        // One round for all triangles that share the edge, however many.
+        for (std::uint32_t more = atlas_.nextSide[side]; more != side; more = atlas_.nextSide[more]) {
+          patch.sideSeen[more] = triangle_;
+          meet(laneOf_[more / 3]);
         }
       }
     }
     patch.size = size;
-    float least[4];
-    simd::store(least, patch.leastSquares);
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += std::sqrt(static_cast<double>(least[c]));
-    return sum;
+    patch.end = end;
   }
 
   /// Projects the corners onto a patch: step 1 once more, with the patch for a cage.
@@ -223,7 +274,7 @@ class Mender {
       unsigned near = simd::bits(simd::load(patch.squaredDistances + 4 * i) <= limits) & 7;
       for (; near != 0; near &= near - 1) {
         const auto c = static_cast<std::uint32_t>(std::countr_zero(near));
-        candidates_[c][counts[c]++] = placeOf(corners[c], known_[c], patch.triangles[i]);
+        candidates_[c][counts[c]++] = placeOf(corners[c], known_[c], slotOf(patch.lanes[i]));
       }
     }
     out.sum = 0;
@@ -233,6 +284,8 @@ class Mender {
     }
   }
 
+  /// The triangle of a lane of the tree's leaves.
+  [[nodiscard]] std::uint32_t slotOf(std::uint32_t lane) const noexcept { return tree_.near[lane / 4].slot[lane % 4]; }
   [[nodiscard]] Uv uvOf(const Candidate& at) const noexcept { return uvAt(cage_.triangles[at.slot], at.place); }
 
   [[nodiscard]] Candidate placeOf(const Corner& corner, Known& known, std::uint32_t t) const noexcept {
@@ -249,10 +302,10 @@ class Mender {
   const Atlas& atlas_;
   double diagonal_;
   float fixedSlack_;
-  std::uint32_t* laneOf_;        ///< 1 per triangle: 4 · its leaf in the tree + its lane.
-  std::uint32_t* seen_;          ///< 1 per triangle: the last flood that met it.
-  std::uint32_t* sideSeen_;      ///< 1 per side of an edge of three or more: the last flood that went around that edge.
-  std::uint32_t flood_ = 0;      ///< At most 3 · kMaxTriangles, less than 2^32.
+  // Patches know triangles by their lanes: 4 · leaf of the tree + place in it.
+  std::uint32_t* laneOf_;        ///< 1 per triangle.
+  Across* across_;               ///< 1 per lane.
+  std::uint32_t triangle_ = 0;   ///< How many of the target's were mended.
   Patch patches_[3];             ///< Around each corner's place,
   Candidate* candidates_[3];     ///< and what of it might be nearest to each corner.
   Known known_[3];               ///< Of each corner.
@@ -266,26 +319,38 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
   Atlas atlas;
   if (!findAtlas(cageMesh, cage, scratch, atlas)) return false;
   Mender mender(cage, tree, atlas, units.diagonal, scratch);
-  auto* looks = scratch.take<FirstLook>(cage.count);
+  auto* looks = scratch.take<FirstLook>(points.count);
+  auto* islands = scratch.take<std::uint32_t>(points.count);
   if (scratch.failed()) return false;
 
   // A first look in float: most triangles are clearly whole in the texture.
-  for (std::uint32_t t = 0; t < cage.count; ++t) {
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const std::uint32_t slot = results.triangles[i];
     // Below infinity, so that a product with it stays a number.
-    const double explained = std::min(kFirstLook * atlas.stretch[t], 1e30);
-    looks[t] = {atlas.islands[t], atlas.mostUv <= kMostUv ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity()};
+    const double explained = std::min(kFirstLook * atlas.stretch[slot] * atlas.stretch[slot], 1e30);
+    looks[i] = {results.uvs[2 * i], results.uvs[2 * i + 1],
+                atlas.mostUv <= kMostUv ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity(), 0};
+    islands[i] = atlas.islands[slot];
   }
-  const auto edgeIsWhole = [&](std::uint32_t i, std::uint32_t j) {
-    const float* p = points.at(i);
-    const float* q = points.at(j);
-    const float x = q[0] - p[0];
-    const float y = q[1] - p[1];
-    const float z = q[2] - p[2];
-    const float u = results.uvs[2 * j] - results.uvs[2 * i];
-    const float v = results.uvs[2 * j + 1] - results.uvs[2 * i + 1];
-    const FirstLook& a = looks[results.triangles[i]];
-    const FirstLook& b = looks[results.triangles[j]];
-    return a.island == b.island && u * u + v * v <= std::max(a.explains, b.explains) * (x * x + y * y + z * z);
+  const auto isWhole = [&](const std::uint32_t (&point)[3]) {
+    // Squared edges, first as rows, then by axis.
+    const auto squaredEdges = [&](auto get, simd::f32x4& x, simd::f32x4& y, simd::f32x4& z) {
+      const simd::f32x4 a = simd::load(get(point[0]));
+      const simd::f32x4 b = simd::load(get(point[1]));
+      const simd::f32x4 c = simd::load(get(point[2]));
+      x = (b - a) * (b - a);
+      y = (c - b) * (c - b);
+      z = (a - c) * (a - c);
+      simd::f32x4 none = simd::splat(0);
+      simd::transpose(x, y, z, none);
+    };
+    simd::f32x4 x, y, z, u, v, unused;
+    squaredEdges([&](std::uint32_t i) { return points.at(i); }, x, y, z);
+    squaredEdges([&](std::uint32_t i) { return &looks[i].u; }, u, v, unused);
+    // What the least of the three explains.
+    const float explains = std::min({looks[point[0]].explains, looks[point[1]].explains, looks[point[2]].explains});
+    const bool onOneIsland = islands[point[0]] == islands[point[1]] && islands[point[1]] == islands[point[2]];
+    return onOneIsland && simd::bits(u + v <= simd::splat(explains) * (x + y + z)) == 0xF;
   };
   const std::size_t allTriangles = targetMesh.indices.size() / 3;
   std::uint32_t usable = 0;
@@ -293,11 +358,11 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     const std::uint32_t* index = targetMesh.indices.data() + 3 * t;
     const std::uint32_t point[3] = {points.ofVertex[index[0]], points.ofVertex[index[1]], points.ofVertex[index[2]]};
     float* uvs = cornerUvs + 6 * t;
-    for (int c = 0; c < 3; ++c) std::memcpy(uvs + 2 * c, results.uvs + std::size_t{2} * point[c], 2 * sizeof(float));
+    for (int c = 0; c < 3; ++c) std::memcpy(uvs + 2 * c, &looks[point[c]].u, 2 * sizeof(float));
     // `points.triangles` has those with an area, in the same order.
     if (usable == points.triangleCount || !std::equal(point, point + 3, points.triangles + std::size_t{3} * usable)) continue;
     ++usable;
-    if (edgeIsWhole(point[0], point[1]) && edgeIsWhole(point[1], point[2]) && edgeIsWhole(point[2], point[0])) continue;
+    if (isWhole(point)) continue;
 
     Corner corners[3];
     for (int c = 0; c < 3; ++c) {

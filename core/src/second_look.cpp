@@ -1,8 +1,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <new>
 #include <utility>
 
+#include "areas.hpp"
 #include "steps.hpp"
 #include "triangle.hpp"
 
@@ -38,35 +40,6 @@ constexpr std::uint32_t kChunk = HitSearch::kMostRays / kDirectionCount;
 constexpr double kCancelled = 1e-6;
 /// Triangles that differ in area by less than this share are equally large.
 constexpr double kSameArea = 1e-12;
-
-/// Sums normals rounded to 2^-33 of the largest triangle at the point, or more finely: such sums are exact, up to fans of 2^18
-/// triangles, and so do not depend on the order of the triangles.
-class NormalSum {
- public:
-  void meet(double doubleArea) { largest_ = std::max(largest_, doubleArea); }
-  void add(Vec3 areaNormal, double doubleArea) {
-    // Added to so large a number, and taken from it again, only the bits that all terms have remain.
-    const double large = largest_ * kLarge;
-    sum_ = sum_ + Vec3{areaNormal.x + large - large, areaNormal.y + large - large, areaNormal.z + large - large};
-    all_ += doubleArea + large - large;
-  }
-  /// Begins anew, with triangles no larger.
-  void restart() {
-    sum_ = {0, 0, 0};
-    all_ = 0;
-  }
-  /// Of unit length, or zero if the normals cancel out.
-  [[nodiscard]] Vec3 normal() const {
-    const double size = length(sum_);
-    return size > kCancelled * all_ ? 1 / size * sum_ : Vec3{0, 0, 0};
-  }
-
- private:
-  static constexpr double kLarge = 0x1.8p18;
-  double largest_ = 0;
-  Vec3 sum_{0, 0, 0};
-  double all_ = 0;
-};
 
 bool isZero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
@@ -109,6 +82,9 @@ class Occluded {
     // Each start has become its end, which is the next one's start.
   }
 
+  /// 1 per point: whether it is occluded, and of a segment that is looked at.
+  [[nodiscard]] const bool* asks() const noexcept { return isOccluded_; }
+
   /// Queues the points joined by an edge to one that is not occluded, in their order: neighbours look together.
   std::uint32_t queueRim(std::uint32_t* queue) const noexcept {
     std::uint32_t count = 0;
@@ -143,24 +119,56 @@ class Occluded {
   std::uint32_t* triangles_ = nullptr;
 };
 
-/// Which way a point looks.
-struct Outlook {
-  Vec3 normal;      ///< Unit; zero if it has none.
-  bool isTwoSided;  ///< The other way as well.
+/// Which way points look.
+struct Outlooks {
+  Vec3* normals;      ///< 1 per point: of unit length, or zero if it has none.
+  bool* isTwoSided;   ///< 1 per point: whether it looks the other way as well.
+  bool* isTurned;     ///< 1 per segment: whether its normals disagree with the cage's, on the whole.
 };
 
-/// Finds the outlook of each point: its normal, turned so that those of its segment mostly agree with the cage. Only for the
-/// segments that `isWanted`.
-/// @param toBothSides  Where all triangles have copies in reverse winding, the point looks along the sum of the normals, each
-///                     turned to the side of the largest triangle, and against it.
-bool findOutlooks(const Points& points, const Cage& cage, const PointResults& results, const PointAreas& areas,
-                  std::uint32_t segmentCount, const bool* isWanted, bool toBothSides, Scratch& scratch, Outlook* outlooks) noexcept {
+/// Sums the area normals of the triangles at a point. They are rounded first, to 2^-33 of the area at the point: such sums are
+/// exact, and so do not depend on the order of the triangles.
+class NormalSums {
+ public:
+  NormalSums(const AreaUnit& unit, const std::int64_t* areas, Vec3* sums) noexcept : unit_(unit), areas_(areas), sums_(sums) {}
+  void add(std::uint32_t point, Vec3 areaNormal) noexcept {
+    // Added to so large a number, and taken from it again, only the bits that all terms have remain.
+    const double large = unit_.area(areas_[point] + 1) * kLarge;
+    sums_[point] = sums_[point] + Vec3{areaNormal.x + large - large, areaNormal.y + large - large, areaNormal.z + large - large};
+  }
+  /// Brings the sum of a point to unit length, or to zero if the normals cancel out.
+  void normalize(std::uint32_t point) noexcept {
+    const double size = length(sums_[point]);
+    const double all = 6 * unit_.area(areas_[point]);  // As long as all together would be.
+    sums_[point] = size > kCancelled * all ? 1 / size * sums_[point] : Vec3{0, 0, 0};
+  }
+
+ private:
+  static constexpr double kLarge = 0x1.8p21;
+  const AreaUnit& unit_;
+  const std::int64_t* areas_;
+  Vec3* sums_;
+};
+
+/// Finds the outlooks of the points of those segments that `isWanted`.
+/// @param asks          1 per point: whether it is going to look.
+/// @param toBothSides   Where all triangles have copies in reverse winding, a point that asks looks along the sum of the normals,
+///                      each turned to the side of the largest triangle, and against it.
+/// @param[out] outlooks  Taken from `scratch`.
+/// @return false if memory ran out.
+bool findOutlooks(const Points& points, const Cage& cage, const PointResults& results, const PointAreas& areas, std::uint32_t segmentCount,
+                  const bool* isWanted, const bool* asks, bool toBothSides, Scratch& scratch, Outlooks& outlooks) noexcept {
+  Vec3* normals = outlooks.normals = scratch.take<Vec3>(points.count);
+  outlooks.isTwoSided = scratch.take<bool>(points.count);
+  outlooks.isTurned = scratch.take<bool>(segmentCount);
   const Scratch::Mark mark = scratch.mark();
-  auto* sums = scratch.take<NormalSum>(points.count);
   auto* agreement = scratch.take<std::int64_t>(segmentCount);
   if (scratch.failed()) return false;
-  std::fill(sums, sums + points.count, NormalSum{});
+  std::fill(normals, normals + points.count, Vec3{0, 0, 0});
+  std::fill(outlooks.isTwoSided, outlooks.isTwoSided + points.count, false);
   std::fill(agreement, agreement + segmentCount, 0);
+  const AreaUnit unit(points.triangleCount);
+  NormalSums sums(unit, areas.all, normals);
   const auto eachWanted = [&](auto call) {
     for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
       const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
@@ -170,49 +178,45 @@ bool findOutlooks(const Points& points, const Cage& cage, const PointResults& re
   const auto normalOf = [&](const std::uint32_t* corner) {
     return areaNormal(points.at(corner[0]), points.at(corner[1]), points.at(corner[2]));
   };
-  eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
-    for (int i = 0; i < 3; ++i) sums[corner[i]].meet(points.doubleAreas[t]);
-  });
-  eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
+  eachWanted([&](std::uint32_t, const std::uint32_t* corner) {
     const Vec3 normal = normalOf(corner);
-    for (int i = 0; i < 3; ++i) sums[corner[i]].add(normal, points.doubleAreas[t]);
+    for (int i = 0; i < 3; ++i) sums.add(corner[i], normal);
   });
   bool anyCancelled = false;
   for (std::uint32_t p = 0; p < points.count; ++p) {
     const std::uint32_t s = results.segments[p];
     if (!isWanted[s]) continue;
-    outlooks[p] = {sums[p].normal(), false};
-    anyCancelled = anyCancelled || isZero(outlooks[p].normal);
-    const double agrees = dot(outlooks[p].normal, cage.triangles[results.triangles[p]].normal.exact);
+    sums.normalize(p);
+    anyCancelled = anyCancelled || (asks[p] && isZero(normals[p]));
+    const double agrees = dot(normals[p], cage.triangles[results.triangles[p]].normal.exact);
     agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas.all[p]) * agrees);
   }
-  for (std::uint32_t p = 0; p < points.count; ++p) {
-    const std::uint32_t s = results.segments[p];
-    if (isWanted[s] && agreement[s] < 0) outlooks[p].normal = -1 * outlooks[p].normal;
-  }
+  for (std::uint32_t s = 0; s < segmentCount; ++s) outlooks.isTurned[s] = agreement[s] < 0;
 
   if (anyCancelled && toBothSides) {
     auto* largest = scratch.take<std::uint32_t>(points.count);
     if (scratch.failed()) return false;
     std::fill(largest, largest + points.count, UINT32_MAX);
-    const auto eachCancelled = [&](auto call) {
+    for (std::uint32_t p = 0; p < points.count; ++p) {
+      outlooks.isTwoSided[p] = isWanted[results.segments[p]] && asks[p] && isZero(normals[p]);
+    }
+    const auto eachTwoSided = [&](auto call) {
       eachWanted([&](std::uint32_t t, const std::uint32_t* corner) {
         for (int i = 0; i < 3; ++i) {
-          if (isZero(outlooks[corner[i]].normal)) call(t, corner, corner[i]);
+          if (outlooks.isTwoSided[corner[i]]) call(t, corner, corner[i]);
         }
       });
     };
-    eachCancelled([&](std::uint32_t t, const std::uint32_t*, std::uint32_t p) {
+    eachTwoSided([&](std::uint32_t t, const std::uint32_t*, std::uint32_t p) {
       if (largest[p] == UINT32_MAX || points.doubleAreas[t] > points.doubleAreas[largest[p]] * (1 + kSameArea)) largest[p] = t;
-      sums[p].restart();
     });
-    eachCancelled([&](std::uint32_t t, const std::uint32_t* corner, std::uint32_t p) {
+    eachTwoSided([&](std::uint32_t, const std::uint32_t* corner, std::uint32_t p) {
       const Vec3 normal = normalOf(corner);
       const bool isTurned = dot(normal, normalOf(points.triangles + std::size_t{3} * largest[p])) < 0;
-      sums[p].add(isTurned ? -1 * normal : normal, points.doubleAreas[t]);
+      sums.add(p, isTurned ? -1 * normal : normal);
     });
     for (std::uint32_t p = 0; p < points.count; ++p) {
-      if (isWanted[results.segments[p]] && isZero(outlooks[p].normal)) outlooks[p] = {sums[p].normal(), true};
+      if (outlooks.isTwoSided[p]) sums.normalize(p);
     }
   }
   scratch.rewind(mark);
@@ -241,7 +245,8 @@ class Lookout {
     const Vec3 origin = point + lift_ * normal;
     const double at[3] = {origin.x, origin.y, origin.z};
     for (const double(&d)[3] : kDirections) {
-      directions_[rayCount_] = RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2));
+      // In place: a direction that is copied right after it was written stalls.
+      new (&directions_[rayCount_]) RayDirection(RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2)));
       Ray& ray = rays_[rayCount_];
       for (int axis = 0; axis < 3; ++axis) {
         ray.origin[axis] = static_cast<float>(at[axis]);
@@ -295,25 +300,26 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
   if (scratch.failed()) return false;
   std::uint32_t end = occluded.queueRim(queue);
   if (end > 0) {
-    auto* outlooks = scratch.take<Outlook>(points.count);
-    Lookout lookout(targetTree, cageTree.rays, units.diagonal, scratch);
-    if (scratch.failed()) return false;
     std::fill(isWanted, isWanted + segmentCount, false);
     for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
-    if (!findOutlooks(points, cage, results, areas, segmentCount, isWanted, toBothSides, scratch, outlooks)) return false;
+    Outlooks outlooks;
+    if (!findOutlooks(points, cage, results, areas, segmentCount, isWanted, occluded.asks(), toBothSides, scratch, outlooks)) return false;
+    Lookout lookout(targetTree, cageTree.rays, units.diagonal, scratch);
+    if (scratch.failed()) return false;
     // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.
     for (std::uint32_t begin = 0; begin < end;) {
       std::uint32_t chosen[kChunk];
       std::uint8_t good[kChunk];
       std::uint32_t count = 0;
+      const auto look = [&](std::uint32_t p, double sign) {
+        lookout.add(points.exactly(p), sign * outlooks.normals[p]);
+        chosen[count++] = p;
+      };
       for (; begin < end && count + 1 < kChunk; ++begin) {  // A point may need two places.
         const std::uint32_t p = queue[begin];
-        if (isZero(outlooks[p].normal)) continue;
-        lookout.add(points.exactly(p), outlooks[p].normal);
-        chosen[count++] = p;
-        if (!outlooks[p].isTwoSided) continue;
-        lookout.add(points.exactly(p), -1 * outlooks[p].normal);
-        chosen[count++] = p;
+        if (isZero(outlooks.normals[p])) continue;
+        look(p, outlooks.isTurned[results.segments[p]] ? -1 : 1);
+        if (outlooks.isTwoSided[p]) look(p, outlooks.isTurned[results.segments[p]] ? 1 : -1);
       }
       lookout.count(good);
       for (std::uint32_t i = 0; i < count; ++i) {
