@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import { readFile, writeFile } from 'node:fs/promises';
-import { countAarch64, countX86, type InstructionCount } from './instructions.js';
+import { countAarch64, countX86, type InstructionCount, type Preset } from './instructions.js';
 import { buildNative, root } from './native.js';
 import { makeScenes, sampleScene } from './scenes.js';
 import { measureSizes } from './size.js';
@@ -10,7 +10,7 @@ export interface Budget {
   /** SHA-256 of the sample's scene file: counts of another model cannot be compared. */
   scene: string;
   /** Instructions per transfer of the sample, as last recorded. */
-  instructions: { x86_64: InstructionCount; aarch64: InstructionCount };
+  instructions: Record<Preset, Record<Processor, InstructionCount>>;
   /** The most bytes that a file may have, gzipped. */
   gz: Record<string, number>;
 }
@@ -37,7 +37,7 @@ export async function recordBudget(): Promise<Budget> {
   const { gz } = await readBudget();
   const budget: Budget = {
     scene,
-    instructions: { x86_64: await countX86(sampleScene.path), aarch64: await countAarch64(sampleScene.path) },
+    instructions: { paper: await countBoth('paper'), default: await countBoth('default') },
     gz,
   };
   await writeFile(file, `${JSON.stringify(budget, null, 2)}\n`);
@@ -45,23 +45,28 @@ export async function recordBudget(): Promise<Budget> {
 }
 
 const processors = { x86_64: countX86, aarch64: countAarch64 };
+type Processor = keyof typeof processors;
+
+async function countBoth(preset: Preset): Promise<Record<Processor, InstructionCount>> {
+  return { x86_64: await countX86(sampleScene.path, preset), aarch64: await countAarch64(sampleScene.path, preset) };
+}
 
 /**
  * Counts anew and holds the count against the recorded one.
  * @return What is wrong, in a sentence that says what to do; empty if nothing is.
  */
-export async function checkInstructions(processor: keyof typeof processors): Promise<string> {
+export async function checkInstructions(processor: Processor, preset: Preset): Promise<string> {
   const { scene, instructions } = await readBudget();
   if ((await sampleFingerprint()) !== scene) {
     return 'bench/budget.json was recorded for another sample model; record it again: npm run bench -- --record';
   }
-  const recorded = instructions[processor];
-  const now = await processors[processor](sampleScene.path);
+  const recorded = instructions[preset][processor];
+  const now = await processors[processor](sampleScene.path, preset);
   if (now.perRun <= recorded.perRun * (1 + tolerance)) return '';
   const more = ((100 * now.perRun) / recorded.perRun - 100).toFixed(1);
   const compiler =
     now.compiler === recorded.compiler ? '' : ` But it was recorded with compiler ${recorded.compiler}, and this is ${now.compiler}: on the recorded one the count may be within it.`;
-  return `a transfer of the sample takes ${now.perRun} ${processor} instructions, ${more} % more than the ${recorded.perRun} recorded; at most ${100 * tolerance} % are allowed.${compiler}`;
+  return `a transfer of the sample with the preset \`${preset}\` takes ${now.perRun} ${processor} instructions, ${more} % more than the ${recorded.perRun} recorded; at most ${100 * tolerance} % are allowed.${compiler}`;
 }
 
 /** Holds the sizes of the built package against their limits; as `checkInstructions`. */

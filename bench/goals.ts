@@ -16,7 +16,7 @@ export interface Goal {
 export const phone = { name: 'Cortex-A73 at 2.3 GHz', instructionsPerSecond: 2.3e9 };
 
 /** What the speed of the product is held against. */
-export function goalsOf({ native, web, mobile, size }: Results): Goal[] {
+export function goalsOf({ native, web, presets, mobile, size }: Results): Goal[] {
   const ratio = (scene: string, peer: string, stage: 'total' | 'project' | 'occluded'): number | undefined => native?.[scene]?.peers[peer]?.ratios[stage];
   const total = (scene: string): number | undefined => native?.[scene]?.cagecast.total.median;
   const peak = (scene: string): number | undefined => native?.[scene]?.peakBytes;
@@ -36,6 +36,8 @@ export function goalsOf({ native, web, mobile, size }: Results): Goal[] {
     atLeast('three-mesh-bvh ÷ WASM, Chromium, 50k', web?.chromium['50k']?.peer?.ratio, 12, '×'),
     atLeast('native Embree ÷ WASM in Chromium, 4.8k', web?.againstNativeEmbree.ratio, 1.7, '×'),
     atMost('native ÷ nanoflann (nearest vertex, nothing filtered), 4.8k', ratio('4.8k', 'nanoflann', 'total'), 2, '×'),
+    atMost('preset `default` without UVs per corner ÷ `paper`, 4.8k', presets?.['4.8k']?.ratio, 1.8, '×'),
+    atMost('UVs per corner on top, cage of one island, 4.8k', presets?.['4.8k'] && presets['4.8k'].default.corner - presets['4.8k'].default.vertex, 0.3, 'ms'),
     atMost('instructions on aarch64, 4.8k', scaled(mobile?.aarch64.perRun, 1e-6), 7, 'M'),
     atMost('instructions on x86-64, 4.8k', scaled(mobile?.x86_64.perRun, 1e-6), 8, 'M'),
     atMost('scaling exponent with a fixed cage, 4.8k to 2M', times.length === fixed.length ? exponent(times) : undefined, 1.05),

@@ -1,5 +1,7 @@
 import { output, root } from './native.js';
 
+export type Preset = 'paper' | 'default';
+
 /** How many instructions one transfer takes on a processor, and the compiler that chose them. */
 export interface InstructionCount {
   perRun: number;
@@ -25,23 +27,23 @@ async function compilerOf(program: string, args: readonly string[], scene: strin
 }
 
 /** Counts on this machine's processor, by Valgrind. */
-export async function countX86(scene: string): Promise<InstructionCount> {
+export async function countX86(scene: string, preset: Preset = 'paper'): Promise<InstructionCount> {
   const program = `${root}build/release/bench/cagecast_bench`;
   const count = async (n: number): Promise<number> => {
-    const { stderr } = await output('valgrind', ['--tool=callgrind', '--callgrind-out-file=/dev/null', program, scene, '--runs', String(n)]);
+    const { stderr } = await output('valgrind', ['--tool=callgrind', '--callgrind-out-file=/dev/null', program, scene, '--preset', preset, '--runs', String(n)]);
     return numberIn(stderr, /Collected : (\d+)/);
   };
   return { perRun: await perRun(count), compiler: await compilerOf(program, [], scene) };
 }
 
 /** Builds for 64-bit ARM and counts there, by QEMU with a plugin of ours. */
-export async function countAarch64(scene: string): Promise<InstructionCount> {
+export async function countAarch64(scene: string, preset: Preset = 'paper'): Promise<InstructionCount> {
   await output('cmake', ['--preset', 'aarch64', '-Wno-dev', '--log-level=WARNING']);
   await output('cmake', ['--build', '--preset', 'aarch64', '--target', 'cagecast_bench']);
   const program = `${root}build/aarch64/bench/cagecast_bench`;
   const plugin = `${root}build/release/bench/libcagecast_count_instructions.so`;
   const count = async (n: number): Promise<number> => {
-    const { stderr } = await output('qemu-aarch64', ['-plugin', plugin, program, scene, '--runs', String(n)]);
+    const { stderr } = await output('qemu-aarch64', ['-plugin', plugin, program, scene, '--preset', preset, '--runs', String(n)]);
     return numberIn(stderr, /^instructions (\d+)/m);
   };
   return { perRun: await perRun(count), compiler: await compilerOf('qemu-aarch64', [program], scene) };

@@ -27,9 +27,12 @@ export interface Spread {
   max: number;
 }
 
-/** The steps, as `cagecast_bench` names them. */
+/** The steps of the preset `paper`, as `cagecast_bench` names them. */
 export const stages = ['weld', 'build', 'project', 'occluded', 'covered', 'segments', 'classify', 'total'] as const;
 export type Stage = (typeof stages)[number];
+/** What the preset `default` does besides. */
+export const stagesOfDefault = ['secondLook', 'holes', 'seams'] as const;
+export type StageOfDefault = (typeof stagesOfDefault)[number];
 
 /** What `cagecast_bench --json` prints; times in ms of CPU time. */
 export interface NativeResult {
@@ -41,8 +44,8 @@ export interface NativeResult {
   cageTriangles: number;
   peakBytes: number;
   hash: string;
-  cagecast: Record<Stage, Spread>;
-  peers: Record<string, { times: Record<Stage, Spread>; ratios: Partial<Record<Stage, number>>; otherZones: number; otherTriangles: number }>;
+  cagecast: Record<Stage | StageOfDefault, Spread>;
+  peers: Record<string, { times: Record<Stage | StageOfDefault, Spread>; ratios: Partial<Record<Stage, number>>; otherZones: number; otherTriangles: number }>;
 }
 
 /** Builds the native benchmark. */
@@ -52,8 +55,8 @@ export async function buildNative(): Promise<void> {
 }
 
 /** Measures one scene file natively. */
-export async function measureNative(scene: string, runs: number, peers: readonly string[]): Promise<NativeResult> {
-  const { stdout } = await output(program, [scene, '--json', '--runs', String(runs), ...(peers.length > 0 ? ['--peers', peers.join(',')] : [])]);
+export async function measureNative(scene: string, runs: number, peers: readonly string[], options: readonly string[] = []): Promise<NativeResult> {
+  const { stdout } = await output(program, [scene, '--json', '--runs', String(runs), ...options, ...(peers.length > 0 ? ['--peers', peers.join(',')] : [])]);
   return JSON.parse(stdout) as NativeResult;
 }
 

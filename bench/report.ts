@@ -1,5 +1,6 @@
 import { writeFile } from 'node:fs/promises';
 import { goalsOf, isReached, phone } from './goals.js';
+import { stages, stagesOfDefault } from './native.js';
 import { scalingPlot, stagesPlot, totalsPlot } from './plots.js';
 import { resultsFolder, type Results } from './results.js';
 import { table } from './table.js';
@@ -26,7 +27,7 @@ function otherZones(native: NonNullable<Results['native']>): string {
 }
 
 function markdown(results: Results): string {
-  const { date, machine, native, web, mobile } = results;
+  const { date, machine, native, web, presets, mobile } = results;
   const parts = [
     `# Measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores; Node ${machine.node}${machine.compiler ? `, g++ ${machine.compiler}` : ''}${machine.chromium ? `, Chromium ${machine.chromium}` : ''}. Written by \`npm run bench\`; all numbers: [${date}.json](${date}.json).`,
@@ -73,9 +74,9 @@ function markdown(results: Results): string {
       parts.push(
         table(
           ['4.8k, step by step', 'Cagecast', 'min–max', 'Embree', 'ratio'],
-          Object.entries(sample.cagecast).map(([stage, t]) => {
-            const theirs = embree?.times[stage as 'total'];
-            return [stage, ms(t.median), `${ms(t.min)}–${ms(t.max)}`, theirs && theirs.median > 0 ? ms(theirs.median) : '–', times(embree?.ratios[stage as 'total'])];
+          stages.map((stage) => {
+            const [ours, theirs] = [sample.cagecast[stage], embree?.times[stage]];
+            return [stage, ms(ours.median), `${ms(ours.min)}–${ms(ours.max)}`, theirs && theirs.median > 0 ? ms(theirs.median) : '–', times(embree?.ratios[stage])];
           }),
         ),
       );
@@ -93,6 +94,27 @@ function markdown(results: Results): string {
         }),
       ),
       `three-mesh-bvh in the form in which it is fastest at this (bench/web/bvh-peer.ts says what was tried), in the same page. Native Embree on the same core, in turn with Chromium, takes ${times(web.againstNativeEmbree.ratio)} the package’s time at 4.8k (${ms(web.againstNativeEmbree.embree)} and ${ms(web.againstNativeEmbree.cagecast)} ms).`,
+    );
+  }
+  if (presets) {
+    parts.push(
+      '## What the preset `default` costs',
+      table(
+        ['scene', 'triangles', 'cage', 'its islands', '`paper`', '`default` without UVs per corner', 'ratio', 'with them', 'more', 'second look', 'holes', 'seams'],
+        Object.entries(presets).map(([scene, cost]) => [
+          scene,
+          String(cost.triangles),
+          String(cost.cageTriangles),
+          String(cost.islands),
+          ms(cost.paper),
+          ms(cost.default.vertex),
+          times(cost.ratio),
+          ms(cost.default.corner),
+          ms(cost.default.corner - cost.default.vertex),
+          ...stagesOfDefault.map((stage) => ms(cost.stages[stage])),
+        ]),
+      ),
+      'Natively, all three in turn. 4.8k-many-islands is the sample with the texture of its cage cut as a box would be unfolded.',
     );
   }
   if (mobile) {

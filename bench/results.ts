@@ -1,5 +1,5 @@
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
-import { root, type NativeResult, type Spread } from './native.js';
+import { root, type NativeResult, type Spread, type StageOfDefault } from './native.js';
 import type { InstructionCount } from './instructions.js';
 import type { Size } from './size.js';
 import type { RaceResult } from './race.js';
@@ -17,6 +17,8 @@ export interface Results {
     /** Chromium against native Embree, both pinned to one core; the ratio is Embree's time ÷ the package's. */
     againstNativeEmbree: { ratio: number; cagecast: number; embree: number };
   };
+  /** What the preset `default` costs, by scene. */
+  presets?: Record<string, PresetCost>;
   mobile?: {
     aarch64: InstructionCount & { sameAnswer: boolean };
     x86_64: InstructionCount;
@@ -25,6 +27,20 @@ export interface Results {
     firstUse: Record<string, FirstUse>;
   };
   size?: Record<string, Size>;
+}
+
+/** What the preset `default` costs natively, with and without UVs per corner; all three in turn, times in ms. */
+export interface PresetCost {
+  triangles: number;
+  cageTriangles: number;
+  /** How many pieces the cage's texture is in. */
+  islands: number;
+  paper: number;
+  default: Record<'vertex' | 'corner', number>;
+  /** Of the one without UVs per corner ÷ `paper`: the median over pairs of runs. */
+  ratio: number;
+  /** What only the preset `default` does. */
+  stages: Record<StageOfDefault, number>;
 }
 
 /** Where results are kept; the plots and the table always show the newest. */

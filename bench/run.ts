@@ -1,7 +1,7 @@
 // Measures everything, and writes bench/results.
 //
 //   npm run bench [-- options]
-//     --only native,web,mobile,size   only these parts; what else is known of today stays in the results
+//     --only native,presets,web,mobile,size   only these parts; what else is known of today stays in the results
 //     --quick                         few runs, up to 50k triangles: to see whether it works, not how fast it is
 //     --record                        record the instruction counts of now as the budget of later ones, and stop
 //     --check                         hold instruction counts and sizes against the budget, and stop
@@ -11,17 +11,20 @@
 import { existsSync, readdirSync } from 'node:fs';
 import { cpus } from 'node:os';
 import { parseArgs } from 'node:util';
+import { readFile, writeFile } from 'node:fs/promises';
 import { checkInstructions, checkSizes, recordBudget } from './budget.js';
 import { goalsOf, isReached } from './goals.js';
 import { countAarch64, countX86, hashOnAarch64 } from './instructions.js';
+import { islandCount, unfolded } from './islands.js';
 import { buildNative, measureNative, root, saveScene } from './native.js';
 import { writeReport } from './report.js';
-import { readResults, resultsFolder, writeResults, type Results } from './results.js';
+import { readResults, resultsFolder, writeResults, type PresetCost, type Results } from './results.js';
+import { readScene, writeScene } from './scene-file.js';
 import { makeScenes, sampleScene, scenes, type BenchScene } from './scenes.js';
 import { measureSizes } from './size.js';
 import { buildWeb, raceInNode, WebBench } from './web.js';
 
-const parts = ['native', 'web', 'mobile', 'size'] as const;
+const parts = ['native', 'presets', 'web', 'mobile', 'size'] as const;
 
 const began = Date.now();
 const say = (line: string): void => console.error(`[${((Date.now() - began) / 1000).toFixed(0).padStart(4)} s] ${line}`);
@@ -72,11 +75,17 @@ async function main(): Promise<void> {
   await buildNative();
   if (record) {
     const { instructions } = await recordBudget();
-    for (const [processor, { perRun, compiler }] of Object.entries(instructions)) say(`${processor}: ${perRun} instructions a transfer, compiler ${compiler}: recorded`);
+    for (const [preset, counts] of Object.entries(instructions)) {
+      for (const [processor, { perRun, compiler }] of Object.entries(counts)) say(`${preset}, ${processor}: ${perRun} instructions a transfer, compiler ${compiler}: recorded`);
+    }
     return;
   }
   if (check) {
-    const problems = [await checkInstructions('x86_64'), await checkInstructions('aarch64'), await checkSizes()].filter((problem) => problem !== '');
+    const counts: string[] = [];
+    for (const preset of ['paper', 'default'] as const) {
+      for (const processor of ['x86_64', 'aarch64'] as const) counts.push(await checkInstructions(processor, preset));
+    }
+    const problems = [...counts, await checkSizes()].filter((problem) => problem !== '');
     for (const problem of problems) console.error(problem);
     say(problems.length === 0 ? 'within the budget' : 'over the budget');
     process.exit(problems.length === 0 ? 0 : 1);
@@ -103,6 +112,15 @@ async function main(): Promise<void> {
       say(`  ${result.cagecast.total.median.toFixed(3)} ms, ${result.peers['embree']!.ratios.total!.toFixed(3)} of Embree's`);
     }
   }
+  if (only.includes('presets')) {
+    results.presets = {};
+    for (const scene of [sampleScene, await manyIslands(), ...models]) {
+      say(`presets: ${scene.name}`);
+      results.presets[scene.name] = await measurePresets(scene, runsFor(scene.triangles, quick));
+      const { ratio, default: both } = results.presets[scene.name]!;
+      say(`  default ${ratio.toFixed(2)} of paper's time, UVs per corner ${(both.corner - both.vertex).toFixed(3)} ms more`);
+    }
+  }
   if (only.includes('size')) results.size = await measureSizes();
   // What is known is kept, whatever happens to the rest.
   await writeResults(results);
@@ -127,6 +145,29 @@ async function main(): Promise<void> {
     console.log(`${reached ? 'yes' : 'NO '}  ${goal.what}: ${goal.value!.toPrecision(4)} ${goal.unit} (${goal.kind} ${goal.limit})`);
   }
   say(`written to ${resultsFolder.slice(root.length)}`);
+}
+
+/** The sample, its cage with a texture of many islands. */
+async function manyIslands(): Promise<BenchScene> {
+  const scene = { ...sampleScene, name: `${sampleScene.name}-many-islands`, path: `${root}build/bench/scenes/${sampleScene.name}-many-islands.scene` };
+  const { cage, target } = readScene((await readFile(sampleScene.path)).buffer);
+  await writeFile(scene.path, writeScene({ cage: unfolded(cage), target }));
+  return scene;
+}
+
+async function measurePresets(scene: BenchScene, runs: number): Promise<PresetCost> {
+  const { cage } = readScene((await readFile(scene.path)).buffer);
+  const { triangles, cageTriangles, cagecast, peers } = await measureNative(scene.path, runs, ['paper', 'default'], ['--preset', 'default', '--seams', 'vertex']);
+  const [paper, corner] = [peers['paper']!, peers['default']!];
+  return {
+    triangles,
+    cageTriangles,
+    islands: islandCount(cage),
+    paper: paper.times.total.median,
+    default: { vertex: cagecast.total.median, corner: corner.times.total.median },
+    ratio: paper.ratios.total!,
+    stages: { secondLook: corner.times.secondLook.median, holes: corner.times.holes.median, seams: corner.times.seams.median },
+  };
 }
 
 async function measureWeb(bench: WebBench, wanted: readonly BenchScene[], quick: boolean): Promise<NonNullable<Results['web']>> {

@@ -6,7 +6,7 @@
 ///
 /// Every run is the whole work from raw arrays to zones. With peers, the runs alternate (library, peer, library, peer, …)
 /// and a ratio is the median of the ratios of such pairs, so that what else the machine does falls on both alike. The library
-/// is its own peer with other options: `paper`, `default`, and `default-vertex`, which is `default` with seams per vertex.
+/// is its own peer with another preset, `paper` or `default`.
 /// Exit code 1 if the input is unusable, 2 for wrong usage; a line on stderr says why.
 
 #include <sched.h>
@@ -85,15 +85,15 @@ Arguments parse(int argc, char** argv) {
   if (arguments.files.empty() || arguments.files.size() > 2)
     stop(2,
          "usage: cagecast_bench TARGET.glb CAGE.glb | FILE.scene [--preset paper|default] [--seams vertex|corner] [--runs 101]\n"
-         "       [--peers embree,nanoflann,paper,default,default-vertex] [--json] [--save FILE.scene]");
+         "       [--peers embree,nanoflann,paper,default] [--json] [--save FILE.scene]");
   if (seams) arguments.options.seams = *seams;
   return arguments;
 }
 
-/// The library with other options.
-class OtherOptions : public Peer {
+/// The library with another preset.
+class OtherPreset : public Peer {
  public:
-  explicit OtherOptions(const TransferOptions& options) : options_(options) {}
+  explicit OtherPreset(const TransferOptions& options) : options_(options) {}
   Timings run(const MeshView& cage, const MeshView& target) override {
     if (const Status status = transfer(cage, target, options_, result_); !status.ok()) stop(1, describe(status, cage, target));
     return result_.projection.timings;
@@ -105,14 +105,10 @@ class OtherOptions : public Peer {
 };
 
 std::unique_ptr<Peer> makePeer(const std::string& name) {
-  if (name == "paper") return std::make_unique<OtherOptions>(TransferOptions::paper());
-  if (name == "default" || name == "default-vertex") {
-    TransferOptions options = TransferOptions::standard();
-    if (name == "default-vertex") options.seams = Seams::vertex;
-    return std::make_unique<OtherOptions>(options);
-  }
+  if (name == "paper") return std::make_unique<OtherPreset>(TransferOptions::paper());
+  if (name == "default") return std::make_unique<OtherPreset>(TransferOptions::standard());
   if (name == "nanoflann") return bench::makeNanoflannPeer();
-  if (name != "embree") stop(2, "no peer \"" + name + "\"; there are: embree, nanoflann, paper, default, default-vertex");
+  if (name != "embree") stop(2, "no peer \"" + name + "\"; there are: embree, nanoflann, paper, default");
   std::unique_ptr<Peer> peer = bench::makeEmbreePeer();
   if (!peer) stop(2, "this benchmark was built without Embree (Debian: libembree-dev); configure again once it is installed");
   return peer;
