@@ -67,9 +67,11 @@ export async function ball({ pose = false, mirrored = false } = {}): Promise<Upl
     primitive.setAttribute('WEIGHTS_0', accessor('VEC4', weights))
     const joints = [-0.7, 0.7].map((x) => document.createNode('joint').setTranslation([x, 0, 0]))
     const skin = document.createSkin()
+    const rig = document.createNode('rig')
+    scene.addChild(rig)
     for (const joint of joints) {
       skin.addJoint(joint)
-      scene.addChild(joint)
+      rig.addChild(joint)
     }
     node.setSkin(skin)
   }

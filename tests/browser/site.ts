@@ -58,8 +58,9 @@ export class Site {
    * Opens the page and waits until it shows the first sample. One visit at a time: a new one ends the last.
    * @param options   A still picture 1000 × 700 in light colours, nothing kept for later, unless they say otherwise.
    * @param prepare   A script that runs in the page before its own, or what is to be done with the page before it goes there.
+   * @param fragment  What the address ends with, from its `#` on.
    */
-  async visit(options: BrowserContextOptions = {}, prepare?: string | ((page: Page) => Promise<void>)): Promise<Visit> {
+  async visit(options: BrowserContextOptions = {}, prepare?: string | ((page: Page) => Promise<void>), fragment = ''): Promise<Visit> {
     await this.visitor?.close()
     this.visitor = await this.browser.newContext({
       viewport: { width: 1000, height: 700 },
@@ -82,7 +83,7 @@ export class Site {
     })
     if (typeof prepare === 'string') await page.addInitScript({ content: prepare })
     else await prepare?.(page)
-    await page.goto(this.url)
+    await page.goto(this.url + fragment)
     await settled(page)
     return visit
   }

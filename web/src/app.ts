@@ -11,6 +11,9 @@ import { setUpRules } from './rules'
 import { fetchAhead, loadSamples } from './samples'
 import { Session } from './session'
 import { showStatus } from './status'
+import { paintOf } from './take/paint'
+import { followLinks } from './take/links'
+import { Take } from './take/take'
 import { Tools } from './tools'
 import { setUpViewControls } from './view-controls'
 import { showViewModes } from './view-modes'
@@ -55,10 +58,14 @@ setUpRules(session)
 setUpViewControls(session)
 setUpJump()
 const opener = new Opener(session)
+const paints = paintOf(session)
+new Take(session, paints)
 keepOffline(session)
 
 try {
   opener.listSamples(await samples)
+  // Files of one's own may have come in while the list was on its way.
+  if (!followLinks(session, opener, paints.linked)) opener.openSample(opener.samples[0]!.name)
 } catch (error) {
   session.fail(error)
 }

@@ -6,21 +6,25 @@ const kStep = 0.05
  * The line across the picture between the two looks: dragged with a pointer, moved with the keys of a slider.
  * @param onMove Called with its new place, 0 at the left edge and 1 at the right.
  */
-export function setUpDivider(onMove: (split: number) => void): { show(visible: boolean): void } {
+export function setUpDivider(onMove: (split: number) => void): { show(visible: boolean, split: number): void } {
   const divider = element('divider', HTMLElement)
   const stage = divider.parentElement!
   const labels = [element('side-left', HTMLElement), element('side-right', HTMLElement)]
   let split = 0.5
 
   function moveTo(place: number): void {
-    split = Math.min(1, Math.max(0, place))
+    put(Math.min(1, Math.max(0, place)))
+    onMove(split)
+  }
+
+  function put(place: number): void {
+    split = place
     divider.style.left = `${100 * split}%`
     const percent = Math.round(100 * split)
     divider.ariaValueNow = String(percent)
     divider.ariaValueText = `${percent} % naive, ${100 - percent} % Cagecast`
     labels[0]!.classList.toggle('gone', split < 0.12)
     labels[1]!.classList.toggle('gone', split > 0.88)
-    onMove(split)
   }
 
   divider.addEventListener('pointerdown', (event) => {
@@ -52,7 +56,8 @@ export function setUpDivider(onMove: (split: number) => void): { show(visible: b
   moveTo(split)
 
   return {
-    show(visible) {
+    show(visible, split) {
+      put(split)
       for (const part of [divider, ...labels]) part.hidden = !visible
     },
   }

@@ -1,5 +1,8 @@
 /** What the page needs to know of a glTF file before a loader sees it. */
 export interface GltfHead {
+  /** Whether it is a GLB. */
+  binary: boolean
+  json: object
   /** Extensions the file makes use of. */
   extensions: string[]
   /** Names of the files it refers to, relative to itself; none for a GLB that holds everything. */
@@ -28,6 +31,8 @@ export function readGltfHead(bytes: ArrayBuffer): GltfHead {
   if (!String(version).startsWith('2.')) throw new Error(`glTF ${version} is not supported, only glTF 2.0`)
   const sources = [...(json.buffers ?? []), ...(json.images ?? [])]
   return {
+    binary,
+    json,
     extensions: json.extensionsUsed ?? [],
     uris: sources.flatMap(({ uri }) => (uri && !uri.startsWith('data:') ? [decodeURIComponent(uri)] : [])),
   }

@@ -23,8 +23,8 @@ const kLamps = [
   lamp(0.95, 0.35, -0.1, 1.3, 12),
   lamp(0, 0.35, 1, 0.9, 9),
   lamp(0.25, 0.45, -1, 1.5, 20),
-  lamp(0.15, 1, 0.1, 3.4, 12),
-  lamp(-0.1, 1, -0.35, 2.6, 14),
+  lamp(0.15, 1, 0.1, 2.4, 12),
+  lamp(-0.1, 1, -0.35, 1.9, 14),
 ]
 /** Radiance of the room itself: straight above and below, and evenly from one to the other. */
 const kRoom = { ceiling: 0.23, floor: 0.13 }

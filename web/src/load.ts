@@ -8,6 +8,8 @@ import type { Sample } from './samples'
 export interface Model {
   /** The file's name, for people. */
   name: string
+  /** The file, and after it those that came with it. */
+  files: readonly File[]
   scene: Object3D
   mesh: ExtractedMesh
   /** Which sample it belongs to; the visitor's own to none. */
@@ -33,7 +35,7 @@ export async function loadModel(file: File, companions: readonly File[] = []): P
     try {
       const gltf = await loader.parseAsync(bytes, '')
       const scene = await sceneOf(gltf)
-      return { name: file.name, scene, mesh: extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
+      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, mesh: extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
     } finally {
       release()
     }

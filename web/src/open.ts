@@ -3,8 +3,8 @@ import { loadModel, type Model } from './load'
 import { element } from './page'
 import { loadPaint, type Paint } from './paint'
 import { offerPaints, type Choice } from './paints'
-import { fetchFile, type Sample } from './samples'
-import type { Session, Shown, Wanted } from './session'
+import { fetchFile, kChecker, paintName, type Sample } from './samples'
+import type { Locks, Session, Shown, Wanted } from './session'
 
 const kOwn = 'own'
 
@@ -24,21 +24,29 @@ export class Opener {
     session.on('progress', ({ state }) => state === 'ready' && this.#describe(session.shown!))
   }
 
-  /** Lists the samples, and opens the first unless files of one's own have come in meanwhile. */
+  get samples(): readonly Sample[] {
+    return this.#samples
+  }
+
+  /** Lists the samples to choose from. */
   listSamples(samples: Sample[]): void {
     this.#samples = samples
     this.#select.replaceChildren(...samples.map(({ name, title }) => new Option(title, name)))
-    if (!this.#session.begun) this.openSample(samples[0]!.name)
   }
 
-  /** Opens the sample of that name, with the first of its paints; there may be none of that name. */
-  openSample(name: string): void {
+  /**
+   * Opens the sample of that name; there may be none of that name.
+   * @param paint Which of its paints, by `paintName`: the first, if it has none of that name.
+   * @param locks What is already said about its segments.
+   */
+  openSample(name: string, paint?: string, locks: Locks = {}): void {
     const sample = this.#samples.find((candidate) => candidate.name === name)
     if (!sample) return
     this.#select.value = name
     const { target, cage, paints } = sample
+    const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0])
     const model = async (address: string): Promise<Model> => ({ ...(await loadModel(await fetchFile(address))), sample })
-    this.#session.want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, paints[0]) })
+    this.#session.want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, chosen) }, locks)
   }
 
   async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {

@@ -9,6 +9,14 @@ export interface Sample {
 
 const kFolder = new URL('samples/', document.baseURI)
 
+/** What links call the paint that every model has. */
+export const kChecker = 'checker'
+
+/** What links call a paint of a sample. @param file Its address. */
+export function paintName(file: string): string {
+  return file.startsWith(kFolder.href) ? file.slice(kFolder.href.length) : file
+}
+
 /**
  * Reads the list of samples.
  * @throws Error in plain words if there is none.

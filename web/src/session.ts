@@ -63,6 +63,8 @@ export class Session extends Emitter<SessionEvents> {
   #classification: Classification | undefined
   #rules: Rules = { preset: 'default', threshold: 0.5 }
   #locks: Locks = {}
+  /** What is already said about the target that is wanted. */
+  #wantedLocks: Locks = {}
   #view = kFirstView
   #runs = 0
 
@@ -98,8 +100,12 @@ export class Session extends Emitter<SessionEvents> {
     return this.#wanted[slot] !== undefined
   }
 
-  /** Asks for other input; whatever was under way and is replaced by it no longer counts. Without a paint the checker is taken. */
-  want(change: Wanted): void {
+  /**
+   * Asks for other input; whatever was under way and is replaced by it no longer counts. Without a paint the checker is taken.
+   * @param locks What is already said about segments of another target; of those that it does not have nothing.
+   */
+  want(change: Wanted, locks: Locks = {}): void {
+    if (change.target) this.#wantedLocks = locks
     for (const slot of Object.values(change)) slot.catch(() => {}) // told when it is waited for
     this.#wanted = { paint: Promise.resolve(this.checker), ...this.#wanted, ...change }
     void this.#run()
@@ -159,7 +165,10 @@ export class Session extends Emitter<SessionEvents> {
       const projection = same ? before.projection : await this.#project(scene, preset, superseded)
       if (superseded()) return
       // Segments are the target's alone: what was said about them holds for another cage and preset too.
-      if (scene.target !== before?.target) this.#locks = {}
+      if (scene.target !== before?.target) {
+        const known = Object.entries(this.#wantedLocks).filter(([segment]) => Number(segment) < projection.segmentStats.length)
+        this.#locks = Object.fromEntries(known)
+      }
       this.#shown = { ...scene, projection }
       if (!same) {
         this.emit('transfer', this.#shown)

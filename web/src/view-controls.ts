@@ -20,7 +20,7 @@ export function setUpViewControls(session: Session): void {
     }
     for (const { name, input } of switches) input.checked = view[name]
     switches[0]!.input.disabled = !showsPaint(view.mode)
-    divider.show(view.mode === 'compare')
+    divider.show(view.mode === 'compare', view.split)
   })
   // A reloaded page keeps its fields as they were.
   const mode = modes.find(({ checked }) => checked)!.value as Mode

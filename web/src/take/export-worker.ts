@@ -1,0 +1,48 @@
+import { Logger, WebIO, type Document, type JSONDocument } from '@gltf-transform/core'
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions'
+import { cagecast } from 'cagecast/gltf'
+import { MeshoptDecoder } from 'meshoptimizer/decoder'
+import { readGltfHead } from '../gltf-file'
+import type { ExportReply, ExportRequest } from './export-messages'
+
+/** What a model is unpacked from on reading: the overlay shares its vertices, so it is written without. */
+const kCompressions = ['KHR_draco_mesh_compression', 'EXT_meshopt_compression', 'KHR_meshopt_compression']
+
+addEventListener('message', async ({ data }: MessageEvent<ExportRequest>) => {
+  try {
+    const glb = await paintModel(data)
+    postMessage({ glb } satisfies ExportReply, { transfer: [glb.buffer] })
+  } catch (error) {
+    postMessage({ message: error instanceof Error ? error.message : String(error) } satisfies ExportReply)
+  }
+})
+
+/** Writes a target as it is, with the new UV set, its zones, and the paint as an overlay. */
+async function paintModel({ files, cage, texture, options }: ExportRequest): Promise<Uint8Array<ArrayBuffer>> {
+  const io = new WebIO().setLogger(new Logger(Logger.Verbosity.SILENT)).registerExtensions(ALL_EXTENSIONS)
+  const document = await read(io, files)
+  await document.transform(cagecast({ ...options, cage, texture }))
+  for (const extension of document.getRoot().listExtensionsUsed()) if (kCompressions.includes(extension.extensionName)) extension.dispose()
+  return io.writeBinary(document)
+}
+
+async function read(io: WebIO, files: ExportRequest['files']): Promise<Document> {
+  const { bytes } = files[0]!
+  const { binary, json, extensions, uris } = readGltfHead(bytes)
+  if (extensions.some((name) => name.endsWith('meshopt_compression'))) {
+    await MeshoptDecoder.ready
+    io.registerDependencies({ 'meshopt.decoder': MeshoptDecoder })
+  }
+  if (extensions.includes('KHR_draco_mesh_compression')) {
+    const { makeDracoModule } = await import('./draco-module')
+    io.registerDependencies({ 'draco3d.decoder': await makeDracoModule() })
+  }
+  if (binary) return io.readBinary(new Uint8Array(bytes))
+  const resources: JSONDocument['resources'] = {}
+  for (const uri of uris) {
+    const found = files.find(({ name }) => name === uri.split('/').at(-1))
+    if (!found) throw new Error(`the model needs the file ${uri}`)
+    resources[uri] = resources[encodeURI(uri)] = new Uint8Array(found.bytes)
+  }
+  return io.readJSON({ json, resources } as JSONDocument)
+}

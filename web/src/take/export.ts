@@ -1,0 +1,34 @@
+import type { Mesh } from 'cagecast'
+import type { Session } from '../session'
+import type { ExportReply, ExportRequest } from './export-messages'
+
+/**
+ * Writes the target that is shown as a GLB: all that its file has, the new UV set, its zones, and the paint as an overlay, as
+ * `cagecast transfer` does, by the rules and locks as they stand. It is done in a worker of its own, which ends with it.
+ * @param texture A PNG in the cage's UVs.
+ * @throws Error that begins with the file's name.
+ */
+export async function exportGlb({ shown, rules, locks }: Session, texture: Blob): Promise<Blob> {
+  const { target, cage } = shown!
+  const files = await Promise.all(target.files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })))
+  const request: ExportRequest = {
+    files,
+    cage: cageOf(cage.mesh),
+    texture: new Uint8Array(await texture.arrayBuffer()),
+    options: { ...rules, locks: { segments: locks } },
+  }
+  const worker = new Worker(new URL('./export-worker.ts', import.meta.url), { type: 'module' })
+  try {
+    const reply = await new Promise<ExportReply>((resolve, reject) => {
+      worker.onmessage = ({ data }: MessageEvent<ExportReply>) => resolve(data)
+      worker.onerror = (event) => reject(new Error(`${target.name}: the export could not be started${event.message ? `: ${event.message}` : ''}`))
+      worker.postMessage(request, { transfer: files.map(({ bytes }) => bytes) })
+    })
+    if ('message' in reply) throw new Error(`${target.name}: ${reply.message}`)
+    return new Blob([reply.glb], { type: 'model/gltf-binary' })
+  } finally {
+    worker.terminate()
+  }
+}
+
+const cageOf = ({ positions, indices, uvs }: Mesh): Mesh => ({ positions, indices, uvs })

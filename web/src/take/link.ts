@@ -1,0 +1,83 @@
+import type { Lock } from 'cagecast'
+import type { Locks, Rules } from '../session'
+import { kModes, type Mode, type View } from '../view'
+
+/** One of the paints a link carries, and how it is laid. */
+export interface LinkedLayer {
+  /** A paint that comes with the page: its file below the folder of samples, or `checker`. */
+  paint: string
+  /** 0..1 */
+  opacity: number
+  /** #rrggbb */
+  tint: string
+  blend: string
+  visible: boolean
+}
+
+/** What a link restores. */
+export interface LinkState {
+  sample: string
+  /** From the lowest to the uppermost. */
+  layers: LinkedLayer[]
+  rules: Rules
+  locks: Locks
+  view: View
+}
+
+/** Writes a state as the fragment of an address, without its `#`: readable, and only what it has to say. */
+export function writeLink({ sample, layers, rules, locks, view }: LinkState): string {
+  const words = new URLSearchParams({ sample })
+  for (const { paint, opacity, tint, blend, visible } of layers) {
+    words.append('layer', [paint, Number(opacity.toFixed(3)), tint.replace('#', ''), blend, ...(visible ? [] : ['hidden'])].join(','))
+  }
+  words.set('rules', rules.preset)
+  words.set('threshold', String(rules.threshold))
+  for (const lock of ['keep', 'exclude'] as const) {
+    const segments = Object.keys(locks).filter((segment) => locks[Number(segment)] === lock)
+    if (segments.length > 0) words.set(lock, segments.join(','))
+  }
+  words.set('view', view.mode)
+  if (view.mode === 'compare') words.set('split', view.split.toFixed(3))
+  if (!view.paint) words.set('paint', 'off')
+  if (view.cage) words.set('cage', 'on')
+  return words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',')
+}
+
+/**
+ * Reads a fragment. A link may be old, shortened or edited by hand: what is missing or makes no sense is as on a first visit.
+ * @returns Nothing if it names no sample.
+ */
+export function readLink(fragment: string): LinkState | undefined {
+  const words = new URLSearchParams(fragment.replace(/^#/, ''))
+  const sample = words.get('sample')
+  if (!sample) return undefined
+  const mode = words.get('view') as Mode
+  return {
+    sample,
+    layers: words.getAll('layer').map(readLayer),
+    rules: { preset: words.get('rules') === 'paper' ? 'paper' : 'default', threshold: share(words.get('threshold'), 0.5) },
+    locks: { ...readLocks(words, 'keep'), ...readLocks(words, 'exclude') },
+    view: {
+      mode: kModes.includes(mode) ? mode : 'compare',
+      split: share(words.get('split'), 0.5),
+      paint: words.get('paint') !== 'off',
+      cage: words.get('cage') === 'on',
+    },
+  }
+}
+
+function readLayer(text: string): LinkedLayer {
+  const [paint = '', opacity = null, tint = '', blend = 'normal', hidden] = text.split(',')
+  return { paint, opacity: share(opacity, 1), tint: /^[0-9a-f]{6}$/i.test(tint) ? `#${tint}` : '#ffffff', blend, visible: hidden !== 'hidden' }
+}
+
+function readLocks(words: URLSearchParams, lock: Lock): Locks {
+  const numbers = (words.get(lock) ?? '').split(',').filter((word) => /^\d{1,9}$/.test(word))
+  return Object.fromEntries(numbers.map((number) => [number, lock]))
+}
+
+/** A number from 0 to 1. */
+function share(word: string | null, otherwise: number): number {
+  const number = word === null || word === '' ? NaN : Number(word)
+  return number >= 0 && number <= 1 ? number : otherwise
+}

@@ -1,0 +1,103 @@
+import { announce, element, showError } from '../page'
+import type { Session } from '../session'
+import { codeFor, type Code } from './code'
+import { download } from './download'
+import { linkOf, type LinkedLayers } from './links'
+import { zonesJson } from './zones'
+
+/** What is to be taken away of the paints. */
+export interface Paints {
+  /** What they look like together: a PNG in the cage's UVs. */
+  png(): Promise<Blob>
+  linked: LinkedLayers
+}
+
+/** Lets what is shown be taken away: as a model, as zones, as code, as a link. */
+export class Take {
+  readonly #session: Session
+  readonly #paints: Paints
+  readonly #link = element('share-link', HTMLAnchorElement)
+  readonly #code = element('code', HTMLElement)
+  #due = false
+
+  constructor(session: Session, paints: Paints) {
+    this.#session = session
+    this.#paints = paints
+    const section = element('take', HTMLElement)
+    element('export-glb', HTMLButtonElement).addEventListener('click', () => this.#exportGlb())
+    element('export-zones', HTMLButtonElement).addEventListener('click', () => {
+      download(new Blob([zonesJson(session)], { type: 'application/json' }), `${this.#stem}-zones.json`)
+    })
+    this.#link.addEventListener('click', () => this.#copyLink())
+    element('copy-code', HTMLButtonElement).addEventListener('click', () => this.#copy(this.#code.textContent!, 'The code is copied.'))
+    for (const input of section.querySelectorAll<HTMLInputElement>('[name=code]')) input.addEventListener('change', () => this.#refresh())
+    for (const event of ['zones', 'view', 'paint'] as const) session.on(event, () => this.refresh())
+    const buttons = section.querySelectorAll<HTMLButtonElement>('.actions button')
+    for (const button of buttons) button.disabled = true
+    session.on('zones', () => buttons.forEach((button) => (button.disabled = false)))
+  }
+
+  /** Brings link and code up to date, but not for every step of what is dragged. */
+  refresh(): void {
+    if (this.#due) return
+    this.#due = true
+    setTimeout(() => {
+      this.#due = false
+      this.#refresh()
+    }, 100)
+  }
+
+  #refresh(): void {
+    if (!this.#session.shown) return
+    const kind = document.querySelector<HTMLInputElement>('#take [name=code]:checked')!.value as keyof Code
+    this.#code.textContent = codeFor(this.#session)[kind]
+
+    const { linked } = this.#paints
+    const link = linkOf(this.#session, linked)
+    if (link) this.#link.href = link
+    else this.#link.removeAttribute('href')
+    this.#link.ariaDisabled = link ? null : 'true'
+    element('take-hint', HTMLElement).textContent = !link
+      ? 'A link can only lead to samples: your own files stay on this device.'
+      : linked.left > 0
+        ? 'The link leaves out paints of your own: they stay on this device.'
+        : 'The link opens this sample with its paints, rules and view.'
+  }
+
+  get #stem(): string {
+    return this.#session.shown!.target.name.replace(/\.\w+$/, '')
+  }
+
+  async #exportGlb(): Promise<void> {
+    const button = element('export-glb', HTMLButtonElement)
+    button.disabled = true
+    button.ariaBusy = 'true'
+    try {
+      const { exportGlb } = await import('./export')
+      const glb = await exportGlb(this.#session, await this.#paints.png())
+      download(glb, `${this.#stem}-painted.glb`)
+      announce(`The model is saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`)
+    } catch (error) {
+      showError(error instanceof Error ? error.message : String(error))
+    } finally {
+      button.disabled = false
+      button.ariaBusy = null
+    }
+  }
+
+  #copyLink(): void {
+    this.#refresh()
+    if (this.#link.hasAttribute('href')) this.#copy(this.#link.href, 'The link is copied.')
+  }
+
+  async #copy(text: string, done: string): Promise<void> {
+    const note = element('take-note', HTMLElement)
+    try {
+      await navigator.clipboard.writeText(text)
+      note.textContent = done
+    } catch {
+      note.textContent = 'This browser does not let the page copy: take it from the address bar, or select it.'
+    }
+    setTimeout(() => (note.textContent = ''), 4000)
+  }
+}
