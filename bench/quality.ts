@@ -6,7 +6,7 @@
 //
 // Over the samples, those of the folder that CAGECAST_ASSETS names (folders with target.glb, cage.glb and truth.json), and
 // the models made to be difficult. Tables on the terminal and in bench/results/quality.md, a plot and all numbers beside it;
-// the samples in a picture, docs/pictures/quality.jpg, and the given models in another, build/bench/quality.jpg.
+// the samples in pictures, docs/pictures/quality.jpg and failures.jpg, and the given models in another, build/bench/quality.jpg.
 
 import { cpus } from 'node:os';
 import { parseArgs } from 'node:util';
@@ -55,6 +55,7 @@ async function main(): Promise<void> {
     say('drawing the samples');
     const are = (kind: Model['kind']): Model[] => models.filter((model) => model.kind === kind);
     await drawSheet(are('sample'), ['cage', 'naive', 'removed', 'default'], `${root}docs/pictures/quality.jpg`);
+    await drawSheet(are('spoiled'), ['cage', 'naive', 'paper', 'default'], `${root}docs/pictures/failures.jpg`);
     if (are('asset').length > 0) await drawSheet(are('asset'), ['cage', 'naive', 'paper', 'default'], `${root}build/bench/quality.jpg`);
   }
   say('done');

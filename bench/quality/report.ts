@@ -104,6 +104,9 @@ export function qualityReport(results: QualityResults): string {
       ['', ...methodNames, `\`default\`, worst of thresholds ${thresholds[0]}–${thresholds.at(-1)}`, `worst of the cage ${percent(shift)} of the diagonal aside`],
       entries.map(([name, q]) => [name, ...methodNames.map((method) => inPicture(q.methods[method])), inPicture(worst(Object.values(q.thresholds.default))), inPicture(worst(Object.values(q.shifted)))]),
     ),
+    '## Where it fails',
+    'As the poster says: where eyes are of one piece with the skin, and where the cage is out of place. `cagecast inspect` calls the second unfit.',
+    '![A face whose eyes are of one piece with its skin, and one under a cage that is turned and moved, by every method](../../docs/pictures/failures.jpg)',
     '## Why vertices are left out, and what it takes',
     'Vertices occluded / uncovered / culled; milliseconds; most memory beyond cage and target (the poster: “~20 MB”); painted area whose texture is smeared, with UVs per vertex and per corner.',
     table(

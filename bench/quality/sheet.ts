@@ -9,7 +9,9 @@ import type { Look, Row } from './sheet-page.js';
 /** How models are shown; those that are not here from their left, with a board of squares for a paint. */
 const views: Record<string, { paint: string; turn: number; rise: number }> = {
   lizard: { paint: 'paint-tiger.png', turn: 38, rise: 12 },
-  human: { paint: 'paint-harlequin.png', turn: 20, rise: 6 },
+  human: { paint: 'paint-skull.png', turn: 16, rise: 6 },
+  'human-fused': { paint: '../human/paint-makeup.png', turn: 16, rise: 6 },
+  'human-misaligned': { paint: '../human/paint-skull.png', turn: 16, rise: 6 },
   car: { paint: 'paint-racing.png', turn: 38, rise: 16 },
 };
 const otherView = { turn: 30, rise: 10 };
