@@ -14,7 +14,7 @@ import { init } from 'cagecast';
 import { missedGoals } from './quality/goals.js';
 import { measure, measureLargeTimes, measureTimes } from './quality/measure.js';
 import { root } from './native.js';
-import { loadModels, type Model } from './quality/models.js';
+import { loadModels, NoSuchModel, type Model } from './quality/models.js';
 import { qualityReport, writeQuality, type QualityResults } from './quality/report.js';
 import { drawSheet } from './quality/sheet.js';
 
@@ -64,5 +64,5 @@ async function main(): Promise<void> {
 
 await main().catch((error: Error) => {
   console.error(error.message);
-  process.exit(1);
+  process.exit(error instanceof NoSuchModel ? 2 : 1);
 });

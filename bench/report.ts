@@ -30,7 +30,7 @@ function markdown(results: Results): string {
   const { date, machine, native, web, presets, mobile } = results;
   const parts = [
     `# Measured on ${date}`,
-    `${machine.processor}, ${machine.cores} cores; Node ${machine.node}${machine.compiler ? `, g++ ${machine.compiler}` : ''}${machine.chromium ? `, Chromium ${machine.chromium}` : ''}. Written by \`npm run bench\`; all numbers: [${date}.json](${date}.json).`,
+    `${machine.processor}, ${machine.cores} cores; Node ${machine.node}${machine.compiler ? `, g++ ${machine.compiler}` : ''}${machine.chromium ? `, Chromium ${machine.chromium}` : ''}. Written by \`npm run bench\`; all numbers: [${date}.json](${date}.json). How good the answer is: [quality](quality.md).`,
     'Every time is that of the whole work, from raw arrays to zones, single-threaded; medians, in ms: CPU time of the one thread that does it. A ratio is the median over pairs of runs, one right after the other.',
     '![Totals by size](totals.svg)',
     '![Steps at 4.8k triangles](stages.svg)',

@@ -50,17 +50,21 @@ export function listFiles(): ModelFiles[] {
 /**
  * All models there are: of files, and those made to be difficult.
  * @param only  Names; all if undefined.
- * @throws {Error} if a name is of no model, or a truth is not of its target.
+ * @throws {NoSuchModel} if a name is of none.
+ * @throws {Error} if a truth is not of its target.
  */
 export async function loadModels(only?: readonly string[]): Promise<Model[]> {
   const files = listFiles();
   const traps = only?.every((name) => files.some((file) => file.name === name)) ? [] : await loadTraps();
   const names = [...files, ...traps].map(({ name }) => name);
   const unknown = only?.find((name) => !names.includes(name));
-  if (unknown !== undefined) throw new Error(`--only ${unknown}: there are ${names.join(', ')}`);
+  if (unknown !== undefined) throw new NoSuchModel(`no model is called "${unknown}"; there are ${names.join(', ')}`);
   const isWanted = ({ name }: { name: string }): boolean => only?.includes(name) ?? true;
   return [...(await Promise.all(files.filter(isWanted).map(loadFiles))), ...traps.filter(isWanted)];
 }
+
+/** A name was given that no model has. */
+export class NoSuchModel extends Error {}
 
 /**
  * Reads the files of a model.
