@@ -1,9 +1,10 @@
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
 import { after, before, test } from 'node:test'
-import { inspection } from './cli'
+import { inspection, reportedCounts } from './cli'
 import { glb, tetrahedron, writeGlb } from './glb'
-import { drop, inRepository, settled, shownError, Site, type Visit } from './site'
+import { difference, look, modelArea } from './picture'
+import { drop, inRepository, setThreshold, settled, shownCounts, shownError, shownParts, Site, type Visit } from './site'
 
 let site: Site
 let visit: Visit
@@ -33,6 +34,31 @@ for (const name of ['car', 'human-misaligned', 'lizard']) {
     assert.deepEqual(complaints, [])
   })
 }
+
+test('a part in doubt lights up with its finding, and is locked as that proposes', async () => {
+  const { page } = visit
+  await page.getByTestId('sample-select').selectOption({ index: 0 })
+  await page.getByTestId('preset').selectOption('paper')
+  await setThreshold(page, 0.36)
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  const eye = page.getByTestId('inspect-panel').locator('li').filter({ hasText: /"l-eye" is not painted, but nearly/ })
+  await eye.waitFor()
+  const area = await modelArea(page)
+  await page.mouse.move(5, 5)
+  const before = await look(page, area)
+  await eye.hover()
+  assert.ok(difference(before, await look(page, area)) > 0.002, 'it lights up')
+  await page.mouse.move(5, 5)
+  assert.ok(difference(before, await look(page, area)) < 0.0005)
+
+  await eye.getByRole('button', { name: 'Keep it' }).click()
+  assert.deepEqual(await shownCounts(page), await reportedCounts(asset('lizard', 'target.glb'), asset('lizard', 'cage.glb'), { preset: 'paper', threshold: 0.36, keep: 'l-eye' }))
+  assert.equal((await shownParts(page)).find(({ name }) => name === 'l-eye')!.lock, 'keep')
+  await eye.waitFor({ state: 'detached' })
+  await page.getByTestId('preset').selectOption('default')
+  await setThreshold(page, 0.5)
+  assert.equal(await settled(page), 'ready')
+})
 
 test('a large model is inspected when that is asked for', async () => {
   const { page } = visit

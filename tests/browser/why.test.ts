@@ -6,7 +6,7 @@ import { report, type Report } from './cli'
 import { glb, tetrahedron, writeGlb } from './glb'
 import { ball, islandCage } from './models'
 import { difference, look, modelArea, shareOfHue, type Area } from './picture'
-import { drop, inRepository, settled, setThreshold, shownError, Site, type Visit } from './site'
+import { drop, inRepository, settled, setThreshold, shownError, Site, type Upload, type Visit } from './site'
 
 let site: Site
 let visit: Visit
@@ -127,6 +127,20 @@ test('by keyboard: W asks, Enter tells of the middle, and a screen reader is tol
   await page.keyboard.press('Enter')
   assert.match(await bubble(page), /^Painted/)
 })
+
+for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
+  test(`${name}: what is asked about is what is seen, not what lies behind`, async () => {
+    const { page } = visit
+    const nearest = async (target: Upload): Promise<string> => {
+      await drop(page, [target, await islandCage(1)])
+      assert.equal(await settled(page), 'ready', await shownError(page))
+      await page.getByRole('button', { name: 'Ask the middle' }).click()
+      return /Triangle \d+ of the cage/.exec(await story(page))![0]
+    }
+    // The side of the cage that faces the viewer is the fifth; each side is of two triangles.
+    assert.match(await nearest(await ball(options)), /Triangle (8|9) /)
+  })
+}
 
 test('each way to be left out, and each to be let in, has words of its own', async () => {
   const { page } = visit

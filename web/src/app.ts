@@ -53,7 +53,7 @@ if (viewer) {
 showStatus(session, viewer === undefined)
 showResults(session)
 new PartsTable(session, viewer)
-new FitPanel(session)
+new FitPanel(session, viewer)
 setUpRules(session)
 setUpViewControls(session)
 setUpJump()

@@ -1,7 +1,10 @@
+import type { Lock } from 'cagecast'
 import type { Finding, Inspection } from 'cagecast/inspect'
 import { element } from './page'
+import { trianglesOf } from './segments'
 import type { Session } from './session'
 import { Superseded, TransferClient } from './transfer-client'
+import type { Viewer } from './viewer'
 
 const kCalm = 800 // milliseconds without a change before a cage is inspected: until then other things matter more
 const kMost = 60_000 // triangles that are inspected unasked; twice as many take twice as long
@@ -12,17 +15,22 @@ const kVerdicts: Record<Inspection['verdict'], string> = {
   unfit: 'The cage does not fit this model.',
 }
 
-/** Says whether the cage fits the target, why not, and what to do: what `cagecast inspect` says, in a worker of its own. */
+/**
+ * Says whether the cage fits the target, why not, and what to do: what `cagecast inspect` says, in a worker of its own. Parts
+ * that a finding is about light up with it, and can be locked as it proposes.
+ */
 export class FitPanel {
   readonly #session: Session
+  readonly #viewer: Viewer | undefined
   readonly #verdict = element('fit-verdict', HTMLElement)
   readonly #findings = element('fit-findings', HTMLElement)
   readonly #button = element('fit-inspect', HTMLButtonElement)
   #client: TransferClient | undefined
   #waiting: ReturnType<typeof setTimeout> | undefined
 
-  constructor(session: Session) {
+  constructor(session: Session, viewer: Viewer | undefined) {
     this.#session = session
+    this.#viewer = viewer
     session.on('transfer', () => this.#show('', [text('p', kSoon)]))
     session.on('zones', () => this.#onChange())
     this.#button.addEventListener('click', () => void this.#inspect())
@@ -56,7 +64,7 @@ export class FitPanel {
 
   #write({ verdict, findings }: Inspection): void {
     const list = document.createElement('ul')
-    list.append(...findings.map(itemOf))
+    list.append(...findings.map((finding) => this.#item(finding)))
     this.#show(verdict, [text('p', kVerdicts[verdict]), ...(findings.length > 0 ? [list] : [])])
   }
 
@@ -64,12 +72,37 @@ export class FitPanel {
     this.#verdict.textContent = this.#verdict.dataset.verdict = verdict
     this.#findings.replaceChildren(...content)
   }
-}
 
-function itemOf({ sentence, advice }: Finding): HTMLElement {
-  const item = document.createElement('li')
-  item.append(text('p', `${sentence}.`), text('p', advice))
-  return item
+  #item({ sentence, advice, places = [], locks }: Finding): HTMLElement {
+    const item = document.createElement('li')
+    item.append(text('p', `${sentence}.`), text('p', advice))
+    const segments = places.map(({ segment }) => segment)
+    if (segments.length > 0) {
+      for (const begin of ['pointerenter', 'focusin']) item.addEventListener(begin, () => this.#light(segments))
+      for (const end of ['pointerleave', 'focusout']) item.addEventListener(end, () => this.#light([]))
+    }
+    const entries = Object.entries(locks?.segments ?? {})
+    for (const lock of ['keep', 'exclude'] as const) {
+      const chosen = entries.filter(([, other]) => other === lock).map(([segment]) => Number(segment))
+      if (chosen.length > 0) item.append(this.#lockButton(chosen, lock))
+    }
+    return item
+  }
+
+  #lockButton(segments: number[], lock: Lock): HTMLButtonElement {
+    const button = document.createElement('button')
+    button.type = 'button'
+    button.className = 'quiet'
+    const them = segments.length === 1 ? 'it' : `all ${segments.length}`
+    button.textContent = lock === 'keep' ? `Keep ${them}` : `Exclude ${them}`
+    button.addEventListener('click', () => this.#session.lock(segments, lock))
+    return button
+  }
+
+  #light(segments: readonly number[]): void {
+    const { shown } = this.#session
+    this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : [])
+  }
 }
 
 function text(tag: string, content: string): HTMLElement {

@@ -1,11 +1,14 @@
 import type { Classification, Lock, SegmentStats } from 'cagecast'
+import { cssColor, type Rgb } from './colors'
 import type { Part } from './extract'
 import { element } from './page'
+import { segmentColors, trianglesOf } from './segments'
 import type { Locks, Session, Shown } from './session'
 import type { Viewer } from './viewer'
 
 /** Rows enough to read; a scan may fall into thousands of pieces. */
 const kMostRows = 50
+const kMostColors = 3 // of those that share a row
 const kLocks: Record<Lock, string> = { auto: 'auto', keep: 'keep', exclude: 'exclude' }
 
 /** Segments that are listed as one, and their numbers together. */
@@ -23,6 +26,7 @@ interface Row {
   segments: readonly number[]
   row: HTMLTableRowElement
   verdict: HTMLElement
+  choice: HTMLSelectElement
 }
 
 /**
@@ -38,21 +42,29 @@ export class PartsTable {
   constructor(session: Session, viewer: Viewer | undefined) {
     this.#session = session
     this.#viewer = viewer
-    this.#body.addEventListener('pointerleave', () => this.#light([]))
+    // A finger that was lifted still points, until it touches something else.
+    this.#body.addEventListener('pointerleave', ({ pointerType }) => pointerType === 'touch' || this.#light([]))
+    addEventListener('pointerdown', ({ target }) => this.#body.contains(target as Node) || this.#light([]))
     this.#body.addEventListener('focusout', () => this.#light([]))
     // A card that is closed under the pointer no longer points at anything.
     element('parts', HTMLDetailsElement).addEventListener('toggle', () => this.#light([]))
-    session.on('transfer', ({ target, projection }) => this.#list(projection.segmentStats, target.mesh.parts, session.locks))
-    session.on('zones', ({ classification }) => this.#showVerdicts(classification))
+    session.on('transfer', (shown) => this.#list(shown, session.locks))
+    session.on('zones', ({ classification }) => {
+      // Something else than the table may have locked parts, even some that share a row.
+      const told = this.#rows.every(({ segments, choice }) => segments.every((segment) => (session.locks[segment] ?? 'auto') === choice.value))
+      if (!told) this.#list(session.shown!, session.locks)
+      this.#showVerdicts(classification)
+    })
   }
 
   /** Lists the segments of another target, or of another projection of it: the largest, those that are covered least first. */
-  #list(stats: readonly SegmentStats[], parts: readonly Part[], locks: Locks): void {
-    const entries = entriesOf(stats, parts, locks)
+  #list(shown: Shown, locks: Locks): void {
+    const entries = entriesOf(shown.projection.segmentStats, shown.target.mesh.parts, locks)
+    const colors = segmentColors(shown)
     const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMostRows))
     // Sorting is stable: the larger of two that are covered alike stays before the smaller.
     const listed = largest.toSorted((a, b) => coverageOf(a) - coverageOf(b))
-    this.#rows = listed.map((entry) => this.#row(entry))
+    this.#rows = listed.map((entry) => this.#row(entry, colors))
     this.#body.replaceChildren(...this.#rows.map(({ row }) => row))
     element('segment-caption', HTMLElement).textContent =
       listed.length < entries.length
@@ -73,18 +85,20 @@ export class PartsTable {
     element('segment-summary', HTMLElement).textContent = `${real.length.toLocaleString('en')}, ${culled.toLocaleString('en')} culled`
   }
 
-  #row(entry: Entry): Row {
+  #row(entry: Entry, colors: readonly Rgb[]): Row {
     const { name, segments, points, exposedArea } = entry
     const row = document.createElement('tr')
     const head = cell('th', name)
     head.scope = 'row'
+    head.prepend(swatch(segments.slice(0, kMostColors).map((segment) => colors[segment]!)))
     const verdict = cell('td', '')
-    const choice = document.createElement('td')
-    choice.append(this.#select(entry))
-    row.append(head, cell('td', points.toLocaleString('en')), cell('td', exposedArea > 0 ? percent(coverageOf(entry)) : 'hidden'), verdict, choice)
+    const choice = this.#select(entry)
+    const last = document.createElement('td')
+    last.append(choice)
+    row.append(head, cell('td', points.toLocaleString('en')), cell('td', exposedArea > 0 ? percent(coverageOf(entry)) : 'hidden'), verdict, last)
     row.addEventListener('pointerenter', () => this.#light(segments))
     row.addEventListener('focusin', () => this.#light(segments))
-    return { segments, row, verdict }
+    return { segments, row, verdict, choice }
   }
 
   #select({ name, segments, lock }: Entry): HTMLSelectElement {
@@ -101,17 +115,6 @@ export class PartsTable {
     const { shown } = this.#session
     this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : [])
   }
-}
-
-/** The triangles of segments. */
-function trianglesOf({ target, projection }: Shown, segments: readonly number[]): number[] {
-  const triangles: number[] = []
-  if (segments.length === 0) return triangles
-  const chosen = new Set(segments)
-  const { indices } = target.mesh
-  // The corners of a triangle are of one segment.
-  for (let t = 0; 3 * t < indices.length; t++) if (chosen.has(projection.segments[indices[3 * t]!]!)) triangles.push(t)
-  return triangles
 }
 
 /** The segments that have triangles, as they are listed, in the order of their vertices. */
@@ -144,6 +147,15 @@ function named(entries: Entry[]): Entry[] {
 
 function coverageOf({ exposedArea, coveredArea }: Entry): number {
   return exposedArea > 0 ? coveredArea / exposedArea : 0
+}
+
+/** The colours of segments in the picture that shows each in its own, side by side. */
+function swatch(colors: readonly Rgb[]): HTMLElement {
+  const made = document.createElement('i')
+  made.className = 'swatch'
+  const stops = colors.map((color, i) => `${cssColor(color)} ${(100 * i) / colors.length}% ${(100 * (i + 1)) / colors.length}%`)
+  made.style.background = `linear-gradient(to right, ${stops.join(', ')})`
+  return made
 }
 
 function cell(type: 'td' | 'th', text: string): HTMLTableCellElement {

@@ -1,6 +1,7 @@
 import type { Classification } from 'cagecast'
-import { colorAt, distinctColor, kDiverging, kSequential, type ColorMap, type Rgb } from './colors'
+import { colorAt, kDiverging, kSequential, type ColorMap, type Rgb } from './colors'
 import type { ExtractedMesh } from './extract'
+import { segmentColors } from './segments'
 import type { Shown } from './session'
 import { diagonalOf } from './surface'
 
@@ -22,14 +23,6 @@ export interface Tint {
 const kClay: Rgb = [154, 167, 179]
 const kFarthest = 0.98 // of what may be painted lies within the scale: an inside far away would make all of it look alike
 const kDoublings = 2 // either way, from the middle of the scale of stretch to its ends
-
-/** A colour for each segment, those of the largest far apart. @returns 1 per segment. */
-export function segmentColors({ projection: { segmentStats } }: Shown): Rgb[] {
-  const bySize = segmentStats.map((_, segment) => segment).sort((a, b) => segmentStats[b]!.area - segmentStats[a]!.area || a - b)
-  const colors: Rgb[] = []
-  bySize.forEach((segment, rank) => (colors[segment] = distinctColor(rank)))
-  return colors
-}
 
 /** Each segment in a colour of its own. */
 export function tintSegments(shown: Shown): Tint {
