@@ -44,9 +44,12 @@ export function missedGoals(results: Readonly<Record<string, Quality>>): string[
       atMost('default: pixels without paint where it belongs', ours.bare, goals.sample.default.bare);
     }
     for (const [threshold, value] of Object.entries(quality.thresholds.default)) {
-      if (Number(threshold) >= goals.whole.from && Number(threshold) <= goals.whole.to) both(`default at threshold ${threshold}`, value, goals.whole);
+      const isHeld = Number(threshold) >= goals.whole.from && Number(threshold) <= goals.whole.to;
+      if (isHeld) both(`default at threshold ${threshold}`, value, goals.whole);
     }
-    if (quality.kind !== 'trap') for (const [axis, value] of Object.entries(quality.shifted)) both(`default, cage moved by ${percent(shift)} along ${axis}`, value, goals.shifted);
+    for (const [axis, value] of Object.entries(quality.kind === 'trap' ? {} : quality.shifted)) {
+      both(`default, cage moved by ${percent(shift)} along ${axis}`, value, goals.shifted);
+    }
     atMost('smeared area', quality.smear.corner, goals.smear);
   }
   return lines;

@@ -35,7 +35,7 @@ export function measure(model: Model): Quality {
   const { cage, target } = scene;
   const pixels = visiblePixels(target);
   const scoreOf = (decision: Decision): Score => score(model, pixels, decision);
-  const scores = (decisions: [string, Decision][]): Record<string, Score> => Object.fromEntries(decisions.map(([name, decision]) => [name, scoreOf(decision)]));
+  const scores = (some: [string, Decision][]): Record<string, Score> => Object.fromEntries(some.map(([name, decision]) => [name, scoreOf(decision)]));
   const decisions = decide(scene);
   const moved = [0, 1, 2].flatMap((axis) =>
     [1, -1].map((sign): [string, Decision] => {
@@ -44,10 +44,11 @@ export function measure(model: Model): Quality {
     }),
   );
   const result = transfer(cage, target);
+  const methods = methodNames.map((name) => [name, { ...scoreOf(decisions[name]), vertices: countZones(decisions[name]) }]);
   return {
     kind: model.kind,
     triangles: target.indices.length / 3,
-    methods: Object.fromEntries(methodNames.map((name) => [name, { ...scoreOf(decisions[name]), vertices: countZones(decisions[name]) }])) as Quality['methods'],
+    methods: Object.fromEntries(methods) as Quality['methods'],
     thresholds: {
       paper: scores(atThresholds(project(cage, target, { preset: 'paper' }), thresholds)),
       default: scores(atThresholds(project(cage, target), thresholds)),

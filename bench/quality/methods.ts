@@ -1,4 +1,5 @@
-import { classify, presetOptions, project, transfer, Zone, type PresetOptions, type Projection, type Timings, type TransferOptions } from 'cagecast';
+import { classify, presetOptions, project, transfer, Zone } from 'cagecast';
+import type { PresetOptions, Projection, Timings, TransferOptions } from 'cagecast';
 import { median } from '../statistics.js';
 import type { Scene } from '../scene-file.js';
 
@@ -20,7 +21,8 @@ export type MethodName = (typeof methodNames)[number];
  */
 export function decide({ cage, target }: Scene): Record<MethodName, Decision> {
   const { zones } = project(cage, target, { preset: 'paper' });
-  const only = (...ncz: Zone[]): Decision => wholeTriangles(zones.map((zone) => (ncz.includes(zone as Zone) ? zone : Zone.Cosmetic)), target.indices);
+  const only = (...ncz: number[]): Decision =>
+    wholeTriangles(zones.map((zone) => (ncz.includes(zone) ? zone : Zone.Cosmetic)), target.indices);
   return {
     naive: only(),
     'step 2': only(Zone.Occluded),
@@ -49,16 +51,13 @@ export function withoutEachStep({ cage, target }: Scene): [step: string, Decisio
   const { groups: _, ...whole } = target;
   const [paper, ours] = [presetOptions('paper'), presetOptions('default')];
   const differs = (name: keyof PresetOptions): boolean => paper[name] !== ours[name] && name !== 'seams'; // it is about UVs, not zones
-  const leftOut = (Object.keys(ours) as (keyof PresetOptions)[]).filter(differs).map((name): [string, TransferOptions] => [name, { [name]: paper[name] }]);
+  const names = (Object.keys(ours) as (keyof PresetOptions)[]).filter(differs);
   return [
     ['groups', transfer(cage, whole)],
     ['depth', transfer(cage, target, { floor: 'area' })],
-    ...leftOut.map(([name, options]): [string, Decision] => [name, transfer(cage, target, options)]),
+    ...names.map((name): [string, Decision] => [name, transfer(cage, target, { [name]: paper[name] } as TransferOptions)]),
   ];
 }
-
-/** The steps that the first ways consist of. */
-const stepsOf = { naive: ['weld', 'build', 'project'], 'step 2': ['occluded'], 'step 3': ['covered'], paper: ['segments', 'classify'] } as const;
 
 /**
  * Milliseconds that each way takes with the package in this process: CPU time, on which other work on the machine does not
@@ -79,10 +78,11 @@ export function latencies({ cage, target }: Scene, runs: number): Record<MethodN
       if (preset === 'paper') timings.push(result.timings);
     }
   }
-  // By step, because a short one is seldom interrupted.
-  const spent = (steps: readonly (keyof Timings)[]): number => steps.reduce((sum, step) => sum + median(timings.map((one) => one[step])), 0);
-  const [nearest, second, third, last] = [stepsOf.naive, stepsOf['step 2'], stepsOf['step 3'], stepsOf.paper].map(spent) as [number, number, number, number];
   const paper = median(times.paper);
-  const share = paper / (nearest + second + third + last);
-  return { naive: nearest * share, 'step 2': (nearest + second) * share, 'step 3': (nearest + second + third) * share, paper, default: median(times.default) };
+  // By step, because a short one is seldom interrupted.
+  const wall = (...steps: (keyof Timings)[]): number => steps.reduce((sum, step) => sum + median(timings.map((one) => one[step])), 0);
+  const until = [['weld', 'build', 'project'], ['occluded'], ['covered'], ['segments', 'classify']] as const;
+  const spent = until.map((steps) => wall(...steps));
+  const share = (count: number): number => spent.slice(0, count).reduce((sum, ms) => sum + ms, 0) / spent.reduce((sum, ms) => sum + ms, 0);
+  return { naive: paper * share(1), 'step 2': paper * share(2), 'step 3': paper * share(3), paper, default: median(times.default) };
 }

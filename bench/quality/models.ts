@@ -21,7 +21,7 @@ export interface Truth {
 /** A target with its cage, and the truth about it. */
 export interface Model {
   name: string;
-  /** `sample`: of the project; `asset`: of a folder given by the user; `trap`: made to be difficult; `spoiled`: a sample that goes wrong on purpose. */
+  /** `sample`: of the project; `asset`: given by the user; `trap`: made to be difficult; `spoiled`: a sample that goes wrong on purpose. */
   kind: 'sample' | 'asset' | 'trap' | 'spoiled';
   scene: Scene;
   truth: Truth;
@@ -96,7 +96,8 @@ async function loadTraps(): Promise<Model[]> {
       const scene = readScene(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) as ArrayBuffer);
       // Per vertex 0: to be painted, 1: not to be, 2: either; padded to whole words.
       const labels = new Uint8Array(await readFile(`${folder}/${name}.truth`)).subarray(0, scene.target.positions.length / 3);
-      return { name, kind: 'trap', scene, truth: { ncz: labels.map((label) => +(label === 1)), ignore: labels.map((label) => +(label === 2)), offCage: new Uint8Array(labels.length) } };
+      const where = (wanted: number): Uint8Array => labels.map((label) => +(label === wanted));
+      return { name, kind: 'trap', scene, truth: { ncz: where(1), ignore: where(2), offCage: new Uint8Array(labels.length) } };
     }),
   );
 }

@@ -2,7 +2,7 @@ import { writeFile } from 'node:fs/promises';
 import { resultsFolder } from '../results.js';
 import { table } from '../table.js';
 import { missedGoals } from './goals.js';
-import { largeTriangles, shift, thresholds, type Quality } from './measure.js';
+import { largeTriangles, shift, thresholds, type Quality, type ZoneCounts } from './measure.js';
 import { methodNames, type MethodName } from './methods.js';
 import { thresholdPlot } from './plot.js';
 import type { Score } from './score.js';
@@ -34,8 +34,8 @@ const percent = (share: number): string => {
   return `${Number(rounded.toFixed(2))} %`;
 };
 const ms = (value: number): string => value.toFixed(value >= 10 ? 0 : 1);
-const both = ({ suppressed, kept }: Score): string => `${percent(suppressed)} · ${percent(kept)}`;
-const inPicture = ({ forbidden, bare }: Score): string => `${percent(forbidden)} · ${percent(bare)}`;
+const byArea = ({ suppressed, kept }: Score): string => `${percent(suppressed)} · ${percent(kept)}`;
+const byPixel = ({ forbidden, bare }: Score): string => `${percent(forbidden)} · ${percent(bare)}`;
 const worst = (scores: Iterable<Score>): Score => {
   const all = [...scores];
   const [least, most] = [Math.min, Math.max].map((pick) => (measure: keyof Score) => pick(...all.map((one) => one[measure])));
@@ -51,97 +51,127 @@ const rowNames: Record<MethodName, string> = {
 };
 
 /** The poster's table, with numbers in it: those of the samples, one after the other. */
-export function posterTable({ models, times, largeTimes }: QualityResults): string {
+function posterTable({ models, times, largeTimes }: QualityResults): string {
   const samples = Object.entries(models).filter(([, { kind }]) => kind === 'sample');
-  const each = (show: (quality: Quality, name: string) => string): string => samples.map(([name, quality]) => show(quality, name)).join(' / ').replaceAll(' % / ', ' / ').replaceAll(' ms / ', ' / ');
-  return [
-    table(
-      ['method', 'type', `latency: ${samples.map(([name]) => name).join(' / ')}`, 'suppressed', 'kept', 'pixels painted where forbidden', 'pixels bare', `${largeTriangles / 1000}k triangles`],
-      [
-        ['manual authoring', 'artist-driven', '*60–120 min*', '*gold standard*', '', '', '', '*low*'],
-        ...methodNames.map((name) => [
-          rowNames[name],
-          'automated',
-          each((_, model) => `${ms(times[model]![name])} ms`),
-          each(({ methods }) => percent(methods[name].suppressed)),
-          each(({ methods }) => percent(methods[name].kept)),
-          each(({ methods }) => percent(methods[name].forbidden)),
-          each(({ methods }) => percent(methods[name].bare)),
-          `${ms(largeTimes[name])} ms`,
-        ]),
-      ],
-    ),
-    'In italics: as the poster says. Its other rows read “< 30–60 ms, low, high” (naive) and “< 70–100 ms, high, high” (the method), for latency, suppression and scalability.',
-  ].join('\n');
+  const each = (unit: string, show: (quality: Quality, name: string) => string): string =>
+    `${samples.map(([name, quality]) => show(quality, name).replace(` ${unit}`, '')).join(' / ')} ${unit}`;
+  const names = samples.map(([name]) => name).join(' / ');
+  const shares = ['suppressed', 'kept', 'forbidden', 'bare'] as const;
+  return table(
+    ['method', 'type', `latency: ${names}`, 'suppressed', 'kept', 'pixels painted where forbidden', 'pixels bare', `${largeTriangles / 1000}k triangles`],
+    [
+      ['manual authoring', 'artist-driven', '*60–120 min*', '*gold standard*', '', '', '', '*low*'],
+      ...methodNames.map((name) => [
+        rowNames[name],
+        'automated',
+        each('ms', (_, model) => `${ms(times[model]![name])} ms`),
+        ...shares.map((share) => each('%', ({ methods }) => percent(methods[name][share]))),
+        `${ms(largeTimes[name])} ms`,
+      ]),
+    ],
+  );
+}
+
+/** A row per model. */
+const byModel = (models: Readonly<Record<string, Quality>>, head: readonly string[], cells: (quality: Quality, name: string) => string[]): string =>
+  table(['', ...head], Object.entries(models).map(([name, quality]) => [name, ...cells(quality, name)]));
+
+const worstOfThresholds = `\`default\`, worst of thresholds ${thresholds[0]}–${thresholds.at(-1)}`;
+const worstOfShifts = `worst of the cage ${percent(shift)} of the diagonal aside`;
+
+/** Each method's score, and the worst that `default` can be brought to. */
+function methodScores({ methods, thresholds: by, shifted }: Quality, show: (score: Score) => string): string[] {
+  return [...methodNames.map((method) => methods[method]), worst(Object.values(by.default)), worst(Object.values(shifted))].map(show);
+}
+
+/** `default` without each of its steps, where that is not the same. */
+function stepTable(models: Readonly<Record<string, Quality>>, show: (score: Score) => string): string {
+  const steps = Object.keys(Object.values(models)[0]!.without);
+  return byModel(models, steps, ({ methods, without }) => {
+    const whole = show(methods.default);
+    return steps.map((step) => show(without[step]!)).map((cell) => (cell === whole ? '' : cell));
+  });
+}
+
+/** Why vertices are left out, and what a transfer takes. */
+function costTable({ models, times }: QualityResults): string {
+  const head = ['vertices', '`paper`', '`default`', 'naive, ms', '`paper`, ms', '`default`, ms', '`paper`, MB', '`default`, MB', 'smeared: vertex', 'corner'];
+  return byModel(models, head, ({ methods, peakBytes, smear }, name) => {
+    const zones = ({ occluded, uncovered, culled }: ZoneCounts): string => `${occluded} / ${uncovered} / ${culled}`;
+    const vertices = Object.values(methods.naive.vertices).reduce((sum, count) => sum + count, 0);
+    const { naive, paper, default: ours } = times[name]!;
+    return [
+      String(vertices),
+      ...[methods.paper, methods.default].map((method) => zones(method.vertices)),
+      ...[naive, paper, ours].map(ms),
+      ...[peakBytes.paper, peakBytes.default].map((bytes) => (bytes / 1e6).toFixed(1)),
+      ...[smear.vertex, smear.corner].map(percent),
+    ];
+  });
+}
+
+/** The segments that are nearest to the floor, of each kind. */
+function floorTable(models: Readonly<Record<string, Quality>>): string {
+  const segments = Object.entries(models)
+    .filter(([, { kind }]) => kind !== 'spoiled')
+    .flatMap(([name, quality]) => quality.segments.map((segment) => ({ name, ...segment })))
+    .filter(({ coverage }) => coverage >= 0.3) // whoever fails the lowest threshold needs no floor
+    .sort((a, b) => Math.abs(Math.log(a.reach)) - Math.abs(Math.log(b.reach)));
+  const nearest = (['bare', 'painted', 'either'] as const).flatMap((wanted) => segments.filter((segment) => segment.wanted === wanted).slice(0, 5));
+  return table(
+    ['', 'first vertex', 'wanted', 'F', 'C / A', 'reach', ''],
+    nearest.map(({ name, firstVertex, wanted, coverage, coveredShare, reach, culled }) => [
+      name,
+      String(firstVertex),
+      wanted,
+      coverage.toFixed(3),
+      coveredShare.toFixed(4),
+      reach.toFixed(3),
+      culled ? 'culled' : 'passes',
+    ]),
+  );
 }
 
 /** All tables, in Markdown. */
 export function qualityReport(results: QualityResults): string {
-  const { date, machine, models, times } = results;
-  const entries = Object.entries(models);
-  const steps = Object.keys(entries[0]![1].without);
+  const { date, machine, models } = results;
   const missed = missedGoals(models);
-  const judged = entries.flatMap(([name, q]) => (q.kind === 'spoiled' ? [] : q.segments.filter(({ coverage }) => coverage >= 0.3).map((segment) => ({ name, ...segment }))));
-  return `${[
+  const scoresHead = [...methodNames, worstOfThresholds, worstOfShifts];
+  const parts = [
     `# Quality, measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores, Node ${machine.node}. Written by \`npm run quality\`; all numbers: [quality.json](quality.json).`,
-    [
-      '- *suppressed*: of the area that must not be painted, the share whose vertices are not; *kept*: of the area that is to be painted, the share whose vertices are. Left out is what the truth leaves open (hidden, or a matter of taste), and of *kept* what the cage does not speak of (its nearest place is on an open border).',
-      '- *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where none must be; *bare*: of those that show what is to be painted (in the same sense), those without.',
-      '- *latency*: the package in Node, raw arrays in, answer out; CPU time, medians. The first rows are the first steps of `paper`.',
-    ].join('\n'),
+    `- *suppressed*: of the area that must not be painted, the share whose vertices are not; *kept*: of the area that is to be
+  painted, the share whose vertices are. Left out is what the truth leaves open (hidden, or a matter of taste), and of *kept*
+  what the cage does not speak of (its nearest place is on an open border).
+- *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where
+  none must be; *bare*: of those that show what is to be painted (in the same sense), those without.
+- *latency*: the package in Node, raw arrays in, answer out; CPU time, medians. The first rows are the first steps of \`paper\`.`,
     posterTable(results),
+    `In italics: as the poster says. Its other rows read “< 30–60 ms, low, high” (naive) and “< 70–100 ms, high, high” (the method),
+for latency, suppression and scalability.`,
     missed.length === 0 ? 'All goals are reached.' : `Goals missed:\n\n${missed.map((line) => `- ${line}`).join('\n')}`,
     '![Suppressed and kept by threshold](quality-thresholds.svg)',
     '## Every model',
     'Suppressed · kept. *Trap*: made to be difficult; *spoiled*: made to fail, as on the poster, and not held to any goal.',
-    table(
-      ['', '', 'triangles', ...methodNames, `\`default\`, worst of thresholds ${thresholds[0]}–${thresholds.at(-1)}`, `worst of the cage ${percent(shift)} of the diagonal aside`],
-      entries.map(([name, q]) => [name, q.kind, q.triangles.toLocaleString('en'), ...methodNames.map((method) => both(q.methods[method])), both(worst(Object.values(q.thresholds.default))), both(worst(Object.values(q.shifted)))]),
-    ),
+    byModel(models, ['', 'triangles', ...scoresHead], (quality) => [quality.kind, quality.triangles.toLocaleString('en'), ...methodScores(quality, byArea)]),
     'In the picture: painted where forbidden · bare.',
-    table(
-      ['', ...methodNames, `\`default\`, worst of thresholds ${thresholds[0]}–${thresholds.at(-1)}`, `worst of the cage ${percent(shift)} of the diagonal aside`],
-      entries.map(([name, q]) => [name, ...methodNames.map((method) => inPicture(q.methods[method])), inPicture(worst(Object.values(q.thresholds.default))), inPicture(worst(Object.values(q.shifted)))]),
-    ),
+    byModel(models, scoresHead, (quality) => methodScores(quality, byPixel)),
     '## Where it fails',
     'As the poster says: where eyes are of one piece with the skin, and where the cage is out of place. `cagecast inspect` calls the second unfit.',
     '![A face whose eyes are of one piece with its skin, and one under a cage that is turned and moved, by every method](../../docs/pictures/failures.jpg)',
     '## Why vertices are left out, and what it takes',
-    'Vertices occluded / uncovered / culled; milliseconds; most memory beyond cage and target (the poster: “~20 MB”); painted area whose texture is smeared, with UVs per vertex and per corner.',
-    table(
-      ['', 'vertices', '`paper`', '`default`', 'naive, ms', '`paper`, ms', '`default`, ms', '`paper`, MB', '`default`, MB', 'smeared: vertex', 'corner'],
-      entries.map(([name, q]) => {
-        const counts = (method: MethodName): string => [q.methods[method].vertices].map(({ occluded, uncovered, culled }) => `${occluded} / ${uncovered} / ${culled}`)[0]!;
-        const vertices = Object.values(q.methods.naive.vertices).reduce((sum, count) => sum + count, 0);
-        return [name, String(vertices), counts('paper'), counts('default'), ...(['naive', 'paper', 'default'] as const).map((method) => ms(times[name]![method])), ...(['paper', 'default'] as const).map((preset) => (q.peakBytes[preset] / 1e6).toFixed(1)), percent(q.smear.vertex), percent(q.smear.corner)];
-      }),
-    ),
+    `Vertices occluded / uncovered / culled; milliseconds; most memory beyond cage and target (the poster: “~20 MB”); painted area
+whose texture is smeared, with UVs per vertex and per corner.`,
+    costTable(results),
     '## `default` without one step',
-    'Suppressed · kept, where it differs from `default` as it is. `groups`: parts welded together; `depth`: the floor as it was at first; the others: that option as in `paper`.',
-    table(
-      ['', ...steps],
-      entries.map(([name, q]) => [name, ...steps.map((step) => [both(q.without[step]!)].map((text) => (text === both(q.methods.default) ? '' : text))[0]!)]),
-    ),
+    `Suppressed · kept, where it differs from \`default\` as it is. \`groups\`: parts welded together; \`depth\`: the floor as it was at
+first; the others: that option as in \`paper\`.`,
+    stepTable(models, byArea),
     'In the picture: painted where forbidden · bare.',
-    table(
-      ['', ...steps],
-      entries.map(([name, q]) => [name, ...steps.map((step) => [inPicture(q.without[step]!)].map((text) => (text === inPicture(q.methods.default) ? '' : text))[0]!)]),
-    ),
+    stepTable(models, byPixel),
     '## How near the floor is',
     'How many times what the floor asks a segment reaches, of those with F of at least 0.3; the five nearest to 1 of either kind.',
-    table(
-      ['', 'first vertex', 'wanted', 'F', 'C / A', 'reach', ''],
-      (['bare', 'painted', 'either'] as const).flatMap((wanted) =>
-        judged
-          .filter((segment) => segment.wanted === wanted)
-          .sort((a, b) => Math.abs(Math.log(a.reach)) - Math.abs(Math.log(b.reach)))
-          .slice(0, 5)
-          .map((s) => [s.name, String(s.firstVertex), wanted, s.coverage.toFixed(3), s.coveredShare.toFixed(4), s.reach.toFixed(3), s.culled ? 'culled' : 'passes']),
-      ),
-    ),
-  ]
-    .join('\n\n')
-    .replace(/\n{3,}/g, '\n\n')
-    .trim()}\n`;
+    floorTable(models),
+  ];
+  return `${parts.map((part) => part.trim()).join('\n\n')}\n`;
 }

@@ -32,7 +32,12 @@ export function score({ scene, truth }: Model, pixels: Uint32Array, { zones, cos
 }
 
 /** Adds up the weights of the corners that must not be painted, and of those that are to be: all of them, and the painted ones. */
-function tally({ ignore, ncz, offCage }: Model['truth'], indices: Uint32Array, weightOf: (corner: number) => number, isPainted: (corner: number) => boolean) {
+function tally(
+  { ignore, ncz, offCage }: Model['truth'],
+  indices: Uint32Array,
+  weightOf: (corner: number) => number,
+  isPainted: (corner: number) => boolean,
+): Record<'ncz' | 'nczPainted' | 'skin' | 'skinPainted', number> {
   const sums = { ncz: 0, nczPainted: 0, skin: 0, skinPainted: 0 };
   indices.forEach((v, corner) => {
     if (ignore[v] === 1) return;

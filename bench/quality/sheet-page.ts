@@ -143,9 +143,12 @@ function removedOf({ geometry, firstTriangle, triangleCount }: Part, { cosmeticT
   const removed = new BufferGeometry();
   for (const name of ['position', 'normal']) if (geometry.hasAttribute(name)) removed.setAttribute(name, geometry.getAttribute(name));
   removed.setIndex(new BufferAttribute(Uint32Array.from(corners), 1));
-  const red = new MeshStandardMaterial({ color: '#e01020', emissive: '#700008', roughness: 0.6, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 });
-  return new Mesh(removed, red);
+  const red = { color: '#e01020', emissive: '#700008', roughness: 0.6 };
+  return new Mesh(removed, new MeshStandardMaterial({ ...red, ...offset(-1) }));
 }
+
+/** Moves a material away from the eye in depth, or towards it. */
+const offset = (by: number) => ({ polygonOffset: true, polygonOffsetFactor: by, polygonOffsetUnits: by });
 
 /** The cage with the paint on it, and its edges. */
 function shellOf(cage: Object3D, paint: Texture): Group {
@@ -153,8 +156,9 @@ function shellOf(cage: Object3D, paint: Texture): Group {
   cage.updateWorldMatrix(true, true);
   cage.traverse((object) => {
     if (!(object instanceof Mesh)) return;
-    const skin = new Mesh(object.geometry, new MeshStandardMaterial({ map: paint, roughness: 0.7, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
-    const lines = new LineSegments(new EdgesGeometry(object.geometry, 0), new LineBasicMaterial({ color: '#1c2430', transparent: true, opacity: 0.55 }));
+    const skin = new Mesh(object.geometry, new MeshStandardMaterial({ map: paint, roughness: 0.7, ...offset(1) }));
+    const ink = new LineBasicMaterial({ color: '#1c2430', transparent: true, opacity: 0.55 });
+    const lines = new LineSegments(new EdgesGeometry(object.geometry, 0), ink);
     for (const part of [skin, lines]) {
       part.applyMatrix4(object.matrixWorld);
       shell.add(part);
@@ -193,7 +197,9 @@ function cameraFor({ turn, rise }: Row, object: Object3D, aspect: number): Persp
   object.traverse((mesh) => {
     if (!(mesh instanceof Mesh)) return;
     const places = mesh.geometry.getAttribute('position');
-    for (let v = 0; v < places.count; ++v) seen.expandByPoint(new Vector3().fromBufferAttribute(places, v).applyMatrix4(mesh.matrixWorld).project(camera));
+    for (let v = 0; v < places.count; ++v) {
+      seen.expandByPoint(new Vector3().fromBufferAttribute(places, v).applyMatrix4(mesh.matrixWorld).project(camera));
+    }
   });
   // The part of the picture that it takes becomes the whole of it.
   const [middle, size] = [seen.getCenter(new Vector3()), seen.getSize(new Vector3())];

@@ -28,18 +28,28 @@ const heads: Record<Look, string> = {
   default: 'result',
 };
 
+const flags = [
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+  '--ignore-gpu-blocklist',
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+
 /**
  * Draws models with the package's own three.js adapter in Chromium, a row for each, all looks of a model from the same side.
  * @param models  Those that have a folder; the others are left out.
  * @param path    A JPEG or PNG, by its name.
  */
 export async function drawSheet(models: readonly Model[], looks: readonly Look[], path: string): Promise<void> {
-  const script = await build({ entryPoints: [`${root}bench/quality/sheet-page.ts`], bundle: true, format: 'iife', target: 'es2022', write: false, absWorkingDir: root, logLevel: 'error' });
+  const entryPoints = [`${root}bench/quality/sheet-page.ts`];
+  const script = await build({ entryPoints, bundle: true, format: 'iife', target: 'es2022', write: false, absWorkingDir: root, logLevel: 'error' });
   const executablePath = process.env['CHROMIUM'] ?? (await output('sh', ['-c', 'command -v chromium'])).stdout.trim();
-  const browser = await chromium.launch({
-    executablePath,
-    args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  const browser = await chromium.launch({ executablePath, args: flags });
   try {
     // Its files are those of the models, and nothing else is there.
     const files = new Map<string, string>();
@@ -51,13 +61,15 @@ export async function drawSheet(models: readonly Model[], looks: readonly Look[]
     const rows = models.flatMap(({ name, folder }): Row[] => {
       if (folder === undefined) return [];
       const { paint, ...view } = { paint: undefined, ...(views[name] ?? otherView) };
-      return [{ target: serve(`${folder}/target.glb`), cage: serve(`${folder}/cage.glb`), paint: paint === undefined ? undefined : serve(`${folder}/${paint}`), ...view }];
+      const [target, cage] = [serve(`${folder}/target.glb`), serve(`${folder}/cage.glb`)];
+      return [{ target, cage, paint: paint === undefined ? undefined : serve(`${folder}/${paint}`), ...view }];
     });
     const page = await browser.newPage({ viewport: { width: looks.length * cell.width, height: rows.length * cell.height + 48 } });
     page.setDefaultTimeout(120_000);
     await page.route('**/*', async (route) => {
       const file = files.get(new URL(route.request().url()).pathname);
-      await route.fulfill(file === undefined ? { contentType: 'text/html', body: pageOf(looks) } : { contentType: 'application/octet-stream', body: await readFile(file) });
+      if (file === undefined) await route.fulfill({ contentType: 'text/html', body: pageOf(looks) });
+      else await route.fulfill({ contentType: 'application/octet-stream', body: await readFile(file) });
     });
     await page.goto('http://sheet.test/sheet');
     await page.addScriptTag({ content: script.outputFiles[0]!.text });

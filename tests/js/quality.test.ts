@@ -15,8 +15,9 @@ describe('quality', () => {
   for (const files of filesOf('sample')) {
     test(`the ${files.name} is painted where it is to be, and nowhere else`, async (context) => {
       const quality = await measureFiles(files);
-      for (const [name, { suppressed, kept, forbidden, bare }] of Object.entries(quality.methods)) {
-        context.diagnostic(`${name}: suppressed ${suppressed.toFixed(4)}, kept ${kept.toFixed(4)}, pixels painted where forbidden ${forbidden.toFixed(4)}, bare ${bare.toFixed(4)}`);
+      for (const [method, { suppressed, kept, forbidden, bare }] of Object.entries(quality.methods)) {
+        const shares = Object.entries({ suppressed, kept, forbidden, bare }).map(([name, share]) => `${name} ${share.toFixed(4)}`);
+        context.diagnostic(`${method}: ${shares.join(', ')}`);
       }
       assert.deepEqual(missedGoals({ [files.name]: quality }), []);
     });
@@ -34,13 +35,15 @@ describe('quality', () => {
     assert.equal(sound.forbidden, 0);
     const spoiled = await Promise.all(filesOf('spoiled').map(measureFiles));
     assert.equal(spoiled.length, 2);
-    for (const { methods } of spoiled) assert.ok(methods.paper.forbidden > 0 && methods.paper.suppressed < sound.suppressed, JSON.stringify(methods.paper));
+    for (const { methods: { paper } } of spoiled) assert.ok(paper.forbidden > 0 && paper.suppressed < sound.suppressed, JSON.stringify(paper));
   });
 
   test('what paints all, or nothing, misses the goals', () => {
     const { lizard } = results;
-    const withDefault = (suppressed: number, kept: number, forbidden: number, bare: number): string =>
-      missedGoals({ lizard: { ...lizard!, methods: { ...lizard!.methods, default: { ...lizard!.methods.default, suppressed, kept, forbidden, bare } } } }).join('\n');
+    const withDefault = (suppressed: number, kept: number, forbidden: number, bare: number): string => {
+      const methods = { ...lizard!.methods, default: { ...lizard!.methods.default, suppressed, kept, forbidden, bare } };
+      return missedGoals({ lizard: { ...lizard!, methods } }).join('\n');
+    };
     const { naive } = lizard!.methods;
     assert.match(withDefault(naive.suppressed, naive.kept, naive.forbidden, naive.bare), /default: suppressed.*\n.*paint where none must be/);
     assert.match(withDefault(1, 0, 0, 1), /default: kept.*\n.*without paint/);
@@ -51,7 +54,8 @@ describe('quality', () => {
     // A box in a larger one: nothing of the inner one is seen, and every side of the outer, though not from everywhere.
     const corners = (s: number): number[] => [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? s : -s]);
     const sides = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
-    const counts = visiblePixels({ positions: Float32Array.from([...corners(0.9), ...corners(1)]), indices: Uint32Array.from([...sides, ...sides.map((v) => v + 8)]) });
+    const positions = Float32Array.from([...corners(0.9), ...corners(1)]);
+    const counts = visiblePixels({ positions, indices: Uint32Array.from([...sides, ...sides.map((v) => v + 8)]) });
     const seen = (from: number, to: number): number => counts.subarray(from, to).reduce((sum, count) => sum + count, 0);
     assert.equal(seen(0, 36), 0, 'the inner box is hidden');
     for (let side = 6; side < 12; ++side) assert.ok(seen(6 * side, 6 * side + 6) > 1000, `side ${side} is seen`);
