@@ -21,7 +21,7 @@ export interface QualityResults {
 
 /** Writes JSON, tables and plot, over those of earlier runs. */
 export async function writeQuality(results: QualityResults): Promise<void> {
-  // Four digits of a percentage are more than a model is good for. What has no parts of its own is kept on one line.
+  // Six digits are more than a model is good for. What has no parts of its own is kept on one line.
   const json = JSON.stringify(results, (_, value: unknown) => (typeof value === 'number' ? Number(value.toPrecision(6)) : value), 1);
   await writeFile(`${resultsFolder}/quality.json`, `${json.replace(/\{[^{}[\]]*\}/g, (leaf) => leaf.replace(/\s+/g, ' '))}\n`);
   await writeFile(`${resultsFolder}/quality.md`, qualityReport(results));
