@@ -1,10 +1,11 @@
-// Takes the README's pictures of the page: npm run pictures
+// Takes the README's pictures of the page: npm run pictures [-- name …]
 
 import { mkdir } from 'node:fs/promises'
 import type { Page } from 'playwright-core'
 import { inRepository, settled, Site } from './site.js'
 
 const kFolder = inRepository('docs/pictures')
+const kModels = ['Lizard head', 'Human bust', 'Saloon car']
 
 /** The model alone, naive beside filtered. */
 async function compare(site: Site): Promise<void> {
@@ -28,6 +29,42 @@ async function desktopAndPhone(site: Site): Promise<void> {
   await compose(site, 'page', `<div style="display:flex;gap:24px">${shots.map((shot) => `<img src="${shot}" style="height:640px;border-radius:10px">`).join('')}</div>`)
 }
 
+/** Each model in the modes that are not about paint. */
+async function modes(site: Site): Promise<void> {
+  const shown = { zones: 'zones', segments: 'parts', checker: 'UV checker', distance: 'distance to the cage', stretch: 'stretch' }
+  const rows: string[] = []
+  const { page } = await site.visit({ viewport: { width: 900, height: 520 } })
+  await hideControls(page)
+  for (const model of kModels) {
+    await choose(page, model)
+    const row: string[] = []
+    for (const mode of Object.keys(shown)) {
+      await page.locator(`#view-mode input[value=${mode}]`).check({ force: true })
+      await rest(page)
+      row.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })))
+    }
+    rows.push(row.map((shot) => `<img src="${shot}" style="width:264px;height:214px;object-fit:cover;object-view-box:inset(6% 25% 17% 25%)">`).join(''))
+  }
+  const heads = Object.values(shown).map((head) => `<b style="width:264px;text-align:center">${head}</b>`).join('')
+  await compose(site, 'modes', [heads, ...rows].map((row) => `<div style="display:flex">${row}</div>`).join(''))
+}
+
+/** The stories of an eye, and of a spot that the model hides. */
+async function why(site: Site): Promise<void> {
+  const shots: string[] = []
+  const { page } = await site.visit({ viewport: { width: 1200, height: 760 } })
+  await page.locator('#view-mode input[value=result]').check({ force: true })
+  await page.locator('#tools input').nth(1).check({ force: true })
+  const stage = (await page.locator('#stage').boundingBox())!
+  for (const [x, y] of [[0.6, 0.35], [0.42, 0.58]] as const) {
+    await page.mouse.click(stage.x + x * stage.width, stage.y + y * stage.height)
+    await page.locator('#why').evaluate((section) => section.scrollIntoView({ block: 'center' }))
+    await rest(page)
+    shots.push(dataUri(await page.screenshot({ type: 'png' })))
+  }
+  await compose(site, 'why', `<div style="display:flex;gap:16px">${shots.map((shot) => `<img src="${shot}" style="width:720px;border-radius:10px">`).join('')}</div>`)
+}
+
 async function choose(page: Page, model: string): Promise<void> {
   await page.locator('#sample-select').selectOption({ label: model })
   await page.waitForTimeout(300)
@@ -35,7 +72,7 @@ async function choose(page: Page, model: string): Promise<void> {
 }
 
 async function hideControls(page: Page): Promise<void> {
-  await page.addStyleTag({ content: '.panel, .toolbar, header { opacity: 0 }' })
+  await page.addStyleTag({ content: '.panel, .toolbar, .rail, .legend, header { opacity: 0 }' })
 }
 
 /** Waits until the picture has been drawn with all its textures. */
@@ -50,11 +87,11 @@ async function compose(site: Site, name: string, html: string): Promise<void> {
   await page.locator('#all').screenshot({ path: `${kFolder}/${name}.jpg`, type: 'jpeg', quality: 85 })
 }
 
+const wanted = process.argv.slice(2)
 const site = await Site.open()
 try {
   await mkdir(kFolder, { recursive: true })
-  await compare(site)
-  await desktopAndPhone(site)
+  for (const take of [compare, desktopAndPhone, modes, why]) if (wanted.length === 0 || wanted.includes(take.name)) await take(site)
 } finally {
   await site.close()
 }

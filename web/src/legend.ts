@@ -2,8 +2,8 @@ import { cssColor } from './colors'
 import { element } from './page'
 import type { Scale } from './tints'
 
-/** What the colours in the picture stand for: words beside swatches, or a scale. */
-export type Legend = { scale: Scale } | { keys: { zone: string; title: string }[] }
+/** What the colours in the picture stand for: zones, or a scale. */
+export type Legend = { scale: Scale } | { keys: string[] }
 
 /** Shows a legend on the picture, or none. */
 export function showLegend(legend: Legend | undefined): void {
@@ -21,11 +21,11 @@ function ofScale({ title, map, ticks }: Scale): HTMLElement[] {
   return [made('b', '', title), band, marks]
 }
 
-function ofKey({ zone, title }: { zone: string; title: string }): HTMLElement {
+function ofKey(zone: string): HTMLElement {
   const key = made('span', 'key')
   const swatch = made('i', 'swatch')
   swatch.dataset.zone = zone
-  key.append(swatch, title)
+  key.append(swatch, zone)
   return key
 }
 

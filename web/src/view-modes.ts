@@ -11,14 +11,7 @@ const kTints: { [Name in Mode]?: (shown: Shown, classification: Classification) 
   stretch: tintStretch,
 }
 
-const kZoneKeys: Legend = {
-  keys: [
-    { zone: 'cosmetic', title: 'may be painted' },
-    { zone: 'occluded', title: 'occluded by the model' },
-    { zone: 'uncovered', title: 'uncovered by the cage' },
-    { zone: 'culled', title: 'culled with its part' },
-  ],
-}
+const kZoneKeys: Legend = { keys: ['cosmetic', 'occluded', 'uncovered', 'culled'] }
 
 /** Colours the model for the modes of the picture that show something other than paint, and says what the colours mean. */
 export function showViewModes(session: Session, viewer: Viewer): void {
