@@ -352,6 +352,15 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     const bool onOneIsland = islands[point[0]] == islands[point[1]] && islands[point[1]] == islands[point[2]];
     return onOneIsland && simd::bits(u + v <= simd::splat(explains) * (x + y + z)) == 0xF;
   };
+  // The triangles around a point often come one soon after the other.
+  constexpr std::uint32_t kRecent = 64;
+  struct Recent {
+    std::uint32_t point = UINT32_MAX;
+    Corner corner;
+  };
+  auto* recent = scratch.take<Recent>(kRecent);
+  if (scratch.failed()) return false;
+  std::fill(recent, recent + kRecent, Recent{});
   const std::size_t allTriangles = targetMesh.indices.size() / 3;
   std::uint32_t usable = 0;
   for (std::size_t t = 0; t < allTriangles; ++t) {
@@ -366,8 +375,13 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
 
     Corner corners[3];
     for (int c = 0; c < 3; ++c) {
-      const Vec3 p = Vec3::from(points.at(point[c]));
-      corners[c] = {p, mender.placeOf(p, results.triangles[point[c]])};
+      auto& [of, corner] = recent[point[c] % kRecent];
+      if (of != point[c]) {
+        const Vec3 p = Vec3::from(points.at(point[c]));
+        of = point[c];
+        corner = {p, mender.placeOf(p, results.triangles[point[c]])};
+      }
+      corners[c] = corner;
     }
     if (mender.isAcross(corners)) mender.mend(corners, uvs);
   }
