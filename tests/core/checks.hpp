@@ -34,6 +34,7 @@ inline reference::Differences requireSameAsReference(const std::string& name, co
   CHECK(found.distances == 0);
   CHECK(found.segments == 0);
   CHECK(found.painted == 0);
+  CHECK(found.corners == 0);
   CHECK(found.stats == 0);
   return found;
 }

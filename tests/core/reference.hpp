@@ -85,10 +85,11 @@ struct Differences {
   std::size_t distances = 0;  ///< Vertices with a distance more than 1e-6 of the target's diagonal off.
   std::size_t segments = 0;   ///< Vertices (stable or not) with another segment.
   std::size_t painted = 0;    ///< Triangles, all their corners being stable, that are cosmetic for one of the two only.
+  std::size_t corners = 0;    ///< Triangles, stable where their patch is concerned, with a corner whose UV is more than 1e-5 off.
   std::size_t stats = 0;      ///< Segments with other counts, or, all their vertices and areas being firm, other areas.
   std::string details;        ///< A line for each of the first few.
   [[nodiscard]] std::size_t total() const noexcept {
-    return zones + triangles + uvs + distances + segments + painted + stats;
+    return zones + triangles + uvs + distances + segments + painted + corners + stats;
   }
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -26,12 +27,17 @@ Differences compare(const Result& reference, const TransferResult& product, cons
       projection.triangles.size() != found.vertices || projection.distances.size() != found.vertices ||
       projection.segments.size() != found.vertices || projection.segmentStats.size() != reference.segmentStats.size() ||
       product.zones.culledSegments.size() != reference.segmentStats.size() ||
-      product.zones.cosmeticTriangles.size() != reference.cosmeticTriangles.size()) {
+      product.zones.cosmeticTriangles.size() != reference.cosmeticTriangles.size() ||
+      projection.cornerUvs.size() != reference.cornerUvs.size()) {
     report("the arrays have other lengths: %zu zones of %zu, %zu segments of %zu", product.zones.zones.size(),
            found.vertices, projection.segmentStats.size(), reference.segmentStats.size());
     found.stats = 1;
     return found;
   }
+  const auto isOtherUv = [](float gotUv, float expectedUv) {
+    const double got = static_cast<double>(gotUv), expected = static_cast<double>(expectedUv);
+    return !(std::abs(got - expected) <= kUvTolerance * std::max(1.0, std::abs(expected)));
+  };
   std::vector<std::uint8_t> firm = reference.firmAreas;
   for (std::size_t v = 0; v < found.vertices; ++v) {
     if (projection.segments[v] != reference.segments[v]) {
@@ -61,10 +67,9 @@ Differences compare(const Result& reference, const TransferResult& product, cons
       continue;  // Another triangle has another UV.
     }
     for (std::size_t k = v * 2; k < v * 2 + 2; ++k) {
-      const double expected = static_cast<double>(reference.uvs[k]), got = static_cast<double>(projection.uvs[k]);
-      if (std::abs(got - expected) <= kUvTolerance * std::max(1.0, std::abs(expected))) continue;
+      if (!isOtherUv(projection.uvs[k], reference.uvs[k])) continue;
       ++found.uvs;
-      report("%s: uv %.9g, expected %.9g", at().c_str(), got, expected);
+      report("%s: uv %.9g, expected %.9g", at().c_str(), static_cast<double>(projection.uvs[k]), static_cast<double>(reference.uvs[k]));
       break;
     }
     const double expected = static_cast<double>(reference.distances[v]);
@@ -80,6 +85,13 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     if (product.zones.cosmeticTriangles[t] == reference.cosmeticTriangles[t]) continue;
     ++found.painted;
     report("triangle %zu: cosmetic %d, expected %d", t, int{product.zones.cosmeticTriangles[t]}, int{reference.cosmeticTriangles[t]});
+  }
+  for (std::size_t i = 0; i < reference.cornerUvs.size(); ++i) {
+    if (reference.stableCorners[i / 6] == 0 || !isOtherUv(projection.cornerUvs[i], reference.cornerUvs[i])) continue;
+    ++found.corners;
+    report("triangle %zu, corner %zu: uv %.9g, expected %.9g", i / 6, i % 6 / 2, static_cast<double>(projection.cornerUvs[i]),
+           static_cast<double>(reference.cornerUvs[i]));
+    i += 5 - i % 6;  // The next triangle.
   }
   for (std::size_t s = 0; s < reference.segmentStats.size(); ++s) {
     const SegmentStats& expected = reference.segmentStats[s];
