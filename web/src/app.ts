@@ -1,6 +1,12 @@
 import { init } from 'cagecast'
+import { setUpPainting } from './brush/set-up'
 import { FitPanel } from './fit'
+import { History } from './history'
 import { setUpJump } from './jump'
+import { followPaints, showComposite } from './layers/follow'
+import { LayerList } from './layers/layer-list'
+import { setUpSaving } from './layers/save'
+import { LayerStack } from './layers/stack'
 import { keepOffline } from './offline'
 import { Opener } from './open'
 import { element } from './page'
@@ -15,6 +21,7 @@ import { paintOf } from './take/paint'
 import { followLinks } from './take/links'
 import { Take } from './take/take'
 import { Tools } from './tools'
+import { setUpUndo } from './undo'
 import { setUpViewControls } from './view-controls'
 import { showViewModes } from './view-modes'
 import { Viewer } from './viewer'
@@ -44,12 +51,21 @@ await painted()
 const session = new Session()
 const viewer = startViewer()
 // Each feature follows the session by itself. The picture comes first: what others lay on it needs it up to date.
+const stack = new LayerStack()
+const history = new History()
+followPaints(session, stack)
+let png: (() => Promise<Blob>) | undefined
 if (viewer) {
   showPicture(session, viewer)
   showViewModes(session, viewer)
+  const composite = showComposite(viewer, stack)
   const tools = new Tools(viewer, element('stage', HTMLElement))
+  setUpPainting(session, viewer, tools, stack, composite, history)
   new Why(session, viewer, tools)
+  png = setUpSaving(viewer, composite)
 } else element('why', HTMLElement).hidden = true
+new LayerList(stack, history)
+setUpUndo(history)
 showStatus(session, viewer === undefined)
 showResults(session)
 new PartsTable(session, viewer)
@@ -57,9 +73,10 @@ new FitPanel(session, viewer)
 setUpRules(session)
 setUpViewControls(session)
 setUpJump()
-const opener = new Opener(session)
-const paints = paintOf(session)
-new Take(session, paints)
+const opener = new Opener(session, stack)
+const paints = paintOf(session, stack, opener, png)
+const take = new Take(session, paints)
+stack.on('change', () => take.refresh())
 keepOffline(session)
 
 try {

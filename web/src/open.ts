@@ -1,5 +1,6 @@
 import { setUpFiles, type Intake } from './files'
 import { loadModel, type Model } from './load'
+import type { LayerStack } from './layers/stack'
 import { element } from './page'
 import { loadPaint, type Paint } from './paint'
 import { offerPaints, type Choice } from './paints'
@@ -11,17 +12,18 @@ const kOwn = 'own'
 /** Opens samples and the visitor's own files, and says what is open. */
 export class Opener {
   readonly #session: Session
+  readonly #stack: LayerStack
   readonly #select = element('sample-select', HTMLSelectElement)
   #samples: Sample[] = []
-  /** The last paint of the visitor's own, to choose from beside the sample's. */
-  #ownPaint: Paint | undefined
 
-  constructor(session: Session) {
+  constructor(session: Session, stack: LayerStack) {
     this.#session = session
+    this.#stack = stack
     setUpFiles((intake) => this.#take(intake))
     this.#select.addEventListener('change', () => this.openSample(this.#select.value))
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap())
     session.on('progress', ({ state }) => state === 'ready' && this.#describe(session.shown!))
+    stack.on('change', () => session.shown && this.#offerPaints(session.shown))
   }
 
   get samples(): readonly Sample[] {
@@ -47,6 +49,16 @@ export class Opener {
     const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0])
     const model = async (address: string): Promise<Model> => ({ ...(await loadModel(await fetchFile(address))), sample })
     this.#session.want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, chosen) }, locks)
+  }
+
+  /** Reads a paint of any sample. @param name By `paintName`. @returns Nothing if there is none of that name. */
+  async paint(name: string): Promise<Paint | undefined> {
+    if (name === kChecker) return this.#session.checker
+    for (const sample of this.#samples) {
+      const found = sample.paints.find(({ file }) => paintName(file) === name)
+      if (found) return this.#fetchPaint(sample, found)
+    }
+    return undefined
   }
 
   async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {
@@ -79,7 +91,7 @@ export class Opener {
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`
     element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`
     this.#describeOrigin(target.sample !== undefined, cage.sample !== undefined)
-    this.#offerPaints(cage.sample, paint)
+    this.#offerPaints({ cage })
   }
 
   /** Tells what is still a sample's among files of one's own. */
@@ -99,17 +111,14 @@ export class Opener {
           : 'The target is yours, the cage is still the sample’s: add the cage made for it.'
   }
 
-  /** Offers what there is to paint with: one's own, the sample's, and the checker. */
-  #offerPaints(sample: Sample | undefined, shown: Paint): void {
+  /** Offers what may lie under everything: the sample's paints, and the checker. */
+  #offerPaints({ cage: { sample } }: Pick<Shown, 'cage'>): void {
     const { checker } = this.#session
-    if (shown !== checker && !shown.sample) this.#ownPaint = shown
-    const own = this.#ownPaint
     const choices: (Choice & { load(): Promise<Paint> })[] = [
-      ...(own ? [{ title: own.name, picture: own.picture, load: async () => own }] : []),
       ...(sample?.paints ?? []).map((paint) => ({ title: paint.title, picture: paint.file, load: () => this.#fetchPaint(sample!, paint) })),
       { title: checker.name, picture: checker.picture, load: async () => checker },
     ]
-    const chosen = choices.findIndex(({ picture }) => picture === shown.picture)
+    const chosen = choices.findIndex(({ picture }) => picture === this.#stack.base?.sheet.picture)
     offerPaints(choices, chosen, (index) => this.#session.want({ paint: choices[index]!.load() }))
   }
 }

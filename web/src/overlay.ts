@@ -35,6 +35,11 @@ const kUvName = `uv${kUvChannel}`
 /** Linear light, in shares of 65535, for each byte of sRGB. */
 const kLinear = Uint16Array.from({ length: 256 }, (_, byte) => Math.round(65535 * new Color().setRGB(byte / 255, 0, 0, SRGBColorSpace).r))
 
+const kMapShader = /* glsl */ `
+  vec4 texel = texture2D( map, vMapUv );
+  diffuseColor *= vec4( texel.rgb / max( texel.a, 1e-4 ), texel.a );
+`
+
 /** The order of a part's triangles: those that may be painted, then the NCZ ones by reason. */
 const kZones = [0, 1, 2, 3] as const
 const kReasons = [1, 2, 3] as const
@@ -53,7 +58,7 @@ export class Overlay {
 
   /**
    * Lays nothing yet: call `classify`.
-   * @param paint In the cage's UVs. It may be a render target's, drawn anew at any time.
+   * @param paint In the cage's UVs, its colours multiplied by their alpha. It may be a render target's, drawn anew at any time.
    */
   constructor(target: ExtractedMesh, projection: Projection, paint: Texture | undefined) {
     const parts = target.parts.filter((part) => part.triangleCount > 0)
@@ -291,6 +296,10 @@ function paintMaterial(base: Material): MeshStandardMaterial {
   paint.metalnessMap = null
   paint.alphaTest = 0
   paint.opacity = 1
+  // The texture's colours are multiplied by their alpha, so that what is transparent has none to give when it is filtered.
+  paint.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace('#include <map_fragment>', kMapShader)
+  }
   return onSurface(paint)
 }
 

@@ -1,4 +1,5 @@
 import { CanvasTexture, RepeatWrapping, SRGBColorSpace, Texture } from 'three'
+import { kMostSize } from './layers/composite'
 import type { Sample } from './samples'
 
 /** A texture in the cage's UV space. */
@@ -12,7 +13,12 @@ export interface Paint {
   sample?: Sample
 }
 
-const kLargest = 4096 // texels a side: what every WebGL 2 phone can hold with its mipmaps
+/** What a paint is called in lists. */
+export function titleOf({ name, picture, sample }: Paint): string {
+  return sample?.paints.find(({ file }) => file === picture)?.title ?? name
+}
+
+const kLargest = kMostSize
 
 /**
  * Reads an image to paint with.
@@ -20,7 +26,7 @@ const kLargest = 4096 // texels a side: what every WebGL 2 phone can hold with i
  * @throws Error that names the file.
  */
 export async function loadPaint(file: File, picture = URL.createObjectURL(file)): Promise<Paint> {
-  const bitmap = await decode(file)
+  const bitmap = await readImage(file)
   const texture = new Texture(bitmap)
   // glTF puts the origin of UVs at the image's upper left corner.
   texture.flipY = false
@@ -28,7 +34,8 @@ export async function loadPaint(file: File, picture = URL.createObjectURL(file))
   return { name: file.name, texture: prepare(texture), picture }
 }
 
-async function decode(file: File): Promise<ImageBitmap> {
+/** Reads an image, made smaller if it is very large. @throws Error that names the file. */
+export async function readImage(file: File): Promise<ImageBitmap> {
   let bitmap: ImageBitmap
   try {
     bitmap = await createImageBitmap(file, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' })

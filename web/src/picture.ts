@@ -8,7 +8,6 @@ export function showPicture(session: Session, viewer: Viewer): void {
     viewer.setCage(cage)
   })
   session.on('zones', ({ classification }) => viewer.classify(classification))
-  session.on('paint', ({ texture }) => viewer.setPaint(texture))
   session.on('view', (view) => viewer.setView(view))
 
   const still = matchMedia('(prefers-reduced-motion: reduce)')

@@ -8,6 +8,8 @@ export interface Tool {
   move?(spot: Spot | undefined, event: PointerEvent): void
   /** The pointer that was taken is released, or lost. */
   up?(event: PointerEvent): void
+  /** What was begun is not meant: a second finger came, which turns the model. */
+  cancel?(): void
   /** A pointer that was not taken came down and up at the same place. */
   tap?(spot: Spot | undefined, event: PointerEvent): void
   /** A mouse or pen moves over the picture with nothing pressed, or leaves it; at most once a frame. */
@@ -16,17 +18,22 @@ export interface Tool {
 
 const kStill = 6 // pixels that a finger may move and still have tapped
 
-/** Gives a tool the pointers on a canvas, and leaves to later listeners those that the tool does not take. */
+/** Gives a tool the pointers on a canvas. What the tool does not take, and two fingers, turn the model. */
 export class Pointing {
   tool: Tool | undefined
   readonly #pick: (x: number, y: number) => Spot | undefined
+  readonly #leave: (turns: boolean) => void
   #taken: { id: number; tool: Tool } | undefined
   #pressed: { id: number; x: number; y: number } | undefined
   #hovering = 0
 
-  /** @param pick Finds what of the target is at `clientX`, `clientY`. */
-  constructor(canvas: HTMLCanvasElement, pick: (x: number, y: number) => Spot | undefined) {
+  /**
+   * @param pick  Finds what of the target is at `clientX`, `clientY`.
+   * @param leave Called with whether the pointer that goes down is to turn the model.
+   */
+  constructor(canvas: HTMLCanvasElement, pick: (x: number, y: number) => Spot | undefined, leave: (turns: boolean) => void) {
     this.#pick = pick
+    this.#leave = leave
     canvas.addEventListener('pointerdown', (event) => this.#down(canvas, event))
     canvas.addEventListener('pointermove', (event) => this.#move(event))
     canvas.addEventListener('pointerleave', (event) => this.#hover(event, false))
@@ -38,11 +45,19 @@ export class Pointing {
   }
 
   #down(canvas: HTMLCanvasElement, event: PointerEvent): void {
-    if (!this.tool || this.#taken || event.button !== 0) return
+    if (this.#taken) {
+      if (event.pointerType !== 'touch') return
+      this.#taken.tool.cancel?.()
+      this.#taken = undefined
+      return
+    }
+    this.#leave(true)
+    if (!this.tool || event.button !== 0) return
     if (this.tool.down?.(this.#spot(event), event)) {
       this.#taken = { id: event.pointerId, tool: this.tool }
       canvas.setPointerCapture(event.pointerId)
-      event.stopImmediatePropagation()
+      // Who turns the model still hears of it: with a second finger both are theirs.
+      this.#leave(false)
     } else {
       this.#pressed = { id: event.pointerId, x: event.clientX, y: event.clientY }
     }

@@ -4,10 +4,12 @@ import {
   Group,
   MathUtils,
   Mesh,
+  MOUSE,
   NeutralToneMapping,
   PCFShadowMap,
   PerspectiveCamera,
   Spherical,
+  TOUCH,
   Vector2,
   Vector3,
   WebGLRenderer,
@@ -50,6 +52,7 @@ export class Viewer {
   #paint: Texture | undefined
   #frame = 0
   #stale = true
+  readonly #preparations: (() => void)[] = []
   #turnStarted: number | undefined
 
   /** @throws Error where the browser has no WebGL 2. */
@@ -67,8 +70,9 @@ export class Viewer {
     this.#studio.stage.add(this.marks)
 
     // Before the controls, which get what it leaves to them.
-    this.#pointing = new Pointing(canvas, (x, y) => this.pick(x, y))
+    this.#pointing = new Pointing(canvas, (x, y) => this.pick(x, y), (turns) => this.#leave(turns))
     this.#controls = new OrbitControls(this.#camera, canvas)
+    this.#controls.touches.TWO = TOUCH.DOLLY_ROTATE
     this.#controls.enableDamping = true
     this.#controls.dampingFactor = 0.12
     this.#controls.enablePan = false
@@ -117,13 +121,30 @@ export class Viewer {
   pick(x: number, y: number): Spot | undefined {
     if (!this.#model) return undefined
     const { left, top, width, height } = this.#canvas.getBoundingClientRect()
+    this.#camera.updateMatrixWorld() // it may have moved since the last picture
     return pick(this.#model.mesh, this.#camera, new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height))
+  }
+
+  /** How many pixels of the screen a length of 1 in the target's space takes. @param seen Where, in the studio: as a `Spot` has it. */
+  pixelsAt(seen: Vector3): number {
+    const depth = seen.clone().applyMatrix4(this.#camera.matrixWorldInverse).z
+    return (this.#studio.stage.scale.x * this.#canvas.clientHeight) / (-2 * depth * Math.tan(MathUtils.degToRad(kFieldOfView / 2)))
+  }
+
+  /** Where the picture's upper edge is, as a direction of the target's space. */
+  get up(): Vector3 {
+    return new Vector3().setFromMatrixColumn(this.#camera.matrixWorld, 1)
   }
 
   /** The place on the screen that the model stands at, as `pick` takes it. */
   get middle(): { x: number; y: number } {
     const { left, top, width, height } = this.#canvas.getBoundingClientRect()
     return { x: left + width / 2, y: top + (height - kToolbar) / 2 }
+  }
+
+  /** Calls `prepare` before each picture is drawn: to bring textures up to date. */
+  beforeDraw(prepare: () => void): void {
+    this.#preparations.push(prepare)
   }
 
   /** Hands the pointer to a tool; what the tool leaves alone turns the model. Without one everything does. */
@@ -142,8 +163,6 @@ export class Viewer {
 
   /** Shows another paint. It may be a render target's texture: call `redraw` when that was drawn anew. */
   setPaint(paint: Texture): void {
-    // Frees the graphics memory of an image; it comes back by itself if that is used again.
-    if (paint !== this.#paint && !this.#paint?.isRenderTargetTexture) this.#paint?.dispose()
     this.#paint = paint
     this.#overlay?.setPaint(paint)
     this.redraw()
@@ -202,9 +221,16 @@ export class Viewer {
     this.#atOnce(() => this.#controls.update())
   }
 
+  /** Lets one finger, or the main button, turn the model, or nothing; two fingers do always. */
+  #leave(turns: boolean): void {
+    this.#controls.touches.ONE = turns ? TOUCH.ROTATE : null
+    this.#controls.mouseButtons.LEFT = turns ? MOUSE.ROTATE : null
+  }
+
   /** Moves the camera without the glide of a drag, and ends one under way. */
   #atOnce(move: () => void): void {
     this.#controls.enableDamping = false
+    this.#controls.update() // what is left of the glide, or it would be added to the move
     move()
     this.#controls.enableDamping = true
     this.redraw()
@@ -263,6 +289,7 @@ export class Viewer {
   #draw(): void {
     this.#stale = false
     if (!this.#model) return // an empty room takes as long to draw as a full one
+    for (const prepare of this.#preparations) prepare()
     const { mode, split, paint, cage } = this.#view
     this.#studio.follow(this.#camera)
     this.#cage?.show(cage)

@@ -1,0 +1,176 @@
+import type { Vector3 } from 'three'
+import type { Composite } from '../layers/composite'
+import type { Layer } from '../layers/layer'
+import { toShares, type Rect } from '../layers/rect'
+import type { LayerStack } from '../layers/stack'
+import { readStraight } from '../layers/straight'
+import type { Spot } from '../pick'
+import type { Session, Shown } from '../session'
+import type { Viewer } from '../viewer'
+import { CageAtlas, type Capsule, type Place } from './atlas'
+import type { History } from '../history'
+import { kPaintedSize, PaintedSheet } from './painted-sheet'
+import type { StickerSheet, StickerStyle } from './sticker'
+import { WetPaint, type StrokeStyle } from './wet-paint'
+
+const kPicture = 96 // pixels a side of a layer's picture
+const kPictureDelay = 300 // milliseconds
+
+/**
+ * Paints on the cage of what is on show: finds the place that is meant by a spot of the target, keeps what is wet, and makes
+ * it part of a layer.
+ */
+export class Painter {
+  readonly #session: Session
+  readonly #viewer: Viewer
+  readonly #stack: LayerStack
+  readonly #composite: Composite
+  readonly #history: History
+  #wet: WetPaint | undefined
+  #cage: Shown['cage'] | undefined
+  /** The layer that something wet lies on, and what undoing that is called. */
+  #layer: Layer | undefined
+  #name = ''
+  #picturing: ReturnType<typeof setTimeout> | undefined
+  /** All that may come back: on show, or removed and kept to be undone. */
+  readonly #sheets: WeakRef<PaintedSheet>[] = []
+
+  constructor(session: Session, viewer: Viewer, stack: LayerStack, composite: Composite, history: History) {
+    this.#session = session
+    this.#viewer = viewer
+    this.#stack = stack
+    this.#composite = composite
+    this.#history = history
+    session.on('transfer', () => this.cancel())
+  }
+
+  /** The cage of what is on show, unrolled. Cost: tens of milliseconds the first time for each cage. */
+  get atlas(): CageAtlas | undefined {
+    return this.#surface()?.atlas
+  }
+
+  /** The place of the cage that a spot of the target takes its paint from; none where it takes none. */
+  placeOf(spot: Spot | undefined): Place | undefined {
+    const { shown, classification } = this.#session
+    if (!spot || !shown || !classification?.cosmeticTriangles[spot.triangle]) return undefined
+    return this.atlas?.at(...uvOf(spot, shown))
+  }
+
+  /** Begins to paint. @returns Whether there is a layer to do it on. @throws Error if there would be too many layers. */
+  begin(name: string, style: StrokeStyle): boolean {
+    const layer = style.erases ? this.#paintedLayer() : (this.#paintedLayer() ?? this.addLayer())
+    const wet = this.#surface()
+    if (!layer || !wet) return false
+    this.#layer = layer
+    this.#name = name
+    this.#stack.select(layer)
+    if (!layer.visible) this.#stack.restyle(layer, { visible: true })
+    wet.begin(layer.sheet as PaintedSheet, style)
+    return true
+  }
+
+  /** Goes on with a stroke. */
+  stroke(capsules: readonly Capsule[]): void {
+    if (capsules.length > 0 && this.#layer) this.#show(this.#wet!.stroke(this.#viewer.renderer, capsules))
+  }
+
+  /** Sticks a picture on, in place of where it was stuck before in the same go. */
+  stick(place: Place, sheet: StickerSheet, style: StickerStyle, up: Vector3): void {
+    const { renderer } = this.#viewer
+    if (this.#layer) this.#show(this.#wet!.stick(renderer, place, sheet.at(renderer, place, up, style)))
+  }
+
+  /** Makes what was painted part of its layer. */
+  end(): void {
+    const layer = this.#layer
+    if (!layer) return
+    this.#layer = undefined
+    const { renderer } = this.#viewer
+    const sheet = layer.sheet as PaintedSheet
+    const parts = this.#wet!.settle(renderer)
+    if (parts.length === 0) return
+    const put = (which: 'before' | 'after'): void => {
+      for (const part of parts) sheet.put(renderer, part.rect, part[which])
+      this.#changed(sheet, parts.map(({ rect }) => rect))
+    }
+    this.#history.add({
+      name: this.#name,
+      bytes: parts.reduce((sum, { before, after }) => sum + before.length + after.length, 0),
+      undo: () => put('before'),
+      redo: () => put('after'),
+    })
+    this.#changed(sheet, parts.map(({ rect }) => rect))
+  }
+
+  /** Takes back what is wet. */
+  cancel(): void {
+    if (!this.#layer) return
+    this.#layer = undefined
+    this.#show(this.#wet!.end(this.#viewer.renderer))
+  }
+
+  /** Adds an empty layer to paint on. @throws Error if there are too many. */
+  addLayer(): Layer {
+    const sheet = new PaintedSheet()
+    this.#sheets.push(new WeakRef(sheet))
+    return this.#stack.add(`Painting ${this.#sheets.length}`, sheet)
+  }
+
+  /** Makes all that was painted again, after the graphics context was lost. */
+  restore(): void {
+    for (const sheet of this.#sheets) sheet.deref()?.restore(this.#viewer.renderer)
+    this.#composite.set(this.#stack.layers)
+    this.#viewer.redraw()
+  }
+
+  #show(rects: readonly Rect[]): void {
+    this.#composite.touch(rects, this.#wet?.wet)
+    this.#viewer.redraw()
+  }
+
+  #changed(sheet: PaintedSheet, rects: readonly Rect[]): void {
+    this.#show(rects.map((rect) => toShares(rect, kPaintedSize)))
+    // Its picture in the list can wait until the hand rests.
+    clearTimeout(this.#picturing)
+    this.#picturing = setTimeout(() => {
+      sheet.picture = addressOf(readStraight(this.#viewer.renderer, sheet.texture, kPicture))
+      this.#stack.pictured()
+    }, kPictureDelay)
+  }
+
+  /** The layer that is painted on: the one worked on, or the uppermost painting. */
+  #paintedLayer(): Layer | undefined {
+    const { selected, layers } = this.#stack
+    return selected?.sheet instanceof PaintedSheet ? selected : layers.findLast(({ sheet }) => sheet instanceof PaintedSheet)
+  }
+
+  #surface(): WetPaint | undefined {
+    const cage = this.#session.shown?.cage
+    if (cage === this.#cage) return this.#wet
+    this.#wet?.dispose()
+    this.#cage = cage
+    const { positions, indices, uvs } = cage?.mesh ?? {}
+    this.#wet = positions && indices && uvs && new WetPaint(new CageAtlas({ positions, indices, uvs }, kPaintedSize))
+    return this.#wet
+  }
+}
+
+/** Where a spot lies in the paint. */
+function uvOf({ triangle, weights }: Spot, { target: { mesh }, projection: { uvs, cornerUvs } }: Shown): [number, number] {
+  let [u, v] = [0, 0]
+  weights.forEach((weight, index) => {
+    const corner = 3 * triangle + index
+    const [of, at] = cornerUvs.length > 0 ? [cornerUvs, corner] : [uvs, mesh.indices[corner]!]
+    u += weight * of[2 * at]!
+    v += weight * of[2 * at + 1]!
+  })
+  return [u, v]
+}
+
+function addressOf(image: ImageData): string {
+  const canvas = document.createElement('canvas')
+  canvas.width = image.width
+  canvas.height = image.height
+  canvas.getContext('2d')!.putImageData(image, 0, 0)
+  return canvas.toDataURL()
+}

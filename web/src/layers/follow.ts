@@ -1,0 +1,37 @@
+import { titleOf, type Paint } from '../paint'
+import type { Session } from '../session'
+import type { Viewer } from '../viewer'
+import { Composite } from './composite'
+import type { LayerStack } from './stack'
+
+/** Puts the paint of the model on show under everything, and the visitor's own paints on top as they come. */
+export function followPaints(session: Session, stack: LayerStack): void {
+  const { checker } = session
+  let base: Paint | undefined
+  const setBase = (paint: Paint): void => {
+    base = paint
+    stack.setBase(titleOf(paint), paint)
+  }
+  session.on('transfer', ({ cage }) => {
+    // A sample's paint means nothing on another cage: there the checker takes its place.
+    if (base?.sample && base.sample !== cage.sample) setBase(checker)
+  })
+  session.on('paint', (paint) => {
+    if (paint === checker || paint.sample) return setBase(paint)
+    // The checker stands in where there is no paint; here is one.
+    if (stack.base?.sheet === checker) stack.restyle(stack.base, { visible: false })
+    stack.add(titleOf(paint), paint)
+  })
+}
+
+/** Lets the picture show what the layers look like together. */
+export function showComposite(viewer: Viewer, stack: LayerStack): Composite {
+  const composite = new Composite()
+  viewer.setPaint(composite.texture)
+  viewer.beforeDraw(() => composite.update(viewer.renderer))
+  stack.on('change', (layers) => {
+    composite.set(layers)
+    viewer.redraw()
+  })
+  return composite
+}

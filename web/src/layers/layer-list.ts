@@ -1,0 +1,176 @@
+import type { History } from '../history'
+import { announce, element } from '../page'
+import { kMostLayers } from './composite'
+import { kBlends, type Blend, type Layer, type Style } from './layer'
+import type { LayerStack } from './stack'
+
+const kBlendTitles: Record<Blend, string> = { normal: 'Normal', multiply: 'Multiply', screen: 'Screen', add: 'Add' }
+
+const kRow = `
+  <button type="button" class="grip" name="move"><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M9 6h.01M15 6h.01M9 12h.01M15 12h.01M9 18h.01M15 18h.01"/></svg></button>
+  <button type="button" class="choose" name="choose"><img alt="" /><span class="name"></span></button>
+  <label class="eye"><input type="checkbox" name="visible" /><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M2 12s4-6 10-6 10 6 10 6-4 6-10 6S2 12 2 12z"/><circle cx="12" cy="12" r="3"/></svg></label>
+  <button type="button" class="remove" name="remove"><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M6 6l12 12M18 6 6 18"/></svg></button>
+  <div class="style">
+    <label class="field"><span>Opacity <output></output></span><input type="range" name="opacity" min="0" max="100" /></label>
+    <label class="field"><span>Blending</span><select name="blend"></select></label>
+    <label class="field"><span>Tint</span><input type="color" name="tint" /></label>
+  </div>`
+
+/** One layer of the list, and its controls. */
+interface Row {
+  item: HTMLLIElement
+  show(layer: Layer, selected: boolean): void
+}
+
+/** The list of layers, the uppermost first: how each is laid, and in which order. */
+export class LayerList {
+  readonly #stack: LayerStack
+  readonly #history: History
+  readonly #list = element('layer-list', HTMLOListElement)
+  readonly #rows = new Map<number, Row>()
+  #dragged: Layer | undefined
+
+  /** @param history Where the removal of a layer is noted. */
+  constructor(stack: LayerStack, history: History) {
+    this.#stack = stack
+    this.#history = history
+    for (const event of ['change', 'select', 'pictures'] as const) stack.on(event, () => this.#show())
+    // On the list, not on the row: a row that moves would lose the pointer.
+    this.#list.addEventListener('pointermove', (event) => this.#drag(event))
+    for (const end of ['pointerup', 'pointercancel'] as const) this.#list.addEventListener(end, () => this.#drop())
+    const texture = element('texture-input', HTMLInputElement)
+    element('add-image', HTMLButtonElement).addEventListener('click', () => texture.click())
+    this.#show()
+  }
+
+  #show(): void {
+    const { layers, selected } = this.#stack
+    for (const [id, { item }] of this.#rows) {
+      if (layers.some((layer) => layer.id === id)) continue
+      item.remove()
+      this.#rows.delete(id)
+    }
+    const focused = document.activeElement
+    const items = layers.toReversed().map((layer) => {
+      const row = this.#rows.get(layer.id) ?? this.#makeRow(layer.id)
+      row.show(layer, layer === selected)
+      return row.item
+    })
+    if (items.some((item, index) => this.#list.children[index] !== item)) {
+      this.#list.replaceChildren(...items)
+      // What is moved about loses the keyboard.
+      if (focused instanceof HTMLElement && this.#list.contains(focused)) focused.focus({ preventScroll: true })
+    }
+    this.#list.hidden = items.length === 0
+    element('layer-count', HTMLElement).textContent = `${layers.length} of ${kMostLayers}`
+    for (const name of ['add-image', 'add-painting']) element(name, HTMLButtonElement).disabled = this.#stack.full
+  }
+
+  #layerOf(id: number): Layer {
+    return this.#stack.layers.find((layer) => layer.id === id)!
+  }
+
+  #makeRow(id: number): Row {
+    const item = document.createElement('li')
+    item.className = 'layer'
+    item.innerHTML = kRow
+    const part = <T extends Element>(name: string): T => item.querySelector<T>(`[name=${name}]`)!
+    const grip = part<HTMLButtonElement>('move')
+    const [choose, remove] = [part<HTMLButtonElement>('choose'), part<HTMLButtonElement>('remove')]
+    const visible = part<HTMLInputElement>('visible')
+    const [opacity, tint, blend] = [part<HTMLInputElement>('opacity'), part<HTMLInputElement>('tint'), part<HTMLSelectElement>('blend')]
+    for (const name of kBlends) blend.add(new Option(kBlendTitles[name], name))
+    const restyle = (style: Partial<Style>): void => this.#stack.restyle(this.#layerOf(id), style)
+
+    choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)))
+    visible.addEventListener('change', () => {
+      restyle({ visible: visible.checked })
+      announce(`${this.#layerOf(id).name} is ${visible.checked ? 'shown' : 'hidden'}.`)
+    })
+    opacity.addEventListener('input', () => restyle({ opacity: Number(opacity.value) / 100 }))
+    tint.addEventListener('input', () => restyle({ tint: tint.value }))
+    blend.addEventListener('change', () => restyle({ blend: blend.value as Blend }))
+    remove.addEventListener('click', () => this.#remove(id))
+    grip.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0) return
+      this.#dragged = this.#layerOf(id)
+      this.#list.setPointerCapture(event.pointerId)
+      item.classList.add('dragged')
+    })
+    grip.addEventListener('keydown', (event) => {
+      const steps: Record<string, number> = { ArrowUp: 1, ArrowDown: -1 }
+      const step = steps[event.key]
+      if (step === undefined) return
+      event.preventDefault()
+      this.#move(this.#layerOf(id), this.#stack.layers.indexOf(this.#layerOf(id)) + step)
+    })
+
+    const row: Row = {
+      item,
+      show(layer, selected) {
+        const { name } = layer
+        item.classList.toggle('selected', selected)
+        item.querySelector('img')!.src = layer.sheet.picture
+        item.querySelector('.name')!.textContent = choose.title = name
+        choose.setAttribute('aria-pressed', String(selected))
+        grip.setAttribute('aria-label', `Reorder ${name}: up and down keys`)
+        remove.setAttribute('aria-label', `Remove ${name}`)
+        visible.setAttribute('aria-label', `Show ${name}`)
+        opacity.setAttribute('aria-label', `Opacity of ${name}`)
+        tint.setAttribute('aria-label', `Tint of ${name}`)
+        blend.setAttribute('aria-label', `Blending of ${name}`)
+        visible.checked = layer.visible
+        opacity.value = String(Math.round(100 * layer.opacity))
+        opacity.ariaValueText = item.querySelector('output')!.value = `${opacity.value} %`
+        tint.value = layer.tint
+        blend.value = layer.blend
+        item.querySelector<HTMLElement>('.style')!.hidden = !selected
+      },
+    }
+    this.#rows.set(id, row)
+    return row
+  }
+
+  #remove(id: number): void {
+    const layer = this.#layerOf(id)
+    const place = this.#stack.layers.length - 1 - this.#stack.layers.indexOf(layer)
+    let removed = this.#stack.remove(id)
+    this.#history.add({
+      name: `removal of ${layer.name}`,
+      bytes: layer.sheet.bytes ?? 0,
+      undo: () => this.#stack.insert(removed.layer, removed.place),
+      redo: () => (removed = this.#stack.remove(id)),
+    })
+    announce(`${layer.name} is removed.`)
+    // The keyboard goes on with the row that took its place.
+    const next = this.#list.children[Math.min(place, this.#list.children.length - 1)] ?? this.#list.parentElement!
+    next.querySelector<HTMLElement>('[name=remove], button:enabled')?.focus()
+  }
+
+  #move(layer: Layer, place: number): void {
+    const { layers } = this.#stack
+    if (place < 0 || place >= layers.length || layers[place]!.id === layer.id) return
+    this.#stack.move(layer, place)
+    announce(`${layer.name} is ${layers.length - place} of ${layers.length} from the top.`)
+  }
+
+  /** Changes places with a neighbour once the pointer is past its middle. */
+  #drag({ clientY }: PointerEvent): void {
+    if (!this.#dragged) return
+    const { layers } = this.#stack
+    const place = layers.findIndex(({ id }) => id === this.#dragged!.id)
+    const middleOf = (neighbour: Layer | undefined): number => {
+      if (!neighbour) return NaN
+      const { top, bottom } = this.#rows.get(neighbour.id)!.item.getBoundingClientRect()
+      return (top + bottom) / 2
+    }
+    if (clientY < middleOf(layers[place + 1])) this.#move(this.#dragged, place + 1)
+    else if (clientY > middleOf(layers[place - 1])) this.#move(this.#dragged, place - 1)
+  }
+
+  #drop(): void {
+    if (this.#dragged) this.#rows.get(this.#dragged.id)?.item.classList.remove('dragged')
+    this.#dragged = undefined
+  }
+}

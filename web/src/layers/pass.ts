@@ -1,0 +1,81 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Camera,
+  DynamicDrawUsage,
+  GLSL3,
+  Mesh,
+  NoBlending,
+  RawShaderMaterial,
+  Scene,
+  type IUniform,
+  type ShaderMaterialParameters,
+  type WebGLRenderer,
+  type WebGLRenderTarget,
+} from 'three'
+import type { Rect } from './rect'
+
+/** Parts that one pass can be run over. */
+export const kMostRects = 32
+
+const kVertexShader = /* glsl */ `
+in vec3 position;
+void main() { gl_Position = vec4(position, 1.0); }
+`
+
+/** Computes the texels of a texture on the GPU: a fragment shader, run over parts of it. */
+export class Pass<Uniforms extends Record<string, IUniform>> {
+  readonly #corners = new BufferAttribute(new Float32Array(6 * 3 * kMostRects), 3).setUsage(DynamicDrawUsage)
+  readonly #geometry = new BufferGeometry().setAttribute('position', this.#corners)
+  readonly #scene = new Scene()
+  readonly #camera = new Camera()
+  readonly #material: RawShaderMaterial
+
+  /**
+   * @param fragmentShader GLSL ES 3.0. It writes linear colour; the target's format encodes it.
+   * @param blending       How what it writes is joined with what is there; it replaces it unless this says otherwise.
+   */
+  constructor(
+    fragmentShader: string,
+    readonly uniforms: Uniforms,
+    blending: ShaderMaterialParameters = { blending: NoBlending },
+  ) {
+    this.#material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: kVertexShader,
+      fragmentShader: `precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n${fragmentShader}`,
+      uniforms,
+      depthTest: false,
+      depthWrite: false,
+      ...blending,
+    })
+    const mesh = new Mesh(this.#geometry, this.#material)
+    mesh.frustumCulled = false
+    this.#scene.add(mesh)
+  }
+
+  /** @param rects In texels of the target, at most `kMostRects`. */
+  run(renderer: WebGLRenderer, target: WebGLRenderTarget, rects: readonly Rect[]): void {
+    if (rects.length === 0) return
+    rects.forEach((rect, index) => this.#setCorners(index, rect, target))
+    this.#corners.needsUpdate = true
+    this.#geometry.setDrawRange(0, 6 * rects.length)
+    const { autoClear } = renderer
+    renderer.autoClear = false
+    renderer.setRenderTarget(target)
+    renderer.render(this.#scene, this.#camera)
+    renderer.setRenderTarget(null)
+    renderer.autoClear = autoClear
+  }
+
+  #setCorners(index: number, { left, top, right, bottom }: Rect, { width, height }: WebGLRenderTarget): void {
+    const [l, r] = [(2 * left) / width - 1, (2 * right) / width - 1]
+    const [t, b] = [(2 * top) / height - 1, (2 * bottom) / height - 1]
+    this.#corners.array.set([l, t, 0, r, t, 0, r, b, 0, l, t, 0, r, b, 0, l, b, 0], 18 * index)
+  }
+
+  dispose(): void {
+    this.#geometry.dispose()
+    this.#material.dispose()
+  }
+}

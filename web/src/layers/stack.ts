@@ -1,0 +1,116 @@
+import { Emitter } from '../events'
+import { kMostLayers } from './composite'
+import { kPlain, type Layer, type Sheet, type Style } from './layer'
+
+export interface StackEvents {
+  /** Layers came, went, moved, or are laid in another way. */
+  change: readonly Layer[]
+  /** Pictures of layers are others now, and nothing else. */
+  pictures: readonly Layer[]
+  /** Another layer is worked on, or none. */
+  select: Layer | undefined
+}
+
+/** Up to eight paints over one another, from the lowest to the uppermost. It stays as it is when the model changes. */
+export class LayerStack extends Emitter<StackEvents> {
+  #layers: readonly Layer[] = []
+  #selected: number | undefined
+  #base: number | undefined
+  #lastId = 0
+
+  get layers(): readonly Layer[] {
+    return this.#layers
+  }
+
+  /** The layer that is worked on. */
+  get selected(): Layer | undefined {
+    return this.#layers.find(({ id }) => id === this.#selected)
+  }
+
+  get full(): boolean {
+    return this.#layers.length >= kMostLayers
+  }
+
+  /** Puts a paint under everything, in place of the one that was put there before. */
+  setBase(name: string, sheet: Sheet): void {
+    const { base } = this
+    if (base) return this.#replace({ ...base, name, sheet, visible: true })
+    if (this.full) throw new Error(kFull)
+    const layer = this.#make(name, sheet, {}, 0)
+    this.#base = layer.id
+    this.select(layer)
+  }
+
+  /** The layer that a model's own paint is put in, unless it was removed. */
+  get base(): Layer | undefined {
+    return this.#layers.find(({ id }) => id === this.#base)
+  }
+
+  /** Lays a paint over the others, and works on it. @throws Error if there are eight. */
+  add(name: string, sheet: Sheet, style: Partial<Style> = {}): Layer {
+    if (this.full) throw new Error(kFull)
+    const layer = this.#make(name, sheet, style, this.#layers.length)
+    this.select(layer)
+    return layer
+  }
+
+  /** Takes a layer away. @returns It as it was, and where, for `insert`. */
+  remove(id: number): { layer: Layer; place: number } {
+    const place = this.#layers.findIndex((layer) => layer.id === id)
+    const layer = this.#layers[place]!
+    this.#set(this.#layers.toSpliced(place, 1))
+    if (this.#selected === id) this.select(this.#layers[Math.min(place, this.#layers.length - 1)])
+    return { layer, place }
+  }
+
+  /** Puts back a layer that was removed. @throws Error if there are eight. */
+  insert(layer: Layer, place: number): void {
+    if (this.full) throw new Error(kFull)
+    this.#set(this.#layers.toSpliced(place, 0, layer))
+    this.select(layer)
+  }
+
+  /** Moves a layer. @param place From 0, the lowest. */
+  move(layer: Layer, place: number): void {
+    const from = this.#placeOf(layer)
+    const to = Math.max(0, Math.min(this.#layers.length - 1, place))
+    if (from !== to) this.#set(this.#layers.toSpliced(from, 1).toSpliced(to, 0, this.#layers[from]!))
+  }
+
+  /** Lays a layer in another way. */
+  restyle(layer: Layer, style: Partial<Style>): void {
+    this.#replace({ ...this.#layers[this.#placeOf(layer)]!, ...style })
+  }
+
+  select(layer: Layer | undefined): void {
+    if (layer?.id === this.#selected) return
+    this.#selected = layer?.id
+    this.emit('select', this.selected)
+  }
+
+  /** Tells that sheets have other pictures now. */
+  pictured(): void {
+    this.emit('pictures', this.#layers)
+  }
+
+  #make(name: string, sheet: Sheet, style: Partial<Style>, place: number): Layer {
+    const layer = { id: ++this.#lastId, name, sheet, ...kPlain, ...style }
+    this.#set(this.#layers.toSpliced(place, 0, layer))
+    return layer
+  }
+
+  #placeOf({ id }: Layer): number {
+    return this.#layers.findIndex((layer) => layer.id === id)
+  }
+
+  #replace(layer: Layer): void {
+    this.#set(this.#layers.with(this.#placeOf(layer), layer))
+  }
+
+  #set(layers: readonly Layer[]): void {
+    this.#layers = layers
+    this.emit('change', layers)
+  }
+}
+
+const kFull = `There are ${kMostLayers} layers, as many as there can be: remove one first.`

@@ -1,0 +1,36 @@
+import type { History } from './history'
+import { announce, element, showError } from './page'
+
+/** Lets what was done be undone and done again: by its buttons, and by the keys for it anywhere on the page. */
+export function setUpUndo(history: History): void {
+  const [undo, redo] = [element('undo', HTMLButtonElement), element('redo', HTMLButtonElement)]
+  const run = (step: 'undo' | 'redo'): void => {
+    try {
+      const deed = history[step]()
+      if (deed) announce(`${deed.name} ${step === 'undo' ? 'undone' : 'done again'}.`)
+    } catch (error) {
+      showError((error as Error).message)
+    }
+  }
+  undo.addEventListener('click', () => run('undo'))
+  redo.addEventListener('click', () => run('redo'))
+  addEventListener('keydown', (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey) return
+    // A field of text has an undoing of its own.
+    if (event.target instanceof HTMLInputElement && event.target.type === 'text') return
+    const key = event.key.toLowerCase()
+    const step = key === 'z' ? (event.shiftKey ? 'redo' : 'undo') : key === 'y' ? 'redo' : undefined
+    if (!step) return
+    event.preventDefault()
+    run(step)
+  })
+
+  const show = (): void => {
+    for (const [button, word, deed] of [[undo, 'Undo', history.last], [redo, 'Redo', history.next]] as const) {
+      button.disabled = deed === undefined
+      button.title = deed ? `${word}: ${deed.name}` : word
+    }
+  }
+  history.on('change', show)
+  show()
+}
