@@ -149,3 +149,16 @@ test('of a model in very many parts the largest fifty are listed; what was said 
   assert.equal(await settled(page), 'ready', await shownError(page))
   assert.deepEqual(await shownParts(page), [{ name: 'thing', points: 4, covered: '100 %', culled: false, lock: 'auto' }])
 })
+
+test('on a phone a row that is touched stays lit until something else is', async () => {
+  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true })
+  await page.locator('#parts summary').tap()
+  const area = await modelArea(page)
+  const row = page.getByTestId('segment-table').getByRole('rowheader', { name: 'skin' }).first()
+  await row.scrollIntoViewIfNeeded()
+  const before = await look(page, area)
+  await row.tap()
+  assert.ok(difference(before, await look(page, area)) > 0.05, 'lit')
+  await page.locator('#segment-caption').tap()
+  assert.ok(difference(before, await look(page, area)) < 0.0005, 'and dark again')
+})

@@ -37,7 +37,8 @@ export function tintDistance({ target: { mesh }, projection: { distances } }: Sh
   const cosmetic = distances.filter((_, vertex) => zones[vertex] === 0)
   const sorted = (cosmetic.length > 0 ? cosmetic : distances).toSorted()
   const longest = roundedUp((100 * sorted[Math.floor(kFarthest * (sorted.length - 1))]!) / diagonal)
-  const colors = perCorner(mesh, (vertex) => colorAt(kSequential, (100 * distances[vertex]!) / diagonal / longest))
+  const ramp = rampOf(kSequential)
+  const colors = perCorner(mesh, (vertex) => ramp((100 * distances[vertex]!) / diagonal / longest))
   const ticks = [0, 0.25, 0.5, 0.75, 1].map((share) => `${share === 1 ? '≥ ' : ''}${Number((share * longest).toPrecision(3))}`)
   return { colors, scale: { title: 'Distance to the cage, % of the model’s diagonal', map: kSequential, ticks } }
 }
@@ -49,9 +50,10 @@ export function tintDistance({ target: { mesh }, projection: { distances } }: Sh
 export function tintStretch({ target: { mesh }, projection }: Shown, { cosmeticTriangles }: Classification): Tint {
   const stretch = stretches(mesh, projection)
   const usual = medianOf(stretch.filter((value, triangle) => cosmeticTriangles[triangle] === 1 && Number.isFinite(value))) || 1
+  const ramp = rampOf(kDiverging)
   const colors = perCorner(mesh, (_, triangle) => {
     if (cosmeticTriangles[triangle] !== 1) return kClay
-    return colorAt(kDiverging, 0.5 + Math.log2(stretch[triangle]! / usual) / (2 * kDoublings))
+    return ramp(0.5 + Math.log2(stretch[triangle]! / usual) / (2 * kDoublings))
   })
   const ticks = ['≤ ¼×', '½×', '1×', '2×', '≥ 4×']
   return { colors, scale: { title: 'Stretch of the paint, against the usual', map: kDiverging, ticks } }
@@ -59,32 +61,46 @@ export function tintStretch({ target: { mesh }, projection }: Shown, { cosmeticT
 
 /** 1 per triangle: the larger singular value of the map from the texture to its surface; infinite where it has no area in the texture. */
 function stretches({ positions, indices }: ExtractedMesh, { uvs, cornerUvs }: Shown['projection']): Float64Array {
-  return Float64Array.from({ length: indices.length / 3 }, (_, triangle) => {
-    const corner = (c: number): [number, number, number, number, number] => {
-      const at = 3 * triangle + c
-      const vertex = indices[at]!
-      const [u, v] = cornerUvs.length > 0 ? cornerUvs.subarray(2 * at, 2 * at + 2) : uvs.subarray(2 * vertex, 2 * vertex + 2)
-      return [positions[3 * vertex]!, positions[3 * vertex + 1]!, positions[3 * vertex + 2]!, u!, v!]
-    }
-    const [a, b, c] = [corner(0), corner(1), corner(2)]
-    const area = (b[3] - a[3]) * (c[4] - a[4]) - (c[3] - a[3]) * (b[4] - a[4])
-    if (area === 0) return Infinity
+  const ofCorners = cornerUvs.length > 0
+  const texture = ofCorners ? cornerUvs : uvs
+  const stretch = new Float64Array(indices.length / 3)
+  for (let triangle = 0; triangle < stretch.length; triangle++) {
+    const first = 3 * triangle
+    const [i, j, k] = [indices[first]!, indices[first + 1]!, indices[first + 2]!]
+    const [a, b, c] = ofCorners ? [first, first + 1, first + 2] : [i, j, k]
+    const [bu, bv] = [texture[2 * b]! - texture[2 * a]!, texture[2 * b + 1]! - texture[2 * a + 1]!]
+    const [cu, cv] = [texture[2 * c]! - texture[2 * a]!, texture[2 * c + 1]! - texture[2 * a + 1]!]
+    const area = bu * cv - cu * bv
     // How the place on the surface moves with u and with v; after Sander et al., Texture Mapping Progressive Meshes, 2001.
     let [uu, uv, vv] = [0, 0, 0]
-    for (const axis of [0, 1, 2] as const) {
-      const alongU = ((b[axis] - a[axis]) * (c[4] - a[4]) - (c[axis] - a[axis]) * (b[4] - a[4])) / area
-      const alongV = ((c[axis] - a[axis]) * (b[3] - a[3]) - (b[axis] - a[axis]) * (c[3] - a[3])) / area
+    for (let axis = 0; axis < 3; axis++) {
+      const ab = positions[3 * j + axis]! - positions[3 * i + axis]!
+      const ac = positions[3 * k + axis]! - positions[3 * i + axis]!
+      const alongU = (ab * cv - ac * bv) / area
+      const alongV = (ac * bu - ab * cu) / area
       uu += alongU * alongU
       uv += alongU * alongV
       vv += alongV * alongV
     }
-    return Math.sqrt((uu + vv + Math.hypot(uu - vv, 2 * uv)) / 2)
-  })
+    stretch[triangle] = area === 0 ? Infinity : Math.sqrt((uu + vv + Math.hypot(uu - vv, 2 * uv)) / 2)
+  }
+  return stretch
+}
+
+/** A colour map in as many steps as a screen can show: blending anew for each vertex takes ten times as long. */
+function rampOf(map: ColorMap): (share: number) => Rgb {
+  const steps = Array.from({ length: 256 }, (_, step) => colorAt(map, step / 255))
+  return (share) => steps[Math.round(255 * Math.min(1, Math.max(0, share)))]!
 }
 
 function perCorner({ indices }: ExtractedMesh, colorOf: (vertex: number, triangle: number) => Rgb): Uint8Array {
   const colors = new Uint8Array(3 * indices.length)
-  indices.forEach((vertex, corner) => colors.set(colorOf(vertex, Math.floor(corner / 3)), 3 * corner))
+  for (let corner = 0; corner < indices.length; corner++) {
+    const color = colorOf(indices[corner]!, Math.floor(corner / 3))
+    colors[3 * corner] = color[0]
+    colors[3 * corner + 1] = color[1]
+    colors[3 * corner + 2] = color[2]
+  }
   return colors
 }
 

@@ -1,6 +1,6 @@
 import { Vector3 } from 'three'
-import { firstHit, type Hit } from '../ray'
 import { placeOn, type Surface } from '../surface'
+import { firstHit, type Hit } from './ray'
 import type { Rims } from './rims'
 
 /** The way from a vertex to the cage and along its ray, as steps 1 to 3 of the method go it. Lengths are in units of the model. */

@@ -1,5 +1,5 @@
 import type { Vector3 } from 'three'
-import type { Surface } from './surface'
+import type { Surface } from '../surface'
 
 /** Where a ray meets a surface. */
 export interface Hit {
@@ -8,16 +8,13 @@ export interface Hit {
   length: number
 }
 
-/** From where a triangle can be hit: from its front its corners go counter-clockwise. */
-export type Side = 'front' | 'back' | 'both'
-
 /**
- * The first hit of a ray with a surface that is farther along than `after`. Triangles without area do not count. It is
- * watertight: what passes an edge of two triangles on one side of the one passes it on the other side of the other, because
- * both reckon with the same numbers.
+ * The first hit of a ray with a surface that is farther along than `after`, from either side. Triangles without area do not
+ * count. It is watertight: what passes an edge of two triangles on one side of the one passes it on the other side of the
+ * other, because both reckon with the same numbers.
  * Cost: every triangle is looked at, some 12 ms for half a million.
  */
-export function firstHit({ positions, indices }: Surface, origin: Vector3, direction: Vector3, after: number, side: Side = 'both'): Hit | undefined {
+export function firstHit({ positions, indices }: Surface, origin: Vector3, direction: Vector3, after: number): Hit | undefined {
   const { x: ox, y: oy, z: oz } = origin
   const { x: dx, y: dy, z: dz } = direction
   let nearest: Hit | undefined
@@ -37,7 +34,6 @@ export function firstHit({ positions, indices }: Surface, origin: Vector3, direc
     const [nx, ny, nz] = normalOf(bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az)
     const slope = nx * dx + ny * dy + nz * dz
     if (slope === 0) continue // without area, or seen from its edge
-    if (side !== 'both' && slope < 0 !== (side === 'front')) continue
     const length = (nx * ax + ny * ay + nz * az) / slope
     if (length > after && (!nearest || length < nearest.length)) nearest = { triangle: corner / 3, length }
   }
