@@ -84,13 +84,17 @@ function methodScores({ methods, thresholds: by, shifted }: Quality, show: (scor
   return [...methodNames.map((method) => methods[method]), worst(Object.values(by.default)), worst(Object.values(shifted))].map(show);
 }
 
-/** `default` without each of its steps, where that is not the same. */
+/** `default` without each of its steps, where that is not the same; steps that make no difference to any model are named below. */
 function stepTable(models: Readonly<Record<string, Quality>>, show: (score: Score) => string): string {
-  const steps = Object.keys(Object.values(models)[0]!.without);
-  return byModel(models, steps, ({ methods, without }) => {
-    const whole = show(methods.default);
-    return steps.map((step) => show(without[step]!)).map((cell) => (cell === whole ? '' : cell));
-  });
+  const cellOf = ({ methods, without }: Quality, step: string): string => {
+    const cell = show(without[step]!);
+    return cell === show(methods.default) ? '' : cell;
+  };
+  const all = Object.keys(Object.values(models)[0]!.without);
+  const steps = all.filter((step) => Object.values(models).some((quality) => cellOf(quality, step) !== ''));
+  const idle = all.filter((step) => !steps.includes(step)).map((step) => `\`${step}\``);
+  return `${byModel(models, steps, (quality) => steps.map((step) => cellOf(quality, step)))}
+No difference to any of these models: ${idle.length > 0 ? idle.join(', ') : 'none'}.`;
 }
 
 /** Why vertices are left out, and what a transfer takes. */
