@@ -44,3 +44,11 @@ for (const { name, ...options } of kVisits) {
     assert.deepEqual(await faults(page), [], 'with an error')
   })
 }
+
+test('nor with any of the tools chosen', async () => {
+  const { page } = await site.visit({ viewport: { width: 700, height: 480 } })
+  for (const tool of await page.locator('#tools input').all()) {
+    await tool.check({ force: true })
+    assert.deepEqual(await faults(page), [], `with the tool ${await tool.getAttribute('data-key')}`)
+  }
+})
