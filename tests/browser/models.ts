@@ -40,8 +40,11 @@ export function islandPaint(): Upload {
   return { name: 'islands.png', mimeType: 'image/png', buffer: PNG.sync.write(png) }
 }
 
-/** A blue ball of radius 0.9. With `pose` it is skinned to two joints that pull it apart, and half morphed into a flat one. */
-export async function ball({ pose = false, mirrored = false } = {}): Promise<Upload> {
+/**
+ * A blue ball of radius 0.9. With `pose` it is skinned to two joints that pull it apart, and half morphed into a flat one;
+ * with `animated` an animation moves one of the joints to and fro, within a second.
+ */
+export async function ball({ pose = false, animated = false, mirrored = false } = {}): Promise<Upload> {
   const document = new Document()
   const buffer = document.createBuffer()
   const sphere = new SphereGeometry(0.9, 22, 15)
@@ -51,7 +54,7 @@ export async function ball({ pose = false, mirrored = false } = {}): Promise<Upl
   const node = document.createNode('ball').setMesh(mesh)
   if (mirrored) node.setScale([-1, 1, 1])
   const scene = document.createScene().addChild(node)
-  if (pose) {
+  if (pose || animated) {
     const positions = sphere.getAttribute('position').array as Float32Array
     const accessor = (type: 'VEC3' | 'VEC4', array: Float32Array | Uint8Array) => document.createAccessor().setType(type).setArray(array).setBuffer(buffer)
     const flat = positions.map((value, at) => (at % 3 === 1 ? -0.8 * value : 0))
@@ -74,6 +77,13 @@ export async function ball({ pose = false, mirrored = false } = {}): Promise<Upl
       rig.addChild(joint)
     }
     node.setSkin(skin)
+    if (animated) {
+      const input = document.createAccessor().setType('SCALAR').setArray(Float32Array.of(0, 0.5, 1)).setBuffer(buffer)
+      const output = accessor('VEC3', Float32Array.of(0.7, 0, 0, 0.7, 0.8, 0, 0.7, 0, 0) as Float32Array)
+      const sampler = document.createAnimationSampler().setInput(input).setOutput(output)
+      const channel = document.createAnimationChannel().setTargetNode(joints[1]!).setTargetPath('translation').setSampler(sampler)
+      document.createAnimation('wave').addSampler(sampler).addChannel(channel)
+    }
   }
   return glb('ball.glb', Buffer.from(await new NodeIO().writeBinary(document)))
 }

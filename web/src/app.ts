@@ -7,6 +7,7 @@ import { followPaints, showComposite } from './layers/follow'
 import { LayerList } from './layers/layer-list'
 import { setUpSaving } from './layers/save'
 import { LayerStack } from './layers/stack'
+import { Live } from './live/live'
 import { keepOffline } from './offline'
 import { Opener } from './open'
 import { element } from './page'
@@ -73,6 +74,7 @@ new FitPanel(session, viewer)
 setUpRules(session)
 setUpViewControls(session)
 setUpJump()
+new Live(session, viewer)
 const opener = new Opener(session, stack)
 const paints = paintOf(session, stack, opener, png)
 const take = new Take(session, paints)

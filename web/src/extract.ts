@@ -16,8 +16,10 @@ export interface Part {
 
 /** All triangles of a scene as raw arrays in world space, in the shape the transfer takes. */
 export interface ExtractedMesh {
-  /** 3 per vertex, in the scene's space. */
+  /** 3 per vertex, in the scene's space. They may move; `rest` keeps where they were then. */
   positions: Float32Array
+  /** The positions as the file has them, if they have moved. */
+  rest?: Float32Array
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array
   /** 2 per vertex, from the first UV set; absent unless every part has one. */
@@ -30,7 +32,7 @@ export interface ExtractedMesh {
 const kIdentity = new Matrix4()
 
 /** Where a mesh lies in the scene. A skinned one is taken in its bind pose: glTF gives its node's transform no say. */
-function matrixOf(mesh: Mesh): Matrix4 {
+export function matrixOf(mesh: Mesh): Matrix4 {
   return mesh instanceof SkinnedMesh ? kIdentity : mesh.matrixWorld
 }
 

@@ -1,4 +1,4 @@
-import { Group, LoadingManager, type Mesh, type Object3D } from 'three'
+import { Group, LoadingManager, type AnimationClip, type Mesh, type Object3D } from 'three'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
@@ -11,6 +11,7 @@ export interface Model {
   /** The file, and after it those that came with it. */
   files: readonly File[]
   scene: Object3D
+  animations: readonly AnimationClip[]
   mesh: ExtractedMesh
   /** Which sample it belongs to; the visitor's own to none. */
   sample?: Sample
@@ -35,7 +36,7 @@ export async function loadModel(file: File, companions: readonly File[] = []): P
     try {
       const gltf = await loader.parseAsync(bytes, '')
       const scene = await sceneOf(gltf)
-      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, mesh: extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
+      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, mesh: extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
     } finally {
       release()
     }

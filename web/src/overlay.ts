@@ -62,8 +62,14 @@ export class Overlay {
    */
   constructor(target: ExtractedMesh, projection: Projection, paint: Texture | undefined) {
     const parts = target.parts.filter((part) => part.triangleCount > 0)
+    this.#layers = parts.map((part) => new Layer(part, target.indices, paint))
+    this.lay(target, projection)
+  }
+
+  /** Lays everything anew over a target whose vertices have moved. Call `classify` next. */
+  lay(target: ExtractedMesh, projection: Projection): void {
     const split = splitAtSeams(target, projection)
-    this.#layers = parts.map((part) => new Layer(part, target.indices, projection.uvs, split, paint))
+    for (const layer of this.#layers) layer.lay(projection.uvs, split)
   }
 
   /** Chooses which triangles are painted, and which are which zone. */
@@ -99,7 +105,7 @@ class Layer {
   readonly #part: Part
   /** The part's corners as vertices of the target, and as vertices of the filtered mesh. */
   readonly #vertices: Uint32Array
-  readonly #corners: Uint32Array
+  #corners = new Uint32Array(0)
   readonly #naive: Mesh
   readonly #filtered: Mesh
   #tinted: Mesh | undefined
@@ -111,12 +117,22 @@ class Layer {
   readonly #tint = tintMaterial()
   readonly #hidden = kReasons.map((zone) => hiddenMaterial(kReasonColors[zone]))
 
-  constructor(part: Part, indices: Uint32Array, uvs: Float32Array, split: SplitVertices, paint: Texture | undefined) {
+  constructor(part: Part, indices: Uint32Array, paint: Texture | undefined) {
     this.#part = part
-    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = part
-    const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)]
-    this.#vertices = indices.subarray(from, to)
+    const { mesh, firstTriangle, triangleCount } = part
+    this.#vertices = indices.subarray(3 * firstTriangle, 3 * (firstTriangle + triangleCount))
+    this.#paint = paintMaterial([mesh.material].flat()[0]!)
+    if (paint) this.setPaint(paint)
+    this.#naive = overlayMesh(mesh, new BufferGeometry())
+    this.#naive.material = this.#paint
+    this.#filtered = overlayMesh(mesh, new BufferGeometry())
+    mesh.add(this.#naive, this.#filtered)
+  }
 
+  /** Gives the meshes the part's vertices as they are now. Materials stay: a shader takes longer than a frame to make. */
+  lay(uvs: Float32Array, split: SplitVertices): void {
+    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = this.#part
+    const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)]
     // Split vertices are in the order of their use: those of a part follow each other.
     const first = split.indices[from]!
     this.#corners = split.indices.slice(from, to).map((vertex) => vertex - first)
@@ -125,18 +141,26 @@ class Layer {
     // The mesh hangs below the part, where the renderer turns the winding of what is mirrored by itself.
     if (mirrored) turnWinding(this.#corners)
 
-    this.#paint = paintMaterial([mesh.material].flat()[0]!)
-    if (paint) this.setPaint(paint)
     const naive = shareVertices(mesh.geometry)
     naive.setAttribute(kUvName, new BufferAttribute(uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2))
-    this.#naive = overlayMesh(mesh, naive)
-    this.#naive.material = this.#paint
-
     const filtered = copyVertices(mesh.geometry, sources)
     filtered.setAttribute(kUvName, new BufferAttribute(split.uvs.slice(2 * first, 2 * (first + count)), 2))
     filtered.setIndex(new BufferAttribute(new Uint32Array(3 * triangleCount), 1))
-    this.#filtered = overlayMesh(mesh, filtered)
-    mesh.add(this.#naive, this.#filtered)
+    this.#exchange(this.#naive, naive)
+    this.#exchange(this.#filtered, filtered)
+    this.#forgetTint()
+  }
+
+  #exchange(mesh: Mesh, geometry: BufferGeometry): void {
+    mesh.geometry.dispose()
+    mesh.geometry = geometry
+  }
+
+  /** Its vertices are made again with the next tint. */
+  #forgetTint(): void {
+    this.#tinted?.removeFromParent()
+    this.#tinted?.geometry.dispose()
+    this.#tinted = undefined
   }
 
   classify(classification: Classification): void {
@@ -229,7 +253,8 @@ class Layer {
   }
 
   dispose(): void {
-    for (const mesh of [this.#naive, this.#filtered, ...(this.#tinted ? [this.#tinted] : [])]) {
+    this.#forgetTint()
+    for (const mesh of [this.#naive, this.#filtered]) {
       mesh.removeFromParent()
       mesh.geometry.dispose()
     }

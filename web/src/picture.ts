@@ -7,6 +7,7 @@ export function showPicture(session: Session, viewer: Viewer): void {
     viewer.setTarget(target, projection)
     viewer.setCage(cage)
   })
+  session.on('frame', (projection) => viewer.move(projection))
   session.on('zones', ({ classification }) => viewer.classify(classification))
   session.on('view', (view) => viewer.setView(view))
 

@@ -42,6 +42,8 @@ export interface SessionEvents {
   progress: Progress
   /** Another target, cage or projection is shown. Its zones follow at once; its paint may have changed as well. */
   transfer: Shown
+  /** What is shown has moved, and has this projection now. Its zones follow at once. */
+  frame: Projection
   /** The zones were decided: after a transfer, and for another threshold or lock. `spent` is in milliseconds. */
   zones: { classification: Classification; spent: number }
   /** The scene on show has another paint; after `transfer` if both are new. */
@@ -132,6 +134,14 @@ export class Session extends Emitter<SessionEvents> {
   lock(segments: readonly number[], lock: Lock): void {
     for (const segment of segments) this.#locks[segment] = lock
     if (this.#shown) this.#classify()
+  }
+
+  /** Shows the same target and cage as they have moved. @param projection Of where they are now. */
+  showFrame(projection: Projection): void {
+    if (!this.#shown) return
+    this.#shown = { ...this.#shown, projection }
+    this.emit('frame', projection)
+    this.#classify()
   }
 
   /** Looks at the model in another way. */

@@ -1,5 +1,6 @@
 import type { Classification, Projection } from 'cagecast'
 import {
+  AnimationMixer,
   Box3,
   Group,
   MathUtils,
@@ -13,6 +14,7 @@ import {
   Vector2,
   Vector3,
   WebGLRenderer,
+  type AnimationClip,
   type Texture,
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
@@ -54,6 +56,8 @@ export class Viewer {
   #stale = true
   readonly #preparations: (() => void)[] = []
   #turnStarted: number | undefined
+  #mixer: AnimationMixer | undefined
+  #played = 0
 
   /** @throws Error where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement) {
@@ -94,6 +98,26 @@ export class Viewer {
     this.#overlay?.dispose()
     if (model !== this.#model) this.#place(model)
     this.#overlay = new Overlay(model.mesh, projection, this.#paint)
+    this.redraw()
+  }
+
+  /** Shows the target that is shown as it has moved since, with its new place on the cage; call `classify` for its zones. */
+  move(projection: Projection): void {
+    if (!this.#model || !this.#overlay) return
+    this.highlight([])
+    this.#overlay.lay(this.#model.mesh, projection)
+    this.redraw()
+  }
+
+  /** Plays an animation of the target, paint and all, in place of the one before; without one it goes back to rest. */
+  play(clip: AnimationClip | undefined): void {
+    this.#mixer?.stopAllAction()
+    this.#mixer = undefined
+    if (clip && this.#model) {
+      this.#mixer = new AnimationMixer(this.#model.scene)
+      this.#mixer.clipAction(clip).play()
+      this.#played = performance.now()
+    }
     this.redraw()
   }
 
@@ -197,6 +221,7 @@ export class Viewer {
   }
 
   #place(model: Model): void {
+    this.play(undefined)
     if (this.#model) {
       this.#model.scene.removeFromParent()
       disposeModel(this.#model)
@@ -280,6 +305,11 @@ export class Viewer {
       const phase = Math.sin(((now - this.#turnStarted) / 1000) * ((2 * Math.PI) / kSwaySeconds))
       const { radius, phi } = new Spherical().setFromVector3(this.#camera.position)
       this.#look({ radius, phi, theta: kHome.theta - kSway * phase })
+    }
+    if (this.#mixer) {
+      this.#mixer.update(Math.max(0, now - this.#played) / 1000)
+      this.#played = now
+      this.redraw()
     }
     // Glides on for a few frames after a drag; each change asks for the next frame.
     this.#controls.update()

@@ -1,4 +1,5 @@
 import type { Mesh } from 'cagecast'
+import type { ExtractedMesh } from '../extract'
 import type { Session } from '../session'
 import type { ExportReply, ExportRequest } from './export-messages'
 
@@ -31,4 +32,5 @@ export async function exportGlb({ shown, rules, locks }: Session, texture: Blob)
   }
 }
 
-const cageOf = ({ positions, indices, uvs }: Mesh): Mesh => ({ positions, indices, uvs })
+/** As in its file: so is the target. */
+const cageOf = ({ positions, rest = positions, indices, uvs }: ExtractedMesh): Mesh => ({ positions: rest, indices, uvs })
