@@ -10,9 +10,12 @@ const panels = [
   ['kept', 'of the area that is to be painted'],
 ] as const satisfies readonly (readonly [keyof Score, string])[];
 
-/** Suppressed and kept by threshold, by both presets: thin lines for models, thick ones for the worst of them. */
+/**
+ * Suppressed and kept by threshold, by both presets: thin lines for models, thick ones for the worst of them. Without the traps,
+ * some of which `paper` does not paint at all.
+ */
 export function thresholdPlot(results: Readonly<Record<string, Quality>>): string {
-  const models = Object.values(results).filter(({ kind }) => kind !== 'spoiled');
+  const models = Object.values(results).filter(({ kind }) => kind === 'sample' || kind === 'asset');
   const valuesOf = ({ thresholds: by }: Quality, preset: Preset, measure: keyof Score): number[] =>
     thresholds.map((threshold) => by[preset][threshold.toFixed(1)]![measure]);
   const least = Math.min(...models.flatMap((model) => presets.flatMap((preset) => panels.flatMap(([measure]) => valuesOf(model, preset, measure)))));

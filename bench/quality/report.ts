@@ -50,6 +50,9 @@ const rowNames: Record<MethodName, string> = {
   default: '**`default`**',
 };
 
+const quotes = `In italics: as the poster says. Its other rows read “< 30–60 ms, low, high” (naive) and “< 70–100 ms, high, high” (the
+method), for latency, suppression and scalability.`;
+
 /** The poster's table, with numbers in it: those of the samples, one after the other. */
 function posterTable({ models, times, largeTimes }: QualityResults): string {
   const samples = Object.entries(models).filter(([, { kind }]) => kind === 'sample');
@@ -150,9 +153,7 @@ export function qualityReport(results: QualityResults): string {
 - *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where
   none must be; *bare*: of those that show what is to be painted (in the same sense), those without.
 - *latency*: the package in Node, raw arrays in, answer out; CPU time, medians. The first rows are the first steps of \`paper\`.`,
-    posterTable(results),
-    `In italics: as the poster says. Its other rows read “< 30–60 ms, low, high” (naive) and “< 70–100 ms, high, high” (the method),
-for latency, suppression and scalability.`,
+    ...(Object.values(models).some(({ kind }) => kind === 'sample') ? [posterTable(results), quotes] : []),
     missed.length === 0 ? 'All goals are reached.' : `Goals missed:\n\n${missed.map((line) => `- ${line}`).join('\n')}`,
     '![Suppressed and kept by threshold](quality-thresholds.svg)',
     '## Every model',

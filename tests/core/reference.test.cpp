@@ -200,12 +200,24 @@ TEST_CASE("on the models made to be difficult, what must stay bare does and the 
 TEST_CASE("the models made to be difficult are: the rule as it was first written down fails on each", "[reference]") {
   for (const scenes::Trap& trap : scenes::traps()) {
     if (trap.scene.name == "twins 1") continue;  // Its twins happen to fall on the same side.
+    if (trap.scene.name == "wrapped" || trap.scene.name == "domed") continue;  // They ask for other steps, see below.
     Options options = Options::earlier();
     options.stability = false;
     const auto zones = zonesOf(trap.scene, options);
     INFO(trap.scene.name);
     CHECK((scoreOf(trap, zones).kept < 0.995 || unlikeTwins(trap, zones) > 0));
   }
+}
+
+TEST_CASE("a cage of the skin's own vertices needs the poke-through, a dome over all the end of the self ray", "[reference]") {
+  const auto keptWithout = [](const scenes::Trap& trap, bool Options::*step) {
+    Options options = Options::standard();
+    options.stability = false;
+    options.*step = false;
+    return scoreOf(trap, zonesOf(trap.scene, options)).kept;
+  };
+  CHECK(keptWithout(scenes::wrapped(), &Options::pokes) < 0.1);
+  CHECK(keptWithout(scenes::domed(), &Options::endOfSelfRay) < 0.1);
 }
 
 TEST_CASE("a triangle is painted if a corner is cosmetic and none is uncovered or culled", "[reference]") {

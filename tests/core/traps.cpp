@@ -176,6 +176,28 @@ Trap doubled(bool own) {
   return trap;
 }
 
+Trap wrapped() {
+  Trap trap;
+  trap.scene.name = "wrapped";
+  constexpr Point kRadii{0.8f, 1, 0.9f};
+  constexpr Point kHoles[] = {{0.3f, 0.25f, 0.8f}, {-0.3f, 0.25f, 0.8f}};
+  const auto besideEye = [&](Point p, float reach) { return distance(p, kHoles[0]) < reach || distance(p, kHoles[1]) < reach; };
+  trap.scene.cage = without(ellipsoid({}, kRadii, 12), [&](Point p) { return besideEye(p, 0.24f); });
+  addBy(trap, without(ellipsoid({}, kRadii, 25), [&](Point p) { return besideEye(p, 0.2f); }),
+        [&](Point p) { return besideEye(p, 0.4f) ? Wanted::either : Wanted::painted; });
+  for (const Point& hole : kHoles) add(trap, ellipsoid({hole[0], hole[1], hole[2] - 0.12f}, {0.16f, 0.16f, 0.16f}, 6), Wanted::bare);
+  return trap;
+}
+
+Trap domed() {
+  Trap trap;
+  trap.scene.name = "domed";
+  trap.scene.cage = ellipsoid({}, {0.46f, 0.66f, 0.46f}, 8);
+  add(trap, ellipsoid({}, {0.4f, 0.6f, 0.4f}, 17), Wanted::painted);
+  add(trap, ellipsoid({}, {1.6f, 1.5f, 1.6f}, 9), Wanted::bare);
+  return trap;
+}
+
 std::vector<Trap> traps() {
   std::vector<Trap> all;
   all.push_back(clothed(false));
@@ -184,6 +206,8 @@ std::vector<Trap> traps() {
   all.push_back(twins(2));
   all.push_back(doubled(false));
   all.push_back(doubled(true));
+  all.push_back(wrapped());
+  all.push_back(domed());
   return all;
 }
 

@@ -34,6 +34,13 @@ Trap twins(std::uint64_t seed);
 /// @param own  The copies have vertices of their own; else they share those of the originals.
 Trap doubled(bool own);
 
+/// A head whose cage is its own skin with fewer vertices and no offset: between them the skin lies outside, by less than a
+/// thousandth of the diagonal. Eyes behind holes.
+Trap wrapped();
+
+/// A figure under a closed dome that is part of the target: whatever leaves the figure's cage meets it.
+Trap domed();
+
 /// All of them.
 std::vector<Trap> traps();
 
