@@ -194,3 +194,22 @@ test('there are eight layers at most; one more is refused in words', async () =>
   assert.equal((await names(page)).length, 8)
   assert.deepEqual(complaints, [])
 })
+
+test('a sample’s paint lies over the others as well, and a link brings back how all of them lie', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } })
+  await page.getByRole('button', { name: 'Add War paint as a layer' }).click()
+  await rows(page).filter({ hasText: 'War paint' }).waitFor()
+  const list = page.getByTestId('layer-list')
+  await list.getByRole('combobox', { name: 'Blending of War paint' }).selectOption('multiply')
+  await list.getByRole('slider', { name: 'Opacity of War paint' }).fill('60')
+  await rows(page).filter({ hasText: 'Tiger stripes' }).locator('.choose').click()
+  await page.getByLabel('Tint of Tiger stripes').fill('#80c0ff')
+  const texture = await savedTexture(page)
+  await page.waitForTimeout(300) // the link follows when the hand rests
+  const link = await page.getByTestId('share-link').evaluate((anchor) => (anchor as HTMLAnchorElement).hash)
+  const other = await site.visit({ viewport: { width: 900, height: 500 } }, undefined, link)
+  await rows(other.page).filter({ hasText: 'War paint' }).waitFor()
+  assert.deepEqual(await names(other.page), ['War paint', 'Tiger stripes'])
+  assert.equal(Buffer.compare((await savedTexture(other.page)).data, texture.data), 0)
+  assert.deepEqual([...complaints, ...other.complaints], [])
+})

@@ -1,8 +1,8 @@
 import { setUpFiles, type Intake } from './files'
 import { loadModel, type Model } from './load'
 import type { LayerStack } from './layers/stack'
-import { element } from './page'
-import { loadPaint, type Paint } from './paint'
+import { element, showError } from './page'
+import { loadPaint, titleOf, type Paint } from './paint'
 import { offerPaints, type Choice } from './paints'
 import { fetchFile, kChecker, paintName, type Sample } from './samples'
 import type { Locks, Session, Shown, Wanted } from './session'
@@ -119,6 +119,16 @@ export class Opener {
       { title: checker.name, picture: checker.picture, load: async () => checker },
     ]
     const chosen = choices.findIndex(({ picture }) => picture === this.#stack.base?.sheet.picture)
-    offerPaints(choices, chosen, (index) => this.#session.want({ paint: choices[index]!.load() }))
+    offerPaints(choices, chosen, {
+      onChoose: (index) => this.#session.want({ paint: choices[index]!.load() }),
+      onAdd: async (index) => {
+        try {
+          const paint = await choices[index]!.load()
+          this.#stack.add(titleOf(paint), paint)
+        } catch (error) {
+          showError((error as Error).message)
+        }
+      },
+    })
   }
 }

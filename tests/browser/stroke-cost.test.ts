@@ -1,0 +1,74 @@
+import assert from 'node:assert/strict'
+import { after, before, test } from 'node:test'
+import type { CDPSession, Page } from 'playwright-core'
+import { Site } from './site'
+import { filled, savedTexture } from './texture'
+
+let site: Site
+before(async () => void (site = await Site.open()))
+after(() => site?.close())
+
+const kMoves = 60
+
+/** Milliseconds of processor time that something takes: of the page's thread, and of the process that draws. */
+async function processorTime(page: Page, session: CDPSession, run: () => Promise<unknown>): Promise<{ page: number; graphics: number }> {
+  const system = await site.browser.newBrowserCDPSession()
+  const now = async (): Promise<{ page: number; graphics: number }> => {
+    // Reading a pixel waits until everything before it is drawn.
+    await page.evaluate(() => {
+      const gl = document.querySelector('canvas')!.getContext('webgl2')!
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4))
+    })
+    const { processInfo } = await system.send('SystemInfo.getProcessInfo')
+    const { metrics } = await session.send('Performance.getMetrics')
+    const seconds = { page: metrics.find(({ name }) => name === 'ThreadTime')!.value, graphics: processInfo.find(({ type }) => type === 'GPU')!.cpuTime }
+    return { page: 1000 * seconds.page, graphics: 1000 * seconds.graphics }
+  }
+  const before = await now()
+  await run()
+  const after = await now()
+  return { page: after.page - before.page, graphics: after.graphics - before.graphics }
+}
+
+test('from a pointer’s move to painted texels takes less than 16 ms of processor time, drawing by the processor included', async () => {
+  const { page } = await site.visit({ viewport: { width: 400, height: 400 } })
+  const session = await page.context().newCDPSession(page)
+  await session.send('Performance.enable', { timeDomain: 'threadTicks' })
+  await page.locator('#view-mode input[value=result]').check({ force: true })
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true })
+  // A tiny picture: it is drawn anew for each move, and is not what this is about.
+  await page.addStyleTag({ content: '.stage { width: 180px; height: 200px !important } .stage > :not(canvas) { display: none !important }' })
+  await page.waitForTimeout(500)
+  const box = (await page.locator('#view').boundingBox())!
+  const [x, y] = [box.x + 0.5 * box.width, box.y + 0.24 * box.height]
+  await page.mouse.move(x, y)
+  await page.mouse.down()
+  /** Moves the mouse, or turns the model, once a frame. */
+  const frames = (paints: boolean): Promise<void> =>
+    page.evaluate(
+      async ({ moves, x, y, paints }) => {
+        const canvas = document.querySelector('canvas')!
+        for (let i = 0; i < moves; i++) {
+          const [clientX, clientY] = [x + 12 * Math.sin(i / 5), y + 5 * Math.sin(i / 3)]
+          canvas.dispatchEvent(
+            paints
+              ? new PointerEvent('pointermove', { pointerId: 1, pointerType: 'mouse', buttons: 1, clientX, clientY, bubbles: true })
+              : new KeyboardEvent('keydown', { key: i % 2 === 0 ? 'ArrowRight' : 'ArrowLeft', bubbles: true }),
+          )
+          await new Promise(requestAnimationFrame)
+        }
+      },
+      { moves: kMoves, x, y, paints },
+    )
+  await frames(true) // what is done but once
+  const costs: number[] = []
+  for (let run = 0; run < 3; run++) {
+    const painting = await processorTime(page, session, () => frames(true))
+    const turning = await processorTime(page, session, () => frames(false))
+    costs.push((painting.page + painting.graphics - turning.page - turning.graphics) / kMoves)
+  }
+  await page.mouse.up()
+  assert.ok(filled(await savedTexture(page)) > 1000)
+  assert.ok(Math.max(...costs) > 0.2, 'painting was measured')
+  assert.ok(Math.min(...costs) < 16, `${costs.map((cost) => cost.toFixed(1)).join(', ')} ms`)
+})
