@@ -1,7 +1,6 @@
 #include "seams.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -52,9 +51,10 @@ class Mender {
         diagonal_(diagonal),
         fixedSlack_(fixedSlack(tree, diagonal)),
         laneOf_(scratch.take<std::uint32_t>(cage.count)),
-        across_(scratch.take<Across>(cage.count)) {
+        across_(scratch.take<Across>(cage.count)),
+        candidates_(scratch.take<Candidate>(cage.count)) {
     for (int k = 0; k < 3; ++k) {
-      candidates_[k] = scratch.take<Candidate>(cage.count);
+      near_[k] = scratch.take<std::uint32_t>(std::size_t{cage.count} + 1);
       Patch& patch = patches_[k];
       patch.lanes = scratch.take<std::uint32_t>(std::size_t{cage.count} + 3);
       patch.squaredDistances = scratch.take<float>(std::size_t{4} * (std::size_t{cage.count} + 1));
@@ -271,15 +271,16 @@ class Mender {
     const simd::f32x4 limits = patch.leastSquares * simd::splat(1 + static_cast<float>(kRelativeSlack)) + simd::splat(fixedSlack_);
     std::uint32_t counts[3] = {};
     for (std::uint32_t i = 0; i < patch.size; ++i) {
-      unsigned near = simd::bits(simd::load(patch.squaredDistances + 4 * i) <= limits) & 7;
-      for (; near != 0; near &= near - 1) {
-        const auto c = static_cast<std::uint32_t>(std::countr_zero(near));
-        candidates_[c][counts[c]++] = placeOf(corners[c], known_[c], slotOf(patch.lanes[i]));
+      const unsigned isNear = simd::bits(simd::load(patch.squaredDistances + 4 * i) <= limits);
+      for (int c = 0; c < 3; ++c) {
+        near_[c][counts[c]] = patch.lanes[i];
+        counts[c] += isNear >> c & 1;
       }
     }
     out.sum = 0;
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      out.corners[c] = counts[c] == 1 ? candidates_[c][0] : nearestOf(candidates_[c], counts[c], diagonal_);
+    for (int c = 0; c < 3; ++c) {
+      for (std::uint32_t i = 0; i < counts[c]; ++i) candidates_[i] = placeOf(corners[c], known_[c], slotOf(near_[c][i]));
+      out.corners[c] = counts[c] == 1 ? candidates_[0] : nearestOf(candidates_, counts[c], diagonal_);
       out.sum += out.corners[c].place.distance;
     }
   }
@@ -307,7 +308,8 @@ class Mender {
   Across* across_;               ///< 1 per lane.
   std::uint32_t triangle_ = 0;   ///< How many of the target's were mended.
   Patch patches_[3];             ///< Around each corner's place,
-  Candidate* candidates_[3];     ///< and what of it might be nearest to each corner.
+  std::uint32_t* near_[3];       ///< what of it might be nearest to each corner,
+  Candidate* candidates_;        ///< and where: of one corner.
   Known known_[3];               ///< Of each corner.
 };
 
