@@ -2,7 +2,6 @@
 /// those of an answer from where its table says, until `release` (wasm/src/bindings.ts). Nothing is decided here; names,
 /// defaults and messages for people are the package's.
 
-#include <initializer_list>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -18,6 +17,11 @@ using cagecast::Array;
 using cagecast::MeshView;
 using cagecast::Status;
 
+using Bytes = std::span<const std::byte>;
+
+/// Most arrays of an answer.
+constexpr std::size_t kMostArrays = 13;
+
 /// What a call reads and what it leaves for JavaScript.
 struct Call {
   Array<std::byte> inputs[9];
@@ -25,7 +29,7 @@ struct Call {
   cagecast::SplitVertices split;
   Array<double> options, stats, shares, numbers;
   /// Code, argument and place of the status; then for each array of the answer its address and its size in bytes.
-  std::uintptr_t answer[3 + 2 * 13];
+  std::uintptr_t answer[3 + 2 * kMostArrays];
 };
 
 [[clang::no_destroy]] Call call;
@@ -47,20 +51,26 @@ MeshView mesh(std::size_t place) {
 }
 
 /// @return Where `answer` is.
-std::uintptr_t answer(const Status& status, std::initializer_list<std::span<const std::byte>> arrays) {
+std::uintptr_t answer(const Status& status, std::span<const Bytes> arrays = {}) {
   std::uintptr_t* next = call.answer;
   *next++ = static_cast<std::uintptr_t>(status.code);
   *next++ = static_cast<std::uintptr_t>(status.argument);
   *next++ = status.at;
-  for (const auto& array : arrays) {
+  for (const Bytes array : arrays) {
     *next++ = reinterpret_cast<std::uintptr_t>(array.data());
     *next++ = array.size();
   }
   return reinterpret_cast<std::uintptr_t>(call.answer);
 }
 
+template <std::size_t kCount>
+std::uintptr_t answer(const Status& status, const Bytes (&arrays)[kCount]) {
+  static_assert(kCount <= kMostArrays);
+  return answer(status, std::span<const Bytes>(arrays));
+}
+
 template <typename T>
-std::span<const std::byte> bytes(const Array<T>& array) {
+Bytes bytes(const Array<T>& array) {
   return std::as_bytes(std::span<const T>(array.begin(), array.end()));
 }
 
@@ -135,17 +145,17 @@ cagecast::TransferOptions options() {
 /// The options of a preset: 0 `paper`, 1 `default`.
 std::uintptr_t presetOptions(unsigned preset) {
   auto options = preset == 0 ? cagecast::TransferOptions::paper() : cagecast::TransferOptions::standard();
-  if (!toNumbers(std::span(&options, 1), call.options)) return answer(kOutOfMemory, {});
+  if (!toNumbers(std::span(&options, 1), call.options)) return answer(kOutOfMemory);
   return answer({}, {bytes(call.options)});
 }
 
 /// The answer of a projection, or of a transfer.
 std::uintptr_t projection(const Status& status, const Array<cagecast::Zone>& zones) {
   cagecast::Projection& p = call.result.projection;
-  if (!status.ok()) return answer(status, {});
+  if (!status.ok()) return answer(status);
   if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats) ||
       !toNumbers(std::span(p.holeShares.begin(), p.holeShares.end()), call.shares) || !toNumbers(std::span(&p, 1), call.numbers)) {
-    return answer(kOutOfMemory, {});
+    return answer(kOutOfMemory);
   }
   return answer(status, {bytes(p.uvs), bytes(p.cornerUvs), bytes(zones), bytes(p.triangles), bytes(p.distances), bytes(p.segments),
                          bytes(call.stats), bytes(p.restores), bytes(call.shares), bytes(call.numbers),
@@ -170,7 +180,7 @@ std::uintptr_t classify() {
   Array<cagecast::HoleShare> shares;
   if (!stats.reset(input<double>(3).size() / fieldsOf<cagecast::SegmentStats>()) ||
       !shares.reset(input<double>(5).size() / fieldsOf<cagecast::HoleShare>())) {
-    return answer(kOutOfMemory, {});
+    return answer(kOutOfMemory);
   }
   fromNumbers(input<double>(3).data(), std::span(stats.begin(), stats.end()));
   fromNumbers(input<double>(5).data(), std::span(shares.begin(), shares.end()));
