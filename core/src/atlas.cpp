@@ -47,6 +47,7 @@ bool findAtlas(const MeshView& mesh, const Cage& cage, Scratch& scratch, Atlas& 
   for (std::uint32_t t = 0; t < cage.count; ++t) {
     const CageTriangle& triangle = cage.triangles[t];
     const std::uint32_t* index = mesh.indices.data() + std::size_t{3} * triangle.index;
+    const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
     double stretch = 0;
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t l = (k + 1) % 3;
@@ -62,7 +63,8 @@ bool findAtlas(const MeshView& mesh, const Cage& cage, Scratch& scratch, Atlas& 
 
       const double du = static_cast<double>(triangle.uvs[2 * l]) - static_cast<double>(triangle.uvs[2 * k]);
       const double dv = static_cast<double>(triangle.uvs[2 * l + 1]) - static_cast<double>(triangle.uvs[2 * k + 1]);
-      stretch = std::max(stretch, (du * du + dv * dv) * triangle.inverseSquare[k]);
+      const Vec3 along = corners[l] - corners[k];
+      stretch = std::max(stretch, (du * du + dv * dv) * (1 / dot(along, along)));
     }
     out.stretch[t] = std::sqrt(stretch);
     for (const float x : triangle.uvs) out.mostUv = std::max(out.mostUv, std::abs(x));

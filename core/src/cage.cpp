@@ -46,11 +46,9 @@ bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage
     if (!(doubleArea > 0)) continue;
     const Vec3 unit = 1 / doubleArea * normal;
     const Vec3 a = Vec3::from(triangle.a);
-    const Vec3 edges[3] = {Vec3::from(triangle.b) - a, Vec3::from(triangle.c) - Vec3::from(triangle.b), a - Vec3::from(triangle.c)};
-    for (int i = 0; i < 3; ++i) triangle.inverseSquare[i] = 1 / dot(edges[i], edges[i]);
     triangle.index = static_cast<std::uint32_t>(t);
-    triangle.towardsB = 1 / doubleArea * cross(unit, edges[2]);
-    triangle.towardsC = 1 / doubleArea * cross(unit, edges[0]);
+    triangle.towardsB = 1 / doubleArea * cross(unit, a - Vec3::from(triangle.c));
+    triangle.towardsC = 1 / doubleArea * cross(unit, Vec3::from(triangle.b) - a);
     triangle.normal = RayDirection::along(unit);
     ++count;
   }

@@ -22,14 +22,17 @@ struct RayDirection {
 };
 
 /// A triangle of the cage that has an area.
-struct CageTriangle {
+struct alignas(16) CageTriangle {
   float a[4], b[4], c[4];  ///< Corners (x, y, z, 0), scaled.
   float uvs[6];            ///< Of the corners.
   std::uint32_t index;     ///< In the caller's mesh.
   Vec3 towardsB, towardsC; ///< dot(p − a, towardsB) is the barycentric of b of the foot of p, and likewise for c.
-  double inverseSquare[3]; ///< 1 / squared length of the edges ab, bc, ca.
   RayDirection normal;     ///< Outward; the direction of the rays of the points that project here.
 };
+
+/// In an array of cage triangles, seen as positions of four floats, corner a of one is so many after that of the one before.
+inline constexpr std::uint32_t kCageStride = sizeof(CageTriangle) / (4 * sizeof(float));
+static_assert(sizeof(CageTriangle) % (4 * sizeof(float)) == 0);
 
 /// The cage without its degenerate triangles, in the caller's order.
 struct Cage {

@@ -9,10 +9,11 @@
 #include "weld.hpp"
 
 /// The search trees: every node has four children, whose boxes lie side by side so that one SIMD instruction looks at all
-/// of them; every leaf has up to four triangles, side by side too.
+/// of them; every leaf has up to four triangles, which lie side by side when it is looked at.
 namespace cagecast {
 
-/// A node's child: the index of a node, or of a leaf with the high bit set. Unused children are empty boxes.
+/// A node's child: the index of a node, or the first triangle of a leaf with the high bit set. An unused child is some leaf,
+/// in a box that is a point far away.
 inline constexpr std::uint32_t kLeafBit = 0x8000'0000u;
 
 /// Four boxes: low[axis][child], high[axis][child]. Each is a little larger than what it holds, by more than the
@@ -21,12 +22,6 @@ struct alignas(16) Node {
   float low[3][4];
   float high[3][4];
   std::uint32_t child[4];
-};
-
-/// Four triangles for rays. Unused lanes hold a triangle without area, which nothing hits.
-struct alignas(16) RayLeaf {
-  float corner[3][3][4];  ///< corner[a, b, c][axis][lane].
-  float rounding[4];      ///< What the edge functions of a ray that hits may be off in float; less than 0 if unused.
 };
 
 /// Four triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
@@ -46,27 +41,29 @@ struct alignas(16) NearLeaf {
   std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
 };
 
-/// A tree without gaps over a row of leaves: node i of a level holds nodes 4i … 4i + 3 of the next, or such leaves.
+/// A tree for rays: boxes, and under them triangles that stay where they are.
 struct RayTree {
+  const Node* nodes = nullptr;             ///< The root is node 0.
+  const float* positions = nullptr;        ///< x, y, z and a fourth float each, scaled.
+  /// 3 positions per triangle, leaf by leaf. A ray that comes to a leaf is tried with the four triangles from its first on, of
+  /// which the last may be another leaf's: the row has so many more at its end.
+  const std::uint32_t* corners = nullptr;
+  float reach = 0;                         ///< The longest side of the box around all rays and triangles, scaled.
+};
+
+/// A tree over the cage's triangles, without gaps: node i of a level holds nodes 4i … 4i + 3 of the next, or such leaves.
+struct CageTree {
   /// A level of at most so many nodes is looked at as a whole: quicker than finding the way to it from the root.
   static constexpr std::uint32_t kMostEntries = 16;
 
-  const Node* nodes = nullptr;         ///< Level by level. The root is node 0.
-  const RayLeaf* leaves = nullptr;
+  RayTree rays;                        ///< Its nodes go level by level.
+  const NearLeaf* near = nullptr;      ///< The triangles of `rays`, four by four.
   std::uint32_t leafCount = 0;
-  std::uint32_t levels = 0;            ///< Of nodes.
   std::uint32_t lastLevel = 0;         ///< The first node whose children are leaves.
   std::uint32_t entry = 0;             ///< The first node of the lowest level with at most `kMostEntries`.
   std::uint32_t entryCount = 0;        ///< Nodes of that level.
   std::uint32_t levelsBelowEntry = 0;
-  float reach = 0;                     ///< The longest side of the box around all rays and triangles, scaled.
-};
-
-/// A tree over the cage's triangles.
-struct CageTree {
-  RayTree rays;
-  const NearLeaf* near = nullptr;  ///< Leaf by leaf the triangles of `rays.leaves`.
-  double extent = 0;               ///< Longest side of its box, scaled.
+  double extent = 0;                   ///< Longest side of its box, scaled.
 };
 
 /// @return false if memory ran out.
@@ -109,7 +106,7 @@ class NearestSearch {
   };
 
   /// Leaves that are near enough to a box, level by level.
-  /// @param[out] leaves  With the leaf bit.
+  /// @param[out] leaves  As a node's children.
   /// @return How many.
   std::uint32_t listLeaves(const simd::f32x4 (&low)[3], const simd::f32x4 (&high)[3], simd::f32x4 limit,
                            std::uint32_t*& leaves) const noexcept;
@@ -127,6 +124,9 @@ class NearestSearch {
   Near near_[kGroup][kRoom + 1];
 };
 
+/// Four triangles for rays.
+struct RayLeaf;
+
 /// A ray: r(t) = origin + rest + t · direction.
 struct Ray {
   float origin[3];
@@ -135,8 +135,8 @@ struct Ray {
   double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
 };
 
-/// Finds which rays hit a triangle at a distance greater than `from` and up to their end, from either side. Watertight: a ray through an edge
-/// or a corner that triangles share hits at least one of them. A triangle that holds the origin as a corner is hit at
+/// Finds which rays hit a triangle at a distance greater than `from` and up to their end, from either side. Watertight: a
+/// ray through an edge or a corner that triangles share hits at least one of them. A triangle that holds the origin as a corner is hit at
 /// distance 0, exactly; one that holds the whole ray in its plane is not hit.
 ///
 /// Many rays go through the tree together: each node is read once for all rays that enter it, which are then listed for its
@@ -169,23 +169,30 @@ class HitSearch {
     float& end() noexcept { return inverse[3]; }
   };
 
-  void enter(std::uint32_t child, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept;
+  /// Room for lists, of all levels: enough but for odd trees. Where it ends, rays go in smaller parties.
+  static constexpr std::size_t kListRoom = std::size_t{12} * kMostRays;
+  /// From so many rays on, a list is worth being moved.
+  static constexpr std::uint32_t kLong = 64;
+  /// What is left of it for rays that go alone, four lists of one at each level: a tree is not that deep.
+  static constexpr std::ptrdiff_t kLastRoom = 4 * 64;
+
+  void enter(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept;
   void testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* const (&lists)[4],
                  std::uint32_t (&counts)[4]) const noexcept;
-  void testLeaf(const RayLeaf& leaf, const std::uint16_t* ids, std::uint32_t count) noexcept;
+  void testLeaf(const Node& node, int child, const std::uint16_t* ids, std::uint32_t count) noexcept;
   [[nodiscard]] unsigned mightHit(const RayLeaf& leaf, const Ray& ray) const noexcept;
 
   const RayTree& tree_;
   double from_;
+  float boxFrom_;           ///< The same for boxes.
   float loose_;             ///< Hits beyond this are worth deciding in double.
   float zero_;              ///< 0 if a hit at distance 0 is none, else less.
   float distanceRounding_;  ///< What to multiply `RayLeaf::rounding` with for the rounding of a distance.
   Slabs* slabs_;            ///< 1 per ray.
-  std::uint16_t* lists_;
+  std::uint16_t* lists_;    ///< `kListRoom`.
   Ray* rays_ = nullptr;
   bool* hit_ = nullptr;
   Find find_ = Find::any;
-  unsigned octant_ = 0;     ///< Where the rays of this pass point to.
 };
 
 }  // namespace cagecast

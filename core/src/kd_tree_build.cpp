@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -13,6 +15,9 @@ namespace {
 /// ray's origin by at most 2^-23 of their size, and this is eight times that. The lattice tests leak without it.
 constexpr float kPadding = 1e-6f;
 
+/// A coordinate where nothing is: products with it, and its square, are still finite.
+constexpr float kFar = 1e15f;
+
 using simd::f32x4;
 using simd::load;
 using simd::splat;
@@ -22,6 +27,11 @@ struct Box {
   f32x4 low = splat(std::numeric_limits<float>::infinity());
   f32x4 high = splat(-std::numeric_limits<float>::infinity());
 
+  static Box nowhere() {
+    Box box;
+    box.low = box.high = splat(kFar);
+    return box;
+  }
   void grow(f32x4 p) {
     low = simd::min(low, p);
     high = simd::max(high, p);
@@ -55,31 +65,6 @@ void setChildren(Node& node, const Box (&boxes)[4]) {
     simd::store(node.low[k], low[k]);
     simd::store(node.high[k], high[k]);
   }
-}
-
-/// The rounding of an edge function in float, for a ray that hits, as a share of the scene's reach R times the triangle's
-/// size E: corners are moved and sheared with errors up to 2^-21 R, then lie within 2 E of the ray; of their products four
-/// are off by as much. The double of that.
-constexpr float kEdgeRounding = 0x1p-17f;
-
-/// Puts up to four triangles into a leaf.
-/// @param corners  Of all four, corner by corner; anything where unused.
-void setRayLeaf(RayLeaf& leaf, f32x4 (&corners)[3][4], std::uint32_t used, float reach) {
-  const f32x4 most = splat(std::numeric_limits<float>::infinity());
-  f32x4 low[3] = {most, most, most};
-  f32x4 high[3] = {splat(0) - most, splat(0) - most, splat(0) - most};
-  for (int i = 0; i < 3; ++i) {
-    f32x4(&rows)[4] = corners[i];
-    simd::transpose(rows[0], rows[1], rows[2], rows[3]);
-    for (int k = 0; k < 3; ++k) {
-      simd::store(leaf.corner[i][k], rows[k]);
-      low[k] = simd::min(low[k], rows[k]);
-      high[k] = simd::max(high[k], rows[k]);
-    }
-  }
-  const f32x4 size = (high[0] - low[0]) + (high[1] - low[1]) + (high[2] - low[2]);
-  simd::store(leaf.rounding, size * splat(kEdgeRounding * reach));
-  for (std::uint32_t lane = used; lane < 4; ++lane) leaf.rounding[lane] = -1;
 }
 
 void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std::uint32_t slot) {
@@ -127,7 +112,6 @@ void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std
 }
 
 void clearNearTriangle(NearLeaf& leaf, int lane) {
-  constexpr float kFar = 1e15f;
   for (int k = 0; k < 3; ++k) {
     leaf.origin[k][lane] = kFar;
     for (int i = 0; i < 3; ++i) leaf.axes[i][k][lane] = i == k ? 1.0f : 0.0f;
@@ -141,41 +125,41 @@ constexpr std::uint32_t groupsOfFour(std::uint32_t count) { return (count + 3) /
 
 /// Takes the memory of a tree over a row of leaves: four neighbours make a node, four nodes a node, up to the root.
 /// @return The nodes, which `fillNodes` fills.
-Node* takeTree(std::uint32_t leafCount, float reach, Scratch& scratch, RayTree& out) {
+Node* takeNodes(std::uint32_t leafCount, Scratch& scratch, CageTree& out) {
   out.leafCount = leafCount;
-  out.reach = reach;
-  out.levels = 0;
   std::uint32_t nodeCount = 0;
-  for (std::uint32_t width = leafCount; out.levels == 0 || width > 1; ++out.levels) nodeCount += width = groupsOfFour(width);
-  auto* nodes = scratch.take<Node>(nodeCount);
-  out.nodes = nodes;
+  std::uint32_t width = leafCount;
+  do nodeCount += width = groupsOfFour(width);
+  while (width > 1);
   out.lastLevel = nodeCount - groupsOfFour(leafCount);
-  return nodes;
+  return scratch.take<Node>(nodeCount);
 }
 
 /// @param boxes  Of the leaves; used up.
-void fillNodes(Box* boxes, Node* nodes, RayTree& out) {
+void fillNodes(Box* boxes, Node* nodes, CageTree& out) {
   out.entryCount = out.levelsBelowEntry = 0;
   std::uint32_t childBase = 0;
-  std::uint32_t childFlag = kLeafBit;
   std::uint32_t levelEnd = out.lastLevel + groupsOfFour(out.leafCount);
   for (std::uint32_t width = out.leafCount;;) {
     const std::uint32_t levelSize = groupsOfFour(width);
     const std::uint32_t levelBegin = levelEnd - levelSize;
+    const bool overLeaves = levelBegin == out.lastLevel;
     for (std::uint32_t i = 0; i < levelSize; ++i) {
       Box children[4];
       Box around;
       for (std::uint32_t lane = 0; lane < 4; ++lane) {
         const std::uint32_t child = 4 * i + lane;
-        nodes[levelBegin + i].child[lane] = child < width ? childFlag | (childBase + child) : kLeafBit;
+        nodes[levelBegin + i].child[lane] = kLeafBit;
+        children[lane] = Box::nowhere();
         if (child >= width) continue;
+        nodes[levelBegin + i].child[lane] = overLeaves ? kLeafBit | 4 * child : childBase + child;
         children[lane] = boxes[child];
         around.grow(boxes[child]);
       }
       setChildren(nodes[levelBegin + i], children);
       boxes[i] = around;
     }
-    if (out.entryCount == 0 && levelSize <= RayTree::kMostEntries) {
+    if (out.entryCount == 0 && levelSize <= CageTree::kMostEntries) {
       out.entry = levelBegin;
       out.entryCount = levelSize;
     }
@@ -183,7 +167,6 @@ void fillNodes(Box* boxes, Node* nodes, RayTree& out) {
     if (levelSize == 1) break;
     width = levelSize;
     levelEnd = childBase = levelBegin;
-    childFlag = 0;
   }
 }
 
@@ -217,13 +200,83 @@ class CageOrder {
   std::uint32_t* order_;
 };
 
+/// The children of a node to be: nodes, or leaves with the high bit set, their first triangle, and in the lowest two bits how
+/// many more they have.
+struct Children {
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  std::uint32_t of[4];
+};
+
+/// Cuts triangles that are in the order of a curve where the curve goes from one half of a cell to the other, so that what is
+/// between two cuts has a box of its own.
+class CurveCuts {
+ public:
+  /// Nodes that n triangles make at most: it is a chain, in which each has three leaves of one triangle.
+  static constexpr std::uint32_t mostNodes(std::uint32_t triangles) { return std::max(1u, triangles / 3); }
+
+  /// @param places  Of the triangles along the curve, ascending.
+  CurveCuts(const std::uint32_t* places, Children* nodes) : places_(places), nodes_(nodes) {}
+
+  [[nodiscard]] std::uint32_t nodeCount() const { return count_; }
+
+  /// Makes a node, and all that are below it, which come after it.
+  /// @return Its index.
+  std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
+    const std::uint32_t node = count_++;
+    std::uint32_t cuts[5];
+    if (const std::uint32_t count = end - begin; count <= kFew) {
+      std::uint32_t run = 4;
+      while (4 * run < count) run *= 4;
+      for (std::uint32_t i = 0; i < 5; ++i) cuts[i] = begin + std::min(run * i, count);
+    } else {
+      cutCells(begin, end, cuts);
+    }
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint32_t size = cuts[i + 1] - cuts[i];
+      const std::uint32_t leaf = size > 0 ? kLeafBit | cuts[i] << 2 | (size - 1) : Children::kNone;
+      nodes_[node].of[i] = size > 4 ? add(cuts[i], cuts[i + 1]) : leaf;
+    }
+    return node;
+  }
+
+ private:
+  /// So few triangles are cut into full leaves instead: cells would cost more time than they save.
+  static constexpr std::uint32_t kFew = 256;
+
+  /// Cuts in two, and twice what is largest then.
+  void cutCells(std::uint32_t begin, std::uint32_t end, std::uint32_t (&cuts)[5]) const {
+    cuts[0] = begin;
+    cuts[1] = end;
+    for (std::uint32_t parts = 1; parts < 4; ++parts) {
+      std::uint32_t largest = 0;
+      for (std::uint32_t i = 1; i < parts; ++i) {
+        if (cuts[i + 1] - cuts[i] > cuts[largest + 1] - cuts[largest]) largest = i;
+      }
+      for (std::uint32_t i = parts; i > largest; --i) cuts[i + 1] = cuts[i];
+      cuts[largest + 1] = cutBetween(cuts[largest], cuts[largest + 1]);
+    }
+  }
+
+  [[nodiscard]] std::uint32_t cutBetween(std::uint32_t begin, std::uint32_t end) const {
+    const std::uint32_t first = places_[begin];
+    const std::uint32_t last = places_[end - 1];
+    if (first == last) return begin + (end - begin) / 2;
+    const auto bit = std::bit_width(first ^ last) - 1;
+    return static_cast<std::uint32_t>(std::lower_bound(places_ + begin, places_ + end, last >> bit << bit) - places_);
+  }
+
+  const std::uint32_t* places_;
+  Children* nodes_;
+  std::uint32_t count_ = 0;
+};
+
 }  // namespace
 
 bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageTree& out) noexcept {
   const std::uint32_t leafCount = groupsOfFour(cage.count);
-  auto* rayLeaves = scratch.take<RayLeaf>(leafCount);
+  auto* corners = scratch.take<std::uint32_t>(std::size_t{12} * leafCount);
   auto* nearLeaves = scratch.take<NearLeaf>(leafCount);
-  auto* nodes = takeTree(leafCount, units.reach, scratch, out.rays);
+  auto* nodes = takeNodes(leafCount, scratch, out);
   const Scratch::Mark mark = scratch.mark();
   auto* order = scratch.take<std::uint32_t>(cage.count);
   auto* centres = scratch.take<float>(std::size_t{4} * cage.count);
@@ -233,9 +286,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
   for (std::uint32_t i = 0; i < cage.count; ++i) {
     const CageTriangle& t = cage.triangles[i];
     Box box;
-    box.grow(load(t.a));
-    box.grow(load(t.b));
-    box.grow(load(t.c));
+    for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
     all.grow(box);
     simd::store(centres + 4 * i, box.low + box.high);
     order[i] = i;
@@ -246,27 +297,23 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
 
   for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf) {
     Box box;
-    f32x4 corners[3][4];
     for (std::uint32_t lane = 0; lane < 4; ++lane) {
       const std::uint32_t i = 4 * leaf + lane;
+      const std::uint32_t slot = order[std::min(i, cage.count - 1)];
+      const CageTriangle& t = cage.triangles[slot];
+      for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
+      for (std::uint32_t k = 0; k < 3; ++k) corners[3 * i + k] = kCageStride * slot + k;
       if (i < cage.count) {
-        const CageTriangle& t = cage.triangles[order[i]];
-        corners[0][lane] = load(t.a);
-        corners[1][lane] = load(t.b);
-        corners[2][lane] = load(t.c);
-        for (auto& corner : corners) box.grow(corner[lane]);
-        setNearTriangle(nearLeaves[leaf], static_cast<int>(lane), t, order[i]);
+        setNearTriangle(nearLeaves[leaf], static_cast<int>(lane), t, slot);
       } else {
-        corners[0][lane] = corners[1][lane] = corners[2][lane] = splat(0);
         clearNearTriangle(nearLeaves[leaf], static_cast<int>(lane));
       }
     }
-    setRayLeaf(rayLeaves[leaf], corners, std::min(4u, cage.count - 4 * leaf), units.reach);
     boxes[leaf] = box.padded(kPadding * units.reach);
   }
-  fillNodes(boxes, nodes, out.rays);
+  fillNodes(boxes, nodes, out);
   scratch.rewind(mark);
-  out.rays.leaves = rayLeaves;
+  out.rays = {nodes, cage.triangles->a, corners, units.reach};
   out.near = nearLeaves;
   float sides[4];
   simd::store(sides, all.high - all.low);
@@ -275,13 +322,13 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
 }
 
 bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch, RayTree& out) noexcept {
-  const std::uint32_t leafCount = std::max(1u, groupsOfFour(target.triangleCount));
-  auto* leaves = scratch.take<RayLeaf>(leafCount);
-  auto* nodes = takeTree(leafCount, units.reach, scratch, out);
+  const std::uint32_t count = target.triangleCount;
+  constexpr std::uint32_t kBeyond = 4;  // What a leaf may be tried with beyond its own.
+  auto* corners = scratch.take<std::uint32_t>(std::size_t{3} * (count + kBeyond));
   const Scratch::Mark mark = scratch.mark();
-  auto* boxes = scratch.take<Box>(leafCount);
-  auto* order = scratch.take<std::uint32_t>(target.triangleCount);
+  auto* places = scratch.take<std::uint32_t>(count);
   auto* starts = scratch.take<std::uint32_t>(std::size_t{target.count} + 1);
+  auto* children = scratch.take<Children>(CurveCuts::mostNodes(count));
   if (scratch.failed()) return false;
 
   // Points are in curve order; sorting triangles by their first point puts them in curve order as well.
@@ -290,31 +337,57 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
     return std::min({corner[0], corner[1], corner[2]});
   };
   std::fill(starts, starts + target.count + 1, 0u);
-  for (std::uint32_t t = 0; t < target.triangleCount; ++t) ++starts[firstPoint(t)];
+  for (std::uint32_t t = 0; t < count; ++t) ++starts[firstPoint(t)];
   std::uint32_t sum = 0;
   for (std::uint32_t p = 0; p < target.count; ++p) sum += std::exchange(starts[p], sum);
-  for (std::uint32_t t = 0; t < target.triangleCount; ++t) order[starts[firstPoint(t)]++] = t;
-
-  for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf) {
-    Box box;
-    f32x4 corners[3][4];
-    for (std::uint32_t lane = 0; lane < 4; ++lane) {
-      const std::uint32_t i = 4 * leaf + lane;
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (i < target.triangleCount) {
-          corners[k][lane] = load(target.at(target.triangles[std::size_t{3} * order[i] + k]));
-          box.grow(corners[k][lane]);
-        } else {
-          corners[k][lane] = splat(0);
-        }
-      }
-    }
-    setRayLeaf(leaves[leaf], corners, std::min(4u, target.triangleCount - 4 * leaf), units.reach);
-    boxes[leaf] = target.triangleCount == 0 ? box : box.padded(kPadding * units.reach);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const std::uint32_t point = firstPoint(t);
+    const std::uint32_t i = starts[point]++;
+    for (std::size_t k = 0; k < 3; ++k) corners[std::size_t{3} * i + k] = target.triangles[std::size_t{3} * t + k];
+    places[i] = target.places[point];
   }
-  fillNodes(boxes, nodes, out);
+  std::fill_n(corners + std::size_t{3} * count, 3 * kBeyond, 0u);
+  CurveCuts cuts(places, children);
+  cuts.add(0, count);
+
+  // How many nodes there are is known only now: they take the place of what they were found from.
+  const std::uint32_t nodeCount = cuts.nodeCount();
   scratch.rewind(mark);
-  out.leaves = leaves;
+  auto* nodes = scratch.take<Node>(nodeCount);
+  const Scratch::Mark end = scratch.mark();
+  auto* found = scratch.take<Children>(nodeCount);
+  auto* boxes = scratch.take<Box>(nodeCount);
+  if (scratch.failed()) return false;
+  std::memmove(found, children, nodeCount * sizeof(Children));
+  for (std::uint32_t node = nodeCount; node-- > 0;) {
+    Box below[4];
+    boxes[node] = {};
+    for (int lane = 0; lane < 4; ++lane) {
+      const std::uint32_t child = found[node].of[lane];
+      if (child == Children::kNone) {
+        nodes[node].child[lane] = kLeafBit;
+        below[lane] = Box::nowhere();
+        continue;
+      }
+      if (child & kLeafBit) {
+        const std::uint32_t first = (child & ~kLeafBit) >> 2;
+        // Always four, the last again where there are fewer: a loop of another length each time is mispredicted.
+        for (std::uint32_t i = 0; i < 4; ++i) {
+          const std::uint32_t* corner = corners + std::size_t{3} * (first + std::min(i, child & 3));
+          for (int k = 0; k < 3; ++k) below[lane].grow(load(target.at(corner[k])));
+        }
+        below[lane] = below[lane].padded(kPadding * units.reach);
+        nodes[node].child[lane] = kLeafBit | first;
+      } else {
+        below[lane] = boxes[child];
+        nodes[node].child[lane] = child;
+      }
+      boxes[node].grow(below[lane]);
+    }
+    setChildren(nodes[node], below);
+  }
+  scratch.rewind(end);
+  out = {nodes, target.positions, corners, units.reach};
   return true;
 }
 

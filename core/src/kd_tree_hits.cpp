@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <utility>
 
 #include "kd_tree.hpp"
@@ -17,6 +20,11 @@ using simd::splat;
 /// away by their sum; this is for what rounding leaves of them. No test has needed it yet.)
 constexpr double kParallel = 1e-10;
 
+/// The rounding of an edge function in float, for a ray that hits, as a share of the scene's reach R times the size E of the
+/// leaf's box: corners are moved and sheared with errors up to 2^-21 R, then lie within 2 E of the ray; of their products four
+/// are off by as much. The double of that. (Of triangles beyond the leaf's own it may say too little: they have their leaf.)
+constexpr float kEdgeRounding = 0x1p-17f;
+
 /// The rounding of a distance in `mightHit`: three times that of an edge function, times a corner's distance from the ray's
 /// origin (the reach), times the stretch of the shear (less than 2).
 constexpr float kDistanceRounding = 8.0f;
@@ -26,6 +34,27 @@ constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 /// An end in float that is not before the exact one.
 float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end)); }
+
+}  // namespace
+
+/// Four triangles side by side, put so when rays come to them: a leaf is visited by a few rays at a time, and three times as
+/// large as what it is made from.
+struct RayLeaf {
+  float corner[3][3][4];  ///< corner[a, b, c][axis][lane].
+  float rounding;         ///< What the edge functions of a ray that hits may be off in float.
+
+  RayLeaf(const RayTree& tree, std::uint32_t first, float size) : rounding(size * kEdgeRounding * tree.reach) {
+    const std::uint32_t* index = tree.corners + std::size_t{3} * first;
+    for (int i = 0; i < 3; ++i) {
+      const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
+      f32x4 rows[4] = {row(0), row(1), row(2), row(3)};
+      simd::transpose(rows[0], rows[1], rows[2], rows[3]);
+      for (int k = 0; k < 3; ++k) simd::store(corner[i][k], rows[k]);
+    }
+  }
+};
+
+namespace {
 
 /// At what distance a ray hits a triangle, or `kNowhere`, decided in double: the watertight edge test of Woop, Benthin, Wald (2013).
 /// A corner is moved to the ray's origin and sheared so that the ray is the z-axis; the signs of the three edge functions
@@ -67,66 +96,65 @@ double hitDistance(const RayLeaf& leaf, int lane, const Ray& ray) {
 HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcept
     : tree_(tree),
       from_(from),
+      boxFrom_(static_cast<float>(from)),
       loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
       zero_(from > 0 ? 0.0f : -1.0f),
       distanceRounding_(kDistanceRounding * tree.reach),
       slabs_(scratch.take<Slabs>(kMostRays)),
-      lists_(scratch.take<std::uint16_t>(kMostRays * (std::size_t{4} * tree.levels + 1))) {}
+      lists_(scratch.take<std::uint16_t>(kListRoom)) {}
 
 void HitSearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noexcept {
   rays_ = rays;
   hit_ = hit;
   find_ = find;
-  const auto octant = [rays](std::uint32_t i) {
-    const float* d = rays[i].direction->inverse;
-    return unsigned{d[0] < 0} | unsigned{d[1] < 0} << 1 | unsigned{d[2] < 0} << 2;
-  };
-  std::uint32_t ends[8] = {};
   for (std::uint32_t i = 0; i < count; ++i) {
-    ++ends[octant(i)];
     for (int k = 0; k < 3; ++k) {
       slabs_[i].inverse[k] = rays[i].direction->inverse[k];
       slabs_[i].offset[k] = rays[i].origin[k] * rays[i].direction->inverse[k];
     }
     slabs_[i].end() = looseEnd(rays[i].end);
     hit[i] = false;
+    lists_[i] = static_cast<std::uint16_t>(i);
   }
-  std::uint32_t sum = 0;
-  for (std::uint32_t& end : ends) sum += std::exchange(end, sum);
-  for (std::uint32_t i = 0; i < count; ++i) lists_[ends[octant(i)]++] = static_cast<std::uint16_t>(i);
-  std::uint32_t begin = 0;
-  for (octant_ = 0; octant_ < 8; begin = ends[octant_++]) {
-    if (ends[octant_] > begin) enter(0, lists_ + begin, ends[octant_] - begin, lists_ + count);
-  }
+  if (count > 0) enter(tree_.nodes[0], lists_, count, lists_ + count);
 }
 
-/// Sends rays into a child. `free` is where lists may be put.
-void HitSearch::enter(std::uint32_t child, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept {
-  if (child & kLeafBit) {
-    testLeaf(tree_.leaves[child & ~kLeafBit], ids, count);
+/// Sends rays into a node. `free` is where lists may be put.
+void HitSearch::enter(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept {
+  const std::ptrdiff_t room = lists_ + kListRoom - kLastRoom - free;
+  if (count > 1 && room < 4 * static_cast<std::ptrdiff_t>(count)) {
+    enter(node, ids, count / 2, free);
+    enter(node, ids + count / 2, count - count / 2, free);
     return;
   }
-  const Node& node = tree_.nodes[child];
-  std::uint16_t* lists[4] = {free, free + count, free + 2 * count, free + 3 * count};
-  std::uint32_t counts[4] = {};
+  // Once a child is done with, the lists of the next one's children may lie over its own.
+  std::uint16_t* lists[4] = {free + 3 * count, free + 2 * count, free + count, free};
+  std::uint32_t counts[4];
   testBoxes(node, ids, count, lists, counts);
+  // Rays that are neighbours go the same way: long lists are pushed together, for the levels to come.
+  if (count >= kLong) {
+    for (int i = 3; i-- > 0;) {
+      std::uint16_t* const list = lists[i + 1] + counts[i + 1];
+      std::memmove(list, lists[i], counts[i] * sizeof *list);
+      lists[i] = list;
+    }
+  }
   for (int i = 0; i < 4; ++i) {
-    if (counts[i] > 0) enter(node.child[i], lists[i], counts[i], free + 4 * count);
+    if (counts[i] == 0) continue;
+    if (node.child[i] & kLeafBit) {
+      testLeaf(node, i, lists[i], counts[i]);
+    } else {
+      enter(tree_.nodes[node.child[i]], lists[i], counts[i], lists[i] + counts[i]);
+    }
   }
 }
 
 /// Lists, for each of four boxes, the rays that enter it at a distance that is not less than `from`, before their end.
 void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* const (&lists)[4],
                           std::uint32_t (&counts)[4]) const noexcept {
-  // All rays of a pass point to the same octant, so the near and far sides of the boxes are the same for all.
-  f32x4 near[3];
-  f32x4 far[3];
-  for (unsigned k = 0; k < 3; ++k) {
-    const bool backward = octant_ >> k & 1;
-    near[k] = load(backward ? node.high[k] : node.low[k]);
-    far[k] = load(backward ? node.low[k] : node.high[k]);
-  }
-  const f32x4 from = splat(static_cast<float>(from_));
+  const f32x4 low[3] = {load(node.low[0]), load(node.low[1]), load(node.low[2])};
+  const f32x4 high[3] = {load(node.high[0]), load(node.high[1]), load(node.high[2])};
+  const f32x4 from = splat(boxFrom_);
   std::size_t c0 = 0;
   std::size_t c1 = 0;
   std::size_t c2 = 0;
@@ -136,12 +164,18 @@ void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint3
     const Slabs& ray = slabs_[id];
     const f32x4 inverse = load(ray.inverse);
     const f32x4 offset = load(ray.offset);
-    const f32x4 inverses[3] = {simd::splatLane<0>(inverse), simd::splatLane<1>(inverse), simd::splatLane<2>(inverse)};
-    const f32x4 offsets[3] = {simd::splatLane<0>(offset), simd::splatLane<1>(offset), simd::splatLane<2>(offset)};
-    const auto distance = [&](const f32x4 (&sides)[3], int k) { return sides[k] * inverses[k] - offsets[k]; };
-    const f32x4 first = simd::max(simd::max(distance(near, 0), distance(near, 1)), simd::max(distance(near, 2), from));
-    const f32x4 last =
-        simd::min(simd::min(distance(far, 0), distance(far, 1)), simd::min(distance(far, 2), simd::splatLane<3>(inverse)));
+    f32x4 first = from;
+    f32x4 last = simd::splatLane<3>(inverse);
+    const auto cut = [&](int k, f32x4 inverseK, f32x4 offsetK) {
+      // Rays of all directions go together: which side is the near one shows only now.
+      const f32x4 toLow = low[k] * inverseK - offsetK;
+      const f32x4 toHigh = high[k] * inverseK - offsetK;
+      first = simd::max(first, simd::min(toLow, toHigh));
+      last = simd::min(last, simd::max(toLow, toHigh));
+    };
+    cut(0, simd::splatLane<0>(inverse), simd::splatLane<0>(offset));
+    cut(1, simd::splatLane<1>(inverse), simd::splatLane<1>(offset));
+    cut(2, simd::splatLane<2>(inverse), simd::splatLane<2>(offset));
     const unsigned entered = simd::bits(first <= last);
     lists[0][c0] = lists[1][c1] = lists[2][c2] = lists[3][c3] = id;
     c0 += entered & 1;
@@ -153,7 +187,10 @@ void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint3
   for (int i = 0; i < 4; ++i) counts[i] = static_cast<std::uint32_t>(all[i]);
 }
 
-void HitSearch::testLeaf(const RayLeaf& leaf, const std::uint16_t* ids, std::uint32_t count) noexcept {
+/// Tries rays with the four triangles from the first of a leaf on.
+void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* ids, std::uint32_t count) noexcept {
+  const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
+  const RayLeaf leaf(tree_, node.child[child] & ~kLeafBit, side(0) + side(1) + side(2));
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t id = ids[i];
     if (slabs_[id].end() < loose_) continue;
@@ -191,7 +228,7 @@ unsigned HitSearch::mightHit(const RayLeaf& leaf, const Ray& ray) const noexcept
   const f32x4 u = x[2] * y[1] - y[2] * x[1];
   const f32x4 v = x[0] * y[2] - y[0] * x[2];
   const f32x4 w = x[1] * y[0] - y[1] * x[0];
-  const f32x4 rounding = load(leaf.rounding);
+  const f32x4 rounding = splat(leaf.rounding);
   const mask4 front = splat(0) - rounding <= simd::min(u, simd::min(v, w));
   const mask4 back = simd::max(u, simd::max(v, w)) <= rounding;
   // The distance is (u·z0 + v·z1 + w·z2)·scale / (u + v + w); multiplied by the square of the divisor there is no division.

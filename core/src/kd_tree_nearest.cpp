@@ -46,19 +46,18 @@ f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
 NearestSearch::NearestSearch(const CageTree& tree, double diagonal, Scratch& scratch) noexcept
     : tree_(tree),
       fixedSlack_(fixedSlack(tree, diagonal)),
-      list_(scratch.take<std::uint32_t>(std::size_t{tree.rays.leafCount} + RayTree::kMostEntries + 4)),
-      otherList_(scratch.take<std::uint32_t>(std::size_t{tree.rays.leafCount} + RayTree::kMostEntries + 4)) {}
+      list_(scratch.take<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)),
+      otherList_(scratch.take<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)) {}
 
 std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
-  const RayTree& rays = tree_.rays;
   std::uint32_t* from = list_;
   std::uint32_t* to = otherList_;
-  std::uint32_t count = rays.entryCount;
-  for (std::uint32_t i = 0; i < count; ++i) from[i] = rays.entry + i;
-  for (std::uint32_t level = 0; level <= rays.levelsBelowEntry; ++level) {
+  std::uint32_t count = tree_.entryCount;
+  for (std::uint32_t i = 0; i < count; ++i) from[i] = tree_.entry + i;
+  for (std::uint32_t level = 0; level <= tree_.levelsBelowEntry; ++level) {
     std::size_t found = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Node& node = rays.nodes[from[i]];
+      const Node& node = tree_.rays.nodes[from[i]];
       const unsigned close = simd::bits(squaredDistanceToBoxes(node, low, high) <= limit);
       for (std::uint32_t lane = 0; lane < 4; ++lane) {
         to[found] = node.child[lane];
@@ -119,8 +118,8 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   std::uint32_t* leaves;
   const std::uint32_t leafCount = listLeaves(low, high, groupLimit(), leaves);
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const std::uint32_t leaf = leaves[j] & ~kLeafBit;
-    const Node& parent = tree_.rays.nodes[tree_.rays.lastLevel + leaf / 4];
+    const std::uint32_t leaf = (leaves[j] & ~kLeafBit) / 4;
+    const Node& parent = tree_.rays.nodes[tree_.lastLevel + leaf / 4];
     unsigned members = 0;
     for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
       const f32x4 squared = squaredDistanceToChild(parent, leaf % 4, columns_[0] + i, columns_[1] + i, columns_[2] + i);
@@ -156,7 +155,7 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) c
   std::uint32_t* leaves;
   const std::uint32_t leafCount = listLeaves(box, box, limit, leaves);
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const std::uint32_t leaf = leaves[j] & ~kLeafBit;
+    const std::uint32_t leaf = (leaves[j] & ~kLeafBit) / 4;
     takeLanes(leaf, simd::bits(squaredDistanceToTriangles(tree_.near[leaf], point) <= limit));
   }
   return count;

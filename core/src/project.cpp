@@ -13,7 +13,7 @@ Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept {
   for (int i = 0; i < 3; ++i) {
     const Vec3 edge = corners[(i + 1) % 3] - corners[i];
     const Vec3 offset = p - corners[i];
-    along[i] = std::min(std::max(dot(offset, edge) * t.inverseSquare[i], 0.0), 1.0);
+    along[i] = std::min(std::max(dot(offset, edge) * (1 / dot(edge, edge)), 0.0), 1.0);
     const Vec3 away = offset - along[i] * edge;
     squared[i] = dot(away, away);
   }

@@ -53,6 +53,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   const auto allTriangles = static_cast<std::uint32_t>(target.indices.size() / 3);
   auto* ofVertex = scratch.take<std::uint32_t>(vertexCount);
   auto* positions = scratch.take<float>(Points::kStride * vertexCount);
+  auto* places = scratch.take<std::uint32_t>(vertexCount);
   auto* triangles = scratch.take<std::uint32_t>(std::size_t{3} * allTriangles);
   auto* doubleAreas = scratch.take<double>(allTriangles);
   const bool tolerant = tolerance > 0;
@@ -102,6 +103,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
       while (point < pointCount && !(sites[spare[point].vertex] == s)) ++point;
       if (point == pointCount) {
         spare[pointCount++].vertex = v;
+        places[point] = placed[i].key;
         float* p = positions + Points::kStride * point;
         p[0] = s.x;
         p[1] = s.y;
@@ -115,10 +117,15 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   scratch.rewind(mark);
 
   if (tolerant) {
-    auto* merged = scratch.take<std::uint32_t>(pointCount);
+    const std::uint32_t all = pointCount;
+    auto* merged = scratch.take<std::uint32_t>(all);
     if (scratch.failed()) return false;
     const double radius = static_cast<double>(tolerance) * units.diagonal;
-    if (!mergeNear(positions, groups, pointCount, radius, merged, pointCount)) return false;
+    if (!mergeNear(positions, groups, all, radius, merged, pointCount)) return false;
+    // Joined points keep the order of their first members, and the places of these.
+    for (std::uint32_t i = 0, next = 0; i < all; ++i) {
+      if (merged[i] == next) places[next++] = places[i];
+    }
     for (std::uint32_t v = 0; v < vertexCount; ++v) ofVertex[v] = merged[ofVertex[v]];
     scratch.rewind(mark);
   }
@@ -134,7 +141,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
     doubleAreas[kept++] = doubleArea;
   }
 
-  out = {pointCount, positions, ofVertex, kept, triangles, doubleAreas};
+  out = {pointCount, positions, places, ofVertex, kept, triangles, doubleAreas};
   return true;
 }
 
