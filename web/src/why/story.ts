@@ -32,6 +32,8 @@ export interface PartFacts {
   /** F = C / E. */
   coverage: number
   threshold: number
+  /** How many times what the rules ask of it, threshold and floor, it reaches; infinite if nothing is asked. */
+  margin: number
   passes: boolean
 }
 
@@ -82,7 +84,7 @@ function decidedBy({ shown, classification }: Facts, triangle: number, weights: 
 function partOf({ shown, classification, rules }: Facts, vertex: number): PartFacts {
   const segment = shown.projection.segments[vertex]!
   const stats = classification.segmentStats[segment]!
-  const { area, exposedArea, coveredArea, coverage, group, culled } = stats
+  const { area, exposedArea, coveredArea, coverage, group, margin, culled } = stats
   const pieces = classification.segmentStats.filter((other) => other.group === group && other.area > 0).length
   const name = `“${shown.target.mesh.parts[group]!.name}”`
   const of = (value: number): number => (area > 0 ? value / area : 0)
@@ -93,6 +95,7 @@ function partOf({ shown, classification, rules }: Facts, vertex: number): PartFa
     covered: of(coveredArea),
     coverage,
     threshold: rules.threshold,
+    margin,
     passes: !culled,
   }
 }

@@ -114,7 +114,7 @@ export class Why {
 }
 
 /** The areas of a part as a bar: what is exposed of it, what of that is covered, and where the threshold lies. */
-function areasOf({ exposed, covered, coverage, threshold, passes }: PartFacts): HTMLElement {
+function areasOf({ exposed, covered, coverage, threshold, margin, passes }: PartFacts): HTMLElement {
   const figure = document.createElement('figure')
   figure.className = 'areas'
   const bar = document.createElement('div')
@@ -127,6 +127,7 @@ function areasOf({ exposed, covered, coverage, threshold, passes }: PartFacts): 
   fact('C covered', percent(covered))
   fact('F = C / E', `${percent(coverage)}, ${passes ? 'passes' : 'culled'}`)
   fact('Threshold', percent(threshold))
+  if (Number.isFinite(margin)) fact('Reached of what is asked', percent(margin))
   figure.append(bar, facts)
   return figure
 }
