@@ -54,7 +54,7 @@ async function why(site: Site): Promise<void> {
   const shots: string[] = []
   const { page } = await site.visit({ viewport: { width: 1200, height: 760 } })
   await page.locator('#view-mode input[value=result]').check({ force: true })
-  await page.locator('#tools input').nth(1).check({ force: true })
+  await page.getByRole('radio', { name: 'Why?' }).check({ force: true })
   const stage = (await page.locator('#stage').boundingBox())!
   for (const [x, y] of [[0.6, 0.35], [0.42, 0.58]] as const) {
     await page.mouse.click(stage.x + x * stage.width, stage.y + y * stage.height)
