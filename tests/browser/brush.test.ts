@@ -218,3 +218,32 @@ test('a stroke stops at what must not be painted, and goes on behind it', async 
   assert.ok(changed(eye.to + 4, eye.to + 10) > 0.5, 'painted behind it')
   assert.deepEqual(complaints, [])
 })
+
+test('a lost graphics context costs nobody a stroke', async () => {
+  const { page } = visit
+  const before = await savedTexture(page)
+  assert.ok(filled(before) > 0)
+  await page.evaluate(async () => {
+    const canvas = document.querySelector('canvas')!
+    const extension = canvas.getContext('webgl2')!.getExtension('WEBGL_lose_context')!
+    const restored = new Promise((done) => canvas.addEventListener('webglcontextrestored', done, { once: true }))
+    extension.loseContext()
+    await new Promise((done) => setTimeout(done, 100))
+    extension.restoreContext()
+    await restored
+  })
+  assert.equal(Buffer.compare((await savedTexture(page)).data, before.data), 0)
+  await page.getByTestId('undo').click()
+  assert.notEqual(Buffer.compare((await savedTexture(page)).data, before.data), 0)
+  await page.getByTestId('redo').click()
+  assert.equal(Buffer.compare((await savedTexture(page)).data, before.data), 0)
+})
+
+test('where nothing was painted there is nothing to erase, and the page says so', async () => {
+  const { page } = visit
+  await openBall()
+  const area = await modelArea(page)
+  await choose('Erase')
+  await draw(area, [[0.48, 0.4], [0.5, 0.4]])
+  assert.match(await shownError(page), /Nothing was painted/)
+})

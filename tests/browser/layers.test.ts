@@ -183,9 +183,19 @@ test('layers are put together when something changes, and not when the model tur
   assert.ok((await composed()) > before)
 })
 
+test('a larger image makes the texture larger, texel by texel, and what has fewer texels is spread over it', async () => {
+  const { page } = visit
+  await add(image('large.png', 2048, (x, y) => [(x % 2) * 255, (y % 2) * 255, (x * 7 + y) % 256, y < 1024 ? 255 : 128]))
+  const texture = await savedTexture(page)
+  assert.equal(texture.width, 2048)
+  for (const [x, y] of [[0, 0], [1, 0], [2047, 1023], [777, 512]] as const) assert.deepEqual(texel(texture, x, y), [(x % 2) * 255, (y % 2) * 255, (x * 7 + y) % 256, 255])
+  await control('checkbox', 'Show large.png').uncheck({ force: true })
+  assert.equal((await savedTexture(page)).width, 1024)
+})
+
 test('there are eight layers at most; one more is refused in words', async () => {
   const { page, complaints } = visit
-  for (let i = 0; i < 5; i++) await page.getByTestId('add-painting').click()
+  for (let i = 0; i < 4; i++) await page.getByTestId('add-painting').click()
   assert.equal((await names(page)).length, 8)
   assert.equal(await page.getByTestId('add-painting').isDisabled(), true)
   await page.getByTestId('texture-input').setInputFiles(image('ninth.png', 4, () => [0, 0, 0, 255]))

@@ -1,4 +1,4 @@
-import { Vector3 } from 'three'
+import { Triangle, Vector3 } from 'three'
 import { apart, type Rect } from '../layers/rect'
 
 /** A cage, as far as painting on it wants to know it. */
@@ -88,6 +88,22 @@ export class CageAtlas {
     const row = Math.min(this.size - 1, Math.floor(insideV * this.size))
     const patch = this.#patches[this.owners[row * this.size + column]!]
     return patch && { point: pointOf(patch, insideU, insideV), normal: patch.normal.clone() }
+  }
+
+  /** The place of the cage that is nearest to a point, on what faces `outside`. Cost: goes through all triangles. */
+  nearest(point: Vector3, outside: Vector3): Place | undefined {
+    const triangle = new Triangle()
+    const found = new Vector3()
+    let nearest: Place | undefined
+    let least = Infinity
+    for (const { points, normal } of this.#patches) {
+      // A triangle is no nearer than its plane.
+      if (normal.dot(outside) <= 0 || Math.abs(found.subVectors(point, points[0]).dot(normal)) >= least) continue
+      triangle.set(...points).closestPointToPoint(point, found)
+      const distance = found.distanceTo(point)
+      if (distance < least) [least, nearest] = [distance, { point: found.clone(), normal }]
+    }
+    return nearest
   }
 
   /** The same place on the other side of the middle. */

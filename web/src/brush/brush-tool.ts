@@ -9,13 +9,17 @@ import { Stroke } from './stroke'
 // How far a pointer goes before its way is looked at again: as a share of the brush's radius, and in pixels at least.
 const kStep = 0.5
 const kLeastStep = 4
-// Looks at most between two samples of a pointer: a leap across the picture is no stroke that anyone aims.
-const kMostSteps = 24
+// Looks between two samples of a pointer: as many as this many triangles can be looked through, and some at most. What is
+// left of the way is painted straight on over the cage.
+const kTrianglesLooked = 120_000
+const kMostLooks = 24
 
 /** Paints, or erases, where a pointer goes. Off the paint it turns the model, as every tool does. */
 export class BrushTool implements Tool {
   #stroke: Stroke | undefined
   #radius = 0
+  /** Pixels of the screen for a length of 1. */
+  #scale = 1
   #at = { x: 0, y: 0 }
 
   constructor(
@@ -35,6 +39,7 @@ export class BrushTool implements Tool {
     this.#radius = (this.options.size / 2) * atlas.diagonal
     this.#stroke = new Stroke(atlas, { radius: this.#radius, mirror })
     this.#at = { x, y }
+    this.#scale = this.viewer.pixelsAt(spot!.seen)
     this.painter.stroke(this.#stroke.to(place))
     return true
   }
@@ -52,15 +57,17 @@ export class BrushTool implements Tool {
     if (!this.#stroke) return
     const from = this.#at
     this.#at = { x, y }
-    // Where nothing is, nothing tells how large the brush is on the screen.
-    const scale = spot ? this.viewer.pixelsAt(spot.seen) : Infinity
-    const step = Math.max(kLeastStep, kStep * this.#radius * scale)
-    const steps = Math.min(kMostSteps, Math.ceil(Math.hypot(x - from.x, y - from.y) / step))
-    for (let i = 1; i < steps; i++) {
-      const share = i / steps
-      this.#paint(this.viewer.pick(from.x + share * (x - from.x), from.y + share * (y - from.y)), step / scale)
+    // Beside the model nothing tells how large the brush is on the screen: as large as it was on it.
+    if (spot) this.#scale = this.viewer.pixelsAt(spot.seen)
+    const step = Math.max(kLeastStep, kStep * this.#radius * this.#scale)
+    const length = Math.hypot(x - from.x, y - from.y)
+    const looks = Math.min(kMostLooks, Math.floor(kTrianglesLooked / this.painter.triangles), Math.ceil(length / step) - 1)
+    const between = length / (Math.max(0, looks) + 1) / this.#scale
+    for (let i = 1; i <= looks; i++) {
+      const share = i / (looks + 1)
+      this.#paint(this.viewer.pick(from.x + share * (x - from.x), from.y + share * (y - from.y)), between)
     }
-    this.#paint(spot, step / scale)
+    this.#paint(spot, between)
   }
 
   up(): void {

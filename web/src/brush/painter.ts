@@ -2,8 +2,9 @@ import type { Vector3 } from 'three'
 import type { Composite } from '../layers/composite'
 import type { Layer } from '../layers/layer'
 import { toShares, type Rect } from '../layers/rect'
-import type { LayerStack } from '../layers/stack'
+import { kFull, type LayerStack } from '../layers/stack'
 import { readStraight } from '../layers/straight'
+import { showError } from '../page'
 import type { Spot } from '../pick'
 import type { Session, Shown } from '../session'
 import type { Viewer } from '../viewer'
@@ -49,6 +50,11 @@ export class Painter {
     return this.#surface()?.atlas
   }
 
+  /** How many triangles the target has. */
+  get triangles(): number {
+    return (this.#session.shown?.target.mesh.indices.length ?? 0) / 3
+  }
+
   /** The place of the cage that a spot of the target takes its paint from; none where it takes none. */
   placeOf(spot: Spot | undefined): Place | undefined {
     const { shown, classification } = this.#session
@@ -56,11 +62,16 @@ export class Painter {
     return this.atlas?.at(...uvOf(spot, shown))
   }
 
-  /** Begins to paint. @returns Whether there is a layer to do it on. @throws Error if there would be too many layers. */
+  /** Begins to paint. @returns Whether there is a layer to do it on; the page says so if there is none. */
   begin(name: string, style: StrokeStyle): boolean {
-    const layer = style.erases ? this.#paintedLayer() : (this.#paintedLayer() ?? this.addLayer())
     const wet = this.#surface()
-    if (!layer || !wet) return false
+    const painted = this.#paintedLayer()
+    if (!wet) return false
+    if (!painted && (style.erases || this.#stack.full)) {
+      showError(style.erases ? 'Nothing was painted yet that could be erased.' : kFull)
+      return false
+    }
+    const layer = painted ?? this.addLayer()
     this.#layer = layer
     this.#name = name
     this.#stack.select(layer)

@@ -47,7 +47,7 @@ export interface Sticker {
 }
 
 const kTableWidth = 1024
-const kMostCapsules = 2 // one, and its mirror image
+const kMostCapsules = 8 // in one pass
 
 // A normal that is turned farther than this from the brush's is that of the other side of something thin.
 const kPlaceShader = /* glsl */ `
@@ -187,8 +187,10 @@ export class WetPaint {
     this.#style = style
   }
 
-  /** Draws the brush's way, and its mirror image if there is one. @returns The parts it touched, in shares. */
+  /** Draws a brush's way; all of one radius. @returns The parts it touched, in shares. */
   stroke(renderer: WebGLRenderer, capsules: readonly Capsule[]): Rect[] {
+    const rest = capsules.slice(kMostCapsules)
+    if (rest.length > 0) return [...this.stroke(renderer, capsules.slice(0, kMostCapsules)), ...this.stroke(renderer, rest)]
     const { from, to, fromNormal, toNormal, count, radius, hardness, paint } = this.#brush.uniforms
     capsules.forEach((capsule, index) => {
       from.value[index]!.copy(capsule.from.point)

@@ -2,6 +2,9 @@ import { Emitter } from '../events'
 import { kMostLayers } from './composite'
 import { kPlain, type Layer, type Sheet, type Style } from './layer'
 
+/** What there is to be said when there is no room for another one. */
+export const kFull = `There are ${kMostLayers} layers, as many as there can be: remove one first.`
+
 export interface StackEvents {
   /** Layers came, went, moved, or are laid in another way. */
   change: readonly Layer[]
@@ -112,5 +115,3 @@ export class LayerStack extends Emitter<StackEvents> {
     this.emit('change', layers)
   }
 }
-
-const kFull = `There are ${kMostLayers} layers, as many as there can be: remove one first.`
