@@ -132,6 +132,20 @@ test('the keyboard opens the table, and chooses in it', async () => {
   assert.deepEqual(await shownCounts(page), counts)
 })
 
+test('while the model moves, the table tells of it as it is', async () => {
+  const { page } = visit
+  const before = await shownParts(page)
+  const inflate = async (amount: string): Promise<void> => {
+    await page.locator('#deform').selectOption('inflate')
+    await page.locator('#amount').fill(amount)
+    await page.waitForFunction((amount) => document.querySelector<HTMLOutputElement>('#amount-value')!.value === amount && document.querySelector('#live')!.ariaBusy === 'false', Number(amount).toFixed(2))
+  }
+  await inflate('0.9')
+  assert.notDeepEqual((await shownParts(page)).map(({ covered }) => covered), before.map(({ covered }) => covered))
+  await inflate('0')
+  assert.deepEqual(await shownParts(page), before)
+})
+
 test('of a model in very many parts the largest fifty are listed; what was said of another model is forgotten', async () => {
   const { page } = visit
   const [first] = await shownParts(page)

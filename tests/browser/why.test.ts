@@ -128,6 +128,22 @@ test('by keyboard: W asks, Enter tells of the middle, and a screen reader is tol
   assert.match(await bubble(page), /^Painted/)
 })
 
+test('a story that is kept follows the model as it moves', async () => {
+  const { page } = visit
+  await page.getByRole('button', { name: 'Ask the middle' }).click()
+  const still = await story(page)
+  const inflate = async (amount: string): Promise<void> => {
+    await page.locator('#deform').selectOption('inflate')
+    await page.getByTestId('amount').fill(amount)
+    await page.waitForFunction((amount) => document.querySelector<HTMLOutputElement>('#amount-value')!.value === amount && document.querySelector('#live')!.ariaBusy === 'false', Number(amount).toFixed(2))
+  }
+  await inflate('-0.8')
+  const away = (told: string): number => Number.parseFloat(/nearest, (\S+) %/.exec(told)![1]!)
+  assert.ok(away(await story(page)) > away(still) + 1, `${away(still)} % away, then ${away(await story(page))} %`)
+  await inflate('0')
+  assert.equal(await story(page), still)
+})
+
 for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
   test(`${name}: what is asked about is what is seen, not what lies behind`, async () => {
     const { page } = visit

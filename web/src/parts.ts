@@ -25,6 +25,7 @@ interface Entry {
 interface Row {
   segments: readonly number[]
   row: HTMLTableRowElement
+  cover: HTMLElement
   verdict: HTMLElement
   choice: HTMLSelectElement
 }
@@ -74,7 +75,9 @@ export class PartsTable {
 
   /** Writes which segments may be painted, and which may not. */
   #showVerdicts({ segmentStats }: Classification): void {
-    for (const { segments, verdict } of this.#rows) {
+    for (const { segments, cover, verdict } of this.#rows) {
+      // It changes with every frame of a model that moves.
+      cover.textContent = coverOf(segments.map((segment) => segmentStats[segment]!))
       // Those that share a row share its verdict: nothing of any of them is covered, and the same was said about all.
       const { culled } = segmentStats[segments[0]!]!
       verdict.textContent = culled ? 'culled' : 'passes'
@@ -86,7 +89,7 @@ export class PartsTable {
   }
 
   #row(entry: Entry, colors: readonly Rgb[]): Row {
-    const { name, segments, points, exposedArea } = entry
+    const { name, segments, points } = entry
     const row = document.createElement('tr')
     const head = cell('th', name)
     head.scope = 'row'
@@ -95,10 +98,11 @@ export class PartsTable {
     const choice = this.#select(entry)
     const last = document.createElement('td')
     last.append(choice)
-    row.append(head, cell('td', points.toLocaleString('en')), cell('td', exposedArea > 0 ? percent(coverageOf(entry)) : 'hidden'), verdict, last)
+    const cover = cell('td', '')
+    row.append(head, cell('td', points.toLocaleString('en')), cover, verdict, last)
     row.addEventListener('pointerenter', () => this.#light(segments))
     row.addEventListener('focusin', () => this.#light(segments))
-    return { segments, row, verdict, choice }
+    return { segments, row, cover, verdict, choice }
   }
 
   #select({ name, segments, lock }: Entry): HTMLSelectElement {
@@ -143,6 +147,13 @@ function named(entries: Entry[]): Entry[] {
     const pieces = entry.segments.length > 1 ? `, ${entry.segments.length} pieces` : ''
     return { ...entry, name: `${entry.name}${number}${pieces}` }
   })
+}
+
+/** What share of the exposed area of segments is covered, in words. */
+function coverOf(stats: readonly SegmentStats[]): string {
+  const sum = (area: 'exposedArea' | 'coveredArea'): number => stats.reduce((total, segment) => total + segment[area], 0)
+  const exposedArea = sum('exposedArea')
+  return exposedArea > 0 ? percent(sum('coveredArea') / exposedArea) : 'hidden'
 }
 
 function coverageOf({ exposedArea, coveredArea }: Entry): number {

@@ -45,6 +45,7 @@ export class Why {
       this.#rims = undefined
       this.#forget()
     })
+    session.on('frame', () => (this.#rims = undefined)) // the cage may have moved along
     session.on('zones', () => this.#kept && this.#tell(this.#spot))
     element('why-ask', HTMLButtonElement).addEventListener('click', () => this.#askMiddle())
     element('view', HTMLCanvasElement).addEventListener('keydown', (event) => {
