@@ -14,12 +14,15 @@ import {
   type Object3D,
 } from 'three'
 import { cornersOf, type Surface } from '../surface'
+import type { Path } from './path'
 import type { Rims } from './rims'
 import type { Story } from './story'
 
-/** By zone; the colours of the picture, see overlay.ts, and what may be painted in the cage's. */
-const kColors = ['#19b394', '#0072b2', '#e69f00', '#cc79a7']
 const kCageColor = '#19b394'
+/** What came of a spot, by zone: as in the picture, see overlay.ts, but what may be painted in the cage's colour. */
+const kSpotColors = [kCageColor, '#0072b2', '#e69f00', '#cc79a7']
+/** What came of its ray, which need not be the last word: in the colour of the zone that it would be. */
+const kRayColors: Record<Path['outcome'], string> = { covered: kCageColor, pokesOut: kCageColor, hidden: kSpotColors[1]!, lost: kSpotColors[2]! }
 const kInk = '#14181d'
 
 // Of the model's diagonal.
@@ -39,7 +42,7 @@ export class StoryMarks {
 
   constructor({ zone, path, cageTriangle, diagonal }: Story, target: Surface, cage: Surface, rims: Rims) {
     const { start, place, normal, outcome } = path
-    const color = kColors[zone]!
+    const color = kRayColors[outcome]
     const hit = outcome === 'hidden' ? path.model : outcome === 'covered' ? path.cage : undefined
     const end = start.clone().addScaledVector(normal, hit ? Math.max(0, hit.length) : kAway * diagonal)
 
@@ -57,7 +60,7 @@ export class StoryMarks {
       this.#add(ball(place, (kBall / 2) * diagonal), kInk, 0.8)
     }
     this.#add(ball(start, kBall * diagonal), '#ffffff', 1)
-    this.#add(ball(start, 0.6 * kBall * diagonal), color, 1, true)
+    this.#add(ball(start, 0.6 * kBall * diagonal), kSpotColors[zone]!, 1, true)
   }
 
   dispose(): void {
