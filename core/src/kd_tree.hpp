@@ -96,6 +96,8 @@ class NearestSearch {
   std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) const noexcept;
 
  private:
+  /// Leaves whose distances are kept at a time.
+  static constexpr std::uint32_t kBatch = 64;
   /// Leaves to remember of a point; if more come close, `candidates` looks again.
   static constexpr std::uint32_t kRoom = 8;
 
@@ -110,6 +112,8 @@ class NearestSearch {
   /// @return How many.
   std::uint32_t listLeaves(const simd::f32x4 (&low)[3], const simd::f32x4 (&high)[3], simd::f32x4 limit,
                            std::uint32_t*& leaves) const noexcept;
+  /// Searches up to `kBatch` leaves for each of `count` points.
+  void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept;
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
 
   const CageTree& tree_;

@@ -29,7 +29,7 @@ f32x4 squaredDistanceToChild(const Node& node, std::uint32_t child, const float*
   f32x4 sum = splat(0);
   for (int k = 0; k < 3; ++k) {
     const f32x4 p = load(points[k]);
-    const f32x4 outside = simd::max(simd::max(splat(node.low[k][child]) - p, p - splat(node.high[k][child])), splat(0));
+    const f32x4 outside = p - simd::clamp(p, splat(node.low[k][child]), splat(node.high[k][child]));
     sum = sum + outside * outside;
   }
   return sum;
@@ -87,6 +87,37 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
   }
 }
 
+void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept {
+  alignas(16) float distances[kBatch][kGroup];  // Of the points to the leaves' boxes, squared.
+  alignas(16) float least[kGroup];
+  alignas(16) float nearest[kGroup] = {};  // Which leaf that is of, as a float for the select.
+  std::fill(least, least + kGroup, std::numeric_limits<float>::infinity());
+  const auto leafAt = [leaves](std::uint32_t j) { return (leaves[j] & ~kLeafBit) / 4; };
+  for (std::uint32_t j = 0; j < leafCount; ++j) {
+    const std::uint32_t leaf = leafAt(j);
+    const Node& parent = tree_.rays.nodes[tree_.lastLevel + leaf / 4];
+    for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
+      const f32x4 squared = squaredDistanceToChild(parent, leaf % 4, columns_[0] + i, columns_[1] + i, columns_[2] + i);
+      const simd::mask4 nearer = squared < load(least + i);
+      simd::store(distances[j] + i, squared);
+      simd::store(least + i, simd::min(squared, load(least + i)));
+      simd::store(nearest + i, simd::select(nearer, splat(static_cast<float>(j)), load(nearest + i)));
+    }
+  }
+  // Each point begins with the leaf whose box is nearest to it: the other leaves then have little to offer.
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!(least[i] <= limits_[i])) continue;
+    const auto j = static_cast<std::uint32_t>(nearest[i]);
+    searchLeaf(leafAt(j), 1u << i);
+    distances[j][i] = std::numeric_limits<float>::infinity();
+  }
+  for (std::uint32_t j = 0; j < leafCount; ++j) {
+    unsigned members = 0;
+    for (unsigned i = 0; i < kGroup; i += simd::kWidth) members |= simd::bits(load(distances[j] + i) <= load(limits_ + i)) << i;
+    searchLeaf(leafAt(j), members);
+  }
+}
+
 void NearestSearch::search(const float* positions, std::uint32_t count) noexcept {
   f32x4 lowCorner = load(positions);
   f32x4 highCorner = lowCorner;
@@ -108,25 +139,16 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     nearCount_[i] = 0;
   }
   const std::uint32_t seed = lastLeaf_;
-  searchLeaf(seed, (1u << count) - 1);
-  const auto groupLimit = [this] {
-    f32x4 most = load(limits_);
-    for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
-    return splat(simd::highest(most));
-  };
-
+  searchLeaf(seed, (1u << count) - 1);  // For a limit to begin with.
+  f32x4 most = load(limits_);
+  for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
-  const std::uint32_t leafCount = listLeaves(low, high, groupLimit(), leaves);
-  for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const std::uint32_t leaf = (leaves[j] & ~kLeafBit) / 4;
-    const Node& parent = tree_.rays.nodes[tree_.lastLevel + leaf / 4];
-    unsigned members = 0;
-    for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
-      const f32x4 squared = squaredDistanceToChild(parent, leaf % 4, columns_[0] + i, columns_[1] + i, columns_[2] + i);
-      members |= simd::bits(squared <= load(limits_ + i)) << i;
-    }
-    if (leaf != seed) searchLeaf(leaf, members);
+  std::uint32_t leafCount = listLeaves(low, high, splat(simd::highest(most)), leaves);
+  leafCount = static_cast<std::uint32_t>(std::remove(leaves, leaves + leafCount, kLeafBit | 4 * seed) - leaves);
+  for (std::uint32_t begin = 0; begin < leafCount; begin += kBatch) {
+    searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
   }
+
   // Where the last point is nearest, the next group begins.
   const std::uint32_t last = count - 1;
   float least = std::numeric_limits<float>::infinity();
