@@ -1,4 +1,5 @@
 import { Matrix4, Mesh, SkinnedMesh, Vector3, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three'
+import { Pace } from './pace'
 
 /** One triangle mesh of the scene, and where its elements lie in the concatenated arrays. */
 export interface Part {
@@ -30,6 +31,7 @@ export interface ExtractedMesh {
 }
 
 const kIdentity = new Matrix4()
+const kSlice = 16384 // vertices or triangles that are read at a stretch: some milliseconds
 
 /** Where a mesh lies in the scene. A skinned one is taken in its bind pose: glTF gives its node's transform no say. */
 export function matrixOf(mesh: Mesh): Matrix4 {
@@ -46,7 +48,7 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute
  * @param nameOf What its file calls a mesh, if it does.
  * @throws Error that names the part and the element, where a part cannot be read on its own.
  */
-export function extractMesh(root: Object3D, nameOf: (mesh: Mesh) => string | undefined = () => undefined): ExtractedMesh {
+export async function extractMesh(root: Object3D, nameOf: (mesh: Mesh) => string | undefined = () => undefined): Promise<ExtractedMesh> {
   root.updateMatrixWorld(true)
   const parts = listParts(root, nameOf)
   const last = parts.at(-1)
@@ -56,14 +58,26 @@ export function extractMesh(root: Object3D, nameOf: (mesh: Mesh) => string | und
   const positions = new Float32Array(3 * vertexCount)
   const indices = new Uint32Array(3 * triangleCount)
   const groups = new Uint32Array(vertexCount)
-  parts.forEach((part, group) => {
-    copyPositions(part, positions)
-    copyIndices(part, indices)
+  const pace = new Pace()
+  for (const [group, part] of parts.entries()) {
+    for (const [from, to] of slices(part.vertexCount)) {
+      copyPositions(part, positions, from, to)
+      await pace.rest()
+    }
+    for (const [from, to] of slices(part.triangleCount)) {
+      copyIndices(part, indices, 3 * from, 3 * to)
+      await pace.rest()
+    }
     groups.fill(group, part.firstVertex, part.firstVertex + part.vertexCount)
-  })
+  }
 
   const hasUvs = parts.length > 0 && parts.every((part) => part.mesh.geometry.hasAttribute('uv'))
   return { positions, indices, groups, parts, ...(hasUvs && { uvs: copyUvs(parts, vertexCount) }) }
+}
+
+/** Ranges that a count is taken in, one after the other. */
+function* slices(count: number): Iterable<[number, number]> {
+  for (let from = 0; from < count; from += kSlice) yield [from, Math.min(from + kSlice, count)]
 }
 
 function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): Part[] {
@@ -88,13 +102,12 @@ function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): 
   return parts
 }
 
-function copyPositions({ mesh, firstVertex, vertexCount }: Part, out: Float32Array): void {
-  if (vertexCount === 0) return
+function copyPositions({ mesh, firstVertex }: Part, out: Float32Array, from: number, to: number): void {
   const position = mesh.geometry.attributes.position as Attribute
   const point = new Vector3()
   const matrix = matrixOf(mesh)
   const identity = matrix.equals(kIdentity)
-  for (let i = 0; i < vertexCount; i++) {
+  for (let i = from; i < to; i++) {
     // A quantised position decodes to a float before the matrix is applied, as every glTF reader stores it.
     point.set(Math.fround(position.getX(i)), Math.fround(position.getY(i)), Math.fround(position.getZ(i)))
     if (!identity) point.applyMatrix4(matrix)
@@ -102,10 +115,10 @@ function copyPositions({ mesh, firstVertex, vertexCount }: Part, out: Float32Arr
   }
 }
 
-function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored }: Part, out: Uint32Array): void {
+function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, mirrored }: Part, out: Uint32Array, from: number, to: number): void {
   const { index } = mesh.geometry
   const base = 3 * firstTriangle
-  for (let corner = 0; corner < 3 * triangleCount; corner++) {
+  for (let corner = from; corner < to; corner++) {
     const vertex = index ? index.getX(corner) : corner
     // Checked per part: once concatenated, an index too large would point into the next part.
     if (vertex >= vertexCount) {
@@ -113,7 +126,7 @@ function copyIndices({ mesh, name, firstVertex, vertexCount, firstTriangle, tria
     }
     out[base + corner] = firstVertex + vertex
   }
-  if (mirrored) turnWinding(out.subarray(base, base + 3 * triangleCount))
+  if (mirrored) turnWinding(out.subarray(base + from, base + to))
 }
 
 /** Swaps the last two corners of every triangle. */

@@ -36,7 +36,7 @@ export async function loadModel(file: File, companions: readonly File[] = []): P
     try {
       const gltf = await loader.parseAsync(bytes, '')
       const scene = await sceneOf(gltf)
-      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, mesh: extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
+      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, mesh: await extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
     } finally {
       release()
     }

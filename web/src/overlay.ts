@@ -1,4 +1,4 @@
-import { splitVertices, type Classification, type Projection, type SplitVertices } from 'cagecast'
+import type { Classification, SplitVertices } from 'cagecast'
 import {
   BufferAttribute,
   BufferGeometry,
@@ -15,6 +15,7 @@ import {
   type Texture,
 } from 'three'
 import { turnWinding, type ExtractedMesh, type Part } from './extract'
+import type { Placed } from './transfer-messages'
 
 /**
  * What lies over the target: nothing, the paint everywhere, what the filter leaves of it, the zones by reason, a checker on
@@ -60,16 +61,15 @@ export class Overlay {
    * Lays nothing yet: call `classify`.
    * @param paint In the cage's UVs, its colours multiplied by their alpha. It may be a render target's, drawn anew at any time.
    */
-  constructor(target: ExtractedMesh, projection: Projection, paint: Texture | undefined) {
+  constructor(target: ExtractedMesh, projection: Placed, paint: Texture | undefined) {
     const parts = target.parts.filter((part) => part.triangleCount > 0)
     this.#layers = parts.map((part) => new Layer(part, target.indices, paint))
-    this.lay(target, projection)
+    this.lay(projection)
   }
 
-  /** Lays everything anew over a target whose vertices have moved. Call `classify` next. */
-  lay(target: ExtractedMesh, projection: Projection): void {
-    const split = splitAtSeams(target, projection)
-    for (const layer of this.#layers) layer.lay(projection.uvs, split)
+  /** Lays everything anew over the target, whose vertices have moved. Call `classify` next. */
+  lay({ uvs, split }: Placed): void {
+    for (const layer of this.#layers) layer.lay(uvs, split)
   }
 
   /** Chooses which triangles are painted, and which are which zone. */
@@ -260,14 +260,6 @@ class Layer {
     }
     for (const material of [this.#paint, this.#nothing, this.#clay, this.#checker, this.#tint, ...this.#reasons, ...this.#hidden]) material.dispose()
   }
-}
-
-/** Splits a target's vertices at the seams of the paint; where the projection has no UVs per corner, nowhere. */
-function splitAtSeams(mesh: ExtractedMesh, { cornerUvs, uvs }: Projection): SplitVertices {
-  if (cornerUvs.length > 0) return splitVertices(mesh, cornerUvs)
-  const ofVertices = new Float32Array(2 * mesh.indices.length)
-  mesh.indices.forEach((vertex, corner) => ofVertices.set(uvs.subarray(2 * vertex, 2 * vertex + 2), 2 * corner))
-  return splitVertices(mesh, ofVertices)
 }
 
 /** A geometry of the same vertices, morphs and triangles, to which more can be added. */

@@ -1,8 +1,10 @@
-import { CagecastError, classify, init, type Classification, type Lock, type Preset, type Projection } from 'cagecast'
+import { CagecastError, classify, init, type Classification, type Lock, type Preset } from 'cagecast'
 import { Emitter } from './events'
 import type { Model } from './load'
 import { makeChecker, type Paint } from './paint'
+import { Pace } from './pace'
 import { Superseded, TransferClient } from './transfer-client'
+import type { Placed } from './transfer-messages'
 import { kFirstView, type View } from './view'
 
 /** A target, its cage, and what to paint it with. */
@@ -14,7 +16,7 @@ export interface Scene {
 
 /** A scene that was transferred. */
 export interface Shown extends Scene {
-  projection: Projection
+  projection: Placed
 }
 
 /** A scene while it is still being read. */
@@ -31,7 +33,8 @@ export type Locks = Record<number, Lock>
 
 /** What became of the latest wish. */
 export type Progress =
-  | { state: 'working' }
+  /** `share` of the work is done, 0..1, and `stage` is under way. */
+  | { state: 'working'; stage: string; share: number }
   | { state: 'ready' }
   /** Nothing is wrong, but there is no transfer without these. */
   | { state: 'waiting'; missing: ('target' | 'cage')[] }
@@ -43,7 +46,7 @@ export interface SessionEvents {
   /** Another target, cage or projection is shown. Its zones follow at once; its paint may have changed as well. */
   transfer: Shown
   /** What is shown has moved, and has this projection now. Its zones follow at once. */
-  frame: Projection
+  frame: Placed
   /** The zones were decided: after a transfer, and for another threshold or lock. `spent` is in milliseconds. */
   zones: { classification: Classification; spent: number }
   /** The scene on show has another paint; after `transfer` if both are new. */
@@ -69,6 +72,9 @@ export class Session extends Emitter<SessionEvents> {
   #wantedLocks: Locks = {}
   #view = kFirstView
   #runs = 0
+  #working = false
+  /** The paint that was told of last. */
+  #painted: Paint | undefined
 
   /** What is on show; undefined before the first transfer. */
   get shown(): Shown | undefined {
@@ -90,6 +96,11 @@ export class Session extends Emitter<SessionEvents> {
 
   get view(): Readonly<View> {
     return this.#view
+  }
+
+  protected override emit<Name extends keyof SessionEvents>(name: Name, event: SessionEvents[Name]): void {
+    if (name === 'progress') this.#working = (event as Progress).state === 'working'
+    super.emit(name, event)
   }
 
   /** Whether anything was asked for yet. */
@@ -137,7 +148,7 @@ export class Session extends Emitter<SessionEvents> {
   }
 
   /** Shows the same target and cage as they have moved. @param projection Of where they are now. */
-  showFrame(projection: Projection): void {
+  showFrame(projection: Placed): void {
     if (!this.#shown) return
     this.#shown = { ...this.#shown, projection }
     this.emit('frame', projection)
@@ -155,10 +166,23 @@ export class Session extends Emitter<SessionEvents> {
     this.emit('progress', { state: 'failed', error: error instanceof Error ? error : new Error(String(error)) })
   }
 
+  /** Gives up what is under way; what is on show stays. */
+  cancel(): void {
+    if (!this.#working) return
+    this.#runs++
+    this.#client.cancel()
+    for (const slot of ['target', 'cage', 'paint'] as const) this.#giveUp(slot)
+    this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] })
+  }
+
+  #tell(stage: string, share: number): void {
+    this.emit('progress', { state: 'working', stage, share })
+  }
+
   async #run(): Promise<void> {
     const run = ++this.#runs
     const superseded = (): boolean => run !== this.#runs
-    this.emit('progress', { state: 'working' })
+    this.#tell('Reading', 0)
     this.#client.cancel()
     try {
       const scene = await this.#read(superseded)
@@ -172,19 +196,35 @@ export class Session extends Emitter<SessionEvents> {
       if (scene.paint.sample && scene.paint.sample !== scene.cage.sample) scene.paint = this.checker
       const { preset } = this.#rules
       const same = scene.target === before?.target && scene.cage === before.cage && preset === before.projection.preset
+      if (!same) this.#tell('Transferring', 0.3)
       const projection = same ? before.projection : await this.#project(scene, preset, superseded)
       if (superseded()) return
+      const pace = new Pace()
       // Segments are the target's alone: what was said about them holds for another cage and preset too.
       if (scene.target !== before?.target) {
         const known = Object.entries(this.#wantedLocks).filter(([segment]) => Number(segment) < projection.segmentStats.length)
         this.#locks = Object.fromEntries(known)
       }
+      if (!same) {
+        this.#tell('Laying the paint', 0.9)
+        await pace.rest()
+        if (superseded()) return
+      }
       this.#shown = { ...scene, projection }
       if (!same) {
+        // The zones of what was on show are not those of this.
+        this.#classification = undefined
         this.emit('transfer', this.#shown)
-        this.#classify()
+        await pace.rest()
+        // Whatever superseded this goes by what is on show.
+        if (!this.#classification) this.#classify()
+        await pace.rest()
+        if (superseded()) return
       }
-      if (scene.paint !== before?.paint) this.emit('paint', scene.paint)
+      if (scene.paint !== this.#painted) {
+        this.#painted = scene.paint
+        this.emit('paint', scene.paint)
+      }
       this.emit('progress', { state: 'ready' })
     } catch (error) {
       if (superseded() || error instanceof Superseded) return
@@ -207,10 +247,10 @@ export class Session extends Emitter<SessionEvents> {
     return t && c && p ? { target: t, cage: c, paint: p } : undefined
   }
 
-  async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<Projection> {
+  async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<Placed> {
     try {
       // The threshold is decided here on the page, the rest in the worker: both start at once.
-      const [projection] = await Promise.all([this.#client.ask('project', cage, target, { preset }), init()])
+      const [projection] = await Promise.all([this.#client.ask('project', cage, target, { preset }, () => this.#tell('Splitting seams', 0.7)), init()])
       return projection
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error

@@ -1,5 +1,5 @@
 import { clearError, element, showError, showNotice } from './page'
-import type { Session } from './session'
+import type { Progress, Session } from './session'
 
 const kBlind =
   'This browser draws no 3D here: WebGL 2 is missing or switched off. The transfer works all the same, its numbers are in the panel.'
@@ -19,7 +19,9 @@ export function showStatus(session: Session, blind: boolean): void {
     element('view', HTMLCanvasElement).hidden = true
     showNotice('stage-notice', kBlind)
   }
+  const bar = new ProgressBar(session)
   session.on('progress', (progress) => {
+    bar.show(progress)
     switch (progress.state) {
       case 'working':
         clearError()
@@ -36,4 +38,32 @@ export function showStatus(session: Session, blind: boolean): void {
         return show('error')
     }
   })
+}
+
+const kPatience = 300 // milliseconds: what takes no longer needs no bar
+
+/** How far along the work is that is under way, and the way to give it up: a button, and Escape. */
+class ProgressBar {
+  readonly #box = element('progress', HTMLElement)
+  readonly #bar = element('progress-bar', HTMLProgressElement)
+  #due: ReturnType<typeof setTimeout> | undefined
+
+  constructor(session: Session) {
+    element('cancel', HTMLButtonElement).addEventListener('click', () => session.cancel())
+    addEventListener('keydown', (event) => {
+      if (event.key === 'Escape' && !this.#box.hidden) session.cancel()
+    })
+  }
+
+  show(progress: Progress): void {
+    if (progress.state !== 'working') {
+      clearTimeout(this.#due)
+      this.#due = undefined
+      this.#box.hidden = true
+      return
+    }
+    this.#due ??= setTimeout(() => (this.#box.hidden = false), kPatience)
+    this.#bar.value = progress.share
+    element('progress-stage', HTMLElement).textContent = `${progress.stage}…`
+  }
 }

@@ -12,14 +12,18 @@ export class Superseded extends Error {}
 export class TransferClient {
   #worker = this.#start()
   #lastId = 0
-  #pending: { id: number; resolve(answer: Tasks[keyof Tasks]['answer']): void; reject(error: Error): void } | undefined
+  #pending: { id: number; onHalf?: (() => void) | undefined; resolve(answer: Tasks[keyof Tasks]['answer']): void; reject(error: Error): void } | undefined
 
-  /** Asks for what is to be known of a cage and a target. @throws CagecastError, or Superseded if another request came. */
-  ask<Task extends keyof Tasks>(task: Task, cage: Model, target: Model, options: Tasks[Task]['options']): Promise<Tasks[Task]['answer']> {
+  /**
+   * Asks for what is to be known of a cage and a target.
+   * @param onHalf Called when the first half of it is done.
+   * @throws CagecastError, or Superseded if another request came.
+   */
+  ask<Task extends keyof Tasks>(task: Task, cage: Model, target: Model, options: Tasks[Task]['options'], onHalf?: () => void): Promise<Tasks[Task]['answer']> {
     this.cancel()
     return new Promise((resolve, reject) => {
       const id = ++this.#lastId
-      this.#pending = { id, resolve, reject }
+      this.#pending = { id, onHalf, resolve, reject }
       this.#worker.postMessage({ id, task, cage: cageArrays(cage), target: targetArrays(target), options } as Request)
     })
   }
@@ -37,6 +41,7 @@ export class TransferClient {
     const worker = new Worker(new URL('./transfer-worker.ts', import.meta.url), { type: 'module' })
     worker.onmessage = ({ data }: MessageEvent<Reply>) => {
       if (data.id !== this.#pending?.id) return
+      if ('half' in data) return this.#pending.onHalf?.()
       if ('code' in data) return this.#fail(new CagecastError(data.code, data.message))
       this.#pending.resolve(data.answer)
       this.#pending = undefined

@@ -1,14 +1,20 @@
-import type { Code, Mesh, Projection, ProjectOptions } from 'cagecast'
+import type { Code, Mesh, Projection, ProjectOptions, SplitVertices } from 'cagecast'
 import type { InspectOptions, Inspection } from 'cagecast/inspect'
+
+/** A projection, and what the picture needs of it. */
+export interface Placed extends Projection {
+  /** The target's vertices, split at the seams of the paint; where there are no UVs per corner, nowhere. */
+  split: SplitVertices
+}
 
 /** What the worker can do, and what it answers. */
 export interface Tasks {
-  project: { options: ProjectOptions; answer: Projection }
+  project: { options: ProjectOptions; answer: Placed }
   inspect: { options: InspectOptions; answer: Inspection }
 }
 
 /** What the page asks of the worker. */
 export type Request = { [Task in keyof Tasks]: { id: number; task: Task; cage: Mesh; target: Mesh; options: Tasks[Task]['options'] } }[keyof Tasks]
 
-/** What the worker replies, with the id it was asked with. */
-export type Reply = { id: number; answer: Tasks[keyof Tasks]['answer'] } | { id: number; code: Code; message: string }
+/** What the worker replies, with the id it was asked with; `half` when the first half of it is done. */
+export type Reply = { id: number; half: true } | { id: number; answer: Tasks[keyof Tasks]['answer'] } | { id: number; code: Code; message: string }

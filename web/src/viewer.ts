@@ -1,4 +1,4 @@
-import type { Classification, Projection } from 'cagecast'
+import type { Classification } from 'cagecast'
 import {
   AnimationMixer,
   Box3,
@@ -25,6 +25,7 @@ import { Overlay, type Look } from './overlay'
 import { pick, type Spot } from './pick'
 import { Pointing, type Tool } from './pointing'
 import { Studio } from './studio'
+import type { Placed } from './transfer-messages'
 import { kFirstView, kLooks, showsPaint, type View } from './view'
 
 const kFieldOfView = 28 // degrees
@@ -93,7 +94,7 @@ export class Viewer {
   }
 
   /** Shows another target; call `classify` for its zones. The one before it is freed, unless it is the same. */
-  setTarget(model: Model, projection: Projection): void {
+  setTarget(model: Model, projection: Placed): void {
     this.highlight([])
     this.#overlay?.dispose()
     if (model !== this.#model) this.#place(model)
@@ -102,10 +103,10 @@ export class Viewer {
   }
 
   /** Shows the target that is shown as it has moved since, with its new place on the cage; call `classify` for its zones. */
-  move(projection: Projection): void {
-    if (!this.#model || !this.#overlay) return
+  move(projection: Placed): void {
+    if (!this.#overlay) return
     this.highlight([])
-    this.#overlay.lay(this.#model.mesh, projection)
+    this.#overlay.lay(projection)
     this.redraw()
   }
 

@@ -1,0 +1,76 @@
+import assert from 'node:assert/strict'
+import { mkdtemp, rm, writeFile } from 'node:fs/promises'
+import { tmpdir } from 'node:os'
+import path from 'node:path'
+import { after, before, test } from 'node:test'
+import type { Page } from 'playwright-core'
+import { islandCage, lumpyBall } from './models'
+import { mainThreadWork, settled, shownCounts, shownError, Site } from './site'
+
+const kSide = 500 // 500,000 triangles
+
+let site: Site
+let folder: string
+let target: string
+before(async () => {
+  site = await Site.open()
+  folder = await mkdtemp(path.join(tmpdir(), 'cagecast-large-'))
+  target = path.join(folder, 'target.glb')
+  await writeFile(target, (await lumpyBall(kSide)).buffer)
+})
+after(async () => {
+  await site?.close()
+  await rm(folder, { recursive: true, force: true })
+})
+
+/** Notes what the bar says, from now on. */
+async function watchProgress(page: Page): Promise<() => Promise<string[]>> {
+  await page.evaluate(() => {
+    const stages: string[] = []
+    Object.assign(globalThis, { stages })
+    const bar = document.querySelector<HTMLElement>('#progress')!
+    new MutationObserver(() => !bar.hidden && stages.push(document.querySelector('#progress-stage')!.textContent!)).observe(bar, { subtree: true, childList: true, attributes: true })
+  })
+  return () => page.evaluate(() => [...new Set((globalThis as unknown as { stages: string[] }).stages)])
+}
+
+test('while half a million triangles are transferred, no task keeps the page from answering for 100 ms, and progress is shown', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
+  await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
+  await settled(page)
+  const stages = await watchProgress(page)
+  const { longest } = await mainThreadWork(page, async () => {
+    await page.getByTestId('target-input').setInputFiles(target)
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    // Its first picture as well.
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))
+  })
+  const { cosmetic, occluded, uncovered, culled } = await shownCounts(page)
+  assert.ok(cosmetic + occluded + uncovered + culled > 250_000)
+  assert.ok((await stages()).length >= 2, (await stages()).join())
+  assert.equal(await page.getByTestId('progress').isVisible(), false)
+  // Of processor time, which a busy machine stretches as well, by a half or so.
+  assert.ok(longest < 100, `the longest task takes ${longest} ms`)
+  assert.deepEqual(complaints, [])
+})
+
+for (const way of ['button', 'Escape']) {
+  test(`what takes long can be given up by ${way}, and what was on show stays`, async () => {
+    const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
+    const before = await shownCounts(page)
+    await page.getByTestId('target-input').setInputFiles(target)
+    await page.getByTestId('progress').waitFor()
+    if (way === 'button') await page.getByTestId('cancel').dispatchEvent('click') // at once: a click would wait for the next frames
+    else await page.keyboard.press('Escape')
+    assert.equal(await page.getByTestId('status').textContent(), 'ready')
+    assert.equal(await page.getByTestId('progress').isVisible(), false)
+    await page.waitForTimeout(2000)
+    assert.equal(await page.getByTestId('status').textContent(), 'ready')
+    assert.deepEqual(await shownCounts(page), before)
+    // It is no loss: another sample opens at once.
+    await page.getByTestId('sample-select').selectOption({ index: 1 })
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    assert.notDeepEqual(await shownCounts(page), before)
+    assert.deepEqual(complaints, [])
+  })
+}
