@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "cagecast/transfer.hpp"
-#include "check.hpp"
+#include "steps.hpp"
 
 namespace cagecast {
 namespace {
@@ -102,6 +101,16 @@ void explainHoles(std::span<const HoleShare> shares, Zones& out) {
 
 }  // namespace
 
+void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const ClassifyOptions& options,
+                  Array<std::uint8_t>& cosmetic) noexcept {
+  // The depth buffer hides what is occluded of a triangle.
+  const unsigned counting = options.partialTriangles ? ~(1u << static_cast<unsigned>(Zone::occluded)) : ~0u;
+  for (std::size_t t = 0; t < cosmetic.size(); ++t) {
+    const auto zone = [&](std::size_t corner) { return 1u << static_cast<unsigned>(zones[indices[3 * t + corner]]); };
+    cosmetic[t] = ((zone(0) | zone(1) | zone(2)) & counting) == 1u << static_cast<unsigned>(Zone::cosmetic);
+  }
+}
+
 Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices, const ClassifyOptions& options,
                 Zones& out) noexcept {
   if (const Status status = checkClassifyOptions(options); !status.ok()) return status;
@@ -133,13 +142,7 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
     const bool isExplained = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
     if (restores[v] == Restores::always || isExplained) out.zones[v] = Zone::cosmetic;
   }
-
-  // The depth buffer hides what is occluded of a triangle.
-  const unsigned counting = options.partialTriangles ? ~(1u << static_cast<unsigned>(Zone::occluded)) : ~0u;
-  for (std::size_t t = 0; t < triangles; ++t) {
-    const auto zone = [&](std::size_t corner) { return 1u << static_cast<unsigned>(out.zones[indices[3 * t + corner]]); };
-    out.cosmeticTriangles[t] = ((zone(0) | zone(1) | zone(2)) & counting) == 1u << static_cast<unsigned>(Zone::cosmetic);
-  }
+  markCosmetic(out.zones, indices, options, out.cosmeticTriangles);
   return {};
 }
 

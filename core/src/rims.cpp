@@ -34,20 +34,20 @@ void Rims::Box::grow(Vec3 p) noexcept {
 
 double Rims::Box::diagonal() const noexcept { return length({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
 
-std::uint32_t Rims::at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept {
+std::uint32_t Rims::sideAt(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept {
   if (!touches(slot)) return kNone;
   const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
   const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
   const double near = kOnRim * diagonal * kOnRim * diagonal;  // All squared: no roots.
-  for (int k = 0; k < 3; ++k) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
     const Vec3 edge = corners[(k + 1) % 3] - corners[k];
     if (sides[k] == kNone) continue;
     const Vec3 beside = cross(edge, q - corners[k]);
-    if (dot(beside, beside) <= near * dot(edge, edge)) return sides[k];
+    if (dot(beside, beside) <= near * dot(edge, edge)) return k;
   }
-  for (int k = 0; k < 3; ++k) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
     const Vec3 offset = q - corners[k];
-    if (sides[3 + k] != kNone && dot(offset, offset) <= near) return sides[3 + k];
+    if (sides[3 + k] != kNone && dot(offset, offset) <= near) return 3 + k;
   }
   return kNone;
 }

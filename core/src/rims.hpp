@@ -31,10 +31,16 @@ struct Rims {
   const std::uint32_t* ofSides = nullptr;
   const std::uint32_t* vertexOf = nullptr;  ///< 1 per vertex of the mesh: the first with the same position.
 
-  /// The rim that a place lies on, or `kNone`.
+  /// The side of its triangle that a place on a rim lies on, or `kNone`: an edge 0, 1, 2 or else a corner 3, 4, 5.
   /// @param slot  The triangle of the place.
   /// @param q     Where it is: see `positionOf`.
-  [[nodiscard]] std::uint32_t at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept;
+  [[nodiscard]] std::uint32_t sideAt(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept;
+
+  /// The rim that a place lies on, or `kNone`.
+  [[nodiscard]] std::uint32_t at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept {
+    const std::uint32_t side = sideAt(triangle, slot, q, diagonal);
+    return side == kNone ? kNone : ofSides[std::size_t{6} * slot + side];
+  }
 
   /// Whether a triangle of the cage comes to a rim at all.
   [[nodiscard]] bool touches(std::uint32_t slot) const noexcept {

@@ -13,9 +13,6 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 9: an edge is smeared if it is so many times longer in UV than the cage explains, and so much in UV besides.
-constexpr double kSmear = 4;
-constexpr double kSmearSlack = 0.005;
 /// docs/method.md, step 9: how far from a corner's place its patch reaches, in longest edges and in shares of the diagonal.
 constexpr double kPatchEdges = 1.5;
 constexpr double kPatchSlack = 0.01;
@@ -85,14 +82,9 @@ class Mender {
     for (int k = 0; k < 3; ++k) {
       const Corner& a = corners[k];
       const Corner& b = corners[(k + 1) % 3];
-      if (atlas_.islands[a.at.slot] != atlas_.islands[b.at.slot]) return true;
-      const Uv from = uvOf(a.at);
-      const Uv to = uvOf(b.at);
-      const double du = to.u - from.u;
-      const double dv = to.v - from.v;
-      const double path = length(b.p - a.p) + std::abs(b.at.place.distance - a.at.place.distance);
-      const double explained = std::max(atlas_.stretch[a.at.slot], atlas_.stretch[b.at.slot]) * path;
-      if (std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack) return true;
+      const Landing from{a.at.slot, a.at.place.distance, uvOf(a.at)};
+      const Landing to{b.at.slot, b.at.place.distance, uvOf(b.at)};
+      if (atlas_.tears(from, to, length(b.p - a.p))) return true;
     }
     return false;
   }

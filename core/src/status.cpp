@@ -27,6 +27,7 @@ const char* codeName(Code code) noexcept {
     case Code::badMinOfAll: return "badMinOfAll";
     case Code::badMaxUncovered: return "badMaxUncovered";
     case Code::badLocks: return "badLocks";
+    case Code::resultMismatch: return "resultMismatch";
     case Code::outOfMemory: return "outOfMemory";
   }
   return "unknown";
@@ -85,6 +86,9 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
     case Code::badMinOfAll: return "options.minOfAll is not within 0..1";
     case Code::badMaxUncovered: return "options.maxUncovered is not within 0..1";
     case Code::badLocks: return "options.locks has " + std::to_string(status.at) + " entries, not 1 per segment";
+    case Code::resultMismatch:
+      return "the result is of " + std::to_string(status.at) + " vertices, or of other segments; the target has " +
+             std::to_string(target.positions.size() / 3) + " vertices";
     case Code::outOfMemory: return "not enough memory for this target and cage";
   }
   return "unknown";

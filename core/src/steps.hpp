@@ -108,6 +108,11 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
 bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, const Units& units, const PointResults& results,
                     const PointAreas& areas, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept;
 
+/// Step 8: marks the triangles that may be painted.
+/// @param[out] cosmetic  1 per triangle.
+void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const ClassifyOptions& options,
+                  Array<std::uint8_t>& cosmetic) noexcept;
+
 /// How far from its origin, as a share of the diagonal, a ray's hit begins to count (step 2), and how far behind it one
 /// still does (step 3).
 inline constexpr double kRayStart = 1e-5;

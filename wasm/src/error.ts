@@ -20,6 +20,7 @@ export const coreCodes = [
   'badMinOfAll',
   'badMaxUncovered',
   'badLocks',
+  'resultMismatch',
   'outOfMemory',
 ] as const;
 
@@ -37,6 +38,7 @@ export const coreCodes = [
  * - `badThreshold`, `badWeldTolerance`, `badOcclusionReach`, `badPokeThrough`, `badMinCovered`, `badMinOfAll`, `badMaxUncovered`: that
  *   option is not a number, or not within its limits. `badOption`: another one of a wrong type or value, or of no known name.
  * - `badArgument`: an argument of a wrong type. `badLocks`: locks that are not one per segment.
+ * - `resultMismatch`: a result that is not of the target it is given with.
  * - `outOfMemory`: the work does not fit into memory; the next call starts afresh.
  * - `notInitialised`: `init()` has not resolved yet.
  * - `unsupported`: this host cannot run the WebAssembly module.

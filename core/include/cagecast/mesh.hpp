@@ -38,6 +38,7 @@ enum class Code : std::uint8_t {
   badMinOfAll,           ///< The least share of all covered area is not within 0..1.
   badMaxUncovered,       ///< The most that may be uncovered is not within 0..1.
   badLocks,              ///< Locks are given, but not one per segment; `at` says how many there are.
+  resultMismatch,        ///< What a transfer decided is not of this target; `at` says of how many vertices it is.
   outOfMemory,           ///< The work or its result does not fit into memory; nothing was computed.
 };
 

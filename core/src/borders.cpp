@@ -1,0 +1,754 @@
+#include "borders.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "index_table.hpp"
+
+namespace cagecast {
+namespace {
+
+/// docs/method.md, step 10; all are shares of the diagonal. What is smaller than this may be overlooked.
+constexpr double kFeature = 5e-4;
+/// How far a border may be from what is cut for it.
+constexpr double kStraight = 2.5e-4;
+/// How well a place on a border is found,
+constexpr double kFound = 1e-7;
+/// and how near to a vertex it may be before it is taken to be there: no triangle is cut so thin.
+constexpr double kSnap = 1e-5;
+/// How often a triangle is divided because something lies inside it, at most.
+constexpr int kMostDivisions = 256;
+constexpr std::uint32_t kNone = UINT32_MAX;
+
+/// A place on the triangle that is being cut.
+struct Spot {
+  Vec3 p;             ///< Scaled.
+  double weights[3];  ///< Of the triangle's corners.
+  Look look;
+  std::uint32_t vertex = kNone;
+};
+
+/// A place between two others.
+Spot between(const Spot& a, const Spot& b, double t) {
+  Spot out{};
+  out.p = a.p + t * (b.p - a.p);
+  for (int k = 0; k < 3; ++k) out.weights[k] = a.weights[k] + t * (b.weights[k] - a.weights[k]);
+  return out;
+}
+
+/// Where an edge is cut.
+struct Stop {
+  double t;  ///< Between its ends: 0..1.
+  Look look;
+  bool isBorder;  ///< Else it lies between two borders, so that there is but one on either side of it.
+  std::uint32_t vertex = kNone;
+};
+
+/// Some of a list.
+struct Range {
+  std::uint32_t first = 0, count = 0;
+};
+
+/// A corner of a polygon inside the triangle that is being cut, and the border, if any, on the way to the next.
+struct Node {
+  Spot spot, border;
+  bool isCrossed;
+};
+
+/// Twice the area, in weights, of a triangle: greater than 0 if it is turned as the one that is being cut.
+double side(const Spot& a, const Spot& b, const Spot& c) {
+  return (b.weights[1] - a.weights[1]) * (c.weights[2] - a.weights[2]) - (b.weights[2] - a.weights[2]) * (c.weights[1] - a.weights[1]);
+}
+/// Less than this is none.
+constexpr double kFlat = 1e-12;
+
+class Cutter {
+ public:
+  Cutter(const MeshView& target, double scale, double diagonal, const std::uint8_t* takesPart, Looker& looker, Scratch& scratch,
+         CutTriangles& out) noexcept
+      : target_(target),
+        takesPart_(takesPart),
+        looker_(looker),
+        out_(out),
+        vertexCount_(static_cast<std::uint32_t>(target.positions.size() / 3)),
+        scale_(scale),
+        feature_(kFeature * diagonal),
+        straight_(kStraight * diagonal),
+        found_(kFound * diagonal),
+        snap_(kSnap * diagonal),
+        looks_(scratch.take<Look>(vertexCount_)),
+        rangeOfSide_(scratch.take<Range>(target.indices.size())),
+        sides_(target.indices.size(), scratch) {}
+
+  void cut() noexcept {
+    for (std::uint32_t v = 0; v < vertexCount_; ++v) {
+      looks_[v] = takesPart_[v] != 0 ? looker_.at(positionOf(v)) : Look{};
+      out_.onBorder.add(0);
+    }
+    const auto count = static_cast<std::uint32_t>(target_.indices.size() / 3);
+    for (triangle_ = 0; triangle_ < count && !failed(); ++triangle_) cutTriangle();
+  }
+
+  [[nodiscard]] bool failed() const noexcept {
+    return out_.failed() || edgeStops_.failed() || inner_.failed() || spokes_.failed() || nodes_.failed() || pieces_.failed() || parts_.failed() || line_.failed() || polygon_.failed();
+  }
+
+ private:
+  [[nodiscard]] Vec3 positionOf(std::uint32_t v) const noexcept {
+    return scale_ * Vec3::from(target_.positions.data() + std::size_t{3} * v);
+  }
+
+  void lookAt(Spot* spots, std::uint32_t count) noexcept {
+    Vec3 places[Looker::kMost];
+    Look looks[Looker::kMost];
+    for (std::uint32_t i = 0; i < count; ++i) places[i] = spots[i].p;
+    looker_.at(places, count, looks);
+    for (std::uint32_t i = 0; i < count; ++i) spots[i].look = looks[i];
+  }
+
+  std::uint32_t addVertex(const std::uint32_t (&sources)[3], double second, double third, bool isOnBorder) noexcept {
+    const double w1 = std::round(second / kWeightUnit) * kWeightUnit;
+    const double w2 = std::round(third / kWeightUnit) * kWeightUnit;
+    for (const std::uint32_t source : sources) out_.sources.add(source);
+    for (const double w : {1 - w1 - w2, w1, w2}) out_.weights.add(static_cast<float>(w));
+    out_.onBorder.add(isOnBorder);
+    return static_cast<std::uint32_t>(out_.onBorder.size() - 1);
+  }
+
+  /// Makes a vertex of a spot inside the triangle.
+  void addVertex(Spot& spot, bool isOnBorder) noexcept {
+    const std::uint32_t* index = target_.indices.data() + std::size_t{3} * triangle_;
+    spot.vertex = addVertex({index[0], index[1], index[2]}, spot.weights[1], spot.weights[2], isOnBorder);
+  }
+
+  // ---- Edges. What is found on one depends on its ends alone, taken in an order that depends on their places alone, so that
+  // it is the same, to the bit, for all triangles that share it.
+
+  /// An edge that is being searched.
+  struct Edge {
+    const Spot& from;
+    const Spot& to;
+    double length;
+    List<Stop>& stops;
+    double lastBorder = -1;
+    [[nodiscard]] Vec3 at(double t) const { return from.p + t * (to.p - from.p); }
+  };
+
+  /// Finds the borders between two places on an edge.
+  /// @param lastBorder  The last one that was found, or less than 0.
+  void search(Edge& edge, double t0, const Look& look0, double t1, const Look& look1) noexcept {
+    const double apart = (t1 - t0) * edge.length;
+    const bool isBetween = looker_.isBetween(look0, look1, apart);
+    if (!isBetween && (apart <= feature_ || (look0.side != 0 && look0.cell == look1.cell))) return;
+    if (!isBetween && looker_.clearance(look0, edge.at(t0)) + looker_.clearance(look1, edge.at(t1)) >= apart) return;
+    if (apart > feature_) {
+      const double middle = (t0 + t1) / 2;
+      const Look look = looker_.at(edge.at(middle));
+      search(edge, t0, look0, middle, look);
+      search(edge, middle, look, t1, look1);
+      return;
+    }
+    double low = t0, high = t1;
+    Look below = look0, above = look1;
+    while ((high - low) * edge.length > found_) {
+      const double middle = (low + high) / 2;
+      const Look look = looker_.at(edge.at(middle));
+      const double half = (high - low) / 2 * edge.length;
+      if (looker_.isBetween(below, look, half)) {
+        high = middle;
+        above = look;
+      } else if (looker_.isBetween(look, above, half)) {
+        low = middle;
+        below = look;
+      } else {
+        return;  // The texture changes quickly here, but it is not torn.
+      }
+    }
+    const double t = (low + high) / 2;
+    if (edge.lastBorder >= 0) {
+      const double middle = (edge.lastBorder + t) / 2;
+      const Look look = looker_.at(edge.at(middle));
+      edge.stops.add({middle, look, false});
+    }
+    edge.stops.add({t, below, true});
+    edge.lastBorder = t;
+  }
+
+  /// Finds all borders on an edge.
+  void searchAll(const Spot& from, const Spot& to, List<Stop>& stops) noexcept {
+    Edge edge{from, to, length(to.p - from.p), stops};
+    search(edge, 0, from.look, 1, to.look);
+  }
+
+  /// Makes a vertex of a stop; at an end of its edge, that is one already.
+  /// @param add  Adds a vertex for a stop inside the edge.
+  template <typename Add>
+  void makeVertex(Stop& stop, const Spot& from, const Spot& to, Add add) noexcept {
+    const double apart = length(to.p - from.p);
+    const bool isAtStart = stop.t * apart < snap_;
+    if (stop.isBorder && (isAtStart || (1 - stop.t) * apart < snap_)) {
+      stop.t = isAtStart ? 0 : 1;
+      stop.vertex = isAtStart ? from.vertex : to.vertex;
+      out_.onBorder[stop.vertex] = 1;
+    } else {
+      stop.vertex = add(stop);
+    }
+  }
+
+  [[nodiscard]] static bool isBefore(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+  /// The stops of a side of the triangle, in the order of its ends' places.
+  Range stopsOfSide(std::uint32_t side, const Spot& first, const Spot& second) noexcept {
+    const auto endsOf = [&](std::uint32_t s) {
+      const std::uint32_t v = target_.indices[s];
+      const std::uint32_t w = target_.indices[s % 3 == 2 ? s - 2 : s + 1];
+      return std::uint64_t{std::min(v, w)} << 32 | std::max(v, w);
+    };
+    const std::uint64_t ends = endsOf(side);
+    const std::uint32_t met = sides_.firstEqual(side, IndexTable::mix(0, ends), [&](std::uint32_t s) { return endsOf(s) == ends; });
+    Range& known = rangeOfSide_[met];
+    if (met == side) {
+      const auto begin = static_cast<std::uint32_t>(edgeStops_.size());
+      searchAll(first, second, edgeStops_);
+      known = {begin, static_cast<std::uint32_t>(edgeStops_.size()) - begin};
+      for (std::uint32_t i = begin; i < begin + known.count && !failed(); ++i) {
+        makeVertex(edgeStops_[i], first, second,
+                   [&](const Stop& stop) { return addVertex({first.vertex, second.vertex, first.vertex}, stop.t, 0, stop.isBorder); });
+      }
+    }
+    return known;
+  }
+
+  /// Adds a corner and what is on the side from there to the next: the places between borders become corners too.
+  void addSide(const Spot& from, const Spot& to, const List<Stop>& stops, Range range, bool isForward) noexcept {
+    nodes_.add({from, {}, false});
+    for (std::uint32_t i = 0; i < range.count && !failed(); ++i) {
+      const Stop& stop = stops[isForward ? range.first + i : range.first + range.count - 1 - i];
+      Spot spot = isForward ? between(from, to, stop.t) : between(to, from, stop.t);
+      spot.look = stop.look;
+      spot.vertex = stop.vertex;
+      if (stop.isBorder) {
+        nodes_[nodes_.size() - 1].border = spot;
+        nodes_[nodes_.size() - 1].isCrossed = true;
+      } else {
+        nodes_.add({spot, {}, false});
+      }
+    }
+  }
+
+  /// Makes vertices of the stops between two spots inside the triangle, at the end of `inner_`.
+  Range makeStops(const Spot& from, const Spot& to) noexcept {
+    const auto begin = static_cast<std::uint32_t>(inner_.size());
+    searchAll(from, to, inner_);
+    for (std::uint32_t i = begin; i < inner_.size() && !failed(); ++i) {
+      makeVertex(inner_[i], from, to, [&](const Stop& stop) {
+        Spot spot = between(from, to, stop.t);
+        addVertex(spot, stop.isBorder);
+        return spot.vertex;
+      });
+    }
+    return {begin, static_cast<std::uint32_t>(inner_.size()) - begin};
+  }
+
+  // ---- Triangles.
+
+  void cutTriangle() noexcept {
+    const std::uint32_t* index = target_.indices.data() + std::size_t{3} * triangle_;
+    Spot corners[3];
+    bool takesPart = true;
+    for (int k = 0; k < 3; ++k) {
+      corners[k] = {positionOf(index[k]), {0, 0, 0}, looks_[index[k]], index[k]};
+      corners[k].weights[k] = 1;
+      takesPart = takesPart && takesPart_[index[k]] != 0;
+    }
+    nodes_.cut(0);
+    inner_.cut(0);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Spot& from = corners[k];
+      const Spot& to = corners[(k + 1) % 3];
+      const bool isForward = isBefore(from.p, to.p);
+      Range range;
+      if (takesPart_[from.vertex] != 0 && takesPart_[to.vertex] != 0 && (isForward || isBefore(to.p, from.p))) {
+        range = stopsOfSide(3 * triangle_ + k, isForward ? from : to, isForward ? to : from);
+      }
+      addSide(from, to, edgeStops_, range, isForward);
+    }
+    const Vec3 normal = cross(corners[1].p - corners[0].p, corners[2].p - corners[0].p);
+    if (takesPart && dot(normal, normal) > 0) {
+      divisions_ = kMostDivisions;
+      divide(0, nodes_.size());
+      return;
+    }
+    // Nothing of it is painted, or there is nothing of it: it only has what its neighbours have on its edges.
+    startPolygon();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      addCorner(nodes_[i].spot);
+      if (nodes_[i].isCrossed) addCorner(nodes_[i].border);
+    }
+    fillPolygon(corners[0].look, false);
+  }
+
+  /// Divides a convex polygon until there are triangles with at most one border on each side, and none inside that does not
+  /// come from there.
+  /// @param first,count  Its corners, the last of `nodes_`, which are taken away.
+  void divide(std::size_t first, std::size_t count) noexcept {
+    if (count == 3 && !failed()) divideTriangle(first);
+    if (count > 3 && !failed()) divideAcross(first, count);
+    nodes_.cut(first);
+  }
+
+  /// Divides a polygon of more than three corners along a line between two of them, the shortest of those with fewest borders.
+  void divideAcross(std::size_t first, std::size_t count) noexcept {
+    const std::size_t begin = inner_.size();
+    std::size_t from = first, to = first, fewest = SIZE_MAX;
+    double shortest = 0;
+    for (std::size_t i = first; i < first + count; ++i) {
+      for (std::size_t j = i + 2; j < first + count && j - i < count - 1; ++j) {
+        if (!dividesArea(first, count, i, j)) continue;
+        const double apart = length(nodes_[j].spot.p - nodes_[i].spot.p);
+        searchAll(nodes_[i].spot, nodes_[j].spot, inner_);
+        const std::size_t most = std::max<std::size_t>(inner_.size() - begin, 1);
+        inner_.cut(begin);
+        if (most > fewest || (most == fewest && apart >= shortest)) continue;
+        fewest = most;
+        shortest = apart;
+        from = i;
+        to = j;
+      }
+    }
+    if (fewest == SIZE_MAX) return emitPolygon(first, count);  // All corners are on one line.
+    const Spot start = nodes_[from].spot, end = nodes_[to].spot;
+    if (fewest > 1 && divisions_ > 0) {
+      // Every line crosses several borders: what is between the corners and the middle is smaller.
+      Spot middle = nodes_[first].spot;
+      for (std::size_t i = 1; i < count; ++i) middle = between(middle, nodes_[first + i].spot, 1.0 / static_cast<double>(i + 1));
+      lookAt(&middle, 1);
+      return divideAround(first, count, middle);
+    }
+    Range range;
+    if (fewest == 1) range = makeStops(start, end);
+    const std::size_t near = nodes_.size();
+    for (std::size_t i = from; i < to; ++i) nodes_.add(Node(nodes_[i]));
+    addSide(end, start, inner_, range, false);
+    const std::size_t far = nodes_.size();
+    for (std::size_t i = to; i < from + count; ++i) nodes_.add(Node(nodes_[first + (i - first) % count]));
+    addSide(start, end, inner_, range, true);
+    divide(far, nodes_.size() - far);
+    divide(near, nodes_.size() - near);
+    inner_.cut(begin);
+  }
+
+  /// Whether a line between two corners of a polygon divides its area.
+  [[nodiscard]] bool dividesArea(std::size_t first, std::size_t count, std::size_t i, std::size_t j) const noexcept {
+    double least = 0, most = 0;
+    for (std::size_t k = first; k < first + count; ++k) {
+      const double area = side(nodes_[i].spot, nodes_[j].spot, nodes_[k].spot);
+      least = std::min(least, area);
+      most = std::max(most, area);
+    }
+    return least < -kFlat && most > kFlat;
+  }
+
+  void divideTriangle(std::size_t first) noexcept {
+    const std::size_t vertices = out_.onBorder.size(), triangles = out_.origins.size();
+    const Node corners[3] = {nodes_[first], nodes_[first + 1], nodes_[first + 2]};
+    Spot hidden;
+    if (cutSimple(corners, hidden) || divisions_ == 0) return;
+    // Something else lies inside: once more, around it.
+    forget(vertices, triangles);
+    divideAround(first, 3, hidden);
+  }
+
+  /// Divides a polygon along the lines between its corners and a place inside.
+  void divideAround(std::size_t first, std::size_t count, Spot centre) noexcept {
+    --divisions_;
+    addVertex(centre, false);
+    const std::size_t begin = inner_.size(), firstSpoke = spokes_.size();
+    for (std::size_t i = 0; i < count; ++i) spokes_.add(makeStops(Spot(nodes_[first + i].spot), centre));
+    for (std::size_t i = 0; i < count && !failed(); ++i) {
+      const std::size_t next = (i + 1) % count;
+      const std::size_t part = nodes_.size();
+      nodes_.add(Node(nodes_[first + i]));
+      addSide(Spot(nodes_[first + next].spot), centre, inner_, spokes_[firstSpoke + next], true);
+      addSide(centre, Spot(nodes_[first + i].spot), inner_, spokes_[firstSpoke + i], false);
+      divide(part, nodes_.size() - part);
+    }
+    spokes_.cut(firstSpoke);
+    inner_.cut(begin);
+  }
+
+  void forget(std::size_t vertices, std::size_t triangles) noexcept {
+    out_.sources.cut(3 * (vertices - vertexCount_));
+    out_.weights.cut(3 * (vertices - vertexCount_));
+    out_.onBorder.cut(vertices);
+    out_.indices.cut(3 * triangles);
+    out_.origins.cut(triangles);
+    out_.sides.cut(triangles);
+  }
+
+  /// Makes triangles of a polygon as it is.
+  void emitPolygon(std::size_t first, std::size_t count) noexcept {
+    startPolygon();
+    for (std::size_t i = first; i < first + count; ++i) {
+      addCorner(nodes_[i].spot);
+      if (nodes_[i].isCrossed) addCorner(nodes_[i].border);
+    }
+    fillPolygon(nodes_[first].spot.look);
+  }
+
+  /// Cuts a triangle with at most one border on each side.
+  /// @return false if something else lies inside: then `hidden` is a place there.
+  bool cutSimple(const Node (&nodes)[3], Spot& hidden) noexcept {
+    pieces_.cut(0);
+    const Spot corners[3] = {nodes[0].spot, nodes[1].spot, nodes[2].spot};
+    const int crossed = nodes[0].isCrossed + nodes[1].isCrossed + nodes[2].isCrossed;
+    if (crossed == 0) {
+      startPolygon();
+      for (const Spot& corner : corners) addCorner(corner);
+      fillPolygon(corners[0].look);
+      return isClear(corners) || !findHidden(hidden);
+    }
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t l = (k + 1) % 3, m = (k + 2) % 3;
+      if (crossed == 1 && nodes[k].isCrossed) {
+        // A border that ends inside.
+        const Spot& stop = nodes[k].border;
+        startPolygon();
+        addCorner(corners[k]), addCorner(stop), addCorner(corners[m]);
+        fillPolygon(stop.vertex == corners[k].vertex ? corners[m].look : corners[k].look);
+        startPolygon();
+        addCorner(stop), addCorner(corners[l]), addCorner(corners[m]);
+        fillPolygon(stop.vertex == corners[l].vertex ? corners[m].look : corners[l].look);
+        return true;
+      }
+      if (crossed == 2 && !nodes[l].isCrossed) {
+        cutOff({corners[k], corners[l], corners[m]}, nodes[k].border, nodes[m].border);
+        return !findHidden(hidden);
+      }
+    }
+    // Three borders that meet.
+    Spot meeting;
+    const bool isSimple = findMeeting(corners, meeting);
+    if (!isSimple) hidden = meeting;
+    addVertex(meeting, true);
+    for (std::uint32_t k = 0; k < 3; ++k) cutOff({corners[k], corners[(k + 1) % 3], meeting}, nodes[k].border, meeting);
+    return isSimple && !findHidden(hidden);
+  }
+
+  /// Whether no border can run inside a triangle whose corners are on one side.
+  [[nodiscard]] bool isClear(const Spot (&corners)[3]) const noexcept {
+    const auto& [a, b, c] = corners;
+    if (a.look.cell == b.look.cell && b.look.cell == c.look.cell) return true;
+    // Every place is so near to one of the corners.
+    constexpr double kCovering = 0.58;
+    const double enough = kCovering * longestSide(corners);
+    return std::all_of(corners, corners + 3, [&](const Spot& spot) { return looker_.clearance(spot.look, spot.p) >= enough; });
+  }
+
+  /// Finds where three borders meet in a triangle whose corners are on three sides, by fours.
+  /// @return false if the sides do not part so simply there: then `meeting` is a place that is on another side than it should be.
+  bool findMeeting(const Spot (&corners)[3], Spot& meeting) noexcept {
+    Spot t[3] = {corners[0], corners[1], corners[2]};
+    const auto areApart = [&](const Spot& a, const Spot& b) { return looker_.isBetween(a.look, b.look, length(b.p - a.p)); };
+    while (longestSide(t) > found_) {
+      Spot m[3] = {between(t[0], t[1], 0.5), between(t[1], t[2], 0.5), between(t[2], t[0], 0.5)};
+      lookAt(m, 3);
+      const Spot parts[4][3] = {{t[0], m[0], m[2]}, {m[0], t[1], m[1]}, {m[2], m[1], t[2]}, {m[0], m[1], m[2]}};
+      const auto* part = std::find_if(std::begin(parts), std::end(parts), [&](const Spot(&p)[3]) {
+        return areApart(p[0], p[1]) && areApart(p[1], p[2]) && areApart(p[2], p[0]);
+      });
+      if (part == std::end(parts)) {
+        const Spot* other = std::find_if(std::begin(m), std::end(m), [&](const Spot& spot) {
+          const Spot& a = t[&spot - m];
+          const Spot& b = t[(&spot - m + 1) % 3];
+          return areApart(spot, a) && areApart(spot, b) && isWellInside(spot, corners);
+        });
+        if (other == std::end(m)) break;
+        meeting = *other;
+        return false;
+      }
+      std::copy(*part, *part + 3, t);
+    }
+    meeting = between(between(t[0], t[1], 0.5), t[2], 1.0 / 3);
+    meeting.look = t[0].look;
+    return true;
+  }
+
+  // ---- A border through a triangle, from one side of a corner to the other.
+
+  /// A place in the triangle of `cutOff`: on the ray from its first corner to the place `s` of the opposite side, `r` of the way.
+  struct Polar {
+    double s, r;
+    [[nodiscard]] double x() const { return (1 - s) * r; }
+    [[nodiscard]] double y() const { return s * r; }
+  };
+
+  /// The triangle that `cutOff` cuts.
+  struct Wedge {
+    Spot a, b, c;
+    [[nodiscard]] Spot at(Polar polar) const { return between(a, between(b, c, polar.s), polar.r); }
+    [[nodiscard]] double lengthOf(double s) const { return length(between(b, c, s).p - a.p); }
+  };
+
+  /// Whether a place is on the side of the wedge's first corner.
+  [[nodiscard]] bool isWithFirst(const Wedge& wedge, const Look& look) const noexcept {
+    const Look& a = wedge.a.look;
+    const Look& b = wedge.b.look;
+    if (look.side != a.side || a.side != b.side) return look.side == a.side;
+    // One island on either side: what is nearer in the texture.
+    const auto apart = [&](const Look& other) {
+      const double u = look.landing.uv.u - other.landing.uv.u;
+      const double v = look.landing.uv.v - other.landing.uv.v;
+      return u * u + v * v;
+    };
+    return apart(a) < apart(b);
+  }
+
+  /// How far along a ray the border is.
+  double onRay(const Wedge& wedge, double s) noexcept {
+    const double reach = wedge.lengthOf(s);
+    double low = 0, high = 1;
+    while ((high - low) * reach > found_) {
+      const double middle = (low + high) / 2;
+      (isWithFirst(wedge, looker_.at(wedge.at({s, middle}).p)) ? low : high) = middle;
+    }
+    return (low + high) / 2;
+  }
+
+  /// Where a ray meets the straight line between two places.
+  static double chord(Polar from, Polar to, double s) {
+    const double dx = to.x() - from.x(), dy = to.y() - from.y();
+    const double side = (1 - s) * dy - s * dx;
+    return side == 0 ? from.r : std::clamp((from.x() * dy - from.y() * dx) / side, 0.0, 1.0);
+  }
+
+  /// Adds the bends of the border between two places on it to `line_`.
+  void follow(const Wedge& wedge, Polar from, Polar to, int depth) noexcept {
+    const Vec3 start = wedge.at(from).p, end = wedge.at(to).p;
+    if (depth == 0 || length(end - start) <= straight_) return;
+    const auto distance = [&](Polar polar) {
+      const Vec3 along = end - start;
+      const Vec3 beside = cross(wedge.at(polar).p - start, along);
+      return std::sqrt(dot(beside, beside) / dot(along, along));
+    };
+    // Where the border is not within a step of the line, on some rays: all looked at together.
+    constexpr std::uint32_t kRays = 8;
+    double width = (to.s - from.s) / kRays;
+    Spot spots[2 * (kRays - 1)];
+    double starts[kRays - 1], ends[kRays - 1];
+    for (std::uint32_t i = 0; i < kRays - 1; ++i) {
+      const double s = from.s + (i + 1) * width;
+      const double r = chord(from, to, s);
+      const double step = straight_ / wedge.lengthOf(s);
+      starts[i] = r - step;
+      ends[i] = r + step;
+      spots[2 * i] = wedge.at({s, std::max(starts[i], 0.0)});
+      spots[2 * i + 1] = wedge.at({s, std::min(ends[i], 1.0)});
+    }
+    lookAt(spots, 2 * (kRays - 1));
+    Polar worst{};
+    double most = 0;
+    const auto tryAt = [&](double s) {
+      const Polar polar{s, onRay(wedge, s)};
+      const double apart = distance(polar);
+      if (apart <= most) return;
+      most = apart;
+      worst = polar;
+    };
+    for (std::uint32_t i = 0; i < kRays - 1; ++i) {
+      const bool isNear = (starts[i] <= 0 || isWithFirst(wedge, spots[2 * i].look)) && (ends[i] >= 1 || !isWithFirst(wedge, spots[2 * i + 1].look));
+      if (!isNear) tryAt(from.s + (i + 1) * width);
+    }
+    if (most <= straight_) return;
+    // The bend itself is where the border is farthest from the line.
+    while (width * length(wedge.c.p - wedge.b.p) > straight_ / 4) {
+      width /= 2;
+      const double s = worst.s;
+      tryAt(s - width);
+      tryAt(s + width);
+    }
+    follow(wedge, from, worst, depth - 1);
+    Spot bend = wedge.at(worst);
+    bend.look = wedge.a.look;
+    addVertex(bend, true);
+    line_.add(bend);
+    follow(wedge, worst, to, depth - 1);
+  }
+
+  /// Cuts a triangle along the border between its first corner and the other two.
+  /// @param from,to  Where that border meets the two sides; `to` may be the last corner.
+  void cutOff(const Spot (&corners)[3], const Spot& from, const Spot& to) noexcept {
+    const auto& [a, b, c] = corners;
+    const Wedge wedge{a, b, c};
+    constexpr int kMostBends = 6;  // Levels of them.
+    line_.cut(0);
+    if (from.vertex != to.vertex) {
+      const auto share = [&first = a](const Spot& spot, const Spot& end) { return length(spot.p - first.p) / length(end.p - first.p); };
+      follow(wedge, {0, share(from, b)}, {1, share(to, c)}, kMostBends);
+    }
+    startPolygon();
+    addCorner(a), addCorner(from);
+    for (std::size_t i = 0; i < line_.size(); ++i) addCorner(line_[i]);
+    addCorner(to);
+    fillPolygon(a.look);
+    startPolygon();
+    addCorner(from), addCorner(b), addCorner(c), addCorner(to);
+    for (std::size_t i = line_.size(); i-- > 0;) addCorner(line_[i]);
+    fillPolygon(b.look);
+  }
+
+  // ---- Polygons.
+
+  void startPolygon() noexcept { polygon_.cut(0); }
+
+  void addCorner(const Spot& spot) noexcept {
+    if (polygon_.size() > 0 && (polygon_[polygon_.size() - 1].vertex == spot.vertex || polygon_[0].vertex == spot.vertex)) return;
+    polygon_.add(spot);
+  }
+
+  /// Makes triangles of the polygon: the ear with the shortest cut first. In the weights of the corners it is flat, whatever its shape.
+  /// @param look  Of a place on the side that it lies on.
+  void fillPolygon(const Look& look, bool isLookedAt = true) noexcept {
+    while (polygon_.size() >= 3) {
+      const std::size_t n = polygon_.size();
+      std::size_t ear = n;
+      double shortest = 0;
+      for (std::size_t i = 0; i < n && n > 3; ++i) {
+        const Spot& a = polygon_[(i + n - 1) % n];
+        const Spot& b = polygon_[i];
+        const Spot& c = polygon_[(i + 1) % n];
+        const double cut = length(c.p - a.p);
+        if (!(side(a, b, c) > 0) || (ear < n && cut >= shortest)) continue;
+        bool isFree = true;
+        for (std::size_t j = 0; j < n && isFree; ++j) {
+          const Spot& p = polygon_[j];
+          if (p.vertex == a.vertex || p.vertex == b.vertex || p.vertex == c.vertex) continue;
+          isFree = side(a, b, p) < 0 || side(b, c, p) < 0 || side(c, a, p) < 0;
+        }
+        if (!isFree) continue;
+        ear = i;
+        shortest = cut;
+      }
+      if (ear == n) ear = 1;  // What is left has no area.
+      const Spot corners[3] = {polygon_[(ear + n - 1) % n], polygon_[ear], polygon_[(ear + 1) % n]};
+      for (const Spot& corner : corners) out_.indices.add(corner.vertex);
+      out_.origins.add(triangle_);
+      out_.sides.add(look.side);
+      if (isLookedAt) pieces_.add({{corners[0], corners[1], corners[2]}, look});
+      polygon_.remove(ear);
+    }
+  }
+
+  /// A triangle that was made, and what is to be found everywhere inside it.
+  struct Piece {
+    Spot corners[3];
+    Look look;
+  };
+
+  /// A part of a piece that is looked through.
+  struct Part {
+    Spot corners[3];
+    std::uint32_t piece;
+  };
+
+  /// Finds a place well inside one of the triangles made last that is not on the side that they are on.
+  bool findHidden(Spot& hidden) noexcept {
+    parts_.cut(0);
+    const auto add = [&](Part part) {
+      const Piece& piece = pieces_[part.piece];
+      const bool isSettled = isClear(part.corners) && part.corners[0].look.side == piece.look.side;
+      if (!isSettled && !isSmall(part.corners) && !isAtSide(part.corners, piece.corners)) parts_.add(part);
+    };
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
+      Part whole{{pieces_[i].corners[0], pieces_[i].corners[1], pieces_[i].corners[2]}, i};
+      lookAt(whole.corners, 3);
+      add(whole);
+    }
+    // Part by part by fours; several parts at once.
+    constexpr std::uint32_t kAtOnce = Looker::kMost / 3;
+    for (std::size_t next = 0; next < parts_.size() && !failed();) {
+      const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(kAtOnce, parts_.size() - next));
+      Spot middles[3 * kAtOnce];
+      for (std::uint32_t i = 0; i < 3 * count; ++i) {
+        const Spot(&t)[3] = parts_[next + i / 3].corners;
+        middles[i] = between(t[i % 3], t[(i + 1) % 3], 0.5);
+      }
+      lookAt(middles, 3 * count);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Part whole = parts_[next + i];
+        const Spot* m = middles + 3 * i;
+        const Piece& piece = pieces_[whole.piece];
+        for (int k = 0; k < 3; ++k) {
+          if (m[k].look.side == piece.look.side || !isWellInside(m[k], piece.corners)) continue;
+          hidden = m[k];
+          return true;
+        }
+        const auto& [a, b, c] = whole.corners;
+        add({{a, m[0], m[2]}, whole.piece}), add({{m[0], b, m[1]}, whole.piece});
+        add({{m[2], m[1], c}, whole.piece}), add({{m[0], m[1], m[2]}, whole.piece});
+      }
+      next += count;
+    }
+    return false;
+  }
+
+  [[nodiscard]] static double longestSide(const Spot (&t)[3]) {
+    return std::max({length(t[1].p - t[0].p), length(t[2].p - t[1].p), length(t[0].p - t[2].p)});
+  }
+  [[nodiscard]] bool isSmall(const Spot (&corners)[3]) const noexcept { return longestSide(corners) <= feature_; }
+
+  /// How far a place is inside a side of a triangle, as a share of what is well inside.
+  [[nodiscard]] double depthOf(const Spot& spot, const Spot& from, const Spot& to) const noexcept {
+    const Vec3 along = to.p - from.p;
+    const Vec3 beside = cross(along, spot.p - from.p);
+    return std::sqrt(dot(beside, beside) / dot(along, along)) / (feature_ / 2);
+  }
+
+  /// Whether a place is farther from the sides of a triangle than borders may be off.
+  [[nodiscard]] bool isWellInside(const Spot& spot, const Spot (&t)[3]) const noexcept {
+    return depthOf(spot, t[0], t[1]) > 1 && depthOf(spot, t[1], t[2]) > 1 && depthOf(spot, t[2], t[0]) > 1;
+  }
+
+  /// Whether no place of a part is well inside the whole, because it lies along one of its sides.
+  [[nodiscard]] bool isAtSide(const Spot (&part)[3], const Spot (&t)[3]) const noexcept {
+    for (int k = 0; k < 3; ++k) {
+      const auto isNear = [&](const Spot& spot) { return depthOf(spot, t[k], t[(k + 1) % 3]) <= 1; };
+      if (std::all_of(part, part + 3, isNear)) return true;
+    }
+    return false;
+  }
+
+  const MeshView& target_;
+  const std::uint8_t* takesPart_;
+  Looker& looker_;
+  CutTriangles& out_;
+  std::uint32_t vertexCount_;
+  double scale_;
+  double feature_, straight_, found_, snap_;  ///< The constants above, scaled.
+  Look* looks_;                ///< 1 per vertex that takes part.
+  Range* rangeOfSide_;         ///< 1 per side of a triangle that is the first on its edge: in `edgeStops_`.
+  IndexTable sides_;
+  List<Stop> edgeStops_;       ///< In the order of the ends' places.
+  std::uint32_t triangle_ = 0;
+  List<Stop> inner_;           ///< Of an edge inside the triangle.
+  List<Range> spokes_;         ///< In `inner_`.
+  List<Node> nodes_;           ///< Polygons of the triangle that is being cut, those that are divided first at the end.
+  int divisions_ = 0;          ///< How often it may still be divided.
+  List<Spot> line_;
+  List<Spot> polygon_;
+  List<Piece> pieces_;
+  List<Part> parts_;
+};
+
+}  // namespace
+
+bool cutTriangles(const MeshView& target, double scale, double diagonal, const std::uint8_t* takesPart, Looker& looker, Scratch& scratch,
+                  CutTriangles& out) noexcept {
+  Cutter cutter(target, scale, diagonal, takesPart, looker, scratch, out);
+  if (scratch.failed()) return false;
+  cutter.cut();
+  return !cutter.failed();
+}
+
+}  // namespace cagecast

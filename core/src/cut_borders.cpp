@@ -1,0 +1,106 @@
+#include "cagecast/borders.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "check.hpp"
+#include "cut_target.hpp"
+
+namespace cagecast {
+namespace {
+
+constexpr Status kOutOfMemory{Code::outOfMemory};
+
+/// Which vertices can be on a triangle that is painted, or on an edge of one.
+bool findParts(const MeshView& target, const Points& points, const DecidedView& decided, Scratch& scratch, std::uint8_t* takesPart) {
+  auto* isSeen = scratch.take<bool>(points.count);
+  if (scratch.failed()) return false;
+  std::fill(isSeen, isSeen + points.count, false);
+  for (std::size_t i = 0; i < target.indices.size(); i += 3) {
+    const auto isOccluded = [&](std::uint32_t v) { return decided.zones[v] == Zone::occluded; };
+    const auto corners = target.indices.subspan(i, 3);
+    if (std::all_of(corners.begin(), corners.end(), isOccluded)) continue;
+    for (const std::uint32_t v : corners) isSeen[points.ofVertex[v]] = true;
+  }
+  for (std::size_t v = 0; v < target.positions.size() / 3; ++v) {
+    const bool passes = decided.culledSegments[decided.segments[v]] == 0;
+    takesPart[v] = passes && isSeen[points.ofVertex[v]];
+  }
+  return true;
+}
+
+/// Finds what is needed to cut the target, and cuts it.
+Status cutAlone(const MeshView& cageMesh, const MeshView& target, const TransferOptions& options, const DecidedView& decided,
+                CutMesh& out) {
+  Scratch scratch;
+  Units units;
+  if (const Status status = checkInput(cageMesh, target, options, units); !status.ok()) return status;
+  Cage cage;
+  CageTree cageTree;
+  Rims rims;
+  Atlas atlas;
+  Points points;
+  auto* takesPart = scratch.take<std::uint8_t>(target.positions.size() / 3);
+  if (scratch.failed() || !gatherCage(cageMesh, units, scratch, cage)) return kOutOfMemory;
+  if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
+  if (!weld(target, units, options.weldTolerance, scratch, points) || !findParts(target, points, decided, scratch, takesPart)) return kOutOfMemory;
+  if (options.projection != ProjectionMode::nearestPoint) std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
+  const bool isDone = buildCageTree(cage, units, scratch, cageTree) && findRims(cageMesh, cage, scratch, rims) &&
+                      findAtlas(cageMesh, cage, scratch, atlas) &&
+                      cutTarget(cageMesh, target, cage, cageTree, rims, options.seams == Seams::corner ? &atlas : nullptr, units,
+                                takesPart, scratch, out);
+  return isDone ? Status{} : kOutOfMemory;
+}
+
+}  // namespace
+
+Status cutBorders(const MeshView& cage, const MeshView& target, const TransferOptions& options, const DecidedView& decided,
+                  CutTarget& out) noexcept {
+  const std::size_t ownCount = target.positions.size() / 3;
+  const std::size_t segmentCount = decided.culledSegments.size();
+  const auto isStray = [=](std::uint32_t segment) { return segment >= segmentCount; };
+  if (decided.zones.size() != ownCount || decided.segments.size() != ownCount ||
+      std::any_of(decided.segments.begin(), decided.segments.end(), isStray)) {
+    return {Code::resultMismatch, Argument::target, static_cast<std::uint32_t>(decided.zones.size())};
+  }
+  if (const Status status = checkClassifyOptions(options); !status.ok()) return status;
+  CutMesh cut;
+  if (const Status status = cutAlone(cage, target, options, decided, cut); !status.ok()) return status;
+  const std::size_t count = cut.vertexSides.size();
+  Array<std::uint32_t> groups, segments;
+  Array<Lock> locks;
+  Array<SegmentStats> stats;
+  if (!groups.reset(target.groups.empty() ? 0 : count) || !segments.reset(count) || !locks.reset(segmentCount) || !stats.reset(segmentCount)) {
+    return kOutOfMemory;
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    const std::size_t source = v < ownCount ? v : cut.sources[3 * (v - ownCount)];
+    if (!groups.empty()) groups[v] = target.groups[source];
+    segments[v] = decided.segments[source];
+  }
+  std::fill(stats.begin(), stats.end(), SegmentStats{});  // Locks have the last word.
+  for (std::size_t s = 0; s < segmentCount; ++s) locks[s] = decided.culledSegments[s] != 0 ? Lock::exclude : Lock::keep;
+
+  Projection again;
+  if (const Status status = project(cage, {cut.positions, cut.indices, {}, groups}, options, again); !status.ok()) return status;
+  ClassifyOptions locked = options;
+  locked.copies = false;
+  locked.locks = locks;
+  Zones zones;
+  const ProjectionView view{again.zones, segments, stats, again.restores, {}};
+  if (const Status status = classify(view, cut.indices, locked, zones); !status.ok()) return status;
+  // What lies beyond a rim is uncovered, however the hole is explained; what lies on the border is not.
+  for (std::size_t v = 0; v < count; ++v) {
+    Zone& zone = zones.zones[v];
+    if (cut.vertexSides[v] == RimSide::beyond && zone == Zone::cosmetic) zone = Zone::uncovered;
+    if (cut.vertexSides[v] == RimSide::onBorder && zone == Zone::uncovered) zone = Zone::cosmetic;
+  }
+  markCosmetic(zones.zones, cut.indices, options, zones.cosmeticTriangles);
+  for (std::size_t t = 0; t < cut.areBeyond.size(); ++t) zones.cosmeticTriangles[t] &= cut.areBeyond[t] == 0;
+
+  out = {std::move(cut.sources), std::move(cut.weights), std::move(cut.indices), std::move(cut.origins), std::move(again.uvs),
+         std::move(again.cornerUvs), std::move(zones.zones), std::move(zones.cosmeticTriangles)};
+  return {};
+}
+
+}  // namespace cagecast

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "looks.hpp"
+
+namespace cagecast {
+
+/// Where a vertex of a cut target lies.
+enum class RimSide : std::uint8_t { inside, onBorder, beyond };
+
+/// A target with its triangles cut.
+struct CutMesh {
+  Array<float> positions;          ///< 3 per vertex: those of the target, then the new ones.
+  Array<std::uint32_t> sources;    ///< The fields from here are those of `CutTarget`.
+  Array<float> weights;
+  Array<std::uint32_t> indices;
+  Array<std::uint32_t> origins;
+  Array<RimSide> vertexSides;      ///< 1 per vertex.
+  Array<std::uint8_t> areBeyond;   ///< 1 per triangle: 1 if it lies beyond a rim.
+};
+
+/// Step 10: cuts the target along the rims, and then, if there is an atlas, what is not beyond them along the seams.
+/// @param takesPart  1 per vertex of the target: an edge is cut if both its ends have 1 here.
+/// @return false if memory ran out.
+bool cutTarget(const MeshView& cageMesh, const MeshView& target, const Cage& cage, const CageTree& tree, const Rims& rims,
+               const Atlas* atlas, const Units& units, const std::uint8_t* takesPart, Scratch& scratch, CutMesh& out) noexcept;
+
+}  // namespace cagecast

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "cagecast/array.hpp"
+
+namespace cagecast {
+
+/// A row of plain values that grows. Like `Array` it reports a lack of memory; what was added after that is lost.
+template <typename T>
+class List {
+  static_assert(std::is_trivially_copyable_v<T>, "elements are copied as bytes");
+
+ public:
+  List() noexcept = default;
+  List(const List&) = delete;
+  List& operator=(const List&) = delete;
+  ~List() { std::free(data_); }
+
+  void add(const T& value) noexcept {
+    if (size_ == room_ && !grow()) return;
+    data_[size_++] = value;
+  }
+  /// Takes away the last elements.
+  void cut(std::size_t size) noexcept { size_ = size < size_ ? size : size_; }
+  /// Takes one element away; the later ones move up.
+  void remove(std::size_t i) noexcept {
+    std::memmove(data_ + i, data_ + i + 1, (--size_ - i) * sizeof(T));
+  }
+
+  [[nodiscard]] bool failed() const noexcept { return failed_; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }
+
+  /// @return false if memory ran out, here or before.
+  [[nodiscard]] bool copyTo(Array<T>& out) const noexcept {
+    if (failed_ || !out.reset(size_)) return false;
+    if (size_ > 0) std::memcpy(out.data(), data_, size_ * sizeof(T));
+    return true;
+  }
+
+ private:
+  bool grow() noexcept {
+    const std::size_t room = room_ < 32 ? 64 : 2 * room_;
+    void* data = room > SIZE_MAX / sizeof(T) ? nullptr : std::realloc(data_, room * sizeof(T));
+    failed_ = failed_ || data == nullptr;
+    if (data == nullptr) return false;
+    data_ = static_cast<T*>(data);
+    room_ = room;
+    return true;
+  }
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t room_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace cagecast

@@ -1,0 +1,424 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <set>
+
+#include "cagecast/borders.hpp"
+#include "checks.hpp"
+#include "hash.hpp"
+#include "reference_scene.hpp"
+#include "traps.hpp"
+#ifdef CAGECAST_GLTF
+#include "gltf/gltf.hpp"
+#endif
+
+using namespace cagecast;
+using reference::Vec;
+
+namespace {
+
+/// What a border may be off, as a share of the diagonal.
+constexpr double kTolerance = 1e-3;
+
+TransferOptions cutting(Seams seams = Seams::corner) {
+  TransferOptions options = TransferOptions::standard();
+  options.seams = seams;
+  return options;
+}
+
+/// Cuts the target of a transfer.
+CutTarget cutOf(const MeshView& cage, const MeshView& target, const TransferOptions& options, const TransferResult& result) {
+  CutTarget cut;
+  const Status status =
+      cutBorders(cage, target, options, {result.zones.zones, result.projection.segments, result.zones.culledSegments}, cut);
+  INFO(describe(status, cage, target));
+  REQUIRE(status.ok());
+  return cut;
+}
+
+CutTarget cutOf(const MeshView& cage, const MeshView& target, const TransferOptions& options) {
+  return cutOf(cage, target, options, transferred(cage, target, options));
+}
+
+/// The target as it was cut.
+scenes::Mesh meshOf(const MeshView& target, const CutTarget& cut) {
+  scenes::Mesh mesh;
+  mesh.positions.assign(target.positions.begin(), target.positions.end());
+  mesh.groups.assign(target.groups.begin(), target.groups.end());
+  mesh.groups.resize(mesh.vertexCount());
+  for (std::size_t i = 0; i < cut.sources.size(); i += 3) {
+    scenes::Point p{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      double sum = 0;
+      for (std::size_t j = 0; j < 3; ++j)
+        sum += static_cast<double>(cut.weights[i + j]) * static_cast<double>(target.positions[cut.sources[i + j] * std::size_t{3} + k]);
+      p[k] = static_cast<float>(sum);
+    }
+    mesh.addVertex(p, 0, 0, mesh.groups[cut.sources[i]]);
+  }
+  mesh.indices.assign(cut.indices.begin(), cut.indices.end());
+  return mesh;
+}
+
+Vec areaOf(const MeshView& mesh, std::size_t t) {
+  const Vec a = reference::vertex(mesh, mesh.indices[3 * t]);
+  return cross(reference::vertex(mesh, mesh.indices[3 * t + 1]) - a, reference::vertex(mesh, mesh.indices[3 * t + 2]) - a) * 0.5;
+}
+
+/// The length of all edges that one triangle more runs along in one direction than in the other: where the surface is open.
+/// Vertices with equal position and group are one.
+double openLength(const MeshView& mesh) {
+  using End = std::array<double, 4>;
+  std::map<std::pair<End, End>, int> uses;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    const auto end = [&](std::size_t corner) {
+      const std::uint32_t v = mesh.indices[corner];
+      const Vec p = reference::vertex(mesh, v);
+      return End{p.x + 0.0, p.y + 0.0, p.z + 0.0, mesh.groups.empty() ? 0.0 : static_cast<double>(mesh.groups[v])};
+    };
+    const End from = end(i), to = end(i - i % 3 + (i + 1) % 3);
+    if (from < to) ++uses[{from, to}];
+    if (to < from) --uses[{to, from}];
+  }
+  double sum = 0;
+  for (const auto& [ends, count] : uses) {
+    const auto& [a, b] = ends;
+    sum += std::abs(count) * length(Vec{a[0], a[1], a[2]} - Vec{b[0], b[1], b[2]});
+  }
+  return sum;
+}
+
+/// On which side of the rims a place is, by brute force.
+class Sides {
+ public:
+  Sides(const MeshView& cage, const MeshView& target) : scene_(reference::makeScene(cage, target, reference::Options::paper())) {}
+  [[nodiscard]] bool isBeyond(Vec p) const { return loopAt(scene_, project(scene_, p)) >= 0; }
+  [[nodiscard]] double diagonal() const { return scene_.diag; }
+
+ private:
+  reference::Scene scene_;
+};
+
+struct Found {
+  std::size_t added = 0;       ///< Triangles that there were not before.
+  std::size_t onRim = 0;       ///< Places on painted borders that were looked at,
+  double mostOff = 0;          ///< and how far the farthest is from a projected rim, as a share of the diagonal.
+  std::size_t inside = 0;      ///< Places well inside triangles that were looked at,
+  std::size_t otherSide = 0;   ///< and those that are not on the side that their triangle is painted for.
+};
+
+/// Checks everything that holds for a cut target, and measures what is asked of it.
+Found checkCut(const std::string& name, const MeshView& cage, const MeshView& target, const TransferOptions& options) {
+  INFO(name);
+  const TransferResult result = transferred(cage, target, options);
+  const CutTarget cut = cutOf(cage, target, options, result);
+  const std::size_t vertexCount = target.positions.size() / 3, triangleCount = cut.origins.size();
+  REQUIRE(cut.sources.size() % 3 == 0);
+  REQUIRE(cut.weights.size() == cut.sources.size());
+  const std::size_t newCount = vertexCount + cut.sources.size() / 3;
+  REQUIRE(cut.indices.size() == 3 * triangleCount);
+  REQUIRE(cut.uvs.size() == 2 * newCount);
+  REQUIRE(cut.zones.size() == newCount);
+  REQUIRE(cut.cosmeticTriangles.size() == triangleCount);
+  REQUIRE(cut.cornerUvs.size() == (options.seams == Seams::corner ? 2 * cut.indices.size() : 0));
+
+  std::size_t badWeights = 0, strangers = 0, unsorted = 0;
+  for (std::size_t i = 0; i < cut.sources.size(); i += 3) {
+    const float* w = cut.weights.data() + i;
+    badWeights += std::min({w[0], w[1], w[2]}) < 0 ||
+                  static_cast<double>(w[0]) + static_cast<double>(w[1]) + static_cast<double>(w[2]) != 1;
+    for (std::size_t j = 0; j < 3; ++j) REQUIRE(cut.sources[i + j] < vertexCount);
+  }
+  for (std::size_t i = 0; i < cut.indices.size(); ++i) {
+    const std::uint32_t v = cut.indices[i], origin = cut.origins[i / 3];
+    REQUIRE(v < newCount);
+    REQUIRE(origin < target.indices.size() / 3);
+    unsorted += i >= 3 && origin < cut.origins[i / 3 - 1];
+    const auto corners = target.indices.subspan(3 * std::size_t{origin}, 3);
+    const auto isCorner = [&](std::uint32_t w) { return std::find(corners.begin(), corners.end(), w) != corners.end(); };
+    const std::uint32_t* sources = cut.sources.data() + (v < vertexCount ? 0 : 3 * (v - vertexCount));
+    strangers += v < vertexCount ? !isCorner(v) : !std::all_of(sources, sources + 3, isCorner);
+  }
+  CHECK(badWeights == 0);
+  CHECK(strangers == 0);
+  CHECK(unsorted == 0);
+
+  const scenes::Mesh mesh = meshOf(target, cut);
+  const MeshView view = mesh.view();
+  const Sides sides(cage, target);
+  const double diagonal = sides.diagonal();
+
+  // No area is lost, and none is covered twice or turned.
+  std::vector<double> signedAreas(target.indices.size() / 3, 0), areas = signedAreas;
+  for (std::size_t t = 0; t < triangleCount; ++t) {
+    const Vec whole = areaOf(target, cut.origins[t]);
+    const double size = length(whole);
+    signedAreas[cut.origins[t]] += size > 0 ? dot(areaOf(view, t), whole) / size : 0;
+    areas[cut.origins[t]] += length(areaOf(view, t));
+  }
+  std::size_t otherArea = 0;
+  for (std::size_t t = 0; t < areas.size(); ++t) {
+    const double whole = length(areaOf(target, t)), slack = 1e-6 * diagonal * diagonal;
+    otherArea += std::abs(areas[t] - whole) > slack || std::abs(signedAreas[t] - whole) > slack;
+  }
+  CHECK(otherArea == 0);
+  MeshView before = target;
+  std::vector<std::uint32_t> noGroups(vertexCount, 0);
+  if (before.groups.empty()) before.groups = noGroups;
+  // No gap: but what is open may be closed, where an edge without area lay along another.
+  CHECK(openLength(view) <= openLength(before) * (1 + 1e-5));
+
+  // Every triangle that is painted, or could be, lies on one side.
+  Found found;
+  found.added = triangleCount - target.indices.size() / 3;
+  std::vector<std::uint8_t> takesPart(triangleCount, 0);
+  for (std::size_t t = 0; t < triangleCount; ++t) {
+    const auto corners = target.indices.subspan(3 * std::size_t{cut.origins[t]}, 3);
+    const bool isHidden = std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return result.zones.zones[v] == Zone::occluded; });
+    const bool fails = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
+      return result.zones.culledSegments[result.projection.segments[v]] != 0;
+    });
+    takesPart[t] = !isHidden && !fails && length(areaOf(target, cut.origins[t])) > 0;
+  }
+  const double deep = kTolerance * diagonal;
+  const auto cornersOf = [&](std::size_t t) {
+    return std::array{reference::vertex(view, view.indices[3 * t]), reference::vertex(view, view.indices[3 * t + 1]),
+                      reference::vertex(view, view.indices[3 * t + 2])};
+  };
+  for (std::size_t t = 0; t < triangleCount; ++t) {
+    if (!takesPart[t]) continue;
+    const auto [a, b, c] = cornersOf(t);
+    const auto isWellInside = [&](Vec p) {
+      for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
+        if (length(cross(to - from, p - from)) <= deep * length(to - from)) return false;
+      return true;
+    };
+    int seen[2] = {};
+    for (int i = 1; i < 6; ++i)
+      for (int j = 1; i + j < 6; ++j) {
+        const Vec p = a + (b - a) * (i / 6.0) + (c - a) * (j / 6.0);
+        if (!isWellInside(p)) continue;
+        ++found.inside;
+        ++seen[sides.isBeyond(p)];
+      }
+    found.otherSide += static_cast<std::size_t>(cut.cosmeticTriangles[t] != 0 ? seen[1] : std::min(seen[0], seen[1]));
+  }
+
+  // What is painted ends where the rims are projected to.
+  std::map<std::pair<std::array<double, 3>, std::array<double, 3>>, std::array<std::int64_t, 2>> edges;
+  for (std::size_t t = 0; t < triangleCount; ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec p = reference::vertex(view, view.indices[3 * t + k]), q = reference::vertex(view, view.indices[3 * t + (k + 1) % 3]);
+      const std::array from{p.x, p.y, p.z}, to{q.x, q.y, q.z};
+      const auto ends = std::pair(std::min(from, to), std::max(from, to));
+      auto& both = edges.try_emplace(ends, std::array<std::int64_t, 2>{-1, -1}).first->second;
+      both[cut.cosmeticTriangles[t] != 0] = static_cast<std::int64_t>(t);
+    }
+  for (const auto& [ends, both] : edges) {
+    if (both[0] < 0 || both[1] < 0 || !takesPart[static_cast<std::size_t>(both[0])]) continue;
+    // Nothing is painted where there is no area.
+    if (length(areaOf(view, static_cast<std::size_t>(both[1]))) <= 1e-9 * diagonal * diagonal) continue;
+    const Vec p{ends.first[0], ends.first[1], ends.first[2]}, q{ends.second[0], ends.second[1], ends.second[2]};
+    const auto [a, b, c] = cornersOf(static_cast<std::size_t>(both[0]));
+    if (!sides.isBeyond((a + b + c) * (1.0 / 3))) continue;  // It ends there for another reason.
+    for (const double share : {0.05, 0.35, 0.65, 0.95}) {
+      const Vec at = p + (q - p) * share;
+      const bool isBeyond = sides.isBeyond(at);
+      // The nearest place on the other side, in the planes of both triangles: looked for in eight directions, ever farther.
+      double least = 10 * kTolerance;
+      for (const std::int64_t t : both) {
+        const Vec normal = areaOf(view, static_cast<std::size_t>(t));
+        if (length(normal) == 0 || length(q - p) == 0) continue;
+        const Vec along = unit(q - p), across = unit(cross(normal, along));
+        for (int i = 0; i < 8; ++i) {
+          const Vec direction = along * std::cos(i * 0.7853981633974483) + across * std::sin(i * 0.7853981633974483);
+          for (double r = 1e-5; r < least; r *= 1.3)
+            if (sides.isBeyond(at + direction * (r * diagonal)) != isBeyond) least = r;
+        }
+      }
+      ++found.onRim;
+      found.mostOff = std::max(found.mostOff, least);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("cut borders follow the projected rims on heads", "[borders]") {
+  for (const int cells : {8, 16}) {
+    const scenes::Scene scene = scenes::head(cells);
+    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), cutting());
+    CHECK(found.onRim > 100);
+    CHECK(found.mostOff <= kTolerance);
+    CHECK(found.otherSide == 0);
+  }
+}
+
+#ifdef CAGECAST_GLTF
+TEST_CASE("cut borders follow the projected rims on real models", "[borders][assets]") {
+  const char* folder = std::getenv("CAGECAST_ASSETS");
+  if (folder == nullptr) {
+    WARN("CAGECAST_ASSETS is not set: no real models were cut");
+    return;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string path = entry.path().string();
+    if (!std::filesystem::exists(path + "/target.glb") || !std::filesystem::exists(path + "/cage.glb")) continue;
+    gltf::Model target, cage;
+    REQUIRE(gltf::read(path + "/target.glb", target).ok());
+    REQUIRE(gltf::read(path + "/cage.glb", cage).ok());
+    for (const Seams seams : {Seams::vertex, Seams::corner}) {
+      const std::string name = entry.path().filename().string() + (seams == Seams::corner ? ", seams too" : "");
+      const Found found = checkCut(name, cage.view(), target.view(), cutting(seams));
+      std::cout << name << ": " << found.added << " triangles more, borders at most " << found.mostOff << " of the diagonal off\n";
+      CHECK(found.mostOff <= kTolerance);
+      CHECK(found.otherSide == 0);
+    }
+  }
+}
+#endif
+
+TEST_CASE("cut borders follow the projected rims of strewn triangles", "[borders]") {
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 4; ++seed) {
+    scenes::Scene scene = scenes::strewn(seed, 40);
+    INFO("CAGECAST_SEED=" << seed);
+    TransferOptions options = cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner);
+    options.floor = Floor::none;
+    options.threshold = 0;
+    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), options);
+    CHECK(found.mostOff <= kTolerance);
+    CHECK(found.otherSide == 0);
+  }
+}
+
+TEST_CASE("cut borders follow the projected rims in triangles larger than the holes", "[borders]") {
+  // A box of twelve triangles under a box of 12 by 12 cells a side, with two windows; one of them is within a single triangle.
+  const auto inWindow = [](scenes::Point p) {
+    const auto cell = [](float x) { return static_cast<int>((x + 1.2f) / 0.2f); };
+    const int x = cell(p[0]), y = cell(p[1]);
+    return p[2] > 1.19f && ((x >= 8 && x < 10 && y >= 3 && y < 5) || (x >= 2 && x < 6 && y >= 5 && y < 9));
+  };
+  const scenes::Mesh cage = scenes::without(scenes::box({}, {1.2f, 1.2f, 1.2f}, 12), inWindow);
+  const scenes::Mesh target = scenes::box({}, {1, 1, 1}, 1);
+  for (const std::array<int, 4> turn : {std::array{1, 0, 0, 0}, {3, 1, -2, 1}}) {
+    const scenes::Mesh c = scenes::rotated(cage, turn), t = scenes::rotated(target, turn);
+    TransferOptions options = cutting(Seams::vertex);
+    const Found found = checkCut("windows", c.view(), t.view(), options);
+    CHECK(found.onRim >= 40);
+    CHECK(found.mostOff <= kTolerance);
+    CHECK(found.otherSide == 0);
+    // No more triangles than two windows ask for.
+    CHECK(found.added < 100);
+  }
+}
+
+TEST_CASE("a cut does not depend on the unit, and is made alike on both sides of a split edge", "[borders]") {
+  const scenes::Scene scene = scenes::head(12);
+  const CutTarget cut = cutOf(scene.cage.view(), scene.target.view(), cutting());
+  SECTION("unit") {
+    const auto larger = [](scenes::Point p) { return scenes::Point{1024 * p[0], 1024 * p[1], 1024 * p[2]}; };
+    const CutTarget other = cutOf(mapped(scene.cage, larger).view(), mapped(scene.target, larger).view(), cutting());
+    CHECK(copied(cut.sources) == copied(other.sources));
+    CHECK(copied(cut.weights) == copied(other.weights));
+    CHECK(copied(cut.indices) == copied(other.indices));
+    CHECK(copied(cut.cosmeticTriangles) == copied(other.cosmeticTriangles));
+  }
+  SECTION("every triangle with vertices of its own") {
+    scenes::Mesh apart;
+    for (const std::uint32_t v : scene.target.indices) apart.addVertex(scene.target.vertex(v), 0, 0, scene.target.groups[v]);
+    for (std::uint32_t i = 0; i < apart.vertexCount(); i += 3) apart.addTriangle(i, i + 1, i + 2);
+    const CutTarget other = cutOf(scene.cage.view(), apart.view(), cutting());
+    // `checkCut` would find a gap by the length of what is open.
+    CHECK(openLength(meshOf(apart.view(), other).view()) == Approx(openLength(meshOf(scene.target.view(), cut).view())).epsilon(1e-5));
+    CHECK(copied(cut.origins) == copied(other.origins));
+    CHECK(copied(cut.cosmeticTriangles) == copied(other.cosmeticTriangles));
+  }
+}
+
+TEST_CASE("a target is as it was where the cage has neither holes nor seams", "[borders]") {
+  const scenes::Mesh target = scenes::ellipsoid({}, {1, 0.9f, 0.8f}, 6);
+  scenes::Mesh cage = scenes::ellipsoid({}, {1.2f, 1.1f, 1}, 8);
+  const TransferResult result = transferred(cage.view(), target.view(), cutting(Seams::vertex));
+  const CutTarget cut = cutOf(cage.view(), target.view(), cutting(Seams::vertex), result);
+  CHECK(cut.sources.empty());
+  CHECK(copied(cut.indices) == target.indices);
+  CHECK(copied(cut.zones) == copied(result.zones.zones));
+  CHECK(copied(cut.uvs) == copied(result.projection.uvs));
+  CHECK(copied(cut.cosmeticTriangles) == copied(result.zones.cosmeticTriangles));
+}
+
+TEST_CASE("nothing is cut where only vertices of the cage count", "[borders]") {
+  const scenes::Scene scene = scenes::head(8);
+  TransferOptions options = cutting();
+  options.projection = ProjectionMode::nearestVertex;
+  CHECK(cutOf(scene.cage.view(), scene.target.view(), options).sources.empty());
+}
+
+TEST_CASE("a result of another target is refused", "[borders]") {
+  const scenes::Scene scene = scenes::head(8);
+  const TransferResult result = transferred(scene.cage.view(), scene.target.view(), cutting());
+  const MeshView cage = scene.cage.view(), other = scene.cage.view();
+  CutTarget cut;
+  const auto codeOf = [&](const MeshView& target, const DecidedView& decided) { return cutBorders(cage, target, cutting(), decided, cut).code; };
+  CHECK(codeOf(other, {result.zones.zones, result.projection.segments, result.zones.culledSegments}) == Code::resultMismatch);
+  CHECK(codeOf(scene.target.view(), {result.zones.zones, result.projection.segments, {}}) == Code::resultMismatch);
+  CHECK(codeOf(scene.target.view(), {result.zones.zones, {}, result.zones.culledSegments}) == Code::resultMismatch);
+}
+
+TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut", "[borders]") {
+  scenes::Scene scene = scenes::head(8);
+  scenes::Mesh& target = scene.target;
+  const auto indices = target.indices;
+  SECTION("triangles without area, of three corners or of two, or on one line") {
+    for (std::size_t i = 0; i + 6 < indices.size(); i += 60) {
+      target.addTriangle(indices[i], indices[i + 1], indices[i]);
+      const scenes::Point p = target.vertex(indices[i]), q = target.vertex(indices[i + 1]);
+      const std::uint32_t middle = target.addVertex({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2}, 0, 0, target.groups[indices[i]]);
+      target.addTriangle(indices[i], middle, indices[i + 1]);
+    }
+  }
+  SECTION("triangles that are there twice, and turned") {
+    for (std::size_t i = 0; i < indices.size(); i += 9) target.addTriangle(indices[i], indices[i + 1], indices[i + 2]);
+    for (std::size_t i = 3; i < indices.size(); i += 9) target.addTriangle(indices[i], indices[i + 2], indices[i + 1]);
+  }
+  SECTION("edges of three triangles") {
+    for (std::size_t i = 0; i < indices.size(); i += 30) {
+      const std::uint32_t tip = target.addVertex({0, 0, 2}, 0, 0, target.groups[indices[i]]);
+      target.addTriangle(indices[i], indices[i + 1], tip);
+    }
+  }
+  SECTION("vertices that nothing uses, and positions of zero with a sign") {
+    target.addVertex({5, 5, 5});
+    for (float& x : target.positions)
+      if (x == 0) x = -0.0f;
+  }
+  const Found found = checkCut("wrong", scene.cage.view(), target.view(), cutting());
+  CHECK(found.otherSide == 0);
+}
+
+// As for the presets: the same file is asserted in every build.
+TEST_CASE("what is cut on fixed scenes has the golden hash", "[borders][golden]") {
+  Hash hash;
+  for (const Seams seams : {Seams::vertex, Seams::corner}) {
+    for (const scenes::Scene& scene : {scenes::head(8), scenes::head(16), scenes::strewn(1, 60)}) {
+      const CutTarget cut = cutOf(scene.cage.view(), scene.target.view(), cutting(seams));
+      hash.add(cut.sources);
+      hash.add(cut.weights);
+      hash.add(cut.indices);
+      hash.add(cut.origins);
+      hash.add(cut.uvs);
+      hash.add(cut.cornerUvs);
+      hash.add(cut.zones);
+      hash.add(cut.cosmeticTriangles);
+    }
+  }
+  std::ifstream file(CAGECAST_GOLDEN_BORDERS);
+  std::string expected;
+  file >> expected;
+  CHECK(hash.text() == expected);
+}
