@@ -2,7 +2,10 @@ import { Group, LoadingManager, type AnimationClip, type Mesh, type Object3D } f
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
+import { kWithoutKtx2, leaveKtx2Out } from './ktx2'
 import type { Sample } from './samples'
+
+const kKtx2 = 'KHR_texture_basisu'
 
 /** A model that was read: the scene to show, and its triangles to transfer with. */
 export interface Model {
@@ -12,13 +15,15 @@ export interface Model {
   files: readonly File[]
   scene: Object3D
   animations: readonly AnimationClip[]
+  /** What the visitor is to know of it. */
+  note?: string
   mesh: ExtractedMesh
   /** Which sample it belongs to; the visitor's own to none. */
   sample?: Sample
 }
 
 /**
- * Reads a GLB or glTF model, Draco, meshopt and quantised data included.
+ * Reads a GLB or glTF model, Draco, meshopt and quantised data included; KTX2 textures are left out.
  * @param file       The model.
  * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
  * @throws Error of one sentence that begins with the file's name.
@@ -36,7 +41,7 @@ export async function loadModel(file: File, companions: readonly File[] = []): P
     try {
       const gltf = await loader.parseAsync(bytes, '')
       const scene = await sceneOf(gltf)
-      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, mesh: await extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
+      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, ...(head.extensions.includes(kKtx2) && { note: kWithoutKtx2 }), mesh: await extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
     } finally {
       release()
     }
@@ -97,6 +102,7 @@ async function addDecoders(loader: GLTFLoader, manager: LoadingManager, extensio
     const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js')
     loader.setMeshoptDecoder(MeshoptDecoder)
   }
+  if (extensions.includes(kKtx2)) loader.setKTX2Loader(leaveKtx2Out())
   if (!extensions.includes('KHR_draco_mesh_compression')) return () => {}
   const { makeDracoLoader } = await import('./draco')
   const draco = makeDracoLoader(manager)

@@ -89,7 +89,7 @@ export class Opener {
       label.textContent = label.title = name
     }
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`
-    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`
+    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.${target.note ? ` ${target.note}` : ''}`
     this.#describeOrigin(target.sample !== undefined, cage.sample !== undefined)
     this.#offerPaints({ cage })
   }
