@@ -151,4 +151,7 @@ test('without WebGL the page says so, and still counts', async () => {
   assert.match((await page.locator('#stage-notice').textContent())!, /WebGL/)
   assert.equal(await page.locator('#stage-notice').isVisible(), true)
   assert.ok((await shownCounts(page)).cosmetic > 0)
+  // A picture taken elsewhere, and what it shows in words.
+  const still = page.getByAltText(/lizard/)
+  assert.ok(await still.evaluate(async (image: HTMLImageElement) => image.decode().then(() => image.naturalWidth > 100)))
 })
