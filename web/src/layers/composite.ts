@@ -6,6 +6,7 @@ import {
   SRGBColorSpace,
   Vector4,
   WebGLRenderTarget,
+  type IUniform,
   type Texture,
   type WebGLRenderer,
 } from 'three'
@@ -31,11 +32,11 @@ export interface Wet {
 // Each of the four is a separable blend mode of “Compositing and Blending Level 1” (W3C), in linear light, with colours
 // multiplied by alpha: layer·(1 − α below) + below·(1 − α layer) + α layer·α below·B, where B is, of the colours proper,
 // normal: layer, multiply: layer·below, screen: layer + below − layer·below, add: min(1, layer + below).
-const kFragmentShader = /* glsl */ `
-uniform sampler2D sheets[${kMostLayers}];
-uniform vec4 tints[${kMostLayers}]; // and the opacity
-uniform int blends[${kMostLayers}];
-uniform bool premultiplied[${kMostLayers}];
+const fragmentShader = (most: number): string => /* glsl */ `
+uniform sampler2D sheets[${most}];
+uniform vec4 tints[${most}]; // and the opacity
+uniform int blends[${most}];
+uniform bool premultiplied[${most}];
 uniform int count;
 uniform sampler2D wet;
 uniform int wetSheet; // -1 for none
@@ -76,7 +77,7 @@ void main() {
   color = vec4(0.0);
   vec4 layer;
   #pragma unroll_loop_start
-  for (int i = 0; i < ${kMostLayers}; i ++) {
+  for (int i = 0; i < ${most}; i ++) {
     if (UNROLLED_LOOP_INDEX < count) {
       layer = take(sheets[UNROLLED_LOOP_INDEX], premultiplied[UNROLLED_LOOP_INDEX]);
       if (UNROLLED_LOOP_INDEX == wetSheet) {
@@ -106,7 +107,7 @@ export class Composite {
     wrapT: RepeatWrapping,
     anisotropy: 8,
   })
-  readonly #pass = new Pass(kFragmentShader, {
+  readonly #uniforms = {
     sheets: { value: [] as (Texture | null)[] },
     tints: { value: Array.from({ length: kMostLayers }, () => new Vector4()) },
     blends: { value: new Array<number>(kMostLayers).fill(0) },
@@ -117,7 +118,10 @@ export class Composite {
     wetOpacity: { value: 1 },
     wetErases: { value: false },
     size: { value: kLeastSize },
-  })
+  }
+  /** For one layer, as most have, and for all: the shader for eight takes a second longer to make, where the processor draws. */
+  readonly #one: Pass<Record<string, IUniform>> = new Pass(fragmentShader(1), this.#uniforms)
+  #all: Pass<Record<string, IUniform>> | undefined
   #layers: readonly Layer[] = []
   #wet: Wet | undefined
   /** What changed since the last update, in shares of the texture. */
@@ -160,13 +164,14 @@ export class Composite {
     const rects = whole ? [toTexels(kWhole, this.size)] : apart(this.#stale.map((rect) => toTexels(rect, this.size, 2)), kMostRects)
     this.#stale = []
     this.#fill()
-    this.#pass.run(renderer, this.#target, rects)
+    const pass = this.#layers.length > 1 ? (this.#all ??= new Pass(fragmentShader(kMostLayers), this.#uniforms)) : this.#one
+    pass.run(renderer, this.#target, rects)
     refreshMipmaps(renderer, this.#target, rects)
     return true
   }
 
   #fill(): void {
-    const { sheets, tints, blends, premultiplied, count, wet, wetSheet, wetOpacity, wetErases, size } = this.#pass.uniforms
+    const { sheets, tints, blends, premultiplied, count, wet, wetSheet, wetOpacity, wetErases, size } = this.#uniforms
     // All of them are set: one left over from before could be the texture that is drawn to.
     sheets.value = Array.from({ length: kMostLayers }, (_, index) => this.#layers[index]?.sheet.texture ?? null)
     this.#layers.forEach(({ sheet, tint, opacity, blend }, index) => {
