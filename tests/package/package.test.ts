@@ -88,17 +88,17 @@ describe('the packed package', () => {
   });
 
   test('its further entries are small, and none of them is in the main one', (context) => {
-    for (const [name, most] of Object.entries({ inspect: 12, three: 4, gltf: 6 })) {
+    for (const [name, most] of Object.entries({ inspect: 12, three: 4, gltf: 6, borders: 62 })) {
       const text = readFileSync(join(installed, `dist/${name}.js`));
       const size = gzipSync(text, { level: 9 }).length;
       context.diagnostic(`${name} ${size} bytes, gzipped`);
       assert.ok(size <= most * 1024, `${name}: ${size} bytes`);
       assert.match(text.toString(), /from"\.\/index\.js"/);
     }
-    assert.doesNotMatch(readFileSync(join(installed, 'dist/index.js'), 'utf8'), /cageMisplaced|TEXCOORD_0|isBufferGeometry/);
+    assert.doesNotMatch(readFileSync(join(installed, 'dist/index.js'), 'utf8'), /cageMisplaced|TEXCOORD_0|isBufferGeometry|cutBorders: result/);
   });
 
-  test('its entries for three.js and glTF-Transform, and inspect, run and type-check beside these', () => {
+  test('its entries for three.js and glTF-Transform, inspect and borders run and type-check beside these', () => {
     const folder = join(user, 'peers');
     mkdirSync(join(folder, 'node_modules/@types'), { recursive: true });
     mkdirSync(join(folder, 'node_modules/@gltf-transform'));
@@ -112,6 +112,7 @@ describe('the packed package', () => {
       import { BoxGeometry, Group, Mesh, SphereGeometry, Texture } from 'three';
       import { init, type Mesh as Arrays } from 'cagecast';
       import { cagecast } from 'cagecast/gltf';
+      import { cutBorders, type CutTarget } from 'cagecast/borders';
       import { inspect, type Inspection, type Verdict } from 'cagecast/inspect';
       import { applyTransfer, extract, type Applied } from 'cagecast/three';
       await init();
@@ -123,6 +124,7 @@ describe('the packed package', () => {
       const arrays: Arrays = extract(cage, 'cage').mesh;
       const inspection: Inspection = inspect(arrays, { positions, indices, ...rest }, { result: applied.result });
       const verdict: Verdict = inspection.verdict;
+      const cut: CutTarget = await cutBorders(arrays, { positions, indices, ...rest }, applied.result, { threshold: 0.3 });
       const document = new Document();
       const buffer = document.createBuffer();
       const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'SCALAR') => document.createAccessor().setType(type).setArray(new (array.constructor as Float32ArrayConstructor)(array)).setBuffer(buffer);
@@ -131,10 +133,10 @@ describe('the packed package', () => {
       await document.transform(cagecast({ cage: arrays }));
       // @ts-expect-error a cage is needed
       void (() => cagecast({}));
-      console.log(verdict !== undefined, applied.overlays.length, primitive.listSemantics().join());`,
+      console.log(verdict !== undefined, cut.triangles.length >= indices.length / 3, applied.overlays.length, primitive.listSemantics().join());`,
     );
     run(join(tools, 'esbuild/bin/esbuild'), ['program.ts', '--format=esm', '--outfile=program.js', '--log-level=warning'], folder);
-    assert.equal(run(process.execPath, ['--preserve-symlinks', '--preserve-symlinks-main', 'program.js'], folder).trim(), 'true 1 POSITION,TEXCOORD_0,_NCZ');
+    assert.equal(run(process.execPath, ['--preserve-symlinks', '--preserve-symlinks-main', 'program.js'], folder).trim(), 'true true 1 POSITION,TEXCOORD_0,_NCZ');
     // Without skipLibCheck the types of three would be checked as well, which is not ours to do.
     const compilerOptions = { module: 'esnext', moduleResolution: 'bundler', target: 'es2022', lib: ['es2022', 'dom'], strict: true, exactOptionalPropertyTypes: true, noEmit: true, types: [], skipLibCheck: true, preserveSymlinks: true };
     writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, files: ['program.ts'] }));

@@ -1,6 +1,9 @@
 import type { CheckedMesh } from './mesh.js';
 
-/** What Emscripten's glue makes of bindings.cpp: numbers in, the address of an answer's table out. */
+/**
+ * What Emscripten's glue makes of bindings.cpp: numbers in, the address of an answer's table out. The module of cagecast/borders,
+ * of bindings_borders.cpp, has `cutBorders` in place of the other steps.
+ */
 export interface Glue {
   room(place: number, bytes: number): number;
   presetOptions(preset: number): number;
@@ -8,6 +11,7 @@ export interface Glue {
   transfer(): number;
   classify(): number;
   splitVertices(vertexCount: number): number;
+  cutBorders(): number;
   release(): void;
 }
 
@@ -27,6 +31,7 @@ const f64 = (bytes: ArrayBuffer) => new Float64Array(bytes);
 const presetArrays = { options: f64 };
 const classifyArrays = { zones: u8, cosmeticTriangles: u8, culledSegments: u8, margins: f64 };
 const splitArrays = { sources: u32, indices: u32, uvs: f32 };
+const cutArrays = { sources: u32, weights: f32, indices: u32, triangles: u32, uvs: f32, cornerUvs: f32, zones: u8, cosmeticTriangles: u8 };
 const projectArrays = {
   uvs: f32,
   cornerUvs: f32,
@@ -53,6 +58,7 @@ type AnswerOf<L extends Layout> = Answer & { [Name in keyof L]: ReturnType<L[Nam
 export type ProjectAnswer = AnswerOf<typeof projectArrays>;
 export type ClassifyAnswer = AnswerOf<typeof classifyArrays>;
 export type SplitAnswer = AnswerOf<typeof splitArrays>;
+export type CutAnswer = AnswerOf<typeof cutArrays>;
 
 type Indices = Uint32Array | Uint16Array | Uint8Array;
 
@@ -66,6 +72,14 @@ export interface CoreProjection {
   indices: Indices;
 }
 
+/** What the core needs of a transfer to cut its target. */
+export interface CoreDecided {
+  zones: Uint8Array;
+  segments: Uint32Array;
+  /** 1 per segment. */
+  culledSegments: Uint8Array;
+}
+
 /** The functions of the core, on arrays; `options` are numbers in the order of options.ts. */
 export interface Bindings {
   presetOptions(preset: number): Float64Array;
@@ -73,6 +87,7 @@ export interface Bindings {
   transfer(cage: CheckedMesh, target: CheckedMesh, options: Float64Array): ProjectAnswer;
   classify(projection: CoreProjection, options: Float64Array, locks: Uint8Array): ClassifyAnswer;
   splitVertices(indices: Indices, cornerUvs: Float32Array, vertexCount: number): SplitAnswer;
+  cutBorders(cage: CheckedMesh, target: CheckedMesh, options: Float64Array, decided: CoreDecided): CutAnswer;
 }
 
 /** Brings arrays into WebAssembly memory and out of it. No view of it leaves: it is cut to length 0 when the memory grows. */
@@ -88,14 +103,14 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
       new Type(memory.buffer, at, source.length).set(source);
     });
   };
-  const putMeshes = (options: Float64Array, ...meshes: CheckedMesh[]) => {
-    const arrays = meshes.flatMap(({ positions, indices, uvs, groups }): [View, Source][] => [
+  const putMeshes = (options: Float64Array, cage: CheckedMesh, target: CheckedMesh, ...more: [View, Source][]) => {
+    const arrays = [cage, target].flatMap(({ positions, indices, uvs, groups }): [View, Source][] => [
       [Float32Array, positions],
       [Uint32Array, indices],
       [Float32Array, uvs],
       [Uint32Array, groups],
     ]);
-    put([Float64Array, options], ...arrays);
+    put([Float64Array, options], ...arrays, ...more);
   };
   const take = <L extends Layout>(table: number, layout: L): AnswerOf<L> => {
     const names = Object.keys(layout);
@@ -124,6 +139,10 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
     splitVertices(indices, cornerUvs, vertexCount) {
       put([Uint32Array, indices], [Float32Array, cornerUvs]);
       return take(core.splitVertices(vertexCount), splitArrays);
+    },
+    cutBorders(cage, target, options, { zones, segments, culledSegments }) {
+      putMeshes(options, cage, target, [Uint8Array, zones], [Uint32Array, segments], [Uint8Array, culledSegments]);
+      return take(core.cutBorders(), cutArrays);
     },
   };
 }

@@ -88,7 +88,7 @@ export type PresetOptions = { [Name in Exclude<keyof TransferOptions, 'preset' |
 /** Options that were checked. */
 export interface CheckedOptions {
   preset: Preset;
-  /** All of them in numbers, for the core: in the order of bindings.cpp, which is that of `allKinds`. */
+  /** All of them in numbers, for the core: in the order of bridge.hpp, which is that of `allKinds`. */
   core: Float64Array;
   locks: Locks;
 }
@@ -165,7 +165,7 @@ function numbersOf(fn: string, name: string, preset: unknown): Float64Array {
  * @param preset  What holds if the options name none.
  * @throws {CagecastError} `badOption`, and `badThreshold` and its like for what is no number
  */
-export function checkOptions(fn: 'project' | 'classify' | 'transfer', options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
+export function checkOptions(fn: 'project' | 'classify' | 'transfer' | 'cutBorders', options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
   if (typeof options !== 'object' || options === null) {
     throw new CagecastError('badOption', `${fn}: options is ${show(options)}, not an object`);
   }

@@ -1,6 +1,6 @@
 // What the build puts in by these names: see wasm/tools/build.mjs.
 
-/** The glue that Emscripten makes of bindings.cpp. */
+/** The glue that Emscripten makes of bindings.cpp; in cagecast/borders of bindings_borders.cpp. */
 declare module '#glue' {
   export default function createModule(module: object): PromiseLike<unknown>;
 }

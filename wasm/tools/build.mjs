@@ -33,7 +33,7 @@ await buildPackage();
 linkCommand();
 writeFileSync(stamp, hash);
 
-/** The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}. */
+/** The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}, and cagecast-borders.{js,wasm}. */
 function buildWasm() {
   const emscripten = findEmscripten();
   const env = {
@@ -90,6 +90,14 @@ async function buildPackage() {
         external: ['#spawn', '#read-wasm', './index.js', 'three'],
         plugins: [wasmModules('wasm-file.ts', { index: true })],
       });
+    await esbuild.build({
+      ...common,
+      entryPoints: [at('wasm/src/borders/index.ts')],
+      outfile: join(fresh, 'borders.js'),
+      platform: 'neutral',
+      external: ['./index.js'],
+      plugins: [wasmModules('wasm-inline.ts', { module: 'cagecast-borders', index: true, errors: true })],
+    });
     await beside('index.ts', 'slim.js', 'neutral');
     await beside('read-wasm.ts', 'read-wasm.js', 'neutral');
     await beside('read-wasm-node.ts', 'read-wasm-node.js', 'node');
@@ -127,20 +135,25 @@ async function buildPackage() {
   rmSync(out, { recursive: true, force: true });
   renameSync(fresh, out);
 
-  /** Resolves the names that stand for what the C++ build makes. */
-  function wasmModules(wasm, { index = false } = {}) {
+  /**
+   * Resolves the names that stand for what the C++ build makes.
+   * @param wasm     How the package comes by its WebAssembly.
+   * @param options  `module`: which; `index`: importers of the package's index share one copy of it; `errors`: so do those of its error.
+   */
+  function wasmModules(wasm, { module = 'cagecast', index = false, errors = false } = {}) {
     const files = {
-      '#glue': at('build', preset, 'wasm/cagecast.js'),
-      '#wasm-text': at('build', preset, 'wasm/cagecast.wasm'),
+      '#glue': at('build', preset, `wasm/${module}.js`),
+      '#wasm-text': at('build', preset, `wasm/${module}.wasm`),
       '#wasm': at('wasm/src', wasm),
     };
     return {
       name: 'wasm-modules',
       setup(build) {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
-        // Importers of the package's index share one copy of it.
+        const own = at('wasm/src/borders/error.ts');
+        if (errors) build.onResolve({ filter: /^\.\.?\/error\.js$/ }, ({ importer }) => (importer === own ? undefined : { path: own }));
         if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: './index.js', external: true }));
-        build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({ contents: JSON.stringify(packText(readFileSync(path))), loader: 'json' }));
+        build.onLoad({ filter: /cagecast(-borders)?\.wasm$/ }, ({ path }) => ({ contents: JSON.stringify(packText(readFileSync(path))), loader: 'json' }));
       },
     };
   }

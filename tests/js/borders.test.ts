@@ -1,0 +1,147 @@
+import assert from 'node:assert/strict';
+import { before, describe, test } from 'node:test';
+import { CagecastError, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
+import { cutBorders, type CutTarget } from 'cagecast/borders';
+import { Triangle, Vector3 } from 'three';
+import { head, readPlain } from './scenes.js';
+
+before(init);
+
+/** The target as it was cut. */
+function meshOf(target: Mesh, { sources, weights, indices }: CutTarget): Mesh {
+  const own = target.positions.length;
+  const positions = new Float32Array(own + sources.length);
+  positions.set(target.positions);
+  for (let i = 0; i < sources.length; i += 3) {
+    for (let k = 0; k < 3; ++k) positions[own + i + k] = [0, 1, 2].reduce((sum, j) => sum + weights[i + j]! * target.positions[3 * sources[i + j]! + k]!, 0);
+  }
+  return { positions, indices };
+}
+
+const vertex = ({ positions }: Mesh, v: number) => new Vector3(...positions.subarray(3 * v, 3 * v + 3));
+const corners = (mesh: Mesh, t: number) => new Triangle(...([0, 1, 2].map((k) => vertex(mesh, mesh.indices[3 * t + k]!)) as [Vector3, Vector3, Vector3]));
+const cross = (a: Vector3, b: Vector3) => new Vector3().crossVectors(a, b);
+
+/** Tells of places whether they are beyond the rims of a cage: nearest to an open edge of it. */
+function beyond(cage: Mesh, places: Vector3[], diagonal: number): boolean[] {
+  const name = (v: number) => cage.positions.subarray(3 * v, 3 * v + 3).join();
+  const key = (a: number, b: number) => [name(a), name(b)].sort().join(';');
+  const uses = new Map<string, number>();
+  const ends = (t: number, k: number) => [cage.indices[3 * t + k]!, cage.indices[3 * t + ((k + 1) % 3)]!] as const;
+  for (let i = 0; i < cage.indices.length; ++i) {
+    const edge = key(...ends(Math.floor(i / 3), i % 3));
+    uses.set(edge, (uses.get(edge) ?? 0) + 1);
+  }
+  const probes = { positions: Float32Array.from(places.flatMap(({ x, y, z }) => [x, y, z])), indices: Uint32Array.from({ length: 3 * Math.ceil(places.length / 3) }, (_, i) => Math.min(i, places.length - 1)) };
+  const { triangles } = project(cage, probes, { preset: 'paper' });
+  return places.map((place, i) => {
+    const nearest = corners(cage, triangles[i]!).closestPointToPoint(place, new Vector3());
+    return [0, 1, 2].some((k) => {
+      const [a, b] = ends(triangles[i]!, k);
+      if (uses.get(key(a, b)) !== 1) return false;
+      const [from, to] = [vertex(cage, a), vertex(cage, b)];
+      const along = to.clone().sub(from);
+      return cross(along, nearest.clone().sub(from)).length() <= 1e-6 * diagonal * along.length();
+    });
+  });
+}
+
+/**
+ * Of the places in the middle of edges where paint ends at a hole, the share that has, nearer than 0.1 % of the diagonal, one
+ * on the other side of the projected rim; and how many there are.
+ */
+function straightness(cage: Mesh, mesh: Mesh, painted: Uint8Array, diagonal: number): { share: number; count: number } {
+  const edges = new Map<string, number[]>();
+  for (let i = 0; i < mesh.indices.length; ++i) {
+    const ends = [i, i - (i % 3) + ((i + 1) % 3)].map((c) => mesh.positions.subarray(3 * mesh.indices[c]!, 3 * mesh.indices[c]! + 3).join());
+    const list = edges.get(ends.sort().join(';')) ?? [];
+    edges.set(ends.join(';'), [...list, i]);
+  }
+  const borders = [...edges.values()].flatMap((list) => {
+    const [outer, inner] = [0, 1].map((isPainted) => list.find((i) => painted[Math.floor(i / 3)] === isPainted));
+    return outer === undefined || inner === undefined ? [] : [[outer, inner]];
+  });
+  const middles = borders.map(([outer]) => corners(mesh, Math.floor(outer! / 3)).getMidpoint(new Vector3()));
+  const isAtHole = beyond(cage, middles, diagonal);
+  const atHoles = borders.filter((_, i) => isAtHole[i]);
+  const places = atHoles.flatMap((both) => {
+    const [a, b] = [0, 1].map((k) => vertex(mesh, mesh.indices[both[0]! - (both[0]! % 3) + ((both[0]! + k) % 3)]!));
+    const middle = a!.clone().add(b!).divideScalar(2);
+    const along = b!.clone().sub(a!).normalize();
+    const around = both.flatMap((i) => {
+      const across = cross(corners(mesh, Math.floor(i / 3)).getNormal(new Vector3()), along).normalize();
+      const at = (r: number, angle: number) => middle.clone().addScaledVector(along, r * diagonal * Math.cos(angle)).addScaledVector(across, r * diagonal * Math.sin(angle));
+      return [1.25e-4, 2.5e-4, 5e-4, 1e-3].flatMap((r) => Array.from({ length: 8 }, (_, n) => at(r, (n * Math.PI) / 4)));
+    });
+    return [middle, ...around];
+  });
+  const sides = beyond(cage, places, diagonal);
+  const each = places.length / atHoles.length;
+  const near = atHoles.filter((_, i) => sides.slice(each * i + 1, each * (i + 1)).some((side) => side !== sides[each * i]));
+  return { share: near.length / atHoles.length, count: atHoles.length };
+}
+
+function diagonalOf({ positions }: Mesh): number {
+  const range = (k: number) => {
+    const values = Array.from(positions.filter((_, i) => i % 3 === k));
+    return values.reduce((a, b) => Math.max(a, b)) - values.reduce((a, b) => Math.min(a, b));
+  };
+  return Math.hypot(range(0), range(1), range(2));
+}
+
+describe('cutBorders', () => {
+  const { cage, target } = head(1);
+
+  for (const seams of ['vertex', 'corner'] as const) {
+    test(`gives every array its documented type and length: ${seams}`, async () => {
+      const cut = await cutBorders(cage, target, transfer(cage, target, { seams }), { seams });
+      const vertices = target.positions.length / 3 + cut.sources.length / 3;
+      const triangles = cut.indices.length / 3;
+      assert.ok(triangles > target.indices.length / 3);
+      const lengths = { sources: cut.weights.length, weights: cut.sources.length, indices: 3 * triangles, triangles, uvs: 2 * vertices, cornerUvs: seams === 'corner' ? 6 * triangles : 0, zones: vertices, cosmeticTriangles: triangles };
+      assert.deepEqual(Object.fromEntries(Object.entries(cut).map(([name, { length }]) => [name, length])), lengths);
+      for (const name of ['sources', 'indices', 'triangles'] as const) assert.ok(cut[name] instanceof Uint32Array);
+      for (const name of ['weights', 'uvs', 'cornerUvs'] as const) assert.ok(cut[name] instanceof Float32Array);
+      assert.ok(cut.indices.every((v) => v < vertices) && cut.sources.every((v) => v < target.positions.length / 3));
+      for (let i = 0; i < cut.weights.length; i += 3) assert.equal(cut.weights[i]! + cut.weights[i + 1]! + cut.weights[i + 2]!, 1);
+      assert.ok(cut.triangles.every((t, i) => t < target.indices.length / 3 && (i === 0 || t >= cut.triangles[i - 1]!)));
+      assert.ok(cut.zones.every((zone) => zone <= Zone.Culled) && cut.cosmeticTriangles.some((one) => one === 1));
+    });
+  }
+
+  test('paint on the lizard ends where the rims of the cage are projected to, within 0.1 % of the diagonal', async (context) => {
+    const [lizardCage, lizard] = await Promise.all(['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`))) as [Mesh, Mesh];
+    const result = transfer(lizardCage, lizard);
+    const cut = await cutBorders(lizardCage, lizard, result);
+    const diagonal = diagonalOf(lizard);
+    const before = straightness(lizardCage, lizard, result.cosmeticTriangles, diagonal);
+    const after = straightness(lizardCage, meshOf(lizard, cut), cut.cosmeticTriangles, diagonal);
+    context.diagnostic(`of ${after.count} places ${after.share}; of ${before.count} uncut ${before.share}; ${cut.indices.length / 3 - lizard.indices.length / 3} triangles more`);
+    assert.ok(after.count > 100);
+    assert.equal(after.share, 1);
+    assert.ok(before.share < 0.5);
+  });
+
+  test('what transfer excluded by a lock stays excluded', async () => {
+    const locks = { groups: { 0: 'exclude' } } as const;
+    const result = transfer(cage, target, { locks });
+    const cut = await cutBorders(cage, target, result, { locks });
+    const isOfLocked = (t: number) => target.groups![target.indices[3 * t]!] === 0;
+    assert.equal(cut.triangles.filter((t, i) => isOfLocked(t) && cut.cosmeticTriangles[i] === 1).length, 0);
+    assert.ok(transfer(cage, target).cosmeticTriangles.some((one, t) => isOfLocked(t) && one === 1));
+  });
+
+  test('a result of another target, or none, is refused in words', async () => {
+    const result = transfer(cage, target);
+    const code = async (given: unknown, expected: string, message: RegExp) =>
+      assert.rejects(cutBorders(cage, target, given as TransferResult), (error: unknown) => error instanceof CagecastError && error.code === expected && message.test(error.message));
+    await code(undefined, 'badArgument', /^cutBorders: result is undefined; pass what transfer\(\) returned$/);
+    await code({ ...result, zones: [] }, 'badArgument', /result\.zones is of type Array, not a Uint8Array/);
+    await code({ ...result, zones: result.zones.slice(1) }, 'resultMismatch', /result\.zones has \d+ entries, not 1 for each of \d+ vertices of target/);
+    await code({ ...result, segmentStats: [] }, 'resultMismatch', /result\.segments\[0\] = 0 is out of range \(0 segments\)/);
+    await assert.rejects(cutBorders({ ...cage, positions: cage.positions.map((x, i) => (i === 0 ? NaN : x)) }, target, result), /cutBorders: cage\.positions\[0\] = NaN is not a finite number/);
+    await assert.rejects(cutBorders(cage, target, result, { threshold: 2 }), /cutBorders: options\.threshold = 2 is not within 0\.\.1/);
+    // @ts-expect-error no such option
+    await assert.rejects(cutBorders(cage, target, result, { treshold: 1 }), { code: 'badOption' });
+  });
+});
