@@ -1,9 +1,14 @@
 import assert from 'node:assert/strict';
-import { before, describe, test } from 'node:test';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { NodeIO } from '@gltf-transform/core';
 import { CagecastError, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
 import { cutBorders, type CutTarget } from 'cagecast/borders';
 import { Triangle, Vector3 } from 'three';
-import { head, readPlain } from './scenes.js';
+import { cagecast, GlbMaker, glbOf, validate } from './glb.js';
+import { head, random, readPlain } from './scenes.js';
 
 before(init);
 
@@ -143,5 +148,131 @@ describe('cutBorders', () => {
     await assert.rejects(cutBorders(cage, target, result, { threshold: 2 }), /cutBorders: options\.threshold = 2 is not within 0\.\.1/);
     // @ts-expect-error no such option
     await assert.rejects(cutBorders(cage, target, result, { treshold: 1 }), { code: 'badOption' });
+  });
+});
+
+describe('cagecast transfer --borders cut', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'cagecast-borders-'));
+  after(() => rmSync(folder, { recursive: true, force: true }));
+  const at = (name: string) => join(folder, name);
+  const { cage, target } = head(2, 10);
+  const vertices = target.positions.length / 3;
+
+  /** A target with attributes of all kinds, each its own at every vertex, skinned and morphing; mirrored, it is turned on the way. */
+  function rich(scale: [number, number, number]): Uint8Array {
+    const next = random(7);
+    const maker = new GlbMaker();
+    const local = { ...target, positions: target.positions.map((x, i) => x / scale[i % 3]!) };
+    const mesh = maker.mesh(local);
+    const primitive = maker.json.meshes[mesh]!.primitives[0]!;
+    const units = new Float32Array(3 * vertices);
+    const tangents = new Float32Array(4 * vertices);
+    const weights = new Float32Array(4 * vertices);
+    for (let v = 0; v < vertices; ++v) {
+      const normal = new Vector3(next() + 0.1, next(), next()).normalize();
+      units.set(normal.toArray(), 3 * v);
+      tangents.set([normal.y, normal.z, normal.x, -1], 4 * v);
+      const all = Array.from({ length: 4 }, next);
+      weights.set(all.map((x) => x / all.reduce((a, b) => a + b)), 4 * v);
+    }
+    primitive.attributes['NORMAL'] = maker.accessor(units, 'VEC3');
+    primitive.attributes['TANGENT'] = maker.accessor(tangents, 'VEC4');
+    primitive.attributes['COLOR_0'] = maker.accessor(Uint8Array.from({ length: 4 * vertices }, () => 256 * next()), 'VEC4', { normalized: true });
+    primitive.attributes['JOINTS_0'] = maker.accessor(Uint8Array.from({ length: 4 * vertices }, (_, i) => 4 * (Math.floor(i / 4) % 3) + (i % 4)), 'VEC4');
+    primitive.attributes['WEIGHTS_0'] = maker.accessor(weights, 'VEC4');
+    primitive.attributes['_HEAT'] = maker.accessor(Float32Array.from({ length: vertices }, next), 'SCALAR');
+    primitive.targets = [{ POSITION: maker.accessor(Float32Array.from({ length: 3 * vertices }, () => next() - 0.5), 'VEC3'), NORMAL: maker.accessor(Float32Array.from({ length: 3 * vertices }, () => next() - 0.5), 'VEC3') }];
+    const joints = Array.from({ length: 12 }, (_, j) => maker.node({ name: `joint ${j}` }, false));
+    maker.node({ name: 'joints', children: joints });
+    const node = { mesh, name: 'head', scale };
+    if (scale[0] > 0) {
+      maker.json.skins = [{ joints }];
+      maker.node({ ...node, skin: 0 });
+    } else {
+      delete primitive.attributes['JOINTS_0'];
+      delete primitive.attributes['WEIGHTS_0'];
+      maker.node(node);
+    }
+    return maker.finish();
+  }
+
+  for (const [name, scale] of Object.entries({ 'skinned and morphing': [1, 1, 1], mirrored: [-1, 1, 1] } as Record<string, [number, number, number]>)) {
+    test(`new vertices have all attributes of those around them, in proportion: ${name}`, async () => {
+      writeFileSync(at('rich.glb'), rich(scale));
+      writeFileSync(at('cage.glb'), glbOf(cage));
+      writeFileSync(at('paint.png'), readFileSync('build/assets/lizard/paint-tiger.png'));
+      const { status, stdout, stderr } = cagecast('transfer', at('rich.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '--borders', 'cut', '-o', at('out.glb'), '--report', at('report.json'));
+      assert.equal(status, 0, stderr);
+      assert.deepEqual(await validate(at('out.glb')), []);
+
+      const read = async (file: string) => (await new NodeIO().read(at(file))).getRoot().listMeshes()[0]!.listPrimitives();
+      const [[was], [is, overlay]] = await Promise.all([read('rich.glb'), read('out.glb')]);
+      const plain = { positions: target.positions, indices: scale[0] < 0 ? target.indices.map((_, i) => target.indices[i % 3 === 0 ? i : i % 3 === 1 ? i + 1 : i - 1]!) : target.indices };
+      const result = transfer(cage, plain);
+      const cut = await cutBorders(cage, plain, result);
+      const [triangles, added] = [cut.indices.length / 3, cut.sources.length / 3];
+      assert.ok(added > 20);
+      const { triangles: reported, parts } = JSON.parse(readFileSync(at('report.json'), 'utf8')) as { triangles: { added: number }; parts: { cutTriangles: number }[] };
+      assert.deepEqual([reported.added, parts[0]!.cutTriangles], Array(2).fill(triangles - target.indices.length / 3));
+      assert.match(stdout, /triangles more along borders/);
+      assert.equal(overlay!.getIndices()!.getCount(), 3 * cut.cosmeticTriangles.reduce((sum, one) => sum + one, 0));
+
+      // Each corner is where cutBorders has it, in the winding of the file, and has its UV.
+      const corners = is!.getIndices()!.getArray()!;
+      assert.equal(corners.length, cut.indices.length);
+      const uvs = is!.getAttribute('TEXCOORD_1')!.getArray()!;
+      const vertexOf = new Map<number, number>();
+      corners.forEach((vertex: number, i: number) => {
+        const from = scale[0] < 0 && i % 3 > 0 ? i + (i % 3 === 1 ? 1 : -1) : i;
+        const known = vertexOf.get(vertex) ?? cut.indices[from]!;
+        assert.equal(known, cut.indices[from]);
+        vertexOf.set(vertex, known);
+        assert.deepEqual([...uvs.subarray(2 * vertex, 2 * vertex + 2)].map((x) => x + 0), [...cut.cornerUvs.subarray(2 * from, 2 * from + 2)].map((x) => x + 0));
+      });
+      const zones = is!.getAttribute('_NCZ')!.getArray()!;
+      for (const [vertex, v] of vertexOf) assert.equal(zones[vertex], cut.zones[v]);
+
+      const sourcesOf = (v: number) => (v < vertices ? [[v, 1] as const] : [0, 1, 2].map((j) => [cut.sources[3 * (v - vertices) + j]!, cut.weights[3 * (v - vertices) + j]!] as const));
+      const mean = (values: ArrayLike<number>, size: number, v: number) => Array.from({ length: size }, (_, k) => sourcesOf(v).reduce((sum, [u, weight]) => sum + weight * values[size * u + k]!, 0));
+      const near = (a: readonly number[], b: readonly number[], most: number, what: string) => assert.ok(a.every((x, k) => Math.abs(x - b[k]!) <= most), `${what}: ${a.join()} is not ${b.join()}`);
+      const values = (primitive: typeof was, semantic: string) => primitive!.getAttribute(semantic)!.getArray()!;
+      const row = (list: ArrayLike<number>, size: number, v: number) => Array.from({ length: size }, (_, k) => list[size * v + k]!);
+      for (const [vertex, v] of vertexOf) {
+        for (const [semantic, size, most] of [['POSITION', 3, 1e-6], ['COLOR_0', 4, 0.51], ['TEXCOORD_0', 2, 1e-6], ['_HEAT', 1, 1e-6]] as const) {
+          near(row(values(is, semantic), size, vertex), mean(values(was, semantic), size, v), most, semantic);
+        }
+        const direction = new Vector3(...mean(values(was, 'NORMAL'), 3, v)).normalize();
+        near(row(values(is, 'NORMAL'), 3, vertex), direction.toArray(), 1e-6, 'NORMAL');
+        const tangent = new Vector3(...mean(values(was, 'TANGENT'), 4, v).slice(0, 3) as [number, number, number]).normalize();
+        near(row(values(is, 'TANGENT'), 4, vertex), [...tangent.toArray(), -1], 1e-6, 'TANGENT');
+        for (const semantic of ['POSITION', 'NORMAL']) {
+          const deltas = (primitive: typeof was) => primitive!.listTargets()[0]!.getAttribute(semantic)!.getArray()!;
+          near(row(deltas(is), 3, vertex), mean(deltas(was), 3, v), 1e-6, `delta of ${semantic}`);
+        }
+        if (scale[0] < 0) continue;
+        const pulls = (primitive: typeof was, u: number) => {
+          const all = new Array<number>(12).fill(0);
+          for (let k = 0; k < 4; ++k) all[values(primitive, 'JOINTS_0')[4 * u + k]!]! += values(primitive, 'WEIGHTS_0')[4 * u + k]!;
+          return all;
+        };
+        const blended = sourcesOf(v).map(([u, weight]) => pulls(was, u).map((pull) => weight * pull)).reduce((a, b) => a.map((pull, k) => pull + b[k]!));
+        const least = [...blended].sort((a, b) => b - a)[3]!;
+        const kept = blended.map((pull) => (pull >= least ? pull : 0));
+        const sum = kept.reduce((a, b) => a + b);
+        near(pulls(is, vertex), kept.map((pull) => pull / sum), 1e-6, 'skin');
+      }
+    });
+  }
+
+  test('without -o it is wrong usage', () => {
+    const { status, stderr } = cagecast('transfer', at('rich.glb'), '--cage', at('cage.glb'), '--borders', 'cut');
+    assert.equal(status, 2);
+    assert.match(stderr, /--borders cut needs -o OUT\.glb/);
+  });
+
+  test('the lizard stays valid', async () => {
+    const lizard = 'build/assets/lizard';
+    assert.equal(cagecast('transfer', `${lizard}/target.glb`, '--cage', `${lizard}/cage.glb`, '--texture', `${lizard}/paint-tiger.png`, '--borders', 'cut', '-o', at('lizard.glb')).status, 0);
+    assert.deepEqual(await validate(at('lizard.glb')), []);
   });
 });

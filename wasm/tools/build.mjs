@@ -128,7 +128,8 @@ async function buildPackage() {
         ].join('\n'),
       },
       loader: { '.wasm': 'binary' },
-      plugins: [wasmModules('wasm-inline.ts')],
+      external: ['./borders.js'],
+      plugins: [wasmModules('wasm-inline.ts', { borders: true })],
     });
     run(process.execPath, [at('node_modules/typescript/bin/tsc'), '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
   }
@@ -138,9 +139,10 @@ async function buildPackage() {
   /**
    * Resolves the names that stand for what the C++ build makes.
    * @param wasm     How the package comes by its WebAssembly.
-   * @param options  `module`: which; `index`: importers of the package's index share one copy of it; `errors`: so do those of its error.
+   * @param options  `module`: which; `index`: importers of the package's index share one copy of it; `errors`: so do those of its error;
+   * `borders`: cagecast/borders stays a file of its own.
    */
-  function wasmModules(wasm, { module = 'cagecast', index = false, errors = false } = {}) {
+  function wasmModules(wasm, { module = 'cagecast', index = false, errors = false, borders = false } = {}) {
     const files = {
       '#glue': at('build', preset, `wasm/${module}.js`),
       '#wasm-text': at('build', preset, `wasm/${module}.wasm`),
@@ -150,6 +152,7 @@ async function buildPackage() {
       name: 'wasm-modules',
       setup(build) {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
+        if (borders) build.onResolve({ filter: /^\.\.\/borders\/index\.js$/ }, () => ({ path: './borders.js', external: true }));
         const own = at('wasm/src/borders/error.ts');
         if (errors) build.onResolve({ filter: /^\.\.?\/error\.js$/ }, ({ importer }) => (importer === own ? undefined : { path: own }));
         if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: './index.js', external: true }));

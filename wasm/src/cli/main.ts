@@ -80,27 +80,30 @@ common(program.command('transfer'))
   .description('write TARGET with a new UV set and the _NCZ attribute, all else as it was')
   .option('--texture <PAINT>', "PNG or JPEG in the cage's UVs: show it as an overlay of the cosmetic triangles")
   .addOption(new Option('-o, --output <OUT.glb>', 'where to write the GLB').argParser(endingIn('.glb')))
+  .addOption(new Option('--borders <HOW>', "let paint end at the target's triangles, or cut these where it does, at holes and seams").choices(['triangle', 'cut']).default('triangle'))
   .option('--report <R.json>', 'where to write counts, areas, segments and timings as JSON')
   .addHelpText(
     'after',
     `
 _NCZ is 0 for a vertex that may be painted, else the reason why not: 1 the target lies over it, 2 the cage has a hole
 over it, 3 too little of its segment is covered. Where triangles that share a vertex have different UVs there, copies of the
-vertex are added after those that there are, with all that belongs to it; --seams vertex does not.
+vertex are added after those that there are, with all that belongs to it; --seams vertex does not. --borders cut adds vertices
+in the same way, each a blend of those around it.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
   cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
   cagecast transfer body.glb --cage cage.glb --keep skin --exclude 'eye*' -o painted.glb`,
   )
-  .action(async (target: string, flags: CommonFlags & { texture?: string; output?: string; report?: string }, command: Command) => {
-    const { cage, texture, output, report } = flags;
+  .action(async (target: string, flags: CommonFlags & { texture?: string; output?: string; report?: string; borders: 'triangle' | 'cut' }, command: Command) => {
+    const { cage, texture, output, report, borders } = flags;
     if (texture !== undefined && output === undefined) command.error('--texture needs -o OUT.glb to show it in', { exitCode: wrongUsage });
+    if (borders === 'cut' && output === undefined) command.error('--borders cut needs -o OUT.glb to write the cut target to', { exitCode: wrongUsage });
     const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => resolve(path));
     const outputs = [output, report].filter((path) => path !== undefined).map((path) => resolve(path));
     const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
     if (clash !== undefined) command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
-    const text = await transferCommand({ target, cage, texture, output, report, rules: rulesOf(flags) }, progress);
+    const text = await transferCommand({ target, cage, texture, output, report, borders, rules: rulesOf(flags) }, progress);
     progress.clear();
     console.log(text);
   });

@@ -1,4 +1,5 @@
 import { basename } from 'node:path';
+import type { CutTarget } from '../borders/index.js';
 import { placeOf } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { readBytes } from '../gltf/read.js';
@@ -19,6 +20,8 @@ export interface TransferCommand {
   texture?: string | undefined;
   output?: string | undefined;
   report?: string | undefined;
+  /** Whether paint ends at the target's own triangles, or these are cut where it does. */
+  borders: 'triangle' | 'cut';
   rules: Rules;
 }
 
@@ -33,8 +36,9 @@ export async function transferCommand(command: TransferCommand, progress: Progre
   let added: Added[] | undefined;
   const files: { path: string; data: Uint8Array | string }[] = [];
   if (command.output !== undefined) {
+    const cut = command.borders === 'cut' ? await cutTarget(command, done, progress) : undefined;
     progress.step(`writing ${command.output}`);
-    const written = await writeTransfer(done.targetFile, done.target, done.result, paint).catch((error: unknown) => {
+    const written = await writeTransfer(done.targetFile, done.target, done.result, paint, cut).catch((error: unknown) => {
       throw error instanceof InputError ? error.in(command.target) : error;
     });
     added = written.added;
@@ -44,6 +48,16 @@ export async function transferCommand(command: TransferCommand, progress: Progre
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
   writeFiles(files);
   return summary(command, report);
+}
+
+/** Cuts the target, by a module that is loaded for it alone. */
+async function cutTarget(command: TransferCommand, { cage, target, result, options }: Run, progress: Progress): Promise<CutTarget> {
+  progress.step('cutting borders');
+  const { cutBorders } = await import('../borders/index.js');
+  return cutBorders(cage.mesh, target.mesh, result, options).catch((error: unknown) => {
+    // That module has another copy of the class.
+    throw error instanceof Error && error.name === 'CagecastError' ? new InputError(error.message).in(command.target) : error;
+  });
 }
 
 async function readPaint(path: string): Promise<Paint> {
@@ -61,19 +75,22 @@ export interface Report {
   cage: { file: string; vertices: number; triangles: number };
   texture: string | null;
   output: string | null;
+  borders: TransferCommand['borders'];
   options: EffectiveOptions;
   /** Vertices of the target in each zone. */
   counts: PerZone;
   /** Area of the target in each zone: a third of each triangle for each of its corners. */
   areas: PerZone & { total: number };
-  triangles: { total: number; cosmetic: number };
+  /** Of the target as it is read; `added` are those that there are more in the output, cut along borders. */
+  triangles: { total: number; cosmetic: number; added: number };
   /** A, E, C, F and D of every connected component, in the order of their first vertices. */
   segments: { part: string; vertices: number; points: number; area: number; exposedArea: number; coveredArea: number; coverage: number; sunkArea: number; culled: boolean }[];
   /**
    * Every primitive of every node, in scene order. Without output `uvSet`, the attribute added, is `null`; so is
-   * `splitVertices`, how many vertices were added because the corners that shared one have different UVs.
+   * `splitVertices`, how many vertices were added because the corners that shared one have different UVs, and `cutTriangles`,
+   * how many triangles by cutting borders.
    */
-  parts: { name: string; place: string; vertices: number; triangles: number; counts: PerZone; uvSet: string | null; overlayTriangles: number; splitVertices: number | null }[];
+  parts: { name: string; place: string; vertices: number; triangles: number; counts: PerZone; uvSet: string | null; overlayTriangles: number; splitVertices: number | null; cutTriangles: number | null }[];
   /** Milliseconds of CPU time. */
   timings: Run['result']['timings'];
   peakBytes: number;
@@ -96,10 +113,11 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
     cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
     texture: command.texture ?? null,
     output: command.output ?? null,
+    borders: command.borders,
     options: effectiveOptions(command.rules),
     counts: perZone(result.zones),
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
-    triangles: { total: mesh.indices.length / 3, cosmetic: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0) },
+    triangles: { total: mesh.indices.length / 3, cosmetic: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0), added: (added ?? []).reduce((sum, { cutTriangles }) => sum + cutTriangles, 0) },
     segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled }, s) => ({
       part: parts[segmentPart[s]!]!.name,
       vertices: segmentVertices[s]!,
@@ -121,6 +139,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
       uvSet: added?.[p]?.uvSet ?? null,
       overlayTriangles: added?.[p]?.overlayTriangles ?? 0,
       splitVertices: added?.[p]?.splitVertices ?? null,
+      cutTriangles: added?.[p]?.cutTriangles ?? null,
     })),
     timings: result.timings,
     peakBytes: result.peakBytes,
@@ -140,7 +159,7 @@ function summary(command: TransferCommand, { target, counts, areas, triangles, s
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted; ${timings.total.toFixed(1)} ms`,
-    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
+    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${triangles.added === 0 ? '' : `; ${integer(triangles.added)} triangles more along borders`}`,
     command.report === undefined ? '' : `wrote ${command.report}`,
     output === null && command.report === undefined ? 'nothing written; -o OUT.glb and --report R.json keep the result' : '',
   ];

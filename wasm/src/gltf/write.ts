@@ -1,7 +1,10 @@
 import type { GLTF } from '@gltf-transform/core';
+import type { CutTarget } from '../borders/index.js';
 import { gather, splitPart, type SplitPart } from '../split-part.js';
 import type { TransferResult } from '../transfer.js';
+import { blend, blendSkin, noBlends, ruleOf, type Blends } from './blend.js';
 import { dracoOf } from './check.js';
+import { cutPart } from './cut-part.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
@@ -17,6 +20,8 @@ export interface Added {
   overlayTriangles: number;
   /** Vertices that were added because the corners that shared one have different UVs. */
   splitVertices: number;
+  /** Triangles that there are more since the target was cut. */
+  cutTriangles: number;
 }
 
 /**
@@ -24,7 +29,9 @@ export interface Added {
  * overlay primitive of its cosmetic triangles. All that the file had stays as it was, also its compression; but where
  * triangles that share a vertex have different UVs there, the primitive gets copies of that vertex after those that it has,
  * with all that belongs to it, and is no longer compressed by Draco.
+ * A target that was cut gets new vertices in the same way: what belongs to one is a blend of what belongs to its sources.
  * A mesh that several nodes show becomes one mesh for each of them.
+ * @param cut  The target as `cutBorders` made it of `result`, if it did.
  * @returns the bytes of a GLB, and what was added to each part.
  * @throws {InputError} if an image beside the target cannot be read.
  */
@@ -33,6 +40,7 @@ export async function writeTransfer(
   { mesh, parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   paint?: Paint,
+  cut?: CutTarget,
 ): Promise<{ glb: Uint8Array; added: Added[] }> {
   const writer = await GlbWriter.from(file);
   const { json } = writer;
@@ -42,47 +50,64 @@ export async function writeTransfer(
   const added = parts.map((part) => {
     const primitives = json.meshes![meshOfNode.get(part.node)!]!.primitives;
     const primitive = primitives[part.primitive]!;
-    const split = splitPart({ ...part, turned: isTurned(part.matrix) }, result);
-    if (split.copies > 0) splitPrimitive(writer, file, primitive, split);
-    const zones = result.zones.subarray(part.firstVertex, part.firstVertex + part.vertexCount);
+    const whole = { ...part, turned: isTurned(part.matrix) };
+    const { geometry, result: own, blends } = cut ? cutPart(whole, cut, mesh.positions.length / 3) : { geometry: whole, result, blends: noBlends };
+    const split = splitPart(geometry, own);
+    if (split.copies > 0 || blends.sources.length > 0) rewritePrimitive(writer, file, primitive, split, blends);
+    const zones = own.zones.subarray(geometry.firstVertex, geometry.firstVertex + geometry.vertexCount);
     const uvSet = freeUvSet((semantic) => primitive.attributes[semantic] !== undefined);
     const uvAccessor = writer.addAttribute(split.uvs, 2);
     primitive.attributes[uvSet] = uvAccessor;
     primitive.attributes[zoneAttribute] = writer.addAttribute(Float32Array.from(split.sources, (v) => zones[v]!), 1);
-    const cosmetic = result.cosmeticTriangles.subarray(part.firstTriangle, part.firstTriangle + part.triangleCount);
-    const overlay = painter?.overlay(part, split, primitive, cosmetic, uvAccessor);
+    const cosmetic = own.cosmeticTriangles.subarray(geometry.firstTriangle, geometry.firstTriangle + geometry.triangleCount);
+    const overlay = painter?.overlay(part, blends, split, primitive, cosmetic, uvAccessor);
     if (overlay) primitives.push(overlay);
-    return { uvSet, overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0, splitVertices: split.copies };
+    return { uvSet, overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0, splitVertices: split.copies, cutTriangles: geometry.triangleCount - part.triangleCount };
   });
   dropDraco(json);
   return { glb: writer.finish(), added };
 }
 
-/** Gives a primitive copies of vertices: in all of its attributes and morph targets, uncompressed. */
-function splitPrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive, { sources, indices }: SplitPart): void {
-  const made = new Map<number, number>();
-  const splitAccessor = (accessor: number): number => {
-    const known = made.get(accessor);
-    if (known !== undefined) return known;
-    const decoded = file.geometry.getRoot().listAccessors()[accessor]!;
+/** Gives a primitive new vertices, blends and copies: in all of its attributes and morph targets, uncompressed. */
+function rewritePrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive, { sources, indices }: SplitPart, blends: Blends): void {
+  const decodedOf = (accessor: number) => file.geometry.getRoot().listAccessors()[accessor]!;
+  const skin = blendedSkin(primitive.attributes, (accessor) => decodedOf(accessor).getArray()!, blends);
+  const made = new Map<string, number>();
+  const rewrite = (accessor: number, semantic: string, isDelta: boolean): number => {
+    const decoded = decodedOf(accessor);
     const { normalized, min, name, extras } = file.json.accessors![accessor]!;
     const size = decoded.getElementSize();
-    const values = gather(decoded.getArray()!, size, sources);
+    const array = decoded.getArray()!;
+    const rule = isDelta ? 'mean' : ruleOf(semantic, array, normalized ?? false);
+    const pulls = isDelta ? undefined : skin.get(semantic);
+    const key = `${accessor} ${pulls ? semantic : rule}`;
+    const known = made.get(key);
+    if (known !== undefined) return known;
+    const values = gather(pulls ?? blend(array, size, blends, rule), size, sources);
     // The bounds are not those in the file where Draco has rounded what lies between them.
     const more = { type: decoded.getType(), ...(normalized && { normalized }), ...(min && boundsOf(values, size)), ...(name !== undefined && { name }), ...(extras && { extras }) };
     const number = writer.addAttribute(values, size, more);
-    made.set(accessor, number);
+    made.set(key, number);
     return number;
   };
-  const splitAll = (attributes: Record<string, number>) => {
-    for (const [semantic, accessor] of Object.entries(attributes)) attributes[semantic] = splitAccessor(accessor);
+  const rewriteAll = (attributes: Record<string, number>, isDelta: boolean) => {
+    for (const [semantic, accessor] of Object.entries(attributes)) attributes[semantic] = rewrite(accessor, semantic, isDelta);
   };
-  splitAll(primitive.attributes);
-  primitive.targets?.forEach(splitAll);
+  rewriteAll(primitive.attributes, false);
+  primitive.targets?.forEach((deltas) => rewriteAll(deltas, true));
   primitive.indices = writer.addIndices(indices, sources.length);
   delete primitive.mode; // strips and fans have become lists
   delete primitive.extensions?.[draco];
   if (primitive.extensions && Object.keys(primitive.extensions).length === 0) delete primitive.extensions;
+}
+
+/** The joints and weights of a primitive with its new vertices, by semantic; they belong together. */
+function blendedSkin<A extends Parameters<typeof blend>[0]>(attributes: Record<string, number>, arrayOf: (accessor: number) => A, blends: Blends): Map<string, A> {
+  const sets: number[] = [];
+  while (attributes[`JOINTS_${sets.length}`] !== undefined && attributes[`WEIGHTS_${sets.length}`] !== undefined) sets.push(sets.length);
+  const all = (semantic: string) => sets.map((set) => arrayOf(attributes[`${semantic}_${set}`]!));
+  const { joints, weights } = blendSkin(all('JOINTS'), all('WEIGHTS'), blends);
+  return new Map(sets.flatMap((set): [string, A][] => [[`JOINTS_${set}`, joints[set]!], [`WEIGHTS_${set}`, weights[set]!]]));
 }
 
 /** The least and the greatest value of each component. */
@@ -140,10 +165,10 @@ class Painter {
   }
 
   /** A primitive of the cosmetic triangles of `base`, moved and deformed as it is; none if there are none. */
-  overlay(part: Part, { sources, indices }: SplitPart, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
+  overlay(part: Part, blends: Blends, { sources, indices }: SplitPart, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
     const corners = cosmeticCorners(indices, cosmetic);
     if (corners.length === 0) return undefined;
-    const attributes: Record<string, number> = { POSITION: this.#positions(part, sources), TEXCOORD_0: uvAccessor };
+    const attributes: Record<string, number> = { POSITION: this.#positions(part, blends, sources), TEXCOORD_0: uvAccessor };
     for (const [semantic, accessor] of Object.entries(base.attributes)) {
       if (isOverlaid(semantic)) attributes[semantic] = this.#shared(base, semantic, accessor);
     }
@@ -167,8 +192,8 @@ class Painter {
   }
 
   /** The part's positions, moved a little off the surface along their normals. */
-  #positions(part: Part, sources: Uint32Array): number {
-    const positions = gather(overlayPositions(part, this.#offset), 3, sources);
+  #positions(part: Part, blends: Blends, sources: Uint32Array): number {
+    const positions = gather(blend(overlayPositions(part, this.#offset), 3, blends), 3, sources);
     return this.#writer.addAttribute(positions, 3, boundsOf(positions, 3));
   }
 

@@ -1,0 +1,83 @@
+/** The vertices that cutting added to a part, in order after those that it has. */
+export interface Blends {
+  /** 3 per new vertex: of which vertices of the part it is a blend. */
+  sources: Uint32Array;
+  /** 3 per new vertex: how much of each; they add up to 1. */
+  weights: Float32Array;
+}
+
+export const noBlends: Blends = { sources: new Uint32Array(0), weights: new Float32Array(0) };
+
+type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
+
+/** What of an attribute a new vertex gets: the mean of its sources, the same as a direction, or all that its heaviest source has. */
+type Rule = 'mean' | 'direction' | 'heaviest';
+
+/** Whole numbers that nothing scales are names of something: there is nothing between them. */
+export function ruleOf(semantic: string, values: AttributeArray, normalized: boolean): Rule {
+  if (semantic === 'NORMAL' || semantic === 'TANGENT') return 'direction';
+  return semantic.startsWith('JOINTS_') || (semantic.startsWith('_') && !(values instanceof Float32Array) && !normalized) ? 'heaviest' : 'mean';
+}
+
+/** The largest value of a normalised type: it stands for 1. */
+const one = (values: AttributeArray): number => (values instanceof Float32Array ? 1 : 2 ** (8 * values.BYTES_PER_ELEMENT - (values instanceof Int8Array || values instanceof Int16Array ? 1 : 0)) - 1);
+
+function extended<A extends AttributeArray>(values: A, size: number, { sources }: Blends): A {
+  const out = new (values.constructor as new (length: number) => A)(values.length + (size * sources.length) / 3);
+  out.set(values);
+  return out;
+}
+
+/** The values of a part's vertices, `size` numbers each, and of its new ones after them. */
+export function blend<A extends AttributeArray>(values: A, size: number, blends: Blends, rule: Rule = 'mean'): A {
+  const { sources, weights } = blends;
+  const out = extended(values, size, blends);
+  for (let i = 0; i < sources.length; i += 3) {
+    const to = values.length + (size * i) / 3;
+    const heaviest = size * sources[[i, i + 1, i + 2].reduce((a, b) => (weights[b]! > weights[a]! ? b : a))]!;
+    const mean = Array.from({ length: size }, (_, k) => [i, i + 1, i + 2].reduce((sum, j) => sum + weights[j]! * values[size * sources[j]! + k]!, 0));
+    const length = Math.hypot(...mean.slice(0, 3));
+    for (let k = 0; k < size; ++k) {
+      let value = mean[k]!;
+      // A tangent's fourth number is a sign.
+      if (rule === 'heaviest' || (rule === 'direction' && (k > 2 || length === 0))) value = values[heaviest + k]!;
+      else if (rule === 'direction') value *= one(values) / length;
+      out[to + k] = values instanceof Float32Array ? value : Math.round(value);
+    }
+  }
+  return out;
+}
+
+/**
+ * The joints and weights of a part's vertices, and of its new ones: what pulls at their sources, the strongest first, as many as
+ * there is room for; they add up to 1.
+ * @param joints,weights  4 numbers per vertex in each set.
+ */
+export function blendSkin<J extends AttributeArray, W extends AttributeArray>(joints: J[], weights: W[], blends: Blends): { joints: J[]; weights: W[] } {
+  const out = { joints: joints.map((set) => extended(set, 4, blends)), weights: weights.map((set) => extended(set, 4, blends)) };
+  for (let n = 0; n < blends.sources.length / 3; ++n) {
+    const pulls = new Map<number, number>();
+    for (let i = 3 * n; i < 3 * n + 3; ++i) {
+      for (let slot = 4 * blends.sources[i]!; slot < 4 * blends.sources[i]! + 4; ++slot) {
+        joints.forEach((set, s) => {
+          const pull = (blends.weights[i]! * weights[s]![slot]!) / one(weights[s]!);
+          if (pull > 0) pulls.set(set[slot]!, (pulls.get(set[slot]!) ?? 0) + pull);
+        });
+      }
+    }
+    const strongest = [...pulls].sort(([a, x], [b, y]) => y - x || a - b).slice(0, 4 * joints.length);
+    const sum = strongest.reduce((all, [, pull]) => all + pull, 0);
+    let left = 1;
+    // From the weakest on, so that what rounding leaves goes to the strongest.
+    for (let place = strongest.length - 1; place >= 0; --place) {
+      const [joint, pull] = strongest[place]!;
+      const [set, slot] = [place >> 2, joints[0]!.length + 4 * n + (place & 3)];
+      const whole = one(weights[set]!);
+      const share = place === 0 ? left : weights[set] instanceof Float32Array ? Math.fround(pull / sum) : Math.round((pull / sum) * whole) / whole;
+      left -= share;
+      out.joints[set]![slot] = joint;
+      out.weights[set]![slot] = weights[set] instanceof Float32Array ? share : Math.round(share * whole);
+    }
+  }
+  return out;
+}
