@@ -4,8 +4,9 @@ import { tmpdir } from 'node:os'
 import path from 'node:path'
 import { after, before, test } from 'node:test'
 import type { Page } from 'playwright-core'
-import { islandCage, lumpyBall } from './models'
+import { islandCage, islandPaint, lumpyBall } from './models'
 import { mainThreadWork, settled, shownCounts, shownError, Site } from './site'
+import { names } from './texture'
 
 const kSide = 500 // 500,000 triangles
 
@@ -73,9 +74,14 @@ function giveUpOnceShown(page: Page, way: 'button' | 'Escape'): Promise<void> {
   )
 }
 
+/** A worker that is slow to begin: however quick the machine, there is time to give the work up. */
+const kSlowWorker = `
+  const { postMessage } = Worker.prototype
+  Worker.prototype.postMessage = function (...message) { setTimeout(() => postMessage.apply(this, message), 1000) }`
+
 for (const way of ['button', 'Escape'] as const) {
   test(`what takes long can be given up by ${way}, and what was on show stays`, async () => {
-    const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
+    const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker)
     const before = await shownCounts(page)
     const givenUp = giveUpOnceShown(page, way)
     await page.getByTestId('target-input').setInputFiles(target)
@@ -92,3 +98,25 @@ for (const way of ['button', 'Escape'] as const) {
     assert.deepEqual(complaints, [])
   })
 }
+
+test('it is too late to give up what is already on show: paint and all, it stays', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
+  const before = await shownCounts(page)
+  await page.getByTestId('target-input').setInputFiles(target)
+  await page.getByTestId('texture-input').setInputFiles(islandPaint())
+  await page.evaluate(
+    () =>
+      new Promise<void>((done) => {
+        const watch = new MutationObserver(() => {
+          watch.disconnect()
+          document.querySelector<HTMLElement>('[data-testid=cancel]')!.click()
+          done()
+        })
+        watch.observe(document.querySelector('[data-testid=count-uncovered]')!, { childList: true, characterData: true, subtree: true })
+      }),
+  )
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.notDeepEqual(await shownCounts(page), before)
+  assert.ok((await names(page)).includes('islands.png'))
+  assert.deepEqual(complaints, [])
+})

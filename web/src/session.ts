@@ -166,7 +166,7 @@ export class Session extends Emitter<SessionEvents> {
     this.emit('progress', { state: 'failed', error: error instanceof Error ? error : new Error(String(error)) })
   }
 
-  /** Gives up what is under way; what is on show stays. */
+  /** Gives up what is under way; what is on show stays. Nothing happens once its result is being laid on the model. */
   cancel(): void {
     if (!this.#working) return
     this.#runs++
@@ -210,6 +210,8 @@ export class Session extends Emitter<SessionEvents> {
         await pace.rest()
         if (superseded()) return
       }
+      // From here on it is on show: too late to give it up.
+      this.#working = false
       this.#shown = { ...scene, projection }
       if (!same) {
         // The zones of what was on show are not those of this.
