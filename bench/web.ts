@@ -2,7 +2,8 @@ import { mkdir, readFile } from 'node:fs/promises';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { build } from 'esbuild';
-import { chromium, type Browser, type CDPSession, type Page } from 'playwright-core';
+import type { Browser, CDPSession, Page } from 'playwright-core';
+import { launchChromium } from '../tests/chromium.js';
 import { measureNative, output, root, type Spread } from './native.js';
 import { cpuTime, race, turn, warmUp, type Realm, type RaceOptions, type RaceResult } from './race.js';
 import type { BenchScene } from './scenes.js';
@@ -52,14 +53,6 @@ async function serve(): Promise<Server> {
   return server;
 }
 
-async function launch(): Promise<Browser> {
-  const executablePath = process.env['CHROMIUM'] ?? (await output('sh', ['-c', 'command -v chromium'])).stdout.trim();
-  return chromium.launch({
-    executablePath,
-    args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-gpu'],
-  });
-}
-
 async function throttle(page: Page, rate: number): Promise<CDPSession> {
   const session = await page.context().newCDPSession(page);
   await session.send('Emulation.setCPUThrottlingRate', { rate });
@@ -99,7 +92,7 @@ export class WebBench {
 
   static async start(): Promise<WebBench> {
     const server = await serve();
-    const browser = await launch();
+    const browser = await launchChromium({ drawing: false });
     const version = browser.version();
     await browser.close();
     return new WebBench(server, `http://127.0.0.1:${(server.address() as AddressInfo).port}`, version);
@@ -115,7 +108,7 @@ export class WebBench {
 
   /** Does something with a page that has loaded a scene, in a browser of its own. */
   private async withRealm<T>(scene: BenchScene, body: (realm: Realm, page: Page) => Promise<T>): Promise<T> {
-    const browser = await launch();
+    const browser = await launchChromium({ drawing: false });
     try {
       const page = await browser.newPage();
       await page.goto(`${this.origin}/page.html`);
@@ -169,7 +162,7 @@ export class WebBench {
   async firstUse(scene: BenchScene, rate: number, launches: number): Promise<FirstUse> {
     const all: FirstUse[] = [];
     for (let i = 0; i < launches; ++i) {
-      const browser = await launch();
+      const browser = await launchChromium({ drawing: false });
       try {
         const page = await browser.newPage();
         await page.goto(`${this.origin}/first-page.html`);

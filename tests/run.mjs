@@ -36,11 +36,11 @@ async function ctest(preset) {
   return { passed: all - failed, failed: Number(failed) || Number(status !== 0) };
 }
 
-async function nodeTests(folder) {
+async function nodeTests(folder, env) {
   const files = readdirSync(new URL(folder, import.meta.url)).filter((name) => name.endsWith('.test.ts'));
   const { status, output } = await run(process.execPath, [
     '--import', 'tsx', '--test', '--test-reporter=spec', '--test-concurrency=1', ...files.map((name) => `tests/${folder}/${name}`),
-  ]);
+  ], env);
   const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
   return { passed: count('pass'), failed: (count('fail') + count('cancelled')) || Number(status !== 0), skipped: count('skipped') };
 }
@@ -61,7 +61,9 @@ const kSuites = {
   browser: async () => {
     await mustRun('npm', ['run', '--silent', 'assets']);
     await mustRun('npm', ['run', '--silent', 'build']);
-    return nodeTests('browser');
+    const page = fileURLToPath(new URL('../build/web', import.meta.url));
+    await mustRun('npx', ['vite', 'build', 'web', '--logLevel', 'error']);
+    return nodeTests('browser', { CAGECAST_PAGE: page });
   },
 };
 

@@ -1,8 +1,8 @@
 import { mkdir, readFile } from 'node:fs/promises';
 import { dirname } from 'node:path';
 import { build } from 'esbuild';
-import { chromium } from 'playwright-core';
-import { output, root } from '../native.js';
+import { launchChromium } from '../../tests/chromium.js';
+import { root } from '../native.js';
 import type { Model } from './models.js';
 import type { Look, Row } from './sheet-page.js';
 
@@ -28,18 +28,6 @@ const heads: Record<Look, string> = {
   default: 'result',
 };
 
-const flags = [
-  '--use-angle=swiftshader',
-  '--enable-unsafe-swiftshader',
-  '--ignore-gpu-blocklist',
-  '--no-sandbox',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-];
-
 /**
  * Draws models with the package's own three.js adapter in Chromium, a row for each, all looks of a model from the same side.
  * @param models  Those that have a folder; the others are left out.
@@ -48,8 +36,7 @@ const flags = [
 export async function drawSheet(models: readonly Model[], looks: readonly Look[], path: string): Promise<void> {
   const entryPoints = [`${root}bench/quality/sheet-page.ts`];
   const script = await build({ entryPoints, bundle: true, format: 'iife', target: 'es2022', write: false, absWorkingDir: root, logLevel: 'error' });
-  const executablePath = process.env['CHROMIUM'] ?? (await output('sh', ['-c', 'command -v chromium'])).stdout.trim();
-  const browser = await chromium.launch({ executablePath, args: flags });
+  const browser = await launchChromium({ drawing: true });
   try {
     // Its files are those of the models, and nothing else is there.
     const files = new Map<string, string>();

@@ -15,9 +15,14 @@ export async function modelArea(page: Page): Promise<Area> {
   return { x: box.x + 0.1 * box.width, y: box.y + 0.14 * box.height, width: 0.8 * box.width, height: 0.5 * box.height }
 }
 
-/** What is to be seen in an area of the page, two frames from now. */
+/** What is to be seen in an area of the page, two frames from now, when they are drawn. */
 export async function look(page: Page, area: Area): Promise<PNG> {
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))
+  await page.evaluate(async () => {
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))
+    // Reading a pixel waits for what draws behind the page.
+    const gl = document.querySelector<HTMLCanvasElement>('#view')!.getContext('webgl2')
+    gl?.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4))
+  })
   return PNG.sync.read(await page.screenshot({ clip: area }))
 }
 

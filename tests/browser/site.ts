@@ -1,10 +1,10 @@
-import { execFileSync } from 'node:child_process'
 import { mkdtemp, rm } from 'node:fs/promises'
 import { tmpdir } from 'node:os'
 import path from 'node:path'
 import { fileURLToPath } from 'node:url'
-import { chromium, type Browser, type BrowserContext, type BrowserContextOptions, type CDPSession, type Page } from 'playwright-core'
+import type { Browser, BrowserContext, BrowserContextOptions, CDPSession, Page } from 'playwright-core'
 import { build, preview } from 'vite'
+import { launchChromium } from '../chromium'
 
 const kRoot = fileURLToPath(new URL('../..', import.meta.url))
 const kConfig = path.join(kRoot, 'web/vite.config.ts')
@@ -37,16 +37,20 @@ export class Site {
     private readonly stop: () => Promise<void>,
   ) {}
 
-  /** Builds the page as it is published, serves it on a free port and starts Chromium (env CHROMIUM: another one). */
+  /**
+   * Builds the page as it is published, serves it on a free port and starts Chromium. The environment variable CAGECAST_PAGE
+   * names a folder where it is already built, by whoever runs many files of tests.
+   */
   static async open(): Promise<Site> {
-    const outDir = await mkdtemp(path.join(tmpdir(), 'cagecast-page-'))
-    await build({ configFile: kConfig, logLevel: 'error', build: { outDir } })
+    const built = process.env.CAGECAST_PAGE
+    const outDir = built ?? (await mkdtemp(path.join(tmpdir(), 'cagecast-page-')))
+    if (!built) await build({ configFile: kConfig, logLevel: 'error', build: { outDir } })
     const server = await preview({ configFile: kConfig, logLevel: 'error', build: { outDir }, preview: { host: '127.0.0.1', port: 0 } })
-    const browser = await chromium.launch({ executablePath: findChromium(), args: kFlags })
+    const browser = await launchChromium({ drawing: true })
     return new Site(server.resolvedUrls!.local[0]!, outDir, browser, async () => {
       await browser.close()
       await server.close()
-      await rm(outDir, { recursive: true, force: true })
+      if (!built) await rm(outDir, { recursive: true, force: true })
     })
   }
 
@@ -151,27 +155,6 @@ interface TraceEvent {
   /** Processor time, in microseconds. */
   tdur?: number
   args?: { name?: string }
-}
-
-const kFlags = [
-  '--use-angle=swiftshader',
-  '--enable-unsafe-swiftshader',
-  '--ignore-gpu-blocklist',
-  '--no-sandbox',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-]
-
-function findChromium(): string {
-  if (process.env.CHROMIUM) return process.env.CHROMIUM
-  try {
-    return execFileSync('sh', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim()
-  } catch {
-    throw new Error('The browser tests need Chromium: install the package "chromium", or set CHROMIUM to its path.')
-  }
 }
 
 /** Waits until the page neither loads nor works, and returns its status. */

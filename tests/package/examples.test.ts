@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { execFileSync, spawnSync } from 'node:child_process';
+import { spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
@@ -8,6 +8,7 @@ import { after, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { build } from 'esbuild';
 import { PNG } from 'pngjs';
+import { launchChromium } from '../chromium.js';
 import { validate } from '../js/glb.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-examples-'));
@@ -45,9 +46,7 @@ describe('examples', () => {
       response.writeHead(200, { 'content-type': types[extname(path)] ?? 'application/octet-stream' }).end(readFileSync(path));
     });
     await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
-    const { chromium } = await import('playwright-core');
-    const executablePath = process.env['CHROMIUM'] ?? execFileSync('bash', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim();
-    const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
+    const browser = await launchChromium({ drawing: true });
     try {
       const page = await browser.newPage({ viewport: { width: 400, height: 400 } });
       const faults: string[] = [];

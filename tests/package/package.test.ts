@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { execFileSync, spawnSync } from 'node:child_process';
+import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
@@ -7,6 +7,7 @@ import { extname, join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { gzipSync } from 'node:zlib';
+import { launchChromium } from '../chromium.js';
 import { glbOf } from '../js/glb.js';
 import { head } from '../js/scenes.js';
 
@@ -261,9 +262,7 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
   after(() => server.close());
 
   test('every entry runs: bundled by esbuild, built by Vite, in a worker of the page and in its own', async () => {
-    const { chromium } = await import('playwright-core');
-    const executablePath = process.env['CHROMIUM'] ?? execFileSync('bash', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim();
-    const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
+    const browser = await launchChromium({ drawing: false });
     try {
       for (const path of ['/plain.html', '/worker.html', '/vite-main/index.html', '/vite-slim/index.html', '/vite-worker/index.html']) {
         const page = await browser.newPage();

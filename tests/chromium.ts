@@ -1,0 +1,24 @@
+import { execFileSync } from 'node:child_process';
+import { chromium, type Browser } from 'playwright-core';
+
+/** Nothing asked of other hosts, nothing that differs from one start to the next. */
+const kQuiet = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+/** What draws 3D where no graphics card does. */
+const kDrawing = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'];
+
+/**
+ * Starts the Chromium that is installed, or the one that the environment variable CHROMIUM gives the path of.
+ * @param drawing Whether pages may draw with WebGL, by the processor.
+ * @throws Error that says what to install, if there is none.
+ */
+export function launchChromium({ drawing }: { drawing: boolean }): Promise<Browser> {
+  return chromium.launch({ executablePath: process.env['CHROMIUM'] ?? installed(), args: [...kQuiet, ...(drawing ? kDrawing : ['--disable-gpu'])] });
+}
+
+function installed(): string {
+  try {
+    return execFileSync('sh', ['-c', 'command -v chromium'], { encoding: 'utf8' }).trim();
+  } catch {
+    throw new Error('Chromium is needed: install the package "chromium", or set CHROMIUM to the path of one.');
+  }
+}
