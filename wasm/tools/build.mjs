@@ -20,6 +20,13 @@ const shipped = preset === 'wasm';
 const out = shipped ? at('dist') : at('build', preset, 'package');
 const stamp = at('build', preset, 'package.stamp');
 
+/** What is loaded when borders are cut, and stays a file of its own. */
+const lazy = [
+  [/^\.\.\/borders\/index\.js$/, './borders.js'],
+  [/^\.\.\/cut\/index\.js$/, './cut.js'],
+  [/^\.\/cutting\.js$/, './three-cutting.js'],
+];
+
 const hash = hashOf(['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'], preset);
 if (existsSync(stamp) && readFileSync(stamp, 'utf8') === hash && existsSync(join(out, 'index.js'))) {
   linkCommand();
@@ -88,7 +95,7 @@ async function buildPackage() {
         outfile: join(fresh, outfile),
         platform,
         external: ['#spawn', '#read-wasm', './index.js', 'three'],
-        plugins: [wasmModules('wasm-file.ts', { index: true })],
+        plugins: [wasmModules('wasm-file.ts', { index: true, borders: true })],
       });
     await esbuild.build({
       ...common,
@@ -102,7 +109,9 @@ async function buildPackage() {
     await beside('read-wasm.ts', 'read-wasm.js', 'neutral');
     await beside('read-wasm-node.ts', 'read-wasm-node.js', 'node');
     await beside('inspect/index.ts', 'inspect.js', 'neutral');
+    await beside('cut/index.ts', 'cut.js', 'neutral');
     await beside('three/index.ts', 'three.js', 'neutral');
+    await beside('three/cutting.ts', 'three-cutting.js', 'neutral');
     await beside('gltf/index.ts', 'gltf.js', 'neutral');
     await beside('worker/index.ts', 'worker.js', 'neutral');
     await beside('worker/spawn.ts', 'spawn.js', 'neutral');
@@ -140,7 +149,7 @@ async function buildPackage() {
    * Resolves the names that stand for what the C++ build makes.
    * @param wasm     How the package comes by its WebAssembly.
    * @param options  `module`: which; `index`: importers of the package's index share one copy of it; `errors`: so do those of its error;
-   * `borders`: cagecast/borders stays a file of its own.
+   * `borders`: what is loaded to cut these stays a file of its own.
    */
   function wasmModules(wasm, { module = 'cagecast', index = false, errors = false, borders = false } = {}) {
     const files = {
@@ -152,7 +161,7 @@ async function buildPackage() {
       name: 'wasm-modules',
       setup(build) {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
-        if (borders) build.onResolve({ filter: /^\.\.\/borders\/index\.js$/ }, () => ({ path: './borders.js', external: true }));
+        for (const [path, file] of borders ? lazy : []) build.onResolve({ filter: path }, () => ({ path: file, external: true }));
         const own = at('wasm/src/borders/error.ts');
         if (errors) build.onResolve({ filter: /^\.\.?\/error\.js$/ }, ({ importer }) => (importer === own ? undefined : { path: own }));
         if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: './index.js', external: true }));

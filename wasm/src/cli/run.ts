@@ -1,4 +1,4 @@
-import { CagecastError, init, transfer, type TransferOptions, type TransferResult } from '../index.js';
+import { init, transfer, type CagecastError, type TransferOptions, type TransferResult } from '../index.js';
 import { extract, partOf, placeOf, type Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { readGltf, type GltfFile } from '../gltf/read.js';
@@ -35,10 +35,11 @@ export async function run(targetPath: string, cagePath: string, rules: Rules, pr
   const vertices = target.mesh.positions.length / 3;
   progress.step(`transferring to ${vertices.toLocaleString('en')} vertices`);
   await init();
+  const files = { targetFile, target, cageFile, cage };
   try {
-    return { targetFile, target, cageFile, cage, options, result: transfer(cage.mesh, target.mesh, options) };
+    return { ...files, options, result: transfer(cage.mesh, target.mesh, options) };
   } catch (error) {
-    throw error instanceof CagecastError ? inFile(error, targetFile, target, cageFile, cage) : error;
+    throw inFile(error, files);
   }
 }
 
@@ -57,9 +58,12 @@ function usable(file: GltfFile, extracted: Extracted): Extracted {
   return extracted;
 }
 
-/** Says in which file, and where in it, lies what the core found. */
-function inFile({ message, code, at }: CagecastError, targetFile: GltfFile, target: Extracted, cageFile: GltfFile, cage: Extracted): Error {
-  const text = message.replace(/^transfer: /, '');
+/** Says in which file, and where in it, lies what the core found; any other error stays what it is. */
+export function inFile(error: unknown, { targetFile, target, cageFile, cage }: Omit<Run, 'options' | 'result'>): unknown {
+  // By name: what is loaded to cut borders has another copy of the class.
+  if (!(error instanceof Error) || error.name !== 'CagecastError') return error;
+  const { message, code, at } = error as CagecastError;
+  const text = message.replace(/^\w+: /, '');
   const isCage = text.startsWith('cage');
   if (!isCage && !text.startsWith('target')) return new InputError(text).in(targetFile.path);
   const { parts } = isCage ? cage : target;

@@ -10,7 +10,7 @@ import { perZone, type PerZone } from './zones.js';
 import { effectiveOptions, type EffectiveOptions, type Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
-import { run, type Run } from './run.js';
+import { inFile, run, type Run } from './run.js';
 import { integer, percent, table } from './table.js';
 
 /** What `cagecast transfer` was asked for. */
@@ -34,9 +34,10 @@ export async function transferCommand(command: TransferCommand, progress: Progre
   const paint = command.texture === undefined ? undefined : await readPaint(command.texture);
   const done = await run(command.target, command.cage, command.rules, progress);
   let added: Added[] | undefined;
+  let cut: CutTarget | undefined;
   const files: { path: string; data: Uint8Array | string }[] = [];
   if (command.output !== undefined) {
-    const cut = command.borders === 'cut' ? await cutTarget(command, done, progress) : undefined;
+    if (command.borders === 'cut') cut = await cutTarget(done, progress);
     progress.step(`writing ${command.output}`);
     const written = await writeTransfer(done.targetFile, done.target, done.result, paint, cut).catch((error: unknown) => {
       throw error instanceof InputError ? error.in(command.target) : error;
@@ -44,19 +45,18 @@ export async function transferCommand(command: TransferCommand, progress: Progre
     added = written.added;
     files.push({ path: command.output, data: written.glb });
   }
-  const report = makeReport(command, done, added);
+  const report = makeReport(command, done, added, cut);
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
   writeFiles(files);
   return summary(command, report);
 }
 
-/** Cuts the target, by a module that is loaded for it alone. */
-async function cutTarget(command: TransferCommand, { cage, target, result, options }: Run, progress: Progress): Promise<CutTarget> {
+/** Cuts the target, by a module that is loaded for it alone. @throws {InputError} that names the file and the element at fault. */
+async function cutTarget(done: Run, progress: Progress): Promise<CutTarget> {
   progress.step('cutting borders');
   const { cutBorders } = await import('../borders/index.js');
-  return cutBorders(cage.mesh, target.mesh, result, options).catch((error: unknown) => {
-    // That module has another copy of the class.
-    throw error instanceof Error && error.name === 'CagecastError' ? new InputError(error.message).in(command.target) : error;
+  return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options).catch((error: unknown) => {
+    throw inFile(error, done);
   });
 }
 
@@ -81,8 +81,12 @@ export interface Report {
   counts: PerZone;
   /** Area of the target in each zone: a third of each triangle for each of its corners. */
   areas: PerZone & { total: number };
-  /** Of the target as it is read; `added` are those that there are more in the output, cut along borders. */
-  triangles: { total: number; cosmetic: number; added: number };
+  triangles: { total: number; cosmetic: number };
+  /**
+   * The target as it is written, where its borders were cut, before vertices are split; else `null`. All else in this report is of
+   * the target as it was read.
+   */
+  cut: { vertices: number; counts: PerZone; triangles: { total: number; cosmetic: number } } | null;
   /** A, E, C, F and D of every connected component, in the order of their first vertices. */
   segments: { part: string; vertices: number; points: number; area: number; exposedArea: number; coveredArea: number; coverage: number; sunkArea: number; culled: boolean }[];
   /**
@@ -96,7 +100,9 @@ export interface Report {
   peakBytes: number;
 }
 
-function makeReport(command: TransferCommand, { target, cage, result }: Run, added: Added[] | undefined): Report {
+const trianglesOf = (cosmetic: Uint8Array): Report['triangles'] => ({ total: cosmetic.length, cosmetic: cosmetic.reduce((sum, one) => sum + one, 0) });
+
+function makeReport(command: TransferCommand, { target, cage, result }: Run, added: Added[] | undefined, cut: CutTarget | undefined): Report {
   const { mesh, parts } = target;
   const areas = vertexAreas(mesh);
   const partOfVertex = new Uint32Array(mesh.positions.length / 3);
@@ -117,7 +123,8 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
     options: effectiveOptions(command.rules),
     counts: perZone(result.zones),
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
-    triangles: { total: mesh.indices.length / 3, cosmetic: result.cosmeticTriangles.reduce((sum, one) => sum + one, 0), added: (added ?? []).reduce((sum, { cutTriangles }) => sum + cutTriangles, 0) },
+    triangles: trianglesOf(result.cosmeticTriangles),
+    cut: cut ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) } : null,
     segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled }, s) => ({
       part: parts[segmentPart[s]!]!.name,
       vertices: segmentVertices[s]!,
@@ -146,7 +153,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
   };
 }
 
-function summary(command: TransferCommand, { target, counts, areas, triangles, segments, parts, timings, output }: Report): string {
+function summary(command: TransferCommand, { target, counts, areas, triangles, cut, segments, parts, timings, output }: Report): string {
   const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const rows = [
     ['', 'vertices', 'area'],
@@ -158,8 +165,8 @@ function summary(command: TransferCommand, { target, counts, areas, triangles, s
   const lines = [
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
-    `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted; ${timings.total.toFixed(1)} ms`,
-    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${triangles.added === 0 ? '' : `; ${integer(triangles.added)} triangles more along borders`}`,
+    `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
+    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
     command.report === undefined ? '' : `wrote ${command.report}`,
     output === null && command.report === undefined ? 'nothing written; -o OUT.glb and --report R.json keep the result' : '',
   ];

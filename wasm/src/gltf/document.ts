@@ -1,10 +1,11 @@
-import type { Accessor, Document, Material, Mesh as DocumentMesh, Node, Primitive, Property, Texture } from '@gltf-transform/core';
+import type { Accessor, Document, Material, Mesh as DocumentMesh, Node, Primitive, Property, Texture, TypedArray } from '@gltf-transform/core';
+import type * as cutting from '../cut/index.js';
 import type { Mesh, TransferResult } from '../index.js';
 import { gather, splitPart, type SplitPart } from '../split-part.js';
 import { InputError } from './input-error.js';
 import { identity, isTurned, localMatrix, multiply } from './matrix.js';
 import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
-import { aliasesOf, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
+import { aliasesOf, cutPiece, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 
 /** A piece, and its place in the document. */
 export interface DocumentPart extends Piece {
@@ -83,12 +84,18 @@ function listParts(document: Document): DocumentPart[] {
   return parts;
 }
 
+/** A target as it was cut, and what cuts its parts, which is loaded only then. */
+export interface Cut {
+  target: cutting.CutTarget;
+  tools: typeof cutting;
+}
+
 /**
  * Adds what was transferred to a document, as the command does to a file: to every primitive a new UV set and `_NCZ`, and,
- * with a texture, an overlay primitive of its cosmetic triangles; and copies of vertices whose triangles have different UVs
- * there, after those that it has. A mesh that several nodes show becomes one for each.
+ * with a texture, an overlay primitive of its cosmetic triangles; new vertices along borders that are cut, and copies of those
+ * whose triangles have different UVs there, after those that it has. A mesh that several nodes show becomes one for each.
  */
-export function addTransfer(document: Document, { mesh, parts }: ExtractedDocument, result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>, paint?: Paint): void {
+export function addTransfer(document: Document, { mesh, parts }: ExtractedDocument, result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>, paint?: Paint, cut?: Cut): void {
   const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
   const attribute = (array: Float32Array, type: 'SCALAR' | 'VEC2' | 'VEC3') =>
     // A copy with a buffer of its own: views into one that is shared would be written whole, once for each.
@@ -99,47 +106,68 @@ export function addTransfer(document: Document, { mesh, parts }: ExtractedDocume
   const primitiveOf = separatePrimitives(parts);
 
   parts.forEach((part, p) => {
-    const { node, firstVertex, vertexCount, firstTriangle, triangleCount } = part;
     const primitive = primitiveOf[p]!;
-    const split = splitPart({ ...part, turned: isTurned(part.matrix) }, result);
+    const whole = { ...part, turned: isTurned(part.matrix) };
+    const cutOne = cut?.tools.cutPart(whole, cut.target, mesh.positions.length / 3);
+    const { geometry, result: own } = cutOne ?? { geometry: whole, result };
+    const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
+    const blends = cutOne && cutOne.blends.sources.length > 0 ? cutOne.blends : undefined;
+    const split = splitPart(geometry, own);
     const indices = (corners: Uint32Array) =>
       document.createAccessor().setType('SCALAR').setArray(split.sources.length < 65536 ? Uint16Array.from(corners) : Uint32Array.from(corners)).setBuffer(buffer);
-    if (split.copies > 0) splitPrimitive(primitive, split, indices(split.indices));
+    if (split.copies > 0 || blends) remakePrimitive(primitive, split, indices(split.indices), blends && blender(primitive, blends, cut!.tools));
     const uvs = attribute(split.uvs, 'VEC2');
-    const zones = result.zones.subarray(firstVertex, firstVertex + vertexCount);
+    const zones = own.zones.subarray(firstVertex, firstVertex + vertexCount);
     primitive.setAttribute(freeUvSet((semantic) => primitive.getAttribute(semantic) !== null), uvs);
     primitive.setAttribute(zoneAttribute, attribute(Float32Array.from(split.sources, (v) => zones[v]!), 'SCALAR'));
-    const corners = cosmeticCorners(split.indices, result.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount));
+    const corners = cosmeticCorners(split.indices, own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount));
     if (!texture || corners.length === 0) return;
 
+    const piece = cutOne ? cutPiece(part, geometry, cut!.tools.blend(part.localPositions, 3, cutOne.blends)) : part;
     const overlay = document
       .createPrimitive()
-      .setAttribute('POSITION', attribute(gather(overlayPositions(part, offset), 3, split.sources), 'VEC3'))
+      .setAttribute('POSITION', attribute(gather(overlayPositions(piece, offset), 3, split.sources), 'VEC3'))
       .setAttribute('TEXCOORD_0', uvs)
       .setIndices(indices(corners))
       .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials));
     for (const semantic of primitive.listSemantics()) if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
     for (const morph of primitive.listTargets()) overlay.addTarget(morph);
-    node.getMesh()!.addPrimitive(overlay);
+    part.node.getMesh()!.addPrimitive(overlay);
   });
 }
 
-/** Gives a primitive copies of vertices, in all of its attributes and morph targets. What nothing else uses is let go. */
-function splitPrimitive(primitive: Primitive, { sources }: SplitPart, indices: Accessor): void {
+/** The values of an accessor, with those of new vertices after them. @param semantic  None of a morph target's. */
+type Extend = (accessor: Accessor, semantic?: string) => TypedArray;
+
+/** Blends the attributes of a primitive. */
+function blender(primitive: Primitive, blends: cutting.Blends, { blend, blendSkin, ruleOf }: typeof cutting): Extend {
+  const skin = blendSkin((semantic) => primitive.getAttribute(semantic)?.getArray() ?? undefined, blends);
+  return (accessor, semantic) => {
+    const array = accessor.getArray()!;
+    const pulls = semantic === undefined ? undefined : skin.get(semantic);
+    return pulls ?? blend(array, accessor.getElementSize(), blends, semantic === undefined ? 'mean' : ruleOf(semantic, array, accessor.getNormalized()));
+  };
+}
+
+/**
+ * Gives a primitive new vertices, those that `extend` makes and copies, in all of its attributes and morph targets. What nothing
+ * else uses is let go.
+ */
+function remakePrimitive(primitive: Primitive, { sources }: SplitPart, indices: Accessor, extend: Extend = (accessor) => accessor.getArray()!): void {
   const made = new Map<Accessor, Accessor>();
-  const splitAccessor = (accessor: Accessor): Accessor => {
+  const remake = (accessor: Accessor, semantic?: string): Accessor => {
     const known = made.get(accessor);
     if (known) return known;
-    const own = accessor.clone().setSparse(false).setArray(gather(accessor.getArray()!, accessor.getElementSize(), sources));
+    const own = accessor.clone().setSparse(false).setArray(gather(extend(accessor, semantic), accessor.getElementSize(), sources));
     made.set(accessor, own);
     return own;
   };
   const before = primitive.getIndices();
   primitive.setIndices(indices).setMode(4); // strips and fans have become lists
-  for (const semantic of primitive.listSemantics()) primitive.setAttribute(semantic, splitAccessor(primitive.getAttribute(semantic)!));
+  for (const semantic of primitive.listSemantics()) primitive.setAttribute(semantic, remake(primitive.getAttribute(semantic)!, semantic));
   for (const target of primitive.listTargets()) {
     const own = target.clone();
-    for (const semantic of own.listSemantics()) own.setAttribute(semantic, splitAccessor(own.getAttribute(semantic)!));
+    for (const semantic of own.listSemantics()) own.setAttribute(semantic, remake(own.getAttribute(semantic)!));
     primitive.removeTarget(target).addTarget(own);
     if (isUnused(target)) target.dispose();
   }

@@ -3,6 +3,7 @@
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
+import { isCut, type Borders } from '../cut/option.js';
 import { CagecastError, init, transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
 import { addTransfer, extractDocument } from './document.js';
 import { InputError } from './input-error.js';
@@ -24,6 +25,11 @@ export interface CagecastOptions extends TransferOptions {
   cage: Document | Mesh;
   /** A PNG or JPEG file's bytes, in the cage's UVs: shown as an overlay of the cosmetic triangles. Without, there is none. */
   texture?: Uint8Array | undefined;
+  /**
+   * Lets paint end at the target's own triangles (`triangle`, by default), or cuts these where it does, at holes and seams (`cut`):
+   * straight borders, more triangles. Loads `cagecast/borders`, which nothing else needs.
+   */
+  borders?: Borders | undefined;
   /** Is called with the result, and with what its arrays refer to, in order. */
   onResult?: ((result: TransferResult, parts: PartRange[]) => void) | undefined;
 }
@@ -33,7 +39,8 @@ export interface CagecastOptions extends TransferOptions {
  *
  * Every primitive of triangles in the document's scene gets a new `TEXCOORD` set and `_NCZ` (0 may be painted; else the
  * `Zone`), and, with a texture, an overlay primitive of its cosmetic triangles. All else stays as it is; a mesh that several
- * nodes show becomes one for each. If it throws, the document is as it was.
+ * nodes show becomes one for each. Vertices that cutting adds are blends of those around them in all of their attributes, skin
+ * weights and morph deltas. If it throws, the document is as it was.
  * @throws {CagecastError} whose message says what is wrong with target, cage, texture or options, and where.
  *
  * @example
@@ -45,14 +52,17 @@ export interface CagecastOptions extends TransferOptions {
  * await document.transform(cagecast({ cage: await io.read('cage.glb'), texture: await readFile('paint.png') }));
  * await io.write('painted.glb', document);
  */
-export function cagecast({ cage, texture, onResult, ...options }: CagecastOptions): Transform {
+export function cagecast({ cage, texture, borders, onResult, ...options }: CagecastOptions): Transform {
   return async function cagecast(document: Document): Promise<void> {
+    const cuts = isCut('cagecast', borders);
     await init();
     const paint = texture && within('texture', () => paintOf(texture));
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));
     const result = transfer(source, target.mesh, options);
-    addTransfer(document, target, result, paint);
+    const tools = cuts ? await import('../cut/index.js') : undefined;
+    const cut = tools && { target: await tools.cutBorders(source, target.mesh, result, options), tools };
+    addTransfer(document, target, result, paint, cut);
     onResult?.(
       result,
       target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({ name, firstVertex, vertexCount, firstTriangle, triangleCount })),

@@ -1,15 +1,15 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { CutTarget } from '../borders/index.js';
+import { blend, blendSkin, noBlends, ruleOf, type Blends } from '../cut/blend.js';
+import { cutPart } from '../cut/part.js';
 import { gather, splitPart, type SplitPart } from '../split-part.js';
 import type { TransferResult } from '../transfer.js';
-import { blend, blendSkin, noBlends, ruleOf, type Blends } from './blend.js';
 import { dracoOf } from './check.js';
-import { cutPart } from './cut-part.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
 import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
-import { decodeFloats } from './pieces.js';
+import { cutPiece, decodeFloats, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 
 /** What was added to a primitive. */
@@ -60,7 +60,7 @@ export async function writeTransfer(
     primitive.attributes[uvSet] = uvAccessor;
     primitive.attributes[zoneAttribute] = writer.addAttribute(Float32Array.from(split.sources, (v) => zones[v]!), 1);
     const cosmetic = own.cosmeticTriangles.subarray(geometry.firstTriangle, geometry.firstTriangle + geometry.triangleCount);
-    const overlay = painter?.overlay(part, blends, split, primitive, cosmetic, uvAccessor);
+    const overlay = painter?.overlay(cut ? cutPiece(part, geometry, blend(part.localPositions, 3, blends)) : part, split, primitive, cosmetic, uvAccessor);
     if (overlay) primitives.push(overlay);
     return { uvSet, overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0, splitVertices: split.copies, cutTriangles: geometry.triangleCount - part.triangleCount };
   });
@@ -71,7 +71,7 @@ export async function writeTransfer(
 /** Gives a primitive new vertices, blends and copies: in all of its attributes and morph targets, uncompressed. */
 function rewritePrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive, { sources, indices }: SplitPart, blends: Blends): void {
   const decodedOf = (accessor: number) => file.geometry.getRoot().listAccessors()[accessor]!;
-  const skin = blendedSkin(primitive.attributes, (accessor) => decodedOf(accessor).getArray()!, blends);
+  const skin = blendSkin((semantic) => (primitive.attributes[semantic] === undefined ? undefined : decodedOf(primitive.attributes[semantic]).getArray()!), blends);
   const made = new Map<string, number>();
   const rewrite = (accessor: number, semantic: string, isDelta: boolean): number => {
     const decoded = decodedOf(accessor);
@@ -99,15 +99,6 @@ function rewritePrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMe
   delete primitive.mode; // strips and fans have become lists
   delete primitive.extensions?.[draco];
   if (primitive.extensions && Object.keys(primitive.extensions).length === 0) delete primitive.extensions;
-}
-
-/** The joints and weights of a primitive with its new vertices, by semantic; they belong together. */
-function blendedSkin<A extends Parameters<typeof blend>[0]>(attributes: Record<string, number>, arrayOf: (accessor: number) => A, blends: Blends): Map<string, A> {
-  const sets: number[] = [];
-  while (attributes[`JOINTS_${sets.length}`] !== undefined && attributes[`WEIGHTS_${sets.length}`] !== undefined) sets.push(sets.length);
-  const all = (semantic: string) => sets.map((set) => arrayOf(attributes[`${semantic}_${set}`]!));
-  const { joints, weights } = blendSkin(all('JOINTS'), all('WEIGHTS'), blends);
-  return new Map(sets.flatMap((set): [string, A][] => [[`JOINTS_${set}`, joints[set]!], [`WEIGHTS_${set}`, weights[set]!]]));
 }
 
 /** The least and the greatest value of each component. */
@@ -165,10 +156,10 @@ class Painter {
   }
 
   /** A primitive of the cosmetic triangles of `base`, moved and deformed as it is; none if there are none. */
-  overlay(part: Part, blends: Blends, { sources, indices }: SplitPart, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
+  overlay(piece: Piece, { sources, indices }: SplitPart, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
     const corners = cosmeticCorners(indices, cosmetic);
     if (corners.length === 0) return undefined;
-    const attributes: Record<string, number> = { POSITION: this.#positions(part, blends, sources), TEXCOORD_0: uvAccessor };
+    const attributes: Record<string, number> = { POSITION: this.#positions(piece, sources), TEXCOORD_0: uvAccessor };
     for (const [semantic, accessor] of Object.entries(base.attributes)) {
       if (isOverlaid(semantic)) attributes[semantic] = this.#shared(base, semantic, accessor);
     }
@@ -191,9 +182,9 @@ class Painter {
       : this.#writer.addAttribute(decodeFloats(decoded), size);
   }
 
-  /** The part's positions, moved a little off the surface along their normals. */
-  #positions(part: Part, blends: Blends, sources: Uint32Array): number {
-    const positions = gather(blend(overlayPositions(part, this.#offset), 3, blends), 3, sources);
+  /** The piece's positions, moved a little off the surface along their normals. */
+  #positions(piece: Piece, sources: Uint32Array): number {
+    const positions = gather(overlayPositions(piece, this.#offset), 3, sources);
     return this.#writer.addAttribute(positions, 3, boundsOf(positions, 3));
   }
 

@@ -3,13 +3,15 @@
  * @module cagecast/three
  */
 import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3D, type Texture } from 'three';
-import { CagecastError, transfer, type Classification, type TransferOptions, type TransferResult } from '../index.js';
+import { isCut, type Borders } from '../cut/option.js';
+import { CagecastError, transfer, type Classification, type Mesh as Arrays, type TransferOptions, type TransferResult } from '../index.js';
 import { splitPart } from '../split-part.js';
+import type * as cutting from './cutting.js';
 import { extract, isTurned, type Extracted, type Part } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
 import { splitGeometry } from './split.js';
 
-export { extract, type Extracted, type Part };
+export { extract, type Borders, type Extracted, type Part };
 
 /** The attribute that holds each vertex's `Zone`: the name that GLTFLoader gives to `_NCZ`. */
 export const zoneAttribute = '_ncz';
@@ -24,6 +26,11 @@ export interface ApplyOptions extends TransferOptions {
   material?: Material | undefined;
   /** The channel of the new UVs, 1 … 3: the attribute `uv1`, `uv2` or `uv3`; 1 by default. `texture.channel` is set to it. */
   channel?: 1 | 2 | 3 | undefined;
+  /**
+   * Lets paint end at the target's own triangles (`triangle`, by default), or cuts these where it does, at holes and seams (`cut`):
+   * straight borders, more triangles. That loads `cagecast/borders`, which nothing else needs, and takes a promise.
+   */
+  borders?: Borders | undefined;
 }
 
 /** What was added to a scene. */
@@ -32,10 +39,15 @@ export interface Applied {
   result: TransferResult;
   /** How many vertices were added because triangles that share one have different UVs there; 0 with `seams: 'vertex'`. */
   splitVertices: number;
+  /** How many triangles there are more since borders were cut. */
+  cutTriangles: number;
   parts: Part[];
   /** One for each part that is a mesh, with a texture or a material; children of the meshes they lie on. */
   overlays: Mesh[];
-  /** Shows another decision of `classify`, in microseconds. */
+  /**
+   * Shows another decision of `classify`, in microseconds. Where borders were cut, a segment that has another verdict now ends at its
+   * own triangles.
+   */
   update(classification: Pick<Classification, 'zones' | 'cosmeticTriangles'>): void;
   /** Takes the overlays away and frees their buffers. The new attributes stay. */
   dispose(): void;
@@ -46,7 +58,8 @@ export interface Applied {
  * `Zone`: 0 may be painted), and, with a texture, each mesh a child that shows the texture on the cosmetic triangles.
  * Skins and morph targets keep working: the overlays share them. A geometry that several meshes show is copied for all but
  * the first. Where triangles that share a vertex have different UVs there, the geometry gets copies of it after the vertices
- * that it has, with all of its attributes and morph deltas, so that no triangle stretches across the texture.
+ * that it has, with all of its attributes and morph deltas, so that no triangle stretches across the texture. Where borders are
+ * cut, it gets vertices that are blends of others.
  *
  * `await init()` once before; or leave the main thread free with `extract`, `cagecast/worker` and the option `result`.
  *
@@ -66,65 +79,91 @@ export interface Applied {
  * applyTransfer(head.scene, cage.scene, { texture: paint });
  * scene.add(head.scene);
  */
-export function applyTransfer(
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry,
-  { result: known, texture, material, channel = 1, ...options }: ApplyOptions = {},
-): Applied {
-  const { mesh, parts } = extract(target, 'target');
-  const result = known ?? transfer(extract(cage, 'cage').mesh, mesh, options);
+export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions & { borders: 'cut' }): Promise<Applied>;
+export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options?: ApplyOptions & { borders?: 'triangle' | undefined }): Applied;
+export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options?: ApplyOptions): Applied | Promise<Applied>;
+export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions = {}): Applied | Promise<Applied> {
+  if (isCut('applyTransfer', options.borders)) return applyCut(target, cage, options);
+  const extracted = extract(target, 'target');
+  return apply(extracted, resultOf(extracted, options, () => extract(cage, 'cage').mesh), options);
+}
+
+async function applyCut(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions): Promise<Applied> {
+  const tools = await import('./cutting.js');
+  const extracted = extract(target, 'target');
+  const { mesh } = extract(cage, 'cage');
+  const result = resultOf(extracted, options, () => mesh);
+  return apply(extracted, result, options, { target: await tools.cutBorders(mesh, extracted.mesh, result, rulesOf(options)), tools });
+}
+
+const rulesOf = ({ result, texture, material, channel, borders, ...rules }: ApplyOptions): TransferOptions => rules;
+
+function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays): TransferResult {
+  const result = options.result ?? transfer(cage(), mesh, rulesOf(options));
   const vertices = mesh.positions.length / 3;
   if (result.zones.length !== vertices || result.cosmeticTriangles.length !== mesh.indices.length / 3) {
     throw new CagecastError('badArgument', `cagecast/three: result is of ${result.zones.length} vertices, the target has ${vertices}: extract it before vertices are split`);
   }
+  return result;
+}
+
+/** @param cut  The target as it was cut, and what cuts its parts, which is loaded only then. */
+function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, material, channel = 1 }: ApplyOptions, cut?: { target: cutting.CutTarget; tools: typeof cutting }): Applied {
   const uvName = `uv${channel}`;
   const taken = new Set<BufferGeometry>();
   for (const part of parts) {
     if (part.mesh && taken.has(part.geometry)) part.mesh.geometry = part.geometry = part.geometry.clone();
     taken.add(part.geometry);
   }
-  const splits = parts.map((part) => {
+  const made = parts.map((part) => {
     const { geometry, matrix, vertexCount, triangleCount } = part;
     const localIndices = geometry.index?.array ?? Uint32Array.from({ length: vertexCount }, (_, v) => v);
-    const split = splitPart({ ...part, turned: isTurned(matrix), localIndices: localIndices.subarray(0, 3 * triangleCount) }, result);
+    const whole = { ...part, turned: isTurned(matrix), localIndices: localIndices.subarray(0, 3 * triangleCount) };
+    const pieces = cut?.tools.cutPart(whole, cut.target, mesh.positions.length / 3);
+    if (pieces && pieces.blends.sources.length > 0) cut!.tools.cutGeometry(geometry, pieces, part.firstTriangle);
+    const split = splitPart(pieces?.geometry ?? whole, pieces?.result ?? result);
     if (split.copies > 0) splitGeometry(geometry, split);
     geometry.setAttribute(uvName, new BufferAttribute(split.uvs, 2));
     geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
-    return split;
+    return { part, whole, pieces, split };
   });
 
   if (texture) texture.channel = channel;
   const own: Material[] = [];
-  const layers: { overlay: Mesh; part: Part }[] = [];
-  for (const part of texture || material ? parts : []) {
-    if (!part.mesh) continue;
+  const layers = made.map(({ part }) => {
+    if (!part.mesh || !(texture || material)) return undefined;
     const paint = material ?? paintMaterial([part.mesh.material].flat()[0], texture!);
     if (paint !== material) {
       layOnSurface(paint);
       own.push(paint);
     }
-    layers.push({ overlay: makeOverlay(part, part.mesh, uvName, paint), part });
-  }
-  const update: Applied['update'] = ({ zones, cosmeticTriangles }) => {
-    parts.forEach(({ geometry, firstVertex }, p) => {
-      const attribute = geometry.getAttribute(zoneAttribute) as BufferAttribute;
-      splits[p]!.sources.forEach((source, v) => (attribute.array[v] = zones[firstVertex + source]!));
+    return makeOverlay(part, part.mesh, uvName, paint);
+  });
+  const update: Applied['update'] = (now) => {
+    made.forEach(({ part, whole, pieces, split }, p) => {
+      const { firstVertex, firstTriangle, triangleCount, vertexCount } = part;
+      const { zones, cosmeticTriangles } = pieces
+        ? cut!.tools.decideAgain(pieces, whole, mesh.indices, result, now)
+        : { zones: now.zones.subarray(firstVertex, firstVertex + vertexCount), cosmeticTriangles: now.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount) };
+      const attribute = part.geometry.getAttribute(zoneAttribute) as BufferAttribute;
+      split.sources.forEach((source, v) => (attribute.array[v] = zones[source]!));
       attribute.needsUpdate = true;
+      const overlay = layers[p];
+      if (overlay) showTriangles(overlay, part, cosmeticTriangles);
     });
-    for (const { overlay, part } of layers) {
-      showTriangles(overlay, part, cosmeticTriangles.subarray(part.firstTriangle, part.firstTriangle + part.triangleCount));
-    }
   };
   update(result);
-  for (const { overlay, part } of layers) part.mesh!.add(overlay);
+  layers.forEach((overlay, p) => overlay && parts[p]!.mesh!.add(overlay));
+  const overlays = layers.filter((overlay) => overlay !== undefined);
   return {
     result,
-    splitVertices: splits.reduce((sum, { copies }) => sum + copies, 0),
+    splitVertices: made.reduce((sum, { split }) => sum + split.copies, 0),
+    cutTriangles: cut ? (cut.target.indices.length - mesh.indices.length) / 3 : 0,
     parts,
-    overlays: layers.map(({ overlay }) => overlay),
+    overlays,
     update,
     dispose() {
-      for (const { overlay } of layers) {
+      for (const overlay of overlays) {
         overlay.removeFromParent();
         overlay.geometry.dispose();
       }

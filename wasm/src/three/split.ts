@@ -1,40 +1,45 @@
 import { BufferAttribute, type BufferGeometry, type InterleavedBufferAttribute, type TypedArray } from 'three';
 import { gather, type SplitPart } from '../split-part.js';
 
-/**
- * Gives a geometry copies of vertices, in all of its attributes and morph targets. It stays the same object, and its buffers
- * on the graphics card, if it has any, are made anew.
- */
-export function splitGeometry(geometry: BufferGeometry, { sources, indices }: SplitPart): void {
-  geometry.dispose();
-  for (const [name, attribute] of Object.entries(geometry.attributes)) {
-    if (!('isInstancedBufferAttribute' in attribute)) geometry.setAttribute(name, splitAttribute(attribute, sources));
-  }
-  for (const [name, morphs] of Object.entries(geometry.morphAttributes)) {
-    geometry.morphAttributes[name as keyof typeof geometry.morphAttributes] = morphs!.map((morph) => splitAttribute(morph, sources));
-  }
-  geometry.setIndex(new BufferAttribute(indices, 1));
-}
+export type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
-function splitAttribute(attribute: BufferAttribute | InterleavedBufferAttribute, sources: Uint32Array): BufferAttribute {
-  const { itemSize, normalized } = attribute;
-  // What makes the values of a class of three's own what they are, as of half floats, is in the class.
-  const Class = ('isInterleavedBufferAttribute' in attribute ? BufferAttribute : attribute.constructor) as typeof BufferAttribute;
-  const split = new Class(gather(valuesOf(attribute) as Float32Array, itemSize, sources), itemSize, normalized);
-  split.name = attribute.name;
-  if (!('isInterleavedBufferAttribute' in attribute)) {
-    split.usage = attribute.usage;
-    split.gpuType = attribute.gpuType;
-  }
-  return split;
+/** Gives a geometry copies of vertices, in all of its attributes and morph targets. It stays the same object. */
+export function splitGeometry(geometry: BufferGeometry, { sources, indices }: SplitPart): void {
+  remakeGeometry(geometry, indices, (attribute) => likeAttribute(attribute, gather(valuesOf(attribute) as Float32Array, attribute.itemSize, sources)));
 }
 
 /** The values of an attribute as they are stored, one element after the other. */
-function valuesOf(attribute: BufferAttribute | InterleavedBufferAttribute): TypedArray {
+export function valuesOf(attribute: Attribute): TypedArray {
   if (!('isInterleavedBufferAttribute' in attribute)) return attribute.array;
   const { array, stride } = attribute.data;
   const { itemSize, offset, count } = attribute;
   const own = array.slice(0, itemSize * count);
   for (let i = 0; i < own.length; ++i) own[i] = array[stride * Math.floor(i / itemSize) + offset + (i % itemSize)]!;
   return own;
+}
+
+/** An attribute of the same kind with other values. */
+export function likeAttribute(attribute: Attribute, values: TypedArray): BufferAttribute {
+  const { itemSize, normalized } = attribute;
+  // What makes the values of a class of three's own what they are, as of half floats, is in the class.
+  const Class = ('isInterleavedBufferAttribute' in attribute ? BufferAttribute : attribute.constructor) as typeof BufferAttribute;
+  const made = new Class(values, itemSize, normalized);
+  made.name = attribute.name;
+  if (!('isInterleavedBufferAttribute' in attribute)) {
+    made.usage = attribute.usage;
+    made.gpuType = attribute.gpuType;
+  }
+  return made;
+}
+
+/** Replaces all attributes and morph targets of a geometry, and its triangles, and has its buffers on the graphics card made anew. */
+export function remakeGeometry(geometry: BufferGeometry, indices: Uint32Array, remake: (attribute: Attribute, name: string, isMorph: boolean) => BufferAttribute): void {
+  geometry.dispose();
+  for (const [name, attribute] of Object.entries(geometry.attributes)) {
+    if (!('isInstancedBufferAttribute' in attribute)) geometry.setAttribute(name, remake(attribute, name, false));
+  }
+  for (const [name, morphs] of Object.entries(geometry.morphAttributes)) {
+    geometry.morphAttributes[name as keyof typeof geometry.morphAttributes] = morphs!.map((morph) => remake(morph, name, true));
+  }
+  geometry.setIndex(new BufferAttribute(indices, 1));
 }

@@ -8,7 +8,7 @@ export interface Blends {
 
 export const noBlends: Blends = { sources: new Uint32Array(0), weights: new Float32Array(0) };
 
-type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
+export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
 
 /** What of an attribute a new vertex gets: the mean of its sources, the same as a direction, or all that its heaviest source has. */
 type Rule = 'mean' | 'direction' | 'heaviest';
@@ -28,13 +28,16 @@ function extended<A extends AttributeArray>(values: A, size: number, { sources }
   return out;
 }
 
+/** The source that a new vertex is most like. */
+export const heaviestOf = ({ sources, weights }: Blends, n: number): number => sources[[3 * n, 3 * n + 1, 3 * n + 2].reduce((a, b) => (weights[b]! > weights[a]! ? b : a))]!;
+
 /** The values of a part's vertices, `size` numbers each, and of its new ones after them. */
 export function blend<A extends AttributeArray>(values: A, size: number, blends: Blends, rule: Rule = 'mean'): A {
   const { sources, weights } = blends;
   const out = extended(values, size, blends);
   for (let i = 0; i < sources.length; i += 3) {
     const to = values.length + (size * i) / 3;
-    const heaviest = size * sources[[i, i + 1, i + 2].reduce((a, b) => (weights[b]! > weights[a]! ? b : a))]!;
+    const heaviest = size * heaviestOf(blends, i / 3);
     const mean = Array.from({ length: size }, (_, k) => [i, i + 1, i + 2].reduce((sum, j) => sum + weights[j]! * values[size * sources[j]! + k]!, 0));
     const length = Math.hypot(...mean.slice(0, 3));
     for (let k = 0; k < size; ++k) {
@@ -49,11 +52,19 @@ export function blend<A extends AttributeArray>(values: A, size: number, blends:
 }
 
 /**
- * The joints and weights of a part's vertices, and of its new ones: what pulls at their sources, the strongest first, as many as
- * there is room for; they add up to 1.
- * @param joints,weights  4 numbers per vertex in each set.
+ * The joints and weights of a part's vertices, and of its new ones, by semantic: what pulls at their sources, the strongest
+ * first, as many as there is room for; they add up to 1.
+ * @param arrayOf  What belongs to a semantic, 4 numbers per vertex; sets are numbered without gaps.
  */
-export function blendSkin<J extends AttributeArray, W extends AttributeArray>(joints: J[], weights: W[], blends: Blends): { joints: J[]; weights: W[] } {
+export function blendSkin<A extends AttributeArray>(arrayOf: (semantic: string) => A | undefined, blends: Blends): Map<string, A> {
+  const joints: A[] = [];
+  const weights: A[] = [];
+  for (let set = 0; ; ++set) {
+    const [joint, weight] = [arrayOf(`JOINTS_${set}`), arrayOf(`WEIGHTS_${set}`)];
+    if (joint === undefined || weight === undefined) break;
+    joints.push(joint);
+    weights.push(weight);
+  }
   const out = { joints: joints.map((set) => extended(set, 4, blends)), weights: weights.map((set) => extended(set, 4, blends)) };
   for (let n = 0; n < blends.sources.length / 3; ++n) {
     const pulls = new Map<number, number>();
@@ -79,5 +90,5 @@ export function blendSkin<J extends AttributeArray, W extends AttributeArray>(jo
       out.weights[set]![slot] = weights[set] instanceof Float32Array ? share : Math.round(share * whole);
     }
   }
-  return out;
+  return new Map(joints.flatMap((_, set): [string, A][] => [[`JOINTS_${set}`, out.joints[set]!], [`WEIGHTS_${set}`, out.weights[set]!]]));
 }

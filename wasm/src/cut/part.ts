@@ -1,0 +1,69 @@
+import type { CutTarget } from '../borders/index.js';
+import { gather, type PartGeometry } from '../split-part.js';
+import type { Classification } from '../transfer.js';
+import { heaviestOf, type Blends } from './blend.js';
+
+/** A part as it was cut, as if there were no other, and what was transferred to it. */
+export interface CutPart {
+  geometry: PartGeometry;
+  result: Pick<CutTarget, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>;
+  /** Its vertices that are new. */
+  blends: Blends;
+  /** 1 per triangle: the triangle of the whole target that it is a part of. */
+  origins: Uint32Array;
+}
+
+/**
+ * Takes a part out of a target that was cut. Vertices keep their numbers, new ones come after them.
+ * @param ownCount  Vertices of the whole target before it was cut.
+ */
+export function cutPart(part: PartGeometry, cut: CutTarget, ownCount: number): CutPart {
+  const { firstVertex, vertexCount, firstTriangle, triangleCount, turned } = part;
+  const added = Uint32Array.from({ length: cut.sources.length / 3 }, (_, n) => n).filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
+  const placeOf = new Map(Array.from(added, (n, i) => [ownCount + n, vertexCount + i]));
+  const vertices = Uint32Array.from({ length: vertexCount + added.length }, (_, v) => (v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!));
+
+  const before = (limit: number) => {
+    const first = cut.triangles.findIndex((t) => t >= limit);
+    return first < 0 ? cut.triangles.length : first;
+  };
+  const [first, end] = [before(firstTriangle), before(firstTriangle + triangleCount)];
+  const localIndices = cut.indices.slice(3 * first, 3 * end).map((v) => placeOf.get(v) ?? v - firstVertex);
+  for (let i = 0; turned && i < localIndices.length; i += 3) [localIndices[i + 1], localIndices[i + 2]] = [localIndices[i + 2]!, localIndices[i + 1]!];
+  return {
+    geometry: { firstVertex: 0, vertexCount: vertices.length, firstTriangle: 0, triangleCount: end - first, turned, localIndices },
+    result: {
+      uvs: gather(cut.uvs, 2, vertices),
+      cornerUvs: cut.cornerUvs.slice(6 * first, 6 * end),
+      zones: gather(cut.zones, 1, vertices),
+      cosmeticTriangles: cut.cosmeticTriangles.slice(first, end),
+    },
+    blends: { sources: gather(cut.sources, 3, added).map((v) => v - firstVertex), weights: gather(cut.weights, 3, added) },
+    origins: cut.triangles.slice(first, end),
+  };
+}
+
+type Decision = Pick<Classification, 'zones' | 'cosmeticTriangles'>;
+
+const culled = 3;
+
+/**
+ * What another decision makes of a part that was cut by a first one: where a segment has another verdict now, its pieces follow
+ * the triangles that they are of.
+ * @param part     As it was before it was cut.
+ * @param indices  Of the whole target, as the decisions are.
+ */
+export function decideAgain({ result, blends, origins }: CutPart, { firstVertex, vertexCount }: PartGeometry, indices: ArrayLike<number>, first: Decision, now: Decision): Decision {
+  const isOther = (v: number) => (first.zones[v] === culled) !== (now.zones[v] === culled);
+  return {
+    zones: result.zones.map((zone, v) => {
+      const n = v - vertexCount;
+      const sources = n < 0 ? [v] : [...blends.sources.subarray(3 * n, 3 * n + 3)];
+      return sources.some((source) => isOther(firstVertex + source)) ? now.zones[firstVertex + (n < 0 ? v : heaviestOf(blends, n))]! : zone;
+    }),
+    cosmeticTriangles: result.cosmeticTriangles.map((cosmetic, piece) => {
+      const t = origins[piece]!;
+      return [0, 1, 2].some((k) => isOther(indices[3 * t + k]!)) ? now.cosmeticTriangles[t]! : cosmetic;
+    }),
+  };
+}
