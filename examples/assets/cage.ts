@@ -1,6 +1,6 @@
 import { type Bounds, type Mesh, clip, corners, largestPart, mirror, point, simplify, surface, vertexCount, withMeshNormals } from './mesh.ts'
 import { type Sdf } from './sdf.ts'
-import { borderLoops } from './unwrap.ts'
+import { borderLoops, fill, perimeter } from './unwrap.ts'
 import { onOpenEdge, spaceOf } from './space.ts'
 import { type Vec3, length, sub } from './vec.ts'
 
@@ -28,11 +28,14 @@ export const makeCage = (plan: CagePlan): Mesh => {
     return (rough < 0 ? -distance : distance) - plan.distance
   }
   const fine = surface(grown, plan.bounds, plan.edge)
-  const half = largestPart(clip(clip(fine, (p) => p[0]), plan.keep))
+  const clipped = largestPart(clip(clip(fine, (p) => p[0]), plan.keep))
+  // Where the skin bulges, a point above it may lie over the very edge of an opening that is elsewhere.
+  const half = fill(clipped, borderLoops(clipped).filter((loop) => perimeter(clipped, loop) < kLeastHole * plan.distance))
   const cage = mirror(simplify(half, Math.floor(plan.triangles / 2), rimKeeper(half), plan.focus))
   return pushOut(cage, plan)
 }
 
+const kLeastHole = 2 // perimeter of a hole that is meant, in distances
 const kRimCorners = 12 // of a whole hole
 
 /** Holds on to some vertices all along each border of one half: small holes would lose their shape, or close. */

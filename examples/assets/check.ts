@@ -1,9 +1,9 @@
 import { createRequire } from 'node:module'
-import { type Mesh, components, corners, faceNormal, join, point, triangleCount } from './mesh.ts'
+import { type Mesh, components, corners, diagonalOf, faceNormal, join, point, triangleCount } from './mesh.ts'
 import type { Model } from './model.ts'
 import { spaceOf } from './space.ts'
 import { type Truth, weldPositions } from './truth.ts'
-import { uvOverlap } from './unwrap.ts'
+import { borderLoops, perimeter, uvOverlap } from './unwrap.ts'
 import { length, sub } from './vec.ts'
 
 // The validator is a CommonJS module without types.
@@ -13,6 +13,7 @@ const validator = createRequire(import.meta.url)('gltf-validator') as {
 
 const kCageTriangles = [300, 900] as const
 const kThinnest = 5e-3 // height of a cage triangle as a share of its longest edge: flatter ones have no reliable normal
+const kLeastRim = 0.02 // perimeter of a hole that is meant, as a share of the cage's diagonal
 const kOverlap = 1e-3 // share of the covered UV area: what a grid's rounding can amount to
 
 /** What is wrong with a model, one line each; nothing if it is as it should be. */
@@ -29,9 +30,12 @@ export const faultsOf = async (model: Model, truth: Truth, files: Record<string,
 
   const triangles = triangleCount(cage)
   expect(triangles >= kCageTriangles[0] && triangles <= kCageTriangles[1], `the cage has ${triangles} triangles, not ${kCageTriangles.join(' to ')}`)
-  expect(new Set(components(weldPositions(cage))).size === 1, 'the cage is not in one piece')
+  const welded = weldPositions(cage)
+  expect(new Set(components(welded)).size === 1, 'the cage is not in one piece')
   const flat = Array.from({ length: triangles }, (_, t) => t).filter((t) => thinness(cage, t) < kThinnest)
   expect(flat.length === 0, `cage triangle ${flat[0]} (and ${flat.length - 1} more) is flat`)
+  const rims = borderLoops(welded).map((loop) => perimeter(welded, loop))
+  expect(Math.min(...rims) > kLeastRim * diagonalOf(cage.positions), `the cage has a crack of ${Math.min(...rims).toFixed(3)} around`)
   const overlap = uvOverlap(cage)
   expect(overlap < kOverlap, `${(100 * overlap).toFixed(2)} % of the cage's UV area is covered twice`)
   expect(cage.uvs!.every((x) => x >= 0 && x <= 1), "the cage's UVs leave 0..1")

@@ -202,9 +202,7 @@ const kRelaxRounds = 60
 export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, zoom: (p: Vec3) => number = () => 1): Mesh => {
   const { mesh: cut } = splitAlong(mesh, (a, b) => !seam(point(mesh, a), point(mesh, b)))
   const loops = borderLoops(cut)
-  const perimeter = (loop: number[]): number =>
-    loop.reduce((s, v, i) => s + length(sub(point(cut, v), point(cut, loop[(i + 1) % loop.length]!))), 0)
-  loops.sort((a, b) => perimeter(b) - perimeter(a))
+  loops.sort((a, b) => perimeter(cut, b) - perimeter(cut, a))
   if (loops.length === 0) throw new Error('pelt: the mesh is closed; it needs a seam or a hole')
   const [outer, ...holes] = loops as [number[], ...number[][]]
   const filled = fill(cut, holes)
@@ -213,7 +211,7 @@ export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, zoom: (p: 
 }
 
 /** Closes holes with fans about their middles, so that they keep their shape and nothing is laid over them. */
-const fill = (mesh: Mesh, holes: number[][]): Mesh => {
+export const fill = (mesh: Mesh, holes: number[][]): Mesh => {
   const positions = Array.from(mesh.positions)
   const indices = Array.from(mesh.indices)
   for (const loop of holes) {
@@ -395,6 +393,10 @@ export const borderLoops = (mesh: Mesh): number[][] => {
   }
   return loops
 }
+
+/** The length of a border loop. */
+export const perimeter = (mesh: Mesh, loop: number[]): number =>
+  loop.reduce((s, v, i) => s + length(sub(point(mesh, v), point(mesh, loop[(i + 1) % loop.length]!))), 0)
 
 const flatTriangle = (mesh: Mesh, triangle: number): [Uv, Uv, Uv] => {
   const [a, b, c] = corners(mesh, triangle).map((v) => point(mesh, v)) as [Vec3, Vec3, Vec3]
