@@ -191,7 +191,6 @@ class HitSearch {
   float boxFrom_;           ///< The same for boxes.
   float loose_;             ///< Hits beyond this are worth deciding in double.
   float zero_;              ///< 0 if a hit at distance 0 is none, else less.
-  float distanceRounding_;  ///< What to multiply `RayLeaf::rounding` with for the rounding of a distance.
   Slabs* slabs_;            ///< 1 per ray.
   std::uint16_t* lists_;    ///< `kListRoom`.
   Ray* rays_ = nullptr;

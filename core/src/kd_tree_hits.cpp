@@ -42,8 +42,12 @@ float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end
 struct RayLeaf {
   float corner[3][3][4];  ///< corner[a, b, c][axis][lane].
   float rounding;         ///< What the edge functions of a ray that hits may be off in float.
+  /// What its distance may be, times the sum of the edge functions. A product in `mightHit` would be another one to clang: of
+  /// all that lies beside a number, pointers included, which is slow where it is denormal as floats go.
+  float distanceRounding;
 
-  RayLeaf(const RayTree& tree, std::uint32_t first, float size) : rounding(size * kEdgeRounding * tree.reach) {
+  RayLeaf(const RayTree& tree, std::uint32_t first, float size)
+      : rounding(size * kEdgeRounding * tree.reach), distanceRounding(rounding * (kDistanceRounding * tree.reach)) {
     const std::uint32_t* index = tree.corners + std::size_t{3} * first;
     for (int i = 0; i < 3; ++i) {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
@@ -99,7 +103,6 @@ HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcep
       boxFrom_(static_cast<float>(from)),
       loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
       zero_(from > 0 ? 0.0f : -1.0f),
-      distanceRounding_(kDistanceRounding * tree.reach),
       slabs_(scratch.take<Slabs>(kMostRays)),
       lists_(scratch.take<std::uint16_t>(kListRoom)) {}
 
@@ -234,7 +237,7 @@ unsigned HitSearch::mightHit(const RayLeaf& leaf, const Ray& ray) const noexcept
   // The distance is (u·z0 + v·z1 + w·z2)·scale / (u + v + w); multiplied by the square of the divisor there is no division.
   const f32x4 sum = u + v + w;
   const f32x4 distance = (u * z[0] + v * z[1] + w * z[2]) * splat(direction.scaleZ) * sum;
-  const f32x4 slack = rounding * splat(distanceRounding_) * simd::max(sum, splat(0) - sum);
+  const f32x4 slack = splat(leaf.distanceRounding) * simd::max(sum, splat(0) - sum);
   const mask4 beyond = splat(loose_) * sum * sum <= distance + slack;
   // Triangles at the origin itself come out at 0 exactly; they are many, and no hits if hits begin beyond 0.
   const mask4 elsewhere = (distance < splat(0)) | (splat(zero_) < distance);
