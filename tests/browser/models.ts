@@ -40,6 +40,39 @@ export function islandPaint(): Upload {
   return { name: 'islands.png', mimeType: 'image/png', buffer: PNG.sync.write(png) }
 }
 
+/** Where the islands of `texturedBox` are painted and where not: in texels of its texture, 1 inside, 0 beyond its margin, −1 between. */
+export function islandAt(x: number, y: number, size: number, margin: number): 1 | 0 | -1 {
+  const apart = ([share, cells]: readonly [number, number]): number => {
+    const place = (share * cells) % 1
+    return (Math.max(kInset - place, place - (1 - kInset)) / cells) * size
+  }
+  const beyond = Math.max(...([[(x + 0.5) / size, kCells.columns], [(y + 0.5) / size, kCells.rows]] as const).map(apart))
+  return beyond < -1 ? 1 : beyond > margin ? 0 : -1
+}
+
+/**
+ * A closed box about the origin, of half the size 0.8, with a texture of its own, on which each of its sides is an island, as on
+ * `islandCage`. @param mirrored Whether its left side shares the island of its right, the other way round.
+ */
+export async function texturedBox(texture: Buffer, { mirrored = false, factor = [1, 1, 1, 1] as [number, number, number, number] } = {}): Promise<Upload> {
+  const side = 7 * 7 // vertices
+  const box = new BoxGeometry(1.6, 1.6, 1.6, 6, 6, 6)
+  const uv = box.getAttribute('uv')
+  for (let vertex = 0; vertex < uv.count; vertex++) {
+    const left = mirrored && Math.floor(vertex / side) === 1
+    const [u, v] = cellOf(left ? 0 : Math.floor(vertex / side))
+    const inset = (value: number): number => kInset + (1 - 2 * kInset) * value
+    uv.setXY(vertex, u + inset(left ? 1 - uv.getX(vertex) : uv.getX(vertex)) / kCells.columns, v + inset(uv.getY(vertex)) / kCells.rows)
+  }
+  const document = new Document()
+  document.createBuffer()
+  const mesh = meshOf(document, box, true)
+  const image = document.createTexture('own').setMimeType('image/png').setImage(new Uint8Array(texture))
+  mesh.listPrimitives()[0]!.setMaterial(document.createMaterial('own').setBaseColorTexture(image).setBaseColorFactor(factor).setMetallicFactor(0))
+  document.createScene().addChild(document.createNode('box').setMesh(mesh))
+  return glb('target.glb', Buffer.from(await new NodeIO().writeBinary(document)))
+}
+
 /**
  * A blue ball of radius 0.9. With `pose` it is skinned to two joints that pull it apart, and half morphed into a flat one;
  * with `animated` an animation moves one of the joints to and fro, within a second.

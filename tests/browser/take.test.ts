@@ -1,12 +1,11 @@
 import assert from 'node:assert/strict'
 import { execFile } from 'node:child_process'
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises'
-import { createRequire } from 'node:module'
 import { tmpdir } from 'node:os'
 import path from 'node:path'
 import { after, before, test } from 'node:test'
 import { promisify } from 'node:util'
-import { NodeIO, type Document } from '@gltf-transform/core'
+import { NodeIO } from '@gltf-transform/core'
 import { KHRDracoMeshCompression } from '@gltf-transform/extensions'
 import draco3d from 'draco3dgltf'
 import type { Page } from 'playwright-core'
@@ -14,12 +13,8 @@ import { PNG } from 'pngjs'
 import { glb, tetrahedron, writeGlb } from './glb'
 import { ball, islandCage } from './models'
 import { difference, look, modelArea } from './picture'
+import { primitivesOf, saved, validModel } from './saved'
 import { drop, inRepository, settled, setThreshold, shownCounts, shownError, shownParts, Site } from './site'
-
-/** As far as it is used here; the package brings no types. */
-const { validateBytes } = createRequire(import.meta.url)('gltf-validator') as {
-  validateBytes(bytes: Uint8Array): Promise<{ issues: { numErrors: number; messages: unknown[] } }>
-}
 
 let site: Site
 let folder: string
@@ -31,23 +26,6 @@ after(async () => {
   await site?.close()
   await rm(folder, { recursive: true, force: true })
 })
-
-/** What a button of the page saves. */
-async function saved(page: Page, button: string): Promise<{ name: string; bytes: Buffer }> {
-  const coming = page.waitForEvent('download')
-  await page.getByTestId(button).click()
-  const file = await coming
-  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) }
-}
-
-/** Reads a model, after the validator found no fault with it. */
-async function validModel(bytes: Uint8Array): Promise<Document> {
-  const { issues } = await validateBytes(new Uint8Array(bytes))
-  assert.equal(issues.numErrors, 0, JSON.stringify(issues.messages.slice(0, 3)))
-  return new NodeIO().readBinary(new Uint8Array(bytes))
-}
-
-const primitivesOf = (document: Document) => document.getRoot().listMeshes().flatMap((mesh) => mesh.listPrimitives())
 
 /** The command line that the page shows, run on the sample's own files; it writes a model and returns its path. */
 async function runCommand(line: string): Promise<string> {

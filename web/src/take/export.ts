@@ -1,21 +1,25 @@
 import type { Mesh } from 'cagecast'
 import type { ExtractedMesh } from '../extract'
 import type { Session } from '../session'
-import type { ExportReply, ExportRequest } from './export-messages'
+import type { ExportReply, ExportRequest, PaintInto } from './export-messages'
+import type { Baked } from './texture/bake'
 
 /**
- * Writes the target that is shown as a GLB: all that its file has, the new UV set, its zones, and the paint as an overlay, as
- * `cagecast transfer` does, by the rules and locks as they stand. It is done in a worker of its own, which ends with it.
+ * Writes the target that is shown as a GLB: all that its file has, the new UV set, its zones, and the paint, as `cagecast
+ * transfer` does, in the shape of its file, by the rules and locks as they stand. A worker of its own does it, and ends with it.
  * @param texture A PNG in the cage's UVs.
+ * @param into    Where the paint goes: over the model, or into its own textures where it has some.
+ * @returns The file, and what became of the paint if it was to go into textures.
  * @throws Error that begins with the file's name.
  */
-export async function exportGlb({ shown, rules, locks }: Session, texture: Blob): Promise<Blob> {
+export async function exportGlb({ shown, rules, locks }: Session, texture: Blob, into: PaintInto): Promise<{ glb: Blob; baked?: Baked }> {
   const { target, cage } = shown!
   const files = await Promise.all(target.files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })))
   const request: ExportRequest = {
     files,
     cage: cageOf(cage.mesh),
     texture: new Uint8Array(await texture.arrayBuffer()),
+    into,
     options: { ...rules, locks: { segments: locks } },
   }
   const worker = new Worker(new URL('./export-worker.ts', import.meta.url), { type: 'module' })
@@ -26,7 +30,7 @@ export async function exportGlb({ shown, rules, locks }: Session, texture: Blob)
       worker.postMessage(request, { transfer: files.map(({ bytes }) => bytes) })
     })
     if ('message' in reply) throw new Error(`${target.name}: ${reply.message}`)
-    return new Blob([reply.glb], { type: 'model/gltf-binary' })
+    return { ...reply, glb: new Blob([reply.glb], { type: 'model/gltf-binary' }) }
   } finally {
     worker.terminate()
   }

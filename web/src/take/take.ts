@@ -1,8 +1,10 @@
-import { announce, element, showError } from '../page'
+import { announce, element, showError, showNotice } from '../page'
 import type { Session } from '../session'
 import { codeFor, type Code } from './code'
 import { download } from './download'
+import type { PaintInto } from './export-messages'
 import { linkOf, type LinkedLayers } from './links'
+import type { Baked } from './texture/bake'
 import { zonesJson } from './zones'
 
 /** What is to be taken away of the paints. */
@@ -32,6 +34,7 @@ export class Take {
     element('copy-code', HTMLButtonElement).addEventListener('click', () => this.#copy(this.#code.textContent!, 'The code is copied.'))
     for (const input of section.querySelectorAll<HTMLInputElement>('[name=code]')) input.addEventListener('change', () => this.#refresh())
     for (const event of ['zones', 'view', 'paint'] as const) session.on(event, () => this.refresh())
+    session.on('transfer', () => this.#offerTextures())
     const buttons = section.querySelectorAll<HTMLButtonElement>('.actions button')
     for (const button of buttons) button.disabled = true
     session.on('zones', () => buttons.forEach((button) => (button.disabled = false)))
@@ -68,15 +71,28 @@ export class Take {
     return this.#session.shown!.target.name.replace(/\.\w+$/, '')
   }
 
+  /** Lets the paint go into textures where the model has some. */
+  #offerTextures(): void {
+    const { parts } = this.#session.shown!.target.mesh
+    const textured = parts.some(({ mesh: { material, geometry } }) => [material].flat().some((one) => 'map' in one && one.map) && geometry.hasAttribute('uv'))
+    const texture = document.querySelector<HTMLInputElement>('#paint-into [value=texture]')!
+    texture.disabled = !textured
+    if (!textured) document.querySelector<HTMLInputElement>('#paint-into [value=overlay]')!.checked = true
+    showNotice('export-note', '')
+  }
+
   async #exportGlb(): Promise<void> {
     const button = element('export-glb', HTMLButtonElement)
     button.disabled = true
     button.ariaBusy = 'true'
+    showNotice('export-note', '')
     try {
       const { exportGlb } = await import('./export')
-      const glb = await exportGlb(this.#session, await this.#paints.png())
+      const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto
+      const { glb, baked } = await exportGlb(this.#session, await this.#paints.png(), into)
       download(glb, `${this.#stem}-painted.glb`)
       announce(`The model is saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`)
+      showNotice('export-note', baked ? sayBaked(baked) : '')
     } catch (error) {
       showError(error instanceof Error ? error.message : String(error))
     } finally {
@@ -100,4 +116,18 @@ export class Take {
     }
     setTimeout(() => (note.textContent = ''), 4000)
   }
+}
+
+const kMostNames = 3
+const kCrowded = 0.005 // less is seams that touch
+
+/** What became of the paint, in words. */
+function sayBaked({ textures, overlays, crowded }: Baked): string {
+  const names = overlays.length > kMostNames ? [...overlays.slice(0, kMostNames - 1), `${overlays.length - kMostNames + 1} more`] : overlays
+  const list = new Intl.ListFormat('en').format(names)
+  return [
+    `The paint is in ${textures === 1 ? 'one texture' : `${textures || 'no'} textures`} of the model’s own.`,
+    ...(overlays.length > 0 ? [`Over ${list} it is an overlay, for want of a texture that can hold it.`] : []),
+    ...(crowded > kCrowded ? [`The model’s own UVs overlap, as where halves are mirrored: ${(100 * crowded).toFixed(0)} % of the paint has no place of its own, and gave way.`] : []),
+  ].join(' ')
 }
