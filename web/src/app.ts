@@ -3,6 +3,7 @@ import { setUpPainting } from './brush/set-up'
 import { FitPanel } from './fit'
 import { History } from './history'
 import { setUpJump } from './jump'
+import { Edits } from './layers/edits'
 import { followPaints, showComposite } from './layers/follow'
 import { LayerList } from './layers/layer-list'
 import { setUpSaving } from './layers/save'
@@ -54,18 +55,19 @@ const viewer = startViewer()
 // Each feature follows the session by itself. The picture comes first: what others lay on it needs it up to date.
 const stack = new LayerStack()
 const history = new History()
-followPaints(session, stack)
+const edits = new Edits(stack, history)
+followPaints(session, stack, edits)
 let png: (() => Promise<Blob>) | undefined
 if (viewer) {
   showPicture(session, viewer)
   showViewModes(session, viewer)
   const composite = showComposite(viewer, stack)
   const tools = new Tools(viewer, element('stage', HTMLElement))
-  setUpPainting(session, viewer, tools, stack, composite, history)
+  setUpPainting(session, viewer, tools, { stack, composite, edits })
   new Why(session, viewer, tools)
   png = setUpSaving(viewer, composite)
 } else element('why', HTMLElement).hidden = true
-new LayerList(stack, history)
+new LayerList(stack, edits)
 setUpUndo(history)
 showStatus(session, viewer === undefined)
 showResults(session)
@@ -75,7 +77,7 @@ setUpRules(session)
 setUpViewControls(session)
 setUpJump()
 new Live(session, viewer)
-const opener = new Opener(session, stack)
+const opener = new Opener(session, stack, edits)
 const paints = paintOf(session, stack, opener, png)
 const take = new Take(session, paints)
 stack.on('change', () => take.refresh())

@@ -1,5 +1,6 @@
 import { setUpFiles, type Intake } from './files'
 import { loadModel, type Model } from './load'
+import type { Edits } from './layers/edits'
 import type { LayerStack } from './layers/stack'
 import { element, showError } from './page'
 import { loadPaint, titleOf, type Paint } from './paint'
@@ -13,12 +14,14 @@ const kOwn = 'own'
 export class Opener {
   readonly #session: Session
   readonly #stack: LayerStack
+  readonly #edits: Edits
   readonly #select = element('sample-select', HTMLSelectElement)
   #samples: Sample[] = []
 
-  constructor(session: Session, stack: LayerStack) {
+  constructor(session: Session, stack: LayerStack, edits: Edits) {
     this.#session = session
     this.#stack = stack
+    this.#edits = edits
     setUpFiles((intake) => this.#take(intake))
     this.#select.addEventListener('change', () => this.openSample(this.#select.value))
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap())
@@ -124,7 +127,7 @@ export class Opener {
       onAdd: async (index) => {
         try {
           const paint = await choices[index]!.load()
-          this.#stack.add(titleOf(paint), paint)
+          this.#edits.do(`adding of ${titleOf(paint)}`, () => this.#stack.add(titleOf(paint), paint))
         } catch (error) {
           showError((error as Error).message)
         }

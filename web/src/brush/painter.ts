@@ -1,5 +1,6 @@
 import type { Vector3 } from 'three'
 import type { Composite } from '../layers/composite'
+import type { Edits } from '../layers/edits'
 import type { Layer } from '../layers/layer'
 import { toShares, type Rect } from '../layers/rect'
 import { kFull, type LayerStack } from '../layers/stack'
@@ -9,13 +10,19 @@ import type { Spot } from '../pick'
 import type { Session, Shown } from '../session'
 import type { Viewer } from '../viewer'
 import { CageAtlas, type Capsule, type Place } from './atlas'
-import type { History } from '../history'
 import { kPaintedSize, PaintedSheet } from './painted-sheet'
 import type { StickerSheet, StickerStyle } from './sticker'
 import { WetPaint, type StrokeStyle } from './wet-paint'
 
 const kPicture = 96 // pixels a side of a layer's picture
 const kPictureDelay = 300 // milliseconds
+
+/** What is painted on, what shows it, and where it is noted. */
+export interface Layers {
+  stack: LayerStack
+  composite: Composite
+  edits: Edits
+}
 
 /**
  * Paints on the cage of what is on show: finds the place that is meant by a spot of the target, keeps what is wet, and makes
@@ -26,7 +33,7 @@ export class Painter {
   readonly #viewer: Viewer
   readonly #stack: LayerStack
   readonly #composite: Composite
-  readonly #history: History
+  readonly #edits: Edits
   #wet: WetPaint | undefined
   #cage: Shown['cage'] | undefined
   /** The layer that something wet lies on, and what undoing that is called. */
@@ -36,12 +43,12 @@ export class Painter {
   /** All that may come back: on show, or removed and kept to be undone. */
   readonly #sheets: WeakRef<PaintedSheet>[] = []
 
-  constructor(session: Session, viewer: Viewer, stack: LayerStack, composite: Composite, history: History) {
+  constructor(session: Session, viewer: Viewer, { stack, composite, edits }: Layers) {
     this.#session = session
     this.#viewer = viewer
     this.#stack = stack
     this.#composite = composite
-    this.#history = history
+    this.#edits = edits
     session.on('transfer', () => this.cancel())
   }
 
@@ -71,6 +78,7 @@ export class Painter {
       showError(style.erases ? 'Nothing was painted yet that could be erased.' : kFull)
       return false
     }
+    this.#edits.begin()
     const layer = painted ?? this.addLayer()
     this.#layer = layer
     this.#name = name
@@ -99,13 +107,12 @@ export class Painter {
     const { renderer } = this.#viewer
     const sheet = layer.sheet as PaintedSheet
     const parts = this.#wet!.settle(renderer)
-    if (parts.length === 0) return
+    if (parts.length === 0) return this.#edits.cancel()
     const put = (which: 'before' | 'after'): void => {
       for (const part of parts) sheet.put(renderer, part.rect, part[which])
       this.#changed(sheet, parts.map(({ rect }) => rect))
     }
-    this.#history.add({
-      name: this.#name,
+    this.#edits.end(this.#name, {
       bytes: parts.reduce((sum, { before, after }) => sum + before.length + after.length, 0),
       undo: () => put('before'),
       redo: () => put('after'),
@@ -118,6 +125,7 @@ export class Painter {
     if (!this.#layer) return
     this.#layer = undefined
     this.#show(this.#wet!.end(this.#viewer.renderer))
+    this.#edits.cancel()
   }
 
   /** Adds an empty layer to paint on. @throws Error if there are too many. */

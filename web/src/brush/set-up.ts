@@ -1,6 +1,3 @@
-import type { Composite } from '../layers/composite'
-import type { LayerStack } from '../layers/stack'
-import type { History } from '../history'
 import { element, showError } from '../page'
 import { readImage } from '../paint'
 import type { Session } from '../session'
@@ -9,7 +6,7 @@ import type { Viewer } from '../viewer'
 import { BrushTool } from './brush-tool'
 import { paintByKeys } from './keys'
 import { PaintOptions, type Kind } from './options'
-import { Painter } from './painter'
+import { Painter, type Layers } from './painter'
 import { Ring } from './ring'
 import { StickerTool } from './sticker-tool'
 
@@ -21,8 +18,8 @@ const kOffers: Record<Kind, Pick<Offer, 'title' | 'key' | 'icon'>> = {
 }
 
 /** Offers brush, eraser and stickers on the rail of tools, with their options below the layers. */
-export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, stack: LayerStack, composite: Composite, history: History): void {
-  const painter = new Painter(session, viewer, stack, composite, history)
+export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, layers: Layers): void {
+  const painter = new Painter(session, viewer, layers)
   const options = new PaintOptions()
   const ring = new Ring()
   const sticker = new StickerTool(painter, viewer, options, ring)
@@ -50,7 +47,7 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, st
   const canvas = element('view', HTMLCanvasElement)
   canvas.addEventListener('webglcontextlost', () => painter.cancel())
   canvas.addEventListener('webglcontextrestored', () => painter.restore())
-  element('add-painting', HTMLButtonElement).addEventListener('click', () => painter.addLayer())
+  element('add-painting', HTMLButtonElement).addEventListener('click', () => layers.edits.do('adding of a painting', () => painter.addLayer()))
   const image = element('sticker-image', HTMLInputElement)
   image.addEventListener('change', async () => {
     const file = image.files?.[0]

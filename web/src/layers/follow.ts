@@ -2,10 +2,11 @@ import { titleOf, type Paint } from '../paint'
 import type { Session } from '../session'
 import type { Viewer } from '../viewer'
 import { Composite } from './composite'
+import type { Edits } from './edits'
 import type { LayerStack } from './stack'
 
 /** Puts the paint of the model on show under everything, and the visitor's own paints on top as they come. */
-export function followPaints(session: Session, stack: LayerStack): void {
+export function followPaints(session: Session, stack: LayerStack, edits: Edits): void {
   const { checker } = session
   let base: Paint | undefined
   const setBase = (paint: Paint): void => {
@@ -18,9 +19,11 @@ export function followPaints(session: Session, stack: LayerStack): void {
   })
   session.on('paint', (paint) => {
     if (paint === checker || paint.sample) return setBase(paint)
-    // The checker stands in where there is no paint; here is one.
-    if (stack.base?.sheet === checker) stack.restyle(stack.base, { visible: false })
-    stack.add(titleOf(paint), paint)
+    edits.do(`adding of ${titleOf(paint)}`, () => {
+      stack.add(titleOf(paint), paint)
+      // The checker stands in where there is no paint; here is one.
+      if (stack.base?.sheet === checker) stack.restyle(stack.base, { visible: false })
+    })
   })
 }
 

@@ -1,6 +1,6 @@
-import type { History } from '../history'
 import { announce, element } from '../page'
 import { kMostLayers } from './composite'
+import type { Edits } from './edits'
 import { kBlends, type Blend, type Layer, type Style } from './layer'
 import type { LayerStack } from './stack'
 
@@ -26,15 +26,14 @@ interface Row {
 /** The list of layers, the uppermost first: how each is laid, and in which order. */
 export class LayerList {
   readonly #stack: LayerStack
-  readonly #history: History
+  readonly #edits: Edits
   readonly #list = element('layer-list', HTMLOListElement)
   readonly #rows = new Map<number, Row>()
   #dragged: Layer | undefined
 
-  /** @param history Where the removal of a layer is noted. */
-  constructor(stack: LayerStack, history: History) {
+  constructor(stack: LayerStack, edits: Edits) {
     this.#stack = stack
-    this.#history = history
+    this.#edits = edits
     for (const event of ['change', 'select', 'pictures'] as const) stack.on(event, () => this.#show())
     // On the list, not on the row: a row that moves would lose the pointer.
     this.#list.addEventListener('pointermove', (event) => this.#drag(event))
@@ -81,20 +80,30 @@ export class LayerList {
     const visible = part<HTMLInputElement>('visible')
     const [opacity, tint, blend] = [part<HTMLInputElement>('opacity'), part<HTMLInputElement>('tint'), part<HTMLSelectElement>('blend')]
     for (const name of kBlends) blend.add(new Option(kBlendTitles[name], name))
-    const restyle = (style: Partial<Style>): void => this.#stack.restyle(this.#layerOf(id), style)
+    /** A drag says the same many times, and then that it is over. */
+    const restyle = (style: Partial<Style>): void => {
+      this.#edits.begin()
+      this.#stack.restyle(this.#layerOf(id), style)
+    }
+    const done = (what: string) => (): void => this.#edits.end(`${what} of ${this.#layerOf(id).name}`)
 
     choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)))
     visible.addEventListener('change', () => {
       restyle({ visible: visible.checked })
+      done(visible.checked ? 'showing' : 'hiding')()
       announce(`${this.#layerOf(id).name} is ${visible.checked ? 'shown' : 'hidden'}.`)
     })
     opacity.addEventListener('input', () => restyle({ opacity: Number(opacity.value) / 100 }))
     tint.addEventListener('input', () => restyle({ tint: tint.value }))
-    blend.addEventListener('change', () => restyle({ blend: blend.value as Blend }))
+    blend.addEventListener('input', () => restyle({ blend: blend.value as Blend }))
+    opacity.addEventListener('change', done('opacity'))
+    tint.addEventListener('change', done('tint'))
+    blend.addEventListener('change', done('blending'))
     remove.addEventListener('click', () => this.#remove(id))
     grip.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return
       this.#dragged = this.#layerOf(id)
+      this.#edits.begin()
       this.#list.setPointerCapture(event.pointerId)
       item.classList.add('dragged')
     })
@@ -103,7 +112,8 @@ export class LayerList {
       const step = steps[event.key]
       if (step === undefined) return
       event.preventDefault()
-      this.#move(this.#layerOf(id), this.#stack.layers.indexOf(this.#layerOf(id)) + step)
+      const layer = this.#layerOf(id)
+      this.#edits.do(`move of ${layer.name}`, () => this.#move(layer, this.#stack.layers.indexOf(layer) + step))
     })
 
     const row: Row = {
@@ -135,13 +145,7 @@ export class LayerList {
   #remove(id: number): void {
     const layer = this.#layerOf(id)
     const place = this.#stack.layers.length - 1 - this.#stack.layers.indexOf(layer)
-    let removed = this.#stack.remove(id)
-    this.#history.add({
-      name: `removal of ${layer.name}`,
-      bytes: layer.sheet.bytes ?? 0,
-      undo: () => this.#stack.insert(removed.layer, removed.place),
-      redo: () => (removed = this.#stack.remove(id)),
-    })
+    this.#edits.do(`removal of ${layer.name}`, () => this.#stack.remove(id))
     announce(`${layer.name} is removed.`)
     // The keyboard goes on with the row that took its place.
     const next = this.#list.children[Math.min(place, this.#list.children.length - 1)] ?? this.#list.parentElement!
@@ -170,7 +174,9 @@ export class LayerList {
   }
 
   #drop(): void {
-    if (this.#dragged) this.#rows.get(this.#dragged.id)?.item.classList.remove('dragged')
+    if (!this.#dragged) return
+    this.#rows.get(this.#dragged.id)?.item.classList.remove('dragged')
+    this.#edits.end(`move of ${this.#dragged.name}`)
     this.#dragged = undefined
   }
 }

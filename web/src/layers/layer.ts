@@ -35,3 +35,15 @@ export interface Layer extends Readonly<Style> {
   readonly name: string
   readonly sheet: Sheet
 }
+
+/** What of a layer's style another one has differently: the other's. */
+export function styleApart(layer: Layer, other: Layer): Partial<Style> {
+  const keys = (Object.keys(kPlain) as (keyof Style)[]).filter((key) => layer[key] !== other[key])
+  return Object.fromEntries(keys.map((key) => [key, other[key]]))
+}
+
+/** Whether the same layers lie in the same order, in the same way. */
+export function areSame(layers: readonly Layer[], others: readonly Layer[]): boolean {
+  const isSame = (layer: Layer, other: Layer | undefined): boolean => layer.id === other?.id && Object.keys(styleApart(layer, other)).length === 0
+  return layers.length === others.length && layers.every((layer, place) => isSame(layer, others[place]))
+}

@@ -1,6 +1,6 @@
 import { Emitter } from '../events'
 import { kMostLayers } from './composite'
-import { kPlain, type Layer, type Sheet, type Style } from './layer'
+import { kPlain, styleApart, type Layer, type Sheet, type Style } from './layer'
 
 /** What there is to be said when there is no room for another one. */
 export const kFull = `There are ${kMostLayers} layers, as many as there can be: remove one first.`
@@ -57,20 +57,36 @@ export class LayerStack extends Emitter<StackEvents> {
     return layer
   }
 
-  /** Takes a layer away. @returns It as it was, and where, for `insert`. */
-  remove(id: number): { layer: Layer; place: number } {
+  /** Takes a layer away. */
+  remove(id: number): void {
     const place = this.#layers.findIndex((layer) => layer.id === id)
-    const layer = this.#layers[place]!
     this.#set(this.#layers.toSpliced(place, 1))
     if (this.#selected === id) this.select(this.#layers[Math.min(place, this.#layers.length - 1)])
-    return { layer, place }
   }
 
-  /** Puts back a layer that was removed. @throws Error if there are eight. */
-  insert(layer: Layer, place: number): void {
-    if (this.full) throw new Error(kFull)
-    this.#set(this.#layers.toSpliced(place, 0, layer))
-    this.select(layer)
+  /**
+   * Does again what led from one state of the stack to another, and works on what that concerns: layers come, go, take their
+   * places and are laid as in the other. Whatever is the same in both stays as it is by now.
+   * @throws Error if there would be more than eight.
+   */
+  change(from: readonly Layer[], to: readonly Layer[]): void {
+    const find = (layers: readonly Layer[], { id }: Layer): Layer | undefined => layers.find((layer) => layer.id === id)
+    let concerned: Layer | undefined
+    const layers = to.flatMap((layer) => {
+      const [before, now] = [find(from, layer), find(this.#layers, layer)]
+      if (before && !now) return [] // what went since stays away
+      const style = before ? styleApart(before, layer) : {}
+      if (!before || Object.keys(style).length > 0) concerned ??= layer
+      return [{ ...(now ?? layer), ...style }]
+    })
+    // What came since stays.
+    this.#layers.forEach((layer, place) => {
+      if (!find(from, layer) && !find(to, layer)) layers.splice(place, 0, layer)
+    })
+    if (layers.length > kMostLayers) throw new Error(kFull)
+    const place = this.#layers.findIndex(({ id }) => id === this.#selected)
+    this.#set(layers)
+    this.select(concerned ?? this.selected ?? layers[Math.min(place, layers.length - 1)])
   }
 
   /** Moves a layer. @param place From 0, the lowest. */
