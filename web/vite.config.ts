@@ -2,6 +2,7 @@ import { cp, readFile } from 'node:fs/promises'
 import path from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { defineConfig, type Plugin } from 'vite'
+import { basis } from './basis'
 import { precache } from './precache'
 
 const kRepository = fileURLToPath(new URL('..', import.meta.url))
@@ -65,7 +66,7 @@ export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the built page can lie in any folder of any host.
   base: './',
-  plugins: [slim(), samples(), onlyGltfDraco(), precache()],
+  plugins: [slim(), samples(), onlyGltfDraco(), basis(), precache()],
   build: { outDir: path.join(kRepository, 'build/web'), emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 900 },
   worker: { format: 'es', plugins: () => [slim()] },
   preview: { headers: { 'X-Content-Type-Options': 'nosniff' } },

@@ -1,15 +1,12 @@
-import { DataTexture, Loader, type Texture } from 'three'
-import type { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js'
-
-/** What the visitor is told of a model with such textures. */
-export const kWithoutKtx2 = 'Its KTX2 textures are not shown here, but saved with it.'
+import { DataTexture, Loader, type LoadingManager, type Texture, type WebGLRenderer } from 'three'
+import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js'
 
 /**
- * Leaves KTX2 textures white, so that their model opens: Basis' transcoder makes functions out of text, which the page's
- * security policy forbids.
+ * Makes a decoder of KTX2 textures, whose files come with the page. Dispose of it: it holds workers.
+ * @param renderer What is to show them: it says which formats its GPU keeps them in. Without one they are left white.
  */
-export function leaveKtx2Out(): KTX2Loader {
-  return new Blank() as Loader as KTX2Loader
+export function makeKtx2Loader(manager: LoadingManager, renderer: WebGLRenderer | undefined): KTX2Loader {
+  return renderer ? new KTX2Loader(manager).setWorkerLimit(2).detectSupport(renderer) : (new Blank(manager) as Loader as KTX2Loader)
 }
 
 class Blank extends Loader<Texture> {
@@ -18,4 +15,6 @@ class Blank extends Loader<Texture> {
     texture.needsUpdate = true
     onLoad(texture)
   }
+
+  dispose(): void {}
 }

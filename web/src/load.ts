@@ -1,11 +1,8 @@
-import { Group, LoadingManager, type AnimationClip, type Mesh, type Object3D } from 'three'
+import { Group, LoadingManager, type AnimationClip, type Mesh, type Object3D, type WebGLRenderer } from 'three'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
-import { kWithoutKtx2, leaveKtx2Out } from './ktx2'
 import type { Sample } from './samples'
-
-const kKtx2 = 'KHR_texture_basisu'
 
 /** A model that was read: the scene to show, and its triangles to transfer with. */
 export interface Model {
@@ -15,20 +12,19 @@ export interface Model {
   files: readonly File[]
   scene: Object3D
   animations: readonly AnimationClip[]
-  /** What the visitor is to know of it. */
-  note?: string
   mesh: ExtractedMesh
   /** Which sample it belongs to; the visitor's own to none. */
   sample?: Sample
 }
 
 /**
- * Reads a GLB or glTF model, Draco, meshopt and quantised data included; KTX2 textures are left out.
+ * Reads a GLB or glTF model, Draco, meshopt, KTX2 and quantised data included.
  * @param file       The model.
+ * @param renderer   What is to show it, if anything can.
  * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
  * @throws Error of one sentence that begins with the file's name.
  */
-export async function loadModel(file: File, companions: readonly File[] = []): Promise<Model> {
+export async function loadModel(file: File, renderer: WebGLRenderer | undefined, companions: readonly File[] = []): Promise<Model> {
   const urls = new Map<string, string>()
   try {
     const bytes = await file.arrayBuffer()
@@ -37,11 +33,11 @@ export async function loadModel(file: File, companions: readonly File[] = []): P
 
     const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url)
     const loader = new GLTFLoader(manager)
-    const release = await addDecoders(loader, manager, head.extensions)
+    const release = await addDecoders(loader, manager, head.extensions, renderer)
     try {
       const gltf = await loader.parseAsync(bytes, '')
       const scene = await sceneOf(gltf)
-      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, ...(head.extensions.includes(kKtx2) && { note: kWithoutKtx2 }), mesh: await extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
+      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, mesh: await extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
     } finally {
       release()
     }
@@ -97,17 +93,25 @@ function findCompanion(uri: string, companions: readonly File[]): File {
 }
 
 /** Gives the loader the decoders this file asks for; they are fetched only then. Returns what frees them. */
-async function addDecoders(loader: GLTFLoader, manager: LoadingManager, extensions: string[]): Promise<() => void> {
+async function addDecoders(loader: GLTFLoader, manager: LoadingManager, extensions: string[], renderer: WebGLRenderer | undefined): Promise<() => void> {
+  const held: { dispose(): void }[] = []
   if (extensions.includes('EXT_meshopt_compression') || extensions.includes('KHR_meshopt_compression')) {
     const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js')
     loader.setMeshoptDecoder(MeshoptDecoder)
   }
-  if (extensions.includes(kKtx2)) loader.setKTX2Loader(leaveKtx2Out())
-  if (!extensions.includes('KHR_draco_mesh_compression')) return () => {}
-  const { makeDracoLoader } = await import('./draco')
-  const draco = makeDracoLoader(manager)
-  loader.setDRACOLoader(draco)
-  return () => draco.dispose()
+  if (extensions.includes('KHR_texture_basisu')) {
+    const { makeKtx2Loader } = await import('./ktx2')
+    const ktx2 = makeKtx2Loader(manager, renderer)
+    loader.setKTX2Loader(ktx2)
+    held.push(ktx2)
+  }
+  if (extensions.includes('KHR_draco_mesh_compression')) {
+    const { makeDracoLoader } = await import('./draco')
+    const draco = makeDracoLoader(manager)
+    loader.setDRACOLoader(draco)
+    held.push(draco)
+  }
+  return () => held.forEach((decoder) => decoder.dispose())
 }
 
 function plainWords(error: unknown): string {

@@ -1,3 +1,4 @@
+import type { WebGLRenderer } from 'three'
 import { setUpFiles, type Intake } from './files'
 import { loadModel, type Model } from './load'
 import type { Edits } from './layers/edits'
@@ -16,12 +17,15 @@ export class Opener {
   readonly #stack: LayerStack
   readonly #edits: Edits
   readonly #select = element('sample-select', HTMLSelectElement)
+  readonly #renderer: WebGLRenderer | undefined
   #samples: Sample[] = []
 
-  constructor(session: Session, stack: LayerStack, edits: Edits) {
+  /** @param renderer What shows them, if anything can. */
+  constructor(session: Session, stack: LayerStack, edits: Edits, renderer: WebGLRenderer | undefined) {
     this.#session = session
     this.#stack = stack
     this.#edits = edits
+    this.#renderer = renderer
     setUpFiles((intake) => this.#take(intake))
     this.#select.addEventListener('change', () => this.openSample(this.#select.value))
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap())
@@ -50,7 +54,7 @@ export class Opener {
     this.#select.value = name
     const { target, cage, paints } = sample
     const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0])
-    const model = async (address: string): Promise<Model> => ({ ...(await loadModel(await fetchFile(address))), sample })
+    const model = async (address: string): Promise<Model> => ({ ...(await loadModel(await fetchFile(address), this.#renderer)), sample })
     this.#session.want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, chosen) }, locks)
   }
 
@@ -71,12 +75,13 @@ export class Opener {
   /** Takes in files of the visitor's own. */
   #take({ target, cage, texture, unclear, all }: Intake): void {
     const wanted: Wanted = {}
-    if (target) wanted.target = loadModel(target, all)
-    if (cage) wanted.cage = loadModel(cage, all)
+    const load = (file: File): Promise<Model> => loadModel(file, this.#renderer, all)
+    if (target) wanted.target = load(target)
+    if (cage) wanted.cage = load(cage)
     const [one, other] = unclear
     if (!target && one && other) {
       // Nothing in their names tells: the cage is the one with fewer triangles.
-      const pair = Promise.all([loadModel(one, all), loadModel(other, all)]).then((models) =>
+      const pair = Promise.all([load(one), load(other)]).then((models) =>
         models.sort((a, b) => b.mesh.indices.length - a.mesh.indices.length),
       )
       wanted.target = pair.then(([larger]) => larger!)
@@ -92,7 +97,7 @@ export class Opener {
       label.textContent = label.title = name
     }
     const size = ({ mesh }: Model): string => `${(mesh.indices.length / 3).toLocaleString('en')} triangles`
-    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.${target.note ? ` ${target.note}` : ''}`
+    element('sizes', HTMLElement).textContent = `Target ${size(target)}, cage ${size(cage)}.`
     this.#describeOrigin(target.sample !== undefined, cage.sample !== undefined)
     this.#offerPaints({ cage })
   }
