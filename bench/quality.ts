@@ -40,7 +40,7 @@ async function main(): Promise<void> {
   for (const model of models) {
     say(model.name);
     try {
-      results.models[model.name] = measure(model);
+      results.models[model.name] = await measure(model);
     } catch (error) {
       throw new Error(`${model.folder ?? model.name}: ${(error as Error).message}`, { cause: error });
     }

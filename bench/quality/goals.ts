@@ -51,6 +51,7 @@ export function missedGoals(results: Readonly<Record<string, Quality>>): string[
       both(`default, cage moved by ${percent(shift)} along ${axis}`, value, goals.shifted);
     }
     atMost('smeared area', quality.smear.corner, goals.smear);
+    atMost('smeared area, borders cut', quality.smear.cut, goals.smear);
   }
   return lines;
 }

@@ -30,7 +30,7 @@ export const thresholds: readonly number[] = [1, 2, 3, 4, 5, 6, 7, 8, 9].map((te
 export const shift = 0.01;
 
 /** Measures all but times. `init` the package before. */
-export function measure(model: Model): Quality {
+export async function measure(model: Model): Promise<Quality> {
   const { scene } = model;
   const { cage, target } = scene;
   const pixels = visiblePixels(target);
@@ -55,7 +55,7 @@ export function measure(model: Model): Quality {
     },
     without: scores(withoutEachStep(scene)),
     shifted: scores(moved),
-    smear: smear(scene, result),
+    smear: await smear(scene, result),
     peakBytes: { paper: transfer(cage, target, { preset: 'paper' }).peakBytes, default: result.peakBytes },
     segments: measureSegments(model, result, presetOptions('default')),
   };

@@ -102,7 +102,7 @@ No difference to any of these models: ${idle.length > 0 ? idle.join(', ') : 'non
 
 /** Why vertices are left out, and what a transfer takes. */
 function costTable({ models, times }: QualityResults): string {
-  const head = ['vertices', '`paper`', '`default`', 'naive, ms', '`paper`, ms', '`default`, ms', '`paper`, MB', '`default`, MB', 'smeared: vertex', 'corner'];
+  const head = ['vertices', '`paper`', '`default`', 'naive, ms', '`paper`, ms', '`default`, ms', '`paper`, MB', '`default`, MB', 'smeared: vertex', 'corner', 'cut'];
   return byModel(models, head, ({ methods, peakBytes, smear }, name) => {
     const zones = ({ occluded, uncovered, culled }: ZoneCounts): string => `${occluded} / ${uncovered} / ${culled}`;
     const vertices = Object.values(methods.naive.vertices).reduce((sum, count) => sum + count, 0);
@@ -112,7 +112,7 @@ function costTable({ models, times }: QualityResults): string {
       ...[methods.paper, methods.default].map((method) => zones(method.vertices)),
       ...[naive, paper, ours].map(ms),
       ...[peakBytes.paper, peakBytes.default].map((bytes) => (bytes / 1e6).toFixed(1)),
-      ...[smear.vertex, smear.corner].map(percent),
+      ...[smear.vertex, smear.corner, smear.cut].map(percent),
     ];
   });
 }
@@ -166,7 +166,7 @@ export function qualityReport(results: QualityResults): string {
     '![A face whose eyes are of one piece with its skin, and one under a cage that is turned and moved, by every method](../../docs/pictures/failures.jpg)',
     '## Why vertices are left out, and what it takes',
     `Vertices occluded / uncovered / culled; milliseconds; most memory beyond cage and target (the poster: “~20 MB”); painted area
-whose texture is smeared, with UVs per vertex and per corner.`,
+whose texture is smeared, with UVs per vertex, per corner, and with borders that are cut.`,
     costTable(results),
     '## `default` without one step',
     `Suppressed · kept, where it differs from \`default\` as it is. \`groups\`: parts welded together; \`depth\`: the floor as it was at

@@ -1,4 +1,6 @@
-import type { TransferResult } from 'cagecast';
+import { project, type TransferResult } from 'cagecast';
+import { cutBorders } from 'cagecast/borders';
+import { blend } from '../../wasm/src/cut/blend.js';
 import { boxOf, doubleAreaNormal, length, minus, pointAt } from '../../wasm/src/inspect/geometry.js';
 import type { Scene, SceneMesh } from '../scene-file.js';
 import type { Decision } from './methods.js';
@@ -100,36 +102,54 @@ export function measureSegments({ scene, truth }: Model, { segments, segmentStat
   });
 }
 
-/** The share of the painted area whose texture is smeared, with UVs per vertex and with UVs per corner. */
+/** The share of the painted area whose texture is smeared: with UVs per vertex, with UVs per corner, and with borders that are cut. */
 export interface Smear {
   vertex: number;
   corner: number;
+  cut: number;
+}
+
+/** How much of what is painted is smeared. */
+export async function smear({ cage, target }: Scene, result: TransferResult): Promise<Smear> {
+  const { uvs, cornerUvs } = result;
+  const cut = await cutBorders(cage, target, result);
+  const pieces = { positions: blend(target.positions, 3, cut), indices: cut.indices };
+  const ofPieces = { ...project(cage, pieces, { preset: 'paper' }), cosmeticTriangles: cut.cosmeticTriangles };
+  return {
+    vertex: smearedShare(cage, target, result, (corner) => uvs.subarray(2 * target.indices[corner]!)),
+    corner: smearedShare(cage, target, result, (corner) => cornerUvs.subarray(2 * corner)),
+    cut: smearedShare(cage, pieces, ofPieces, (corner) => cut.cornerUvs.subarray(2 * corner)),
+  };
 }
 
 // A triangle is smeared if an edge is longer in the texture than four times what the cage under its ends explains.
 const kSmear = 4;
 const kSlack = 0.005; // in UV
 
-/** How much of what is painted is smeared. */
-export function smear({ cage, target }: Scene, { cosmeticTriangles, triangles, distances, uvs, cornerUvs }: TransferResult): Smear {
+/** @param uvOf  Of a corner of a triangle: an array that begins with it. */
+function smearedShare(
+  cage: SceneMesh,
+  target: SceneMesh,
+  { cosmeticTriangles, triangles, distances }: Pick<TransferResult, 'cosmeticTriangles' | 'triangles' | 'distances'>,
+  uvOf: (corner: number) => Float32Array,
+): number {
   const stretches = stretchesOf(cage);
   const { positions, indices } = target;
-  let [painted, byVertex, byCorner] = [0, 0, 0];
+  let [painted, smeared] = [0, 0];
   triangleAreas(target).forEach((area, t) => {
     if (cosmeticTriangles[t] !== 1) return;
     painted += area;
-    const isSmeared = (u: (corner: number, k: number) => number): boolean =>
-      [0, 1, 2].some((c) => {
-        const d = (c + 1) % 3;
-        const [v, w] = [indices[3 * t + c]!, indices[3 * t + d]!];
-        const stretch = Math.max(stretches[triangles[v]!]!, stretches[triangles[w]!]!);
-        const explained = stretch * (distance(positions, v, w) + Math.abs(distances[v]! - distances[w]!));
-        return Math.hypot(u(c, 0) - u(d, 0), u(c, 1) - u(d, 1)) > kSmear * explained + kSlack;
-      });
-    if (isSmeared((c, k) => uvs[indices[3 * t + c]! * 2 + k]!)) byVertex += area;
-    if (isSmeared((c, k) => cornerUvs[(3 * t + c) * 2 + k]!)) byCorner += area;
+    const isSmeared = [0, 1, 2].some((k) => {
+      const [c, d] = [3 * t + k, 3 * t + ((k + 1) % 3)];
+      const [v, w] = [indices[c]!, indices[d]!];
+      const stretch = Math.max(stretches[triangles[v]!]!, stretches[triangles[w]!]!);
+      const explained = stretch * (distance(positions, v, w) + Math.abs(distances[v]! - distances[w]!));
+      const [from, to] = [uvOf(c), uvOf(d)];
+      return Math.hypot(from[0]! - to[0]!, from[1]! - to[1]!) > kSmear * explained + kSlack;
+    });
+    if (isSmeared) smeared += area;
   });
-  return painted > 0 ? { vertex: byVertex / painted, corner: byCorner / painted } : { vertex: 0, corner: 0 };
+  return painted > 0 ? smeared / painted : 0;
 }
 
 /** Per triangle of the cage: the most UV per length of its edges. */

@@ -405,7 +405,7 @@ TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut",
 TEST_CASE("what is cut on fixed scenes has the golden hash", "[borders][golden]") {
   Hash hash;
   for (const Seams seams : {Seams::vertex, Seams::corner}) {
-    for (const scenes::Scene& scene : {scenes::head(8), scenes::head(16), scenes::strewn(1, 60)}) {
+    for (const scenes::Scene& scene : scenes::goldenBorders()) {
       const CutTarget cut = cutOf(scene.cage.view(), scene.target.view(), cutting(seams));
       hash.add(cut.sources);
       hash.add(cut.weights);

@@ -8,8 +8,8 @@
 /// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
 /// votes, floor, copies, second-look, both-sides, holes, triangles, seams. --preset earlier is `default` with the floor and
 /// the second look as they were first written down. --unchecked does not ask which vertices are stable. --product asks
-/// the library instead, which knows nothing of --without. The second form writes the scenes of the golden hash as FOLDER/0.scene,
-/// FOLDER/1.scene and so on, in their order; the third the models made to be difficult as FOLDER/NAME.scene, each with
+/// the library instead, which knows nothing of --without. The second form writes the scenes of the golden hashes, in their order,
+/// as FOLDER/0.scene and so on, and those that are cut as FOLDER/borders-0.scene and so on; the third the models made to be difficult as FOLDER/NAME.scene, each with
 /// the truth about its vertices in FOLDER/NAME.truth: u8 per target vertex, 0 to be painted, 1 not to be, 2 either.
 ///
 /// SCENE, little-endian: "CAGESCN1", then the cage, then the target, each as u32 vertexCount, u32 indexCount,
@@ -116,10 +116,12 @@ bool saveScene(const std::string& path, const MeshView& cage, const MeshView& ta
 }
 
 int writeGolden(const std::string& folder) {
-  int number = 0;
-  for (const scenes::Scene& scene : scenes::golden()) {
-    const std::string path = folder + "/" + std::to_string(number++) + ".scene";
-    if (!saveScene(path, scene.cage.view(), scene.target.view())) return fail(path + " cannot be written");
+  const std::pair<const char*, std::vector<scenes::Scene>> kinds[] = {{"", scenes::golden()}, {"borders-", scenes::goldenBorders()}};
+  for (const auto& [prefix, all] : kinds) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::string path = folder + "/" + prefix + std::to_string(i) + ".scene";
+      if (!saveScene(path, all[i].cage.view(), all[i].target.view())) return fail(path + " cannot be written");
+    }
   }
   return 0;
 }

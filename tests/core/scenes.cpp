@@ -232,4 +232,6 @@ std::vector<Scene> golden() {
   return all;
 }
 
+std::vector<Scene> goldenBorders() { return {head(8), head(16), strewn(1, 60)}; }
+
 }  // namespace cagecast::scenes

@@ -111,4 +111,7 @@ Scene head(int cells);
 /// The scenes whose results are hashed. Never changed, only added to.
 std::vector<Scene> golden();
 
+/// The scenes whose cut targets are hashed, with both kinds of seams.
+std::vector<Scene> goldenBorders();
+
 }  // namespace cagecast::scenes

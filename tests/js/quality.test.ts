@@ -8,7 +8,7 @@ import { visiblePixels } from '../../bench/quality/visible.js';
 
 describe('quality', () => {
   const results: Record<string, Quality> = {};
-  const measureFiles = async (files: ModelFiles): Promise<Quality> => (results[files.name] = measure(await loadFiles(files)));
+  const measureFiles = async (files: ModelFiles): Promise<Quality> => (results[files.name] = await measure(await loadFiles(files)));
   const filesOf = (kind: ModelFiles['kind']): ModelFiles[] => listFiles().filter((files) => files.kind === kind);
   before(init);
 

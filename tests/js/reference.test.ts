@@ -1,18 +1,15 @@
 import assert from 'node:assert/strict';
-import { execFileSync, spawnSync } from 'node:child_process';
+import { spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { basename, join, resolve } from 'node:path';
+import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import * as simd from 'cagecast';
 import type { Mesh, Preset, TransferResult } from 'cagecast';
+import { nativeCommand, packages } from './native.js';
 import { head, modelFolders, readPlain, soup, type Scene } from './scenes.js';
 
-/** The brute-force reference and the native library behind one command; its source tells the formats of its files. */
-const built = 'build/release/tests/core/cagecast_reference';
-const native = process.env['CAGECAST_REFERENCE'] ?? built;
+let native: string;
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-reference-'));
 
 interface Answer {
@@ -131,19 +128,11 @@ function hash({ uvs, zones, triangles, distances, segments, cosmeticTriangles, c
 }
 
 describe('the package gives the answer of the reference, and the bits of the native library', () => {
-  let builds: [string, typeof simd][] = [];
+  let builds: [string, Awaited<ReturnType<typeof packages>>['SIMD']][] = [];
 
   before(async () => {
-    if (native === built) {
-      // A reference of yesterday's library would prove nothing.
-      if (!existsSync('build/release/build.ninja')) execFileSync('cmake', ['--preset', 'release'], { stdio: ['ignore', 'ignore', 'inherit'] });
-      execFileSync('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference'], { stdio: ['ignore', 'ignore', 'inherit'] });
-    }
-    assert.ok(existsSync(native), `${native} is missing`);
-    execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
-    const scalar = (await import(pathToFileURL(resolve('build/wasm-scalar/package/index.js')).href)) as typeof simd;
-    builds = [['SIMD', simd], ['scalar', scalar]];
-    for (const [, { init }] of builds) await init();
+    native = nativeCommand();
+    builds = Object.entries(await packages());
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 

@@ -1,6 +1,6 @@
 // Builds the npm package into dist/: the core as WebAssembly, the TypeScript around it, its types, the CLI.
 //   node wasm/tools/build.mjs                        all of it; does nothing if nothing changed
-//   node wasm/tools/build.mjs --preset wasm-scalar   only build/wasm-scalar/package/index.js, which tests compare with
+//   node wasm/tools/build.mjs --preset wasm-scalar   only index.js and borders.js, in build/wasm-scalar/package, which tests compare with
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -86,6 +86,14 @@ async function buildPackage() {
     platform: 'neutral',
     plugins: [wasmModules('wasm-inline.ts')],
   });
+  await esbuild.build({
+    ...common,
+    entryPoints: [at('wasm/src/borders/index.ts')],
+    outfile: join(fresh, 'borders.js'),
+    platform: 'neutral',
+    external: ['./index.js'],
+    plugins: [wasmModules('wasm-inline.ts', { module: 'cagecast-borders', index: true, errors: true })],
+  });
   if (shipped) {
     // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
     const beside = (entry, outfile, platform) =>
@@ -97,14 +105,6 @@ async function buildPackage() {
         external: ['#spawn', '#read-wasm', './index.js', 'three'],
         plugins: [wasmModules('wasm-file.ts', { index: true, borders: true })],
       });
-    await esbuild.build({
-      ...common,
-      entryPoints: [at('wasm/src/borders/index.ts')],
-      outfile: join(fresh, 'borders.js'),
-      platform: 'neutral',
-      external: ['./index.js'],
-      plugins: [wasmModules('wasm-inline.ts', { module: 'cagecast-borders', index: true, errors: true })],
-    });
     await beside('index.ts', 'slim.js', 'neutral');
     await beside('read-wasm.ts', 'read-wasm.js', 'neutral');
     await beside('read-wasm-node.ts', 'read-wasm-node.js', 'node');

@@ -1,0 +1,33 @@
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync } from 'node:fs';
+import { resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import * as simd from 'cagecast';
+import * as simdBorders from 'cagecast/borders';
+
+const built = 'build/release/tests/core/cagecast_reference';
+
+/**
+ * The brute-force reference and the native library behind one command, built if it is not of this code; CAGECAST_REFERENCE names
+ * another. tests/core/reference_main.cpp tells what it does.
+ */
+export function nativeCommand(): string {
+  const native = process.env['CAGECAST_REFERENCE'] ?? built;
+  if (native === built) {
+    // A reference of yesterday's library would prove nothing.
+    if (!existsSync('build/release/build.ninja')) execFileSync('cmake', ['--preset', 'release'], { stdio: ['ignore', 'ignore', 'inherit'] });
+    execFileSync('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference'], { stdio: ['ignore', 'ignore', 'inherit'] });
+  }
+  assert.ok(existsSync(native), `${native} is missing`);
+  return native;
+}
+
+/** The package with its WebAssembly as it is shipped, and built without SIMD; ready. */
+export async function packages(): Promise<Record<'SIMD' | 'scalar', typeof simd & typeof simdBorders>> {
+  execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
+  const load = (name: string) => import(pathToFileURL(resolve('build/wasm-scalar/package', name)).href);
+  const scalar = { ...((await load('index.js')) as typeof simd), ...((await load('borders.js')) as typeof simdBorders) };
+  await Promise.all([simd.init(), scalar.init()]);
+  return { SIMD: { ...simd, ...simdBorders }, scalar };
+}
