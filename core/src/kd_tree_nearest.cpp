@@ -76,13 +76,13 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
   for (; members != 0; members &= members - 1) {
     const int i = std::countr_zero(members);
     const f32x4 squared = squaredDistanceToTriangles(leaf, load(points_[i]));
-    const float least = simd::lowest(squared);
-    const float limit = std::min(limits_[i], least * (1 + static_cast<float>(kRelativeSlack)) + fixedSlack_);
-    const unsigned lanes = simd::bits(squared <= splat(limit));
-    limits_[i] = limit;
+    const f32x4 least = simd::lowest(squared);
+    const f32x4 limit = simd::min(splat(limits_[i]), least * splat(1 + static_cast<float>(kRelativeSlack)) + splat(fixedSlack_));
+    const unsigned lanes = simd::bits(squared <= limit);
+    limits_[i] = simd::first(limit);
     // No branch: whether a leaf is of interest is a coin toss.
     const std::uint32_t count = nearCount_[i];
-    near_[i][std::min(count, kRoom)] = {least, leafIndex << 4 | lanes};
+    near_[i][std::min(count, kRoom)] = {simd::first(least), leafIndex << 4 | lanes};
     nearCount_[i] = count + (lanes != 0);
   }
 }
@@ -143,7 +143,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   f32x4 most = load(limits_);
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
-  std::uint32_t leafCount = listLeaves(low, high, splat(simd::highest(most)), leaves);
+  std::uint32_t leafCount = listLeaves(low, high, simd::highest(most), leaves);
   leafCount = static_cast<std::uint32_t>(std::remove(leaves, leaves + leafCount, kLeafBit | 4 * seed) - leaves);
   for (std::uint32_t begin = 0; begin < leafCount; begin += kBatch) {
     searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);

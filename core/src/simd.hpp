@@ -64,6 +64,8 @@ inline f32x4 splatLane(f32x4 a) {
 }
 /// Lanes 2, 3, 0, 1.
 inline f32x4 swapHalves(f32x4 a) { return {_mm_castsi128_ps(_mm_shuffle_epi32(_mm_castps_si128(a.v), 0x4E))}; }
+/// Lanes 1, 0, 3, 2.
+inline f32x4 swapPairs(f32x4 a) { return {_mm_castsi128_ps(_mm_shuffle_epi32(_mm_castps_si128(a.v), 0xB1))}; }
 /// Lane 0.
 inline float first(f32x4 a) { return _mm_cvtss_f32(a.v); }
 /// Bit i is lane i.
@@ -99,6 +101,7 @@ inline f32x4 splatLane(f32x4 a) {
   return {vdupq_laneq_f32(a.v, lane)};
 }
 inline f32x4 swapHalves(f32x4 a) { return {vextq_f32(a.v, a.v, 2)}; }
+inline f32x4 swapPairs(f32x4 a) { return {vrev64q_f32(a.v)}; }
 inline float first(f32x4 a) { return vgetq_lane_f32(a.v, 0); }
 inline unsigned bits(mask4 m) {
   static const uint32_t kBit[4] = {1, 2, 4, 8};
@@ -141,6 +144,7 @@ inline f32x4 splatLane(f32x4 a) {
   return {wasm_i32x4_shuffle(a.v, a.v, lane, lane, lane, lane)};
 }
 inline f32x4 swapHalves(f32x4 a) { return {wasm_i64x2_shuffle(a.v, a.v, 1, 0)}; }
+inline f32x4 swapPairs(f32x4 a) { return {wasm_i32x4_shuffle(a.v, a.v, 1, 0, 3, 2)}; }
 inline float first(f32x4 a) { return wasm_f32x4_extract_lane(a.v, 0); }
 inline unsigned bits(mask4 m) { return wasm_i32x4_bitmask(m.v); }
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
@@ -190,6 +194,7 @@ inline f32x4 splatLane(f32x4 a) {
   return splat(a.v[lane]);
 }
 inline f32x4 swapHalves(f32x4 a) { return {{a.v[2], a.v[3], a.v[0], a.v[1]}}; }
+inline f32x4 swapPairs(f32x4 a) { return {{a.v[1], a.v[0], a.v[3], a.v[2]}}; }
 inline float first(f32x4 a) { return a.v[0]; }
 inline unsigned bits(mask4 m) {
   return unsigned{m.v[0]} | unsigned{m.v[1]} << 1 | unsigned{m.v[2]} << 2 | unsigned{m.v[3]} << 3;
@@ -207,16 +212,14 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
 
 #endif
 
-/// The least and the greatest of the four lanes.
-inline float lowest(f32x4 a) {
+/// The least and the greatest of the four lanes, in all of them.
+inline f32x4 lowest(f32x4 a) {
   a = min(a, swapHalves(a));
-  a = min(a, splatLane<1>(a));
-  return first(a);
+  return min(a, swapPairs(a));
 }
-inline float highest(f32x4 a) {
+inline f32x4 highest(f32x4 a) {
   a = max(a, swapHalves(a));
-  a = max(a, splatLane<1>(a));
-  return first(a);
+  return max(a, swapPairs(a));
 }
 
 inline f32x4 clamp(f32x4 x, f32x4 low, f32x4 high) { return min(max(x, low), high); }
