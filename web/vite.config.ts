@@ -40,15 +40,15 @@ async function sampleFiles(): Promise<string[]> {
   return samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)])
 }
 
-/** Takes the package with its WebAssembly in a file of its own: page and worker share it, and it compiles while it loads. */
+/** Takes the package with its WebAssembly in files of their own: page and worker share them, and they compile while they load. */
 function slim(): Plugin {
-  const inlined = path.join(kRepository, 'dist/index.js')
+  const slimOf = new Map([['index.js', 'slim.js'], ['borders.js', 'slim-borders.js']].map((names) => names.map((name) => path.join(kRepository, 'dist', name)) as [string, string]))
   return {
     name: 'cagecast-slim',
     enforce: 'pre',
     async resolveId(source, importer, options) {
       const found = await this.resolve(source, importer, { ...options, skipSelf: true })
-      return found?.id === inlined ? path.join(kRepository, 'dist/slim.js') : found
+      return found && (slimOf.get(found.id) ?? found)
     },
   }
 }

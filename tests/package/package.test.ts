@@ -30,6 +30,16 @@ globalThis.answer = JSON.stringify([[...uvs], [...zones], [...decided.zones], Zo
 const answer = '[[0,0,1,0,0,1],[0,0,0],[0,0,0],3,"nonFinitePosition"]';
 
 const slimProgram = program.replace("'cagecast'", "'cagecast/slim'");
+const cutProgram = `
+import { init, transfer, CagecastError } from 'cagecast/slim';
+import { cutBorders } from 'cagecast/slim/borders';
+await init();
+const mesh = (z) => ({ positions: new Float32Array([0, 0, z, 1, 0, z, 0, 1, z]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array([0, 0, 1, 0, 0, 1]) });
+const { triangles, cosmeticTriangles } = await cutBorders(mesh(0.1), mesh(0), transfer(mesh(0.1), mesh(0)));
+const refused = await cutBorders(mesh(0.1), mesh(0), {}).catch((error) => error);
+globalThis.answer = JSON.stringify([triangles.length > 0, triangles.every((t) => t === 0), cosmeticTriangles.every((one) => one === 1), refused instanceof CagecastError]);
+`;
+const cutAnswer = '[true,true,true,true]';
 const workerProgram = program
   .replace("'cagecast'", "'cagecast/worker'")
   .replaceAll(/(transfer|classify|project)\(mesh/g, 'await $1(mesh')
@@ -118,14 +128,14 @@ describe('the packed package', () => {
       import { applyTransfer, extract, type Applied } from 'cagecast/three';
       await init();
       const scene = new Group().add(new Mesh(new BoxGeometry(1, 1, 1, 3, 3, 3)));
-      const cage = new SphereGeometry(1);
+      const cage = new SphereGeometry(1, 16, 8, 0, 2 * Math.PI, 0, 2);
       // Before its vertices are split.
       const { positions, indices, ...rest } = extract(scene).mesh;
       const applied: Applied = applyTransfer(scene, cage, { texture: new Texture(), threshold: 0.3 });
       const arrays: Arrays = extract(cage, 'cage').mesh;
       const inspection: Inspection = inspect(arrays, { positions, indices, ...rest }, { result: applied.result });
       const verdict: Verdict = inspection.verdict;
-      const cut: CutTarget = await cutBorders(arrays, { positions, indices, ...rest }, applied.result, { threshold: 0.3 });
+      const cut: CutTarget = await cutBorders(arrays, { positions, indices, ...rest }, applied.result, { threshold: 0.3, seams: 'vertex' });
       const document = new Document();
       const buffer = document.createBuffer();
       const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'SCALAR') => document.createAccessor().setType(type).setArray(new (array.constructor as Float32ArrayConstructor)(array)).setBuffer(buffer);
@@ -133,10 +143,10 @@ describe('the packed package', () => {
       document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
       await document.transform(cagecast({ cage: arrays }));
       const box = new Group().add(new Mesh(new BoxGeometry(1, 1, 1, 3, 3, 3)));
-      const { cutTriangles }: Applied = await applyTransfer(box, cage, { borders: 'cut' });
+      const { cutTriangles }: Applied = await applyTransfer(box, cage, { borders: 'cut', threshold: 0.3, seams: 'vertex' });
       // @ts-expect-error a cage is needed
       void (() => cagecast({}));
-      console.log(verdict !== undefined, cut.triangles.length - indices.length / 3 === cutTriangles, applied.overlays.length, primitive.listSemantics().join());`,
+      console.log(verdict !== undefined, cutTriangles > 0 && cut.triangles.length - indices.length / 3 === cutTriangles, applied.overlays.length, primitive.listSemantics().join());`,
     );
     run(join(tools, 'esbuild/bin/esbuild'), ['program.ts', '--format=esm', '--outfile=program.js', '--log-level=warning'], folder);
     assert.equal(run(process.execPath, ['--preserve-symlinks', '--preserve-symlinks-main', 'program.js'], folder).trim(), 'true true 1 POSITION,TEXCOORD_0,_NCZ');
@@ -148,10 +158,10 @@ describe('the packed package', () => {
 
   test('runs in Node', () => assert.equal(run(process.execPath, ['print.js']).trim(), answer));
 
-  test('its other entries run in Node: slim, and the worker', () => {
-    for (const [entry, text] of Object.entries({ slim: slimProgram, worker: workerProgram })) {
+  test('its other entries run in Node: slim, alone and with borders, and the worker', () => {
+    for (const [entry, text, expected] of [['slim', slimProgram, answer], ['cut', cutProgram, cutAnswer], ['worker', workerProgram, answer]] as const) {
       writeFileSync(join(user, `${entry}.js`), `${text}; console.log(globalThis.answer);`);
-      assert.equal(run(process.execPath, [`${entry}.js`]).trim(), answer, entry);
+      assert.equal(run(process.execPath, [`${entry}.js`]).trim(), expected, entry);
     }
   });
 
@@ -243,7 +253,7 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
     mkdirSync(pages, { recursive: true });
     // As it is, through Vite, and in a worker.
     run(join(tools, 'esbuild/bin/esbuild'), ['program.js', '--bundle', '--format=esm', '--outfile=pages/plain.js', '--log-level=warning']);
-    for (const [entry, text] of Object.entries({ main: program, slim: slimProgram, worker: workerProgram })) {
+    for (const [entry, text] of Object.entries({ main: program, slim: slimProgram, cut: cutProgram, worker: workerProgram })) {
       const site = join(user, `site-${entry}`);
       mkdirSync(site);
       writeFileSync(join(site, 'index.html'), '<!doctype html><script type="module" src="/main.js"></script>');
@@ -266,7 +276,7 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
   test('every entry runs: bundled by esbuild, built by Vite, in a worker of the page and in its own', async () => {
     const browser = await launchChromium({ drawing: false });
     try {
-      for (const path of ['/plain.html', '/worker.html', '/vite-main/index.html', '/vite-slim/index.html', '/vite-worker/index.html']) {
+      for (const path of ['/plain.html', '/worker.html', '/vite-main/index.html', '/vite-slim/index.html', '/vite-cut/index.html', '/vite-worker/index.html']) {
         const page = await browser.newPage();
         const faults: string[] = [];
         page.on('pageerror', (error) => faults.push(String(error)));
@@ -278,7 +288,7 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
           found = await page.evaluate('globalThis.answer');
         }
         assert.deepEqual(faults, [], path);
-        assert.equal(found, answer, path);
+        assert.equal(found, path.includes('cut') ? cutAnswer : answer, path);
         await page.close();
       }
     } finally {

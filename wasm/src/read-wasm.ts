@@ -1,7 +1,7 @@
-/** Compiles cagecast.wasm, which lies beside this script, while it is loaded. */
+/** Compiles the WebAssembly file that lies beside this script, while it is loaded. */
 export async function readWasm(): Promise<WebAssembly.Module> {
-  // In this form bundlers find the file.
-  const response = await fetch(new URL('./cagecast.wasm', import.meta.url));
+  // With the name put in by the build, bundlers find the file.
+  const response = await fetch(new URL(CAGECAST_WASM, import.meta.url));
   if (!response.ok) throw new Error(`${response.url}: ${response.status} ${response.statusText}`);
   // A server that does not know of WebAssembly sends it as another type, which streaming refuses.
   return response.headers.get('content-type') === 'application/wasm'

@@ -23,3 +23,6 @@ declare module 'draco3dgltf/draco_decoder_gltf.wasm' {
 
 /** The package's version, from package.json. */
 declare const CAGECAST_VERSION: string;
+
+/** Where a script that reads WebAssembly finds it, relative to itself. */
+declare const CAGECAST_WASM: string;

@@ -91,23 +91,29 @@ async function buildPackage() {
     entryPoints: [at('wasm/src/borders/index.ts')],
     outfile: join(fresh, 'borders.js'),
     platform: 'neutral',
-    external: ['./index.js'],
-    plugins: [wasmModules('wasm-inline.ts', { module: 'cagecast-borders', index: true, errors: true })],
+    plugins: [wasmModules('wasm-inline.ts', { module: 'cagecast-borders', index: './index.js', errors: true })],
   });
   if (shipped) {
     // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
-    const beside = (entry, outfile, platform) =>
+    const beside = (entry, outfile, platform, modules = { index: './index.js', borders: true }, define = {}) =>
       esbuild.build({
         ...common,
+        define: { ...common.define, ...define },
         entryPoints: [at('wasm/src', entry)],
         outfile: join(fresh, outfile),
         platform,
-        external: ['#spawn', '#read-wasm', './index.js', 'three'],
-        plugins: [wasmModules('wasm-file.ts', { index: true, borders: true })],
+        external: ['#spawn', './index.js', 'three'],
+        plugins: [wasmModules('wasm-file.ts', modules)],
       });
     await beside('index.ts', 'slim.js', 'neutral');
-    await beside('read-wasm.ts', 'read-wasm.js', 'neutral');
-    await beside('read-wasm-node.ts', 'read-wasm-node.js', 'node');
+    await beside('borders/index.ts', 'slim-borders.js', 'neutral', { module: 'cagecast-borders', index: './slim.js', errors: true });
+    for (const [name, file] of Object.entries({ 'read-wasm': 'cagecast.wasm', 'read-borders-wasm': 'cagecast-borders.wasm' })) {
+      const define = { CAGECAST_WASM: JSON.stringify(`./${file}`) };
+      await beside('read-wasm.ts', `${name}.js`, 'neutral', {}, define);
+      await beside('read-wasm-node.ts', `${name}-node.js`, 'node', {}, define);
+      cpSync(at('build', preset, 'wasm', file), join(fresh, file));
+      chmodSync(join(fresh, file), 0o644);
+    }
     await beside('inspect/index.ts', 'inspect.js', 'neutral');
     await beside('cut/index.ts', 'cut.js', 'neutral');
     await beside('three/index.ts', 'three.js', 'neutral');
@@ -118,8 +124,6 @@ async function buildPackage() {
     await beside('worker/spawn-node.ts', 'spawn-node.js', 'node');
     await beside('worker/thread.ts', 'worker-thread.js', 'neutral');
     await beside('worker/thread-node.ts', 'worker-thread-node.js', 'node');
-    cpSync(at('build', preset, 'wasm/cagecast.wasm'), join(fresh, 'cagecast.wasm'));
-    chmodSync(join(fresh, 'cagecast.wasm'), 0o644);
     await esbuild.build({
       ...common,
       entryPoints: [at('wasm/src/cli/main.ts')],
@@ -148,23 +152,25 @@ async function buildPackage() {
   /**
    * Resolves the names that stand for what the C++ build makes.
    * @param wasm     How the package comes by its WebAssembly.
-   * @param options  `module`: which; `index`: importers of the package's index share one copy of it; `errors`: so do those of its error;
+   * @param options  `module`: which; `index`: the file that importers of the package's index share; `errors`: so do those of its error;
    * `borders`: what is loaded to cut these stays a file of its own.
    */
-  function wasmModules(wasm, { module = 'cagecast', index = false, errors = false, borders = false } = {}) {
+  function wasmModules(wasm, { module = 'cagecast', index, errors = false, borders = false } = {}) {
     const files = {
       '#glue': at('build', preset, `wasm/${module}.js`),
       '#wasm-text': at('build', preset, `wasm/${module}.wasm`),
       '#wasm': at('wasm/src', wasm),
     };
+    const reader = module === 'cagecast' ? '#read-wasm' : '#read-borders-wasm';
     return {
       name: 'wasm-modules',
       setup(build) {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
+        build.onResolve({ filter: /^#read-wasm$/ }, () => ({ path: reader, external: true }));
         for (const [path, file] of borders ? lazy : []) build.onResolve({ filter: path }, () => ({ path: file, external: true }));
         const own = at('wasm/src/borders/error.ts');
         if (errors) build.onResolve({ filter: /^\.\.?\/error\.js$/ }, ({ importer }) => (importer === own ? undefined : { path: own }));
-        if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: './index.js', external: true }));
+        if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
         build.onLoad({ filter: /cagecast(-borders)?\.wasm$/ }, ({ path }) => ({ contents: JSON.stringify(packText(readFileSync(path))), loader: 'json' }));
       },
     };
