@@ -36,10 +36,10 @@ async function ctest(preset) {
   return { passed: all - failed, failed: Number(failed) || Number(status !== 0) };
 }
 
-async function nodeTests(folder, env) {
+async function nodeTests(folder, { atOnce = 1, env } = {}) {
   const files = readdirSync(new URL(folder, import.meta.url)).filter((name) => name.endsWith('.test.ts'));
   const { status, output } = await run(process.execPath, [
-    '--import', 'tsx', '--test', '--test-reporter=spec', '--test-concurrency=1', ...files.map((name) => `tests/${folder}/${name}`),
+    '--import', 'tsx', '--test', '--test-reporter=spec', `--test-concurrency=${atOnce}`, ...files.map((name) => `tests/${folder}/${name}`),
   ], env);
   const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
   return { passed: count('pass'), failed: (count('fail') + count('cancelled')) || Number(status !== 0), skipped: count('skipped') };
@@ -54,7 +54,7 @@ const kSuites = {
   package: async () => {
     await mustRun('npm', ['run', '--silent', 'assets']);
     await mustRun('npm', ['run', '--silent', 'build']);
-    const js = await nodeTests('js');
+    const js = await nodeTests('js', { atOnce: 2 });
     const packed = await nodeTests('package');
     return { passed: js.passed + packed.passed, failed: js.failed + packed.failed, skipped: js.skipped + packed.skipped };
   },
@@ -63,7 +63,7 @@ const kSuites = {
     await mustRun('npm', ['run', '--silent', 'build']);
     const page = fileURLToPath(new URL('../build/web', import.meta.url));
     await mustRun('npx', ['vite', 'build', 'web', '--logLevel', 'error']);
-    return nodeTests('browser', { CAGECAST_PAGE: page });
+    return nodeTests('browser', { atOnce: 2, env: { CAGECAST_PAGE: page } });
   },
 };
 
