@@ -1,7 +1,11 @@
 import assert from 'node:assert/strict'
+import { execFile } from 'node:child_process'
 import { existsSync, readdirSync, readFileSync } from 'node:fs'
+import { mkdtemp, rm } from 'node:fs/promises'
+import { tmpdir } from 'node:os'
 import path from 'node:path'
 import { after, before, test } from 'node:test'
+import { promisify } from 'node:util'
 import type { Page } from 'playwright-core'
 import { PNG } from 'pngjs'
 import { report, reportedCounts, type Report } from './cli'
@@ -74,6 +78,19 @@ for (const { name, target, cage } of pairs()) {
     assert.deepEqual(complaints, [])
   })
 }
+
+test('a model that was painted before is opened without the overlay it has', async () => {
+  const { page, complaints } = await fresh()
+  const cage = path.join(kLizard, 'cage.glb')
+  const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-painted-'))
+  const painted = path.join(folder, 'painted.glb')
+  await promisify(execFile)(process.execPath, [inRepository('dist/cli.js'), 'transfer', path.join(kLizard, 'target.glb'), '--cage', cage, '--texture', path.join(kLizard, 'paint-tiger.png'), '-o', painted])
+  await drop(page, [read(painted), read(cage)])
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.deepEqual(await shownCounts(page), await reportedCounts(painted, cage))
+  await rm(folder, { recursive: true })
+  assert.deepEqual(complaints, [])
+})
 
 test('the threshold changes the counts at once, to what a transfer with it gives', async () => {
   const { page, complaints } = await fresh()

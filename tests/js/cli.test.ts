@@ -146,6 +146,10 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     ['a reference to no accessor', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.attributes['POSITION'] = 99; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.POSITION = 99 is out of range \(\d+ accessors\)/],
     ['a node that is its own ancestor', () => changed(({ json }) => { json.nodes!.push({ children: [2] }, { children: [1] }); }), /bad\.glb: has no|two parents|nodes/],
     ['a scene whose root is its own ancestor', () => changed(({ json }) => { json.nodes![0]!.children = [0]; }), /bad\.glb: nodes\[0\] is a root of scenes\[0\] and a child of nodes\[0\]/],
+    ['a node that is twice in the scene', () => changed(({ json }) => { json.scenes![0]!.nodes = [0, 0]; }), /bad\.glb: nodes\[0\] is twice a root of scenes\[0\]/],
+    ['morph targets that are no list', () => changed(({ json }) => { Object.assign(json.meshes![0]!.primitives[0]!, { targets: -1 }); }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets is not a list of objects/],
+    ['a morph target that is nowhere', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.targets = [{ POSITION: 99 }]; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets\[0\]\.POSITION = 99 is out of range \(\d+ accessors\)/],
+    ['an object for a number', () => changed(({ json }) => { Object.assign(json, { scene: {} }); }), /bad\.glb: scene = of type Object is out of range \(1 scenes\)/],
     ['corners that are no triangles', () => changed(({ json }) => { json.accessors![json.meshes![0]!.primitives[0]!.indices!]!.count -= 1; }), /bad\.glb: meshes\[0\]\.primitives\[0\] has \d+ corners, not 3 per triangle/],
     ['damaged Draco data', () => changed(({ json }) => { json.extensionsUsed = json.extensionsRequired = ['KHR_draco_mesh_compression']; json.meshes![0]!.primitives[0]!.extensions = { KHR_draco_mesh_compression: { bufferView: 0, attributes: { POSITION: 0 } } }; }), /bad\.glb: cannot be decoded/],
     ['damaged meshopt data', () => changed(({ json }) => { json.extensionsUsed = json.extensionsRequired = ['EXT_meshopt_compression']; const view = json.bufferViews![0]!; view.extensions = { EXT_meshopt_compression: { buffer: 0, byteOffset: 0, byteLength: 60, byteStride: 12, count: 5, mode: 'ATTRIBUTES' } }; }), /bad\.glb: cannot be decoded/],
@@ -482,6 +486,15 @@ describe('what a target has is kept', () => {
       assert.ok(step > 0.0005 && step < 0.005, `vertex ${v} moved by ${step}`);
       assert.ok(Math.hypot(...q.slice(3 * v, 3 * v + 3)) > Math.hypot(...p.slice(3 * v, 3 * v + 3)) - 1e-4, `vertex ${v} moved inwards`);
     }
+  });
+
+  test('an overlay is no part of the model when it is read again', () => {
+    const [once, twice] = [at('once.glb'), at('twice.glb')];
+    const run = (target: string, to: string) => report(target, at('cage.glb'), '--texture', at('paint.png'), '-o', to);
+    const [first, second] = [run(at('target.glb'), once), run(once, twice)];
+    assert.deepEqual([second.triangles, second.parts.length, second.parts[0]!.uvSet], [first.triangles, first.parts.length, 'TEXCOORD_2']);
+    rmSync(once);
+    rmSync(twice);
   });
 
   test('nothing to paint, no overlay', async () => {

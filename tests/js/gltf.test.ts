@@ -106,6 +106,17 @@ describe('document.transform(cagecast(…))', () => {
     assert.deepEqual(await validate(at('skinned.glb')), []);
   });
 
+  test('applied again, it takes the model alone, without the overlay', async () => {
+    const document = await documentOf(glbOf(scene.target));
+    const step = cagecastTransform({ cage: scene.cage, texture: paint });
+    await document.transform(step);
+    const first = primitives(document)[0]!;
+    const [zones, vertices] = [first.getAttribute('_NCZ')!.getArray(), first.getAttribute('POSITION')!.getCount()];
+    await document.transform(step);
+    assert.deepEqual(primitives(document).map((primitive) => primitive.listSemantics().includes('_NCZ')), [true, false, false]);
+    assert.deepEqual([primitives(document)[0]!.getAttribute('_NCZ')!.getArray(), primitives(document)[0]!.getAttribute('POSITION')!.getCount()], [zones, vertices]);
+  });
+
   test('what cannot be used is said in one error, and the document stays as it was', async () => {
     const fails = async (make: () => Promise<{ target?: Uint8Array; cage?: Document | Mesh; texture?: Uint8Array; threshold?: number }>, code: string, message: RegExp) => {
       const { target = glbOf(scene.target), cage = scene.cage, ...more } = await make();
@@ -127,6 +138,9 @@ describe('document.transform(cagecast(…))', () => {
     await fails(async () => ({ texture: new Uint8Array(100) }), 'badArgument', /^cagecast: texture: is neither a PNG nor a JPEG image/);
     await fails(async () => ({ texture: paint.subarray(0, 50) }), 'badArgument', /^cagecast: texture: is truncated/);
     await fails(async () => ({ threshold: 2 }), 'badThreshold', /threshold = 2/);
+    await fails(async () => ({ cage: 'cage.glb' as unknown as Mesh }), 'badArgument', /^cagecast: cage is "cage\.glb", not a document or a mesh/);
+    await fails(async () => ({ cage: null as unknown as Mesh }), 'badArgument', /^cagecast: cage is null/);
+    await fails(async () => ({ texture: paint.buffer as unknown as Uint8Array }), 'badArgument', /^cagecast: texture is of type ArrayBuffer, not a Uint8Array of a file's bytes/);
   });
 
   test('compressed files of the wild can be targets', { skip: process.env['CAGECAST_ASSETS'] === undefined && 'CAGECAST_ASSETS is not set' }, async () => {

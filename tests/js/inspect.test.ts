@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { init, transfer, type Mesh } from 'cagecast';
+import { CagecastError, init, transfer, type Mesh } from 'cagecast';
 import { inspect, type FindingCode, type Inspection } from 'cagecast/inspect';
 import { ball, head, join3d } from './scenes.js';
 
@@ -286,6 +286,15 @@ describe('holes and segments', () => {
     const eye = segments.find(({ part }) => part === 'eye')!;
     const inspection = inspect(cage, target, { parts, threshold: Math.min(1, eye.coverage + 0.02), floor: 'none' });
     assert.match(find(inspection, 'segmentInDoubt').sentence, /"eye" is not painted, but nearly: F = 0\.\d\d, less than the threshold/);
+  });
+
+  test('a cage that is a speck beside its target is unfit, not an error', () => {
+    const { verdict } = look({ positions: cage.positions.map((x) => 1e-20 * x) });
+    assert.equal(verdict, 'unfit');
+  });
+
+  test('options that are no object are named', () => {
+    assert.throws(() => (inspect as (...args: unknown[]) => unknown)(cage, target, null), (error) => error instanceof CagecastError && error.message === 'inspect: options is null, not an object');
   });
 
   test('a target of one triangle, and one without area, can be looked at', () => {

@@ -68,6 +68,23 @@ describe('extract', () => {
     const odd = new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 0, 1, 0, 0], 3));
     assert.throws(() => extract(odd, 'cage'), /cage: "geometry" has 2 corners, not 3 per triangle/);
     assert.throws(() => applyTransfer(new Group(), meshOf(scene.cage)), (error) => error instanceof CagecastError && error.code === 'emptyMesh');
+    const flat = new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 1, 0, 0, 1], 2));
+    assert.throws(() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/);
+    const short = geometryOf(scene.cage).setAttribute('uv', new Float32BufferAttribute([0, 0, 1, 1], 2));
+    assert.throws(() => extract(short, 'cage'), new RegExp(`cage: "geometry" has 2 UVs of 2 numbers for ${scene.cage.positions.length / 3} vertices, not one of 2 for each`));
+  });
+
+  test('arguments that TypeScript would not let through are named', () => {
+    const fails = (message: RegExp, ...args: unknown[]) =>
+      assert.throws(() => (applyTransfer as (...args: unknown[]) => unknown)(...args), (error) => error instanceof CagecastError && message.test(error.message), String(message));
+    const [target, cage] = [meshOf(scene.target), meshOf(scene.cage)];
+    fails(/cagecast\/three: target is of type Object, not a scene, mesh or geometry \(of what GLTFLoader gives, take \.scene\)/, { scene: target }, cage);
+    fails(/cagecast\/three: cage is undefined, not a scene/, target);
+    fails(/cagecast\/three: options is null, not an object/, target, cage, null);
+    fails(/cagecast\/three: options\.texture is "paint\.png", not a Texture/, target, cage, { texture: 'paint.png' });
+    fails(/cagecast\/three: options\.material is of type Object, not a Material/, target, cage, { material: {} });
+    fails(/cagecast\/three: options\.channel is 7, not 1, 2 or 3/, target, cage, { channel: 7 });
+    fails(/cagecast\/three: result is of undefined vertices/, target, cage, { result: {} });
   });
 });
 
@@ -163,6 +180,12 @@ describe('applyTransfer', () => {
     assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
     dispose();
     assert.equal(target.children.length, 0);
+  });
+
+  test('overlays that are in its file are no part of a model', () => {
+    const overlay = meshOf(scene.target);
+    overlay.geometry.userData = { cagecastOverlay: true }; // as GLTFLoader hands on what the command writes
+    assert.equal(extract(new Group().add(meshOf(scene.target), overlay)).parts.length, 1);
   });
 
   test('applied again, it does not take its own overlays for the model', () => {

@@ -1,4 +1,4 @@
-import { Group, LoadingManager, type AnimationClip, type Mesh, type Object3D, type WebGLRenderer } from 'three'
+import { Group, LoadingManager, Mesh, type AnimationClip, type Object3D, type WebGLRenderer } from 'three'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
@@ -70,6 +70,12 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
     object.matrixAutoUpdate = false
     object.matrix.fromArray(matrix)
   })
+  // What an earlier transfer laid over the model, as `cagecast transfer` marks it, is no part of it.
+  const overlays: Object3D[] = []
+  root.traverse((object) => {
+    if (object instanceof Mesh && object.geometry.userData.cagecastOverlay === true) overlays.push(object)
+  })
+  for (const overlay of overlays) overlay.removeFromParent()
   return root
 }
 

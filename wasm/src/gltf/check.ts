@@ -1,4 +1,5 @@
 import type { GLTF } from '@gltf-transform/core';
+import { show } from '../error.js';
 import { InputError } from './input-error.js';
 
 const componentBytes: Record<number, number> = { 5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4 };
@@ -29,8 +30,9 @@ export function meshoptView(view: GLTF.IBufferView): MeshoptView | undefined {
  * @throws {InputError}
  */
 export function checkLists(json: GLTF.IGLTF): void {
+  const isObject = (item: unknown) => typeof item === 'object' && item !== null;
   for (const name of ['buffers', 'bufferViews', 'accessors', 'meshes', 'nodes', 'scenes', 'skins', 'materials', 'textures', 'images'] as const) {
-    listOf(name, json[name], (item) => typeof item === 'object' && item !== null, 'objects');
+    listOf(name, json[name], isObject, 'objects');
   }
   const isText = (item: unknown) => typeof item === 'string';
   listOf('extensionsUsed', json.extensionsUsed, isText, 'names');
@@ -40,7 +42,10 @@ export function checkLists(json: GLTF.IGLTF): void {
       if (uri !== undefined && !isText(uri)) throw new InputError(`${name}[${i}].uri is not a text`);
     });
   }
-  json.meshes?.forEach((mesh, m) => listOf(`meshes[${m}].primitives`, mesh.primitives ?? null, (item) => typeof item === 'object' && item !== null, 'objects'));
+  json.meshes?.forEach((mesh, m) => {
+    listOf(`meshes[${m}].primitives`, mesh.primitives ?? null, isObject, 'objects');
+    mesh.primitives.forEach(({ targets }, p) => listOf(`meshes[${m}].primitives[${p}].targets`, targets, isObject, 'objects'));
+  });
   json.nodes?.forEach((node, n) => listOf(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers'));
   json.scenes?.forEach((scene, s) => listOf(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
 }
@@ -78,8 +83,8 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
     const name = `accessors[${a}]`;
     const component = componentBytes[accessor.componentType];
     const components = typeComponents[accessor.type];
-    if (component === undefined) throw new InputError(`${name}.componentType = ${accessor.componentType} is unknown`);
-    if (components === undefined) throw new InputError(`${name}.type = ${accessor.type} is unknown`);
+    if (component === undefined) throw new InputError(`${name}.componentType = ${show(accessor.componentType)} is unknown`);
+    if (components === undefined) throw new InputError(`${name}.type = ${show(accessor.type)} is unknown`);
     if (whole(`${name}.count`, accessor.count) > maxCount) throw new InputError(`${name}.count = ${accessor.count} is more than ${maxCount}`);
     if (accessor.bufferView !== undefined) within(name, accessor.bufferView, accessor.byteOffset ?? 0, component * components, accessor.count);
     if (accessor.sparse) {
@@ -107,6 +112,9 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
         index(`${name}.attributes.${semantic}`, accessor, accessors.length, 'accessors');
       }
       if (primitive.indices !== undefined) index(`${name}.indices`, primitive.indices, accessors.length, 'accessors');
+      primitive.targets?.forEach((deltas, t) => {
+        for (const [semantic, accessor] of Object.entries(deltas)) index(`${name}.targets[${t}].${semantic}`, accessor, accessors.length, 'accessors');
+      });
       if (primitive.material !== undefined) index(`${name}.material`, primitive.material, materials.length, 'materials');
       const draco = dracoOf(primitive);
       if (draco === undefined) return;
@@ -133,8 +141,11 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
   });
   if (json.scene !== undefined) index('scene', json.scene, scenes.length, 'scenes');
   scenes.forEach((scene, s) => {
+    const roots = new Set<number>();
     for (const node of scene.nodes ?? []) {
       index(`scenes[${s}].nodes`, node, nodes.length, 'nodes');
+      if (roots.has(node)) throw new InputError(`nodes[${node}] is twice a root of scenes[${s}]`);
+      roots.add(node);
       // With one parent at most for every node, a root cannot be in a cycle.
       if (parents[node] !== undefined) throw new InputError(`nodes[${node}] is a root of scenes[${s}] and a child of nodes[${parents[node]}]`);
     }
@@ -148,12 +159,12 @@ export function dracoOf(primitive: GLTF.IMeshPrimitive): { bufferView: number; a
 
 function index(name: string, value: unknown, count: number, list: string): number {
   if (!Number.isInteger(value) || (value as number) < 0 || (value as number) >= count) {
-    throw new InputError(`${name} = ${value} is out of range (${count} ${list})`);
+    throw new InputError(`${name} = ${show(value)} is out of range (${count} ${list})`);
   }
   return value as number;
 }
 
 function whole(name: string, value: unknown): number {
-  if (!Number.isSafeInteger(value) || (value as number) < 0) throw new InputError(`${name} = ${value} is not a whole number`);
+  if (!Number.isSafeInteger(value) || (value as number) < 0) throw new InputError(`${name} = ${show(value)} is not a whole number`);
   return value as number;
 }

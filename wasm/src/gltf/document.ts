@@ -4,7 +4,7 @@ import type { Mesh, TransferResult } from '../index.js';
 import { gather, splitPart, type SplitPart } from '../split-part.js';
 import { InputError } from './input-error.js';
 import { identity, isTurned, localMatrix, multiply } from './matrix.js';
-import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
+import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, isOverlay, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
 import { aliasesOf, cutPiece, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 
 /** A piece, and its place in the document. */
@@ -58,7 +58,7 @@ function listParts(document: Document): DocumentPart[] {
     mesh?.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
-      if (position === null || !hasTriangles(primitive.getMode())) return;
+      if (position === null || !hasTriangles(primitive.getMode()) || isOverlay(primitive.getExtras())) return;
       const localPositions = decodePositions(place, position);
       const localIndices = decodeTriangles(place, primitive.getIndices()?.getArray() ?? null, primitive.getMode(), localPositions.length / 3);
       const name = node.getName() || mesh.getName() || place;
@@ -129,7 +129,8 @@ export function addTransfer(document: Document, { mesh, parts }: ExtractedDocume
       .setAttribute('POSITION', attribute(gather(overlayPositions(piece, offset), 3, split.sources), 'VEC3'))
       .setAttribute('TEXCOORD_0', uvs)
       .setIndices(indices(corners))
-      .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials));
+      .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials))
+      .setExtras({ ...overlayMark });
     for (const semantic of primitive.listSemantics()) if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
     for (const morph of primitive.listTargets()) overlay.addTarget(morph);
     part.node.getMesh()!.addPrimitive(overlay);

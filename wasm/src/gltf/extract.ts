@@ -2,6 +2,7 @@ import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../mesh.js';
 import { InputError } from './input-error.js';
 import { identity, localMatrix, multiply } from './matrix.js';
+import { isOverlay } from './overlay.js';
 import { aliasesOf, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 
@@ -26,7 +27,7 @@ export interface Extracted {
  * Vertices keep their order and number; each primitive of each node is a group of its own. Transforms are applied in
  * double precision and rounded last; the winding of mirrored parts is turned, so that outside stays outside. A skinned
  * mesh is taken as it is stored, in its bind pose: as the format demands, the transform of its node does not move it.
- * Points and lines are left out, and so are morphs.
+ * Points and lines are left out, and so are morphs, and overlays that were added before.
  * @throws {InputError} that names the file, the primitive and the element.
  */
 export function extract(file: GltfFile): Extracted {
@@ -64,6 +65,7 @@ function listParts(file: GltfFile): Part[] {
     if (nodeDef.mesh === undefined) continue;
     const meshDef = meshes[nodeDef.mesh]!;
     meshDef.primitives.forEach((primitive, p) => {
+      if (isOverlay(primitive.extras)) return;
       const place = `meshes[${nodeDef.mesh}].primitives[${p}]`;
       const localPositions = readPositions(file, place, nodeDef.mesh!, p);
       if (localPositions === undefined) return;

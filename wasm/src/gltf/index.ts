@@ -5,6 +5,7 @@
 import type { Document, Transform } from '@gltf-transform/core';
 import { isCut, type Borders } from '../cut/option.js';
 import { CagecastError, init, transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
+import { show } from '../error.js';
 import { addTransfer, extractDocument } from './document.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
@@ -56,6 +57,9 @@ export function cagecast({ cage, texture, borders, onResult, ...options }: Cagec
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
     await init();
+    const wrong = (argument: string, value: unknown, type: string) => new CagecastError('badArgument', `cagecast: ${argument} is ${show(value)}, not ${type}`);
+    if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'a document or a mesh');
+    if (texture !== undefined && !(texture instanceof Uint8Array)) throw wrong('texture', texture, "a Uint8Array of a file's bytes");
     const paint = texture && within('texture', () => paintOf(texture));
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));

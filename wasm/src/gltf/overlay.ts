@@ -14,6 +14,15 @@ export const zoneAttribute = '_NCZ';
  */
 export const overlayOffset = 5e-4;
 
+/**
+ * In the `extras` of overlays: they are no part of the model when it is read again. By the same name `cagecast/three` marks its
+ * own, and knows these.
+ */
+export const overlayMark = { cagecastOverlay: true } as const;
+
+/** Whether a primitive with these extras is an overlay. */
+export const isOverlay = (extras: object | undefined): boolean => (extras as Partial<typeof overlayMark> | undefined)?.cagecastOverlay === true;
+
 /** The texture to show: a PNG or JPEG file's bytes, in the cage's UVs. */
 export interface Paint {
   name: string;

@@ -3,6 +3,7 @@ import { dirname, resolve } from 'node:path';
 import { Logger, NodeIO, type Document, type GLTF, type JSONDocument } from '@gltf-transform/core';
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
+import { show } from '../error.js';
 import { createDracoDecoder } from './draco.js';
 import { checkGeometry, checkLists, dracoOf, meshoptView } from './check.js';
 import { InputError, firstLine } from './input-error.js';
@@ -70,7 +71,7 @@ function parse(bytes: Uint8Array): { json: GLTF.IGLTF; binary: Uint8Array | unde
   if (typeof json !== 'object' || json === null || version === undefined) {
     throw new InputError('is JSON but no glTF: it has no asset.version');
   }
-  if (!/^2\./.test(String(version))) throw new InputError(`is glTF ${version}; only 2.x can be read`);
+  if (!/^2\./.test(String(version))) throw new InputError(`is glTF ${typeof version === 'string' ? version : show(version)}; only 2.x can be read`);
   checkLists(json);
   return { json, binary };
 }

@@ -8,7 +8,7 @@ import { dracoOf } from './check.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
-import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
+import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
 import { cutPiece, decodeFloats, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 
@@ -168,6 +168,7 @@ class Painter {
       indices: this.#writer.addIndices(corners, sources.length),
       material: this.#material(base),
       ...(base.targets && { targets: base.targets }),
+      extras: overlayMark,
     };
   }
 

@@ -25,6 +25,14 @@ export function vertexAreas({ positions, indices }: Mesh): Float64Array {
   return areas;
 }
 
+/** The points of one array and then of another. */
+export function joined(a: Float32Array, b: Float32Array): Float32Array {
+  const both = new Float32Array(a.length + b.length);
+  both.set(a);
+  both.set(b, a.length);
+  return both;
+}
+
 /** The smallest box around points. */
 export interface Box {
   min: [number, number, number];

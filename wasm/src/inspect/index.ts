@@ -2,8 +2,10 @@
  * Is this cage fit for this target? Numbers, causes, and what to do.
  * @module cagecast/inspect
  */
-import { transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
+import { CagecastError, transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
+import { show } from '../error.js';
 import { unfitFrom, usableFrom, verdictOf, type Finding, type FindingCode, type Place, type Verdict } from './finding.js';
+import { joined } from './geometry.js';
 import { checkHoles, holesOf, spanPoints, type Hole } from './holes.js';
 import { checkInside, insideOf, type Inside } from './inside.js';
 import { checkNormals, orientationOf, turnedRight } from './normals.js';
@@ -87,7 +89,9 @@ export function suggest(cage: Mesh, target: Mesh, options?: InspectOptions): Fin
 const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings].sort((a, b) => b.weight - a.weight);
 
 /** Where the cage lies, and what comes of it. */
-function outcomeOf(cage: Mesh, target: Mesh, { result, parts, ...options }: InspectOptions = {}) {
+function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
+  if (typeof given !== 'object' || given === null) throw new CagecastError('badOption', `inspect: options is ${show(given)}, not an object`);
+  const { result, parts, ...options } = given;
   const scene = sceneOf(cage, target, result ?? transfer(cage, target, options), options.threshold ?? 0.5, parts ?? partsByGroup(target));
   const orientation = orientationOf(scene);
   const upright = orientation.share > 0 ? uprightScene() : scene;
@@ -110,13 +114,6 @@ function outcomeOf(cage: Mesh, target: Mesh, { result, parts, ...options }: Insp
     const turned = turnedRight(cage, orientation);
     return sceneOf(turned, target, transfer(turned, target, options), scene.threshold, scene.parts);
   }
-}
-
-function joined(a: Float32Array, b: Float32Array): Float32Array {
-  const both = new Float32Array(a.length + b.length);
-  both.set(a);
-  both.set(b, a.length);
-  return both;
 }
 
 function partsByGroup({ positions, groups }: Mesh): PartName[] {

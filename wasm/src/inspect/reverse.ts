@@ -1,5 +1,5 @@
 import { project } from '../index.js';
-import { nearestPoint, pointAt, type Vector } from './geometry.js';
+import { joined, nearestPoint, pointAt, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
 
 /** The target as it is seen from points of the cage. */
@@ -19,11 +19,13 @@ export interface Reverse {
  * @param points  3 per point, the cage's vertices first.
  * @returns nothing if the target has no triangle with an area.
  */
-export function reverse({ target, cage, areas }: Scene, points: Float32Array): Reverse | undefined {
+export function reverse({ target, targetBox, cage, areas }: Scene, points: Float32Array): Reverse | undefined {
   if (!areas.some((area) => area > 0)) return undefined;
   // The core wants UVs of what it projects onto; nobody reads them here.
   const uvs = new Float32Array((target.positions.length / 3) * 2);
-  const { triangles, distances } = project({ positions: target.positions, indices: target.indices, uvs }, { positions: points, indices: cage.indices });
+  // With the corners of the target's box among them, a cage that is a speck beside the target is in proportion to it.
+  const positions = joined(points, Float32Array.of(...targetBox.min, ...targetBox.max));
+  const { triangles, distances } = project({ positions: target.positions, indices: target.indices, uvs }, { positions, indices: cage.indices });
   const corners = (point: number) => [0, 1, 2].map((k) => pointAt(target.positions, target.indices[3 * triangles[point]! + k]!)) as [Vector, Vector, Vector];
   return { triangles, distances, corners, nearest: (point) => nearestPoint(pointAt(points, point), ...corners(point)).point };
 }

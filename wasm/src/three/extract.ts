@@ -1,5 +1,6 @@
 import { BufferGeometry, Matrix4, Mesh as ThreeMesh, SkinnedMesh, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three';
 import { CagecastError, type Mesh } from '../index.js';
+import { show } from '../error.js';
 
 /** One mesh of a scene, or a geometry alone, and where its elements lie in the concatenated arrays. */
 export interface Part {
@@ -47,19 +48,23 @@ export function extract(object: Object3D | BufferGeometry, argument: 'cage' | 't
     placeIndices(part, indices, argument);
     group = placeGroups(part, groups, group);
   }
-  const uvs = readUvs(parts, positions.length / 3);
+  const uvs = readUvs(parts, positions.length / 3, argument);
   return { mesh: { positions, indices, groups, ...(uvs && { uvs }) }, parts };
 }
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
+  if (!isGeometry(object) && !isObject(object)) {
+    throw new CagecastError('badArgument', `cagecast/three: ${argument} is ${show(object)}, not a scene, mesh or geometry (of what GLTFLoader gives, take .scene)`);
+  }
   const parts: Part[] = [];
   const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
     const corners = geometry.index ? geometry.index.count : vertexCount;
     if (vertexCount === 0 || corners === 0) return;
+    if (position!.itemSize !== 3) throw wrong(argument, name, `has positions of ${position!.itemSize} numbers, not 3`);
     if (corners % 3 !== 0) throw wrong(argument, name, `has ${corners} corners, not 3 per triangle`);
     const last = parts.at(-1);
     parts.push({
@@ -79,18 +84,22 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   }
   object.updateWorldMatrix(true, true);
   object.traverse((child) => {
-    if (!isMesh(child) || child.userData[overlayMark] === true) return;
+    if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
     // Three moves the vertices of a skinned mesh by its bind matrix first; the matrix of its node does not count.
     add(child.name || child.parent?.name || `mesh ${parts.length}`, child, child.geometry, child instanceof SkinnedMesh ? child.bindMatrix : child.matrixWorld);
   });
   return parts;
 }
 
-/** In `userData` of the overlays that are added to a scene, so that they are no part of it when it is read again. */
+/**
+ * In `userData` of the overlays that are added to a scene, so that they are no part of it when it is read again; and of the
+ * geometries that GLTFLoader makes of those that are in a file already (`extras`, gltf/overlay.ts).
+ */
 export const overlayMark = 'cagecastOverlay';
 
 // By three's own marks, not by class: a page may have a second copy of three.
-const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry => (object as BufferGeometry).isBufferGeometry === true;
+const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry => (object as BufferGeometry | undefined)?.isBufferGeometry === true;
+const isObject = (object: Object3D): boolean => object?.isObject3D === true;
 const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
 const wrong = (argument: string, name: string, text: string, at = 0): CagecastError => new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
@@ -144,12 +153,13 @@ function placeGroups({ mesh, geometry, firstVertex, vertexCount, triangleCount }
   return Math.max(next, first + 1);
 }
 
-function readUvs(parts: readonly Part[], vertices: number): Float32Array | undefined {
+function readUvs(parts: readonly Part[], vertices: number, argument: string): Float32Array | undefined {
   if (parts.length === 0 || !parts.every(({ geometry }) => geometry.hasAttribute('uv'))) return undefined;
   const uvs = new Float32Array(2 * vertices);
-  for (const { geometry, firstVertex, vertexCount } of parts) {
+  for (const { name, geometry, firstVertex, vertexCount } of parts) {
     const uv = geometry.getAttribute('uv') as Attribute;
-    for (let v = 0; v < Math.min(vertexCount, uv.count); ++v) {
+    if (uv.count !== vertexCount || uv.itemSize !== 2) throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers for ${vertexCount} vertices, not one of 2 for each`);
+    for (let v = 0; v < vertexCount; ++v) {
       uvs[2 * (firstVertex + v)] = uv.getX(v);
       uvs[2 * (firstVertex + v) + 1] = uv.getY(v);
     }

@@ -6,6 +6,7 @@ import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3
 import { isCut, type Borders } from '../cut/option.js';
 import { CagecastError, transfer, type Classification, type Mesh as Arrays, type TransferOptions, type TransferResult } from '../index.js';
 import { splitPart } from '../split-part.js';
+import { show } from '../error.js';
 import type * as cutting from './cutting.js';
 import { extract, isTurned, type Extracted, type Part } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
@@ -83,6 +84,7 @@ export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D 
 export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options?: ApplyOptions & { borders?: 'triangle' | undefined }): Applied;
 export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options?: ApplyOptions): Applied | Promise<Applied>;
 export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions = {}): Applied | Promise<Applied> {
+  checkOptions(options);
   if (isCut('applyTransfer', options.borders)) return applyCut(target, cage, options);
   const extracted = extract(target, 'target');
   return apply(extracted, resultOf(extracted, options, () => extract(cage, 'cage').mesh), options);
@@ -101,8 +103,8 @@ const rulesOf = ({ result, texture, material, channel, borders, ...rules }: Appl
 function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays): TransferResult {
   const result = options.result ?? transfer(cage(), mesh, rulesOf(options));
   const vertices = mesh.positions.length / 3;
-  if (result.zones.length !== vertices || result.cosmeticTriangles.length !== mesh.indices.length / 3) {
-    throw new CagecastError('badArgument', `cagecast/three: result is of ${result.zones.length} vertices, the target has ${vertices}: extract it before vertices are split`);
+  if (result.zones?.length !== vertices || result.cosmeticTriangles?.length !== mesh.indices.length / 3) {
+    throw new CagecastError('badArgument', `cagecast/three: result is of ${result.zones?.length} vertices, the target has ${vertices}: extract it before vertices are split`);
   }
   return result;
 }
@@ -170,4 +172,13 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
       for (const paint of own) paint.dispose();
     },
   };
+}
+
+function checkOptions(options: ApplyOptions): void {
+  const wrong = (name: string, value: unknown, what: string) => new CagecastError('badOption', `cagecast/three: ${name} is ${show(value)}, not ${what}`);
+  if (typeof options !== 'object' || options === null) throw wrong('options', options, 'an object');
+  const { texture, material, channel } = options;
+  if (texture !== undefined && texture?.isTexture !== true) throw wrong('options.texture', texture, 'a Texture');
+  if (material !== undefined && material?.isMaterial !== true) throw wrong('options.material', material, 'a Material');
+  if (channel !== undefined && ![1, 2, 3].includes(channel)) throw wrong('options.channel', channel, '1, 2 or 3');
 }
