@@ -1,6 +1,5 @@
 import { BufferGeometry, Matrix4, Mesh as ThreeMesh, SkinnedMesh, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three';
 import { CagecastError, type Mesh } from '../index.js';
-import { show } from '../error.js';
 
 /** One mesh of a scene, or a geometry alone, and where its elements lie in the concatenated arrays. */
 export interface Part {
@@ -56,7 +55,7 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
   if (!isGeometry(object) && !isObject(object)) {
-    throw new CagecastError('badArgument', `cagecast/three: ${argument} is ${show(object)}, not a scene, mesh or geometry (of what GLTFLoader gives, take .scene)`);
+    throw new CagecastError('badArgument', `cagecast/three: ${argument} is ${nameOf(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`);
   }
   const parts: Part[] = [];
   const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
@@ -101,6 +100,9 @@ export const overlayMark = 'cagecastOverlay';
 const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry => (object as BufferGeometry | undefined)?.isBufferGeometry === true;
 const isObject = (object: Object3D): boolean => object?.isObject3D === true;
 const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
+
+/** What a value of the wrong kind is, for messages. */
+export const nameOf = (value: unknown): string => (typeof value === 'object' && value ? 'an object' : String(value));
 
 const wrong = (argument: string, name: string, text: string, at = 0): CagecastError => new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
 
@@ -158,7 +160,7 @@ function readUvs(parts: readonly Part[], vertices: number, argument: string): Fl
   const uvs = new Float32Array(2 * vertices);
   for (const { name, geometry, firstVertex, vertexCount } of parts) {
     const uv = geometry.getAttribute('uv') as Attribute;
-    if (uv.count !== vertexCount || uv.itemSize !== 2) throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers for ${vertexCount} vertices, not one of 2 for each`);
+    if (uv.count !== vertexCount || uv.itemSize !== 2) throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
     for (let v = 0; v < vertexCount; ++v) {
       uvs[2 * (firstVertex + v)] = uv.getX(v);
       uvs[2 * (firstVertex + v) + 1] = uv.getY(v);

@@ -6,9 +6,8 @@ import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3
 import { isCut, type Borders } from '../cut/option.js';
 import { CagecastError, transfer, type Classification, type Mesh as Arrays, type TransferOptions, type TransferResult } from '../index.js';
 import { splitPart } from '../split-part.js';
-import { show } from '../error.js';
 import type * as cutting from './cutting.js';
-import { extract, isTurned, type Extracted, type Part } from './extract.js';
+import { extract, isTurned, nameOf, type Extracted, type Part } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
 import { splitGeometry } from './split.js';
 
@@ -175,10 +174,12 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
 }
 
 function checkOptions(options: ApplyOptions): void {
-  const wrong = (name: string, value: unknown, what: string) => new CagecastError('badOption', `cagecast/three: ${name} is ${show(value)}, not ${what}`);
-  if (typeof options !== 'object' || options === null) throw wrong('options', options, 'an object');
-  const { texture, material, channel } = options;
-  if (texture !== undefined && texture?.isTexture !== true) throw wrong('options.texture', texture, 'a Texture');
-  if (material !== undefined && material?.isMaterial !== true) throw wrong('options.material', material, 'a Material');
-  if (channel !== undefined && ![1, 2, 3].includes(channel)) throw wrong('options.channel', channel, '1, 2 or 3');
+  const check = (fits: boolean | undefined, name: string, value: unknown, what: string) => {
+    if (!fits) throw new CagecastError('badOption', `cagecast/three: options${name} is ${nameOf(value)}, not ${what}`);
+  };
+  check(typeof options === 'object' && options !== null, '', options, 'an object');
+  const { texture, material, channel = 1 } = options;
+  check(!texture || texture.isTexture, '.texture', texture, 'a Texture');
+  check(!material || material.isMaterial, '.material', material, 'a Material');
+  check([1, 2, 3].includes(channel), '.channel', channel, '1, 2 or 3');
 }
