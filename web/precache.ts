@@ -14,7 +14,7 @@ export function precache(): Plugin {
   return {
     name: 'cagecast-precache',
     configResolved: (config) => void (outDir = path.resolve(config.root, config.build.outDir)),
-    closeBundle: {
+    writeBundle: {
       sequential: true,
       order: 'post',
       async handler() {
