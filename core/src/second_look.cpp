@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -16,25 +17,29 @@ constexpr double kLift = 1e-4;
 constexpr unsigned kEnough = 2;
 
 /// docs/method.md, step 6: the directions, evenly over the hemisphere about z by the golden angle: z = 1 − (k + 0.5) / 12, azimuth
-/// k · 2.399963229728653.
+/// k · 2.399963229728653. First those that are good most often (k = 4, 5, 8, 9, 10), so that many points need no others.
 constexpr double kDirections[][3] = {
+    {-0.7686917180988453, -0.13597074143449128, 0.625},
+    {0.7092551110048801, -0.4511700452553088, 0.5416666666666667},
+    {0.8984796285317633, 0.3281233193008084, 0.29166666666666663},
+    {-0.9040634576660739, 0.37318425306420056, 0.20833333333333337},
+    {0.42052166140780717, -0.8986303646588055, 0.125},
     {0.28565227501671, 0.0, 0.9583333333333334},
     {-0.3569771731011225, 0.32702033252495366, 0.875},
     {0.05341303173720899, -0.6086139473669074, 0.7916666666666666},
     {0.42948366578740593, 0.5601853886979745, 0.7083333333333333},
-    {-0.7686917180988453, -0.13597074143449128, 0.625},
-    {0.7092551110048801, -0.4511700452553088, 0.5416666666666667},
     {-0.23073121154526574, 0.8583086062567528, 0.45833333333333337},
     {-0.4272722474213815, -0.8226867122930099, 0.375},
-    {0.8984796285317633, 0.3281233193008084, 0.29166666666666663},
-    {-0.9040634576660739, 0.37318425306420056, 0.20833333333333337},
-    {0.42052166140780717, -0.8986303646588055, 0.125},
     {0.2990239565674109, 0.9533354930388671, 0.04166666666666663},
 };
 constexpr unsigned kDirectionCount = static_cast<unsigned>(std::size(kDirections));
-/// Points that look at once, in all directions: to stop at the second good ray saves less than many rays that begin close
-/// together do.
-constexpr std::uint32_t kChunk = HitSearch::kMostRays / kDirectionCount;
+/// A point looks in the first so many directions, then, if that does not decide, up to the next of these. Fewer at a time would
+/// save rays, but many rays that begin close together are quicker than few.
+constexpr unsigned kStages[] = {5, kDirectionCount - 1, kDirectionCount};
+/// How many directions a point looks in next, which has looked in so many.
+constexpr unsigned nextStage(unsigned asked) { return *std::upper_bound(std::begin(kStages), std::end(kStages), asked) - asked; }
+/// Points that look at once.
+constexpr std::uint32_t kMostLooks = HitSearch::kMostRays / kStages[0];
 
 /// Normals that cancel out to this share of the areas are none.
 constexpr double kCancelled = 1e-6;
@@ -227,65 +232,113 @@ bool findOutlooks(const Points& points, const Cage& cage, const PointResults& re
 class Lookout {
  public:
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
-  Lookout(const RayTree& target, const RayTree& cage, double diagonal, Scratch& scratch) noexcept
-      : lift_(kLift * diagonal),
+  Lookout(const Points& points, const Outlooks& outlooks, const RayTree& target, const RayTree& cage, double diagonal,
+          Scratch& scratch) noexcept
+      : points_(points),
+        outlooks_(outlooks),
+        lift_(kLift * diagonal),
         pastTarget_(target, kRayStart * diagonal, scratch),
         toCage_(cage, -kRayStart * diagonal, scratch),
+        looks_(scratch.take<Look>(kMostLooks)),
         directions_(scratch.take<RayDirection>(HitSearch::kMostRays)),
         rays_(scratch.take<Ray>(HitSearch::kMostRays)),
-        ofRay_(scratch.take<std::uint8_t>(HitSearch::kMostRays)),
+        ofRay_(scratch.take<std::uint16_t>(HitSearch::kMostRays)),
         hit_(scratch.take<bool>(HitSearch::kMostRays)) {}
 
-  /// Looks from a point.
-  /// @pre Fewer than `kChunk` have been added since the last `count`.
-  void add(Vec3 point, Vec3 normal) noexcept {
-    const Vec3 across = cross(normal, std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
-    const Vec3 t1 = 1 / length(across) * across;
-    const Vec3 t2 = cross(normal, t1);
-    const Vec3 origin = point + lift_ * normal;
-    const double at[3] = {origin.x, origin.y, origin.z};
-    for (const double(&d)[3] : kDirections) {
-      // In place: a direction that is copied right after it was written stalls.
-      new (&directions_[rayCount_]) RayDirection(RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2)));
-      Ray& ray = rays_[rayCount_];
-      for (int axis = 0; axis < 3; ++axis) {
-        ray.origin[axis] = static_cast<float>(at[axis]);
-        ray.rest[axis] = static_cast<float>(at[axis] - static_cast<double>(ray.origin[axis]));
-      }
-      ray.direction = &directions_[rayCount_];
-      ray.end = std::numeric_limits<double>::infinity();
-      ofRay_[rayCount_++] = pointCount_;
-    }
-    ++pointCount_;
+  [[nodiscard]] bool isIdle() const noexcept { return lookCount_ == 0; }
+  /// For a point, to whichever sides it looks.
+  [[nodiscard]] bool hasRoom() const noexcept { return lookCount_ + 2 <= kMostLooks; }
+
+  /// Lets a point that has a normal look.
+  /// @param isTurned  Whether it looks against its normal.
+  /// @pre There is room.
+  void add(std::uint32_t point, bool isTurned) noexcept {
+    looks_[lookCount_++] = {point, isTurned, 0, 0};
+    if (outlooks_.isTwoSided[point]) looks_[lookCount_++] = {point, !isTurned, 0, 0};
   }
 
-  /// Counts the good rays of each point added, and forgets them.
-  void count(std::uint8_t (&good)[kChunk]) noexcept {
-    std::fill(good, good + pointCount_, std::uint8_t{0});
-    pastTarget_.search(rays_, rayCount_, hit_);
+  /// Looks in some more directions from the points added, and forgets those that this decides.
+  /// @param restore  Takes a point with enough good rays.
+  template <typename Restore>
+  void look(Restore restore) noexcept {
+    std::uint32_t looking = 0;
+    std::uint32_t rayCount = 0;
+    for (; looking < lookCount_; ++looking) {
+      const unsigned more = nextStage(looks_[looking].asked);
+      if (rayCount + more > HitSearch::kMostRays) break;
+      std::fill(ofRay_ + rayCount, ofRay_ + rayCount + more, static_cast<std::uint16_t>(looking));
+      setRays(looks_[looking], more, rayCount);
+      rayCount += more;
+    }
+    pastTarget_.search(rays_, rayCount, hit_);
     std::uint32_t free = 0;
-    for (std::uint32_t r = 0; r < rayCount_; ++r) {
+    for (std::uint32_t r = 0; r < rayCount; ++r) {
       if (hit_[r]) continue;
       ofRay_[free] = ofRay_[r];
       rays_[free++] = rays_[r];
     }
     toCage_.search(rays_, free, hit_);
-    for (std::uint32_t r = 0; r < free; ++r) good[ofRay_[r]] = static_cast<std::uint8_t>(good[ofRay_[r]] + hit_[r]);
-    rayCount_ = pointCount_ = 0;
+    for (std::uint32_t r = 0; r < free; ++r) looks_[ofRay_[r]].good = static_cast<std::uint8_t>(looks_[ofRay_[r]].good + hit_[r]);
+
+    std::uint32_t left = 0;
+    for (std::uint32_t i = 0; i < lookCount_; ++i) {
+      const Look& look = looks_[i];
+      const bool isSeen = look.good >= kEnough;
+      if (isSeen) restore(look.point);
+      const bool isDecided = isSeen || look.good + kDirectionCount - look.asked < kEnough;
+      looks_[left] = look;
+      left += !isDecided;
+    }
+    lookCount_ = left;
   }
 
  private:
+  /// A point that looks to one side.
+  struct Look {
+    std::uint32_t point;
+    bool isTurned;
+    std::uint8_t asked;  ///< In how many directions it has looked,
+    std::uint8_t good;   ///< and how many of these were good.
+  };
+
+  /// Makes the next rays of a look.
+  void setRays(Look& look, unsigned more, std::uint32_t first) noexcept {
+    const Vec3 normal = (look.isTurned ? -1 : 1) * outlooks_.normals[look.point];
+    const Vec3 across = cross(normal, std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+    const Vec3 t1 = 1 / length(across) * across;
+    const Vec3 t2 = cross(normal, t1);
+    const Vec3 origin = points_.exactly(look.point) + lift_ * normal;
+    const double at[3] = {origin.x, origin.y, origin.z};
+    float position[3];
+    float rest[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      position[axis] = static_cast<float>(at[axis]);
+      rest[axis] = static_cast<float>(at[axis] - static_cast<double>(position[axis]));
+    }
+    for (std::uint32_t r = first; r < first + more; ++r) {
+      const double(&d)[3] = kDirections[look.asked++];
+      // In place: a direction that is copied right after it was written stalls.
+      new (&directions_[r]) RayDirection(RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2)));
+      Ray& ray = rays_[r];
+      std::copy(position, position + 3, ray.origin);
+      std::copy(rest, rest + 3, ray.rest);
+      ray.direction = &directions_[r];
+      ray.end = std::numeric_limits<double>::infinity();
+    }
+  }
+
+  const Points& points_;
+  const Outlooks& outlooks_;
   double lift_;
   HitSearch pastTarget_;
   HitSearch toCage_;
+  Look* looks_;
+  std::uint32_t lookCount_ = 0;
   RayDirection* directions_;
   Ray* rays_;
-  std::uint8_t* ofRay_;  ///< The place of its point among those added.
+  std::uint16_t* ofRay_;  ///< The place of its look.
   bool* hit_;
-  std::uint32_t rayCount_ = 0;
-  std::uint8_t pointCount_ = 0;
 };
-static_assert(kChunk < 256);
 
 }  // namespace
 
@@ -304,29 +357,18 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
     for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
     Outlooks outlooks;
     if (!findOutlooks(points, cage, results, areas, segmentCount, isWanted, occluded.asks(), toBothSides, scratch, outlooks)) return false;
-    Lookout lookout(targetTree, cageTree.rays, units.diagonal, scratch);
+    Lookout lookout(points, outlooks, targetTree, cageTree.rays, units.diagonal, scratch);
     if (scratch.failed()) return false;
     // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.
-    for (std::uint32_t begin = 0; begin < end;) {
-      std::uint32_t chosen[kChunk];
-      std::uint8_t good[kChunk];
-      std::uint32_t count = 0;
-      const auto look = [&](std::uint32_t p, double sign) {
-        lookout.add(points.exactly(p), sign * outlooks.normals[p]);
-        chosen[count++] = p;
-      };
-      for (; begin < end && count + 1 < kChunk; ++begin) {  // A point may need two places.
+    for (std::uint32_t begin = 0; begin < end || !lookout.isIdle();) {
+      for (; begin < end && lookout.hasRoom(); ++begin) {
         const std::uint32_t p = queue[begin];
-        if (isZero(outlooks.normals[p])) continue;
-        look(p, outlooks.isTurned[results.segments[p]] ? -1 : 1);
-        if (outlooks.isTwoSided[p]) look(p, outlooks.isTurned[results.segments[p]] ? 1 : -1);
+        if (!isZero(outlooks.normals[p])) lookout.add(p, outlooks.isTurned[results.segments[p]]);
       }
-      lookout.count(good);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (good[i] < kEnough) continue;
-        restores[chosen[i]] = Restores::always;
-        end = occluded.queueNeighbours(chosen[i], queue, end);
-      }
+      lookout.look([&](std::uint32_t p) {
+        restores[p] = Restores::always;
+        end = occluded.queueNeighbours(p, queue, end);
+      });
     }
   }
   scratch.rewind(mark);
