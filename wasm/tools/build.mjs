@@ -24,7 +24,7 @@ const stamp = at('build', preset, 'package.stamp');
 const lazy = [
   [/^\.\.\/borders\/index\.js$/, './borders.js'],
   [/^\.\.\/cut\/index\.js$/, './cut.js'],
-  [/^\.\/cutting\.js$/, './three-cutting.js'],
+  [/^\.\/borders\.js$/, './three-borders.js'],
 ];
 
 const hash = hashOf(['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'], preset);
@@ -117,7 +117,7 @@ async function buildPackage() {
     await beside('inspect/index.ts', 'inspect.js', 'neutral');
     await beside('cut/index.ts', 'cut.js', 'neutral');
     await beside('three/index.ts', 'three.js', 'neutral');
-    await beside('three/cutting.ts', 'three-cutting.js', 'neutral');
+    await beside('three/borders.ts', 'three-borders.js', 'neutral');
     await beside('gltf/index.ts', 'gltf.js', 'neutral');
     await beside('worker/index.ts', 'worker.js', 'neutral');
     await beside('worker/spawn.ts', 'spawn.js', 'neutral');

@@ -17,7 +17,7 @@ export interface CutPart {
  * Takes a part out of a target that was cut. Vertices keep their numbers, new ones come after them.
  * @param ownCount  Vertices of the whole target before it was cut.
  */
-export function cutPart(part: PartGeometry, cut: CutTarget, ownCount: number): CutPart {
+export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, ownCount: number): CutPart {
   const { firstVertex, vertexCount, firstTriangle, triangleCount, turned } = part;
   const added = Uint32Array.from({ length: cut.sources.length / 3 }, (_, n) => n).filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
   const placeOf = new Map(Array.from(added, (n, i) => [ownCount + n, vertexCount + i]));

@@ -6,7 +6,7 @@ import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3
 import { isCut, type Borders } from '../cut/option.js';
 import { CagecastError, transfer, type Classification, type Mesh as Arrays, type TransferOptions, type TransferResult } from '../index.js';
 import { splitPart } from '../split-part.js';
-import type * as cutting from './cutting.js';
+import type * as borders from './borders.js';
 import { extract, isTurned, nameOf, type Extracted, type Part } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
 import { splitGeometry } from './split.js';
@@ -90,7 +90,7 @@ export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D 
 }
 
 async function applyCut(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions): Promise<Applied> {
-  const tools = await import('./cutting.js');
+  const tools = await import('./borders.js');
   const extracted = extract(target, 'target');
   const { mesh } = extract(cage, 'cage');
   const result = resultOf(extracted, options, () => mesh);
@@ -109,7 +109,7 @@ function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays
 }
 
 /** @param cut  The target as it was cut, and what cuts its parts, which is loaded only then. */
-function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, material, channel = 1 }: ApplyOptions, cut?: { target: cutting.CutTarget; tools: typeof cutting }): Applied {
+function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, material, channel = 1 }: ApplyOptions, cut?: { target: borders.CutTarget; tools: typeof borders }): Applied {
   const uvName = `uv${channel}`;
   const taken = new Set<BufferGeometry>();
   for (const part of parts) {
@@ -120,10 +120,8 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     const { geometry, matrix, vertexCount, triangleCount } = part;
     const localIndices = geometry.index?.array ?? Uint32Array.from({ length: vertexCount }, (_, v) => v);
     const whole = { ...part, turned: isTurned(matrix), localIndices: localIndices.subarray(0, 3 * triangleCount) };
-    const pieces = cut?.tools.cutPart(whole, cut.target, mesh.positions.length / 3);
-    if (pieces && pieces.blends.sources.length > 0) cut!.tools.cutGeometry(geometry, pieces, part.firstTriangle);
-    const split = splitPart(pieces?.geometry ?? whole, pieces?.result ?? result);
-    if (split.copies > 0) splitGeometry(geometry, split);
+    const { pieces, split } = cut?.tools.cutGeometry(geometry, whole, cut.target, mesh.positions.length / 3) ?? { pieces: undefined, split: splitPart(whole, result) };
+    if (!pieces && split.copies > 0) splitGeometry(geometry, split);
     geometry.setAttribute(uvName, new BufferAttribute(split.uvs, 2));
     geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
     return { part, whole, pieces, split };

@@ -1,9 +1,15 @@
+/**
+ * What `applyTransfer` loads to cut borders; and for pages with overlays of their own, or that cut in a worker: `cutBorders` there,
+ * `cutGeometry` here.
+ * @module cagecast/three/borders
+ */
 import { DataUtils, type BufferGeometry, type TypedArray } from 'three';
-import { blend, blendSkin, ruleOf, type CutPart } from '../cut/index.js';
-import { likeAttribute, remakeGeometry, valuesOf, type Attribute } from './split.js';
+import { blend, blendSkin, cutPart, ruleOf, type CutPart, type CutTarget } from '../cut/index.js';
+import { splitPart, type PartGeometry, type SplitPart } from '../split-part.js';
+import { likeAttribute, remakeGeometry, splitGeometry, valuesOf, type Attribute } from './split.js';
 
-// What cuts a scene: index.ts loads it when that is asked for.
-export { cutBorders, cutPart, decideAgain, type CutTarget } from '../cut/index.js';
+export { cutBorders, decideAgain, type CutPart, type CutTarget } from '../cut/index.js';
+export type { SplitPart };
 
 /** glTF's names of what is not just a mean where triangles are cut. */
 const semantics: Record<string, string> = { normal: 'NORMAL', tangent: 'TANGENT', skinIndex: 'JOINTS_0', skinWeight: 'WEIGHTS_0' };
@@ -11,12 +17,26 @@ const nameOf = (semantic: string): string => Object.keys(semantics).find((name) 
 
 type Values = Parameters<typeof blend>[0];
 
+/** Where a part lies in the arrays of a target, and whether its triangles were turned on the way there, as it is mirrored. */
+export type PartRange = Omit<PartGeometry, 'localIndices'>;
+
 /**
- * Gives a geometry the triangles and vertices of its part as it was cut: new vertices are blends of others in all attributes and
- * morph targets. It stays the same object.
- * @param firstTriangle  Of the part, before.
+ * Gives the geometry of a part of a target its triangles and vertices as it was cut: new vertices are blends of others in all
+ * attributes and morph targets, copies at seams come after them. It stays the same object; groups and the range that is drawn
+ * follow. Needs `init`.
+ * @param ownCount  Vertices of the whole target before it was cut.
+ * @returns the part as it was cut, `pieces`, with which of its triangles may be painted; and of each vertex that the geometry has
+ * now which of the pieces' it is, `split.sources`, and its UV, `split.uvs`.
  */
-export function cutGeometry(geometry: BufferGeometry, { geometry: { localIndices }, blends, origins }: CutPart, firstTriangle: number): void {
+export function cutGeometry(geometry: BufferGeometry, part: PartRange, cut: CutTarget, ownCount: number): { pieces: CutPart; split: SplitPart } {
+  const pieces = cutPart(part, cut, ownCount);
+  if (pieces.blends.sources.length > 0) blendGeometry(geometry, pieces, part.firstTriangle);
+  const split = splitPart(pieces.geometry, pieces.result);
+  if (split.copies > 0) splitGeometry(geometry, split);
+  return { pieces, split };
+}
+
+function blendGeometry(geometry: BufferGeometry, { geometry: { localIndices }, blends, origins }: CutPart, firstTriangle: number): void {
   const skin = blendSkin((semantic) => {
     const attribute = geometry.getAttribute(nameOf(semantic)) as Attribute | undefined;
     return attribute && (valuesOf(attribute) as Values);
