@@ -64,7 +64,8 @@ namespace {
 /// A corner is moved to the ray's origin and sheared so that the ray is the z-axis; the signs of the three edge functions
 /// then say on which side of each edge the ray runs. Two triangles that share an edge compute the same number with opposite
 /// signs, and 0 counts for both, so a ray cannot slip between them.
-double hitDistance(const RayLeaf& leaf, int lane, const Ray& ray) {
+/// Few triangles come to it: inlined it would only take registers from `mightHit`, of which WebAssembly has few.
+[[gnu::noinline]] double hitDistance(const RayLeaf& leaf, int lane, const Ray& ray) {
   const RayDirection& direction = *ray.direction;
   const auto corner = [&](int i) {
     return Vec3{static_cast<double>(leaf.corner[i][0][lane]), static_cast<double>(leaf.corner[i][1][lane]),
@@ -158,10 +159,11 @@ void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint3
   const f32x4 low[3] = {load(node.low[0]), load(node.low[1]), load(node.low[2])};
   const f32x4 high[3] = {load(node.high[0]), load(node.high[1]), load(node.high[2])};
   const f32x4 from = splat(boxFrom_);
-  std::size_t c0 = 0;
-  std::size_t c1 = 0;
-  std::size_t c2 = 0;
-  std::size_t c3 = 0;
+  // Where each list ends, by pointers: lists and counts together are more than WebAssembly has registers.
+  std::uint16_t* l0 = lists[0];
+  std::uint16_t* l1 = lists[1];
+  std::uint16_t* l2 = lists[2];
+  std::uint16_t* l3 = lists[3];
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t id = ids[i];
     const Slabs& ray = slabs_[id];
@@ -180,14 +182,14 @@ void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint3
     cut(1, simd::splatLane<1>(inverse), simd::splatLane<1>(offset));
     cut(2, simd::splatLane<2>(inverse), simd::splatLane<2>(offset));
     const unsigned entered = simd::bits(first <= last);
-    lists[0][c0] = lists[1][c1] = lists[2][c2] = lists[3][c3] = id;
-    c0 += entered & 1;
-    c1 += entered >> 1 & 1;
-    c2 += entered >> 2 & 1;
-    c3 += entered >> 3;
+    *l0 = *l1 = *l2 = *l3 = id;
+    l0 += entered & 1;
+    l1 += entered >> 1 & 1;
+    l2 += entered >> 2 & 1;
+    l3 += entered >> 3;
   }
-  const std::size_t all[4] = {c0, c1, c2, c3};
-  for (int i = 0; i < 4; ++i) counts[i] = static_cast<std::uint32_t>(all[i]);
+  std::uint16_t* const ends[4] = {l0, l1, l2, l3};
+  for (int i = 0; i < 4; ++i) counts[i] = static_cast<std::uint32_t>(ends[i] - lists[i]);
 }
 
 /// Tries rays with the four triangles from the first of a leaf on.
