@@ -1,6 +1,6 @@
 // Takes the README's pictures of the page: npm run pictures [-- name …]
 
-import { mkdir } from 'node:fs/promises'
+import { mkdir, writeFile } from 'node:fs/promises'
 import type { Page } from 'playwright-core'
 import { inRepository, settled, Site } from './site.js'
 
@@ -15,6 +15,33 @@ async function compare(site: Site): Promise<void> {
   const box = (await page.locator('#stage').boundingBox())!
   const clip = { x: box.x + box.width / 2 - 270, y: box.y + box.height * 0.16, width: 540, height: box.height * 0.62 }
   await page.screenshot({ path: `${kFolder}/compare.jpg`, type: 'jpeg', quality: 88, clip })
+}
+
+/** What the page shows until it has drawn the first picture itself: that one, in a square 1.3 times what is sure to be seen. */
+async function first(site: Site): Promise<void> {
+  const { page } = await site.visit({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 2 })
+  await page.addStyleTag({ content: '* { background: none !important; box-shadow: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }' })
+  await rest(page)
+  const clip = (await page.locator('#view').boundingBox())!
+  const shot = dataUri(await page.screenshot({ type: 'png', omitBackground: true, clip }))
+  const webp = await page.evaluate(
+    async ({ shot, width, height, pixels }) => {
+      const image = new Image()
+      image.src = shot
+      await image.decode()
+      const free = height - 96 // what the toolbar leaves
+      const side = 1.3 * Math.min(free, width)
+      const canvas = document.createElement('canvas')
+      canvas.width = canvas.height = pixels
+      const context = canvas.getContext('2d')!
+      context.imageSmoothingQuality = 'high'
+      context.scale(pixels / side, pixels / side)
+      context.drawImage(image, (side - width) / 2, (side - free) / 2, width, height)
+      return canvas.toDataURL('image/webp', 0.82)
+    },
+    { shot, ...clip, pixels: 1200 },
+  )
+  await writeFile(`${kFolder}/first.webp`, Buffer.from(webp.split(',')[1]!, 'base64'))
 }
 
 /** The whole page on two screens. */
@@ -91,7 +118,7 @@ const wanted = process.argv.slice(2)
 const site = await Site.open()
 try {
   await mkdir(kFolder, { recursive: true })
-  for (const take of [compare, desktopAndPhone, modes, why]) if (wanted.length === 0 || wanted.includes(take.name)) await take(site)
+  for (const take of [first, compare, desktopAndPhone, modes, why]) if (wanted.length === 0 || wanted.includes(take.name)) await take(site)
 } finally {
   await site.close()
 }

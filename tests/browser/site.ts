@@ -100,10 +100,13 @@ export interface Work {
   total: number
 }
 
-/** Measures the tasks of the page's main thread while something is done. */
-export async function mainThreadWork(page: Page, action: () => Promise<void>): Promise<Work> {
+/**
+ * Measures the tasks of the page's main thread while something is done.
+ * @param until Something that the browser notes as it loads a page, by its name in traces: what comes after it does not count.
+ */
+export async function mainThreadWork(page: Page, action: () => Promise<unknown>, until?: string): Promise<Work> {
   const browser = page.context().browser()!
-  await browser.startTracing(page, { categories: ['toplevel'] })
+  await browser.startTracing(page, { categories: ['toplevel', 'loading'] })
   let trace: { traceEvents: TraceEvent[] }
   try {
     await action()
@@ -112,10 +115,12 @@ export async function mainThreadWork(page: Page, action: () => Promise<void>): P
   }
   const threads = trace.traceEvents.filter(({ name, args }) => name === 'thread_name' && args?.name === 'CrRendererMain')
   const isMain = ({ pid, tid }: TraceEvent): boolean => threads.some((thread) => thread.pid === pid && thread.tid === tid)
+  const end = until === undefined ? Infinity : trace.traceEvents.find(({ name }) => name === until)?.ts
+  if (end === undefined) throw new Error(`the trace has no ${until}`)
   // The page's own process is the busiest of its kind.
   const byProcess = new Map<number, number[]>()
   for (const event of trace.traceEvents) {
-    if (event.name !== 'ThreadControllerImpl::RunTask' || event.tdur === undefined || !isMain(event)) continue
+    if (event.name !== 'ThreadControllerImpl::RunTask' || event.tdur === undefined || event.ts > end || !isMain(event)) continue
     byProcess.set(event.pid, [...(byProcess.get(event.pid) ?? []), event.tdur / 1000])
   }
   const work = [...byProcess.values()].map((tasks) => ({ longest: Math.max(...tasks), total: tasks.reduce((sum, task) => sum + task, 0) }))
@@ -152,6 +157,8 @@ interface TraceEvent {
   name: string
   pid: number
   tid: number
+  /** When it began, in microseconds. */
+  ts: number
   /** Processor time, in microseconds. */
   tdur?: number
   args?: { name?: string }

@@ -19,6 +19,7 @@ import { setUpRules } from './rules'
 import { fetchAhead, loadSamples } from './samples'
 import { Session } from './session'
 import { showStatus } from './status'
+import { fadeStill } from './still'
 import { paintOf } from './take/paint'
 import { followLinks } from './take/links'
 import { Take } from './take/take'
@@ -70,6 +71,7 @@ if (viewer) {
 new LayerList(stack, edits)
 setUpUndo(history)
 showStatus(session, viewer === undefined)
+fadeStill(session, viewer)
 showResults(session)
 new PartsTable(session, viewer)
 new FitPanel(session, viewer)

@@ -1,4 +1,3 @@
-import still from '../../docs/pictures/compare.jpg'
 import { clearError, element, showError, showNotice } from './page'
 import type { Progress, Session } from './session'
 
@@ -18,7 +17,6 @@ export function showStatus(session: Session, blind: boolean): void {
   if (blind) {
     element('stage', HTMLElement).classList.add('blind')
     element('view', HTMLCanvasElement).hidden = true
-    element('stage', HTMLElement).prepend(stillPicture())
     showNotice('stage-notice', kBlind)
   }
   const bar = new ProgressBar(session)
@@ -40,15 +38,6 @@ export function showStatus(session: Session, blind: boolean): void {
         return show('error')
     }
   })
-}
-
-/** What the first sample looks like where there is a picture. */
-function stillPicture(): HTMLImageElement {
-  const image = new Image()
-  image.className = 'still'
-  image.src = still
-  image.alt = 'A lizard’s head: the left half with paint all over eye, teeth and tongue, the right half painted by Cagecast.'
-  return image
 }
 
 const kPatience = 300 // milliseconds: what takes no longer needs no bar

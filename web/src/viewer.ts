@@ -34,6 +34,7 @@ const kFill = 0.86 // below 1, as models seldom reach into the corners of their 
 const kToolbar = 96 // pixels of the picture's lower edge that controls lie on
 const kSway = MathUtils.degToRad(40) // how far the model turns to either side
 const kSwaySeconds = 16 // there and back
+const kLongestFrame = 0.25 // seconds that a model turns on in one frame, however long that took: it must not jump
 const kKeyStep = MathUtils.degToRad(6)
 
 /** Shows one target with its paint and its cage on a canvas, and lets people turn it. Draws only when something changed. */
@@ -56,7 +57,9 @@ export class Viewer {
   #frame = 0
   #stale = true
   readonly #preparations: (() => void)[] = []
-  #turnStarted: number | undefined
+  /** Seconds that the model has turned by itself; undefined when it does not. */
+  #turned: number | undefined
+  #drawn = 0
   #mixer: AnimationMixer | undefined
   #played = 0
 
@@ -206,8 +209,8 @@ export class Viewer {
 
   /** Turns the model slowly to and fro, until it is touched. */
   turn(on: boolean): void {
-    if (on === (this.#turnStarted !== undefined)) return
-    this.#turnStarted = on ? performance.now() : undefined
+    if (on === (this.#turned !== undefined)) return
+    this.#turned = on ? 0 : undefined
     this.redraw()
   }
 
@@ -294,6 +297,20 @@ export class Viewer {
     this.#draw()
   }
 
+  /** Waits until what was asked for so far is drawn. */
+  async drawn(): Promise<void> {
+    const frame = (): Promise<unknown> => new Promise((done) => requestAnimationFrame(done))
+    await frame()
+    await frame()
+    const gl = this.renderer.getContext() as WebGL2RenderingContext
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0)
+    // A context that was lost has none, and draws no more.
+    if (!sync) return
+    gl.flush()
+    while (gl.getSyncParameter(sync, gl.SYNC_STATUS) === gl.UNSIGNALED) await frame()
+    gl.deleteSync(sync)
+  }
+
   /** Asks for a new picture in the next frame. */
   redraw(): void {
     this.#stale = true
@@ -302,8 +319,11 @@ export class Viewer {
 
   #onFrame(now: number): void {
     this.#frame = 0
-    if (this.#turnStarted !== undefined) {
-      const phase = Math.sin(((now - this.#turnStarted) / 1000) * ((2 * Math.PI) / kSwaySeconds))
+    if (this.#turned !== undefined && this.#model) {
+      // From the first picture on.
+      if (this.#drawn > 0) this.#turned += Math.min(kLongestFrame, Math.max(0, now - this.#drawn) / 1000)
+      this.#drawn = now
+      const phase = Math.sin(this.#turned * ((2 * Math.PI) / kSwaySeconds))
       const { radius, phi } = new Spherical().setFromVector3(this.#camera.position)
       this.#look({ radius, phi, theta: kHome.theta - kSway * phase })
     }
