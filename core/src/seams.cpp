@@ -19,22 +19,25 @@ constexpr double kPatchSlack = 0.01;
 /// docs/method.md, step 9: sums of distances within this share of the diagonal are equal.
 constexpr double kTieSum = 1e-7;
 
-/// UVs up to here are exact enough as floats for a first look: they are off by less than the slack above.
-constexpr float kMostUv = 16384;
-/// What the first look allows of the explained length, squared: the exact limit less what floats round.
+/// UVs up to here are exact enough as floats for a first look: they are off by a hundredth of the slack at most.
+constexpr float kMostUv = 256;
+/// What the first look allows of the squares of the explained length and of the slack: less than the exact limit, which is the square
+/// of their sum, by more than floats round.
 constexpr double kFirstLook = 0.99 * kSmear * kSmear;
+constexpr double kFirstSlack = 0.9 * kSmearSlack * kSmearSlack;
 
-/// What the first look knows of a point of the target.
+/// What the first look knows of the place of a point of the target.
 struct FirstLook {
-  float u, v;
-  float explains;  ///< Squared UV length per squared length, on the triangle of the cage under it.
-  float unused;
+  std::uint32_t island;
+  float explains;  ///< Squared UV length per squared length, on the triangle of the cage under the point.
 };
 
 /// A corner of a target triangle, and its place on the cage.
 struct Corner {
+  std::uint32_t point;
   Vec3 p;
   Candidate at;
+  Uv uv;  ///< Of that place.
 };
 
 /// Finds the patch of the cage that serves a triangle across a seam.
@@ -75,15 +78,19 @@ class Mender {
     }
   }
 
-  [[nodiscard]] Candidate placeOf(Vec3 p, std::uint32_t t) const noexcept { return {t, placeOn(cage_.triangles[t], p)}; }
+  /// A point of the target, and its place on the triangle that it is nearest to.
+  [[nodiscard]] Corner cornerAt(std::uint32_t point, Vec3 p, std::uint32_t t) const noexcept {
+    const Candidate at = placeOf(p, t);
+    return {point, p, at, uvOf(at)};
+  }
 
   /// Whether the texture is torn or smeared over a triangle, in double.
   [[nodiscard]] bool isAcross(const Corner (&corners)[3]) const noexcept {
     for (int k = 0; k < 3; ++k) {
       const Corner& a = corners[k];
       const Corner& b = corners[(k + 1) % 3];
-      const Landing from{a.at.slot, a.at.place.distance, uvOf(a.at)};
-      const Landing to{b.at.slot, b.at.place.distance, uvOf(b.at)};
+      const Landing from{a.at.slot, a.at.place.distance, a.uv};
+      const Landing to{b.at.slot, b.at.place.distance, b.uv};
       if (atlas_.tears(from, to, length(b.p - a.p))) return true;
     }
     return false;
@@ -174,7 +181,7 @@ class Mender {
     float* squaredDistances;     ///< 4 per triangle.
     simd::f32x4 leastSquares;    ///< For each of the four.
     simd::f32x4 x, y, z;         ///< The corners and the place.
-    simd::f32x4 within, beyond;  ///< Squared distances that are surely within reach, and surely beyond it.
+    simd::f32x4 limits;          ///< Squared distances: up to lane 0 surely within reach, up to the others perhaps.
     std::uint32_t* seen;         ///< 1 per lane: the last triangle of the target for which it was met.
     std::uint32_t* sideSeen;     ///< 1 per side: the last one for which a round about its edge was made.
 
@@ -190,6 +197,8 @@ class Mender {
   };
 
   static constexpr int kPlace = 3;
+  /// Beyond lane 0 of `Patch::limits`, within the others.
+  static constexpr unsigned kUnsure = 0b1110;
 
   /// Begins the patch of corner k.
   void begin(const Corner (&corners)[3], int k, double reach, Patch& patch) noexcept {
@@ -206,8 +215,10 @@ class Mender {
     patch.z = four(&Vec3::z);
     const double rounding = 2 * kRounding * (tree_.extent + reach + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
     const double surely = std::max(0.0, reach - rounding);
-    patch.within = simd::splat(static_cast<float>(surely * surely));
-    patch.beyond = simd::splat(static_cast<float>((reach + rounding) * (reach + rounding)));
+    const auto within = static_cast<float>(surely * surely);
+    const auto beyond = static_cast<float>((reach + rounding) * (reach + rounding));
+    const float limits[4] = {within, beyond, beyond, beyond};
+    patch.limits = simd::load(limits);
     patch.leastSquares = simd::splat(std::numeric_limits<float>::max());
     patch.place = q;
     patch.reach = reach;
@@ -226,9 +237,9 @@ class Mender {
       const simd::f32x4 squared = squaredDistances(tree_.near[lane / 4], patch.x, patch.y, patch.z,
                                                    [lane](const float (&field)[4]) { return simd::splat(field[lane % 4]); });
       // No branch that is a coin toss: what is not kept is written over by the next.
-      std::uint32_t isNear = simd::bits(squared <= patch.within) >> kPlace;
-      const std::uint32_t mayBeNear = simd::bits(squared <= patch.beyond) >> kPlace;
-      if (isNear != mayBeNear) isNear = lane == patch.first || placeOf(patch.place, slotOf(lane)).place.distance <= patch.reach;
+      const unsigned isWithin = simd::bits(simd::splatLane<kPlace>(squared) <= patch.limits);
+      std::uint32_t isNear = isWithin & 1;
+      if (isWithin == kUnsure) isNear = lane == patch.first || placeOf(patch.place, slotOf(lane)).place.distance <= patch.reach;
       simd::store(patch.squaredDistances + 4 * size, squared);
       patch.lanes[size] = lane;
       size += isNear;
@@ -281,6 +292,7 @@ class Mender {
   [[nodiscard]] std::uint32_t slotOf(std::uint32_t lane) const noexcept { return tree_.near[lane / 4].slot[lane % 4]; }
   [[nodiscard]] Uv uvOf(const Candidate& at) const noexcept { return uvAt(cage_.triangles[at.slot], at.place); }
 
+  [[nodiscard]] Candidate placeOf(Vec3 p, std::uint32_t t) const noexcept { return {t, placeOn(cage_.triangles[t], p)}; }
   [[nodiscard]] Candidate placeOf(const Corner& corner, Known& known, std::uint32_t t) const noexcept {
     for (std::uint32_t i = 0; i < known.count; ++i) {
       if (known.places[i].slot == t) return known.places[i];
@@ -314,7 +326,7 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
   if (!findAtlas(cageMesh, cage, scratch, atlas)) return false;
   Mender mender(cage, tree, atlas, units.diagonal, scratch);
   auto* looks = scratch.take<FirstLook>(points.count);
-  auto* islands = scratch.take<std::uint32_t>(points.count);
+  auto* uvs = scratch.take<float>(std::size_t{4} * points.count);  // Two are 0.
   if (scratch.failed()) return false;
 
   // A first look in float: most triangles are clearly whole in the texture.
@@ -322,46 +334,43 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     const std::uint32_t slot = results.triangles[i];
     // Below infinity, so that a product with it stays a number.
     const double explained = std::min(kFirstLook * atlas.stretch[slot] * atlas.stretch[slot], 1e30);
-    looks[i] = {results.uvs[2 * i], results.uvs[2 * i + 1],
-                atlas.mostUv <= kMostUv ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity(), 0};
-    islands[i] = atlas.islands[slot];
+    looks[i] = {atlas.islands[slot], atlas.mostUv <= kMostUv ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity()};
+    const float uv[4] = {results.uvs[2 * i], results.uvs[2 * i + 1], 0, 0};
+    std::memcpy(uvs + std::size_t{4} * i, uv, sizeof uv);
   }
   const auto isWhole = [&](const std::uint32_t (&point)[3]) {
-    // Squared edges, first as rows, then by axis.
-    const auto squaredEdges = [&](auto get, simd::f32x4& x, simd::f32x4& y, simd::f32x4& z) {
-      const simd::f32x4 a = simd::load(get(point[0]));
-      const simd::f32x4 b = simd::load(get(point[1]));
-      const simd::f32x4 c = simd::load(get(point[2]));
-      x = (b - a) * (b - a);
-      y = (c - b) * (c - b);
-      z = (a - c) * (a - c);
-      simd::f32x4 none = simd::splat(0);
-      simd::transpose(x, y, z, none);
-    };
-    simd::f32x4 x, y, z, u, v, unused;
-    squaredEdges([&](std::uint32_t i) { return points.at(i); }, x, y, z);
-    squaredEdges([&](std::uint32_t i) { return &looks[i].u; }, u, v, unused);
+    const FirstLook& a = looks[point[0]];
+    const FirstLook& b = looks[point[1]];
+    const FirstLook& c = looks[point[2]];
     // What the least of the three explains.
-    const float explains = std::min({looks[point[0]].explains, looks[point[1]].explains, looks[point[2]].explains});
-    const bool onOneIsland = islands[point[0]] == islands[point[1]] && islands[point[1]] == islands[point[2]];
-    return onOneIsland && simd::bits(u + v <= simd::splat(explains) * (x + y + z)) == 0xF;
+    const simd::f32x4 explains = simd::splat(std::min({a.explains, b.explains, c.explains}));
+    const auto row = [](const float* rows, std::uint32_t i) { return simd::load(rows + std::size_t{4} * i); };
+    // By how much an edge's squared length in UV is less, by axis, and then by edge.
+    const auto explainsMore = [&](std::uint32_t i, std::uint32_t j) {
+      const simd::f32x4 edge = row(points.positions, j) - row(points.positions, i);
+      const simd::f32x4 inUv = row(uvs, j) - row(uvs, i);
+      return explains * (edge * edge) - inUv * inUv;
+    };
+    simd::f32x4 x = explainsMore(point[0], point[1]);
+    simd::f32x4 y = explainsMore(point[1], point[2]);
+    simd::f32x4 z = explainsMore(point[2], point[0]);
+    simd::f32x4 none = simd::splat(0);
+    simd::transpose(x, y, z, none);
+    const simd::f32x4 more = x + y + z + simd::splat(static_cast<float>(kFirstSlack));
+    return a.island == b.island && b.island == c.island && simd::bits(simd::splat(0) <= more) == 0xF;
   };
   // The triangles around a point often come one soon after the other.
   constexpr std::uint32_t kRecent = 64;
-  struct Recent {
-    std::uint32_t point = UINT32_MAX;
-    Corner corner;
-  };
-  auto* recent = scratch.take<Recent>(kRecent);
+  auto* recent = scratch.take<Corner>(kRecent);
   if (scratch.failed()) return false;
-  std::fill(recent, recent + kRecent, Recent{});
+  for (std::uint32_t i = 0; i < kRecent; ++i) recent[i].point = UINT32_MAX;
   const std::size_t allTriangles = targetMesh.indices.size() / 3;
   std::uint32_t usable = 0;
   for (std::size_t t = 0; t < allTriangles; ++t) {
     const std::uint32_t* index = targetMesh.indices.data() + 3 * t;
     const std::uint32_t point[3] = {points.ofVertex[index[0]], points.ofVertex[index[1]], points.ofVertex[index[2]]};
-    float* uvs = cornerUvs + 6 * t;
-    for (int c = 0; c < 3; ++c) std::memcpy(uvs + 2 * c, &looks[point[c]].u, 2 * sizeof(float));
+    float* ofCorners = cornerUvs + 6 * t;
+    for (int c = 0; c < 3; ++c) std::memcpy(ofCorners + 2 * c, uvs + std::size_t{4} * point[c], 2 * sizeof(float));
     // `points.triangles` has those with an area, in the same order.
     if (usable == points.triangleCount || !std::equal(point, point + 3, points.triangles + std::size_t{3} * usable)) continue;
     ++usable;
@@ -369,15 +378,11 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
 
     Corner corners[3];
     for (int c = 0; c < 3; ++c) {
-      auto& [of, corner] = recent[point[c] % kRecent];
-      if (of != point[c]) {
-        const Vec3 p = Vec3::from(points.at(point[c]));
-        of = point[c];
-        corner = {p, mender.placeOf(p, results.triangles[point[c]])};
-      }
+      Corner& corner = recent[point[c] % kRecent];
+      if (corner.point != point[c]) corner = mender.cornerAt(point[c], Vec3::from(points.at(point[c])), results.triangles[point[c]]);
       corners[c] = corner;
     }
-    if (mender.isAcross(corners)) mender.mend(corners, uvs);
+    if (mender.isAcross(corners)) mender.mend(corners, ofCorners);
   }
   scratch.rewind(mark);
   return true;
