@@ -4,6 +4,7 @@ import { tmpdir } from 'node:os'
 import path from 'node:path'
 import { after, before, test } from 'node:test'
 import type { Page } from 'playwright-core'
+import { giveUpOnceShown, kSlowWorker } from './give-up'
 import { islandCage, islandPaint, lumpyBall } from './models'
 import { mainThreadWork, settled, shownCounts, shownError, Site } from './site'
 import { names } from './texture'
@@ -54,30 +55,6 @@ test('while half a million triangles are transferred, no task keeps the page fro
   assert.ok(longest < 100, `the longest task takes ${longest} ms`)
   assert.deepEqual(complaints, [])
 })
-
-/** Gives the work up as soon as the bar shows it. Within the page: a key or a click from outside waits for frames, and comes late. */
-function giveUpOnceShown(page: Page, way: 'button' | 'Escape'): Promise<void> {
-  return page.evaluate(
-    (chosen) =>
-      new Promise<void>((done) => {
-        const bar = document.querySelector<HTMLElement>('[data-testid=progress]')!
-        const watch = new MutationObserver(() => {
-          if (bar.hidden) return
-          watch.disconnect()
-          if (chosen === 'button') document.querySelector<HTMLElement>('[data-testid=cancel]')!.click()
-          else document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape', bubbles: true }))
-          done()
-        })
-        watch.observe(bar, { attributes: true })
-      }),
-    way,
-  )
-}
-
-/** A worker that is slow to begin: however quick the machine, there is time to give the work up. */
-const kSlowWorker = `
-  const { postMessage } = Worker.prototype
-  Worker.prototype.postMessage = function (...message) { setTimeout(() => postMessage.apply(this, message), 1000) }`
 
 for (const way of ['button', 'Escape'] as const) {
   test(`what takes long can be given up by ${way}, and what was on show stays`, async () => {

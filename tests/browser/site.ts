@@ -42,7 +42,7 @@ export class Site {
    * names a folder where it is already built, by whoever runs many files of tests.
    */
   static async open(): Promise<Site> {
-    const built = process.env.CAGECAST_PAGE
+    const built = process.env.CAGECAST_PAGE || undefined // an empty name would be the folder of the sources
     const outDir = built ?? (await mkdtemp(path.join(tmpdir(), 'cagecast-page-')))
     if (!built) await build({ configFile: kConfig, logLevel: 'error', build: { outDir } })
     const server = await preview({ configFile: kConfig, logLevel: 'error', build: { outDir }, preview: { host: '127.0.0.1', port: 0 } })

@@ -1,5 +1,6 @@
 import { init } from 'cagecast'
 import { setUpPainting } from './brush/set-up'
+import { ExactBorders } from './exact-borders'
 import { FitPanel } from './fit'
 import { History } from './history'
 import { setUpJump } from './jump'
@@ -62,6 +63,7 @@ let png: (() => Promise<Blob>) | undefined
 if (viewer) {
   showPicture(session, viewer)
   showViewModes(session, viewer)
+  new ExactBorders(session, viewer)
   const composite = showComposite(viewer, stack)
   const tools = new Tools(viewer, element('stage', HTMLElement))
   setUpPainting(session, viewer, tools, { stack, composite, edits })

@@ -48,14 +48,14 @@ export class FitPanel {
   }
 
   async #inspect(): Promise<void> {
-    const { shown, rules, locks } = this.#session
+    const { shown, rules: { preset, threshold }, locks } = this.#session
     if (!shown) return
     this.#button.hidden = true
     this.#client ??= new TransferClient()
     try {
       const { target, cage } = shown
       const parts = target.mesh.parts.map(({ name, firstVertex, vertexCount }) => ({ name, firstVertex, vertexCount }))
-      this.#write(await this.#client.ask('inspect', cage, target, { ...rules, locks: { segments: locks }, parts }))
+      this.#write(await this.#client.ask('inspect', cage, target, { preset, threshold, locks: { segments: locks }, parts }))
     } catch (error) {
       if (error instanceof Superseded) return
       this.#show('', [text('p', `The cage cannot be inspected: ${error instanceof Error ? error.message : error}`)])

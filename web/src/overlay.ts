@@ -1,4 +1,5 @@
 import type { Classification, SplitVertices } from 'cagecast'
+import type { CutTarget } from 'cagecast/borders'
 import {
   BufferAttribute,
   BufferGeometry,
@@ -15,6 +16,7 @@ import {
   type Texture,
 } from 'three'
 import { turnWinding, type ExtractedMesh, type Part } from './extract'
+import { Pace } from './pace'
 import type { Placed } from './transfer-messages'
 
 /**
@@ -56,25 +58,44 @@ const kClay = 7
  */
 export class Overlay {
   readonly #layers: Layer[]
+  /** Vertices of the target. */
+  readonly #vertexCount: number
+  #cuts = 0
 
   /**
    * Lays nothing yet: call `classify`.
    * @param paint In the cage's UVs, its colours multiplied by their alpha. It may be a render target's, drawn anew at any time.
    */
   constructor(target: ExtractedMesh, projection: Placed, paint: Texture | undefined) {
+    this.#vertexCount = target.positions.length / 3
     const parts = target.parts.filter((part) => part.triangleCount > 0)
     this.#layers = parts.map((part) => new Layer(part, target.indices, paint))
     this.lay(projection)
   }
 
-  /** Lays everything anew over the target, whose vertices have moved. Call `classify` next. */
+  /** Lays everything anew over the target, whose vertices have moved: not as it was cut. Call `classify` next. */
   lay({ uvs, split }: Placed): void {
+    this.#cuts++
     for (const layer of this.#layers) layer.lay(uvs, split)
   }
 
   /** Chooses which triangles are painted, and which are which zone. */
   classify(classification: Classification): void {
     for (const layer of this.#layers) layer.classify(classification)
+  }
+
+  /** Lays the filtered paint over the target as it was cut; without a cut over its own triangles again. The last call wins. */
+  async setCut(cut: CutTarget | undefined): Promise<void> {
+    const call = ++this.#cuts
+    for (const layer of this.#layers) layer.forgetCut()
+    if (!cut) return
+    const { cutGeometry } = await import('cagecast/three/borders')
+    const pace = new Pace()
+    for (const layer of this.#layers) {
+      if (call !== this.#cuts) return
+      layer.layCut(cut, this.#vertexCount, cutGeometry)
+      await pace.rest()
+    }
   }
 
   setPaint(paint: Texture): void {
@@ -97,9 +118,12 @@ export class Overlay {
   }
 
   dispose(): void {
+    this.#cuts++
     for (const layer of this.#layers) layer.dispose()
   }
 }
+
+type CutGeometry = (typeof import('cagecast/three/borders'))['cutGeometry']
 
 class Layer {
   readonly #part: Part
@@ -108,7 +132,10 @@ class Layer {
   #corners = new Uint32Array(0)
   readonly #naive: Mesh
   readonly #filtered: Mesh
+  /** In place of the filtered one, where the target was cut. */
+  #cut: Mesh | undefined
   #tinted: Mesh | undefined
+  #look: Look = 'bare'
   readonly #paint: MeshStandardMaterial
   readonly #nothing = new MeshBasicMaterial({ visible: false })
   readonly #reasons = kReasons.map((zone) => reasonMaterial(kReasonColors[zone]))
@@ -148,7 +175,34 @@ class Layer {
     filtered.setIndex(new BufferAttribute(new Uint32Array(3 * triangleCount), 1))
     this.#exchange(this.#naive, naive)
     this.#exchange(this.#filtered, filtered)
+    this.forgetCut()
     this.#forgetTint()
+  }
+
+  /** Lays the filtered paint over the part as it was cut. @param vertexCount Of the whole target before. */
+  layCut(cut: CutTarget, vertexCount: number, cutGeometry: CutGeometry): void {
+    const { mesh, mirrored } = this.#part
+    const geometry = shareVertices(mesh.geometry)
+    geometry.morphAttributes = { ...geometry.morphAttributes } // which are replaced one by one
+    const { pieces, split } = cutGeometry(geometry, { ...this.#part, turned: mirrored }, cut, vertexCount)
+    geometry.setAttribute(kUvName, new BufferAttribute(split.uvs, 2))
+    const { cosmeticTriangles, zones } = pieces.result
+    const reasons = reasonsOf(cosmeticTriangles, zones, pieces.geometry.localIndices)
+    geometry.setIndex(new BufferAttribute(new Uint32Array(split.indices.length), 1))
+    sortByReason(geometry, split.indices, reasons)
+    this.forgetCut()
+    this.#cut = overlayMesh(mesh, geometry)
+    mesh.add(this.#cut)
+    this.show(this.#look)
+  }
+
+  /** Goes back to the part's own triangles. */
+  forgetCut(): void {
+    if (!this.#cut) return
+    this.#cut.removeFromParent()
+    this.#cut.geometry.dispose()
+    this.#cut = undefined
+    this.show(this.#look)
   }
 
   #exchange(mesh: Mesh, geometry: BufferGeometry): void {
@@ -163,39 +217,10 @@ class Layer {
     this.#tinted = undefined
   }
 
-  classify(classification: Classification): void {
-    const { geometry } = this.#filtered
-    const index = geometry.index!
-    const reasons = this.#reasonsOf(classification)
-
-    geometry.clearGroups()
-    let filled = 0
-    for (const zone of kZones) {
-      const start = filled
-      for (let triangle = 0; triangle < reasons.length; triangle++) {
-        if (reasons[triangle] !== zone) continue
-        for (let corner = 3 * triangle; corner < 3 * triangle + 3; corner++) index.array[filled++] = this.#corners[corner]!
-      }
-      if (filled === start) continue
-      const draw = (material: number): void => geometry.addGroup(start, filled - start, material)
-      draw(zone)
-      if (zone === 0) draw(kClay)
-      // Drawn a second time where something lies in front of it: most zones are inside.
-      if (zone > 0) draw(kHidden + zone)
-    }
-    index.needsUpdate = true
-  }
-
-  /** 1 per triangle: 0 where it may be painted, else the zone, of those of its corners, that was decided last. */
-  #reasonsOf({ zones, cosmeticTriangles }: Classification): Uint8Array {
+  classify({ zones, cosmeticTriangles }: Classification): void {
     const { firstTriangle, triangleCount } = this.#part
-    const zoneAt = (corner: number): number => zones[this.#vertices[corner]!]!
-    const reasons = new Uint8Array(triangleCount)
-    for (let triangle = 0; triangle < triangleCount; triangle++) {
-      if (cosmeticTriangles[firstTriangle + triangle]) continue
-      reasons[triangle] = Math.max(zoneAt(3 * triangle), zoneAt(3 * triangle + 1), zoneAt(3 * triangle + 2))
-    }
-    return reasons
+    const cosmetic = cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount)
+    sortByReason(this.#filtered.geometry, this.#corners, reasonsOf(cosmetic, zones, this.#vertices))
   }
 
   setPaint(paint: Texture): void {
@@ -231,11 +256,14 @@ class Layer {
   }
 
   show(look: Look): void {
+    this.#look = look
     this.#naive.visible = look === 'naive'
     if (this.#tinted) this.#tinted.visible = look === 'tint'
     const materials = this.#materials(look)
-    this.#filtered.visible = materials.length > 0
-    this.#filtered.material = materials
+    this.#filtered.visible = false
+    const filtered = this.#cut ?? this.#filtered
+    filtered.visible = materials.length > 0
+    filtered.material = materials
   }
 
   /** Of the filtered mesh. A group whose material is missing is not drawn. */
@@ -253,6 +281,7 @@ class Layer {
   }
 
   dispose(): void {
+    this.forgetCut()
     this.#forgetTint()
     for (const mesh of [this.#naive, this.#filtered]) {
       mesh.removeFromParent()
@@ -260,6 +289,37 @@ class Layer {
     }
     for (const material of [this.#paint, this.#nothing, this.#clay, this.#checker, this.#tint, ...this.#reasons, ...this.#hidden]) material.dispose()
   }
+}
+
+/**
+ * 1 per triangle: 0 where it may be painted, else the zone, of those of its corners, that was decided last.
+ * @param zones   1 per vertex.
+ * @param corners 3 vertices per triangle.
+ */
+function reasonsOf(cosmeticTriangles: Uint8Array, zones: Uint8Array, corners: ArrayLike<number>): Uint8Array {
+  const zoneAt = (corner: number): number => zones[corners[corner]!]!
+  return cosmeticTriangles.map((cosmetic, triangle) => (cosmetic ? 0 : Math.max(zoneAt(3 * triangle), zoneAt(3 * triangle + 1), zoneAt(3 * triangle + 2))))
+}
+
+/** Fills the index of a geometry with its triangles in the order of their reasons, in groups for a layer's materials. */
+function sortByReason(geometry: BufferGeometry, corners: Uint32Array, reasons: Uint8Array): void {
+  const index = geometry.index!
+  geometry.clearGroups()
+  let filled = 0
+  for (const zone of kZones) {
+    const start = filled
+    for (let triangle = 0; triangle < reasons.length; triangle++) {
+      if (reasons[triangle] !== zone) continue
+      for (let corner = 3 * triangle; corner < 3 * triangle + 3; corner++) index.array[filled++] = corners[corner]!
+    }
+    if (filled === start) continue
+    const draw = (material: number): void => geometry.addGroup(start, filled - start, material)
+    draw(zone)
+    if (zone === 0) draw(kClay)
+    // Drawn a second time where something lies in front of it: most zones are inside.
+    if (zone > 0) draw(kHidden + zone)
+  }
+  index.needsUpdate = true
 }
 
 /** A geometry of the same vertices, morphs and triangles, to which more can be added. */

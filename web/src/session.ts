@@ -1,4 +1,5 @@
 import { CagecastError, classify, init, type Classification, type Lock, type Preset } from 'cagecast'
+import type { Borders } from 'cagecast/three'
 import { Emitter } from './events'
 import type { Model } from './load'
 import { makeChecker, type Paint } from './paint'
@@ -26,10 +27,15 @@ export type Wanted = { [Slot in keyof Scene]?: Promise<Scene[Slot]> }
 export interface Rules {
   preset: Preset
   threshold: number
+  /** Whether paint ends at the target's own triangles, or these are cut where it does. */
+  borders: Borders
 }
 
 /** What the visitor said about segments of the target, by their number; nothing about all others. */
 export type Locks = Record<number, Lock>
+
+/** Ends work under way, because the visitor said so, or something else was wanted. */
+type GiveUp = (why: 'cancelled' | 'superseded') => void
 
 /** What became of the latest wish. */
 export type Progress =
@@ -66,13 +72,15 @@ export class Session extends Emitter<SessionEvents> {
   #wanted: Wanted = {}
   #shown: Shown | undefined
   #classification: Classification | undefined
-  #rules: Rules = { preset: 'default', threshold: 0.5 }
+  #rules: Rules = { preset: 'default', threshold: 0.5, borders: 'triangle' }
   #locks: Locks = {}
   /** What is already said about the target that is wanted. */
   #wantedLocks: Locks = {}
   #view = kFirstView
   #runs = 0
   #working = false
+  /** Gives up what a feature does with what is on show. */
+  #giveUpWork: GiveUp | undefined
   /** The paint that was told of last. */
   #painted: Paint | undefined
 
@@ -171,8 +179,31 @@ export class Session extends Emitter<SessionEvents> {
     if (!this.#working) return
     this.#runs++
     this.#client.cancel()
+    this.#endWork('cancelled')
     for (const slot of ['target', 'cage', 'paint'] as const) this.#giveUp(slot)
     this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] })
+  }
+
+  /**
+   * Tells of work that a feature does with what is on show.
+   * @param giveUp Called if it is given up before it is over.
+   * @returns What is to be called when it is over.
+   */
+  work(stage: string, share: number, giveUp: GiveUp): () => void {
+    this.#endWork('superseded')
+    this.#giveUpWork = giveUp
+    this.#tell(stage, share)
+    return () => {
+      if (this.#giveUpWork !== giveUp) return
+      this.#giveUpWork = undefined
+      this.emit('progress', { state: 'ready' })
+    }
+  }
+
+  #endWork(why: Parameters<GiveUp>[0]): void {
+    const giveUp = this.#giveUpWork
+    this.#giveUpWork = undefined
+    giveUp?.(why)
   }
 
   #tell(stage: string, share: number): void {
@@ -182,6 +213,7 @@ export class Session extends Emitter<SessionEvents> {
   async #run(): Promise<void> {
     const run = ++this.#runs
     const superseded = (): boolean => run !== this.#runs
+    this.#endWork('superseded')
     this.#tell('Reading', 0)
     this.#client.cancel()
     try {

@@ -1,4 +1,5 @@
-import type { Code, Mesh, Projection, ProjectOptions, SplitVertices } from 'cagecast'
+import type { Code, Mesh, Projection, ProjectOptions, SplitVertices, TransferOptions, TransferResult } from 'cagecast'
+import type { CutTarget } from 'cagecast/borders'
 import type { InspectOptions, Inspection } from 'cagecast/inspect'
 
 /** A projection, and what the picture needs of it. */
@@ -7,9 +8,16 @@ export interface Placed extends Projection {
   split: SplitVertices
 }
 
+/** What is to be cut: what was decided about the target, and by which rules. */
+export interface CutOptions {
+  result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>
+  rules: TransferOptions
+}
+
 /** What the worker can do, and what it answers. */
 export interface Tasks {
   project: { options: ProjectOptions; answer: Placed }
+  cut: { options: CutOptions; answer: CutTarget }
   inspect: { options: InspectOptions; answer: Inspection }
 }
 

@@ -21,6 +21,10 @@ async function answerTo({ id, task, cage, target, options }: Request) {
     postMessage({ id, half: true } satisfies Reply)
     return { ...projection, split: splitAtSeams(target, projection) }
   }
+  if (task === 'cut') {
+    const { cutBorders } = await import('cagecast/borders')
+    return cutBorders(cage, target, options.result, options.rules)
+  }
   const { inspect } = await import('cagecast/inspect')
   return inspect(cage, target, options)
 }

@@ -1,4 +1,5 @@
 import type { Classification } from 'cagecast'
+import type { CutTarget } from 'cagecast/borders'
 import {
   AnimationMixer,
   Box3,
@@ -199,6 +200,12 @@ export class Viewer {
   /** Shows the decision for another threshold. */
   classify(classification: Classification): void {
     this.#overlay?.classify(classification)
+    this.redraw()
+  }
+
+  /** Shows the target as it was cut, until it moves or another is shown; without one its own triangles again. */
+  async setCut(cut: CutTarget | undefined): Promise<void> {
+    await this.#overlay?.setCut(cut)
     this.redraw()
   }
 

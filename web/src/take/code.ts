@@ -13,12 +13,13 @@ export function codeFor({ shown, rules, locks }: Session): Code {
 }
 
 function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
-  const { preset, threshold } = saidBy(rules)
+  const { preset, threshold, borders } = saidBy(rules)
   const segments = Object.entries(locks).flatMap(([segment, lock]) => (lock === 'auto' ? [] : [`${segment}: '${lock}'`]))
   const options = [
     'texture',
     ...(preset ? [`preset: '${preset}'`] : []),
     ...(threshold === undefined ? [] : [`threshold: ${threshold}`]),
+    ...(borders ? [`borders: '${borders}'`] : []),
     ...(segments.length > 0 ? [`locks: { segments: { ${segments.join(', ')} } }`] : []),
   ]
   return `import { init } from 'cagecast'
@@ -33,15 +34,16 @@ const [target, cage] = await Promise.all(files.map((file) => loader.loadAsync(fi
 const texture = await new TextureLoader().loadAsync('paint.png')
 texture.flipY = false
 texture.colorSpace = SRGBColorSpace
-applyTransfer(target.scene, cage.scene, { ${options.join(', ')} })
+${borders ? 'await ' : ''}applyTransfer(target.scene, cage.scene, { ${options.join(', ')} })
 scene.add(target.scene)`
 }
 
 function commandLine(shown: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
-  const { preset, threshold } = saidBy(rules)
+  const { preset, threshold, borders } = saidBy(rules)
   const words = ['npx cagecast transfer', shell(shown.target.name), '--cage', shell(shown.cage.name), '--texture paint.png']
   if (preset) words.push(`--preset ${preset}`)
   if (threshold !== undefined) words.push(`--threshold ${threshold}`)
+  if (borders) words.push(`--borders ${borders}`)
   const partly: string[] = []
   for (const lock of ['keep', 'exclude'] as const) {
     const { whole, some } = partsLocked(shown, locks, lock)
@@ -62,8 +64,8 @@ function partsLocked({ target, projection }: Shown, locks: Readonly<Record<numbe
 }
 
 /** What has to be said of the rules, because it is not so by itself. */
-function saidBy({ preset, threshold }: Rules): Partial<Rules> {
-  return { ...(preset !== 'default' && { preset }), ...(threshold !== presetOptions(preset).threshold && { threshold }) }
+function saidBy({ preset, threshold, borders }: Rules): Partial<Rules> {
+  return { ...(preset !== 'default' && { preset }), ...(threshold !== presetOptions(preset).threshold && { threshold }), ...(borders !== 'triangle' && { borders }) }
 }
 
 /** A word for a shell. */

@@ -1,4 +1,5 @@
 import type { Mesh, TransferOptions } from 'cagecast'
+import type { CagecastOptions } from 'cagecast/gltf'
 import type { Baked } from './texture/bake'
 
 /** What the page asks of the worker that writes models. */
@@ -10,7 +11,7 @@ export interface ExportRequest {
   texture: Uint8Array<ArrayBuffer>
   /** Where the paint goes: over the model, or into its own textures where it has some. */
   into: PaintInto
-  options: TransferOptions
+  options: TransferOptions & Pick<CagecastOptions, 'borders'>
 }
 
 export type PaintInto = 'overlay' | 'texture'

@@ -32,6 +32,7 @@ export function writeLink({ sample, layers, rules, locks, view }: LinkState): st
   }
   words.set('rules', rules.preset)
   words.set('threshold', String(rules.threshold))
+  if (rules.borders !== 'triangle') words.set('borders', rules.borders)
   for (const lock of ['keep', 'exclude'] as const) {
     const segments = Object.keys(locks).filter((segment) => locks[Number(segment)] === lock)
     if (segments.length > 0) words.set(lock, segments.join(','))
@@ -55,7 +56,7 @@ export function readLink(fragment: string): LinkState | undefined {
   return {
     sample,
     layers: words.getAll('layer').map(readLayer),
-    rules: { preset: words.get('rules') === 'paper' ? 'paper' : 'default', threshold: share(words.get('threshold'), 0.5) },
+    rules: { preset: words.get('rules') === 'paper' ? 'paper' : 'default', threshold: share(words.get('threshold'), 0.5), borders: words.get('borders') === 'cut' ? 'cut' : 'triangle' },
     locks: { ...readLocks(words, 'keep'), ...readLocks(words, 'exclude') },
     view: {
       mode: kModes.includes(mode) ? mode : 'compare',

@@ -1,7 +1,7 @@
 import type { Session } from '../session'
 
 /** What the page found out, for tools: which vertex is in which zone, by what rules, and what became of each segment. */
-export function zonesJson({ shown, classification, rules, locks }: Session): string {
+export function zonesJson({ shown, classification, rules: { preset, threshold }, locks }: Session): string {
   const { target, cage, projection } = shown!
   const { zones, segmentStats } = classification!
   const counts = [0, 0, 0, 0]
@@ -10,7 +10,7 @@ export function zonesJson({ shown, classification, rules, locks }: Session): str
   return JSON.stringify({
     target: target.name,
     cage: cage.name,
-    options: { ...rules, locks: { segments: locks } },
+    options: { preset, threshold, locks: { segments: locks } },
     counts: { cosmetic, occluded, uncovered, culled },
     parts: target.mesh.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({ name, firstVertex, vertexCount, firstTriangle, triangleCount })),
     segments: segmentStats.map((stats) => ({ part: target.mesh.parts[stats.group]!.name, ...stats })),

@@ -41,7 +41,7 @@ export interface PartFacts {
 export interface Facts {
   shown: Shown
   classification: Classification
-  rules: Rules
+  rules: Pick<Rules, 'preset' | 'threshold'>
   locks: Locks
   rims: Rims
 }
