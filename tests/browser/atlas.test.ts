@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict'
 import { test } from 'node:test'
 import { BoxGeometry, SphereGeometry, Vector3, type BufferGeometry } from 'three'
-import { CageAtlas, type CageMesh, type Place } from '../../web/src/brush/atlas'
+import { CageAtlas, kFacing, type CageMesh, type Place } from '../../web/src/brush/atlas'
 import { Stroke } from '../../web/src/brush/stroke'
 import { History } from '../../web/src/history'
 import { apart, type Rect } from '../../web/src/layers/rect'
@@ -54,7 +54,7 @@ test('UVs outside 0..1 are repeated, as the texture is', () => {
   }
 })
 
-test('what a brush is said to touch holds every texel whose place is near its way', () => {
+test('what a brush is said to touch holds every texel whose place is near its way, and faces it', () => {
   const next = random(7)
   for (const geometry of [box(), new SphereGeometry(1, 24, 16)]) {
     const atlas = new CageAtlas(cageOf(geometry), kSize)
@@ -72,7 +72,8 @@ test('what a brush is said to touch holds every texel whose place is near its wa
       const to = places.find(([, , { point }]) => point !== from.point && point.distanceTo(from.point) < 0.3)?.[2] ?? from
       const rects = atlas.touched({ from, to, radius }, 32)
       const way = new Vector3().subVectors(to.point, from.point)
-      for (const [u, v, { point }] of places) {
+      for (const [u, v, { point, normal }] of places) {
+        if (Math.max(normal.dot(from.normal), normal.dot(to.normal)) < kFacing) continue
         const share = Math.min(1, Math.max(0, new Vector3().subVectors(point, from.point).dot(way) / Math.max(way.lengthSq(), 1e-30)))
         if (point.distanceTo(from.point.clone().addScaledVector(way, share)) > radius) continue
         assert.ok(rects.some(({ left, right, top, bottom }) => left <= u && u <= right && top <= v && v <= bottom), `${u}, ${v} of ${JSON.stringify(rects)}`)

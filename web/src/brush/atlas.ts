@@ -30,6 +30,8 @@ export interface Capsule {
 const kGutter = 4
 // A triangle that lies in more tiles than that, in either direction, has UVs that mean something else.
 const kMostTiles = 16
+/** The least cosine between a brush's normal and that of what it paints: beyond lies the other side of something thin. */
+export const kFacing = -0.25
 /** Numbers for each patch in `table`, four by four. */
 export const kPatchTexels = 5
 
@@ -123,7 +125,11 @@ export class CageAtlas {
     const rects: Rect[] = []
     const margin = (kGutter + 1) / this.size
     const [a, b] = [new Vector3(), new Vector3()]
+    const middle = from.point.clone().lerp(to.point, 0.5)
+    const reach = radius + from.point.distanceTo(to.point) / 2
+    const [triangle, found] = [new Triangle(), new Vector3()]
     for (const { points, normal, u, v, alongU, alongV, box } of this.#patches) {
+      if (Math.max(normal.dot(from.normal), normal.dot(to.normal)) < kFacing) continue
       a.subVectors(from.point, points[0])
       b.subVectors(to.point, points[0])
       const [heightA, heightB] = [a.dot(normal), b.dot(normal)]
@@ -136,6 +142,7 @@ export class CageAtlas {
       const right = Math.min(box.right, Math.max(uA, uB) + reachU)
       const bottom = Math.min(box.bottom, Math.max(vA, vB) + reachV)
       if (left > right || top > bottom) continue
+      if (triangle.set(...points).closestPointToPoint(middle, found).distanceTo(middle) > reach) continue
       rects.push({
         left: Math.max(0, left - margin),
         top: Math.max(0, top - margin),

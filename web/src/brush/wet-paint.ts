@@ -21,7 +21,7 @@ import {
 import type { Wet } from '../layers/composite'
 import { kMostRects, Pass } from '../layers/pass'
 import { apart, toShares, toTexels, type Rect } from '../layers/rect'
-import { CageAtlas, kPatchTexels, type Capsule, type Place } from './atlas'
+import { CageAtlas, kFacing, kPatchTexels, type Capsule, type Place } from './atlas'
 import { kPaintedSize, makePaintTarget, type PaintedSheet } from './painted-sheet'
 
 /** What is laid on in one go, from a press to the release. */
@@ -49,11 +49,10 @@ export interface Sticker {
 const kTableWidth = 1024
 const kMostCapsules = 8 // in one pass
 
-// A normal that is turned farther than this from the brush's is that of the other side of something thin.
 const kPlaceShader = /* glsl */ `
 uniform highp isampler2D owners;
 uniform sampler2D patches;
-const float kFacing = -0.25;
+const float kFacing = ${kFacing};
 
 vec4 row(int patchIndex, int index) {
   int at = patchIndex * ${kPatchTexels} + index;

@@ -32,35 +32,27 @@ export interface Wet {
 // Each of the four is a separable blend mode of “Compositing and Blending Level 1” (W3C), in linear light, with colours
 // multiplied by alpha: layer·(1 − α below) + below·(1 − α layer) + α layer·α below·B, where B is, of the colours proper,
 // normal: layer, multiply: layer·below, screen: layer + below − layer·below, add: min(1, layer + below).
-const fragmentShader = (most: number): string => /* glsl */ `
-uniform sampler2D sheets[${most}];
-uniform vec4 tints[${most}]; // and the opacity
-uniform int blends[${most}];
-uniform bool premultiplied[${most}];
-uniform int count;
-uniform sampler2D wet;
-uniform int wetSheet; // -1 for none
-uniform float wetOpacity;
-uniform bool wetErases;
-uniform int size;
-out vec4 color;
-
+const kFunctions = /* glsl */ `
 vec4 texel(sampler2D sheet, ivec2 at, bool isPremultiplied) {
-  ivec2 sides = textureSize(sheet, 0);
-  vec4 found = texelFetch(sheet, (at + sides) % sides, 0);
+  vec4 found = texelFetch(sheet, at, 0);
   return isPremultiplied ? found : vec4(found.rgb * found.a, found.a);
 }
 
-// Colours are multiplied by alpha before they are mixed: what is transparent has no colour to give.
-vec4 take(sampler2D sheet, bool isPremultiplied) {
+vec4 whole(sampler2D sheet, bool isPremultiplied) {
+  return texel(sheet, ivec2(gl_FragCoord.xy), isPremultiplied);
+}
+
+// Of a sheet with another number of texels. Colours are multiplied by alpha before they are mixed: what is transparent has
+// no colour to give.
+vec4 spread(sampler2D sheet, bool isPremultiplied) {
   ivec2 sides = textureSize(sheet, 0);
-  if (sides == ivec2(size)) return texel(sheet, ivec2(gl_FragCoord.xy), isPremultiplied);
   vec2 at = gl_FragCoord.xy / float(size) * vec2(sides) - 0.5;
-  ivec2 corner = ivec2(floor(at));
-  vec2 share = at - vec2(corner);
+  ivec2 least = (ivec2(floor(at)) + sides) % sides;
+  ivec2 most = (least + 1) % sides;
+  vec2 share = fract(at);
   return mix(
-    mix(texel(sheet, corner, isPremultiplied), texel(sheet, corner + ivec2(1, 0), isPremultiplied), share.x),
-    mix(texel(sheet, corner + ivec2(0, 1), isPremultiplied), texel(sheet, corner + ivec2(1, 1), isPremultiplied), share.x),
+    mix(texel(sheet, least, isPremultiplied), texel(sheet, ivec2(most.x, least.y), isPremultiplied), share.x),
+    mix(texel(sheet, ivec2(least.x, most.y), isPremultiplied), texel(sheet, most, isPremultiplied), share.x),
     share.y
   );
 }
@@ -72,25 +64,41 @@ vec4 join(vec4 layer, vec4 below, int blend) {
   if (blend == 3) both = min(vec3(layer.a * below.a), layer.rgb * below.a + below.rgb * layer.a);
   return vec4(layer.rgb * (1.0 - below.a) + below.rgb * (1.0 - layer.a) + both, layer.a + below.a * (1.0 - layer.a));
 }
+`
 
+/** How the texels of each layer are taken, from the lowest, and which of them may be wet: -1 for none. */
+interface Recipe {
+  takes: readonly ('whole' | 'spread')[]
+  wet: number
+}
+
+/** A shader for these layers and no others: a processor that draws goes through every branch of one, needed or not. */
+function fragmentShader({ takes, wet }: Recipe): string {
+  const most = Math.max(1, takes.length)
+  const steps = takes.map(
+    (take, index) => /* glsl */ `
+  layer = ${take}(sheets[${index}], premultiplied[${index}]);
+  ${index === wet ? `soak = wetOpacity * ${take}(wet, true);\n  layer = layer * (1.0 - soak.a) + (wetErases ? vec4(0.0) : soak);` : ''}
+  layer *= vec4(tints[${index}].rgb, 1.0) * tints[${index}].a;
+  color = join(layer, color, blends[${index}]);`,
+  )
+  return /* glsl */ `
+uniform sampler2D sheets[${most}];
+uniform vec4 tints[${most}]; // and the opacity
+uniform int blends[${most}];
+uniform bool premultiplied[${most}];
+uniform sampler2D wet;
+uniform float wetOpacity;
+uniform bool wetErases;
+uniform int size;
+out vec4 color;
+${kFunctions}
 void main() {
-  color = vec4(0.0);
-  vec4 layer;
-  #pragma unroll_loop_start
-  for (int i = 0; i < ${most}; i ++) {
-    if (UNROLLED_LOOP_INDEX < count) {
-      layer = take(sheets[UNROLLED_LOOP_INDEX], premultiplied[UNROLLED_LOOP_INDEX]);
-      if (UNROLLED_LOOP_INDEX == wetSheet) {
-        vec4 paint = wetOpacity * take(wet, true);
-        layer = layer * (1.0 - paint.a) + (wetErases ? vec4(0.0) : paint);
-      }
-      layer *= vec4(tints[UNROLLED_LOOP_INDEX].rgb, 1.0) * tints[UNROLLED_LOOP_INDEX].a;
-      color = join(layer, color, blends[UNROLLED_LOOP_INDEX]);
-    }
-  }
-  #pragma unroll_loop_end
+  vec4 layer, soak;
+  color = vec4(0.0);${steps.join('')}
 }
 `
+}
 
 /**
  * What layers look like together: a texture with mipmaps, its colours multiplied by alpha, as filtering wants them.
@@ -112,18 +120,17 @@ export class Composite {
     tints: { value: Array.from({ length: kMostLayers }, () => new Vector4()) },
     blends: { value: new Array<number>(kMostLayers).fill(0) },
     premultiplied: { value: new Array<boolean>(kMostLayers).fill(false) },
-    count: { value: 0 },
     wet: { value: null as Texture | null },
-    wetSheet: { value: -1 },
     wetOpacity: { value: 1 },
     wetErases: { value: false },
     size: { value: kLeastSize },
   }
-  /** For one layer, as most have, and for all: the shader for eight takes a second longer to make, where the processor draws. */
-  readonly #one: Pass<Record<string, IUniform>> = new Pass(fragmentShader(1), this.#uniforms)
-  #all: Pass<Record<string, IUniform>> | undefined
+  /** By recipe. */
+  readonly #passes = new Map<string, Pass<Record<string, IUniform>>>()
   #layers: readonly Layer[] = []
   #wet: Wet | undefined
+  /** What was wet last: it will be again. */
+  #wetSheet: Sheet | undefined
   /** What changed since the last update, in shares of the texture. */
   #stale: Rect[] = [kWhole]
 
@@ -151,27 +158,36 @@ export class Composite {
   /** Notes that texels of a sheet are others now. @param rects In shares. @param wet What lies wet on a sheet by now, if anything. */
   touch(rects: readonly Rect[], wet?: Wet): void {
     this.#wet = wet
+    this.#wetSheet = wet?.sheet ?? this.#wetSheet
     this.#stale.push(...rects)
   }
 
   /** Makes again what is stale. @returns Whether anything was. */
   update(renderer: WebGLRenderer): boolean {
     if (this.#stale.length === 0) return false
-    const size = this.#layers.some(({ sheet }) => sideOf(sheet.texture) > kLeastSize) ? kMostSize : kLeastSize
+    const size = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize) ? kMostSize : kLeastSize
     const whole = size !== this.size || this.#stale.includes(kWhole)
     this.#target.setSize(size, size)
     // A texel more: a sheet with fewer texels than this spreads each over its neighbours.
     const rects = whole ? [toTexels(kWhole, this.size)] : apart(this.#stale.map((rect) => toTexels(rect, this.size, 2)), kMostRects)
     this.#stale = []
     this.#fill()
-    const pass = this.#layers.length > 1 ? (this.#all ??= new Pass(fragmentShader(kMostLayers), this.#uniforms)) : this.#one
-    pass.run(renderer, this.#target, rects)
+    this.#pass().run(renderer, this.#target, rects)
     refreshMipmaps(renderer, this.#target, rects)
     return true
   }
 
+  #pass(): Pass<Record<string, IUniform>> {
+    const takes = this.#layers.map(({ sheet }) => (isSquare(sheet.texture, this.size) ? 'whole' : 'spread'))
+    const recipe = { takes, wet: this.#layers.findIndex(({ sheet }) => sheet === this.#wetSheet) }
+    const key = JSON.stringify(recipe)
+    let pass = this.#passes.get(key)
+    if (!pass) this.#passes.set(key, (pass = new Pass(fragmentShader(recipe), this.#uniforms)))
+    return pass
+  }
+
   #fill(): void {
-    const { sheets, tints, blends, premultiplied, count, wet, wetSheet, wetOpacity, wetErases, size } = this.#uniforms
+    const { sheets, tints, blends, premultiplied, wet, wetOpacity, wetErases, size } = this.#uniforms
     // All of them are set: one left over from before could be the texture that is drawn to.
     sheets.value = Array.from({ length: kMostLayers }, (_, index) => this.#layers[index]?.sheet.texture ?? null)
     this.#layers.forEach(({ sheet, tint, opacity, blend }, index) => {
@@ -180,16 +196,16 @@ export class Composite {
       blends.value[index] = kBlends.indexOf(blend)
       premultiplied.value[index] = sheet.premultiplied ?? false
     })
-    count.value = this.#layers.length
     wet.value = this.#wet?.texture ?? null
-    wetSheet.value = this.#layers.findIndex(({ sheet }) => sheet === this.#wet?.sheet)
-    wetOpacity.value = this.#wet?.opacity ?? 1
+    wetOpacity.value = this.#wet?.opacity ?? 0
     wetErases.value = this.#wet?.erases ?? false
     size.value = this.size
   }
 }
 
-function sideOf({ image }: Texture): number {
+function sidesOf({ image }: Texture): [width: number, height: number] {
   const { width = 0, height = 0 } = (image ?? {}) as { width?: number; height?: number }
-  return Math.max(width, height)
+  return [width, height]
 }
+
+const isSquare = (texture: Texture, side: number): boolean => sidesOf(texture).every((found) => found === side)
