@@ -132,7 +132,9 @@ export class Painter {
   addLayer(): Layer {
     const sheet = new PaintedSheet()
     this.#sheets.push(new WeakRef(sheet))
-    return this.#stack.add(`Painting ${this.#sheets.length}`, sheet)
+    let number = 1
+    while (this.#stack.layers.some(({ name }) => name === `Painting ${number}`)) number++
+    return this.#stack.add(`Painting ${number}`, sheet)
   }
 
   /** Makes all that was painted again, after the graphics context was lost. */
