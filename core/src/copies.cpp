@@ -22,24 +22,29 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
   auto* extents = scratch.take<double>(count);  // Sums of squared distances of the points from their mean.
   auto* order = scratch.take<std::uint32_t>(count);
   auto* runs = scratch.take<std::uint32_t>(count);  // By their first.
+  auto* isAlone = scratch.take<bool>(count);        // With so many points: it has no copy, and needs no extent.
   if (scratch.failed()) return false;
-  std::fill(centres, centres + count, Vec3{0, 0, 0});
-  std::fill(extents, extents + count, 0.0);
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    const std::uint32_t s = results.segments[i];
-    centres[s] = centres[s] + 1.0 / stats[s].points * Vec3::from(points.at(i));
-  }
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    const Vec3 offset = Vec3::from(points.at(i)) - centres[results.segments[i]];
-    extents[results.segments[i]] += dot(offset, offset);
-  }
-
   for (std::uint32_t s = 0; s < count; ++s) order[s] = s;
   const auto before = [&](std::uint32_t s, std::uint32_t t) {
     return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
   };
   std::make_heap(order, order + count, before);  // By heap: std::sort is 5 KB of WebAssembly.
   std::sort_heap(order, order + count, before);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto isAsMany = [&](std::uint32_t j) { return j < count && stats[order[j]].points == stats[order[i]].points; };
+    isAlone[order[i]] = !isAsMany(i - 1) && !isAsMany(i + 1);
+  }
+
+  std::fill(centres, centres + count, Vec3{0, 0, 0});
+  std::fill(extents, extents + count, 0.0);
+  const auto eachPoint = [&](auto call) {
+    for (std::uint32_t i = 0; i < points.count; ++i) {
+      if (!isAlone[results.segments[i]]) call(results.segments[i], Vec3::from(points.at(i)));
+    }
+  };
+  eachPoint([&](std::uint32_t s, Vec3 p) { centres[s] = centres[s] + 1.0 / stats[s].points * p; });
+  eachPoint([&](std::uint32_t s, Vec3 p) { extents[s] += dot(p - centres[s], p - centres[s]); });
+
   std::uint32_t runCount = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t s = order[i];

@@ -29,7 +29,8 @@ void put(Vec3 p, float* position, float* rest) {
 
 bool findVoters(const Points& points, const Rims& rims, const Units& units, const PointResults& results,
                 const Array<SegmentStats>& stats, Scratch& scratch, Voters& out) noexcept {
-  if (rims.count == 0) return true;
+  const auto isSmall = [](const SegmentStats& segment) { return segment.points < kFewPoints; };
+  if (rims.count == 0 || std::none_of(stats.begin(), stats.end(), isSmall)) return true;
   const double margin = kNearHole * units.diagonal;
   const double bigEdge = kBigEdge * units.diagonal;
   const Scratch::Mark mark = scratch.mark();
@@ -40,14 +41,14 @@ bool findVoters(const Points& points, const Rims& rims, const Units& units, cons
   std::fill(boxes, boxes + stats.size(), Rims::Box{});
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const std::uint32_t s = results.segments[i];
-    if (stats[s].points < kFewPoints) boxes[s].grow(Vec3::from(points.at(i)));
+    if (isSmall(stats[s])) boxes[s].grow(Vec3::from(points.at(i)));
   }
   // Big triangles are few; only their segments are held against the rims.
   std::uint32_t count = 0;
   for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
     const std::uint32_t s = results.segments[corner[0]];
-    if (stats[s].points >= kFewPoints) continue;
+    if (!isSmall(stats[s])) continue;
     const Vec3 a = Vec3::from(points.at(corner[0]));
     const Vec3 b = Vec3::from(points.at(corner[1]));
     const Vec3 c = Vec3::from(points.at(corner[2]));
