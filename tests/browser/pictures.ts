@@ -92,6 +92,26 @@ async function why(site: Site): Promise<void> {
   await compose(site, 'why', `<div style="display:flex;gap:16px">${shots.map((shot) => `<img src="${shot}" style="width:720px;border-radius:10px">`).join('')}</div>`)
 }
 
+/** A mouth and an eye by the method as published, whose borders follow the triangles; and cut. */
+async function borders(site: Site): Promise<void> {
+  const { page } = await site.visit({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 2 })
+  await hideControls(page)
+  await page.locator('#view-mode input[value=result]').check({ force: true })
+  await page.getByTestId('preset').selectOption('paper')
+  await settled(page)
+  await page.locator('#view').hover()
+  for (let step = 0; step < 8; step++) await page.mouse.wheel(0, -240)
+  const shots: string[] = []
+  for (const cut of [false, true]) {
+    await page.getByTestId('exact-borders').setChecked(cut)
+    if (cut) await page.waitForFunction(() => document.querySelector('[data-testid=borders-note]')!.textContent !== '')
+    await rest(page)
+    shots.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })))
+  }
+  const half = (shot: string): string => `<img src="${shot}" style="width:560px;height:500px;object-fit:cover;object-view-box:inset(16% 15% 42% 52%)">`
+  await compose(site, 'borders', `<div style="display:flex;gap:12px">${shots.map(half).join('')}</div>`)
+}
+
 async function choose(page: Page, model: string): Promise<void> {
   await page.locator('#sample-select').selectOption({ label: model })
   await page.waitForTimeout(300)
@@ -118,7 +138,7 @@ const wanted = process.argv.slice(2)
 const site = await Site.open()
 try {
   await mkdir(kFolder, { recursive: true })
-  for (const take of [first, compare, desktopAndPhone, modes, why]) if (wanted.length === 0 || wanted.includes(take.name)) await take(site)
+  for (const take of [first, compare, desktopAndPhone, modes, why, borders]) if (wanted.length === 0 || wanted.includes(take.name)) await take(site)
 } finally {
   await site.close()
 }

@@ -29,31 +29,33 @@ export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs'
   const { firstVertex, vertexCount, firstTriangle, triangleCount } = part;
   const localIndices = Uint32Array.from(part.localIndices);
   const uvs = result.uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount));
-  const own = { uvs, sources: Uint32Array.from({ length: vertexCount }, (_, v) => v), indices: localIndices, copies: 0 };
-  if (result.cornerUvs.length === 0) return own;
+  if (result.cornerUvs.length === 0) return { uvs, sources: new Uint32Array(vertexCount).map((_, v) => v), indices: localIndices, copies: 0 };
 
   const cornerUvs = result.cornerUvs.slice(6 * firstTriangle, 6 * (firstTriangle + triangleCount));
   if (part.turned) {
     for (let t = 0; t < cornerUvs.length; t += 6) {
-      const [second, third] = [cornerUvs.slice(t + 2, t + 4), cornerUvs.slice(t + 4, t + 6)];
-      cornerUvs.set(third, t + 2);
+      const second = cornerUvs.slice(t + 2, t + 4);
+      cornerUvs.copyWithin(t + 2, t + 4, t + 6);
       cornerUvs.set(second, t + 4);
     }
   }
   const split = splitVertices({ positions: new Float32Array(3 * vertexCount), indices: localIndices }, cornerUvs);
   const taken = new Uint8Array(vertexCount);
   const added: number[] = [];
-  const place = Uint32Array.from(split.sources, (source, n) => {
+  const place = split.sources.map((source, n) => {
     if (taken[source] === 1) return vertexCount + added.push(n) - 1;
     taken[source] = 1;
     return source;
   });
   const all = new Float32Array(2 * (vertexCount + added.length));
   all.set(uvs);
-  place.forEach((to, n) => all.set(split.uvs.subarray(2 * n, 2 * n + 2), 2 * to));
+  place.forEach((to, n) => {
+    all[2 * to] = split.uvs[2 * n]!;
+    all[2 * to + 1] = split.uvs[2 * n + 1]!;
+  });
   return {
     uvs: all,
-    sources: Uint32Array.from({ length: vertexCount + added.length }, (_, v) => (v < vertexCount ? v : split.sources[added[v - vertexCount]!]!)),
+    sources: new Uint32Array(vertexCount + added.length).map((_, v) => (v < vertexCount ? v : split.sources[added[v - vertexCount]!]!)),
     indices: split.indices.map((n) => place[n]!),
     copies: added.length,
   };

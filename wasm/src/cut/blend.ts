@@ -29,23 +29,29 @@ function extended<A extends AttributeArray>(values: A, size: number, { sources }
 }
 
 /** The source that a new vertex is most like. */
-export const heaviestOf = ({ sources, weights }: Blends, n: number): number => sources[[3 * n, 3 * n + 1, 3 * n + 2].reduce((a, b) => (weights[b]! > weights[a]! ? b : a))]!;
+export function heaviestOf({ sources, weights }: Blends, n: number): number {
+  const first = weights[3 * n + 1]! > weights[3 * n]! ? 3 * n + 1 : 3 * n;
+  return sources[weights[3 * n + 2]! > weights[first]! ? 3 * n + 2 : first]!;
+}
 
 /** The values of a part's vertices, `size` numbers each, and of its new ones after them. */
 export function blend<A extends AttributeArray>(values: A, size: number, blends: Blends, rule: Rule = 'mean'): A {
   const { sources, weights } = blends;
   const out = extended(values, size, blends);
+  const isFloat = values instanceof Float32Array;
+  const mean = new Float64Array(size);
   for (let i = 0; i < sources.length; i += 3) {
+    const [a, b, c] = [size * sources[i]!, size * sources[i + 1]!, size * sources[i + 2]!];
+    for (let k = 0; k < size; ++k) mean[k] = weights[i]! * values[a + k]! + weights[i + 1]! * values[b + k]! + weights[i + 2]! * values[c + k]!;
     const to = values.length + (size * i) / 3;
-    const heaviest = size * heaviestOf(blends, i / 3);
-    const mean = Array.from({ length: size }, (_, k) => [i, i + 1, i + 2].reduce((sum, j) => sum + weights[j]! * values[size * sources[j]! + k]!, 0));
-    const length = Math.hypot(...mean.slice(0, 3));
+    const heaviest = rule === 'mean' ? 0 : size * heaviestOf(blends, i / 3);
+    const length = rule === 'direction' ? Math.hypot(mean[0]!, mean[1]!, mean[2]!) : 0;
     for (let k = 0; k < size; ++k) {
       let value = mean[k]!;
       // A tangent's fourth number is a sign.
       if (rule === 'heaviest' || (rule === 'direction' && (k > 2 || length === 0))) value = values[heaviest + k]!;
       else if (rule === 'direction') value *= one(values) / length;
-      out[to + k] = values instanceof Float32Array ? value : Math.round(value);
+      out[to + k] = isFloat ? value : Math.round(value);
     }
   }
   return out;

@@ -1,4 +1,4 @@
-/** What the adapters need to cut the parts of a scene; they load it when that is asked for. */
-export { cutBorders, type CutTarget } from '../borders/index.js';
+/** What the adapters need for the parts of a scene that was cut; they load it when that is asked for. */
+export type { CutTarget } from '../borders/index.js';
 export { blend, blendSkin, ruleOf, type Blends } from './blend.js';
 export { cutPart, decideAgain, type CutPart } from './part.js';

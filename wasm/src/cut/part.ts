@@ -19,16 +19,17 @@ export interface CutPart {
  */
 export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, ownCount: number): CutPart {
   const { firstVertex, vertexCount, firstTriangle, triangleCount, turned } = part;
-  const added = Uint32Array.from({ length: cut.sources.length / 3 }, (_, n) => n).filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
-  const placeOf = new Map(Array.from(added, (n, i) => [ownCount + n, vertexCount + i]));
-  const vertices = Uint32Array.from({ length: vertexCount + added.length }, (_, v) => (v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!));
+  const added = new Uint32Array(cut.sources.length / 3).map((_, n) => n).filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
+  const placeOf = new Uint32Array(cut.sources.length / 3);
+  added.forEach((n, i) => (placeOf[n] = vertexCount + i));
+  const vertices = new Uint32Array(vertexCount + added.length).map((_, v) => (v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!));
 
   const before = (limit: number) => {
     const first = cut.triangles.findIndex((t) => t >= limit);
     return first < 0 ? cut.triangles.length : first;
   };
   const [first, end] = [before(firstTriangle), before(firstTriangle + triangleCount)];
-  const localIndices = cut.indices.slice(3 * first, 3 * end).map((v) => placeOf.get(v) ?? v - firstVertex);
+  const localIndices = cut.indices.slice(3 * first, 3 * end).map((v) => (v < ownCount ? v - firstVertex : placeOf[v - ownCount]!));
   for (let i = 0; turned && i < localIndices.length; i += 3) [localIndices[i + 1], localIndices[i + 2]] = [localIndices[i + 2]!, localIndices[i + 1]!];
   return {
     geometry: { firstVertex: 0, vertexCount: vertices.length, firstTriangle: 0, triangleCount: end - first, turned, localIndices },

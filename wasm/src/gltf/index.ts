@@ -6,7 +6,7 @@ import type { Document, Transform } from '@gltf-transform/core';
 import { isCut, type Borders } from '../cut/option.js';
 import { CagecastError, init, transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
 import { show } from '../error.js';
-import { addTransfer, extractDocument } from './document.js';
+import { addTransfer, extractDocument, type Cut } from './document.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
@@ -64,14 +64,18 @@ export function cagecast({ cage, texture, borders, onResult, ...options }: Cagec
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));
     const result = transfer(source, target.mesh, options);
-    const tools = cuts ? await import('../cut/index.js') : undefined;
-    const cut = tools && { target: await tools.cutBorders(source, target.mesh, result, options), tools };
+    const cut = cuts ? await cutTarget(source, target.mesh, result, options) : undefined;
     addTransfer(document, target, result, paint, cut);
     onResult?.(
       result,
       target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({ name, firstVertex, vertexCount, firstTriangle, triangleCount })),
     );
   };
+}
+
+async function cutTarget(cage: Mesh, target: Mesh, result: TransferResult, options: TransferOptions): Promise<Cut> {
+  const [tools, { cutBorders }] = await Promise.all([import('../cut/index.js'), import('../borders/index.js')]);
+  return { target: await cutBorders(cage, target, result, options), tools };
 }
 
 function within<T>(argument: string, read: () => T): T {

@@ -1,6 +1,6 @@
 /**
- * What `applyTransfer` loads to cut borders; and for pages with overlays of their own, or that cut in a worker: `cutBorders` there,
- * `cutGeometry` here.
+ * What `applyTransfer` loads to cut borders, besides `cagecast/borders`; and for pages with overlays of their own, or that cut in a
+ * worker: `cutBorders` there, `cutGeometry` here.
  * @module cagecast/three/borders
  */
 import { DataUtils, type BufferGeometry, type TypedArray } from 'three';
@@ -8,7 +8,7 @@ import { blend, blendSkin, cutPart, ruleOf, type CutPart, type CutTarget } from 
 import { splitPart, type PartGeometry, type SplitPart } from '../split-part.js';
 import { likeAttribute, remakeGeometry, splitGeometry, valuesOf, type Attribute } from './split.js';
 
-export { cutBorders, decideAgain, type CutPart, type CutTarget } from '../cut/index.js';
+export { decideAgain, type CutPart, type CutTarget } from '../cut/index.js';
 export type { SplitPart };
 
 /** glTF's names of what is not just a mean where triangles are cut. */

@@ -90,11 +90,11 @@ export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D 
 }
 
 async function applyCut(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions): Promise<Applied> {
-  const tools = await import('./borders.js');
+  const [tools, { cutBorders }] = await Promise.all([import('./borders.js'), import('../borders/index.js')]);
   const extracted = extract(target, 'target');
   const { mesh } = extract(cage, 'cage');
   const result = resultOf(extracted, options, () => mesh);
-  return apply(extracted, result, options, { target: await tools.cutBorders(mesh, extracted.mesh, result, rulesOf(options)), tools });
+  return apply(extracted, result, options, { target: await cutBorders(mesh, extracted.mesh, result, rulesOf(options)), tools });
 }
 
 const rulesOf = ({ result, texture, material, channel, borders, ...rules }: ApplyOptions): TransferOptions => rules;
