@@ -56,6 +56,23 @@ test('while half a million triangles are transferred, no task keeps the page fro
   assert.deepEqual(complaints, [])
 })
 
+test('while half a million triangles are cut at exact borders, the page answers', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
+  await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
+  await settled(page)
+  await page.getByTestId('target-input').setInputFiles(target)
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  const note = page.getByTestId('borders-note')
+  const { longest } = await mainThreadWork(page, async () => {
+    await page.getByTestId('exact-borders').check()
+    await page.waitForFunction(() => document.querySelector('[data-testid=borders-note]')!.textContent !== '')
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))
+  })
+  assert.match((await note.textContent())!, /^[\d,]+ triangles more\.$/)
+  assert.ok(longest < 100, `the longest task takes ${longest} ms`)
+  assert.deepEqual(complaints, [])
+})
+
 for (const way of ['button', 'Escape'] as const) {
   test(`what takes long can be given up by ${way}, and what was on show stays`, async () => {
     const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker)
