@@ -63,18 +63,23 @@ test('exact borders are off at first, load what cuts when they are asked for, ch
   assert.deepEqual(complaints, [])
 })
 
+/** Notes what is said of borders, from now on. */
+async function watchNote(page: Page): Promise<() => Promise<string[]>> {
+  await page.evaluate(() => {
+    const seen: string[] = []
+    Object.assign(globalThis, { seen })
+    new MutationObserver(() => seen.push(document.querySelector('[data-testid=borders-note]')!.textContent!)).observe(document.querySelector('[data-testid=borders-note]')!, { childList: true })
+  })
+  return () => page.evaluate(() => (globalThis as unknown as { seen: string[] }).seen)
+}
+
 test('another threshold, lock or paint is shown at once, and cut again where it decides otherwise', async () => {
   const { page, complaints } = visit
   await page.getByTestId('exact-borders').check()
   await cut(page)
   const area = await modelArea(page)
   const before = await look(page, area)
-  await page.evaluate(() => {
-    const seen: string[] = []
-    Object.assign(globalThis, { seen })
-    new MutationObserver(() => seen.push(document.querySelector('[data-testid=borders-note]')!.textContent!)).observe(document.querySelector('[data-testid=borders-note]')!, { childList: true })
-  })
-  const seen = (): Promise<string[]> => page.evaluate(() => (globalThis as unknown as { seen: string[] }).seen)
+  const seen = await watchNote(page)
   await setThreshold(page, 0.49)
   assert.deepEqual(await seen(), [], 'nothing is decided otherwise: it stays')
   await setThreshold(page, 1)
@@ -131,6 +136,20 @@ test('cutting can be given up: the switch goes off, and what was on show stays',
   await page.waitForTimeout(2000)
   assert.deepEqual([await page.getByTestId('status').textContent(), await note(page)], ['ready', ''])
   assert.ok(difference(before, await look(page, area)) < 0.0005)
+  assert.deepEqual(complaints, [])
+})
+
+test('what is decided otherwise while borders are cut is cut in its place, once', async () => {
+  const { page, complaints } = await site.visit({}, kSlowWorker)
+  await page.getByTestId('exact-borders').check()
+  await page.waitForFunction(() => document.querySelector('[data-testid=status]')!.textContent === 'working')
+  const seen = await watchNote(page)
+  await setThreshold(page, 1)
+  assert.equal(await page.getByTestId('status').textContent(), 'ready')
+  await cut(page)
+  await page.waitForTimeout(1500)
+  assert.equal((await seen()).filter((text) => text !== '').length, 1)
+  assert.match((await note(page))!, isCut)
   assert.deepEqual(complaints, [])
 })
 

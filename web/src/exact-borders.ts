@@ -79,7 +79,7 @@ export class ExactBorders {
       this.#note.textContent = `${more.toLocaleString('en')} triangles more.`
       done()
     } catch (error) {
-      if (error instanceof Superseded) return
+      if (error instanceof Superseded) return done()
       this.#session.setRules({ borders: 'triangle' })
       this.#session.fail(new Error(`${target.name}: ${error instanceof Error ? error.message.replace(/^\w+: /, '') : String(error)}`, { cause: error }))
     }
