@@ -1,4 +1,5 @@
 import { readFile } from 'node:fs/promises'
+import { transform } from 'esbuild'
 import type { Plugin } from 'vite'
 
 const kFile = /\/basis_transcoder(-[\w-]+)?\.js$/
@@ -52,9 +53,9 @@ export function basis(): Plugin {
     // Basis unpacks by itself; what the loader brings along is for textures that glTF does not have: 17 KB gzipped.
     resolveId: (source) => (source.endsWith('/zstddec.module.js') ? kNoZstd : undefined),
     load: (id) => (id === kNoZstd ? 'export class ZSTDDecoder {}' : undefined),
-    generateBundle(_, bundle) {
+    async generateBundle(_, bundle) {
       for (const file of Object.values(bundle)) {
-        if (file.type === 'asset' && kFile.test(`/${file.fileName}`)) file.source = withoutEval(file.source.toString())
+        if (file.type === 'asset' && kFile.test(`/${file.fileName}`)) file.source = (await transform(withoutEval(file.source.toString()), { minify: true })).code
       }
     },
   }
