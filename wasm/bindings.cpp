@@ -1,7 +1,5 @@
-/// The bridge from JavaScript. Only numbers go through embind, until `release` (bridge.hpp). Nothing is decided here; names,
-/// defaults and messages for people are the package's.
-
-#include <emscripten/bind.h>
+/// The bridge from JavaScript. What a call leaves stays until `release` (bridge.hpp). Nothing is decided here; names, defaults and
+/// messages for people are the package's.
 
 #include <cagecast/seams.hpp>
 
@@ -58,20 +56,24 @@ std::uintptr_t projection(const Status& status, const Array<Zone>& zones) {
                          bytes(call.result.zones.cosmeticTriangles), bytes(call.result.zones.culledSegments), bytes(call.result.zones.margins)});
 }
 
+}  // namespace
+
+extern "C" {
+
 /// Of the inputs: options, cage, target.
-std::uintptr_t project() {
+EMSCRIPTEN_KEEPALIVE std::uintptr_t project() {
   const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), call.result.projection);
   return projection(status, call.result.projection.zones);
 }
 
 /// As `project`.
-std::uintptr_t transfer() {
+EMSCRIPTEN_KEEPALIVE std::uintptr_t transfer() {
   const Status status = cagecast::transfer(mesh(1), mesh(5), givenOptions(), call.result);
   return projection(status, call.result.zones.zones);
 }
 
 /// Of the inputs: options; zones, segments, stats, restores, shares and indices of a projection; a lock per segment, or none.
-std::uintptr_t classify() {
+EMSCRIPTEN_KEEPALIVE std::uintptr_t classify() {
   Array<cagecast::SegmentStats> stats;
   Array<cagecast::HoleShare> shares;
   if (!stats.reset(input<double>(3).size() / fieldsOf<cagecast::SegmentStats>()) ||
@@ -89,26 +91,16 @@ std::uintptr_t classify() {
 }
 
 /// Of the inputs: indices, UVs per corner.
-std::uintptr_t splitVertices(unsigned vertexCount) {
+EMSCRIPTEN_KEEPALIVE std::uintptr_t splitVertices(unsigned vertexCount) {
   cagecast::SplitVertices& split = call.split;
   const Status status = cagecast::splitVertices(input<std::uint32_t>(0), input<float>(1), vertexCount, split);
   return answer(status, {bytes(split.sources), bytes(split.indices), bytes(split.uvs)});
 }
 
 /// Frees what a call read and left.
-void release() {
+EMSCRIPTEN_KEEPALIVE void release() {
   renew(exchange);
   renew(call);
 }
 
-}  // namespace
-
-EMSCRIPTEN_BINDINGS(cagecast) {
-  emscripten::function("room", &room);
-  emscripten::function("presetOptions", &presetOptions);
-  emscripten::function("project", &project);
-  emscripten::function("transfer", &transfer);
-  emscripten::function("classify", &classify);
-  emscripten::function("splitVertices", &splitVertices);
-  emscripten::function("release", &release);
-}
+}  // extern "C"

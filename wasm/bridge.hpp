@@ -1,6 +1,10 @@
 /// What the bridges from JavaScript share (bindings.cpp, bindings_borders.cpp): JavaScript writes its arrays where `room` says,
 /// and copies those of an answer from where its table says (wasm/src/bindings.ts).
+///
+/// Functions that JavaScript calls take and return numbers only, so they are exported as they are.
 #pragma once
+
+#include <emscripten/emscripten.h>
 
 #include <memory>
 #include <span>
@@ -48,7 +52,7 @@ void renew(Thing& thing) {
 
 /// Makes room for an array from JavaScript, in bytes.
 /// @return Where it belongs; 0 if there is not enough memory.
-inline std::uintptr_t room(std::size_t place, std::size_t bytes) {
+extern "C" EMSCRIPTEN_KEEPALIVE inline std::uintptr_t room(std::size_t place, std::size_t bytes) {
   Array<std::byte>& input = exchange.inputs[place];
   return input.reset(bytes) ? reinterpret_cast<std::uintptr_t>(input.data()) : 0;
 }
@@ -129,7 +133,7 @@ inline TransferOptions givenOptions() {
 }
 
 /// The options of a preset: 0 `paper`, 1 `default`.
-inline std::uintptr_t presetOptions(unsigned preset) {
+extern "C" EMSCRIPTEN_KEEPALIVE inline std::uintptr_t presetOptions(unsigned preset) {
   auto options = preset == 0 ? TransferOptions::paper() : TransferOptions::standard();
   if (!toNumbers(std::span(&options, 1), exchange.options)) return answer(kOutOfMemory);
   return answer({}, {bytes(exchange.options)});

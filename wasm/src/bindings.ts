@@ -1,18 +1,18 @@
 import type { CheckedMesh } from './mesh.js';
 
 /**
- * What Emscripten's glue makes of bindings.cpp: numbers in, the address of an answer's table out. The module of cagecast/borders,
- * of bindings_borders.cpp, has `cutBorders` in place of the other steps.
+ * The functions of bindings.cpp, as Emscripten's glue names them: numbers in, the address of an answer's table out. The module of
+ * cagecast/borders, of bindings_borders.cpp, has `_cutBorders` in place of the other steps.
  */
 export interface Glue {
-  room(place: number, bytes: number): number;
-  presetOptions(preset: number): number;
-  project(): number;
-  transfer(): number;
-  classify(): number;
-  splitVertices(vertexCount: number): number;
-  cutBorders(): number;
-  release(): void;
+  _room(place: number, bytes: number): number;
+  _presetOptions(preset: number): number;
+  _project(): number;
+  _transfer(): number;
+  _classify(): number;
+  _splitVertices(vertexCount: number): number;
+  _cutBorders(): number;
+  _release(): void;
 }
 
 /** How a call into the core ended: numbers of `Code` and `Argument` in core/include/cagecast/mesh.hpp; 0 is success. */
@@ -98,7 +98,7 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
   const put = (...inputs: [View, Source][]) => {
     inputs.forEach(([Type, source], place) => {
       if (source.length === 0) return;
-      const at = core.room(place, source.length * Type.BYTES_PER_ELEMENT);
+      const at = core._room(place, source.length * Type.BYTES_PER_ELEMENT);
       if (at === 0) throw new RangeError('WebAssembly memory is full');
       new Type(memory.buffer, at, source.length).set(source);
     });
@@ -117,32 +117,32 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
     const [code = 0, argument = 0, at = 0, ...places] = new Uint32Array(memory.buffer, table, 3 + 2 * names.length);
     const array = (name: string, i: number) => layout[name]!(memory.buffer.slice(places[2 * i]!, places[2 * i]! + places[2 * i + 1]!));
     const arrays = code === 0 ? Object.fromEntries(names.map((name, i) => [name, array(name, i)])) : {};
-    core.release();
+    core._release();
     return { code, argument, at, ...arrays } as AnswerOf<L>;
   };
 
   return {
-    presetOptions: (preset) => take(core.presetOptions(preset), presetArrays).options,
+    presetOptions: (preset) => take(core._presetOptions(preset), presetArrays).options,
     project(cage, target, options) {
       putMeshes(options, cage, target);
-      return take(core.project(), projectArrays);
+      return take(core._project(), projectArrays);
     },
     transfer(cage, target, options) {
       putMeshes(options, cage, target);
-      return take(core.transfer(), projectArrays);
+      return take(core._transfer(), projectArrays);
     },
     classify({ zones, segments, segmentStats, restores, holeShares, indices }, options, locks) {
       const parts: [View, Source][] = [[Uint8Array, zones], [Uint32Array, segments], [Float64Array, segmentStats], [Uint32Array, restores]];
       put([Float64Array, options], ...parts, [Float64Array, holeShares], [Uint32Array, indices], [Uint8Array, locks]);
-      return take(core.classify(), classifyArrays);
+      return take(core._classify(), classifyArrays);
     },
     splitVertices(indices, cornerUvs, vertexCount) {
       put([Uint32Array, indices], [Float32Array, cornerUvs]);
-      return take(core.splitVertices(vertexCount), splitArrays);
+      return take(core._splitVertices(vertexCount), splitArrays);
     },
     cutBorders(cage, target, options, { zones, segments, culledSegments }) {
       putMeshes(options, cage, target, [Uint8Array, zones], [Uint32Array, segments], [Uint8Array, culledSegments]);
-      return take(core.cutBorders(), cutArrays);
+      return take(core._cutBorders(), cutArrays);
     },
   };
 }

@@ -23,7 +23,7 @@ function instantiate(module: WebAssembly.Module): Bindings {
       },
     }),
   );
-  if (glue.room === undefined || memory === undefined) throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
+  if (glue._room === undefined || memory === undefined) throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
   return bind(glue as Glue, memory);
 }
 
