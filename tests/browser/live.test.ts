@@ -3,6 +3,7 @@ import { after, before, test } from 'node:test'
 import { NodeIO } from '@gltf-transform/core'
 import { init, transfer, type Mesh } from 'cagecast'
 import type { Page } from 'playwright-core'
+import type { PNG } from 'pngjs'
 import { Box3, Vector3 } from 'three'
 import { deform, kDeforms, type Deform, type Room } from '../../web/src/live/deform'
 import { ball, islandCage, islandPaint } from './models'
@@ -86,6 +87,20 @@ test('a deformed model is seen so, with the paint on it, and goes back to rest t
   assert.equal(difference(before.picture, await look(page, area)), 0)
   assert.equal(await shownError(page), '')
   assert.deepEqual(complaints, [])
+})
+
+test('how far a model is seen to bend does not hang on its size', async () => {
+  const { page } = await site.visit({ viewport: { width: 1000, height: 600 } })
+  await page.locator('input[value=naive]').check({ force: true })
+  const pictures: PNG[] = []
+  for (const size of [1, 20]) {
+    await drop(page, [await islandCage(size), { ...(await ball({ size })), name: 'target.glb' }])
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    await page.getByTestId('deform').selectOption('twist')
+    await bend(page, 0.5)
+    pictures.push(await look(page, await modelArea(page)))
+  }
+  assert.ok(difference(pictures[0]!, pictures[1]!) < 0.01, `${difference(pictures[0]!, pictures[1]!)} of the picture differs`)
 })
 
 test('it moves by itself, frame after frame, until it is told to stop or another model is opened', async () => {

@@ -74,10 +74,10 @@ export async function texturedBox(texture: Buffer, { mirrored = false, factor = 
 }
 
 /**
- * A blue ball of radius 0.9. With `pose` it is skinned to two joints that pull it apart, and half morphed into a flat one;
+ * A blue ball of radius 0.9, or of `size` times that. With `pose` it is skinned to two joints that pull it apart, and half morphed into a flat one;
  * with `animated` an animation moves one of the joints to and fro, within a second.
  */
-export async function ball({ pose = false, animated = false, mirrored = false } = {}): Promise<Upload> {
+export async function ball({ pose = false, animated = false, mirrored = false, size = 1 } = {}): Promise<Upload> {
   const document = new Document()
   const buffer = document.createBuffer()
   const sphere = new SphereGeometry(0.9, 22, 15)
@@ -85,7 +85,7 @@ export async function ball({ pose = false, animated = false, mirrored = false } 
   const blue = document.createMaterial('blue').setBaseColorFactor([0.02, 0.05, 0.9, 1]).setRoughnessFactor(1).setMetallicFactor(0)
   const primitive = mesh.listPrimitives()[0]!.setMaterial(blue)
   const node = document.createNode('ball').setMesh(mesh)
-  if (mirrored) node.setScale([-1, 1, 1])
+  node.setScale([mirrored ? -size : size, size, size])
   const scene = document.createScene().addChild(node)
   if (pose || animated) {
     const positions = sphere.getAttribute('position').array as Float32Array
@@ -119,6 +119,38 @@ export async function ball({ pose = false, animated = false, mirrored = false } 
     }
   }
   return glb('ball.glb', Buffer.from(await new NodeIO().writeBinary(document)))
+}
+
+/**
+ * Two blue balls, the smaller one beside the larger, that morph: `grow` makes both larger, `drop` lowers the larger one.
+ * Others that `count` asks for are like that, and have no name. With `animated` an animation grows them to and fro, within a second.
+ */
+export async function morphingBalls({ names = ['grow', 'drop'] as readonly string[], count = 2, animated = false } = {}): Promise<Upload> {
+  const document = new Document()
+  const buffer = document.createBuffer()
+  const scene = document.createScene()
+  const blue = document.createMaterial('blue').setBaseColorFactor([0.02, 0.05, 0.9, 1]).setRoughnessFactor(1).setMetallicFactor(0)
+  const animation = animated ? document.createAnimation('breathe') : undefined
+  for (const [name, radius, x] of [['large', 0.7, -0.1], ['small', 0.15, 0.7]] as const) {
+    const sphere = new SphereGeometry(radius, 22, 15)
+    const mesh = meshOf(document, sphere, false)
+    const primitive = mesh.listPrimitives()[0]!.setMaterial(blue)
+    const positions = sphere.getAttribute('position').array as Float32Array
+    for (let morph = 0; morph < (name === 'large' ? count : 1); morph++) {
+      const deltas = positions.map((value, at) => (morph === 0 ? 0.5 * value : at % 3 === 1 ? -0.3 : 0))
+      const accessor = document.createAccessor().setType('VEC3').setArray(deltas).setBuffer(buffer)
+      primitive.addTarget(document.createPrimitiveTarget(names[morph]).setAttribute('POSITION', accessor))
+    }
+    mesh.setWeights(primitive.listTargets().map(() => 0))
+    const node = document.createNode(name).setMesh(mesh).setTranslation([x, 0, 0])
+    scene.addChild(node)
+    if (!animation) continue
+    const times = document.createAccessor().setType('SCALAR').setArray(Float32Array.of(0, 0.5, 1)).setBuffer(buffer)
+    const weights = document.createAccessor().setType('SCALAR').setArray(Float32Array.from([0, 1, 0].flatMap((weight) => mesh.getWeights().map((_, morph) => (morph === 0 ? weight : 0))))).setBuffer(buffer)
+    const sampler = document.createAnimationSampler().setInput(times).setOutput(weights)
+    animation.addSampler(sampler).addChannel(document.createAnimationChannel().setTargetNode(node).setTargetPath('weights').setSampler(sampler))
+  }
+  return glb('target.glb', Buffer.from(await new NodeIO().writeBinary(document)))
 }
 
 /** A target of many separate balls, each a node of its own, the later the smaller. */

@@ -11,6 +11,8 @@ export interface Part {
   vertexCount: number
   firstTriangle: number
   triangleCount: number
+  /** From its own space to the scene's: where it lay when it was read. */
+  matrix: Matrix4
   /** Whether its winding was turned, as its place in the scene mirrors it. */
   mirrored: boolean
 }
@@ -34,7 +36,7 @@ const kIdentity = new Matrix4()
 const kSlice = 16384 // vertices or triangles that are read at a stretch: some milliseconds
 
 /** Where a mesh lies in the scene. A skinned one is taken in its bind pose: glTF gives its node's transform no say. */
-export function matrixOf(mesh: Mesh): Matrix4 {
+function matrixOf(mesh: Mesh): Matrix4 {
   return mesh instanceof SkinnedMesh ? kIdentity : mesh.matrixWorld
 }
 
@@ -94,18 +96,17 @@ function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): 
       throw new Error(`“${name}” has ${cornerCount} triangle corners, which is not a multiple of three`)
     }
     const triangleCount = cornerCount / 3
-    const mirrored = matrixOf(object).determinant() < 0
-    parts.push({ mesh: object, name, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored })
+    const matrix = matrixOf(object).clone()
+    parts.push({ mesh: object, name, firstVertex, vertexCount, firstTriangle, triangleCount, matrix, mirrored: matrix.determinant() < 0 })
     firstVertex += vertexCount
     firstTriangle += triangleCount
   })
   return parts
 }
 
-function copyPositions({ mesh, firstVertex }: Part, out: Float32Array, from: number, to: number): void {
+function copyPositions({ mesh, firstVertex, matrix }: Part, out: Float32Array, from: number, to: number): void {
   const position = mesh.geometry.attributes.position as Attribute
   const point = new Vector3()
-  const matrix = matrixOf(mesh)
   const identity = matrix.equals(kIdentity)
   for (let i = from; i < to; i++) {
     // A quantised position decodes to a float before the matrix is applied, as every glTF reader stores it.

@@ -81,6 +81,7 @@ export class Session extends Emitter<SessionEvents> {
   #working = false
   /** Gives up what a feature does with what is on show. */
   #giveUpWork: GiveUp | undefined
+  #moved = false
   /** The paint that was told of last. */
   #painted: Paint | undefined
 
@@ -155,9 +156,15 @@ export class Session extends Emitter<SessionEvents> {
     if (this.#shown) this.#classify()
   }
 
-  /** Shows the same target and cage as they have moved. @param projection Of where they are now. */
-  showFrame(projection: Placed): void {
+  /** Whether the target is on show in another shape than its file has. */
+  get moved(): boolean {
+    return this.#moved
+  }
+
+  /** Shows the same target and cage as they have moved. @param projection Of where they are now. @param moved Whether the target is not at rest. */
+  showFrame(projection: Placed, moved: boolean): void {
     if (!this.#shown) return
+    this.#moved = moved
     this.#shown = { ...this.#shown, projection }
     this.emit('frame', projection)
     this.#classify()
@@ -236,6 +243,7 @@ export class Session extends Emitter<SessionEvents> {
       if (scene.target !== before?.target) {
         const known = Object.entries(this.#wantedLocks).filter(([segment]) => Number(segment) < projection.segmentStats.length)
         this.#locks = Object.fromEntries(known)
+        this.#moved = false
       }
       if (!same) {
         this.#tell('Laying the paint', 0.9)

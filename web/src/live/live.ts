@@ -1,9 +1,12 @@
+import type { ExtractedMesh } from '../extract'
 import { announce, element } from '../page'
 import type { Session, Shown } from '../session'
 import { Superseded, TransferClient } from '../transfer-client'
 import type { Viewer } from '../viewer'
+import { Animations } from './animations'
 import { kDeforms, type Deform } from './deform'
-import { Pose } from './pose'
+import { Morphs } from './morphs'
+import { isAtRest, Pose, type Shape } from './pose'
 
 const kSeconds = 4 // there and back, of what moves by itself
 
@@ -19,9 +22,13 @@ export class Live {
   readonly #amount = element('amount', HTMLInputElement)
   readonly #moves = element('deform-moves', HTMLInputElement)
   readonly #along = element('deform-cage', HTMLInputElement)
+  readonly #morphs: Morphs
+  readonly #animations: Animations | undefined
   #client: TransferClient | undefined
   #shown: Shown | undefined
-  #poses: { target: Pose; cage: Pose } | undefined
+  readonly #poses = new WeakMap<ExtractedMesh, Pose>()
+  /** Whether what is on show, or went before it, is not as its file has it. */
+  #moved = false
   #stale = false
   #started: number | undefined
 
@@ -34,18 +41,34 @@ export class Live {
     })
     for (const input of [this.#deform, this.#along]) input.addEventListener('change', () => this.#next())
     this.#moves.addEventListener('change', () => (this.#moves.checked ? this.#start() : this.#stop()))
+    // An animation may move the same morphs: it is the one or the other.
+    this.#morphs = new Morphs(() => {
+      this.#animations?.stop()
+      this.#next()
+    })
+    this.#animations = viewer && new Animations(viewer, () => this.#leaveMorphs())
     session.on('transfer', (shown) => this.#onTransfer(shown))
-    if (viewer) setUpAnimations(session, viewer)
   }
 
   #onTransfer(shown: Shown): void {
-    const same = shown.target === this.#shown?.target && shown.cage === this.#shown.cage
+    const before = this.#shown
     this.#shown = shown
-    if (same) return // another preset, of what is moved as it is
-    this.#stop()
-    this.#poses = undefined
-    this.#amount.value = '0'
-    this.#showFrame(0)
+    if (shown.target === before?.target && shown.cage === before.cage) return // another preset, of what is moved as it is
+    if (shown.target !== before?.target) {
+      this.#stop()
+      this.#amount.value = '0'
+      this.#showFrame(0)
+      this.#morphs.offer(shown.target.mesh)
+      this.#animations?.offer(shown.target.animations)
+    }
+    // The one that stays is to go where the other is.
+    if (this.#moved) this.#next()
+  }
+
+  #leaveMorphs(): void {
+    if (!this.#morphs.weights) return
+    this.#morphs.reset()
+    this.#next()
   }
 
   #start(): void {
@@ -87,46 +110,32 @@ export class Live {
       const phase = Math.sin(((performance.now() - this.#started) / 1000) * ((2 * Math.PI) / kSeconds))
       this.#amount.value = phase.toFixed(2)
     }
+    const [target, cage] = [this.#poseOf(shown.target), this.#poseOf(shown.cage)]
     const amount = Number(this.#amount.value)
-    const how = this.#deform.value as Deform
-    this.#poses ??= { target: new Pose(shown.target.mesh), cage: new Pose(shown.cage.mesh) }
-    const { target, cage } = this.#poses
-    const { room } = target
-    const along = this.#along.checked ? amount : 0
-    const [targetPositions, cagePositions] = [target.positions(how, amount, room), cage.positions(how, along, room)]
+    const shape: Shape = { how: this.#deform.value as Deform, amount, room: target.room, morphs: this.#morphs.weights }
+    const cageShape: Shape = { ...shape, amount: this.#along.checked ? amount : 0, morphs: undefined }
+    const [targetPositions, cagePositions] = [target.positions(shape), cage.positions(cageShape)]
     const moved = <T extends Shown['target']>(model: T, positions: Float32Array): T => ({ ...model, mesh: { ...model.mesh, positions } })
     this.#client ??= new TransferClient()
     const { preset } = this.#session.rules
     const projection = await this.#client.ask('project', moved(shown.cage, cagePositions), moved(shown.target, targetPositions), { preset })
     // Something else may be on show by now.
     if (this.#shown !== shown || preset !== this.#session.rules.preset) return
-    target.set(targetPositions, how, amount, room)
-    cage.set(cagePositions, how, along, room)
-    this.#session.showFrame(projection)
+    target.set(targetPositions, shape)
+    cage.set(cagePositions, cageShape)
+    this.#moved = !isAtRest(shape)
+    this.#session.showFrame(projection, this.#moved)
     this.#showFrame(amount, projection.timings.total)
+  }
+
+  #poseOf({ mesh }: Shown['target']): Pose {
+    const pose = this.#poses.get(mesh) ?? new Pose(mesh)
+    this.#poses.set(mesh, pose)
+    return pose
   }
 
   #showFrame(amount: number, milliseconds?: number): void {
     element('frame-time', HTMLElement).textContent = milliseconds === undefined ? '–' : milliseconds.toFixed(milliseconds < 10 ? 2 : 1)
     element('amount-value', HTMLOutputElement).value = amount.toFixed(2)
   }
-}
-
-/** Lets a model's animations be played; the first of them plays by itself, unless the visitor wants no motion. */
-function setUpAnimations(session: Session, viewer: Viewer): void {
-  const field = element('animation-field', HTMLElement)
-  const select = element('animation', HTMLSelectElement)
-  const still = matchMedia('(prefers-reduced-motion: reduce)')
-  let target: Shown['target'] | undefined
-  select.addEventListener('change', () => viewer.play(target?.animations[Number(select.value)]))
-  session.on('transfer', (shown) => {
-    if (shown.target === target) return
-    target = shown.target
-    const { animations } = target
-    field.hidden = animations.length === 0
-    const names = animations.map(({ name }, index) => new Option(name || `Animation ${index + 1}`, String(index)))
-    select.replaceChildren(new Option('None', '-1'), ...names)
-    select.value = animations.length > 0 && !still.matches ? '0' : '-1'
-    viewer.play(animations[Number(select.value)])
-  })
 }

@@ -55,6 +55,7 @@ export class Take {
     const kind = document.querySelector<HTMLInputElement>('#take [name=code]:checked')!.value as keyof Code
     this.#code.textContent = codeFor(this.#session)[kind]
 
+    showNotice('pose-note', this.#session.moved ? 'Model and code are of the shape that the file has, zones of the one that you see.' : '')
     const { linked } = this.#paints
     const link = linkOf(this.#session, linked)
     if (link) this.#link.href = link
