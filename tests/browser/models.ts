@@ -1,4 +1,5 @@
 import { Document, NodeIO } from '@gltf-transform/core'
+import { KHRTextureTransform } from '@gltf-transform/extensions'
 import { PNG } from 'pngjs'
 import { BoxGeometry, SphereGeometry, type BufferGeometry } from 'three'
 import { glb } from './glb'
@@ -52,9 +53,11 @@ export function islandAt(x: number, y: number, size: number, margin: number): 1 
 
 /**
  * A closed box about the origin, of half the size 0.8, with a texture of its own, on which each of its sides is an island, as on
- * `islandCage`. @param mirrored Whether its left side shares the island of its right, the other way round.
+ * `islandCage`.
+ * @param mirrored Whether its left side shares the island of its right, the other way round.
+ * @param moved    Whether its UVs are elsewhere: turned by a quarter, half as large and a texture further; its material brings them back.
  */
-export async function texturedBox(texture: Buffer, { mirrored = false, factor = [1, 1, 1, 1] as [number, number, number, number] } = {}): Promise<Upload> {
+export async function texturedBox(texture: Buffer, { mirrored = false, moved = false, factor = [1, 1, 1, 1] as [number, number, number, number] } = {}): Promise<Upload> {
   const side = 7 * 7 // vertices
   const box = new BoxGeometry(1.6, 1.6, 1.6, 6, 6, 6)
   const uv = box.getAttribute('uv')
@@ -68,9 +71,21 @@ export async function texturedBox(texture: Buffer, { mirrored = false, factor = 
   document.createBuffer()
   const mesh = meshOf(document, box, true)
   const image = document.createTexture('own').setMimeType('image/png').setImage(new Uint8Array(texture))
-  mesh.listPrimitives()[0]!.setMaterial(document.createMaterial('own').setBaseColorTexture(image).setBaseColorFactor(factor).setMetallicFactor(0))
+  const material = document.createMaterial('own').setBaseColorTexture(image).setBaseColorFactor(factor).setMetallicFactor(0)
+  const primitive = mesh.listPrimitives()[0]!.setMaterial(material)
+  if (moved) {
+    const uvs = primitive.getAttribute('TEXCOORD_0')!
+    for (let vertex = 0; vertex < uvs.getCount(); vertex++) {
+      const [u = 0, v = 0] = uvs.getElement(vertex, [])
+      uvs.setElement(vertex, [(1.5 - v) / 2, (u + 0.75) / 2])
+    }
+    const transforms = document.createExtension(KHRTextureTransform).setRequired(true)
+    // A texture further to the right, and one higher.
+    const back = transforms.createTransform().setOffset([0.25, 0.5]).setRotation(Math.PI / 2).setScale([2, 2])
+    material.getBaseColorTextureInfo()!.setExtension('KHR_texture_transform', back)
+  }
   document.createScene().addChild(document.createNode('box').setMesh(mesh))
-  return glb('target.glb', Buffer.from(await new NodeIO().writeBinary(document)))
+  return glb('target.glb', Buffer.from(await new NodeIO().registerExtensions([KHRTextureTransform]).writeBinary(document)))
 }
 
 /**

@@ -150,6 +150,26 @@ test('halves that share their texels are told of; one of them is painted whole',
   assert.equal(seen.size, 1, [...seen].slice(0, 5).join(' '))
 })
 
+test('a material that moves its texture is painted in the same places', async () => {
+  const { page } = await site.visit()
+  await page.locator('input[value=result]').check({ force: true })
+  const area = await modelArea(page)
+  const base = image('own.png', 1024, (x, y) => [x >> 2, y >> 2, 90, 255]).buffer
+  const found: { bare: PNG; texture: PNG }[] = []
+  for (const moved of [false, true]) {
+    // The paint stays.
+    await drop(page, [await islandCage(1), await texturedBox(base, { moved }), ...(moved ? [] : [one((u, v) => [255 * u, 40, 255 * v, 200])])])
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    await page.locator('#show-paint').uncheck({ force: true })
+    const bare = await look(page, area)
+    const { document, note } = await savedInTexture(page)
+    assert.equal(note, 'The paint is in one texture of the model’s own.')
+    found.push({ bare, texture: textureOf(primitivesOf(document)[0]!.getMaterial()) })
+  }
+  assert.ok(difference(found[0]!.bare, found[1]!.bare) < 0.001, 'its own texture is seen in the same places')
+  assert.ok(difference(found[0]!.texture, found[1]!.texture) === 0, `${difference(found[0]!.texture, found[1]!.texture)} of the texture differs`)
+})
+
 test('a small texture is painted larger, a large one smaller, and a colour that it is multiplied by goes into it', async () => {
   const { page } = await site.visit()
   const half = one((u) => (u < 0.5 ? [230, 30, 40, 255] : [0, 0, 0, 0]))

@@ -117,7 +117,7 @@ test('the zones are saved as numbers, the same as on the page', async () => {
   assert.deepEqual(options, { preset: 'default', threshold: 0.5, locks: { segments: {} } })
 })
 
-test('a link restores the sample, its paint, rules, locks and view, in another visit and in this one', async () => {
+test('a link restores the sample, its paint, rules, locks, view and angle, in another visit and in this one', async () => {
   const { page } = await site.visit()
   await page.getByTestId('sample-select').selectOption({ index: 1 })
   await settled(page)
@@ -131,8 +131,12 @@ test('a link restores the sample, its paint, rules, locks and view, in another v
   await page.locator('input[value=result]').check({ force: true })
   await page.locator('#show-cage').check({ force: true })
   const area = await modelArea(page)
+  const front = await look(page, area)
+  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', '+', '+']) await page.locator('#view').press(key)
   const seen = { counts: await shownCounts(page), parts: await shownParts(page), paint: await page.locator('.paints input').nth(1).isChecked(), picture: await look(page, area) }
+  assert.ok(difference(front, seen.picture) > 0.1, 'it is turned')
   await page.waitForTimeout(200)
+  await page.getByTestId('share-link').focus()
   const link = await page.getByTestId('share-link').evaluate((anchor) => (anchor as HTMLAnchorElement).href)
   assert.ok(link.startsWith(`${site.url}#`), link)
 
@@ -144,6 +148,7 @@ test('a link restores the sample, its paint, rules, locks and view, in another v
     assert.equal(await page.getByTestId('preset').inputValue(), 'paper')
     assert.equal(await page.getByTestId('threshold').inputValue(), '0.35')
     assert.equal(await page.locator('input[value=result]').isChecked(), true)
+    assert.match(new URL(link).hash, /&angle=-4,74,1\.331$/, 'three steps to the left, one up, three nearer')
     const apart = difference(seen.picture, await look(page, area))
     assert.ok(apart < 0.002, `the pictures differ in ${apart}`)
   }
@@ -157,10 +162,17 @@ test('a link restores the sample, its paint, rules, locks and view, in another v
   await other.page.evaluate((hash) => (location.hash = hash), new URL(link).hash)
   await other.page.waitForFunction(() => document.querySelector<HTMLSelectElement>('#sample-select')!.selectedIndex === 1)
   await check(other.page)
+  // In one that shows it from elsewhere: it is turned, and not opened anew.
+  await other.page.locator('#view').press('Home')
+  assert.ok(difference(seen.picture, await look(other.page, area)) > 0.1)
+  await other.page.evaluate(() => (location.hash = '#'))
+  await other.page.evaluate((hash) => (location.hash = hash), new URL(link).hash)
+  await other.page.waitForTimeout(100)
+  await check(other.page)
 })
 
 test('a link that is damaged, or names what is not there, opens what there is', async () => {
-  const { page, complaints } = await site.visit({}, undefined, '#sample=lizard&layer=nothing.png,7,red&rules=none&threshold=9&keep=1,x,99999&view=none&split=-3')
+  const { page, complaints } = await site.visit({}, undefined, '#sample=lizard&layer=nothing.png,7,red&rules=none&threshold=9&keep=1,x,99999&view=none&split=-3&angle=1,x,-3')
   assert.equal(await page.getByTestId('status').textContent(), 'ready', await shownError(page))
   assert.equal(await page.getByTestId('threshold').inputValue(), '0.5')
   assert.equal(await page.locator('input[value=compare]').isChecked(), true)

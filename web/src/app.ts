@@ -83,14 +83,14 @@ setUpJump()
 new Live(session, viewer)
 const opener = new Opener(session, stack, edits, viewer?.renderer)
 const paints = paintOf(session, stack, opener, png)
-const take = new Take(session, paints)
+const take = new Take(session, viewer, paints)
 stack.on('change', () => take.refresh())
 keepOffline(session)
 
 try {
   opener.listSamples(await samples)
   // Files of one's own may have come in while the list was on its way.
-  if (!followLinks(session, opener, paints.linked)) opener.openSample(opener.samples[0]!.name)
+  if (!followLinks(session, opener, paints.linked, viewer)) opener.openSample(opener.samples[0]!.name)
 } catch (error) {
   session.fail(error)
 }

@@ -13,6 +13,16 @@ export interface View {
   cage: boolean
 }
 
+/** Where the model is looked at from. */
+export interface Angle {
+  /** Around it, from its front, in degrees; counter-clockwise seen from above. */
+  turn: number
+  /** From straight above, in degrees. */
+  tilt: number
+  /** How many times nearer than where all of it is seen. */
+  near: number
+}
+
 export const kFirstView: View = { mode: 'compare', split: 0.5, paint: true, cage: false }
 
 /** What lies over the model in each mode but `compare`. */

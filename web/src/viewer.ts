@@ -27,7 +27,7 @@ import { pick, type Spot } from './pick'
 import { Pointing, type Tool } from './pointing'
 import { Studio } from './studio'
 import type { Placed } from './transfer-messages'
-import { kFirstView, kLooks, showsPaint, type View } from './view'
+import { kFirstView, kLooks, showsPaint, type Angle, type View } from './view'
 
 const kFieldOfView = 28 // degrees
 const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14))
@@ -37,6 +37,7 @@ const kSway = MathUtils.degToRad(40) // how far the model turns to either side
 const kSwaySeconds = 16 // there and back
 const kLongestFrame = 0.25 // seconds that a model turns on in one frame, however long that took: it must not jump
 const kKeyStep = MathUtils.degToRad(6)
+const kKeyNearer = 1 / 1.1 // of the distance
 
 /** Shows one target with its paint and its cage on a canvas, and lets people turn it. Draws only when something changed. */
 export class Viewer {
@@ -61,6 +62,8 @@ export class Viewer {
   /** Seconds that the model has turned by itself; undefined when it does not. */
   #turned: number | undefined
   #drawn = 0
+  /** Whether it is looked at from where the visitor said. */
+  #taken = false
   #mixer: AnimationMixer | undefined
   #played = 0
 
@@ -89,7 +92,7 @@ export class Viewer {
     this.#controls.maxDistance = 12
     this.#controls.maxPolarAngle = MathUtils.degToRad(150)
     this.#controls.addEventListener('change', () => this.redraw())
-    this.#controls.addEventListener('start', () => this.turn(false))
+    this.#controls.addEventListener('start', () => this.#take())
     canvas.addEventListener('keydown', (event) => this.#onKey(event))
     canvas.addEventListener('webglcontextrestored', () => this.redraw())
     this.home()
@@ -223,12 +226,37 @@ export class Viewer {
 
   /** Looks at the model from where it is seen best, all of it. */
   home(): void {
-    // A tall picture is narrow: there the width decides how far away all of it is seen.
+    this.#taken = false
+    this.#look({ ...kHome, radius: this.#farness })
+  }
+
+  /** Where the visitor looks at the model from; undefined until it was turned. */
+  get angle(): Angle | undefined {
+    if (!this.#taken) return undefined
+    const { radius, phi, theta } = new Spherical().setFromVector3(this.#camera.position)
+    return { turn: MathUtils.radToDeg(theta), tilt: MathUtils.radToDeg(phi), near: this.#farness / radius }
+  }
+
+  /** Looks at the model from there, as far as one can. */
+  lookFrom({ turn, tilt, near }: Angle): void {
+    this.#take()
+    this.#look({ radius: this.#farness / near, phi: MathUtils.degToRad(tilt), theta: MathUtils.degToRad(turn) })
+  }
+
+  /** How far away all of the model is seen. */
+  get #farness(): number {
+    // A tall picture is narrow: there the width decides.
     const half = MathUtils.degToRad(kFieldOfView / 2)
     const { clientWidth: width, clientHeight: height } = this.#canvas
     const free = Math.max(1, height - kToolbar)
     const narrow = Math.atan((Math.tan(half) * Math.min(free, width)) / Math.max(1, height))
-    this.#look({ ...kHome, radius: kFill / Math.sin(narrow) })
+    return kFill / Math.sin(narrow)
+  }
+
+  /** It is turned by the visitor from now on. */
+  #take(): void {
+    this.turn(false)
+    this.#taken = true
   }
 
   #place(model: Model): void {
@@ -278,15 +306,15 @@ export class Viewer {
       ArrowRight: () => this.#controls.rotateLeft(-kKeyStep),
       ArrowUp: () => this.#controls.rotateUp(kKeyStep),
       ArrowDown: () => this.#controls.rotateUp(-kKeyStep),
-      '+': () => this.#controls.dollyIn(1.1),
-      '=': () => this.#controls.dollyIn(1.1),
-      '-': () => this.#controls.dollyOut(1.1),
+      '+': () => this.#controls.dollyIn(kKeyNearer),
+      '=': () => this.#controls.dollyIn(kKeyNearer),
+      '-': () => this.#controls.dollyOut(kKeyNearer),
       Home: () => this.home(),
     }
     const action = actions[event.key]
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return
     event.preventDefault()
-    this.turn(false)
+    this.#take()
     this.#atOnce(action)
   }
 

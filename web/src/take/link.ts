@@ -1,6 +1,6 @@
 import type { Lock } from 'cagecast'
 import type { Locks, Rules } from '../session'
-import { kModes, type Mode, type View } from '../view'
+import { kModes, type Angle, type Mode, type View } from '../view'
 
 /** One of the paints a link carries, and how it is laid. */
 export interface LinkedLayer {
@@ -22,10 +22,12 @@ export interface LinkState {
   rules: Rules
   locks: Locks
   view: View
+  /** Absent where all of the model is seen from its front. */
+  angle?: Angle | undefined
 }
 
 /** Writes a state as the fragment of an address, without its `#`: readable, and only what it has to say. */
-export function writeLink({ sample, layers, rules, locks, view }: LinkState): string {
+export function writeLink({ sample, layers, rules, locks, view, angle }: LinkState): string {
   const words = new URLSearchParams({ sample })
   for (const { paint, opacity, tint, blend, visible } of layers) {
     words.append('layer', [paint, Number(opacity.toFixed(3)), tint.replace('#', ''), blend, ...(visible ? [] : ['hidden'])].join(','))
@@ -41,6 +43,7 @@ export function writeLink({ sample, layers, rules, locks, view }: LinkState): st
   if (view.mode === 'compare') words.set('split', view.split.toFixed(3))
   if (!view.paint) words.set('paint', 'off')
   if (view.cage) words.set('cage', 'on')
+  if (angle) words.set('angle', [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4)].map(Number).join(','))
   return words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',')
 }
 
@@ -64,6 +67,7 @@ export function readLink(fragment: string): LinkState | undefined {
       paint: words.get('paint') !== 'off',
       cage: words.get('cage') === 'on',
     },
+    angle: readAngle(words.get('angle')),
   }
 }
 
@@ -75,6 +79,11 @@ function readLayer(text: string): LinkedLayer {
 function readLocks(words: URLSearchParams, lock: Lock): Locks {
   const numbers = (words.get(lock) ?? '').split(',').filter((word) => /^\d{1,9}$/.test(word))
   return Object.fromEntries(numbers.map((number) => [number, lock]))
+}
+
+function readAngle(word: string | null): Angle | undefined {
+  const [turn = NaN, tilt = NaN, near = NaN] = (word ?? '').split(',').map(Number)
+  return Math.abs(turn) <= 360 && tilt >= 0 && tilt <= 180 && near > 0 && near < Infinity ? { turn, tilt, near } : undefined
 }
 
 /** A number from 0 to 1. */

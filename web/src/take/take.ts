@@ -1,5 +1,6 @@
 import { announce, element, showError, showNotice } from '../page'
 import type { Session } from '../session'
+import type { Viewer } from '../viewer'
 import { codeFor, type Code } from './code'
 import { download } from './download'
 import type { PaintInto } from './export-messages'
@@ -17,13 +18,15 @@ export interface Paints {
 /** Lets what is shown be taken away: as a model, as zones, as code, as a link. */
 export class Take {
   readonly #session: Session
+  readonly #viewer: Viewer | undefined
   readonly #paints: Paints
   readonly #link = element('share-link', HTMLAnchorElement)
   readonly #code = element('code', HTMLElement)
   #due = false
 
-  constructor(session: Session, paints: Paints) {
+  constructor(session: Session, viewer: Viewer | undefined, paints: Paints) {
     this.#session = session
+    this.#viewer = viewer
     this.#paints = paints
     const section = element('take', HTMLElement)
     element('export-glb', HTMLButtonElement).addEventListener('click', () => this.#exportGlb())
@@ -31,6 +34,8 @@ export class Take {
       download(new Blob([zonesJson(session)], { type: 'application/json' }), `${this.#stem}-zones.json`)
     })
     this.#link.addEventListener('click', () => this.#copyLink())
+    // Before it is followed, dragged or copied by other means: the model may have been turned.
+    for (const event of ['pointerdown', 'focus'] as const) this.#link.addEventListener(event, () => this.#refresh())
     element('copy-code', HTMLButtonElement).addEventListener('click', () => this.#copy(this.#code.textContent!, 'The code is copied.'))
     for (const input of section.querySelectorAll<HTMLInputElement>('[name=code]')) input.addEventListener('change', () => this.#refresh())
     for (const event of ['zones', 'view', 'paint'] as const) session.on(event, () => this.refresh())
@@ -57,7 +62,7 @@ export class Take {
 
     showNotice('pose-note', this.#session.moved ? 'Model and code are of the shape that the file has, zones of the one that you see.' : '')
     const { linked } = this.#paints
-    const link = linkOf(this.#session, linked)
+    const link = linkOf(this.#session, linked, this.#viewer?.angle)
     if (link) this.#link.href = link
     else this.#link.removeAttribute('href')
     this.#link.ariaDisabled = link ? null : 'true'
@@ -65,7 +70,7 @@ export class Take {
       ? 'A link can only lead to samples: your own files stay on this device.'
       : linked.left > 0
         ? 'The link leaves out paints of your own: they stay on this device.'
-        : 'The link opens this sample with its paints, rules and view.'
+        : 'The link opens this sample with its paints, rules and view, seen from where you see it.'
   }
 
   get #stem(): string {
