@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, realpathSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -215,6 +215,28 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     assert.match(stderr, /^cagecast: .*gone\/never\.json: cannot be written \(its folder does not exist\)\n$/);
     assert.ok(!existsSync(at('never.glb')));
     assert.ok(!readdirSync(folder).some((name) => name.endsWith('.tmp')));
+  });
+
+  test('a link is written through, and so is its target kept from being an input', () => {
+    const [link, file] = [at('link.glb'), write('behind.glb', 'before')];
+    symlinkSync(file, link);
+    assert.equal(cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', link).status, 0);
+    assert.ok(lstatSync(link).isSymbolicLink());
+    assert.equal(readFileSync(file).toString('latin1', 0, 4), 'glTF');
+    const { status, stderr } = cagecast('transfer', file, '--cage', at('cage.glb'), '-o', link);
+    assert.deepEqual([status, stderr], [2, `cagecast: ${realpathSync(file)} would be written over another file of this command\n`]);
+    rmSync(link);
+    rmSync(file);
+  });
+
+  test('a pipe is written to, not replaced', { skip: process.platform === 'win32' && 'there are no such pipes' }, () => {
+    const [pipe, copy] = [at('pipe'), at('copy.json')];
+    const script = `mkfifo "$1" && { cat "$1" > "$2" & "$3" dist/cli.js transfer "$4" --cage "$5" --report "$1" && test -p "$1" && wait; }`;
+    const { status, stderr } = spawnSync('sh', ['-c', script, 'sh', pipe, copy, process.execPath, at('target.glb'), at('cage.glb')], { encoding: 'utf8', timeout: 20000 });
+    assert.equal(status, 0, stderr);
+    assert.equal((JSON.parse(readFileSync(copy, 'utf8')) as Report).parts.length, 1);
+    rmSync(pipe);
+    rmSync(copy);
   });
 
   test('inspect fails in the same way', () => {

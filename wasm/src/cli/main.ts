@@ -1,9 +1,9 @@
-import { resolve } from 'node:path';
 import { Command, CommanderError, InvalidArgumentError, Option } from 'commander';
 import { CagecastError, type Preset, type PresetOptions } from '../index.js';
 import { InputError, firstLine } from '../gltf/input-error.js';
 import { inspectCommand } from './inspect-command.js';
 import type { Rules } from './options.js';
+import { placeOf } from './output.js';
 import { Progress } from './progress.js';
 import { transferCommand } from './transfer-command.js';
 
@@ -99,8 +99,8 @@ Examples:
     const { cage, texture, output, report, borders } = flags;
     if (texture !== undefined && output === undefined) command.error('--texture needs -o OUT.glb to show it in', { exitCode: wrongUsage });
     if (borders === 'cut' && output === undefined) command.error('--borders cut needs -o OUT.glb to write the cut target to', { exitCode: wrongUsage });
-    const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => resolve(path));
-    const outputs = [output, report].filter((path) => path !== undefined).map((path) => resolve(path));
+    const inputs = [target, cage, texture].filter((path) => path !== undefined).map(placeOf);
+    const outputs = [output, report].filter((path) => path !== undefined).map(placeOf);
     const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
     if (clash !== undefined) command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
     const text = await transferCommand({ target, cage, texture, output, report, borders, rules: rulesOf(flags) }, progress);
@@ -125,8 +125,8 @@ Examples:
   )
   .action(async (target: string, flags: CommonFlags & { json: boolean; html?: string }, command: Command) => {
     const { cage, json, html } = flags;
-    if (html !== undefined && [target, cage].some((path) => resolve(path) === resolve(html))) {
-      command.error(`${resolve(html)} would be written over another file of this command`, { exitCode: wrongUsage });
+    if (html !== undefined && [target, cage].some((path) => placeOf(path) === placeOf(html))) {
+      command.error(`${placeOf(html)} would be written over another file of this command`, { exitCode: wrongUsage });
     }
     const { text, verdict } = await inspectCommand({ target, cage, json, html, rules: rulesOf(flags) }, progress);
     progress.clear();
