@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict'
 import { readFile } from 'node:fs/promises'
 import { after, before, test } from 'node:test'
-import type { Document, Material, Primitive } from '@gltf-transform/core'
+import { NodeIO, type Document, type Material, type Primitive } from '@gltf-transform/core'
 import type { Page } from 'playwright-core'
 import { PNG } from 'pngjs'
 import { Color, SRGBColorSpace } from 'three'
@@ -86,6 +86,24 @@ test('the lizard’s own texture has the paint where the overlay has it, and is 
     assert.deepEqual(imageOf(document), imageOf(laid), name)
   }
   assert.deepEqual(complaints, [])
+})
+
+test('exact borders go into the texture as well', async () => {
+  const { page } = await site.visit()
+  const skinOf = (document: Document): PNG => textureOf(primitivesOf(document).find((primitive) => primitive.getMaterial()?.getName() === 'skin')!.getMaterial())
+  const whole = await savedInTexture(page)
+  await page.getByTestId('exact-borders').check()
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  const cut = await savedInTexture(page)
+  assert.equal(cut.note, whole.note)
+  const triangles = (document: Document): number => primitivesOf(document).reduce((sum, primitive) => sum + primitive.getIndices()!.getCount() / 3, 0)
+  assert.ok(triangles(cut.document) > triangles(whole.document))
+  const bare = skinOf(await new NodeIO().read(inRepository('build/assets/lizard/target.glb')))
+  const [before, after] = [difference(bare, skinOf(whole.document)), difference(bare, skinOf(cut.document))]
+  // What they cut off is 5 % of the painted area by the model's own UVs; its margin goes with it.
+  assert.ok(after < before && after > 0.9 * before, `${before} of the texture is painted, ${after} with exact borders`)
+  const changed = difference(skinOf(whole.document), skinOf(cut.document))
+  assert.ok(changed > 0.0002 && changed < 0.1, `${changed} of the texture is another`)
 })
 
 test('what is saved so looks as the painted model on the page does, without a paint', async () => {
