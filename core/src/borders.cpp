@@ -1,8 +1,9 @@
 #include "borders.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <tuple>
+#include <utility>
 
 #include "index_table.hpp"
 
@@ -23,17 +24,19 @@ constexpr std::uint32_t kNone = UINT32_MAX;
 
 /// A place on the triangle that is being cut.
 struct Spot {
-  Vec3 p;             ///< Scaled.
-  double weights[3];  ///< Of the triangle's corners.
+  Vec3 p;       ///< Scaled.
+  double v, w;  ///< Weights of the triangle's second and third corner.
   Look look;
   std::uint32_t vertex = kNone;
 };
 
 /// A place between two others.
+Vec3 between(Vec3 a, Vec3 b, double t) { return a + t * (b - a); }
 Spot between(const Spot& a, const Spot& b, double t) {
   Spot out{};
-  out.p = a.p + t * (b.p - a.p);
-  for (int k = 0; k < 3; ++k) out.weights[k] = a.weights[k] + t * (b.weights[k] - a.weights[k]);
+  out.p = between(a.p, b.p, t);
+  out.v = a.v + t * (b.v - a.v);
+  out.w = a.w + t * (b.w - a.w);
   return out;
 }
 
@@ -44,6 +47,9 @@ struct Stop {
   bool isBorder;  ///< Else it lies between two borders, so that there is but one on either side of it.
   std::uint32_t vertex = kNone;
 };
+
+/// A triangle's parts, by fours: of its corners 0, 1, 2 and the middles of its sides 3, 4, 5.
+constexpr int kQuarters[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
 
 /// Some of a list.
 struct Range {
@@ -58,7 +64,7 @@ struct Node {
 
 /// Twice the area, in weights, of a triangle: greater than 0 if it is turned as the one that is being cut.
 double side(const Spot& a, const Spot& b, const Spot& c) {
-  return (b.weights[1] - a.weights[1]) * (c.weights[2] - a.weights[2]) - (b.weights[2] - a.weights[2]) * (c.weights[1] - a.weights[1]);
+  return (b.v - a.v) * (c.w - a.w) - (b.w - a.w) * (c.v - a.v);
 }
 /// Less than this is none.
 constexpr double kFlat = 1e-12;
@@ -91,7 +97,8 @@ class Cutter {
   }
 
   [[nodiscard]] bool failed() const noexcept {
-    return out_.failed() || edgeStops_.failed() || inner_.failed() || spokes_.failed() || nodes_.failed() || pieces_.failed() || parts_.failed() || line_.failed() || polygon_.failed();
+    return out_.failed() || looker_.failed() || edgeStops_.failed() || inner_.failed() || spokes_.failed() || nodes_.failed() ||
+           pieces_.failed() || parts_.failed() || line_.failed() || polygon_.failed();
   }
 
  private:
@@ -99,12 +106,18 @@ class Cutter {
     return scale_ * Vec3::from(target_.positions.data() + std::size_t{3} * v);
   }
 
-  void lookAt(Spot* spots, std::uint32_t count) noexcept {
-    Vec3 places[Looker::kMost];
-    Look looks[Looker::kMost];
-    for (std::uint32_t i = 0; i < count; ++i) places[i] = spots[i].p;
-    looker_.at(places, count, looks);
-    for (std::uint32_t i = 0; i < count; ++i) spots[i].look = looks[i];
+  /// What is near the triangle that is being cut: found when it is first asked for, and the first to be listed.
+  Nearby nearTriangle() noexcept {
+    if (near_.count > 0) return near_;
+    Vec3 corners[3];
+    double least = 0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = target_.indices[3 * triangle_ + k];
+      corners[k] = positionOf(v);
+      if (takesPart_[v] != 0) least = looks_[v].landing.distance;
+    }
+    // The middle is nearer to any corner than the corners are to each other.
+    return near_ = looker_.around(corners, least + length(corners[1] - corners[0]) + length(corners[2] - corners[1]));
   }
 
   std::uint32_t addVertex(const std::uint32_t (&sources)[3], double second, double third, bool isOnBorder) noexcept {
@@ -119,7 +132,7 @@ class Cutter {
   /// Makes a vertex of a spot inside the triangle.
   void addVertex(Spot& spot, bool isOnBorder) noexcept {
     const std::uint32_t* index = target_.indices.data() + std::size_t{3} * triangle_;
-    spot.vertex = addVertex({index[0], index[1], index[2]}, spot.weights[1], spot.weights[2], isOnBorder);
+    spot.vertex = addVertex({index[0], index[1], index[2]}, spot.v, spot.w, isOnBorder);
   }
 
   // ---- Edges. What is found on one depends on its ends alone, taken in an order that depends on their places alone, so that
@@ -131,29 +144,34 @@ class Cutter {
     const Spot& to;
     double length;
     List<Stop>& stops;
+    std::size_t enough;  ///< So many stops, and it need not be searched on.
     double lastBorder = -1;
-    [[nodiscard]] Vec3 at(double t) const { return from.p + t * (to.p - from.p); }
+    [[nodiscard]] Vec3 at(double t) const { return between(from.p, to.p, t); }
   };
 
   /// Finds the borders between two places on an edge.
-  /// @param lastBorder  The last one that was found, or less than 0.
-  void search(Edge& edge, double t0, const Look& look0, double t1, const Look& look1) noexcept {
+  /// @param nearby  To some more of the edge; none if it is the whole.
+  void search(Edge& edge, Nearby nearby, double t0, const Look& look0, double t1, const Look& look1) noexcept {
+    if (edge.stops.size() > edge.enough) return;
     const double apart = (t1 - t0) * edge.length;
     const bool isBetween = looker_.isBetween(look0, look1, apart);
     if (!isBetween && (apart <= feature_ || (look0.side != 0 && look0.cell == look1.cell))) return;
-    if (!isBetween && looker_.clearance(look0, edge.at(t0)) + looker_.clearance(look1, edge.at(t1)) >= apart) return;
+    const Vec3 ends[2] = {edge.at(t0), edge.at(t1)};
+    if (!isBetween && looker_.clearance(look0, ends[0]) + looker_.clearance(look1, ends[1]) >= apart) return;
+    nearby = looker_.within(nearby.count == 0 ? nearTriangle() : nearby, ends);
+    if (!isBetween && looker_.isWhole(look0.side, nearby, ends)) return;
     if (apart > feature_) {
       const double middle = (t0 + t1) / 2;
-      const Look look = looker_.at(edge.at(middle));
-      search(edge, t0, look0, middle, look);
-      search(edge, middle, look, t1, look1);
+      const Look look = looker_.at(nearby, edge.at(middle));
+      search(edge, nearby, t0, look0, middle, look);
+      search(edge, nearby, middle, look, t1, look1);
       return;
     }
     double low = t0, high = t1;
     Look below = look0, above = look1;
     while ((high - low) * edge.length > found_) {
       const double middle = (low + high) / 2;
-      const Look look = looker_.at(edge.at(middle));
+      const Look look = looker_.at(nearby, edge.at(middle));
       const double half = (high - low) / 2 * edge.length;
       if (looker_.isBetween(below, look, half)) {
         high = middle;
@@ -168,7 +186,7 @@ class Cutter {
     const double t = (low + high) / 2;
     if (edge.lastBorder >= 0) {
       const double middle = (edge.lastBorder + t) / 2;
-      const Look look = looker_.at(edge.at(middle));
+      const Look look = looker_.at(nearTriangle(), edge.at(middle));
       edge.stops.add({middle, look, false});
     }
     edge.stops.add({t, below, true});
@@ -176,9 +194,11 @@ class Cutter {
   }
 
   /// Finds all borders on an edge.
-  void searchAll(const Spot& from, const Spot& to, List<Stop>& stops) noexcept {
-    Edge edge{from, to, length(to.p - from.p), stops};
-    search(edge, 0, from.look, 1, to.look);
+  /// @param most  If there are more stops, not all are found.
+  void searchAll(const Spot& from, const Spot& to, List<Stop>& stops, std::size_t most = SIZE_MAX / 2) noexcept {
+    Edge edge{from, to, length(to.p - from.p), stops, stops.size() + most};
+    search(edge, {}, 0, from.look, 1, to.look);
+    looker_.rewind(near_.first + near_.count);
   }
 
   /// Makes a vertex of a stop; at an end of its edge, that is one already.
@@ -196,7 +216,7 @@ class Cutter {
     }
   }
 
-  [[nodiscard]] static bool isBefore(Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+  [[nodiscard]] static bool isBefore(Vec3 a, Vec3 b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
 
   /// The stops of a side of the triangle, in the order of its ends' places.
   Range stopsOfSide(std::uint32_t side, const Spot& first, const Spot& second) noexcept {
@@ -258,12 +278,13 @@ class Cutter {
     Spot corners[3];
     bool takesPart = true;
     for (int k = 0; k < 3; ++k) {
-      corners[k] = {positionOf(index[k]), {0, 0, 0}, looks_[index[k]], index[k]};
-      corners[k].weights[k] = 1;
+      corners[k] = {positionOf(index[k]), static_cast<double>(k == 1), static_cast<double>(k == 2), looks_[index[k]], index[k]};
       takesPart = takesPart && takesPart_[index[k]] != 0;
     }
     nodes_.cut(0);
     inner_.cut(0);
+    near_ = {};
+    looker_.rewind(0);
     for (std::uint32_t k = 0; k < 3; ++k) {
       const Spot& from = corners[k];
       const Spot& to = corners[(k + 1) % 3];
@@ -281,33 +302,38 @@ class Cutter {
       return;
     }
     // Nothing of it is painted, or there is nothing of it: it only has what its neighbours have on its edges.
-    startPolygon();
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      addCorner(nodes_[i].spot);
-      if (nodes_[i].isCrossed) addCorner(nodes_[i].border);
-    }
-    fillPolygon(corners[0].look, false);
+    emitPolygon(0, nodes_.size());
+    pieces_.cut(0);
   }
 
   /// Divides a convex polygon until there are triangles with at most one border on each side, and none inside that does not
   /// come from there.
   /// @param first,count  Its corners, the last of `nodes_`, which are taken away.
   void divide(std::size_t first, std::size_t count) noexcept {
-    if (count == 3 && !failed()) divideTriangle(first);
+    const Nearby before = near_;
+    if (count == 3 && !failed()) {
+      near_ = looker_.within(near_, std::array{nodes_[first].spot.p, nodes_[first + 1].spot.p, nodes_[first + 2].spot.p});
+      divideTriangle(first);
+    }
     if (count > 3 && !failed()) divideAcross(first, count);
     nodes_.cut(first);
+    if (before.count == 0) return;
+    near_ = before;
+    looker_.rewind(before.first + before.count);
   }
 
   /// Divides a polygon of more than three corners along a line between two of them, the shortest of those with fewest borders.
   void divideAcross(std::size_t first, std::size_t count) noexcept {
     const std::size_t begin = inner_.size();
-    std::size_t from = first, to = first, fewest = SIZE_MAX;
+    constexpr std::size_t kMany = SIZE_MAX / 2;
+    std::size_t from = first, to = first, fewest = kMany;
     double shortest = 0;
     for (std::size_t i = first; i < first + count; ++i) {
       for (std::size_t j = i + 2; j < first + count && j - i < count - 1; ++j) {
         if (!dividesArea(first, count, i, j)) continue;
         const double apart = length(nodes_[j].spot.p - nodes_[i].spot.p);
-        searchAll(nodes_[i].spot, nodes_[j].spot, inner_);
+        if (fewest == 1 && apart >= shortest) continue;
+        searchAll(nodes_[i].spot, nodes_[j].spot, inner_, fewest);
         const std::size_t most = std::max<std::size_t>(inner_.size() - begin, 1);
         inner_.cut(begin);
         if (most > fewest || (most == fewest && apart >= shortest)) continue;
@@ -317,13 +343,13 @@ class Cutter {
         to = j;
       }
     }
-    if (fewest == SIZE_MAX) return emitPolygon(first, count);  // All corners are on one line.
+    if (fewest == kMany) return emitPolygon(first, count);  // All corners are on one line.
     const Spot start = nodes_[from].spot, end = nodes_[to].spot;
     if (fewest > 1 && divisions_ > 0) {
       // Every line crosses several borders: what is between the corners and the middle is smaller.
       Spot middle = nodes_[first].spot;
       for (std::size_t i = 1; i < count; ++i) middle = between(middle, nodes_[first + i].spot, 1.0 / static_cast<double>(i + 1));
-      lookAt(&middle, 1);
+      middle.look = looker_.at(nearTriangle(), middle.p);
       return divideAround(first, count, middle);
     }
     Range range;
@@ -437,7 +463,7 @@ class Cutter {
   }
 
   /// Whether no border can run inside a triangle whose corners are on one side.
-  [[nodiscard]] bool isClear(const Spot (&corners)[3]) const noexcept {
+  [[nodiscard]] bool isClear(const Spot (&corners)[3]) noexcept {
     const auto& [a, b, c] = corners;
     if (a.look.cell == b.look.cell && b.look.cell == c.look.cell) return true;
     // Every place is so near to one of the corners.
@@ -446,29 +472,36 @@ class Cutter {
     return std::all_of(corners, corners + 3, [&](const Spot& spot) { return looker_.clearance(spot.look, spot.p) >= enough; });
   }
 
+  /// Looks at the middles of a triangle's sides.
+  /// @param t  Its corners, and then these.
+  void addMiddles(Spot (&t)[6], Nearby nearby) noexcept {
+    for (int k = 0; k < 3; ++k) {
+      t[3 + k] = between(t[k], t[(k + 1) % 3], 0.5);
+      t[3 + k].look = looker_.at(nearby, t[3 + k].p);
+    }
+  }
+
   /// Finds where three borders meet in a triangle whose corners are on three sides, by fours.
   /// @return false if the sides do not part so simply there: then `meeting` is a place that is on another side than it should be.
   bool findMeeting(const Spot (&corners)[3], Spot& meeting) noexcept {
-    Spot t[3] = {corners[0], corners[1], corners[2]};
+    Spot t[6] = {corners[0], corners[1], corners[2]};
     const auto areApart = [&](const Spot& a, const Spot& b) { return looker_.isBetween(a.look, b.look, length(b.p - a.p)); };
     while (longestSide(t) > found_) {
-      Spot m[3] = {between(t[0], t[1], 0.5), between(t[1], t[2], 0.5), between(t[2], t[0], 0.5)};
-      lookAt(m, 3);
-      const Spot parts[4][3] = {{t[0], m[0], m[2]}, {m[0], t[1], m[1]}, {m[2], m[1], t[2]}, {m[0], m[1], m[2]}};
-      const auto* part = std::find_if(std::begin(parts), std::end(parts), [&](const Spot(&p)[3]) {
-        return areApart(p[0], p[1]) && areApart(p[1], p[2]) && areApart(p[2], p[0]);
+      addMiddles(t, nearTriangle());
+      const auto* part = std::find_if(std::begin(kQuarters), std::end(kQuarters), [&](const int(&p)[3]) {
+        return areApart(t[p[0]], t[p[1]]) && areApart(t[p[1]], t[p[2]]) && areApart(t[p[2]], t[p[0]]);
       });
-      if (part == std::end(parts)) {
-        const Spot* other = std::find_if(std::begin(m), std::end(m), [&](const Spot& spot) {
-          const Spot& a = t[&spot - m];
-          const Spot& b = t[(&spot - m + 1) % 3];
-          return areApart(spot, a) && areApart(spot, b) && isWellInside(spot, corners);
+      if (part == std::end(kQuarters)) {
+        const Spot* other = std::find_if(t + 3, t + 6, [&](const Spot& spot) {
+          const auto k = &spot - (t + 3);
+          return areApart(spot, t[k]) && areApart(spot, t[(k + 1) % 3]) && isWellInside(spot, corners);
         });
-        if (other == std::end(m)) break;
+        if (other == t + 6) break;
         meeting = *other;
         return false;
       }
-      std::copy(*part, *part + 3, t);
+      const Spot quarter[3] = {t[(*part)[0]], t[(*part)[1]], t[(*part)[2]]};
+      std::copy(quarter, quarter + 3, t);
     }
     meeting = between(between(t[0], t[1], 0.5), t[2], 1.0 / 3);
     meeting.look = t[0].look;
@@ -487,8 +520,12 @@ class Cutter {
   /// The triangle that `cutOff` cuts.
   struct Wedge {
     Spot a, b, c;
-    [[nodiscard]] Spot at(Polar polar) const { return between(a, between(b, c, polar.s), polar.r); }
-    [[nodiscard]] double lengthOf(double s) const { return length(between(b, c, s).p - a.p); }
+    /// Where a ray ends.
+    [[nodiscard]] Vec3 end(double s) const { return between(b.p, c.p, s); }
+    [[nodiscard]] Vec3 at(Polar polar) const { return between(a.p, end(polar.s), polar.r); }
+    [[nodiscard]] double lengthOf(double s) const { return length(end(s) - a.p); }
+    /// The part between two rays.
+    [[nodiscard]] std::array<Vec3, 3> sector(double s, double t) const { return {a.p, end(s), end(t)}; }
   };
 
   /// Whether a place is on the side of the wedge's first corner.
@@ -506,13 +543,17 @@ class Cutter {
   }
 
   /// How far along a ray the border is.
-  double onRay(const Wedge& wedge, double s) noexcept {
+  /// @param nearby  To some more of the wedge.
+  double onRay(const Wedge& wedge, Nearby nearby, double s) noexcept {
     const double reach = wedge.lengthOf(s);
+    const std::size_t mark = looker_.mark();
     double low = 0, high = 1;
-    while ((high - low) * reach > found_) {
+    for (std::uint32_t step = 0; (high - low) * reach > found_; ++step) {
+      if (step % 4 == 0 && nearby.count > 2) nearby = looker_.within(nearby, std::array{wedge.at({s, low}), wedge.at({s, high})});
       const double middle = (low + high) / 2;
-      (isWithFirst(wedge, looker_.at(wedge.at({s, middle}).p)) ? low : high) = middle;
+      (isWithFirst(wedge, looker_.at(nearby, wedge.at({s, middle}))) ? low : high) = middle;
     }
+    looker_.rewind(mark);
     return (low + high) / 2;
   }
 
@@ -524,56 +565,52 @@ class Cutter {
   }
 
   /// Adds the bends of the border between two places on it to `line_`.
-  void follow(const Wedge& wedge, Polar from, Polar to, int depth) noexcept {
-    const Vec3 start = wedge.at(from).p, end = wedge.at(to).p;
+  /// @param nearby  To some more of the wedge.
+  void follow(const Wedge& wedge, Nearby nearby, Polar from, Polar to, int depth) noexcept {
+    const Vec3 start = wedge.at(from), end = wedge.at(to);
     if (depth == 0 || length(end - start) <= straight_) return;
     const auto distance = [&](Polar polar) {
       const Vec3 along = end - start;
-      const Vec3 beside = cross(wedge.at(polar).p - start, along);
+      const Vec3 beside = cross(wedge.at(polar) - start, along);
       return std::sqrt(dot(beside, beside) / dot(along, along));
     };
-    // Where the border is not within a step of the line, on some rays: all looked at together.
-    constexpr std::uint32_t kRays = 8;
-    double width = (to.s - from.s) / kRays;
-    Spot spots[2 * (kRays - 1)];
-    double starts[kRays - 1], ends[kRays - 1];
-    for (std::uint32_t i = 0; i < kRays - 1; ++i) {
-      const double s = from.s + (i + 1) * width;
-      const double r = chord(from, to, s);
-      const double step = straight_ / wedge.lengthOf(s);
-      starts[i] = r - step;
-      ends[i] = r + step;
-      spots[2 * i] = wedge.at({s, std::max(starts[i], 0.0)});
-      spots[2 * i + 1] = wedge.at({s, std::min(ends[i], 1.0)});
-    }
-    lookAt(spots, 2 * (kRays - 1));
+    const std::size_t mark = looker_.mark();
+    nearby = looker_.within(nearby, wedge.sector(from.s, to.s));
     Polar worst{};
     double most = 0;
     const auto tryAt = [&](double s) {
-      const Polar polar{s, onRay(wedge, s)};
+      const Polar polar{s, onRay(wedge, nearby, s)};
       const double apart = distance(polar);
       if (apart <= most) return;
       most = apart;
       worst = polar;
     };
-    for (std::uint32_t i = 0; i < kRays - 1; ++i) {
-      const bool isNear = (starts[i] <= 0 || isWithFirst(wedge, spots[2 * i].look)) && (ends[i] >= 1 || !isWithFirst(wedge, spots[2 * i + 1].look));
-      if (!isNear) tryAt(from.s + (i + 1) * width);
+    // Where the border is not within a step of the line, on some rays.
+    constexpr int kRays = 8;
+    double width = (to.s - from.s) / kRays;
+    for (int i = 1; i < kRays; ++i) {
+      const double s = from.s + i * width;
+      const double r = chord(from, to, s), step = straight_ / wedge.lengthOf(s);
+      const auto isBefore = [&](double at) { return isWithFirst(wedge, looker_.at(nearby, wedge.at({s, at}))); };
+      if ((r - step > 0 && !isBefore(r - step)) || (r + step < 1 && isBefore(r + step))) tryAt(s);
     }
-    if (most <= straight_) return;
+    if (most <= straight_) return looker_.rewind(mark);
+    const Nearby all = nearby;
     // The bend itself is where the border is farthest from the line.
     while (width * length(wedge.c.p - wedge.b.p) > straight_ / 4) {
       width /= 2;
       const double s = worst.s;
+      nearby = looker_.within(all, wedge.sector(s - width, s + width));
       tryAt(s - width);
       tryAt(s + width);
     }
-    follow(wedge, from, worst, depth - 1);
-    Spot bend = wedge.at(worst);
+    follow(wedge, all, from, worst, depth - 1);
+    Spot bend = between(wedge.a, between(wedge.b, wedge.c, worst.s), worst.r);
     bend.look = wedge.a.look;
     addVertex(bend, true);
     line_.add(bend);
-    follow(wedge, worst, to, depth - 1);
+    follow(wedge, all, worst, to, depth - 1);
+    looker_.rewind(mark);
   }
 
   /// Cuts a triangle along the border between its first corner and the other two.
@@ -585,7 +622,7 @@ class Cutter {
     line_.cut(0);
     if (from.vertex != to.vertex) {
       const auto share = [&first = a](const Spot& spot, const Spot& end) { return length(spot.p - first.p) / length(end.p - first.p); };
-      follow(wedge, {0, share(from, b)}, {1, share(to, c)}, kMostBends);
+      follow(wedge, nearTriangle(), {0, share(from, b)}, {1, share(to, c)}, kMostBends);
     }
     startPolygon();
     addCorner(a), addCorner(from);
@@ -609,7 +646,7 @@ class Cutter {
 
   /// Makes triangles of the polygon: the ear with the shortest cut first. In the weights of the corners it is flat, whatever its shape.
   /// @param look  Of a place on the side that it lies on.
-  void fillPolygon(const Look& look, bool isLookedAt = true) noexcept {
+  void fillPolygon(const Look& look) noexcept {
     while (polygon_.size() >= 3) {
       const std::size_t n = polygon_.size();
       std::size_t ear = n;
@@ -635,7 +672,7 @@ class Cutter {
       for (const Spot& corner : corners) out_.indices.add(corner.vertex);
       out_.origins.add(triangle_);
       out_.sides.add(look.side);
-      if (isLookedAt) pieces_.add({{corners[0], corners[1], corners[2]}, look});
+      pieces_.add({{corners[0], corners[1], corners[2]}, look});
       polygon_.remove(ear);
     }
   }
@@ -650,73 +687,82 @@ class Cutter {
   struct Part {
     Spot corners[3];
     std::uint32_t piece;
+    Nearby nearby;
   };
 
   /// Finds a place well inside one of the triangles made last that is not on the side that they are on.
   bool findHidden(Spot& hidden) noexcept {
+    const Nearby nearby = nearTriangle();
+    const std::size_t mark = looker_.mark();
     parts_.cut(0);
-    const auto add = [&](Part part) {
-      const Piece& piece = pieces_[part.piece];
-      const bool isSettled = isClear(part.corners) && part.corners[0].look.side == piece.look.side;
-      if (!isSettled && !isSmall(part.corners) && !isAtSide(part.corners, piece.corners)) parts_.add(part);
-    };
     for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
-      Part whole{{pieces_[i].corners[0], pieces_[i].corners[1], pieces_[i].corners[2]}, i};
-      lookAt(whole.corners, 3);
-      add(whole);
+      const Spot(&corners)[3] = pieces_[i].corners;
+      addPart({{corners[0], corners[1], corners[2]}, i, nearby}, true);
     }
-    // Part by part by fours; several parts at once.
-    constexpr std::uint32_t kAtOnce = Looker::kMost / 3;
-    for (std::size_t next = 0; next < parts_.size() && !failed();) {
-      const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(kAtOnce, parts_.size() - next));
-      Spot middles[3 * kAtOnce];
-      for (std::uint32_t i = 0; i < 3 * count; ++i) {
-        const Spot(&t)[3] = parts_[next + i / 3].corners;
-        middles[i] = between(t[i % 3], t[(i + 1) % 3], 0.5);
+    bool isFound = false;
+    // Part by part by fours.
+    for (std::size_t next = 0; next < parts_.size() && !isFound && !failed(); ++next) {
+      const Part whole = parts_[next];
+      const Piece& piece = pieces_[whole.piece];
+      Spot t[6] = {whole.corners[0], whole.corners[1], whole.corners[2]};
+      addMiddles(t, whole.nearby);
+      for (int k = 3; k < 6 && !isFound; ++k) {
+        isFound = t[k].look.side != piece.look.side && isWellInside(t[k], piece.corners);
+        if (isFound) hidden = t[k];
       }
-      lookAt(middles, 3 * count);
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const Part whole = parts_[next + i];
-        const Spot* m = middles + 3 * i;
-        const Piece& piece = pieces_[whole.piece];
-        for (int k = 0; k < 3; ++k) {
-          if (m[k].look.side == piece.look.side || !isWellInside(m[k], piece.corners)) continue;
-          hidden = m[k];
-          return true;
-        }
-        const auto& [a, b, c] = whole.corners;
-        add({{a, m[0], m[2]}, whole.piece}), add({{m[0], b, m[1]}, whole.piece});
-        add({{m[2], m[1], c}, whole.piece}), add({{m[0], m[1], m[2]}, whole.piece});
-      }
-      next += count;
+      for (const auto& [a, b, c] : kQuarters) addPart({{t[a], t[b], t[c]}, whole.piece, whole.nearby});
     }
-    return false;
+    looker_.rewind(mark);
+    return isFound;
   }
 
-  [[nodiscard]] static double longestSide(const Spot (&t)[3]) {
+  /// Adds a part to those that are looked through, unless what is well inside of it is on the right side for sure.
+  void addPart(Part part, bool isWhole = false) noexcept {
+    if (isSmall(part.corners)) return;
+    const Piece& piece = pieces_[part.piece];
+    // Well inside is what lies beyond three lines.
+    Vec3 core[6] = {part.corners[0].p, part.corners[1].p, part.corners[2].p};
+    std::uint32_t count = 3;
+    for (int k = 0; k < 3; ++k) {
+      Vec3 before[6];
+      std::copy(core, core + count, before);
+      const std::uint32_t beforeCount = std::exchange(count, 0);
+      for (std::uint32_t i = 0; i < beforeCount; ++i) {
+        const Vec3 p = before[i], q = before[(i + 1) % beforeCount];
+        const double fromP = depthOf(p, piece.corners, k) - 1, fromQ = depthOf(q, piece.corners, k) - 1;
+        if (fromP > 0) core[count++] = p;
+        if ((fromP > 0) != (fromQ > 0)) core[count++] = p + fromP / (fromP - fromQ) * (q - p);
+      }
+    }
+    if (count == 0) return;
+    const std::size_t mark = looker_.mark();
+    const Hull hull(core, count);
+    const bool isSure = looker_.areAllOn(piece.look.side, looker_.within(part.nearby, hull), hull);
+    looker_.rewind(mark);
+    if (isSure) return;
+    for (Spot& spot : part.corners) {
+      if (isWhole) spot.look = looker_.at(part.nearby, spot.p);
+    }
+    if (part.corners[0].look.side == piece.look.side && isClear(part.corners)) return;
+    part.nearby = looker_.within(part.nearby, std::array{part.corners[0].p, part.corners[1].p, part.corners[2].p});
+    parts_.add(part);
+  }
+
+  [[nodiscard]] static double longestSide(const Spot* t) {
     return std::max({length(t[1].p - t[0].p), length(t[2].p - t[1].p), length(t[0].p - t[2].p)});
   }
   [[nodiscard]] bool isSmall(const Spot (&corners)[3]) const noexcept { return longestSide(corners) <= feature_; }
 
-  /// How far a place is inside a side of a triangle, as a share of what is well inside.
-  [[nodiscard]] double depthOf(const Spot& spot, const Spot& from, const Spot& to) const noexcept {
-    const Vec3 along = to.p - from.p;
-    const Vec3 beside = cross(along, spot.p - from.p);
+  /// How far a place is inside side k of a triangle, as a share of what is well inside.
+  [[nodiscard]] double depthOf(Vec3 p, const Spot (&t)[3], int k) const noexcept {
+    const Vec3 along = t[(k + 1) % 3].p - t[k].p;
+    const Vec3 beside = cross(along, p - t[k].p);
     return std::sqrt(dot(beside, beside) / dot(along, along)) / (feature_ / 2);
   }
 
   /// Whether a place is farther from the sides of a triangle than borders may be off.
   [[nodiscard]] bool isWellInside(const Spot& spot, const Spot (&t)[3]) const noexcept {
-    return depthOf(spot, t[0], t[1]) > 1 && depthOf(spot, t[1], t[2]) > 1 && depthOf(spot, t[2], t[0]) > 1;
-  }
-
-  /// Whether no place of a part is well inside the whole, because it lies along one of its sides.
-  [[nodiscard]] bool isAtSide(const Spot (&part)[3], const Spot (&t)[3]) const noexcept {
-    for (int k = 0; k < 3; ++k) {
-      const auto isNear = [&](const Spot& spot) { return depthOf(spot, t[k], t[(k + 1) % 3]) <= 1; };
-      if (std::all_of(part, part + 3, isNear)) return true;
-    }
-    return false;
+    return depthOf(spot.p, t, 0) > 1 && depthOf(spot.p, t, 1) > 1 && depthOf(spot.p, t, 2) > 1;
   }
 
   const MeshView& target_;
@@ -739,6 +785,7 @@ class Cutter {
   List<Spot> polygon_;
   List<Piece> pieces_;
   List<Part> parts_;
+  Nearby near_;                ///< See `nearTriangle`.
 };
 
 }  // namespace

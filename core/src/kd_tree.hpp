@@ -85,6 +85,10 @@ class NearestSearch {
   /// @param diagonal  Of the target, scaled.
   NearestSearch(const CageTree& tree, double diagonal, Scratch& scratch) noexcept;
 
+  /// From now on finds triangles as well that are farther than the nearest by up to `more`.
+  /// @param distance  Some distance to the cage, greater than 0: the nearer to that of what is searched for, the fewer are found.
+  void widen(double more, double distance) noexcept;
+
   /// Searches for `count` ≤ `kGroup` points that are near each other.
   /// @param positions  As in `Points`.
   void search(const float* positions, std::uint32_t count) noexcept;
@@ -117,7 +121,9 @@ class NearestSearch {
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
 
   const CageTree& tree_;
-  float fixedSlack_;                  ///< See `kRelativeSlack`.
+  double slack_;                      ///< The s of `kRelativeSlack`.
+  float growth_;                      ///< 1 + r,
+  float fixedSlack_;                  ///< and s² · (1 + 1/r).
   std::uint32_t lastLeaf_ = 0;
   alignas(16) float points_[kGroup][4];   ///< x, y, z, 0 each.
   alignas(16) float columns_[3][kGroup];  ///< The same, by axis.

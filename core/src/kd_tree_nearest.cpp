@@ -45,9 +45,18 @@ f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
 
 NearestSearch::NearestSearch(const CageTree& tree, double diagonal, Scratch& scratch) noexcept
     : tree_(tree),
-      fixedSlack_(fixedSlack(tree, diagonal)),
+      slack_(slackOf(tree, diagonal)),
+      growth_(1 + static_cast<float>(kRelativeSlack)),
+      fixedSlack_(fixedSlack(slack_, kRelativeSlack)),
       list_(scratch.take<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)),
       otherList_(scratch.take<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)) {}
+
+void NearestSearch::widen(double more, double distance) noexcept {
+  const double slack = slack_ + more;
+  const double ratio = std::max(slack / distance, kRelativeSlack);
+  growth_ = static_cast<float>(1 + ratio);
+  fixedSlack_ = fixedSlack(slack, ratio);
+}
 
 std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
   std::uint32_t* from = list_;
@@ -73,11 +82,12 @@ std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&hig
 
 void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
   const NearLeaf& leaf = tree_.near[leafIndex];
+  const f32x4 growth = splat(growth_), slack = splat(fixedSlack_);
   for (; members != 0; members &= members - 1) {
     const int i = std::countr_zero(members);
     const f32x4 squared = squaredDistanceToTriangles(leaf, load(points_[i]));
     const f32x4 least = simd::lowest(squared);
-    const f32x4 limit = simd::min(splat(limits_[i]), least * splat(1 + static_cast<float>(kRelativeSlack)) + splat(fixedSlack_));
+    const f32x4 limit = simd::min(splat(limits_[i]), least * growth + slack);
     const unsigned lanes = simd::bits(squared <= limit);
     limits_[i] = simd::first(limit);
     // No branch: whether a leaf is of interest is a coin toss.

@@ -10,9 +10,28 @@
 
 namespace cagecast {
 
+/// What all lists have in common.
+class AnyList {
+ public:
+  [[nodiscard]] bool failed() const noexcept { return failed_; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  /// Takes away the last elements.
+  void cut(std::size_t size) noexcept { size_ = size < size_ ? size : size_; }
+
+ protected:
+  /// Makes more room, if there is memory for it.
+  /// @param size  Of an element.
+  /// @return The elements, where they are now.
+  void* grown(void* data, std::size_t size) noexcept;
+
+  std::size_t size_ = 0;
+  std::size_t room_ = 0;
+  bool failed_ = false;
+};
+
 /// A row of plain values that grows. Like `Array` it reports a lack of memory; what was added after that is lost.
 template <typename T>
-class List {
+class List : public AnyList {
   static_assert(std::is_trivially_copyable_v<T>, "elements are copied as bytes");
 
  public:
@@ -25,15 +44,11 @@ class List {
     if (size_ == room_ && !grow()) return;
     data_[size_++] = value;
   }
-  /// Takes away the last elements.
-  void cut(std::size_t size) noexcept { size_ = size < size_ ? size : size_; }
   /// Takes one element away; the later ones move up.
   void remove(std::size_t i) noexcept {
     std::memmove(data_ + i, data_ + i + 1, (--size_ - i) * sizeof(T));
   }
 
-  [[nodiscard]] bool failed() const noexcept { return failed_; }
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }
 
@@ -46,19 +61,11 @@ class List {
 
  private:
   bool grow() noexcept {
-    const std::size_t room = room_ < 32 ? 64 : 2 * room_;
-    void* data = room > SIZE_MAX / sizeof(T) ? nullptr : std::realloc(data_, room * sizeof(T));
-    failed_ = failed_ || data == nullptr;
-    if (data == nullptr) return false;
-    data_ = static_cast<T*>(data);
-    room_ = room;
-    return true;
+    data_ = static_cast<T*>(grown(data_, sizeof(T)));
+    return size_ < room_;
   }
 
   T* data_ = nullptr;
-  std::size_t size_ = 0;
-  std::size_t room_ = 0;
-  bool failed_ = false;
 };
 
 }  // namespace cagecast

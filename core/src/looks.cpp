@@ -7,16 +7,22 @@
 namespace cagecast {
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
+/// Where the middle of a part is, and how far it reaches from there.
+struct Extent {
+  Vec3 middle{0, 0, 0};
+  double radius = 0;
+
+  explicit Extent(Hull hull) noexcept {
+    for (const Vec3 corner : hull) middle = middle + corner;
+    middle = 1 / static_cast<double>(hull.size()) * middle;
+    for (const Vec3 corner : hull) radius = std::max(radius, length(corner - middle));
+  }
+};
+
+/// Once in the code: `placeOn` is long.
+Place placeOf(const CageTriangle& t, Vec3 p) { return placeOn(t, p); }
 
 }  // namespace
-
-double Looker::Line::squaredDistance(Vec3 p) const noexcept {
-  const Vec3 offset = p - from;
-  const double t = std::min(std::max(dot(offset, along) * inverseSquare, 0.0), 1.0);
-  const Vec3 away = offset - t * along;
-  return dot(away, away);
-}
 
 Looker::Looker(const MeshView& mesh, const Cage& cage, const CageTree& tree, const Rims& rims, const Atlas* atlas, const Units& units,
                Scratch& scratch) noexcept
@@ -25,61 +31,49 @@ Looker::Looker(const MeshView& mesh, const Cage& cage, const CageTree& tree, con
       rims_(rims),
       atlas_(atlas),
       diagonal_(units.diagonal),
+      margin_(1.001 * kTieDistance * units.diagonal),
       // Places are rounded for the search, by less than what a reach more makes it allow for.
       search_(tree, units.diagonal + static_cast<double>(units.reach), scratch),
       found_(scratch.take<std::uint32_t>(cage.count)),
       candidates_(scratch.take<Candidate>(cage.count)),
+      lines_(cage, tree, rims, atlas, scratch),
       clearances_(scratch.take<double>(mesh.positions.size() / 3)) {
-  auto* lines = scratch.take<Line>(std::size_t{3} * cage.count);
-  lines_ = lines;
-  if (scratch.failed()) return;
-  for (std::uint32_t side = 0; side < 3 * cage.count; ++side) {
-    const CageTriangle& t = cage.triangles[side / 3];
-    const std::uint32_t k = side % 3;
-    // An edge that the texture has one side of is a seam, if it is no rim.
-    if (atlas != nullptr ? atlas->nextSide[side] != side : rims.ofSides[std::size_t{6} * (side / 3) + k] == Rims::kNone) continue;
-    const float* corners[3] = {t.a, t.b, t.c};
-    const Vec3 from = Vec3::from(corners[k]);
-    const Vec3 along = Vec3::from(corners[(k + 1) % 3]) - from;
-    lines[lineCount_++] = {from, along, 1 / dot(along, along)};
-  }
-  // There are few rims, and many places: how far each is from them is asked of all of them. Of seams there may be many.
-  if (atlas == nullptr) return;
-  std::fill(clearances_, clearances_ + mesh.positions.size() / 3, kFar);
-  for (std::uint32_t slot = 0; slot < cage.count; ++slot) {
-    const CageTriangle& t = cage.triangles[slot];
-    const float* corners[3] = {t.a, t.b, t.c};
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = cornersOf(slot)[k];
-      if (clearances_[vertex] < kFar) continue;
-      double least = kFar;
-      for (std::size_t i = 0; i < lineCount_; ++i) least = std::min(least, lines[i].squaredDistance(Vec3::from(corners[k])));
-      clearances_[vertex] = std::sqrt(least);
-    }
-  }
+  if (!scratch.failed()) std::fill(clearances_, clearances_ + mesh.positions.size() / 3, -1.0);
 }
 
-void Looker::at(const Vec3* places, std::uint32_t count, Look* looks) noexcept {
-  alignas(16) float rounded[kMost][4] = {};
+const Candidate& Looker::nearestOf(const std::uint32_t* slots, std::uint32_t count, Vec3 p) noexcept {
+  std::uint32_t found = 0;
+  double limit = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec3 p = places[i];
-    const float row[4] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0};
-    std::copy(row, row + 4, rounded[i]);
+    const CageTriangle& t = cage_.triangles[slots[i]];
+    // It is not nearer than its plane.
+    if (std::abs(dot(p - Vec3::from(t.a), t.normal.exact)) > limit) continue;
+    candidates_[found] = {slots[i], placeOf(t, p)};
+    if (candidates_[found].place.distance > limit) continue;
+    limit = std::min(limit, candidates_[found].place.distance + margin_);
+    ++found;
   }
-  search_.search(rounded[0], count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t found = search_.candidates(i, found_);
-    for (std::uint32_t c = 0; c < found; ++c) candidates_[c] = {found_[c], placeOn(cage_.triangles[found_[c]], places[i])};
-    looks[i] = judge(nearestOf(candidates_, found, diagonal_));
-  }
+  return cagecast::nearestOf(candidates_, found, diagonal_);
+}
+
+std::uint32_t Looker::find(Vec3 p, double more, double distance) noexcept {
+  search_.widen(more, distance);
+  alignas(16) const float rounded[4] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0};
+  search_.search(rounded, 1);
+  return search_.candidates(0, found_);
+}
+
+Look Looker::at(Vec3 p) noexcept { return judge(nearestOf(found_, find(p, 0, diagonal_), p)); }
+
+Look Looker::at(Nearby nearby, Vec3 p) noexcept {
+  return nearby.count == 0 ? at(p) : judge(nearestOf(&listed_[nearby.first], nearby.count, p));
 }
 
 Look Looker::judge(const Candidate& nearest) const noexcept {
   const auto& [slot, place] = nearest;
   const CageTriangle& t = cage_.triangles[slot];
-  const Vec3 q = positionOf(t, place);
-    Look look{atlas_ == nullptr ? 0 : atlas_->islands[slot], 4 * slot + 3, {slot, place.distance, uvAt(t, place)}};
-  const std::uint32_t side = atlas_ == nullptr ? rims_.sideAt(t, slot, q, diagonal_) : Rims::kNone;
+  Look look{atlas_ == nullptr ? 0 : atlas_->islands[slot], 4 * slot + 3, {slot, place.distance, uvAt(t, place)}};
+  const std::uint32_t side = atlas_ == nullptr ? rims_.sideAt(t, slot, positionOf(t, place), diagonal_) : Rims::kNone;
   if (side != Rims::kNone) {
     constexpr std::uint32_t kCorner = 1u << 31;
     look.side = 1;
@@ -88,22 +82,87 @@ Look Looker::judge(const Candidate& nearest) const noexcept {
   return look;
 }
 
-double Looker::clearance(const Look& look, Vec3 p) const noexcept {
-  const double distance = look.landing.distance;
-  double least = 0;
-  if (atlas_ == nullptr) {
-    least = kFar;
-    for (std::size_t i = 0; i < lineCount_; ++i) least = std::min(least, lines_[i].squaredDistance(p));
-    least = std::sqrt(least);
-  } else {
-    const CageTriangle& t = cage_.triangles[look.landing.slot];
-    const float* corners[3] = {t.a, t.b, t.c};
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      least = std::max(least, clearances_[cornersOf(look.landing.slot)[k]] - length(p - Vec3::from(corners[k])));
+Nearby Looker::around(Hull hull, double distance) noexcept {
+  const auto& [middle, radius] = Extent(hull);
+  // The nearest to any place of the part is farther from the middle than the nearest there by no more than this.
+  const std::uint32_t count = find(middle, 2 * radius, distance);
+  const auto first = static_cast<std::uint32_t>(listed_.size());
+  for (std::uint32_t i = 0; i < count; ++i) listed_.add(found_[i]);
+  return failed() ? Nearby{} : within({first, count}, hull);
+}
+
+Nearby Looker::within(Nearby nearby, Hull hull) noexcept {
+  if (nearby.count <= 1) return nearby;
+  const Vec3 middle = Extent(hull).middle;
+  const std::uint32_t nearest = nearestOf(&listed_[nearby.first], nearby.count, middle).slot;
+  // Distance to a triangle is convex: between corners it is nowhere more than what lies straight between theirs,
+  double limits[kMostCorners];
+  for (std::size_t k = 0; k < hull.size(); ++k) limits[k] = placeOf(cage_.triangles[nearest], hull[k]).distance + margin_;
+  // and nowhere less than straight on from the middle.
+  const auto first = static_cast<std::uint32_t>(listed_.size());
+  for (std::uint32_t i = 0; i < nearby.count; ++i) {
+    const std::uint32_t slot = listed_[nearby.first + i];
+    const CageTriangle& t = cage_.triangles[slot];
+    const Place place = placeOf(t, middle);
+    const Vec3 away = place.distance > margin_ ? 1 / place.distance * (middle - positionOf(t, place)) : Vec3{0, 0, 0};
+    bool isNear = false;
+    for (std::size_t k = 0; k < hull.size(); ++k) isNear = isNear || place.distance + dot(away, hull[k] - middle) <= limits[k];
+    if (isNear) listed_.add(slot);
+  }
+  return failed() ? nearby : Nearby{first, static_cast<std::uint32_t>(listed_.size()) - first};
+}
+
+bool Looker::isBetween(const Look& a, const Look& b, double apart) const noexcept {
+  return atlas_ == nullptr ? a.side != b.side : atlas_->tears(a.landing, b.landing, apart);
+}
+
+bool Looker::areAllOn(std::uint32_t side, Nearby nearby, Hull hull) const noexcept {
+  const auto* slots = &listed_[nearby.first];
+  return nearby.count > 0 && std::all_of(slots, slots + nearby.count, [&](std::uint32_t slot) {
+    if (atlas_ != nullptr) return atlas_->islands[slot] == side;
+    return side == 0 ? rims_.areOff(cage_.triangles[slot], slot, hull, diagonal_) : rims_.areOn(cage_.triangles[slot], slot, hull);
+  });
+}
+
+bool Looker::isWhole(std::uint32_t side, Nearby nearby, Hull hull) const noexcept {
+  if (!areAllOn(side, nearby, hull)) return false;
+  if (atlas_ == nullptr) return true;
+  const auto& [middle, radius] = Extent(hull);
+  Uv first{};
+  for (std::uint32_t i = 0; i < nearby.count; ++i) {
+    const std::uint32_t slot = listed_[nearby.first + i];
+    const CageTriangle& t = cage_.triangles[slot];
+    // How fast the texture changes across the triangle, at most.
+    double squares = 0;
+    for (int k = 0; k < 2; ++k) {
+      const double a = static_cast<double>(t.uvs[k]);
+      const Vec3 change = (static_cast<double>(t.uvs[2 + k]) - a) * t.towardsB + (static_cast<double>(t.uvs[4 + k]) - a) * t.towardsC;
+      squares += dot(change, change);
     }
+    const double fastest = std::sqrt(squares);
+    // Mostly that is explained by its edges.
+    if (nearby.count == 1 && fastest <= kSmear * atlas_->stretch[slot]) return true;
+    // What is nearest to a place moves no farther than the place.
+    const Uv uv = uvAt(t, placeOf(t, middle));
+    if (i == 0) first = uv;
+    const double du = uv.u - first.u, dv = uv.v - first.v;
+    if (std::sqrt(du * du + dv * dv) + fastest * radius > kSmearSlack / 2) return false;
+  }
+  return true;
+}
+
+double Looker::clearance(const Look& look, Vec3 p) noexcept {
+  const CageTriangle& t = cage_.triangles[look.landing.slot];
+  const float* corners[3] = {t.a, t.b, t.c};
+  double least = 0;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    double& known = clearances_[cornersOf(look.landing.slot)[k]];
+    const Vec3 corner = Vec3::from(corners[k]);
+    if (known < 0) known = lines_.distance(corner);
+    least = std::max(least, known - length(p - corner));
   }
   // The distance to the cage, and that to its rims or seams, change by no more than one steps.
-  return (least - distance) / 2;
+  return (least - look.landing.distance) / 2;
 }
 
 }  // namespace cagecast

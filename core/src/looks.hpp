@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "atlas.hpp"
+#include "list.hpp"
+#include "rim_lines.hpp"
 #include "rims.hpp"
 #include "steps.hpp"
 
@@ -16,6 +19,14 @@ struct Look {
   Landing landing;
 };
 
+/// A part of the target: all that lies between some places, the corners of a segment or of a triangle.
+using Hull = std::span<const Vec3>;
+
+/// All triangles of the cage that can be nearest to a place of a part; of those that a `Looker` has listed. None: not known.
+struct Nearby {
+  std::uint32_t first = 0, count = 0;
+};
+
 /// Looks at single places of the target, in double.
 class Looker {
  public:
@@ -25,50 +36,57 @@ class Looker {
          Scratch& scratch) noexcept;
 
   /// @param p  Scaled.
-  Look at(Vec3 p) noexcept {
-    Look look;
-    at(&p, 1, &look);
-    return look;
-  }
+  Look at(Vec3 p) noexcept;
+  /// @param nearby  To a part that the place is in: quicker.
+  Look at(Nearby nearby, Vec3 p) noexcept;
 
-  /// The most places that can be looked at at once: quicker, if they are neighbours.
-  static constexpr std::uint32_t kMost = NearestSearch::kGroup;
-  /// @param places  `count` of them, scaled.
-  void at(const Vec3* places, std::uint32_t count, Look* looks) noexcept;
+  /// What is near a part of the target, from scratch.
+  /// @param distance  Not less than how far its middle is from the cage; the less the better.
+  Nearby around(Hull hull, double distance) noexcept;
+  /// A part has so many corners at most.
+  static constexpr std::size_t kMostCorners = 6;
+  /// What is near a part of another part.
+  Nearby within(Nearby nearby, Hull hull) noexcept;
+  /// What was listed since is forgotten by `rewind`.
+  [[nodiscard]] std::size_t mark() const noexcept { return listed_.size(); }
+  void rewind(std::size_t mark) noexcept { listed_.cut(mark); }
+  [[nodiscard]] bool failed() const noexcept { return listed_.failed(); }
 
-  /// So far around a place that was looked at no other is nearest to one of the cage's rims, or seams.
-  [[nodiscard]] double clearance(const Look& look, Vec3 p) const noexcept;
+  /// Whether, for sure, all places of a part are on a side.
+  [[nodiscard]] bool areAllOn(std::uint32_t side, Nearby nearby, Hull hull) const noexcept;
+  /// Whether, for sure, no border runs between any two places of a part, one of which is on a side.
+  [[nodiscard]] bool isWhole(std::uint32_t side, Nearby nearby, Hull hull) const noexcept;
+
+  /// So far around a place that was looked at no other is nearest to one of the cage's rims, or seams. At least: it is quick.
+  [[nodiscard]] double clearance(const Look& look, Vec3 p) noexcept;
 
   /// Whether a border runs between two places, so far apart.
-  [[nodiscard]] bool isBetween(const Look& a, const Look& b, double apart) const noexcept {
-    return atlas_ == nullptr ? a.side != b.side : atlas_->tears(a.landing, b.landing, apart);
-  }
+  [[nodiscard]] bool isBetween(const Look& a, const Look& b, double apart) const noexcept;
 
  private:
   [[nodiscard]] const std::uint32_t* cornersOf(std::uint32_t slot) const noexcept {
     return mesh_.indices.data() + std::size_t{3} * cage_.triangles[slot].index;
   }
-
+  /// Finds the triangles that are farther from a place than the nearest by up to `more`.
+  /// @param distance  As in `NearestSearch::widen`.
+  /// @return How many there are in `found_`.
+  std::uint32_t find(Vec3 p, double more, double distance) noexcept;
+  /// Finds which of some triangles a place is nearest to; `candidates_` are then those that can be.
+  const Candidate& nearestOf(const std::uint32_t* slots, std::uint32_t count, Vec3 p) noexcept;
   [[nodiscard]] Look judge(const Candidate& nearest) const noexcept;
-
-  /// A rim or a seam between two corners of the cage.
-  struct Line {
-    Vec3 from, along;
-    double inverseSquare;
-    [[nodiscard]] double squaredDistance(Vec3 p) const noexcept;
-  };
 
   const MeshView& mesh_;
   const Cage& cage_;
   const Rims& rims_;
   const Atlas* atlas_;
   double diagonal_;
+  double margin_;             ///< What is farther than the nearest by more is not the answer.
   NearestSearch search_;
   std::uint32_t* found_;
   Candidate* candidates_;
-  const Line* lines_;
-  std::size_t lineCount_ = 0;
-  double* clearances_;  ///< Of seams, 1 per vertex of the cage: its distance to the nearest.
+  List<std::uint32_t> listed_;
+  RimLines lines_;
+  double* clearances_;  ///< 1 per vertex of the cage: its distance to the nearest line, or less than 0 if nobody asked yet.
 };
 
 }  // namespace cagecast

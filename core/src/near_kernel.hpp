@@ -13,12 +13,12 @@ inline constexpr double kRounding = 1e-6;
 /// d² · (1 + r) + s² · (1 + 1/r) for any r, which needs no root; this r is good where d is a few thousandths of the diagonal.
 inline constexpr double kRelativeSlack = 1e-4;
 
-/// s² · (1 + 1/r), with the s of the tie rule.
+/// The s of the tie rule.
 /// @param diagonal  Of the target, scaled.
-inline float fixedSlack(const CageTree& tree, double diagonal) {
-  const double slack = kTieDistance * diagonal + kRounding * tree.extent;
-  return static_cast<float>(slack * slack * (1 + 1 / kRelativeSlack));
-}
+inline double slackOf(const CageTree& tree, double diagonal) { return kTieDistance * diagonal + kRounding * tree.extent; }
+
+/// s² · (1 + 1/r).
+inline float fixedSlack(double slack, double ratio) { return static_cast<float>(slack * slack * (1 + 1 / ratio)); }
 
 /// Squared distances of points to triangles, each in its own frame.
 /// @param x,y,z  Of four points, or of one four times.

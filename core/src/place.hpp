@@ -21,9 +21,10 @@ struct Place {
   bool inside;     ///< Strictly: not on an edge or a corner.
 };
 
-/// The place on a triangle of a point that lies beside it: on one of the edges.
+/// The place on a triangle of a point that lies beside it: on one of the edges that its foot is beyond.
 /// @param height  Of p over the plane.
-Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept;
+/// @param v,w     Barycentrics of b and c of its foot.
+Place placeOnEdge(const CageTriangle& t, Vec3 p, double height, double v, double w) noexcept;
 
 /// Finds the point of a triangle that is nearest to p.
 inline Place placeOn(const CageTriangle& t, Vec3 p) {
@@ -33,7 +34,7 @@ inline Place placeOn(const CageTriangle& t, Vec3 p) {
   const double v = dot(offset, t.towardsB);
   const double w = dot(offset, t.towardsC);
   if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
-  return placeOnEdge(t, p, height);
+  return placeOnEdge(t, p, height, v, w);
 }
 
 /// A triangle that could be the nearest.

@@ -1,25 +1,27 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "place.hpp"
 #include "steps.hpp"
 
 namespace cagecast {
 
-Place placeOnEdge(const CageTriangle& t, Vec3 p, double height) noexcept {
+Place placeOnEdge(const CageTriangle& t, Vec3 p, double height, double v, double w) noexcept {
   const Vec3 corners[3] = {Vec3::from(t.a), Vec3::from(t.b), Vec3::from(t.c)};
-  double along[3];
-  double squared[3];
+  const bool isBeyond[3] = {!(w > 0), !(v + w < 1), !(v > 0)};
+  Place place{std::numeric_limits<double>::infinity(), 0, 0, height, false};
   for (int i = 0; i < 3; ++i) {
+    if (!isBeyond[i]) continue;
     const Vec3 edge = corners[(i + 1) % 3] - corners[i];
     const Vec3 offset = p - corners[i];
-    along[i] = std::min(std::max(dot(offset, edge) * (1 / dot(edge, edge)), 0.0), 1.0);
-    const Vec3 away = offset - along[i] * edge;
-    squared[i] = dot(away, away);
+    const double along = std::min(std::max(dot(offset, edge) * (1 / dot(edge, edge)), 0.0), 1.0);
+    const Vec3 away = offset - along * edge;
+    const double squared = dot(away, away);
+    if (!(squared < place.distance)) continue;
+    const double ofB[3] = {along, 1 - along, 0}, ofC[3] = {0, along, 1 - along};
+    place = {squared, ofB[i], ofC[i], height, false};
   }
-  Place place{squared[0], along[0], 0, height, false};
-  if (squared[1] < place.distance) place = {squared[1], 1 - along[1], along[1], height, false};
-  if (squared[2] < place.distance) place = {squared[2], 0, 1 - along[2], height, false};
   place.distance = std::sqrt(place.distance);
   return place;
 }

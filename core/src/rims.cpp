@@ -22,6 +22,30 @@ void eachSide(const MeshView& mesh, const Cage& cage, const std::uint32_t* verte
   }
 }
 
+/// A triangle's corners, its edges as unit vectors and their lengths, and its outward normal.
+struct Frame {
+  Vec3 corners[3], edges[3], normal;
+  double lengths[3];
+
+  explicit Frame(const CageTriangle& t) noexcept : corners{Vec3::from(t.a), Vec3::from(t.b), Vec3::from(t.c)}, normal(t.normal.exact) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+      lengths[k] = length(edge);
+      edges[k] = 1 / lengths[k] * edge;
+    }
+  }
+  [[nodiscard]] Vec3 inward(std::uint32_t k) const noexcept { return cross(normal, edges[k]); }
+  /// From corner k to the one before.
+  [[nodiscard]] Vec3 back(std::uint32_t k) const noexcept { return -1 * edges[(k + 2) % 3]; }
+};
+
+/// How far places are from another in a direction: the least of them.
+double leastAlong(Vec3 direction, Vec3 from, std::span<const Vec3> places) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3 p : places) least = std::min(least, dot(p - from, direction));
+  return least;
+}
+
 }  // namespace
 
 void Rims::Box::grow(Vec3 p) noexcept {
@@ -50,6 +74,40 @@ std::uint32_t Rims::sideAt(const CageTriangle& triangle, std::uint32_t slot, Vec
     if (sides[3 + k] != kNone && dot(offset, offset) <= near) return 3 + k;
   }
   return kNone;
+}
+
+bool Rims::areOff(const CageTriangle& triangle, std::uint32_t slot, std::span<const Vec3> corners, double diagonal) const noexcept {
+  if (!touches(slot)) return true;
+  const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
+  const Frame frame(triangle);
+  const double doubleArea = dot(frame.corners[2] - frame.corners[0], frame.inward(0)) * frame.lengths[0];
+  const double near = 2 * kOnRim * diagonal;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Vec3 corner = frame.corners[k];
+    // On the inner side of an edge no place is nearest to it but for its ends,
+    if (sides[k] != kNone && leastAlong(frame.inward(k), corner, corners) < near) return false;
+    if (sides[3 + k] == kNone) continue;
+    // and none is to a corner that is on the way to another. So far from there the two edges are far enough from each other.
+    const double enough = near * frame.lengths[k] * frame.lengths[(k + 2) % 3] / doubleArea;
+    if (doubleArea < 2 * enough * frame.lengths[(k + 1) % 3]) return false;
+    if (leastAlong(frame.edges[k], corner, corners) < enough && leastAlong(frame.back(k), corner, corners) < enough) return false;
+  }
+  return true;
+}
+
+bool Rims::areOn(const CageTriangle& triangle, std::uint32_t slot, std::span<const Vec3> corners) const noexcept {
+  if (!touches(slot)) return false;
+  const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
+  const Frame frame(triangle);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Vec3 start = frame.corners[k], end = frame.corners[(k + 1) % 3], edge = frame.edges[k], away = -1 * edge;
+    // Beyond an edge, between its ends.
+    if (sides[k] != kNone && leastAlong(-1 * frame.inward(k), start, corners) >= 0 && leastAlong(edge, start, corners) >= 0 &&
+        leastAlong(away, end, corners) >= 0) {
+      return true;
+    }
+  }
+  return false;
 }
 
 bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& out) noexcept {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "cage.hpp"
 #include "place.hpp"
@@ -41,6 +42,12 @@ struct Rims {
     const std::uint32_t side = sideAt(triangle, slot, q, diagonal);
     return side == kNone ? kNone : ofSides[std::size_t{6} * slot + side];
   }
+
+  /// Whether, for sure, no place between some corners of which this triangle is the nearest is nearest to a rim of it.
+  [[nodiscard]] bool areOff(const CageTriangle& triangle, std::uint32_t slot, std::span<const Vec3> corners,
+                            double diagonal) const noexcept;
+  /// Whether, for sure, all of them are. Not all that are are known.
+  [[nodiscard]] bool areOn(const CageTriangle& triangle, std::uint32_t slot, std::span<const Vec3> corners) const noexcept;
 
   /// Whether a triangle of the cage comes to a rim at all.
   [[nodiscard]] bool touches(std::uint32_t slot) const noexcept {

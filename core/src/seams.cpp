@@ -49,7 +49,7 @@ class Mender {
         tree_(tree),
         atlas_(atlas),
         diagonal_(diagonal),
-        fixedSlack_(fixedSlack(tree, diagonal)),
+        fixedSlack_(fixedSlack(slackOf(tree, diagonal), kRelativeSlack)),
         laneOf_(scratch.take<std::uint32_t>(cage.count)),
         across_(scratch.take<Across>(cage.count)),
         candidates_(scratch.take<Candidate>(cage.count)) {
