@@ -10,7 +10,9 @@ namespace cagecast {
 /// A triangle inside the box of a target of diagonal < 2 has an area < 2; the sum of all stays within 63 bits.
 class AreaUnit {
  public:
-  explicit AreaUnit(std::uint32_t triangleCount) : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)))) {}
+  /// @param diagonal  Of the target, scaled: up to 14 where no float is small enough to scale it to less than 2.
+  AreaUnit(std::uint32_t triangleCount, double diagonal)
+      : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)) - (diagonal < 2 ? 0 : kHugeBits))) {}
   /// What a triangle gives to each of its corners.
   [[nodiscard]] std::int64_t third(double doubleArea) const { return static_cast<std::int64_t>(doubleArea / 6 * perArea_); }
   /// What it gives to each of its four quarters.
@@ -21,6 +23,7 @@ class AreaUnit {
 
  private:
   static constexpr int kCutBits = 10;
+  static constexpr int kHugeBits = 6;  // (14 / 2)² is less than 2⁶
   double perArea_;
 };
 

@@ -9,7 +9,7 @@ namespace cagecast {
 /// Scaling by a power of two is exact, so every decision is the same in any unit, and no square leaves the range of a float.
 struct Units {
   float scale = 1;        ///< Multiplies input coordinates. Everything inside works in scaled units.
-  double diagonal = 0;    ///< Of the target's bounding box, scaled: 1..2 (0 if the target is one point).
+  double diagonal = 0;    ///< Of the target's bounding box, scaled: 1..2 (0 if the target is one point, up to 14 beyond 1e38).
   float low[3] = {};      ///< The target's bounding box, scaled.
   float high[3] = {};
   float reach = 0;        ///< The longest side of the box around cage and target together, scaled; more if that is far off.

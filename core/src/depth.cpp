@@ -31,7 +31,7 @@ bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& c
 
   // Depths as shares of what none exceeds, so that whole numbers have room for their sums.
   const double deepest = 2.0 * static_cast<double>(units.reach);
-  const AreaUnit unit(points.triangleCount);
+  const AreaUnit unit(points.triangleCount, units.diagonal);
   const auto eachCovered = [&](auto call) {
     for (std::uint32_t i = 0; i < points.count; ++i) {
       if (results.zones[i] != Zone::cosmetic) continue;

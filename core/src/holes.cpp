@@ -77,7 +77,7 @@ bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, co
     }
   }
   if (!shares.reset(count)) return false;
-  const AreaUnit unit(points.triangleCount);
+  const AreaUnit unit(points.triangleCount, units.diagonal);
   const double toInput = 1.0 / units.scale / units.scale;
   for (std::uint32_t i = 0; i < count; ++i) {
     shares[i] = {found[i].rim, found[i].segment, unit.summableArea(found[i].exposed) * toInput,

@@ -161,8 +161,8 @@ class NormalSums {
 ///                      each turned to the side of the largest triangle, and against it.
 /// @param[out] outlooks  Taken from `scratch`.
 /// @return false if memory ran out.
-bool findOutlooks(const Points& points, const Cage& cage, const PointResults& results, const PointAreas& areas, std::uint32_t segmentCount,
-                  const bool* isWanted, const bool* asks, bool toBothSides, Scratch& scratch, Outlooks& outlooks) noexcept {
+bool findOutlooks(const Points& points, const Cage& cage, const Units& units, const PointResults& results, const PointAreas& areas,
+                  std::uint32_t segmentCount, const bool* isWanted, const bool* asks, bool toBothSides, Scratch& scratch, Outlooks& outlooks) noexcept {
   Vec3* normals = outlooks.normals = scratch.take<Vec3>(points.count);
   outlooks.isTwoSided = scratch.take<bool>(points.count);
   outlooks.isTurned = scratch.take<bool>(segmentCount);
@@ -172,7 +172,7 @@ bool findOutlooks(const Points& points, const Cage& cage, const PointResults& re
   std::fill(normals, normals + points.count, Vec3{0, 0, 0});
   std::fill(outlooks.isTwoSided, outlooks.isTwoSided + points.count, false);
   std::fill(agreement, agreement + segmentCount, 0);
-  const AreaUnit unit(points.triangleCount);
+  const AreaUnit unit(points.triangleCount, units.diagonal);
   NormalSums sums(unit, areas.all, normals);
   const auto eachWanted = [&](auto call) {
     for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
@@ -356,7 +356,7 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
     std::fill(isWanted, isWanted + segmentCount, false);
     for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
     Outlooks outlooks;
-    if (!findOutlooks(points, cage, results, areas, segmentCount, isWanted, occluded.asks(), toBothSides, scratch, outlooks)) return false;
+    if (!findOutlooks(points, cage, units, results, areas, segmentCount, isWanted, occluded.asks(), toBothSides, scratch, outlooks)) return false;
     Lookout lookout(points, outlooks, targetTree, cageTree.rays, units.diagonal, scratch);
     if (scratch.failed()) return false;
     // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.

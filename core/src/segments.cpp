@@ -57,7 +57,7 @@ bool addUpAreas(const Points& points, const Voters& voters, const Units& units, 
   for (std::int64_t* ofPoints : {areas.all, areas.votes}) {
     if (ofPoints != nullptr) std::fill(ofPoints, ofPoints + points.count, 0);
   }
-  const AreaUnit unit(points.triangleCount);
+  const AreaUnit unit(points.triangleCount, units.diagonal);
   const auto count = [](Sums& sum, std::int64_t area, Zone zone) {
     sum.exposed += zone != Zone::occluded ? area : 0;
     sum.covered += zone == Zone::cosmetic ? area : 0;

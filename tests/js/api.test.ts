@@ -107,6 +107,16 @@ describe('transfer', () => {
     }
   });
 
+  test('areas near the largest float there is are what they are', () => {
+    const sides = [-1, 1, 1, 1, -1, -1, -1, -1, 1]; // a triangle across a box
+    const at = (size: number, times: number): Mesh => ({ positions: Float32Array.from({ length: 9 * times }, (_, i) => size * sides[i % 9]!), indices: Uint32Array.from({ length: 3 * times }, (_, i) => i) });
+    const areaOf = (size: number) => {
+      const cage = { ...at(size, 1), uvs: new Float32Array(6) };
+      return transfer(cage, at(size, 7), { preset: 'paper' }).segmentStats[0]!.area / size / size;
+    };
+    assert.ok(Math.abs(areaOf(3e38) / areaOf(1) - 1) < 1e-6, `${areaOf(3e38)} ${areaOf(1)}`);
+  });
+
   test('results are owned: later calls and a growing memory leave them as they were', () => {
     const { cage, target } = head(4, 10);
     const result = transfer(cage, target);
