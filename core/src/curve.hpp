@@ -10,13 +10,17 @@ namespace cagecast {
 /// Unlike Morton order it has no jumps.
 class HilbertCurve {
  public:
-  /// Makes its tables, in a few microseconds: as constants they would be a tenth of the WebAssembly.
+  /// Makes its tables, in a microsecond: as constants they would be a tenth of the WebAssembly.
   HilbertCurve() noexcept {
-    for (std::uint32_t x = 1; x < kSpreadable; ++x) spread_[x] = spread_[x >> 1] << 3 | (x & 1);
-    for (std::uint32_t step = 0; step < kStates * 64; ++step) {
-      const std::uint32_t first = kSteps[step / 8];
-      const std::uint32_t second = kSteps[(first & ~7u) | (step & 7)];
-      doubleSteps_[step] = static_cast<std::uint16_t>((second & ~7u) << 3 | (first & 7) << 3 | (second & 7));
+    for (std::uint32_t x = 1; x < kSpreadable / 2; ++x) {
+      spread_[2 * x] = spread_[x] << 3;
+      spread_[2 * x + 1] = spread_[x] << 3 | 1;
+    }
+    for (std::uint32_t step = 0; step < kStates * 8; ++step) {
+      const std::uint32_t first = kSteps[step];
+      for (std::uint32_t octant = 0; octant < 8; ++octant) {
+        doubleSteps_[8 * step + octant] = static_cast<std::uint16_t>(kSteps[first / 64 * 8 + octant] | (first & 7) << 3);
+      }
     }
   }
 
@@ -24,7 +28,7 @@ class HilbertCurve {
   /// @param x,y,z   The cell, 0 .. 2^levels − 1 on each axis.
   /// @param levels  Even, at most 10.
   [[nodiscard]] std::uint32_t key(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels) const noexcept {
-    const std::uint32_t octants = spread(x) | spread(y) << 1 | spread(z) << 2;
+    const std::uint32_t octants = spread_[x] | spread_[y] << 1 | spread_[z] << 2;
     std::uint32_t result = 0;
     std::uint32_t state = 0;
     for (int shift = 3 * levels - 6; shift >= 0; shift -= 6) {
@@ -36,15 +40,10 @@ class HilbertCurve {
   }
 
  private:
-  static constexpr std::uint32_t kStates = 24;  ///< Entry corners times directions.
-  static constexpr std::uint32_t kSpreadable = 256;
+  static constexpr std::uint32_t kStates = 24;         ///< Entry corners times directions.
+  static constexpr std::uint32_t kSpreadable = 1024;  ///< Numbers of ten bits.
 
-  /// Puts two zeros between the bits of a number of up to ten bits.
-  [[nodiscard]] std::uint32_t spread(std::uint32_t x) const noexcept {
-    return spread_[x % kSpreadable] | spread_[x / kSpreadable] << 24;
-  }
-
-  /// state times 8 | octant → next state times 8 | its place along the curve.
+  /// state times 8 | octant → next state times 64 | its place along the curve.
   static constexpr auto kSteps = [] {
     const auto rotateRight = [](unsigned bits, unsigned by) { return (bits >> by | bits << (3 - by)) & 7; };
     const auto rotateLeft = [](unsigned bits, unsigned by) { return (bits << by | bits >> (3 - by)) & 7; };
@@ -53,7 +52,7 @@ class HilbertCurve {
       for (; i & 1; i >>= 1) ++count;
       return count;
     };
-    std::array<std::uint8_t, kStates * 8> steps{};
+    std::array<std::uint16_t, kStates * 8> steps{};
     for (unsigned i = 0; i < kStates * 8; ++i) {
       const unsigned direction = i / 64;
       const unsigned entry = i / 8 % 8;
@@ -64,14 +63,15 @@ class HilbertCurve {
       const unsigned entered = place == 0 ? 0 : even ^ even >> 1;
       const unsigned along = place == 0 ? 0 : trailingOnes(place % 2 == 0 ? place - 1 : place) % 3;
       const unsigned next = (direction + along + 1) % 3 * 8 + (entry ^ rotateLeft(entered, turn));
-      steps[i] = static_cast<std::uint8_t>(next * 8 + place);
+      steps[i] = static_cast<std::uint16_t>(next * 64 + place);
     }
     return steps;
   }();
 
   /// The same for two octants, 64 times.
   std::array<std::uint16_t, kStates * 64> doubleSteps_;
-  std::array<std::uint32_t, kSpreadable> spread_{};
+  /// Two zeros between the bits of a number.
+  std::array<std::uint32_t, kSpreadable> spread_{0, 1};
 };
 
 }  // namespace cagecast

@@ -50,39 +50,36 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
 
 bool addUpAreas(const Points& points, const Voters& voters, const Units& units, const PointResults& results, Scratch& scratch,
                 PointAreas& areas, Array<SegmentStats>& stats) noexcept {
+  auto* all = scratch.take<std::int64_t>(points.count);
+  auto* votes = voters.count > 0 ? scratch.take<std::int64_t>(points.count) : all;
+  areas = {all, votes};
   const Scratch::Mark mark = scratch.mark();
   auto* sums = scratch.take<Sums>(stats.size());
   if (scratch.failed()) return false;
   std::fill(sums, sums + stats.size(), Sums{});
-  for (std::int64_t* ofPoints : {areas.all, areas.votes}) {
-    if (ofPoints != nullptr) std::fill(ofPoints, ofPoints + points.count, 0);
-  }
+  std::fill(all, all + points.count, 0);
   const AreaUnit unit(points.triangleCount, units.diagonal);
+  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+    const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+    const std::int64_t third = unit.third(points.doubleAreas[t]);
+    for (int i = 0; i < 3; ++i) all[corner[i]] += third;
+  }
   const auto count = [](Sums& sum, std::int64_t area, Zone zone) {
     sum.exposed += zone != Zone::occluded ? area : 0;
     sum.covered += zone == Zone::cosmetic ? area : 0;
   };
-  std::uint32_t voter = 0;
-  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+  if (voters.count > 0) std::copy(all, all + points.count, votes);
+  for (std::uint32_t i = 0; i < voters.count; ++i) {
+    const std::uint32_t t = voters.triangles[i];
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
-    const std::int64_t third = unit.third(points.doubleAreas[t]);
-    if (areas.all != nullptr) {
-      for (int i = 0; i < 3; ++i) areas.all[corner[i]] += third;
-    }
-    Sums& sum = sums[results.segments[corner[0]]];
-    sum.all += 3 * third;
-    if (voter < voters.count && voters.triangles[voter] == t) {
-      const Zone* zones = voters.results.zones + std::size_t{4} * voter++;
-      for (int i = 0; i < 4; ++i) count(sum, unit.quarter(points.doubleAreas[t]), zones[i]);
-      if (areas.votes != nullptr) {
-        for (int i = 0; i < 3; ++i) areas.votes[corner[i]] -= third;
-      }
-    } else {
-      for (int i = 0; i < 3; ++i) count(sum, third, results.zones[corner[i]]);
-    }
+    const Zone* zones = voters.results.zones + std::size_t{4} * i;
+    for (int k = 0; k < 3; ++k) votes[corner[k]] -= unit.third(points.doubleAreas[t]);
+    for (int k = 0; k < 4; ++k) count(sums[results.segments[corner[0]]], unit.quarter(points.doubleAreas[t]), zones[k]);
   }
-  if (areas.votes != nullptr) {
-    for (std::uint32_t i = 0; i < points.count; ++i) areas.votes[i] += areas.all[i];
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    Sums& sum = sums[results.segments[i]];
+    sum.all += all[i];
+    count(sum, votes[i], results.zones[i]);
   }
   const double toInput = 1.0 / units.scale / units.scale;
   for (std::size_t s = 0; s < stats.size(); ++s) {

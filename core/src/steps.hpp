@@ -78,13 +78,13 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
 bool findVoters(const Points& points, const Rims& rims, const Units& units, const PointResults& results,
                 const Array<SegmentStats>& stats, Scratch& scratch, Voters& out) noexcept;
 
-/// Areas of the points, as whole numbers of an `AreaUnit`; or none.
+/// Areas of the points, as whole numbers of an `AreaUnit`.
 struct PointAreas {
-  std::int64_t* all = nullptr;    ///< A third of each triangle at the point.
-  std::int64_t* votes = nullptr;  ///< The same without the triangles that vote from within.
+  const std::int64_t* all = nullptr;    ///< A third of each triangle at the point.
+  const std::int64_t* votes = nullptr;  ///< The same without the triangles that vote from within.
 };
 
-/// Adds up the areas of the segments for step 5, and those of the points where that is asked for.
+/// Adds up the areas of the points, in memory of `scratch`, and those of the segments for step 5.
 bool addUpAreas(const Points& points, const Voters& voters, const Units& units, const PointResults& results, Scratch& scratch,
                 PointAreas& areas, Array<SegmentStats>& stats) noexcept;
 

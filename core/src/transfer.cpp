@@ -144,11 +144,6 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
     if (voters.count > 0 && !judge(voters.points, scene, options, voters.results, ofVoters, voterWatch)) return kOutOfMemory;
   }
   PointAreas areas;
-  if (isFiltered && (options.depths || options.secondLook || options.holes)) {
-    areas.all = scratch.take<std::int64_t>(points.count);
-    areas.votes = options.depths ? scratch.take<std::int64_t>(points.count) : nullptr;
-    if (scratch.failed()) return kOutOfMemory;
-  }
   if (!addUpAreas(points, voters, units, results, scratch, areas, out.segmentStats)) return kOutOfMemory;
   if (isFiltered && options.depths &&
       (!findSunkAreas(cageMesh, points, cage, scene.rims, voters, areas, units, results, scratch, out.segmentStats) ||

@@ -42,9 +42,26 @@ struct Site {
   float x, y, z;
   std::uint32_t group;
 
+  /// Makes a point of it: the group takes the place of the fourth float.
+  void put(float* position) const { std::memcpy(position, this, sizeof(Site)); }
+  [[nodiscard]] bool isAt(const float* position) const { return std::memcmp(position, this, sizeof(Site)) == 0; }
+
   friend bool operator==(const Site& a, const Site& b) { return std::memcmp(&a, &b, sizeof(Site)) == 0; }
   friend bool operator<(const Site& a, const Site& b) { return std::tie(a.x, a.y, a.z, a.group) < std::tie(b.x, b.y, b.z, b.group); }
 };
+
+/// Sorts the vertices of the first cell by site, and equal ones by index.
+/// @param end  Of all cells.
+void sortCell(Placed* begin, const Placed* end, const Site* sites) {
+  Placed* cellEnd = begin;
+  while (cellEnd < end && cellEnd->key == begin->key) ++cellEnd;
+  // By heap: it happens seldom, and std::sort is 5 KB of WebAssembly.
+  const auto before = [&](const Placed& a, const Placed& b) {
+    return sites[a.vertex] == sites[b.vertex] ? a.vertex < b.vertex : sites[a.vertex] < sites[b.vertex];
+  };
+  std::make_heap(begin, cellEnd, before);
+  std::sort_heap(begin, cellEnd, before);
+}
 
 }  // namespace
 
@@ -65,7 +82,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   if (scratch.failed()) return false;
 
   // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
-  const int levels = vertexCount < (1u << 18) ? 8 : 10;
+  const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
   float side = 0;
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
@@ -83,36 +100,34 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   // Within a cell, compare each with each while they are few; sort a crowded one, so that no input makes this quadratic.
   constexpr std::uint32_t kFew = 16;
   std::uint32_t pointCount = 0;
-  for (std::uint32_t begin = 0, end = 0; begin < vertexCount; begin = end) {
-    while (end < vertexCount && placed[end].key == placed[begin].key) ++end;
-    const bool crowded = end - begin > kFew;
-    if (crowded) {
-      // By heap: it happens seldom, and std::sort is 5 KB of WebAssembly.
-      const auto before = [&](const Placed& a, const Placed& b) {
-        return sites[a.vertex] == sites[b.vertex] ? a.vertex < b.vertex : sites[a.vertex] < sites[b.vertex];
-      };
-      std::make_heap(placed + begin, placed + end, before);
-      std::sort_heap(placed + begin, placed + end, before);
+  std::uint32_t firstPoint = 0;  // Of the cell.
+  bool crowded = false;
+  for (std::uint32_t i = 0; i < vertexCount; ++i) {
+    const std::uint32_t key = placed[i].key;
+    if (i == 0 || key != placed[i - 1].key) {
+      firstPoint = pointCount;
+      crowded = i + kFew < vertexCount && placed[i + kFew].key == key;
+      if (crowded) sortCell(placed + i, placed + vertexCount, sites);
     }
-    const std::uint32_t firstPoint = pointCount;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t v = placed[i].vertex;
-      const Site& s = sites[v];
-      // The spare array remembers the vertex that each point was made from.
-      std::uint32_t point = crowded && pointCount > firstPoint ? pointCount - 1 : firstPoint;
-      while (point < pointCount && !(sites[spare[point].vertex] == s)) ++point;
-      if (point == pointCount) {
-        spare[pointCount++].vertex = v;
-        places[point] = placed[i].key;
-        float* p = positions + Points::kStride * point;
-        p[0] = s.x;
-        p[1] = s.y;
-        p[2] = s.z;
-        p[3] = 0;
-        if (tolerant) groups[point] = s.group;
-      }
-      ofVertex[v] = point;
+    const std::uint32_t v = placed[i].vertex;
+    const Site& s = sites[v];
+    std::uint32_t point = crowded && pointCount > firstPoint ? pointCount - 1 : firstPoint;
+    while (point < pointCount && !s.isAt(positions + Points::kStride * point)) ++point;
+    if (point == pointCount) {
+      ++pointCount;
+      places[point] = key;
+      s.put(positions + Points::kStride * point);
     }
+    ofVertex[v] = point;
+  }
+  if (!target.groups.empty()) {
+    for (std::uint32_t i = 0; i < pointCount; ++i) {
+      float& group = positions[Points::kStride * i + 3];
+      if (tolerant) std::memcpy(&groups[i], &group, sizeof group);
+      group = 0;
+    }
+  } else if (tolerant) {
+    std::fill(groups, groups + pointCount, 0u);
   }
   scratch.rewind(mark);
 
