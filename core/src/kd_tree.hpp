@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cage.hpp"
+#include "leaf_box.hpp"
 #include "scratch.hpp"
 #include "simd.hpp"
 #include "weld.hpp"
@@ -58,6 +59,7 @@ struct CageTree {
 
   RayTree rays;                        ///< Its nodes go level by level.
   const NearLeaf* near = nullptr;      ///< The triangles of `rays`, four by four.
+  const LeafBox* boxes = nullptr;      ///< Of the leaves.
   std::uint32_t leafCount = 0;
   std::uint32_t lastLevel = 0;         ///< The first node whose children are leaves.
   std::uint32_t entry = 0;             ///< The first node of the lowest level with at most `kMostEntries`.
@@ -100,9 +102,10 @@ class NearestSearch {
   std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) const noexcept;
 
  private:
-  /// Leaves whose distances are kept at a time.
-  static constexpr std::uint32_t kBatch = 64;
-  /// Leaves to remember of a point; if more come close, `candidates` looks again.
+  /// Leaves whose distances are kept at a time: a tag tells them apart.
+  static constexpr int kTagBits = 6;
+  static constexpr std::uint32_t kBatch = 1u << kTagBits;
+  /// One more than the leaves to remember of a point; if more come close, `candidates` looks again.
   static constexpr std::uint32_t kRoom = 8;
 
   /// A leaf that had triangles within the limit, as it was then.
@@ -126,12 +129,12 @@ class NearestSearch {
   float fixedSlack_;                  ///< and s² · (1 + 1/r).
   std::uint32_t lastLeaf_ = 0;
   alignas(16) float points_[kGroup][4];   ///< x, y, z, 0 each.
-  alignas(16) float columns_[3][kGroup];  ///< The same, by axis.
+  alignas(16) float columns_[3][kGroup];  ///< The same, by axis, less the first point: what is left of it has few roundings.
   alignas(16) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
   std::uint32_t* list_;               ///< Room for all leaves, and four more.
   std::uint32_t* otherList_;
-  std::uint32_t nearCount_[kGroup];   ///< More than `kRoom` if some had no room.
-  Near near_[kGroup][kRoom + 1];
+  std::uint32_t nearCount_[kGroup];   ///< From `kRoom` on some may be written over.
+  Near near_[kGroup][kRoom];
 };
 
 /// Four triangles for rays.
@@ -174,7 +177,7 @@ class HitSearch {
   /// What the box test needs of a ray.
   struct alignas(16) Slabs {
     float inverse[4];  ///< The last is the end.
-    float offset[4];   ///< origin · inverse.
+    float offset[4];   ///< −origin · inverse.
     /// Not before the ray's end; less than anything once there is no more to find.
     float& end() noexcept { return inverse[3]; }
   };
@@ -187,16 +190,15 @@ class HitSearch {
   static constexpr std::ptrdiff_t kLastRoom = 4 * 64;
 
   void enter(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept;
-  void testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* const (&lists)[4],
+  void testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* lists,
                  std::uint32_t (&counts)[4]) const noexcept;
   void testLeaf(const Node& node, int child, const std::uint16_t* ids, std::uint32_t count) noexcept;
-  [[nodiscard]] unsigned mightHit(const RayLeaf& leaf, const Ray& ray) const noexcept;
 
   const RayTree& tree_;
   double from_;
   float boxFrom_;           ///< The same for boxes.
   float loose_;             ///< Hits beyond this are worth deciding in double.
-  float zero_;              ///< 0 if a hit at distance 0 is none, else less.
+  float zero_;              ///< 0 if a hit at distance 0 is none, else no number.
   Slabs* slabs_;            ///< 1 per ray.
   std::uint16_t* lists_;    ///< `kListRoom`.
   Ray* rays_ = nullptr;

@@ -15,6 +15,10 @@ namespace {
 /// ray's origin by at most 2^-23 of their size, and this is eight times that. The lattice tests leak without it.
 constexpr float kPadding = 1e-6f;
 
+/// The same for boxes that are turned: their axes are rounded as well, and `NearestSearch` writes a tag over the last bits of
+/// the squared distance, which makes the distance larger by up to 2^-18 of itself, that is of √3 scenes at most.
+constexpr float kTurnedPadding = 1e-5f;
+
 /// A coordinate where nothing is: products with it, and its square, are still finite.
 constexpr float kFar = 1e15f;
 
@@ -276,6 +280,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
   const std::uint32_t leafCount = groupsOfFour(cage.count);
   auto* corners = scratch.take<std::uint32_t>(std::size_t{12} * leafCount);
   auto* nearLeaves = scratch.take<NearLeaf>(leafCount);
+  auto* leafBoxes = scratch.take<LeafBox>(leafCount);
   auto* nodes = takeNodes(leafCount, scratch, out);
   const Scratch::Mark mark = scratch.mark();
   auto* order = scratch.take<std::uint32_t>(cage.count);
@@ -297,10 +302,12 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
 
   for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf) {
     Box box;
+    const CageTriangle* triangles[4];
     for (std::uint32_t lane = 0; lane < 4; ++lane) {
       const std::uint32_t i = 4 * leaf + lane;
       const std::uint32_t slot = order[std::min(i, cage.count - 1)];
       const CageTriangle& t = cage.triangles[slot];
+      triangles[lane] = &t;
       for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
       for (std::uint32_t k = 0; k < 3; ++k) corners[3 * i + k] = kCageStride * slot + k;
       if (i < cage.count) {
@@ -310,11 +317,13 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
       }
     }
     boxes[leaf] = box.padded(kPadding * units.reach);
+    leafBoxes[leaf] = boxAround(nearLeaves[leaf], triangles, kTurnedPadding * units.reach);
   }
   fillNodes(boxes, nodes, out);
   scratch.rewind(mark);
   out.rays = {nodes, cage.triangles->a, corners, units.reach};
   out.near = nearLeaves;
+  out.boxes = leafBoxes;
   float sides[4];
   simd::store(sides, all.high - all.low);
   out.extent = static_cast<double>(std::max({sides[0], sides[1], sides[2]}));

@@ -41,13 +41,11 @@ float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end
 /// large as what it is made from.
 struct RayLeaf {
   float corner[3][3][4];  ///< corner[a, b, c][axis][lane].
-  float rounding;         ///< What the edge functions of a ray that hits may be off in float.
-  /// What its distance may be, times the sum of the edge functions. A product in `mightHit` would be another one to clang: of
-  /// all that lies beside a number, pointers included, which is slow where it is denormal as floats go.
-  float distanceRounding;
+  float rounding;          ///< What the edge functions of a ray that hits may be off in float.
+  float distanceRounding;  ///< And its distance, times the sum of these functions.
 
   RayLeaf(const RayTree& tree, std::uint32_t first, float size)
-      : rounding(size * kEdgeRounding * tree.reach), distanceRounding(rounding * (kDistanceRounding * tree.reach)) {
+      : rounding(size * kEdgeRounding * tree.reach), distanceRounding(rounding * kDistanceRounding * tree.reach) {
     const std::uint32_t* index = tree.corners + std::size_t{3} * first;
     for (int i = 0; i < 3; ++i) {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
@@ -96,6 +94,43 @@ namespace {
   return sum != 0 ? (u * z[0] + v * z[1] + w * z[2]) / sum : kNowhere;
 }
 
+/// Which of four triangles the ray might hit: the test of `hitDistance` in float, with room for its rounding.
+/// @param loose   Hits beyond it are worth deciding.
+/// @param nowhere  0 if a hit at distance 0 is none, else no number.
+/// @param slack    What a distance may be off, times the sum of the edge functions.
+inline unsigned mightHit(const RayLeaf& leaf, const Ray& ray, f32x4 loose, f32x4 nowhere) {
+  const RayDirection& direction = *ray.direction;
+  const f32x4 shearX = splat(direction.shearX);
+  const f32x4 shearY = splat(direction.shearY);
+  const f32x4 originX = splat(ray.origin[direction.x]);
+  const f32x4 originY = splat(ray.origin[direction.y]);
+  const f32x4 originZ = splat(ray.origin[direction.z]);
+  // From the corners to the origin: in this order a processor subtracts while it loads. The edge functions do not mind.
+  f32x4 x[3];
+  f32x4 y[3];
+  f32x4 z[3];
+  for (int i = 0; i < 3; ++i) {
+    z[i] = originZ - load(leaf.corner[i][direction.z]);
+    x[i] = simd::subtractProduct(originX - load(leaf.corner[i][direction.x]), shearX, z[i]);
+    y[i] = simd::subtractProduct(originY - load(leaf.corner[i][direction.y]), shearY, z[i]);
+  }
+  const f32x4 u = simd::subtractProduct(x[2] * y[1], y[2], x[1]);
+  const f32x4 v = simd::subtractProduct(x[0] * y[2], y[0], x[2]);
+  const f32x4 w = simd::subtractProduct(x[1] * y[0], y[1], x[0]);
+  // None is negative, or none is positive.
+  const f32x4 least = simd::min(u, simd::min(v, w));
+  const f32x4 most = simd::max(u, simd::max(v, w));
+  const mask4 through = simd::min(splat(0) - least, most) <= splat(leaf.rounding);
+  // The distance is −(u·z0 + v·z1 + w·z2)·scale / (u + v + w); multiplied by the square of the divisor there is no division.
+  const f32x4 sum = u + v + w;
+  const f32x4 size = simd::abs(sum);
+  const f32x4 depths = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
+  const f32x4 slack = splat(leaf.distanceRounding);
+  const mask4 beyond = (loose * size - slack) * size <= depths * splat(-direction.scaleZ) * sum;
+  // Triangles at the origin itself come out at 0 exactly; they are many, and no hits if hits begin beyond 0.
+  return simd::bits(through & beyond & (depths != nowhere));
+}
+
 }  // namespace
 
 HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcept
@@ -103,7 +138,7 @@ HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcep
       from_(from),
       boxFrom_(static_cast<float>(from)),
       loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
-      zero_(from > 0 ? 0.0f : -1.0f),
+      zero_(from > 0 ? 0.0f : std::numeric_limits<float>::quiet_NaN()),
       slabs_(scratch.take<Slabs>(kMostRays)),
       lists_(scratch.take<std::uint16_t>(kListRoom)) {}
 
@@ -114,7 +149,7 @@ void HitSearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noe
   for (std::uint32_t i = 0; i < count; ++i) {
     for (int k = 0; k < 3; ++k) {
       slabs_[i].inverse[k] = rays[i].direction->inverse[k];
-      slabs_[i].offset[k] = rays[i].origin[k] * rays[i].direction->inverse[k];
+      slabs_[i].offset[k] = -rays[i].origin[k] * rays[i].direction->inverse[k];
     }
     slabs_[i].end() = looseEnd(rays[i].end);
     hit[i] = false;
@@ -134,7 +169,7 @@ void HitSearch::enter(const Node& node, const std::uint16_t* ids, std::uint32_t 
   // Once a child is done with, the lists of the next one's children may lie over its own.
   std::uint16_t* lists[4] = {free + 3 * count, free + 2 * count, free + count, free};
   std::uint32_t counts[4];
-  testBoxes(node, ids, count, lists, counts);
+  testBoxes(node, ids, count, free, counts);
   // Rays that are neighbours go the same way: long lists are pushed together, for the levels to come.
   if (count >= kLong) {
     for (int i = 3; i-- > 0;) {
@@ -153,54 +188,52 @@ void HitSearch::enter(const Node& node, const std::uint16_t* ids, std::uint32_t 
   }
 }
 
-/// Lists, for each of four boxes, the rays that enter it at a distance that is not less than `from`, before their end.
-void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* const (&lists)[4],
+/// Lists, for each of four boxes, the rays that enter it at a distance that is not less than `from`, before their end. The lists
+/// are put one behind the other, the last first, with room for all rays each.
+void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* lists,
                           std::uint32_t (&counts)[4]) const noexcept {
   const f32x4 low[3] = {load(node.low[0]), load(node.low[1]), load(node.low[2])};
   const f32x4 high[3] = {load(node.high[0]), load(node.high[1]), load(node.high[2])};
   const f32x4 from = splat(boxFrom_);
-  // Where each list ends, by pointers: lists and counts together are more than WebAssembly has registers.
-  std::uint16_t* l0 = lists[0];
-  std::uint16_t* l1 = lists[1];
-  std::uint16_t* l2 = lists[2];
-  std::uint16_t* l3 = lists[3];
+  const std::uint32_t begins[4] = {3 * count, 2 * count, count, 0};
+  simd::count4 ends = simd::load(begins);  // Of the lists.
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t id = ids[i];
     const Slabs& ray = slabs_[id];
-    const f32x4 inverse = load(ray.inverse);
-    const f32x4 offset = load(ray.offset);
     f32x4 first = from;
-    f32x4 last = simd::splatLane<3>(inverse);
-    const auto cut = [&](int k, f32x4 inverseK, f32x4 offsetK) {
+    f32x4 last = simd::splatAt<3>(ray.inverse);
+    const auto cut = [&](int k, f32x4 inverse, f32x4 offset) {
       // Rays of all directions go together: which side is the near one shows only now.
-      const f32x4 toLow = low[k] * inverseK - offsetK;
-      const f32x4 toHigh = high[k] * inverseK - offsetK;
+      const f32x4 toLow = simd::multiplyAdd(low[k], inverse, offset);
+      const f32x4 toHigh = simd::multiplyAdd(high[k], inverse, offset);
       first = simd::max(first, simd::min(toLow, toHigh));
       last = simd::min(last, simd::max(toLow, toHigh));
     };
-    cut(0, simd::splatLane<0>(inverse), simd::splatLane<0>(offset));
-    cut(1, simd::splatLane<1>(inverse), simd::splatLane<1>(offset));
-    cut(2, simd::splatLane<2>(inverse), simd::splatLane<2>(offset));
-    const unsigned entered = simd::bits(first <= last);
-    *l0 = *l1 = *l2 = *l3 = id;
-    l0 += entered & 1;
-    l1 += entered >> 1 & 1;
-    l2 += entered >> 2 & 1;
-    l3 += entered >> 3;
+    cut(0, simd::splatAt<0>(ray.inverse), simd::splatAt<0>(ray.offset));
+    cut(1, simd::splatAt<1>(ray.inverse), simd::splatAt<1>(ray.offset));
+    cut(2, simd::splatAt<2>(ray.inverse), simd::splatAt<2>(ray.offset));
+    // Put down at the end of every list, but only counted where it belongs: no branch.
+    lists[simd::countOf<0>(ends)] = id;
+    lists[simd::countOf<1>(ends)] = id;
+    lists[simd::countOf<2>(ends)] = id;
+    lists[simd::countOf<3>(ends)] = id;
+    ends = simd::countTrue(ends, first <= last);
   }
-  std::uint16_t* const ends[4] = {l0, l1, l2, l3};
-  for (int i = 0; i < 4; ++i) counts[i] = static_cast<std::uint32_t>(ends[i] - lists[i]);
+  simd::store(counts, ends);
+  for (int i = 0; i < 4; ++i) counts[i] -= begins[i];
 }
 
 /// Tries rays with the four triangles from the first of a leaf on.
 void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* ids, std::uint32_t count) noexcept {
   const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
   const RayLeaf leaf(tree_, node.child[child] & ~kLeafBit, side(0) + side(1) + side(2));
+  const f32x4 loose = splat(loose_);
+  const f32x4 zero = splat(zero_);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t id = ids[i];
     if (slabs_[id].end() < loose_) continue;
     Ray& ray = rays_[id];
-    for (unsigned close = mightHit(leaf, ray); close != 0; close &= close - 1) {
+    for (unsigned close = mightHit(leaf, ray, loose, zero); close != 0; close &= close - 1) {
       const double distance = hitDistance(leaf, std::countr_zero(close), ray);
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
@@ -212,38 +245,6 @@ void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* ids, 
       slabs_[id].end() = looseEnd(distance);
     }
   }
-}
-
-/// Which of four triangles the ray might hit: the test of `hitDistance` in float, with room for its rounding.
-unsigned HitSearch::mightHit(const RayLeaf& leaf, const Ray& ray) const noexcept {
-  const RayDirection& direction = *ray.direction;
-  const f32x4 shearX = splat(direction.shearX);
-  const f32x4 shearY = splat(direction.shearY);
-  const f32x4 originX = splat(ray.origin[direction.x]);
-  const f32x4 originY = splat(ray.origin[direction.y]);
-  const f32x4 originZ = splat(ray.origin[direction.z]);
-  f32x4 x[3];
-  f32x4 y[3];
-  f32x4 z[3];
-  for (int i = 0; i < 3; ++i) {
-    z[i] = load(leaf.corner[i][direction.z]) - originZ;
-    x[i] = load(leaf.corner[i][direction.x]) - originX - shearX * z[i];
-    y[i] = load(leaf.corner[i][direction.y]) - originY - shearY * z[i];
-  }
-  const f32x4 u = x[2] * y[1] - y[2] * x[1];
-  const f32x4 v = x[0] * y[2] - y[0] * x[2];
-  const f32x4 w = x[1] * y[0] - y[1] * x[0];
-  const f32x4 rounding = splat(leaf.rounding);
-  const mask4 front = splat(0) - rounding <= simd::min(u, simd::min(v, w));
-  const mask4 back = simd::max(u, simd::max(v, w)) <= rounding;
-  // The distance is (u·z0 + v·z1 + w·z2)·scale / (u + v + w); multiplied by the square of the divisor there is no division.
-  const f32x4 sum = u + v + w;
-  const f32x4 distance = (u * z[0] + v * z[1] + w * z[2]) * splat(direction.scaleZ) * sum;
-  const f32x4 slack = splat(leaf.distanceRounding) * simd::max(sum, splat(0) - sum);
-  const mask4 beyond = splat(loose_) * sum * sum <= distance + slack;
-  // Triangles at the origin itself come out at 0 exactly; they are many, and no hits if hits begin beyond 0.
-  const mask4 elsewhere = (distance < splat(0)) | (splat(zero_) < distance);
-  return simd::bits((front | back) & beyond & elsewhere);
 }
 
 }  // namespace cagecast

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "near_kernel.hpp"
@@ -18,19 +19,7 @@ f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x
   f32x4 sum = splat(0);
   for (int k = 0; k < 3; ++k) {
     const f32x4 outside = simd::max(simd::max(load(node.low[k]) - high[k], low[k] - load(node.high[k])), splat(0));
-    sum = sum + outside * outside;
-  }
-  return sum;
-}
-
-/// Squared distance of four points to a node's child.
-f32x4 squaredDistanceToChild(const Node& node, std::uint32_t child, const float* x, const float* y, const float* z) {
-  const float* const points[3] = {x, y, z};
-  f32x4 sum = splat(0);
-  for (int k = 0; k < 3; ++k) {
-    const f32x4 p = load(points[k]);
-    const f32x4 outside = p - simd::clamp(p, splat(node.low[k][child]), splat(node.high[k][child]));
-    sum = sum + outside * outside;
+    sum = simd::multiplyAdd(outside, outside, sum);
   }
   return sum;
 }
@@ -82,49 +71,72 @@ std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&hig
 
 void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
   const NearLeaf& leaf = tree_.near[leafIndex];
-  const f32x4 growth = splat(growth_), slack = splat(fixedSlack_);
+  const f32x4 growth = splat(growth_);
+  const f32x4 slack = splat(fixedSlack_);
   for (; members != 0; members &= members - 1) {
     const int i = std::countr_zero(members);
     const f32x4 squared = squaredDistanceToTriangles(leaf, load(points_[i]));
     const f32x4 least = simd::lowest(squared);
-    const f32x4 limit = simd::min(splat(limits_[i]), least * growth + slack);
+    const f32x4 limit = simd::min(simd::multiplyAdd(least, growth, slack), splat(limits_[i]));
     const unsigned lanes = simd::bits(squared <= limit);
     limits_[i] = simd::first(limit);
-    // No branch: whether a leaf is of interest is a coin toss.
+    // No branch: whether a leaf is of interest is a coin toss. One that is not is written over by the next.
     const std::uint32_t count = nearCount_[i];
-    near_[i][std::min(count, kRoom)] = {simd::first(least), leafIndex << 4 | lanes};
+    near_[i][count % kRoom] = {simd::first(least), leafIndex << 4 | lanes};
     nearCount_[i] = count + (lanes != 0);
   }
 }
 
 void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept {
-  alignas(16) float distances[kBatch][kGroup];  // Of the points to the leaves' boxes, squared.
+  // Squared distances of the points to the leaves' boxes, each tagged with its leaf, and the least of each point.
+  alignas(16) float distances[kBatch][kGroup];
   alignas(16) float least[kGroup];
-  alignas(16) float nearest[kGroup] = {};  // Which leaf that is of, as a float for the select.
   std::fill(least, least + kGroup, std::numeric_limits<float>::infinity());
   const auto leafAt = [leaves](std::uint32_t j) { return (leaves[j] & ~kLeafBit) / 4; };
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const std::uint32_t leaf = leafAt(j);
-    const Node& parent = tree_.rays.nodes[tree_.lastLevel + leaf / 4];
+    const LeafBox& box = tree_.boxes[leafAt(j)];
+    // Where the first point is in the box's coordinates; the others' differ by products with the axes.
+    const f32x4 offset = load(points_[0]) - load(box.origin);
+    const f32x4 first = simd::multiplyAdd(
+        simd::splatLane<2>(offset), load(box.axes[2]),
+        simd::multiplyAdd(simd::splatLane<1>(offset), load(box.axes[1]), simd::splatLane<0>(offset) * load(box.axes[0])));
+    const f32x4 low = load(box.low) - first;
+    const f32x4 high = load(box.high) - first;
+    f32x4 squared[kGroup / simd::kWidth];
+    const auto addAxis = [&]<int axis>(std::integral_constant<int, axis>) {
+      const f32x4 x = simd::splatAt<axis>(box.axes[0]);
+      const f32x4 y = simd::splatAt<axis>(box.axes[1]);
+      const f32x4 z = simd::splatAt<axis>(box.axes[2]);
+      const f32x4 begin = simd::splatLane<axis>(low);
+      const f32x4 end = simd::splatLane<axis>(high);
+      for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
+        const f32x4 place = simd::multiplyAdd(
+            z, load(columns_[2] + i), simd::multiplyAdd(y, load(columns_[1] + i), x * load(columns_[0] + i)));
+        const f32x4 outside = place - simd::clamp(place, begin, end);
+        f32x4& sum = squared[i / simd::kWidth];
+        sum = axis == 0 ? outside * outside : simd::multiplyAdd(outside, outside, sum);
+      }
+    };
+    addAxis(std::integral_constant<int, 0>{});
+    addAxis(std::integral_constant<int, 1>{});
+    addAxis(std::integral_constant<int, 2>{});
     for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
-      const f32x4 squared = squaredDistanceToChild(parent, leaf % 4, columns_[0] + i, columns_[1] + i, columns_[2] + i);
-      const simd::mask4 nearer = squared < load(least + i);
-      simd::store(distances[j] + i, squared);
-      simd::store(least + i, simd::min(squared, load(least + i)));
-      simd::store(nearest + i, simd::select(nearer, splat(static_cast<float>(j)), load(nearest + i)));
+      const f32x4 tagged = simd::withTag<kTagBits>(squared[i / simd::kWidth], j);
+      simd::store(distances[j] + i, tagged);
+      simd::store(least + i, simd::min(tagged, load(least + i)));
     }
   }
   // Each point begins with the leaf whose box is nearest to it: the other leaves then have little to offer.
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!(least[i] <= limits_[i])) continue;
-    const auto j = static_cast<std::uint32_t>(nearest[i]);
+    const std::uint32_t j = simd::tagOf<kTagBits>(least[i]);
     searchLeaf(leafAt(j), 1u << i);
     distances[j][i] = std::numeric_limits<float>::infinity();
   }
   for (std::uint32_t j = 0; j < leafCount; ++j) {
     unsigned members = 0;
     for (unsigned i = 0; i < kGroup; i += simd::kWidth) members |= simd::bits(load(distances[j] + i) <= load(limits_ + i)) << i;
-    searchLeaf(leafAt(j), members);
+    if (members != 0) searchLeaf(leafAt(j), members);
   }
 }
 
@@ -138,6 +150,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
       lowCorner = simd::min(lowCorner, rows[j]);
       highCorner = simd::max(highCorner, rows[j]);
       simd::store(points_[i + j], rows[j]);
+      rows[j] = rows[j] - load(positions);
     }
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);
@@ -174,7 +187,7 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) c
   const auto takeLanes = [&](std::uint32_t leaf, unsigned lanes) {
     for (; lanes != 0; lanes &= lanes - 1) found[count++] = tree_.near[leaf].slot[std::countr_zero(lanes)];
   };
-  if (nearCount_[i] <= kRoom) {
+  if (nearCount_[i] < kRoom) {
     for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
       if (near_[i][j].squaredDistance <= limits_[i]) takeLanes(near_[i][j].lanes >> 4, near_[i][j].lanes & 15);
     }

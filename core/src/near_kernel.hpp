@@ -28,7 +28,7 @@ simd::f32x4 squaredDistances(const NearLeaf& leaf, simd::f32x4 x, simd::f32x4 y,
   const simd::f32x4 dx = x - get(leaf.origin[0]);
   const simd::f32x4 dy = y - get(leaf.origin[1]);
   const simd::f32x4 dz = z - get(leaf.origin[2]);
-  const auto coordinate = [&](const float (&axis)[3][4]) { return dx * get(axis[0]) + dy * get(axis[1]) + dz * get(axis[2]); };
+  const auto coordinate = [&](const float (&axis)[3][4]) { return simd::multiplyAdd(dz, get(axis[2]), simd::multiplyAdd(dy, get(axis[1]), dx * get(axis[0]))); };
   const simd::f32x4 across = coordinate(leaf.axes[0]);
   const simd::f32x4 up = coordinate(leaf.axes[1]);
   const simd::f32x4 height = coordinate(leaf.axes[2]);
@@ -42,14 +42,14 @@ simd::f32x4 squaredDistances(const NearLeaf& leaf, simd::f32x4 x, simd::f32x4 y,
   const simd::f32x4 edgeX = side(leaf.left.x, leaf.right.x);
   const simd::f32x4 edgeY = side(leaf.left.y, leaf.right.y);
   // Above AB: beyond the edge by `beyond`, and past one of its ends by `past`; or inside.
-  const simd::f32x4 along = fromCorner * edgeX + up * edgeY;
+  const simd::f32x4 along = simd::multiplyAdd(fromCorner, edgeX, up * edgeY);
   const simd::f32x4 past = along - simd::clamp(along, zero, side(leaf.left.length, leaf.right.length));
-  const simd::f32x4 beyond = up * edgeX - fromCorner * edgeY;
-  const simd::f32x4 toEdge = simd::keep(zero < beyond, beyond * beyond + past * past);
+  const simd::f32x4 beyond = simd::subtractProduct(up * edgeX, fromCorner, edgeY);
+  const simd::f32x4 toEdge = simd::keep(zero < beyond, simd::multiplyAdd(beyond, beyond, past * past));
   // Below AB: nearest to AB, or to its end.
   const simd::f32x4 outside = simd::min(fromCorner, zero);
-  const simd::f32x4 toBase = outside * outside + up * up;
-  return height * height + simd::select(up < zero, toBase, toEdge);
+  const simd::f32x4 toBase = simd::multiplyAdd(outside, outside, up * up);
+  return simd::multiplyAdd(height, height, simd::select(up < zero, toBase, toEdge));
 }
 
 }  // namespace cagecast

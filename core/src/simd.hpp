@@ -1,13 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 
 /// Four floats at a time: one layer over SSE2, NEON, WebAssembly SIMD and plain C++, with the same bits from each.
 ///
-/// `min(a, b)` is `a < b ? a : b` and `max(a, b)` is `a > b ? a : b`, lane by lane and for NaN too: that is what SSE does,
-/// and the others are made to agree. Nothing here is approximate; no operation is fused.
+/// `min` and `max` are for numbers: what they make of NaN, and of 0 and −0, differs. `multiplyAdd` and `subtractProduct` round
+/// once where the processor can, else twice: they are for filters, which have room for either. Nothing else differs, and
+/// nothing is approximate.
 
 #if !defined(CAGECAST_SCALAR)
 #if defined(__SSE2__)
@@ -42,14 +44,37 @@ inline f32x4 splat(float x) { return {_mm_set1_ps(x)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {_mm_add_ps(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {_mm_sub_ps(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {_mm_mul_ps(a.v, b.v)}; }
+/// a · b + c.
+inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) {
+#if defined(__FMA__)
+  return {_mm_fmadd_ps(a.v, b.v, c.v)};
+#else
+  return a * b + c;
+#endif
+}
+/// c − a · b.
+inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) {
+#if defined(__FMA__)
+  return {_mm_fnmadd_ps(a.v, b.v, c.v)};
+#else
+  return c - a * b;
+#endif
+}
 inline f32x4 min(f32x4 a, f32x4 b) { return {_mm_min_ps(a.v, b.v)}; }
 inline f32x4 max(f32x4 a, f32x4 b) { return {_mm_max_ps(a.v, b.v)}; }
+inline f32x4 abs(f32x4 a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
 inline mask4 operator<(f32x4 a, f32x4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {_mm_cmple_ps(a.v, b.v)}; }
+inline mask4 operator!=(f32x4 a, f32x4 b) { return {_mm_cmpneq_ps(a.v, b.v)}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
-inline mask4 operator|(mask4 a, mask4 b) { return {_mm_or_ps(a.v, b.v)}; }
 /// a where the mask is set, else 0.
 inline f32x4 keep(mask4 m, f32x4 a) { return {_mm_and_ps(m.v, a.v)}; }
+/// Numbers from 0 on with a tag of so many bits in place of their last ones, which makes them a little less or more.
+template <int tagBits>
+inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
+  const __m128i kept = _mm_and_si128(_mm_castps_si128(a.v), _mm_set1_epi32(-1 << tagBits));
+  return {_mm_castsi128_ps(_mm_or_si128(kept, _mm_set1_epi32(static_cast<int>(tag))))};
+}
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) {
 #if defined(__SSE4_1__)
   return {_mm_blendv_ps(b.v, a.v, m.v)};
@@ -62,16 +87,44 @@ template <int lane>
 inline f32x4 splatLane(f32x4 a) {
   return {_mm_castsi128_ps(_mm_shuffle_epi32(_mm_castps_si128(a.v), lane * 0x55))};
 }
-/// Lanes 2, 3, 0, 1.
-inline f32x4 swapHalves(f32x4 a) { return {_mm_castsi128_ps(_mm_shuffle_epi32(_mm_castps_si128(a.v), 0x4E))}; }
-/// Lanes 1, 0, 3, 2.
-inline f32x4 swapPairs(f32x4 a) { return {_mm_castsi128_ps(_mm_shuffle_epi32(_mm_castps_si128(a.v), 0xB1))}; }
+/// The same, of four floats in memory.
+template <int lane>
+inline f32x4 splatAt(const float* p) {
+  return splat(p[lane]);
+}
+/// The least of the four lanes, in all of them.
+inline f32x4 lowest(f32x4 a) {
+  a = min(a, {_mm_shuffle_ps(a.v, a.v, 0x4E)});
+  return min(a, {_mm_shuffle_ps(a.v, a.v, 0xB1)});
+}
+/// The greatest.
+inline f32x4 highest(f32x4 a) {
+  a = max(a, {_mm_shuffle_ps(a.v, a.v, 0x4E)});
+  return max(a, {_mm_shuffle_ps(a.v, a.v, 0xB1)});
+}
 /// Lane 0.
 inline float first(f32x4 a) { return _mm_cvtss_f32(a.v); }
 /// Bit i is lane i.
 inline unsigned bits(mask4 m) { return static_cast<unsigned>(_mm_movemask_ps(m.v)); }
 /// Turns four rows into columns.
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) { _MM_TRANSPOSE4_PS(a.v, b.v, c.v, d.v); }
+
+/// Four counters.
+struct count4 {
+  __m128i v;
+};
+inline count4 load(const std::uint32_t* p) { return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))}; }
+inline void store(std::uint32_t* p, count4 c) { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), c.v); }
+/// One more where the mask is set: all its bits are the number −1.
+inline count4 countTrue(count4 c, mask4 m) { return {_mm_sub_epi32(c.v, _mm_castps_si128(m.v))}; }
+template <int lane>
+inline std::uint32_t countOf(count4 c) {
+#if defined(__SSE4_1__)
+  return static_cast<std::uint32_t>(_mm_extract_epi32(c.v, lane));
+#else
+  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_shuffle_epi32(c.v, lane * 0x55)));
+#endif
+}
 
 #elif defined(CAGECAST_NEON)
 
@@ -88,20 +141,31 @@ inline f32x4 splat(float x) { return {vdupq_n_f32(x)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {vaddq_f32(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {vsubq_f32(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {vmulq_f32(a.v, b.v)}; }
-inline f32x4 min(f32x4 a, f32x4 b) { return {vbslq_f32(vcltq_f32(a.v, b.v), a.v, b.v)}; }
-inline f32x4 max(f32x4 a, f32x4 b) { return {vbslq_f32(vcgtq_f32(a.v, b.v), a.v, b.v)}; }
+inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) { return {vfmaq_f32(c.v, a.v, b.v)}; }
+inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return {vfmsq_f32(c.v, a.v, b.v)}; }
+inline f32x4 min(f32x4 a, f32x4 b) { return {vminq_f32(a.v, b.v)}; }
+inline f32x4 max(f32x4 a, f32x4 b) { return {vmaxq_f32(a.v, b.v)}; }
+inline f32x4 abs(f32x4 a) { return {vabsq_f32(a.v)}; }
 inline mask4 operator<(f32x4 a, f32x4 b) { return {vcltq_f32(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {vcleq_f32(a.v, b.v)}; }
+inline mask4 operator!=(f32x4 a, f32x4 b) { return {vmvnq_u32(vceqq_f32(a.v, b.v))}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {vandq_u32(a.v, b.v)}; }
-inline mask4 operator|(mask4 a, mask4 b) { return {vorrq_u32(a.v, b.v)}; }
 inline f32x4 keep(mask4 m, f32x4 a) { return {vreinterpretq_f32_u32(vandq_u32(m.v, vreinterpretq_u32_f32(a.v)))}; }
+template <int tagBits>
+inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
+  return {vbslq_f32(vdupq_n_u32((1u << tagBits) - 1), vreinterpretq_f32_u32(vdupq_n_u32(tag)), a.v)};
+}
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {vbslq_f32(m.v, a.v, b.v)}; }
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {
   return {vdupq_laneq_f32(a.v, lane)};
 }
-inline f32x4 swapHalves(f32x4 a) { return {vextq_f32(a.v, a.v, 2)}; }
-inline f32x4 swapPairs(f32x4 a) { return {vrev64q_f32(a.v)}; }
+template <int lane>
+inline f32x4 splatAt(const float* p) {
+  return splatLane<lane>(load(p));  // One load for all lanes, and products take a lane as it is.
+}
+inline f32x4 lowest(f32x4 a) { return {vdupq_n_f32(vminvq_f32(a.v))}; }
+inline f32x4 highest(f32x4 a) { return {vdupq_n_f32(vmaxvq_f32(a.v))}; }
 inline float first(f32x4 a) { return vgetq_lane_f32(a.v, 0); }
 inline unsigned bits(mask4 m) {
   static const uint32_t kBit[4] = {1, 2, 4, 8};
@@ -114,6 +178,17 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   b.v = vcombine_f32(vget_low_f32(ab.val[1]), vget_low_f32(cd.val[1]));
   c.v = vcombine_f32(vget_high_f32(ab.val[0]), vget_high_f32(cd.val[0]));
   d.v = vcombine_f32(vget_high_f32(ab.val[1]), vget_high_f32(cd.val[1]));
+}
+
+struct count4 {
+  uint32x4_t v;
+};
+inline count4 load(const std::uint32_t* p) { return {vld1q_u32(p)}; }
+inline void store(std::uint32_t* p, count4 c) { vst1q_u32(p, c.v); }
+inline count4 countTrue(count4 c, mask4 m) { return {vsubq_u32(c.v, m.v)}; }
+template <int lane>
+inline std::uint32_t countOf(count4 c) {
+  return vgetq_lane_u32(c.v, lane);
 }
 
 #elif defined(CAGECAST_WASM)
@@ -131,20 +206,37 @@ inline f32x4 splat(float x) { return {wasm_f32x4_splat(x)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {wasm_f32x4_add(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {wasm_f32x4_sub(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {wasm_f32x4_mul(a.v, b.v)}; }
+inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) { return a * b + c; }
+inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return c - a * b; }
 inline f32x4 min(f32x4 a, f32x4 b) { return {wasm_f32x4_pmin(b.v, a.v)}; }
 inline f32x4 max(f32x4 a, f32x4 b) { return {wasm_f32x4_pmax(b.v, a.v)}; }
+inline f32x4 abs(f32x4 a) { return {wasm_f32x4_abs(a.v)}; }
 inline mask4 operator<(f32x4 a, f32x4 b) { return {wasm_f32x4_lt(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {wasm_f32x4_le(a.v, b.v)}; }
+inline mask4 operator!=(f32x4 a, f32x4 b) { return {wasm_f32x4_ne(a.v, b.v)}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {wasm_v128_and(a.v, b.v)}; }
-inline mask4 operator|(mask4 a, mask4 b) { return {wasm_v128_or(a.v, b.v)}; }
 inline f32x4 keep(mask4 m, f32x4 a) { return {wasm_v128_and(m.v, a.v)}; }
+template <int tagBits>
+inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
+  return {wasm_v128_bitselect(wasm_i32x4_splat(static_cast<int>(tag)), a.v, wasm_i32x4_splat((1 << tagBits) - 1))};
+}
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {wasm_v128_bitselect(a.v, b.v, m.v)}; }
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {
   return {wasm_i32x4_shuffle(a.v, a.v, lane, lane, lane, lane)};
 }
-inline f32x4 swapHalves(f32x4 a) { return {wasm_i64x2_shuffle(a.v, a.v, 1, 0)}; }
-inline f32x4 swapPairs(f32x4 a) { return {wasm_i32x4_shuffle(a.v, a.v, 1, 0, 3, 2)}; }
+template <int lane>
+inline f32x4 splatAt(const float* p) {
+  return {wasm_v128_load32_splat(p + lane)};
+}
+inline f32x4 lowest(f32x4 a) {
+  a = min(a, {wasm_i64x2_shuffle(a.v, a.v, 1, 0)});
+  return min(a, {wasm_i32x4_shuffle(a.v, a.v, 1, 0, 3, 2)});
+}
+inline f32x4 highest(f32x4 a) {
+  a = max(a, {wasm_i64x2_shuffle(a.v, a.v, 1, 0)});
+  return max(a, {wasm_i32x4_shuffle(a.v, a.v, 1, 0, 3, 2)});
+}
 inline float first(f32x4 a) { return wasm_f32x4_extract_lane(a.v, 0); }
 inline unsigned bits(mask4 m) { return wasm_i32x4_bitmask(m.v); }
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
@@ -156,6 +248,17 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   b.v = wasm_i64x2_shuffle(abLow, cdLow, 1, 3);
   c.v = wasm_i64x2_shuffle(abHigh, cdHigh, 0, 2);
   d.v = wasm_i64x2_shuffle(abHigh, cdHigh, 1, 3);
+}
+
+struct count4 {
+  v128_t v;
+};
+inline count4 load(const std::uint32_t* p) { return {wasm_v128_load(p)}; }
+inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
+inline count4 countTrue(count4 c, mask4 m) { return {wasm_i32x4_sub(c.v, m.v)}; }
+template <int lane>
+inline std::uint32_t countOf(count4 c) {
+  return static_cast<std::uint32_t>(wasm_i32x4_extract_lane(c.v, lane));
 }
 
 #else
@@ -181,20 +284,38 @@ inline f32x4 splat(float x) { return {{x, x, x, x}}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] + b.v[i]; }); }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] - b.v[i]; }); }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] * b.v[i]; }); }
+inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) { return a * b + c; }
+inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return c - a * b; }
 inline f32x4 min(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; }); }
 inline f32x4 max(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; }); }
+inline f32x4 abs(f32x4 a) { return lanes([&](int i) { return std::abs(a.v[i]); }); }
 inline mask4 operator<(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] < b.v[i]; }); }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] <= b.v[i]; }); }
+inline mask4 operator!=(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] != b.v[i]; }); }
 inline mask4 operator&(mask4 a, mask4 b) { return test([&](int i) { return a.v[i] && b.v[i]; }); }
-inline mask4 operator|(mask4 a, mask4 b) { return test([&](int i) { return a.v[i] || b.v[i]; }); }
 inline f32x4 keep(mask4 m, f32x4 a) { return lanes([&](int i) { return m.v[i] ? a.v[i] : 0.0f; }); }
+template <int tagBits>
+inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
+  return lanes([&](int i) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &a.v[i], sizeof bits);
+    bits = (bits & ~0u << tagBits) | tag;
+    float tagged;
+    std::memcpy(&tagged, &bits, sizeof bits);
+    return tagged;
+  });
+}
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return lanes([&](int i) { return m.v[i] ? a.v[i] : b.v[i]; }); }
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {
   return splat(a.v[lane]);
 }
-inline f32x4 swapHalves(f32x4 a) { return {{a.v[2], a.v[3], a.v[0], a.v[1]}}; }
-inline f32x4 swapPairs(f32x4 a) { return {{a.v[1], a.v[0], a.v[3], a.v[2]}}; }
+template <int lane>
+inline f32x4 splatAt(const float* p) {
+  return splat(p[lane]);
+}
+inline f32x4 lowest(f32x4 a) { return splat(std::min({a.v[0], a.v[1], a.v[2], a.v[3]})); }
+inline f32x4 highest(f32x4 a) { return splat(std::max({a.v[0], a.v[1], a.v[2], a.v[3]})); }
 inline float first(f32x4 a) { return a.v[0]; }
 inline unsigned bits(mask4 m) {
   return unsigned{m.v[0]} | unsigned{m.v[1]} << 1 | unsigned{m.v[2]} << 2 | unsigned{m.v[3]} << 3;
@@ -210,16 +331,25 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   }
 }
 
+struct count4 {
+  std::uint32_t v[4];
+};
+inline count4 load(const std::uint32_t* p) { return {{p[0], p[1], p[2], p[3]}}; }
+inline void store(std::uint32_t* p, count4 c) { std::memcpy(p, c.v, sizeof c.v); }
+inline count4 countTrue(count4 c, mask4 m) { return {{c.v[0] + m.v[0], c.v[1] + m.v[1], c.v[2] + m.v[2], c.v[3] + m.v[3]}}; }
+template <int lane>
+inline std::uint32_t countOf(count4 c) {
+  return c.v[lane];
+}
+
 #endif
 
-/// The least and the greatest of the four lanes, in all of them.
-inline f32x4 lowest(f32x4 a) {
-  a = min(a, swapHalves(a));
-  return min(a, swapPairs(a));
-}
-inline f32x4 highest(f32x4 a) {
-  a = max(a, swapHalves(a));
-  return max(a, swapPairs(a));
+/// The tag that `withTag` gave.
+template <int tagBits>
+inline std::uint32_t tagOf(float tagged) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &tagged, sizeof bits);
+  return bits & ~(~0u << tagBits);
 }
 
 inline f32x4 clamp(f32x4 x, f32x4 low, f32x4 high) { return min(max(x, low), high); }
