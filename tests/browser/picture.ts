@@ -19,9 +19,13 @@ export async function modelArea(page: Page): Promise<Area> {
 export async function look(page: Page, area: Area): Promise<PNG> {
   await page.evaluate(async () => {
     await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))
-    // Reading a pixel waits for what draws behind the page.
+    // What draws behind the page may take longer. Reading a pixel would wait as well, but leave an empty picture behind.
     const gl = document.querySelector<HTMLCanvasElement>('#view')!.getContext('webgl2')
-    gl?.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4))
+    const sync = gl?.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0)
+    if (!gl || !sync) return
+    gl.flush()
+    while (gl.getSyncParameter(sync, gl.SYNC_STATUS) === gl.UNSIGNALED) await new Promise(requestAnimationFrame)
+    gl.deleteSync(sync)
   })
   return PNG.sync.read(await page.screenshot({ clip: area }))
 }
