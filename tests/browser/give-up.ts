@@ -19,7 +19,10 @@ export function giveUpOnceShown(page: Page, way: 'button' | 'Escape'): Promise<v
   )
 }
 
-/** A worker that is slow to begin: however quick the machine, there is time to give the work up. */
+/** A worker that is slow to begin: however quick the machine, there is time to see it work, and to give it up. Sending costs what it does. */
 export const kSlowWorker = `
   const { postMessage } = Worker.prototype
-  Worker.prototype.postMessage = function (...message) { setTimeout(() => postMessage.apply(this, message), 1000) }`
+  Worker.prototype.postMessage = function (message, options) {
+    const sent = structuredClone(message, Array.isArray(options) ? { transfer: options } : options)
+    setTimeout(() => postMessage.call(this, sent), 1000)
+  }`

@@ -37,7 +37,7 @@ async function watchProgress(page: Page): Promise<() => Promise<string[]>> {
 }
 
 test('while half a million triangles are transferred, no task keeps the page from answering for 100 ms, and progress is shown', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
+  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker)
   await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
   await settled(page)
   const stages = await watchProgress(page)
