@@ -98,6 +98,10 @@ describe('the packed package', () => {
     assert.ok(wasm <= 40 * 1024, `${wasm} bytes`);
   });
 
+  test('asks engines to compile its index as they read it: they look for that at the very beginning', () => {
+    for (const name of ['index', 'slim']) assert.match(readFileSync(join(installed, `dist/${name}.js`), 'utf8'), /^\/\/# allFunctionsCalledOnLoad\n/);
+  });
+
   test('its further entries are small, and none of them is in the main one', (context) => {
     for (const [name, most] of Object.entries({ inspect: 12, three: 4, gltf: 6, borders: 62 })) {
       const text = readFileSync(join(installed, `dist/${name}.js`));
