@@ -1,7 +1,10 @@
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
 import { after, before, test } from 'node:test'
+import { NodeIO } from '@gltf-transform/core'
+import { PNG } from 'pngjs'
 import { glb, tetrahedron, writeGlb } from './glb'
+import { texturedBox } from './models'
 import { drop, inRepository, settled, shownCounts, shownError, Site, type Upload, type Visit } from './site'
 
 let site: Site
@@ -55,6 +58,35 @@ for (const { what, input, file, says } of kBad) {
     assert.deepEqual(complaints, [])
   })
 }
+
+test('a target whose image is damaged is shown in white, and one line says which and what is wrong with it', async () => {
+  const { page, complaints } = visit
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(4))))
+  const png = PNG.sync.write(Object.assign(new PNG({ width: 64, height: 64 }), { data: Buffer.from(Uint8Array.from({ length: 4 * 64 * 64 }, (_, at) => (at * at) >> 3)) }))
+  const flipped = Buffer.from(png.map((byte, at) => (at > 100 && at < 140 ? byte ^ 0xff : byte)))
+  for (const [kind, mimeType, image, says] of [
+    ['empty', 'image/png', Buffer.alloc(0), /^box\.glb: image “own” cannot be shown: it is empty\./],
+    ['of another kind', 'image/jpeg', Buffer.from('what was meant to be an image'), /^box\.glb: image “own” cannot be shown: it is no JPEG\./],
+    ['cut short', 'image/jpeg', Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 16]), /^box\.glb: image “own” cannot be shown: its JPEG is cut short, after 6 bytes\./],
+    ['damaged', 'image/png', flipped, /^box\.glb: image “own” cannot be shown: its PNG is damaged\./],
+  ] as const) {
+    const io = new NodeIO()
+    const document = await io.readBinary(new Uint8Array((await texturedBox(png)).buffer))
+    document.getRoot().listTextures()[0]!.setMimeType(mimeType).setImage(new Uint8Array(image))
+    await page.getByTestId('target-input').setInputFiles(glb('box.glb', Buffer.from(await io.writeBinary(document))))
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    assert.match(await shownError(page), says, kind)
+    assert.match(await shownError(page), / What it belongs to stays white\.$/)
+    assert.ok((await shownCounts(page)).cosmetic > 0)
+  }
+  // It was read, and need not be said again.
+  await page.locator('#alert-close').click()
+  await page.getByTestId('preset').selectOption('paper')
+  assert.equal(await settled(page), 'ready')
+  assert.equal(await shownError(page), '')
+  assert.ok(complaints.every((complaint) => /Couldn't load texture|blob:/.test(complaint)), complaints.join())
+  complaints.length = 0
+})
 
 test('a dropped file that is nothing the page knows is told apart by name', async () => {
   const { page } = visit

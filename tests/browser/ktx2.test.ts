@@ -80,12 +80,13 @@ for (const [kind, image] of [
   })
 }
 
-test('a damaged KTX2 texture leaves its model white, as other textures do', async () => {
+test('a damaged KTX2 texture leaves its model white, and the page says so', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
   await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
   await settled(page)
   await page.getByTestId('target-input').setInputFiles(await ballWith(ktx2Of(...kColor).slice(0, 150)))
   assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.equal(await shownError(page), 'target.glb: image “colour” cannot be shown: its KTX2 is cut short, after 150 bytes. What it belongs to stays white.')
   assert.ok((await shownCounts(page)).cosmetic > 0)
   await page.locator('#show-paint').uncheck({ force: true })
   assert.ok(shareOfHue(await look(page, await modelArea(page)), kHue) < 0.001)

@@ -221,5 +221,18 @@ test('a sample’s paint lies over the others as well, and a link brings back ho
   await rows(other.page).filter({ hasText: 'War paint' }).waitFor()
   assert.deepEqual(await names(other.page), ['War paint', 'Tiger stripes'])
   assert.equal(Buffer.compare((await savedTexture(other.page)).data, texture.data), 0)
+  // What another page's link brought is nothing to be undone.
+  assert.equal(await other.page.getByTestId('undo').isDisabled(), true)
+
+  // Nor is what had lain there before it.
+  for (const name of ['War paint', 'Tiger stripes']) await other.page.getByRole('button', { name: `Remove ${name}` }).click()
+  await other.page.getByTestId('share-link').focus()
+  const bare = await other.page.getByTestId('share-link').evaluate((anchor) => (anchor as HTMLAnchorElement).hash)
+  await other.page.getByTestId('undo').click()
+  await other.page.evaluate((hash) => (location.hash = hash), bare)
+  await other.page.waitForFunction(() => document.querySelectorAll('#layer-list li').length === 0)
+  assert.equal(await settled(other.page), 'ready', await shownError(other.page))
+  assert.equal(filled(await savedTexture(other.page)), 0)
+  await other.page.waitForFunction(() => document.querySelector<HTMLButtonElement>('#undo')!.disabled)
   assert.deepEqual([...complaints, ...other.complaints], [])
 })

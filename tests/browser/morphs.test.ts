@@ -180,3 +180,34 @@ test('a model that is morphed when its cage is changed stays so, and is counted 
   await moved(page)
   assert.equal((await shownCounts(page)).cosmetic, await count(0))
 })
+
+test('a link brings back the shape that a sample was moved into, and no link one that is at rest', async () => {
+  const [target, cage] = [await morphingBalls(), await islandCage(1.1)]
+  // The samples that come with the page have no morphs: this one takes the place of the first.
+  const samples = async (page: Page): Promise<void> => {
+    for (const { name, buffer } of [target, cage]) await page.route(`**/samples/lizard/${name}`, (route) => route.fulfill({ body: buffer }))
+  }
+  const options = { viewport: { width: 960, height: 500 } }
+  const linkOf = async (page: Page): Promise<string> => {
+    await page.getByTestId('share-link').focus()
+    return page.getByTestId('share-link').evaluate((anchor) => (anchor as HTMLAnchorElement).hash)
+  }
+  const { page } = await site.visit(options, samples)
+  assert.doesNotMatch(await linkOf(page), /deform|morph/)
+  await page.getByTestId('deform').selectOption('twist')
+  await page.getByTestId('deform-cage').setChecked(false)
+  await page.getByTestId('amount').fill('-0.4')
+  await morph(page, 'grow', 0.625)
+  const area = await modelArea(page)
+  const seen = { counts: await shownCounts(page), picture: await look(page, area) }
+  const link = await linkOf(page)
+  assert.match(link, /&deform=twist,-0.4,alone&morph=0.625,grow(&|$)/)
+
+  const other = await site.visit(options, samples, link)
+  await moved(other.page)
+  assert.deepEqual(await shownCounts(other.page), seen.counts)
+  assert.equal(await slider(other.page, 'grow').inputValue(), '0.625')
+  assert.equal(await linkOf(other.page), link)
+  assert.ok(difference(seen.picture, await look(other.page, area)) < 0.002)
+  assert.deepEqual(other.complaints, [])
+})

@@ -65,6 +65,29 @@ for (const [screen, viewport, most] of [['a desk', { width: 1440, height: 900 },
   })
 }
 
+test('nothing that tells of loading lies over the still, be it that scripts are waited for or the model', async () => {
+  for (const viewport of [{ width: 390, height: 844 }, { width: 1440, height: 900 }]) {
+    const told: [string, number][] = []
+    await site.visit({ viewport }, async (page) => {
+      const [script, model] = [await hold(page, kScript), await hold(page, /\/samples\/.*\.glb$/)]
+      const orangeUnder = async (id: string): Promise<void> => {
+        await page.locator(id).waitFor()
+        const clip = (await page.locator(id).boundingBox())!
+        const style = await page.addStyleTag({ content: '#stage > :not(#view, #still) { opacity: 0 }' })
+        told.push([id, shareOfHue(PNG.sync.read(await page.screenshot({ clip })), kOrange)])
+        await style.evaluate((element) => (element as Element).remove())
+      }
+      void page
+        .waitForFunction(() => document.querySelector<HTMLImageElement>('#still')?.complete)
+        .then(() => orangeUnder('#stage-notice'))
+        .finally(script)
+        .then(() => orangeUnder('#progress'))
+        .finally(model)
+    })
+    assert.deepEqual(told, [['#stage-notice', 0], ['#progress', 0]], `${viewport.width} wide`)
+  }
+})
+
 test('on a processor slowed to a quarter the still is on the screen before anything is drawn in 3D', async () => {
   const { page } = await site.visit(
     {},

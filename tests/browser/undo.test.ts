@@ -57,6 +57,10 @@ test('whatever is done to a layer is a step: undone and done again in turn, with
       await page.getByRole('button', { name: 'Add War paint as a layer' }).click()
       await rows(page).filter({ hasText: 'War paint' }).waitFor()
     }],
+    ['choice of UV checker', async () => {
+      await page.getByRole('radio', { name: 'UV checker' }).check({ force: true })
+      assert.equal(await settled(page), 'ready', await shownError(page))
+    }],
     ['adding of a painting', () => page.getByTestId('add-painting').click()],
     ['removal of red.png', () => control('button', 'Remove red.png').click()],
     ['showing of red.png', async () => {
@@ -141,6 +145,9 @@ test('a drag is one step, and so is a key held down', async () => {
 
 test('undoing leaves alone what came of another model since', async () => {
   const { page } = visit
+  await page.getByRole('radio', { name: 'War paint' }).check({ force: true })
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.match(await undoTitle(), /choice of War paint/)
   await control('button', 'Reorder red.png').focus()
   const before = await names(page)
   await page.keyboard.press('ArrowDown')
@@ -149,7 +156,9 @@ test('undoing leaves alone what came of another model since', async () => {
   await page.getByTestId('sample-select').selectOption('human')
   assert.equal(await settled(page), 'ready')
   await page.keyboard.press('Control+z')
-  assert.deepEqual(await names(page), before.map((name) => (name === 'Tiger stripes' ? 'Painted skull' : name)))
+  assert.deepEqual(await names(page), before.map((name) => (name === 'War paint' ? 'Painted skull' : name)))
+  // Which of its paints lay under everything is not a step on another model.
+  assert.doesNotMatch(await undoTitle(), /choice/)
 })
 
 test('a stroke that made its layer takes it along, and one that is given up leaves none', async () => {

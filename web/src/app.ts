@@ -80,17 +80,18 @@ new FitPanel(session, viewer)
 setUpRules(session)
 setUpViewControls(session)
 setUpJump()
-new Live(session, viewer)
+const live = new Live(session, viewer)
 const opener = new Opener(session, stack, edits, viewer?.renderer)
-const paints = paintOf(session, stack, opener, png)
-const take = new Take(session, viewer, paints)
+const { png: takenPng, layers } = paintOf(session, stack, edits, opener, png)
+const linked = { session, layers, live, viewer }
+const take = new Take(linked, takenPng)
 stack.on('change', () => take.refresh())
 keepOffline(session)
 
 try {
   opener.listSamples(await samples)
   // Files of one's own may have come in while the list was on its way.
-  if (!followLinks(session, opener, paints.linked, viewer)) opener.openSample(opener.samples[0]!.name)
+  if (!followLinks(linked, opener)) opener.openSample(opener.samples[0]!.name)
 } catch (error) {
   session.fail(error)
 }

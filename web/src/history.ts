@@ -14,7 +14,7 @@ const kMostBytes = 128 * 2 ** 20
 
 /** What was done, as far back as memory allows: the oldest deeds are forgotten first. */
 export class History extends Emitter<{ change: void }> {
-  readonly #done: Deed[] = []
+  #done: Deed[] = []
   #undone: Deed[] = []
 
   /** What `undo` would take back. */
@@ -33,6 +33,13 @@ export class History extends Emitter<{ change: void }> {
     this.#undone = []
     let bytes = this.#done.reduce((sum, one) => sum + one.bytes, 0)
     while (bytes > kMostBytes) bytes -= this.#done.shift()!.bytes
+    this.emit('change', undefined)
+  }
+
+  /** Forgets deeds, whether they are done or undone. */
+  forget(isOver: (deed: Deed) => boolean): void {
+    this.#done = this.#done.filter((deed) => !isOver(deed))
+    this.#undone = this.#undone.filter((deed) => !isOver(deed))
     this.emit('change', undefined)
   }
 

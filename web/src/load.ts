@@ -1,5 +1,6 @@
 import { Group, LoadingManager, Mesh, type AnimationClip, type Object3D, type WebGLRenderer } from 'three'
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
+import { damageOf } from './damage'
 import { extractMesh, type ExtractedMesh } from './extract'
 import { readGltfHead } from './gltf-file'
 import type { Sample } from './samples'
@@ -13,6 +14,8 @@ export interface Model {
   scene: Object3D
   animations: readonly AnimationClip[]
   mesh: ExtractedMesh
+  /** What of its images cannot be shown, and why: a sentence. The model works all the same. */
+  damage?: string
   /** Which sample it belongs to; the visitor's own to none. */
   sample?: Sample
 }
@@ -37,7 +40,10 @@ export async function loadModel(file: File, renderer: WebGLRenderer | undefined,
     try {
       const gltf = await loader.parseAsync(bytes, '')
       const scene = await sceneOf(gltf)
-      return { name: file.name, files: [file, ...companions.filter((other) => other !== file)], scene, animations: gltf.animations, mesh: await extractMesh(scene, (mesh) => nameOf(mesh, gltf)) }
+      const files = [file, ...companions.filter((other) => other !== file)]
+      const mesh = await extractMesh(scene, (mesh) => nameOf(mesh, gltf))
+      const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer())
+      return { name: file.name, files, scene, animations: gltf.animations, mesh, ...(damage && { damage: `${file.name}: ${damage}` }) }
     } finally {
       release()
     }

@@ -30,7 +30,7 @@ export class Opener {
     this.#select.addEventListener('change', () => this.openSample(this.#select.value))
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap())
     session.on('progress', ({ state }) => state === 'ready' && this.#describe(session.shown!))
-    stack.on('change', () => session.shown && this.#offerPaints(session.shown))
+    stack.on('change', () => session.shown && this.#describe(session.shown))
   }
 
   get samples(): readonly Sample[] {
@@ -61,11 +61,17 @@ export class Opener {
   /** Reads a paint of any sample. @param name By `paintName`. @returns Nothing if there is none of that name. */
   async paint(name: string): Promise<Paint | undefined> {
     if (name === kChecker) return this.#session.checker
-    for (const sample of this.#samples) {
-      const found = sample.paints.find(({ file }) => paintName(file) === name)
-      if (found) return this.#fetchPaint(sample, found)
-    }
-    return undefined
+    const found = this.#find(name)
+    return found && this.#fetchPaint(found.sample, found.paint)
+  }
+
+  /** Whether there is a paint of that name, by `paintName`. */
+  has(name: string): boolean {
+    return name === kChecker || this.#find(name) !== undefined
+  }
+
+  #find(name: string): { sample: Sample; paint: Sample['paints'][number] } | undefined {
+    return this.#samples.flatMap((sample) => sample.paints.map((paint) => ({ sample, paint }))).find(({ paint }) => paintName(paint.file) === name)
   }
 
   async #fetchPaint(sample: Sample, paint: Sample['paints'][number] | undefined): Promise<Paint> {
@@ -92,7 +98,9 @@ export class Opener {
   }
 
   #describe({ target, cage, paint }: Shown): void {
-    for (const [slot, { name }] of Object.entries({ target, cage, texture: paint })) {
+    // Of what comes with the page another may have been chosen since.
+    const texture = (paint.sample || paint === this.#session.checker ? (this.#stack.base?.sheet as Paint | undefined) : undefined) ?? paint
+    for (const [slot, { name }] of Object.entries({ target, cage, texture })) {
       const label = element(`${slot}-name`, HTMLElement)
       label.textContent = label.title = name
     }
@@ -119,6 +127,21 @@ export class Opener {
           : 'The target is yours, the cage is still the sample’s: add the cage made for it.'
   }
 
+  /** Puts another paint under everything, as a step that can be undone. */
+  async #choose(loaded: Promise<Paint>): Promise<void> {
+    let wanted = true
+    const done = this.#session.work('Reading', 0, () => (wanted = false))
+    try {
+      const paint = await loaded
+      if (!wanted) return
+      this.#edits.do(`choice of ${titleOf(paint)}`, () => this.#stack.setBase(titleOf(paint), paint))
+      done()
+    } catch (error) {
+      if (wanted) this.#session.fail(error)
+      this.#offerPaints(this.#session.shown!)
+    }
+  }
+
   /** Offers what may lie under everything: the sample's paints, and the checker. */
   #offerPaints({ cage: { sample } }: Pick<Shown, 'cage'>): void {
     const { checker } = this.#session
@@ -128,7 +151,7 @@ export class Opener {
     ]
     const chosen = choices.findIndex(({ picture }) => picture === this.#stack.base?.sheet.picture)
     offerPaints(choices, chosen, {
-      onChoose: (index) => this.#session.want({ paint: choices[index]!.load() }),
+      onChoose: (index) => this.#choose(choices[index]!.load()),
       onAdd: async (index) => {
         try {
           const paint = await choices[index]!.load()

@@ -1,3 +1,4 @@
+import type { Model } from './load'
 import { clearError, element, showError, showNotice } from './page'
 import type { Progress, Session } from './session'
 
@@ -20,6 +21,11 @@ export function showStatus(session: Session, blind: boolean): void {
     showNotice('stage-notice', kBlind)
   }
   const bar = new ProgressBar(session)
+  let told: Model | undefined
+  session.on('transfer', ({ target }) => {
+    if (target.damage && target !== told) showError(target.damage)
+    told = target
+  })
   session.on('progress', (progress) => {
     bar.show(progress)
     switch (progress.state) {

@@ -47,6 +47,16 @@ export class Edits {
     if (before) this.#stack.change(this.#stack.layers, before)
   }
 
+  /** Forgets which paints were chosen to lie under everything: another model has put its own there. */
+  forgetChoices(): void {
+    this.#history.forget((deed) => deed instanceof Step && deed.isChoice)
+  }
+
+  /** Forgets all. */
+  forget(): void {
+    this.#history.forget(() => true)
+  }
+
   /** Does something to the layers as a step. @param name What undoing it is called. */
   do<Result>(name: string, run: () => Result): Result {
     this.begin()
@@ -69,6 +79,11 @@ class Step implements Deed {
     public after: readonly Layer[],
     private readonly beside?: Beside,
   ) {}
+
+  /** Whether a layer holds something else since. */
+  get isChoice(): boolean {
+    return this.before.some((layer) => this.after.some(({ id, sheet }) => id === layer.id && sheet !== layer.sheet))
+  }
 
   get bytes(): number {
     // Of the layers that are kept only to come back.

@@ -8,12 +8,12 @@ import type { LayerStack } from './stack'
 /** Puts the paint of the model on show under everything, and the visitor's own paints on top as they come. */
 export function followPaints(session: Session, stack: LayerStack, edits: Edits): void {
   const { checker } = session
-  let base: Paint | undefined
   const setBase = (paint: Paint): void => {
-    base = paint
+    edits.forgetChoices()
     stack.setBase(titleOf(paint), paint)
   }
   session.on('transfer', ({ cage }) => {
+    const base = stack.base?.sheet as Paint | undefined
     // A sample's paint means nothing on another cage: there the checker takes its place.
     if (base?.sample && base.sample !== cage.sample) setBase(checker)
   })

@@ -36,14 +36,16 @@ export interface Layer extends Readonly<Style> {
   readonly sheet: Sheet
 }
 
-/** What of a layer's style another one has differently: the other's. */
-export function styleApart(layer: Layer, other: Layer): Partial<Style> {
-  const keys = (Object.keys(kPlain) as (keyof Style)[]).filter((key) => layer[key] !== other[key])
+const kKeys = ['name', 'sheet', ...(Object.keys(kPlain) as (keyof Style)[])] as const
+
+/** What another state of a layer has differently: the other's. */
+export function apart(layer: Layer, other: Layer): Partial<Layer> {
+  const keys = kKeys.filter((key) => layer[key] !== other[key])
   return Object.fromEntries(keys.map((key) => [key, other[key]]))
 }
 
 /** Whether the same layers lie in the same order, in the same way. */
 export function areSame(layers: readonly Layer[], others: readonly Layer[]): boolean {
-  const isSame = (layer: Layer, other: Layer | undefined): boolean => layer.id === other?.id && Object.keys(styleApart(layer, other)).length === 0
+  const isSame = (layer: Layer, other: Layer | undefined): boolean => layer.id === other?.id && Object.keys(apart(layer, other)).length === 0
   return layers.length === others.length && layers.every((layer, place) => isSame(layer, others[place]))
 }

@@ -1,6 +1,6 @@
 import { Emitter } from '../events'
 import { kMostLayers } from './composite'
-import { kPlain, styleApart, type Layer, type Sheet, type Style } from './layer'
+import { apart, kPlain, type Layer, type Sheet, type Style } from './layer'
 
 /** What there is to be said when there is no room for another one. */
 export const kFull = `There are ${kMostLayers} layers, as many as there can be: remove one first.`
@@ -66,7 +66,7 @@ export class LayerStack extends Emitter<StackEvents> {
 
   /**
    * Does again what led from one state of the stack to another, and works on what that concerns: layers come, go, take their
-   * places and are laid as in the other. Whatever is the same in both stays as it is by now.
+   * places, and hold what they hold and are laid as in the other. Whatever is the same in both stays as it is by now.
    * @throws Error if there would be more than eight.
    */
   change(from: readonly Layer[], to: readonly Layer[]): void {
@@ -75,9 +75,9 @@ export class LayerStack extends Emitter<StackEvents> {
     const layers = to.flatMap((layer) => {
       const [before, now] = [find(from, layer), find(this.#layers, layer)]
       if (before && !now) return [] // what went since stays away
-      const style = before ? styleApart(before, layer) : {}
-      if (!before || Object.keys(style).length > 0) concerned ??= layer
-      return [{ ...(now ?? layer), ...style }]
+      const change = before ? apart(before, layer) : {}
+      if (!before || Object.keys(change).length > 0) concerned ??= layer
+      return [{ ...(now ?? layer), ...change }]
     })
     // What came since stays.
     this.#layers.forEach((layer, place) => {

@@ -1,4 +1,5 @@
 import type { ExtractedMesh } from '../extract'
+import type { LinkedShape } from '../take/link'
 import { announce, element } from '../page'
 import type { Session, Shown } from '../session'
 import { Superseded, TransferClient } from '../transfer-client'
@@ -48,6 +49,26 @@ export class Live {
     })
     this.#animations = viewer && new Animations(viewer, () => this.#leaveMorphs())
     session.on('transfer', (shown) => this.#onTransfer(shown))
+  }
+
+  /** The shape the visitor moved the model into; undefined while it is as its file has it. */
+  get shape(): LinkedShape | undefined {
+    const [amount, morphs] = [Number(this.#amount.value), this.#morphs.weights]
+    if (amount === 0 && !morphs) return undefined
+    return { deform: this.#deform.value as Deform, amount, cage: this.#along.checked, morphs: this.#morphs.moved }
+  }
+
+  /** Moves the model into a shape. */
+  move({ deform, amount, cage, morphs }: LinkedShape): void {
+    this.#stop()
+    this.#deform.value = deform
+    this.#amount.value = String(amount)
+    this.#along.checked = cage
+    if (morphs.size > 0) {
+      this.#animations?.stop()
+      this.#morphs.move(morphs)
+    }
+    this.#next()
   }
 
   #onTransfer(shown: Shown): void {

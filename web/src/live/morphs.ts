@@ -49,13 +49,25 @@ export class Morphs {
 
   /** Where the visitor has them; undefined while that is where the file has them. */
   get weights(): Weights | undefined {
-    return [...this.#stored].some(([name, weight]) => this.#weights.get(name) !== weight) ? new Map(this.#weights) : undefined
+    return this.moved.size > 0 ? new Map(this.#weights) : undefined
+  }
+
+  /** Those that are not where the file has them. */
+  get moved(): Weights {
+    return new Map([...this.#weights].filter(([name, weight]) => this.#stored.get(name) !== weight))
   }
 
   /** Puts them where the file has them. */
   reset(): void {
+    this.move(this.#stored)
+  }
+
+  /** Moves those that are named, as far as they go. */
+  move(weights: Weights): void {
     for (const input of this.#list.querySelectorAll('input')) {
-      input.valueAsNumber = this.#stored.get(input.name)!
+      const weight = weights.get(input.name)
+      if (weight === undefined) continue
+      input.valueAsNumber = weight
       this.#take(input)
     }
   }

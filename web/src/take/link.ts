@@ -1,4 +1,5 @@
 import type { Lock } from 'cagecast'
+import { kDeforms, type Deform } from '../live/deform'
 import type { Locks, Rules } from '../session'
 import { kModes, type Angle, type Mode, type View } from '../view'
 
@@ -14,24 +15,38 @@ export interface LinkedLayer {
   visible: boolean
 }
 
+/** The shape a model was moved into. */
+export interface LinkedShape {
+  deform: Deform
+  /** From −1 to 1; 0 leaves it as it is. */
+  amount: number
+  /** Whether the cage went along. */
+  cage: boolean
+  /** How far morphs are carried out, by name; the others are as the file has them. */
+  morphs: ReadonlyMap<string, number>
+}
+
 /** What a link restores. */
 export interface LinkState {
   sample: string
-  /** From the lowest to the uppermost. */
-  layers: LinkedLayer[]
+  /** From the lowest to the uppermost; undefined where they are as the sample opens. */
+  layers: LinkedLayer[] | undefined
   rules: Rules
   locks: Locks
   view: View
+  /** Absent where the model is as its file has it. */
+  shape?: LinkedShape | undefined
   /** Absent where all of the model is seen from its front. */
   angle?: Angle | undefined
 }
 
 /** Writes a state as the fragment of an address, without its `#`: readable, and only what it has to say. */
-export function writeLink({ sample, layers, rules, locks, view, angle }: LinkState): string {
+export function writeLink({ sample, layers, rules, locks, view, shape, angle }: LinkState): string {
   const words = new URLSearchParams({ sample })
-  for (const { paint, opacity, tint, blend, visible } of layers) {
+  for (const { paint, opacity, tint, blend, visible } of layers ?? []) {
     words.append('layer', [paint, Number(opacity.toFixed(3)), tint.replace('#', ''), blend, ...(visible ? [] : ['hidden'])].join(','))
   }
+  if (layers?.length === 0) words.set('layer', 'none')
   words.set('rules', rules.preset)
   words.set('threshold', String(rules.threshold))
   if (rules.borders !== 'triangle') words.set('borders', rules.borders)
@@ -43,6 +58,8 @@ export function writeLink({ sample, layers, rules, locks, view, angle }: LinkSta
   if (view.mode === 'compare') words.set('split', view.split.toFixed(3))
   if (!view.paint) words.set('paint', 'off')
   if (view.cage) words.set('cage', 'on')
+  if (shape && shape.amount !== 0) words.set('deform', [shape.deform, Number(shape.amount.toFixed(3)), ...(shape.cage ? [] : ['alone'])].join(','))
+  for (const [name, weight] of shape?.morphs ?? []) words.append('morph', `${Number(weight.toFixed(3))},${name}`)
   if (angle) words.set('angle', [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4)].map(Number).join(','))
   return words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',')
 }
@@ -56,9 +73,10 @@ export function readLink(fragment: string): LinkState | undefined {
   const sample = words.get('sample')
   if (!sample) return undefined
   const mode = words.get('view') as Mode
+  const layers = words.getAll('layer')
   return {
     sample,
-    layers: words.getAll('layer').map(readLayer),
+    layers: layers.length > 0 ? layers.filter((text) => text !== 'none').map(readLayer) : undefined,
     rules: { preset: words.get('rules') === 'paper' ? 'paper' : 'default', threshold: share(words.get('threshold'), 0.5), borders: words.get('borders') === 'cut' ? 'cut' : 'triangle' },
     locks: { ...readLocks(words, 'keep'), ...readLocks(words, 'exclude') },
     view: {
@@ -67,6 +85,7 @@ export function readLink(fragment: string): LinkState | undefined {
       paint: words.get('paint') !== 'off',
       cage: words.get('cage') === 'on',
     },
+    shape: readShape(words),
     angle: readAngle(words.get('angle')),
   }
 }
@@ -74,6 +93,17 @@ export function readLink(fragment: string): LinkState | undefined {
 function readLayer(text: string): LinkedLayer {
   const [paint = '', opacity = null, tint = '', blend = 'normal', hidden] = text.split(',')
   return { paint, opacity: share(opacity, 1), tint: /^[0-9a-f]{6}$/i.test(tint) ? `#${tint}` : '#ffffff', blend, visible: hidden !== 'hidden' }
+}
+
+function readShape(words: URLSearchParams): LinkedShape | undefined {
+  const [deform = '', amount = '', alone] = (words.get('deform') ?? '').split(',')
+  const known = kDeforms.find((name) => name === deform)
+  const far = Math.abs(Number(amount)) <= 1 ? Number(amount) : 0
+  const morphs = words.getAll('morph').flatMap((text): [string, number][] => {
+    const [, weight, name] = /^([^,]+),(.+)$/s.exec(text) ?? []
+    return name !== undefined && Number.isFinite(Number(weight)) ? [[name, Number(weight)]] : []
+  })
+  return (known && far !== 0) || morphs.length > 0 ? { deform: known ?? kDeforms[0], amount: known ? far : 0, cage: alone !== 'alone', morphs: new Map(morphs) } : undefined
 }
 
 function readLocks(words: URLSearchParams, lock: Lock): Locks {

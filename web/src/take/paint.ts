@@ -1,3 +1,4 @@
+import type { Edits } from '../layers/edits'
 import { kBlends, type Blend, type Layer, type Style } from '../layers/layer'
 import type { LayerStack } from '../layers/stack'
 import type { Opener } from '../open'
@@ -5,21 +6,22 @@ import { titleOf } from '../paint'
 import { kChecker, paintName } from '../samples'
 import type { Session } from '../session'
 import type { LinkedLayer } from './link'
-import type { Paints } from './take'
+import type { LinkedLayers } from './links'
 
 /**
  * The layers, to be taken away.
- * @param png Makes a PNG of what they look like together; without it, where nothing can be drawn, the latest paint is taken.
+ * @param png Makes a PNG of what they look like together; without it, where nothing can be drawn, the uppermost paint is taken.
  */
-export function paintOf(session: Session, stack: LayerStack, opener: Opener, png = () => latestPng(session)): Paints {
+export function paintOf(session: Session, stack: LayerStack, edits: Edits, opener: Opener, png = () => latestPng(stack)): { png(): Promise<Blob>; layers: LinkedLayers } {
   /** What a link calls what is in a layer; nothing if it is the visitor's own. */
   const nameOf = ({ sheet }: Layer): string | undefined => {
     if (sheet === session.checker) return kChecker
-    return opener.samples.some(({ paints }) => paints.some(({ file }) => file === sheet.picture)) ? paintName(sheet.picture) : undefined
+    const name = paintName(sheet.picture)
+    return opener.has(name) ? name : undefined
   }
   return {
     png,
-    linked: {
+    layers: {
       get layers() {
         return stack.layers.flatMap((layer) => {
           const paint = nameOf(layer)
@@ -36,12 +38,18 @@ export function paintOf(session: Session, stack: LayerStack, opener: Opener, png
           end()
           // The visitor's own stay: no link may cost anyone their work.
           for (const layer of stack.layers) if (layer !== stack.base && nameOf(layer)) stack.remove(layer.id)
-          const [base, ...others] = layers
-          if (base && stack.base && nameOf(stack.base) === base.paint) stack.restyle(stack.base, styleOf(base))
-          for (const layer of others) {
+          const { base } = stack
+          const known = layers.filter(({ paint }) => opener.has(paint))
+          // The lowest of them is what the sample opened with, unless that was taken away.
+          const isBase = base !== undefined && nameOf(base) === known[0]?.paint
+          if (isBase) stack.restyle(base, styleOf(known[0]!))
+          else if (base && known.length === layers.length) stack.remove(base.id)
+          for (const layer of isBase ? known.slice(1) : known) {
             const paint = await opener.paint(layer.paint)
             if (paint && !stack.full) stack.add(titleOf(paint), paint, styleOf(layer))
           }
+          // What was done before it led to something else.
+          edits.forget()
         })
       },
     },
@@ -52,8 +60,10 @@ function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Style {
   return { opacity, tint, blend: kBlends.includes(blend as Blend) ? (blend as Blend) : 'normal', visible }
 }
 
-function latestPng({ shown }: Session): Promise<Blob> {
-  const image = shown!.paint.texture.image as ImageBitmap | HTMLCanvasElement
+function latestPng({ layers }: LayerStack): Promise<Blob> {
+  const layer = layers.findLast(({ visible }) => visible)
+  if (!layer) throw new Error('There is no paint.')
+  const image = layer.sheet.texture.image as ImageBitmap | HTMLCanvasElement
   const canvas = new OffscreenCanvas(image.width, image.height)
   canvas.getContext('2d')!.drawImage(image, 0, 0)
   return canvas.convertToBlob({ type: 'image/png' })

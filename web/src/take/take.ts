@@ -1,33 +1,27 @@
 import { announce, element, showError, showNotice } from '../page'
 import type { Session } from '../session'
-import type { Viewer } from '../viewer'
 import { codeFor, type Code } from './code'
 import { download } from './download'
 import type { PaintInto } from './export-messages'
-import { linkOf, type LinkedLayers } from './links'
+import { linkOf, type Linked } from './links'
 import type { Baked } from './texture/bake'
 import { zonesJson } from './zones'
-
-/** What is to be taken away of the paints. */
-export interface Paints {
-  /** What they look like together: a PNG in the cage's UVs. */
-  png(): Promise<Blob>
-  linked: LinkedLayers
-}
 
 /** Lets what is shown be taken away: as a model, as zones, as code, as a link. */
 export class Take {
   readonly #session: Session
-  readonly #viewer: Viewer | undefined
-  readonly #paints: Paints
+  readonly #linked: Linked
+  readonly #png: () => Promise<Blob>
   readonly #link = element('share-link', HTMLAnchorElement)
   readonly #code = element('code', HTMLElement)
   #due = false
 
-  constructor(session: Session, viewer: Viewer | undefined, paints: Paints) {
+  /** @param png Makes a PNG of what the paints look like together, in the cage's UVs. */
+  constructor(linked: Linked, png: () => Promise<Blob>) {
+    const { session } = linked
     this.#session = session
-    this.#viewer = viewer
-    this.#paints = paints
+    this.#linked = linked
+    this.#png = png
     const section = element('take', HTMLElement)
     element('export-glb', HTMLButtonElement).addEventListener('click', () => this.#exportGlb())
     element('export-zones', HTMLButtonElement).addEventListener('click', () => {
@@ -61,14 +55,13 @@ export class Take {
     this.#code.textContent = codeFor(this.#session)[kind]
 
     showNotice('pose-note', this.#session.moved ? 'Model and code are of the shape that the file has, zones of the one that you see.' : '')
-    const { linked } = this.#paints
-    const link = linkOf(this.#session, linked, this.#viewer?.angle)
+    const link = linkOf(this.#linked)
     if (link) this.#link.href = link
     else this.#link.removeAttribute('href')
     this.#link.ariaDisabled = link ? null : 'true'
     element('take-hint', HTMLElement).textContent = !link
       ? 'A link can only lead to samples: your own files stay on this device.'
-      : linked.left > 0
+      : this.#linked.layers.left > 0
         ? 'The link leaves out paints of your own: they stay on this device.'
         : 'The link opens this sample with its paints, rules and view, seen from where you see it.'
   }
@@ -95,7 +88,7 @@ export class Take {
     try {
       const { exportGlb } = await import('./export')
       const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto
-      const { glb, baked } = await exportGlb(this.#session, await this.#paints.png(), into)
+      const { glb, baked } = await exportGlb(this.#session, await this.#png(), into)
       download(glb, `${this.#stem}-painted.glb`)
       announce(`The model is saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`)
       showNotice('export-note', baked ? sayBaked(baked) : '')
