@@ -1,5 +1,8 @@
 import assert from 'node:assert/strict'
 import { readFileSync } from 'node:fs'
+import { mkdir, mkdtemp, rm, truncate, writeFile } from 'node:fs/promises'
+import { tmpdir } from 'node:os'
+import path from 'node:path'
 import { after, before, test } from 'node:test'
 import { NodeIO } from '@gltf-transform/core'
 import { PNG } from 'pngjs'
@@ -34,6 +37,7 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
   { what: 'a file that is no GLB', input: 'target', file: glb('poem.glb', Buffer.from('Shall I compare thee to a summer’s day?')), says: /poem\.glb: .*not a GLB or glTF file/ },
   { what: 'JSON that is no glTF', input: 'cage', file: glb('package.gltf', Buffer.from('{"name":"thing"}')), says: /package\.gltf: .*not a glTF model/ },
   { what: 'an empty file', input: 'target', file: glb('nothing.glb', Buffer.alloc(0)), says: /nothing\.glb: .*empty/ },
+  { what: 'a model of points', input: 'target', file: glb('cloud.glb', writeGlb({ ...sound, mode: 0 })), says: /cloud\.glb: there are no triangles in it/ },
   { what: 'a texture that is no image', input: 'texture', file: { name: 'text.png', mimeType: 'image/png', buffer: Buffer.from('no image') }, says: /text\.png: .*no image/ },
 ]
 
@@ -88,13 +92,58 @@ test('a target whose image is damaged is shown in white, and one line says which
   complaints.length = 0
 })
 
-test('a dropped file that is nothing the page knows is told apart by name', async () => {
+test('of what is dropped the page takes what it knows, and says what it does not, in one sentence', async () => {
   const { page } = visit
-  await drop(page, [{ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('hello') }])
+  const text = { name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('hello') }
+  await drop(page, [text])
   assert.equal(await settled(page), 'error')
-  assert.match(await shownError(page), /notes\.txt: .*not a GLB or glTF file/)
+  assert.equal(await shownError(page), 'notes.txt: this is not a GLB or glTF file; models are wanted as these, paints as PNG, JPEG or WebP')
   await page.locator('#alert-close').click()
   assert.equal(await shownError(page), '')
+
+  const [small, large, cage] = [glb('cage-a.glb', writeGlb(tetrahedron())), glb('cage-b.glb', lizard), glb('cage.glb', writeGlb(tetrahedron(2)))]
+  for (const [files, slots, says] of [
+    [[small, large], ['cage-b.glb', 'cage-a.glb'], 'cage-a.glb and cage-b.glb are both called cages: the one with more triangles is taken for the target.'],
+    [[{ ...small, name: 'a.glb' }, cage, text, { ...small, name: 'c.glb' }], ['a.glb', 'cage.glb'], 'notes.txt and 1 more are left out: one target, one cage and one paint are taken at a time.'],
+  ] as const) {
+    await drop(page, [...files])
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    assert.deepEqual([await page.locator('#target-name').textContent(), await page.locator('#cage-name').textContent()], slots)
+    assert.equal(await shownError(page), says)
+  }
+})
+
+test('folders may be dropped, with what lies in them; an empty one is told of, and a file too large', async () => {
+  const { page, complaints } = visit
+  const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-drop-'))
+  try {
+    const session = await page.context().newCDPSession(page)
+    const dropFolder = async (name: string): Promise<void> => {
+      const data = { items: [], files: [path.join(folder, name)], dragOperationsMask: 1 }
+      for (const type of ['dragEnter', 'dragOver', 'drop'] as const) await session.send('Input.dispatchDragEvent', { type, x: 300, y: 200, data })
+    }
+    await mkdir(path.join(folder, 'nothing'))
+    await dropFolder('nothing')
+    await page.getByTestId('error').waitFor()
+    assert.equal(await shownError(page), 'nothing: this folder is empty')
+    await mkdir(path.join(folder, 'avatar/fitting'), { recursive: true })
+    await writeFile(path.join(folder, 'avatar/head.glb'), lizard)
+    await writeFile(path.join(folder, 'avatar/fitting/cage.glb'), writeGlb(tetrahedron(9)))
+    await dropFolder('avatar')
+    await page.locator('#target-name', { hasText: 'head.glb' }).waitFor()
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    assert.equal(await page.locator('#cage-name').textContent(), 'cage.glb')
+
+    const huge = path.join(folder, 'huge.glb')
+    await writeFile(huge, '')
+    await truncate(huge, 3e9) // more than a page can hold at once, of which nothing is on the disk
+    await page.getByTestId('target-input').setInputFiles(huge)
+    assert.equal(await settled(page), 'error')
+    assert.equal(await shownError(page), 'huge.glb: the browser cannot read this file of 3,000 MB; it may be too large, or gone')
+    assert.deepEqual(complaints, [])
+  } finally {
+    await rm(folder, { recursive: true })
+  }
 })
 
 test('a page without its samples says so and takes files all the same', async () => {

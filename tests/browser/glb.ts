@@ -5,10 +5,12 @@ export interface RawMesh {
   positions: Float32Array
   indices: Uint16Array
   uvs?: Float32Array
+  /** What its indices join, as glTF has it: 0 points, 4 triangles, which they are unless it says so. */
+  mode?: number
 }
 
 /** Writes a GLB without looking at what is in it, so that it may be wrong. */
-export function writeGlb({ positions, indices, uvs }: RawMesh): Buffer {
+export function writeGlb({ positions, indices, uvs, mode = 4 }: RawMesh): Buffer {
   const arrays = [positions, indices, ...(uvs ? [uvs] : [])]
   let byteOffset = 0
   const bufferViews = arrays.map(({ byteLength }) => {
@@ -27,7 +29,7 @@ export function writeGlb({ positions, indices, uvs }: RawMesh): Buffer {
     scene: 0,
     scenes: [{ nodes: [0] }],
     nodes: [{ mesh: 0, name: 'thing' }],
-    meshes: [{ primitives: [{ attributes, indices: 1 }] }],
+    meshes: [{ primitives: [{ attributes, indices: 1, mode }] }],
     accessors,
     bufferViews,
     buffers: [{ byteLength: byteOffset }],
@@ -42,7 +44,7 @@ export function writeGlb({ positions, indices, uvs }: RawMesh): Buffer {
 }
 
 /** A tetrahedron about the origin with corners at distance `size`; counter-clockwise seen from outside. */
-export function tetrahedron(size = 1): Required<RawMesh> {
+export function tetrahedron(size = 1): Required<Omit<RawMesh, 'mode'>> {
   const corners = [1, 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1].map((value) => (value * size) / Math.sqrt(3))
   return {
     positions: Float32Array.from(corners),

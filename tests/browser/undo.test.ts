@@ -145,9 +145,9 @@ test('a drag is one step, and so is a key held down', async () => {
 
 test('undoing leaves alone what came of another model since', async () => {
   const { page } = visit
-  await page.getByRole('radio', { name: 'War paint' }).check({ force: true })
+  await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true })
   assert.equal(await settled(page), 'ready', await shownError(page))
-  assert.match(await undoTitle(), /choice of War paint/)
+  assert.match(await undoTitle(), /choice of Tiger stripes/)
   await control('button', 'Reorder red.png').focus()
   const before = await names(page)
   await page.keyboard.press('ArrowDown')
@@ -156,7 +156,7 @@ test('undoing leaves alone what came of another model since', async () => {
   await page.getByTestId('sample-select').selectOption('human')
   assert.equal(await settled(page), 'ready')
   await page.keyboard.press('Control+z')
-  assert.deepEqual(await names(page), before.map((name) => (name === 'War paint' ? 'Painted skull' : name)))
+  assert.deepEqual(await names(page), before.map((name) => (name === 'Tiger stripes' ? 'Painted skull' : name)))
   // Which of its paints lay under everything is not a step on another model.
   assert.doesNotMatch(await undoTitle(), /choice/)
 })

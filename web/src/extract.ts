@@ -48,11 +48,12 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute
  * mirrored parts is flipped, so that every triangle keeps its outside.
  * @param root   A scene that has not been moved since it was loaded.
  * @param nameOf What its file calls a mesh, if it does.
- * @throws Error that names the part and the element, where a part cannot be read on its own.
+ * @throws Error that names the part and the element, where a part cannot be read on its own; or if there is none.
  */
 export async function extractMesh(root: Object3D, nameOf: (mesh: Mesh) => string | undefined = () => undefined): Promise<ExtractedMesh> {
   root.updateMatrixWorld(true)
   const parts = listParts(root, nameOf)
+  if (parts.length === 0) throw new Error('there are no triangles in it: a mesh is wanted, not points, lines or an empty scene')
   const last = parts.at(-1)
   const vertexCount = last ? last.firstVertex + last.vertexCount : 0
   const triangleCount = last ? last.firstTriangle + last.triangleCount : 0
@@ -73,7 +74,7 @@ export async function extractMesh(root: Object3D, nameOf: (mesh: Mesh) => string
     groups.fill(group, part.firstVertex, part.firstVertex + part.vertexCount)
   }
 
-  const hasUvs = parts.length > 0 && parts.every((part) => part.mesh.geometry.hasAttribute('uv'))
+  const hasUvs = parts.every((part) => part.mesh.geometry.hasAttribute('uv'))
   return { positions, indices, groups, parts, ...(hasUvs && { uvs: copyUvs(parts, vertexCount) }) }
 }
 

@@ -66,5 +66,5 @@ function parse(text: Uint8Array, binary: boolean): GltfJson {
   } catch {
     // Told below, in words that say what was expected.
   }
-  throw new Error(binary ? 'the GLB is damaged: its JSON cannot be read' : 'this is not a GLB or glTF file')
+  throw new Error(binary ? 'the GLB is damaged: its JSON cannot be read' : 'this is not a GLB or glTF file; models are wanted as these, paints as PNG, JPEG or WebP')
 }

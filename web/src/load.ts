@@ -30,7 +30,9 @@ export interface Model {
 export async function loadModel(file: File, renderer: WebGLRenderer | undefined, companions: readonly File[] = []): Promise<Model> {
   const urls = new Map<string, string>()
   try {
-    const bytes = await file.arrayBuffer()
+    const bytes = await file.arrayBuffer().catch(() => {
+      throw new Error(`the browser cannot read this file of ${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB; it may be too large, or gone`)
+    })
     const head = readGltfHead(bytes)
     for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions)))
 

@@ -79,13 +79,13 @@ export class Opener {
   }
 
   /** Takes in files of the visitor's own. */
-  #take({ target, cage, texture, unclear, all }: Intake): void {
+  #take({ target, cage, texture, unclear, doubts, all }: Intake): void {
     const wanted: Wanted = {}
     const load = (file: File): Promise<Model> => loadModel(file, this.#renderer, all)
     if (target) wanted.target = load(target)
     if (cage) wanted.cage = load(cage)
     const [one, other] = unclear
-    if (!target && one && other) {
+    if (one && other) {
       // Nothing in their names tells: the cage is the one with fewer triangles.
       const pair = Promise.all([load(one), load(other)]).then((models) =>
         models.sort((a, b) => b.mesh.indices.length - a.mesh.indices.length),
@@ -95,6 +95,12 @@ export class Opener {
     }
     if (texture) wanted.paint = loadPaint(texture)
     this.#session.want(wanted)
+    if (doubts.length === 0) return
+    const end = this.#session.on('progress', ({ state }) => {
+      if (state === 'working') return
+      end()
+      if (state !== 'failed') showError(doubts.join(' '))
+    })
   }
 
   #describe({ target, cage, paint }: Shown): void {
