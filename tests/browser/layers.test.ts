@@ -1,7 +1,9 @@
 import assert from 'node:assert/strict'
 import { after, before, test } from 'node:test'
 import type { Locator } from 'playwright-core'
+import { PNG } from 'pngjs'
 import { difference, look, modelArea } from './picture'
+import { saved, validModel } from './saved'
 import { settled, shownError, Site, type Upload, type Visit } from './site'
 import { filled, image, names, rows, savedTexture, texel } from './texture'
 
@@ -9,12 +11,16 @@ let site: Site
 let visit: Visit
 before(async () => {
   site = await Site.open()
-  // Counts how often a level of the composite is made: the last thing that is done for it.
+  // Counts how often a level of the composite is made: the last thing that is done for it. And files made on the page's thread.
   visit = await site.visit(
     { viewport: { width: 900, height: 500 } },
     `globalThis.composed = 0
     WebGL2RenderingContext.prototype.blitFramebuffer = new Proxy(WebGL2RenderingContext.prototype.blitFramebuffer, {
       apply: (original, gl, args) => (globalThis.composed++, Reflect.apply(original, gl, args)),
+    })
+    globalThis.encoded = 0
+    OffscreenCanvas.prototype.convertToBlob = new Proxy(OffscreenCanvas.prototype.convertToBlob, {
+      apply: (original, canvas, args) => (globalThis.encoded++, Reflect.apply(original, canvas, args)),
     })`,
   )
   await visit.page.locator('input[value=result]').check({ force: true })
@@ -99,6 +105,16 @@ test('layers join by the formulas of their blend modes, in linear light, with al
     await control('combobox', 'Blending of above.png').selectOption(blend)
     await assertTexture((column, row) => joined(below(column), above(row), blend), blend)
   }
+})
+
+test('a file is made of the texture off the page’s thread, where browsers wait for seconds until that rests', async () => {
+  const { page } = visit
+  const texture = await savedTexture(page)
+  await page.locator('#paint-into [value=overlay]').check({ force: true })
+  const document = await validModel((await saved(page, 'export-glb')).bytes)
+  const images = document.getRoot().listTextures().map((texture) => texture.getImage()!).filter((image) => PNG.sync.read(Buffer.from(image)).data.equals(texture.data))
+  assert.equal(images.length, 1, 'the same in a model')
+  assert.equal(await page.evaluate('encoded'), 0)
 })
 
 test('opacity, tint and the eye of a layer act by the same formulas', async () => {

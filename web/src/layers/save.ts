@@ -1,5 +1,6 @@
 import type { WebGLRenderer } from 'three'
 import { element, showError } from '../page'
+import { pngOf } from '../png'
 import { download } from '../take/download'
 import type { Viewer } from '../viewer'
 import type { Composite } from './composite'
@@ -11,10 +12,7 @@ import { readStraight } from './straight'
  */
 async function compositePng(renderer: WebGLRenderer, composite: Composite): Promise<Blob> {
   composite.update(renderer)
-  const image = readStraight(renderer, composite.texture, composite.size)
-  const canvas = new OffscreenCanvas(image.width, image.height)
-  canvas.getContext('2d')!.putImageData(image, 0, 0)
-  return canvas.convertToBlob({ type: 'image/png' })
+  return pngOf(readStraight(renderer, composite.texture, composite.size))
 }
 
 /** Lets the texture be saved. @returns What makes a PNG of it. */

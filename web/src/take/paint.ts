@@ -3,6 +3,7 @@ import { kBlends, type Blend, type Layer, type Style } from '../layers/layer'
 import type { LayerStack } from '../layers/stack'
 import type { Opener } from '../open'
 import { titleOf } from '../paint'
+import { pngOf } from '../png'
 import { kChecker, paintName } from '../samples'
 import type { Session } from '../session'
 import type { LinkedLayer } from './link'
@@ -63,8 +64,5 @@ function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Style {
 function latestPng({ layers }: LayerStack): Promise<Blob> {
   const layer = layers.findLast(({ visible }) => visible)
   if (!layer) throw new Error('There is no paint.')
-  const image = layer.sheet.texture.image as ImageBitmap | HTMLCanvasElement
-  const canvas = new OffscreenCanvas(image.width, image.height)
-  canvas.getContext('2d')!.drawImage(image, 0, 0)
-  return canvas.convertToBlob({ type: 'image/png' })
+  return pngOf(layer.sheet.texture.image as ImageBitmap | HTMLCanvasElement)
 }

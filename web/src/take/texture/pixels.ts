@@ -1,3 +1,5 @@
+import { encodePng } from '../../encode-png'
+
 /** An image: 4 bytes per pixel, sRGB and alpha, colours not multiplied by it; its upper row first, as glTF's UVs have it. */
 export interface Pixels {
   width: number
@@ -38,9 +40,5 @@ export async function readPixels(file: Blob, fit: (width: number, height: number
 /** Writes a PNG that has every byte of the image. */
 export async function writePng({ width, height, data }: Pixels): Promise<Uint8Array<ArrayBuffer>> {
   const bitmap = await createImageBitmap(new ImageData(data, width, height), { premultiplyAlpha: 'none' })
-  const canvas = new OffscreenCanvas(width, height)
-  // This kind of canvas shows the image as it is; one in 2D would multiply its colours by alpha.
-  canvas.getContext('bitmaprenderer')!.transferFromImageBitmap(bitmap)
-  const file = await canvas.convertToBlob({ type: 'image/png' })
-  return new Uint8Array(await file.arrayBuffer())
+  return new Uint8Array(await (await encodePng(bitmap)).arrayBuffer())
 }
