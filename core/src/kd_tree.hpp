@@ -66,6 +66,7 @@ struct CageTree {
   std::uint32_t entryCount = 0;        ///< Nodes of that level.
   std::uint32_t levelsBelowEntry = 0;
   double extent = 0;                   ///< Longest side of its box, scaled.
+  float middle[4] = {};                ///< Of its box: x, y, z, 0, scaled. From there on coordinates have few roundings.
 };
 
 /// @return false if memory ran out.
@@ -129,8 +130,8 @@ class NearestSearch {
   float fixedSlack_;                  ///< and s² · (1 + 1/r).
   std::uint32_t lastLeaf_ = 0;
   alignas(16) float points_[kGroup][4];   ///< x, y, z, 0 each.
-  alignas(16) float columns_[3][kGroup];  ///< The same, by axis, less the first point: what is left of it has few roundings.
-  alignas(16) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
+  alignas(32) float columns_[3][kGroup];  ///< The same, by axis, from the middle of the cage.
+  alignas(32) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
   std::uint32_t* list_;               ///< Room for all leaves, and four more.
   std::uint32_t* otherList_;
   std::uint32_t nearCount_[kGroup];   ///< From `kRoom` on some may be written over.
@@ -189,10 +190,16 @@ class HitSearch {
   /// What is left of it for rays that go alone, four lists of one at each level: a tree is not that deep.
   static constexpr std::ptrdiff_t kLastRoom = 4 * 64;
 
-  void enter(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept;
-  void testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* lists,
+  /// Lists name rays by where in memory their slabs are, from the first on.
+  static_assert(kMostRays * sizeof(Slabs) <= std::size_t{1} << 16);
+  [[nodiscard]] Slabs& slabsOf(std::uint16_t ray) const noexcept {
+    return *reinterpret_cast<Slabs*>(reinterpret_cast<char*>(slabs_) + ray);
+  }
+
+  void enter(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept;
+  void testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
                  std::uint32_t (&counts)[4]) const noexcept;
-  void testLeaf(const Node& node, int child, const std::uint16_t* ids, std::uint32_t count) noexcept;
+  void testLeaf(const Node& node, int child, const std::uint16_t* rays, std::uint32_t count) noexcept;
 
   const RayTree& tree_;
   double from_;

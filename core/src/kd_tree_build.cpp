@@ -15,9 +15,10 @@ namespace {
 /// ray's origin by at most 2^-23 of their size, and this is eight times that. The lattice tests leak without it.
 constexpr float kPadding = 1e-6f;
 
-/// The same for boxes that are turned: their axes are rounded as well, and `NearestSearch` writes a tag over the last bits of
-/// the squared distance, which makes the distance larger by up to 2^-18 of itself, that is of √3 scenes at most.
-constexpr float kTurnedPadding = 1e-5f;
+/// The same for boxes that are turned: `NearestSearch` writes a tag over the last bits of the squared distance, which makes the
+/// distance larger by up to 2^-18 of itself, that is of √3 scenes at most; coordinates along axes, themselves rounded, are
+/// sums of three products that are each rounded by up to 2^-24 of a scene, of the box's corners and of points alike.
+constexpr float kTurnedPadding = 1.2e-5f;
 
 /// A coordinate where nothing is: products with it, and its square, are still finite.
 constexpr float kFar = 1e15f;
@@ -296,6 +297,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     simd::store(centres + 4 * i, box.low + box.high);
     order[i] = i;
   }
+  simd::store(out.middle, all.low * splat(0.5f) + all.high * splat(0.5f));
   std::uint32_t run = 4;
   while (run < cage.count) run *= 4;
   CageOrder(centres, order).sort(0, cage.count, run);
@@ -317,7 +319,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
       }
     }
     boxes[leaf] = box.padded(kPadding * units.reach);
-    leafBoxes[leaf] = boxAround(nearLeaves[leaf], triangles, kTurnedPadding * units.reach);
+    leafBoxes[leaf] = boxAround(nearLeaves[leaf], triangles, out.middle, kTurnedPadding * units.reach);
   }
   fillNodes(boxes, nodes, out);
   scratch.rewind(mark);

@@ -13,7 +13,9 @@ namespace {
 using simd::f32x4;
 using simd::load;
 using simd::mask4;
+using simd::repeat;
 using simd::splat;
+using simd::wide;
 
 /// The sine of the angle between a ray and a plane under which the ray lies in the plane: less cannot be told from nothing
 /// in double precision between vertices that are floats. (In exact arithmetic such a ray has edge functions of 0 and is turned
@@ -153,27 +155,28 @@ void HitSearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noe
     }
     slabs_[i].end() = looseEnd(rays[i].end);
     hit[i] = false;
-    lists_[i] = static_cast<std::uint16_t>(i);
+    lists_[i] = static_cast<std::uint16_t>(i * sizeof(Slabs));
   }
-  if (count > 0) enter(tree_.nodes[0], lists_, count, lists_ + count);
+  if (count > 0) enter(tree_.nodes[0], lists_, count, lists_ + count + 1);
 }
 
-/// Sends rays into a node. `free` is where lists may be put.
-void HitSearch::enter(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* free) noexcept {
+/// Sends rays into a node. `free`, behind the rays and room for one more, is where lists may be put.
+void HitSearch::enter(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept {
   const std::ptrdiff_t room = lists_ + kListRoom - kLastRoom - free;
-  if (count > 1 && room < 4 * static_cast<std::ptrdiff_t>(count)) {
-    enter(node, ids, count / 2, free);
-    enter(node, ids + count / 2, count - count / 2, free);
+  if (count > 1 && room < 4 * static_cast<std::ptrdiff_t>(count + 1)) {
+    enter(node, rays + count / 2, count - count / 2, free);
+    enter(node, rays, count / 2, free);
     return;
   }
   // Once a child is done with, the lists of the next one's children may lie over its own.
-  std::uint16_t* lists[4] = {free + 3 * count, free + 2 * count, free + count, free};
+  const std::uint32_t size = count + 1;
+  std::uint16_t* lists[4] = {free + 3 * size, free + 2 * size, free + size, free};
   std::uint32_t counts[4];
-  testBoxes(node, ids, count, free, counts);
+  testBoxes(node, rays, count, free, counts);
   // Rays that are neighbours go the same way: long lists are pushed together, for the levels to come.
   if (count >= kLong) {
     for (int i = 3; i-- > 0;) {
-      std::uint16_t* const list = lists[i + 1] + counts[i + 1];
+      std::uint16_t* const list = lists[i + 1] + counts[i + 1] + 1;
       std::memmove(list, lists[i], counts[i] * sizeof *list);
       lists[i] = list;
     }
@@ -183,66 +186,74 @@ void HitSearch::enter(const Node& node, const std::uint16_t* ids, std::uint32_t 
     if (node.child[i] & kLeafBit) {
       testLeaf(node, i, lists[i], counts[i]);
     } else {
-      enter(tree_.nodes[node.child[i]], lists[i], counts[i], lists[i] + counts[i]);
+      enter(tree_.nodes[node.child[i]], lists[i], counts[i], lists[i] + counts[i] + 1);
     }
   }
 }
 
 /// Lists, for each of four boxes, the rays that enter it at a distance that is not less than `from`, before their end. The lists
-/// are put one behind the other, the last first, with room for all rays each.
-void HitSearch::testBoxes(const Node& node, const std::uint16_t* ids, std::uint32_t count, std::uint16_t* lists,
+/// are put one behind the other, the last first, with room for all rays and one more each.
+void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
                           std::uint32_t (&counts)[4]) const noexcept {
-  const f32x4 low[3] = {load(node.low[0]), load(node.low[1]), load(node.low[2])};
-  const f32x4 high[3] = {load(node.high[0]), load(node.high[1]), load(node.high[2])};
-  const f32x4 from = splat(boxFrom_);
-  const std::uint32_t begins[4] = {3 * count, 2 * count, count, 0};
+  const wide low[3] = {repeat(load(node.low[0])), repeat(load(node.low[1])), repeat(load(node.low[2]))};
+  const wide high[3] = {repeat(load(node.high[0])), repeat(load(node.high[1])), repeat(load(node.high[2]))};
+  const wide from = simd::splatWide(boxFrom_);
+  const std::uint32_t room = count + 1;
+  const std::uint32_t begins[4] = {3 * room, 2 * room, room, 0};
   simd::count4 ends = simd::load(begins);  // Of the lists.
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint16_t id = ids[i];
-    const Slabs& ray = slabs_[id];
-    f32x4 first = from;
-    f32x4 last = simd::splatAt<3>(ray.inverse);
-    const auto cut = [&](int k, f32x4 inverse, f32x4 offset) {
+  simd::count4 before = ends;              // Without the last ray.
+  if (simd::kParts > 1) rays[count] = rays[count - 1];
+  for (const std::uint16_t* next = rays; next < rays + count; next += simd::kParts) {
+    const std::uint16_t ray[] = {next[0], next[simd::kParts - 1]};  // As many as there are parts.
+    const wide inverse = simd::loadParts([&](int i) { return slabsOf(ray[i]).inverse; });
+    const wide offset = simd::loadParts([&](int i) { return slabsOf(ray[i]).offset; });
+    wide first = from;
+    wide last = simd::splatLane<3>(inverse);
+    const auto cut = [&](int k, wide inverseOfAxis, wide offsetOfAxis) {
       // Rays of all directions go together: which side is the near one shows only now.
-      const f32x4 toLow = simd::multiplyAdd(low[k], inverse, offset);
-      const f32x4 toHigh = simd::multiplyAdd(high[k], inverse, offset);
+      const wide toLow = simd::multiplyAdd(low[k], inverseOfAxis, offsetOfAxis);
+      const wide toHigh = simd::multiplyAdd(high[k], inverseOfAxis, offsetOfAxis);
       first = simd::max(first, simd::min(toLow, toHigh));
       last = simd::min(last, simd::max(toLow, toHigh));
     };
-    cut(0, simd::splatAt<0>(ray.inverse), simd::splatAt<0>(ray.offset));
-    cut(1, simd::splatAt<1>(ray.inverse), simd::splatAt<1>(ray.offset));
-    cut(2, simd::splatAt<2>(ray.inverse), simd::splatAt<2>(ray.offset));
-    // Put down at the end of every list, but only counted where it belongs: no branch.
-    lists[simd::countOf<0>(ends)] = id;
-    lists[simd::countOf<1>(ends)] = id;
-    lists[simd::countOf<2>(ends)] = id;
-    lists[simd::countOf<3>(ends)] = id;
-    ends = simd::countTrue(ends, first <= last);
+    cut(0, simd::splatLane<0>(inverse), simd::splatLane<0>(offset));
+    cut(1, simd::splatLane<1>(inverse), simd::splatLane<1>(offset));
+    cut(2, simd::splatLane<2>(inverse), simd::splatLane<2>(offset));
+    simd::forParts(first <= last, [&](int i, mask4 enters) {
+      // Put down at the end of every list, but only counted where it belongs: no branch.
+      lists[simd::countOf<0>(ends)] = ray[i];
+      lists[simd::countOf<1>(ends)] = ray[i];
+      lists[simd::countOf<2>(ends)] = ray[i];
+      lists[simd::countOf<3>(ends)] = ray[i];
+      before = ends;
+      ends = simd::countTrue(ends, enters);
+    });
   }
-  simd::store(counts, ends);
+  simd::store(counts, count % simd::kParts == 0 ? ends : before);
   for (int i = 0; i < 4; ++i) counts[i] -= begins[i];
 }
 
 /// Tries rays with the four triangles from the first of a leaf on.
-void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* ids, std::uint32_t count) noexcept {
+void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* rays, std::uint32_t count) noexcept {
   const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
   const RayLeaf leaf(tree_, node.child[child] & ~kLeafBit, side(0) + side(1) + side(2));
   const f32x4 loose = splat(loose_);
   const f32x4 zero = splat(zero_);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint16_t id = ids[i];
-    if (slabs_[id].end() < loose_) continue;
+    Slabs& slabs = slabsOf(rays[i]);
+    if (slabs.end() < loose_) continue;
+    const std::size_t id = rays[i] / sizeof(Slabs);
     Ray& ray = rays_[id];
     for (unsigned close = mightHit(leaf, ray, loose, zero); close != 0; close &= close - 1) {
       const double distance = hitDistance(leaf, std::countr_zero(close), ray);
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
       if (find_ == Find::any) {
-        slabs_[id].end() = static_cast<float>(kNowhere);
+        slabs.end() = static_cast<float>(kNowhere);
         break;
       }
       ray.end = distance;
-      slabs_[id].end() = looseEnd(distance);
+      slabs.end() = looseEnd(distance);
     }
   }
 }

@@ -11,8 +11,11 @@ namespace cagecast {
 namespace {
 
 using simd::f32x4;
+using simd::kWide;
 using simd::load;
+using simd::loadWide;
 using simd::splat;
+using simd::wide;
 
 /// Squared distance of a box to four boxes.
 f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x4 (&high)[3]) {
@@ -89,43 +92,38 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
 
 void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept {
   // Squared distances of the points to the leaves' boxes, each tagged with its leaf, and the least of each point.
-  alignas(16) float distances[kBatch][kGroup];
-  alignas(16) float least[kGroup];
-  std::fill(least, least + kGroup, std::numeric_limits<float>::infinity());
+  alignas(32) float distances[kBatch][kGroup];
+  wide nearest[kGroup / kWide];
+  for (wide& n : nearest) n = simd::splatWide(std::numeric_limits<float>::infinity());
   const auto leafAt = [leaves](std::uint32_t j) { return (leaves[j] & ~kLeafBit) / 4; };
   for (std::uint32_t j = 0; j < leafCount; ++j) {
     const LeafBox& box = tree_.boxes[leafAt(j)];
-    // Where the first point is in the box's coordinates; the others' differ by products with the axes.
-    const f32x4 offset = load(points_[0]) - load(box.origin);
-    const f32x4 first = simd::multiplyAdd(
-        simd::splatLane<2>(offset), load(box.axes[2]),
-        simd::multiplyAdd(simd::splatLane<1>(offset), load(box.axes[1]), simd::splatLane<0>(offset) * load(box.axes[0])));
-    const f32x4 low = load(box.low) - first;
-    const f32x4 high = load(box.high) - first;
-    f32x4 squared[kGroup / simd::kWidth];
+    wide squared[kGroup / kWide];
     const auto addAxis = [&]<int axis>(std::integral_constant<int, axis>) {
-      const f32x4 x = simd::splatAt<axis>(box.axes[0]);
-      const f32x4 y = simd::splatAt<axis>(box.axes[1]);
-      const f32x4 z = simd::splatAt<axis>(box.axes[2]);
-      const f32x4 begin = simd::splatLane<axis>(low);
-      const f32x4 end = simd::splatLane<axis>(high);
-      for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
-        const f32x4 place = simd::multiplyAdd(
-            z, load(columns_[2] + i), simd::multiplyAdd(y, load(columns_[1] + i), x * load(columns_[0] + i)));
-        const f32x4 outside = place - simd::clamp(place, begin, end);
-        f32x4& sum = squared[i / simd::kWidth];
+      const wide x = simd::splatWideAt<axis>(box.axes[0]);
+      const wide y = simd::splatWideAt<axis>(box.axes[1]);
+      const wide z = simd::splatWideAt<axis>(box.axes[2]);
+      const wide low = simd::splatWideAt<axis>(box.low);
+      const wide high = simd::splatWideAt<axis>(box.high);
+      for (unsigned i = 0; i < kGroup; i += kWide) {
+        const wide place = simd::multiplyAdd(
+            z, loadWide(columns_[2] + i), simd::multiplyAdd(y, loadWide(columns_[1] + i), x * loadWide(columns_[0] + i)));
+        const wide outside = place - simd::clamp(place, low, high);
+        wide& sum = squared[i / kWide];
         sum = axis == 0 ? outside * outside : simd::multiplyAdd(outside, outside, sum);
       }
     };
     addAxis(std::integral_constant<int, 0>{});
     addAxis(std::integral_constant<int, 1>{});
     addAxis(std::integral_constant<int, 2>{});
-    for (unsigned i = 0; i < kGroup; i += simd::kWidth) {
-      const f32x4 tagged = simd::withTag<kTagBits>(squared[i / simd::kWidth], j);
+    for (unsigned i = 0; i < kGroup; i += kWide) {
+      const wide tagged = simd::withTag<kTagBits>(squared[i / kWide], j);
       simd::store(distances[j] + i, tagged);
-      simd::store(least + i, simd::min(tagged, load(least + i)));
+      nearest[i / kWide] = simd::min(tagged, nearest[i / kWide]);
     }
   }
+  alignas(32) float least[kGroup];
+  for (unsigned i = 0; i < kGroup; i += kWide) simd::store(least + i, nearest[i / kWide]);
   // Each point begins with the leaf whose box is nearest to it: the other leaves then have little to offer.
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!(least[i] <= limits_[i])) continue;
@@ -134,9 +132,9 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
     distances[j][i] = std::numeric_limits<float>::infinity();
   }
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    unsigned members = 0;
-    for (unsigned i = 0; i < kGroup; i += simd::kWidth) members |= simd::bits(load(distances[j] + i) <= load(limits_ + i)) << i;
-    if (members != 0) searchLeaf(leafAt(j), members);
+    simd::wideMask close[kGroup / kWide];
+    for (unsigned i = 0; i < kGroup; i += kWide) close[i / kWide] = loadWide(distances[j] + i) <= loadWide(limits_ + i);
+    if (const unsigned members = simd::bits(close); members != 0) searchLeaf(leafAt(j), members);
   }
 }
 
@@ -150,7 +148,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
       lowCorner = simd::min(lowCorner, rows[j]);
       highCorner = simd::max(highCorner, rows[j]);
       simd::store(points_[i + j], rows[j]);
-      rows[j] = rows[j] - load(positions);
+      rows[j] = rows[j] - load(tree_.middle);
     }
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);

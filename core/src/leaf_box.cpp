@@ -1,6 +1,7 @@
 #include "leaf_box.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "kd_tree.hpp"
 
@@ -15,7 +16,7 @@ using simd::load;
 
 }  // namespace
 
-LeafBox boxAround(const NearLeaf& leaf, const CageTriangle* const (&triangles)[4], float padding) noexcept {
+LeafBox boxAround(const NearLeaf& leaf, const CageTriangle* const (&triangles)[4], const float* middle, float padding) noexcept {
   // One axis along the longest edge of the first triangle, one as near to the normals of all as that allows.
   float x[3];
   float z[3];
@@ -35,7 +36,6 @@ LeafBox boxAround(const NearLeaf& leaf, const CageTriangle* const (&triangles)[4
   LeafBox box{};
   for (int k = 0; k < 3; ++k) {
     z[k] = size > kNoDirection ? z[k] / size : leaf.axes[2][k][0];
-    box.origin[k] = leaf.origin[k][0];
     box.axes[k][0] = x[k];
     box.axes[k][2] = z[k];
   }
@@ -44,11 +44,11 @@ LeafBox boxAround(const NearLeaf& leaf, const CageTriangle* const (&triangles)[4
     const int m = (k + 2) % 3;
     box.axes[k][1] = z[l] * x[m] - z[m] * x[l];
   }
-  f32x4 low = simd::splat(0);
-  f32x4 high = low;
+  f32x4 low = simd::splat(std::numeric_limits<float>::infinity());
+  f32x4 high = simd::splat(-std::numeric_limits<float>::infinity());
   for (const CageTriangle* triangle : triangles) {
     for (const float* corner : {triangle->a, triangle->b, triangle->c}) {
-      const f32x4 offset = load(corner) - load(box.origin);
+      const f32x4 offset = load(corner) - load(middle);
       const f32x4 place = simd::splatLane<0>(offset) * load(box.axes[0]) + simd::splatLane<1>(offset) * load(box.axes[1]) +
                           simd::splatLane<2>(offset) * load(box.axes[2]);
       low = simd::min(low, place);

@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
-/// Four floats at a time: one layer over SSE2, NEON, WebAssembly SIMD and plain C++, with the same bits from each.
+/// Four floats at a time: one layer over SSE2, NEON, WebAssembly SIMD and plain C++, with the same bits from each. What goes by
+/// `wide` takes two times four where there is AVX.
 ///
 /// `min` and `max` are for numbers: what they make of NaN, and of 0 and −0, differs. `multiplyAdd` and `subtractProduct` round
 /// once where the processor can, else twice: they are for filters, which have room for either. Nothing else differs, and
@@ -106,6 +107,11 @@ inline f32x4 highest(f32x4 a) {
 inline float first(f32x4 a) { return _mm_cvtss_f32(a.v); }
 /// Bit i is lane i.
 inline unsigned bits(mask4 m) { return static_cast<unsigned>(_mm_movemask_ps(m.v)); }
+/// Bit i is lane i of 16.
+inline unsigned bits(const mask4 (&m)[4]) {
+  const auto pack = [](mask4 low, mask4 high) { return _mm_packs_epi32(_mm_castps_si128(low.v), _mm_castps_si128(high.v)); };
+  return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(pack(m[0], m[1]), pack(m[2], m[3]))));
+}
 /// Turns four rows into columns.
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) { _MM_TRANSPOSE4_PS(a.v, b.v, c.v, d.v); }
 
@@ -170,6 +176,12 @@ inline float first(f32x4 a) { return vgetq_lane_f32(a.v, 0); }
 inline unsigned bits(mask4 m) {
   static const uint32_t kBit[4] = {1, 2, 4, 8};
   return vaddvq_u32(vandq_u32(m.v, vld1q_u32(kBit)));
+}
+inline unsigned bits(const mask4 (&m)[4]) {
+  static const uint32_t kBit[4][4] = {{1, 2, 4, 8}, {1 << 4, 2 << 4, 4 << 4, 8 << 4}, {1 << 8, 2 << 8, 4 << 8, 8 << 8}, {1 << 12, 2 << 12, 4 << 12, 8 << 12}};
+  uint32x4_t sum = vandq_u32(m[0].v, vld1q_u32(kBit[0]));
+  for (int i = 1; i < 4; ++i) sum = vmlsq_u32(sum, m[i].v, vld1q_u32(kBit[i]));  // All bits set are the number −1.
+  return vaddvq_u32(sum);
 }
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   const float32x4x2_t ab = vtrnq_f32(a.v, b.v);
@@ -239,6 +251,9 @@ inline f32x4 highest(f32x4 a) {
 }
 inline float first(f32x4 a) { return wasm_f32x4_extract_lane(a.v, 0); }
 inline unsigned bits(mask4 m) { return wasm_i32x4_bitmask(m.v); }
+inline unsigned bits(const mask4 (&m)[4]) {
+  return wasm_i8x16_bitmask(wasm_i8x16_narrow_i16x8(wasm_i16x8_narrow_i32x4(m[0].v, m[1].v), wasm_i16x8_narrow_i32x4(m[2].v, m[3].v)));
+}
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   const v128_t abLow = wasm_i32x4_shuffle(a.v, b.v, 0, 4, 1, 5);
   const v128_t abHigh = wasm_i32x4_shuffle(a.v, b.v, 2, 6, 3, 7);
@@ -320,6 +335,7 @@ inline float first(f32x4 a) { return a.v[0]; }
 inline unsigned bits(mask4 m) {
   return unsigned{m.v[0]} | unsigned{m.v[1]} << 1 | unsigned{m.v[2]} << 2 | unsigned{m.v[3]} << 3;
 }
+inline unsigned bits(const mask4 (&m)[4]) { return bits(m[0]) | bits(m[1]) << 4 | bits(m[2]) << 8 | bits(m[3]) << 12; }
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   f32x4* rows[4] = {&a, &b, &c, &d};
   for (int i = 0; i < 4; ++i) {
@@ -344,6 +360,96 @@ inline std::uint32_t countOf(count4 c) {
 
 #endif
 
+#if defined(CAGECAST_SSE) && defined(__AVX__)
+
+/// Two times four floats.
+struct f32x8 {
+  __m256 v;
+};
+struct mask8 {
+  __m256 v;
+};
+
+/// As many floats as the processor takes at once, four or two times four.
+using wide = f32x8;
+using wideMask = mask8;
+
+inline f32x8 loadWide(const float* p) { return {_mm256_loadu_ps(p)}; }
+inline void store(float* p, f32x8 a) { _mm256_storeu_ps(p, a.v); }
+inline f32x8 splatWide(float x) { return {_mm256_set1_ps(x)}; }
+/// Float `lane` of four in memory, in all lanes.
+template <int lane>
+inline f32x8 splatWideAt(const float* p) {
+  return splatWide(p[lane]);
+}
+/// The same four floats in each part.
+inline f32x8 repeat(f32x4 a) { return {_mm256_set_m128(a.v, a.v)}; }
+/// Four floats for each part.
+/// @param at  Gives where those of part i are.
+template <typename At>
+inline f32x8 loadParts(At at) {
+  return {_mm256_set_m128(load(at(1)).v, load(at(0)).v)};
+}
+/// Lane `lane` of each part in all of that part.
+template <int lane>
+inline f32x8 splatLane(f32x8 a) {
+  return {_mm256_permute_ps(a.v, lane * 0x55)};
+}
+inline f32x8 operator-(f32x8 a, f32x8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
+inline f32x8 operator*(f32x8 a, f32x8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
+inline f32x8 multiplyAdd(f32x8 a, f32x8 b, f32x8 c) {
+#if defined(__FMA__)
+  return {_mm256_fmadd_ps(a.v, b.v, c.v)};
+#else
+  return {_mm256_add_ps(_mm256_mul_ps(a.v, b.v), c.v)};
+#endif
+}
+inline f32x8 min(f32x8 a, f32x8 b) { return {_mm256_min_ps(a.v, b.v)}; }
+inline f32x8 max(f32x8 a, f32x8 b) { return {_mm256_max_ps(a.v, b.v)}; }
+inline mask8 operator<=(f32x8 a, f32x8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OS)}; }
+template <int tagBits>
+inline f32x8 withTag(f32x8 a, std::uint32_t tag) {
+  const __m256 kept = _mm256_and_ps(a.v, _mm256_castsi256_ps(_mm256_set1_epi32(-1 << tagBits)));
+  return {_mm256_or_ps(kept, _mm256_castsi256_ps(_mm256_set1_epi32(static_cast<int>(tag))))};
+}
+/// Bit i is lane i of 16.
+inline unsigned bits(const mask8 (&m)[2]) {
+  return static_cast<unsigned>(_mm256_movemask_ps(m[0].v)) | static_cast<unsigned>(_mm256_movemask_ps(m[1].v)) << 8;
+}
+/// Calls `take` with each part.
+template <typename Take>
+inline void forParts(mask8 m, Take take) {
+  take(0, mask4{_mm256_castps256_ps128(m.v)});
+  take(1, mask4{_mm256_extractf128_ps(m.v, 1)});
+}
+
+#else
+
+using wide = f32x4;
+using wideMask = mask4;
+
+inline f32x4 loadWide(const float* p) { return load(p); }
+inline f32x4 splatWide(float x) { return splat(x); }
+template <int lane>
+inline f32x4 splatWideAt(const float* p) {
+  return splatAt<lane>(p);
+}
+inline f32x4 repeat(f32x4 a) { return a; }
+template <typename At>
+inline f32x4 loadParts(At at) {
+  return load(at(0));
+}
+template <typename Take>
+inline void forParts(mask4 m, Take take) {
+  take(0, m);
+}
+
+#endif
+
+/// Lanes, and times four, of a `wide`.
+inline constexpr int kWide = sizeof(wide) / sizeof(float);
+inline constexpr int kParts = kWide / kWidth;
+
 /// The tag that `withTag` gave.
 template <int tagBits>
 inline std::uint32_t tagOf(float tagged) {
@@ -352,6 +458,9 @@ inline std::uint32_t tagOf(float tagged) {
   return bits & ~(~0u << tagBits);
 }
 
-inline f32x4 clamp(f32x4 x, f32x4 low, f32x4 high) { return min(max(x, low), high); }
+template <typename Floats>
+inline Floats clamp(Floats x, Floats low, Floats high) {
+  return min(max(x, low), high);
+}
 
 }  // namespace cagecast::simd
