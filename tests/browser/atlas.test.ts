@@ -54,8 +54,9 @@ test('UVs outside 0..1 are repeated, as the texture is', () => {
   }
 })
 
-test('what a brush is said to touch holds every texel whose place is near its way, and faces it', () => {
+test('what a brush is said to touch holds every texel whose place is near its way, and faces it; what it is said to enclose none else', () => {
   const next = random(7)
+  let enclosed = 0
   for (const geometry of [box(), new SphereGeometry(1, 24, 16)]) {
     const atlas = new CageAtlas(cageOf(geometry), kSize)
     const places: [u: number, v: number, place: Place][] = []
@@ -70,16 +71,25 @@ test('what a brush is said to touch holds every texel whose place is near its wa
       const radius = 0.02 + 0.3 * next()
       const from = places[Math.floor(next() * places.length)]![2]
       const to = places.find(([, , { point }]) => point !== from.point && point.distanceTo(from.point) < 0.3)?.[2] ?? from
-      const rects = atlas.touched({ from, to, radius }, 32)
+      const rects = atlas.touched({ from, to, radius }, new Set())
       const way = new Vector3().subVectors(to.point, from.point)
+      const patches = new Set(atlas.enclosed({ from, to, radius }))
+      enclosed += patches.size
+      assert.equal(atlas.touched({ from, to, radius }, patches).length, rects.length - patches.size)
       for (const [u, v, { point, normal }] of places) {
-        if (Math.max(normal.dot(from.normal), normal.dot(to.normal)) < kFacing) continue
+        const isEnclosed = patches.has(atlas.owners[Math.floor(v * kSize) * kSize + Math.floor(u * kSize)]!)
+        const facing = [normal.dot(from.normal), normal.dot(to.normal)]
+        if (isEnclosed) assert.ok(Math.min(...facing) >= kFacing, 'all along')
+        if (Math.max(...facing) < kFacing) continue
         const share = Math.min(1, Math.max(0, new Vector3().subVectors(point, from.point).dot(way) / Math.max(way.lengthSq(), 1e-30)))
-        if (point.distanceTo(from.point.clone().addScaledVector(way, share)) > radius) continue
+        const distance = point.distanceTo(from.point.clone().addScaledVector(way, share))
+        if (isEnclosed) assert.ok(distance < radius + 1e-6, `${distance} from the way of a brush of ${radius}`)
+        if (distance > radius) continue
         assert.ok(rects.some(({ left, right, top, bottom }) => left <= u && u <= right && top <= v && v <= bottom), `${u}, ${v} of ${JSON.stringify(rects)}`)
       }
     }
   }
+  assert.ok(enclosed > 100, `${enclosed} triangles were enclosed`)
 })
 
 test('parts of a texture are joined until none overlap, and cover what they did', () => {

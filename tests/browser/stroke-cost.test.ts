@@ -8,7 +8,7 @@ let site: Site
 before(async () => void (site = await Site.open()))
 after(() => site?.close())
 
-const kMoves = 60
+const kMoves = 30
 
 /** Milliseconds of processor time that something takes: of the page's thread, and of the process that draws. */
 async function processorTime(page: Page, session: CDPSession, run: () => Promise<unknown>): Promise<{ page: number; graphics: number }> {
@@ -30,48 +30,57 @@ async function processorTime(page: Page, session: CDPSession, run: () => Promise
   return { page: after.page - before.page, graphics: after.graphics - before.graphics }
 }
 
-for (const [brush, slider] of [['the brush as it comes', '50'], ['a brush of 20 % of the cage', '85']] as const) {
-  test(`from a pointer’s move to painted texels, with ${brush}, takes less than 16 ms of processor time, drawing by the processor included`, async () => {
-    const { page } = await site.visit({ viewport: { width: 400, height: 400 } })
-    const session = await page.context().newCDPSession(page)
-    await session.send('Performance.enable', { timeDomain: 'threadTicks' })
-    await page.locator('#view-mode input[value=result]').check({ force: true })
-    await page.getByRole('radio', { name: 'Brush' }).check({ force: true })
-    await page.getByTestId('brush-size').fill(slider)
-    // A tiny picture: it is drawn anew for each move, and is not what this is about.
-    await page.addStyleTag({ content: '.stage { width: 180px; height: 200px !important } .stage > :not(canvas) { display: none !important }' })
-    await page.waitForTimeout(500)
-    const box = (await page.locator('#view').boundingBox())!
-    const [x, y] = [box.x + 0.5 * box.width, box.y + 0.24 * box.height]
+const kBrushes = { 'as it comes': '50', 'of 20 % of the cage': '85', 'of 40 %, the largest': '100' }
+
+test('from a pointer’s move to painted texels takes less than 16 ms of processor time, with every brush, drawing by the processor included', async () => {
+  const { page } = await site.visit({ viewport: { width: 400, height: 400 } })
+  const session = await page.context().newCDPSession(page)
+  await session.send('Performance.enable', { timeDomain: 'threadTicks' })
+  await page.locator('#view-mode input[value=result]').check({ force: true })
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true })
+  // A tiny picture: it is drawn anew for each move, and is not what this is about.
+  await page.addStyleTag({ content: '.stage { width: 180px; height: 200px !important } .stage > :not(canvas) { display: none !important }' })
+  await page.waitForTimeout(500)
+  const box = (await page.locator('#view').boundingBox())!
+  const [x, y] = [box.x + 0.5 * box.width, box.y + 0.24 * box.height]
+  /** Moves the mouse, or turns the model, once a frame. */
+  const frames = (paints: boolean): Promise<void> =>
+    page.evaluate(
+      async ({ moves, x, y, paints }) => {
+        const canvas = document.querySelector('canvas')!
+        for (let i = 0; i < moves; i++) {
+          const [clientX, clientY] = [x + 12 * Math.sin(i / 5), y + 5 * Math.sin(i / 3)]
+          canvas.dispatchEvent(
+            paints
+              ? new PointerEvent('pointermove', { pointerId: 1, pointerType: 'mouse', buttons: 1, clientX, clientY, bubbles: true })
+              : new KeyboardEvent('keydown', { key: i % 2 === 0 ? 'ArrowRight' : 'ArrowLeft', bubbles: true }),
+          )
+          await new Promise(requestAnimationFrame)
+        }
+      },
+      { moves: kMoves, x, y, paints },
+    )
+  const stroke = async (): Promise<{ page: number; graphics: number }> => {
     await page.mouse.move(x, y)
     await page.mouse.down()
-    /** Moves the mouse, or turns the model, once a frame. */
-    const frames = (paints: boolean): Promise<void> =>
-      page.evaluate(
-        async ({ moves, x, y, paints }) => {
-          const canvas = document.querySelector('canvas')!
-          for (let i = 0; i < moves; i++) {
-            const [clientX, clientY] = [x + 12 * Math.sin(i / 5), y + 5 * Math.sin(i / 3)]
-            canvas.dispatchEvent(
-              paints
-                ? new PointerEvent('pointermove', { pointerId: 1, pointerType: 'mouse', buttons: 1, clientX, clientY, bubbles: true })
-                : new KeyboardEvent('keydown', { key: i % 2 === 0 ? 'ArrowRight' : 'ArrowLeft', bubbles: true }),
-            )
-            await new Promise(requestAnimationFrame)
-          }
-        },
-        { moves: kMoves, x, y, paints },
-      )
-    await frames(true) // what is done but once
+    const cost = await processorTime(page, session, () => frames(true))
+    await page.mouse.up()
+    await page.waitForTimeout(400) // the layer's small picture is made once the hand rests
+    return cost
+  }
+  await stroke() // what is done but once
+  for (const [brush, slider] of Object.entries(kBrushes)) {
+    await page.getByTestId('brush-size').fill(slider)
     const costs: number[] = []
     for (let run = 0; run < 3; run++) {
-      const painting = await processorTime(page, session, () => frames(true))
+      // A stroke of its own each time: what it has painted in full it does not paint again.
+      const painting = await stroke()
+      assert.ok(painting.page > 0.2 * kMoves, 'painting was measured')
       const turning = await processorTime(page, session, () => frames(false))
       costs.push((painting.page + painting.graphics - turning.page - turning.graphics) / kMoves)
     }
-    await page.mouse.up()
-    assert.ok(filled(await savedTexture(page)) > 1000)
-    assert.ok(Math.max(...costs) > 0.2, 'painting was measured')
-    assert.ok(Math.min(...costs) < 16, `${costs.map((cost) => cost.toFixed(1)).join(', ')} ms`)
-  })
-}
+    assert.ok(Math.min(...costs) < 16, `the brush ${brush}: ${costs.map((cost) => cost.toFixed(1)).join(', ')} ms`)
+    console.log(`the brush ${brush}: ${costs.map((cost) => cost.toFixed(1)).join(', ')} ms`)
+  }
+  assert.ok(filled(await savedTexture(page)) > 1000)
+})

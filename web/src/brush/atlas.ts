@@ -1,5 +1,5 @@
-import { Triangle, Vector3 } from 'three'
-import { apart, type Rect } from '../layers/rect'
+import { Line3, Triangle, Vector3 } from 'three'
+import type { Rect } from '../layers/rect'
 
 /** A cage, as far as painting on it wants to know it. */
 export interface CageMesh {
@@ -120,15 +120,19 @@ export class CageAtlas {
     )
   }
 
-  /** The parts of the texture that a brush touches, in shares; they may be a little larger. @param most At most that many. */
-  touched({ from, to, radius }: Capsule, most: number): Rect[] {
+  /**
+   * The parts of the texture that a brush touches, in shares; they may be a little larger, and overlap.
+   * @param without Patches that are left out, by their number.
+   */
+  touched({ from, to, radius }: Capsule, without: ReadonlySet<number>): Rect[] {
     const rects: Rect[] = []
     const margin = (kGutter + 1) / this.size
     const [a, b] = [new Vector3(), new Vector3()]
     const middle = from.point.clone().lerp(to.point, 0.5)
     const reach = radius + from.point.distanceTo(to.point) / 2
     const [triangle, found] = [new Triangle(), new Vector3()]
-    for (const { points, normal, u, v, alongU, alongV, box } of this.#patches) {
+    for (const [index, { points, normal, u, v, alongU, alongV, box }] of this.#patches.entries()) {
+      if (without.has(index)) continue
       if (Math.max(normal.dot(from.normal), normal.dot(to.normal)) < kFacing) continue
       a.subVectors(from.point, points[0])
       b.subVectors(to.point, points[0])
@@ -150,7 +154,18 @@ export class CageAtlas {
         bottom: Math.min(1, bottom + margin),
       })
     }
-    return apart(rects, most)
+    return rects
+  }
+
+  /** The patches, by their number, of which all that belongs to them lies within a brush's way, and faces it all along. */
+  enclosed({ from, to, radius }: Capsule): number[] {
+    const way = new Line3(from.point, to.point)
+    const found = new Vector3()
+    // A capsule that holds the corners of a triangle holds all of it.
+    const isNear = (point: Vector3): boolean => way.closestPointToPoint(point, true, found).distanceTo(point) <= radius
+    return this.#patches.flatMap(({ points, normal }, index) =>
+      Math.min(normal.dot(from.normal), normal.dot(to.normal)) >= kFacing && points.every(isNear) ? index : [],
+    )
   }
 
   /** Claims the texels whose centres lie in a patch. */

@@ -46,7 +46,8 @@ export interface Sticker {
   up: Vector3
 }
 
-const kTableWidth = 1024
+const kTableWidth = 1024 // a power of two
+const kWithin = 0.999 // the GPU reckons in single precision
 const kMostCapsules = 8 // in one pass
 
 const kPlaceShader = /* glsl */ `
@@ -56,7 +57,7 @@ const float kFacing = ${kFacing};
 
 vec4 row(int patchIndex, int index) {
   int at = patchIndex * ${kPatchTexels} + index;
-  return texelFetch(patches, ivec2(at % ${kTableWidth}, at / ${kTableWidth}), 0);
+  return texelFetch(patches, ivec2(at & ${kTableWidth - 1}, at >> ${Math.log2(kTableWidth)}), 0);
 }
 
 // The place of the cage at this texel; around an island, the place on its border. False where there is none.
@@ -155,6 +156,8 @@ export class WetPaint {
   #sheet: PaintedSheet | undefined
   /** What of the target is not empty, in texels. */
   #rects: Rect[] = []
+  /** Patches of the cage that have paint in full: there is nothing to add. */
+  readonly #full = new Set<number>()
 
   constructor(readonly atlas: CageAtlas) {
     const owners = new DataTexture(atlas.owners, kPaintedSize, kPaintedSize, RedIntegerFormat, IntType)
@@ -184,6 +187,7 @@ export class WetPaint {
   begin(sheet: PaintedSheet, style: StrokeStyle): void {
     this.#sheet = sheet
     this.#style = style
+    this.#full.clear()
   }
 
   /** Draws a brush's way; all of one radius. @returns The parts it touched, in shares. */
@@ -203,7 +207,9 @@ export class WetPaint {
     hardness.value = Math.max(0, Math.min(this.#style.hardness, 1 - (1.5 * this.atlas.pitch) / radius.value))
     const { r, g, b } = new Color(this.#style.color)
     paint.value.set(r, g, b)
-    const touched = capsules.flatMap((capsule) => this.atlas.touched(capsule, kMostRects))
+    const touched = capsules.flatMap((capsule) => this.atlas.touched(capsule, this.#full))
+    const core = kWithin * hardness.value * radius.value
+    for (const capsule of capsules) for (const patch of this.atlas.enclosed({ ...capsule, radius: core })) this.#full.add(patch)
     return this.#draw(renderer, this.#brush, touched)
   }
 
@@ -219,7 +225,7 @@ export class WetPaint {
     uniforms.extent.value.set(width, height)
     uniforms.texel.value = (this.atlas.pitch * (texture.image as { width: number }).width) / width
     const radius = Math.hypot(width, height, Math.max(width, height)) / 2
-    const touched = this.atlas.touched({ from: center, to: center, radius }, kMostRects)
+    const touched = this.atlas.touched({ from: center, to: center, radius }, new Set())
     return [...before, ...this.#draw(renderer, this.#sticker, touched)]
   }
 

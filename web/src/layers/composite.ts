@@ -168,8 +168,9 @@ export class Composite {
     const size = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize) ? kMostSize : kLeastSize
     const whole = size !== this.size || this.#stale.includes(kWhole)
     this.#target.setSize(size, size)
-    // A texel more: a sheet with fewer texels than this spreads each over its neighbours.
-    const rects = whole ? [toTexels(kWhole, this.size)] : apart(this.#stale.map((rect) => toTexels(rect, this.size, 2)), kMostRects)
+    // Texels more: a sheet with fewer of them than this spreads each over its neighbours.
+    const margin = this.#layers.every(({ sheet }) => isSquare(sheet.texture, size)) ? 0 : 2
+    const rects = whole ? [toTexels(kWhole, size)] : apart(this.#stale.map((rect) => toTexels(rect, size, margin)), kMostRects)
     this.#stale = []
     this.#fill()
     this.#pass().run(renderer, this.#target, rects)

@@ -1,5 +1,9 @@
 import type { WebGLRenderer, WebGLRenderTarget } from 'three'
-import type { Rect } from './rect'
+import { apart, type Rect } from './rect'
+
+// Each part takes a call for every level: few that are larger cost less than many.
+const kMostParts = 8
+const kTile = 256
 
 /**
  * Makes the smaller levels of a texture again, under the parts of it that changed: each level is half of the one before.
@@ -15,7 +19,7 @@ export function refreshMipmaps(renderer: WebGLRenderer, target: WebGLRenderTarge
   state.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to)
   // Copies keep within the scissor, if there is one.
   state.setScissorTest(false)
-  let parts = rects
+  let parts = apart(rects, kMostParts, kTile)
   for (let level = 1; target.width >> level > 0; level++) {
     gl.framebufferTexture2D(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, level - 1)
     gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, level)

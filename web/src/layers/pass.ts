@@ -16,7 +16,7 @@ import {
 import type { Rect } from './rect'
 
 /** Parts that one pass can be run over. */
-export const kMostRects = 32
+export const kMostRects = 128
 
 const kVertexShader = /* glsl */ `
 in vec3 position;

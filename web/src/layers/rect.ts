@@ -38,25 +38,38 @@ export function hull(a: Rect, b: Rect): Rect {
   }
 }
 
-/** Parts that cover all of the given ones, share no texel, and are at most `most`. Cost: quadratic in their number. */
-export function apart(rects: readonly Rect[], most: number): Rect[] {
-  const found: Rect[] = []
-  for (const rect of rects) {
-    if (isEmpty(rect)) continue
-    let grown = rect
-    // What was swallowed may have made it reach others.
-    for (let at = 0; at < found.length; ) {
-      if (overlap(found[at]!, grown)) {
-        grown = hull(grown, found[at]!)
-        found.splice(at, 1)
-        at = 0
-      } else at++
-    }
-    found.push(grown)
+/**
+ * Parts that cover all of the given ones, share no texel, and are at most `most`: rows of tiles that the given ones touch, no
+ * farther than these reach on the whole.
+ * @param rects In texels. @param tile Texels a side; tiles are larger if there were too many parts.
+ */
+export function apart(rects: readonly Rect[], most: number, tile = 32): Rect[] {
+  const some = rects.filter((rect) => !isEmpty(rect))
+  if (some.length === 0) return []
+  const all = some.reduce(hull)
+  const [left, top] = [Math.floor(all.left / tile), Math.floor(all.top / tile)]
+  const [columns, rows] = [Math.ceil(all.right / tile) - left, Math.ceil(all.bottom / tile) - top]
+  const touched = new Uint8Array(columns * rows)
+  for (const rect of some) {
+    const [from, to] = [Math.floor(rect.left / tile) - left, Math.ceil(rect.right / tile) - left]
+    for (let row = Math.floor(rect.top / tile) - top; tile * (row + top) < rect.bottom; row++) touched.fill(1, row * columns + from, row * columns + to)
   }
-  return found.length > most ? [found.reduce(hull)] : found
-}
-
-function overlap(a: Rect, b: Rect): boolean {
-  return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom
+  const found: Rect[] = []
+  let above: Rect[] = []
+  for (let row = 0; row < rows; row++) {
+    const here: Rect[] = []
+    for (let column = 0; column < columns; column++) {
+      if (!touched[row * columns + column]) continue
+      const from = column
+      while (column < columns && touched[row * columns + column]) column++
+      const [first, last, bottom] = [Math.max(all.left, tile * (left + from)), Math.min(all.right, tile * (left + column)), Math.min(all.bottom, tile * (top + row + 1))]
+      // One that goes on below is the same part.
+      let rect = above.find((other) => other.left === first && other.right === last)
+      if (rect) rect.bottom = bottom
+      else found.push((rect = { left: first, top: Math.max(all.top, tile * (top + row)), right: last, bottom }))
+      here.push(rect)
+    }
+    above = here
+  }
+  return found.length > most ? apart(rects, most, 2 * tile) : found
 }
