@@ -68,6 +68,6 @@ export default defineConfig({
   base: './',
   plugins: [slim(), samples(), onlyGltfDraco(), basis(), precache()],
   build: { outDir: path.join(kRepository, 'build/web'), emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 900 },
-  worker: { format: 'es', plugins: () => [slim()] },
+  worker: { format: 'es', plugins: () => [slim(), basis()] },
   preview: { headers: { 'X-Content-Type-Options': 'nosniff' } },
 })

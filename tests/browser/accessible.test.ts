@@ -4,7 +4,10 @@ import { after, before, test } from 'node:test'
 import type { AxeResults } from 'axe-core'
 import type { Page } from 'playwright-core'
 import { glb } from './glb'
-import { inRepository, settled, Site } from './site'
+import { islandCage, morphingBalls } from './models'
+import { saved } from './saved'
+import { drop, inRepository, settled, shownError, Site } from './site'
+import { image } from './texture'
 
 const kAxe = readFileSync(inRepository('node_modules/axe-core/axe.min.js'), 'utf8')
 
@@ -51,4 +54,34 @@ test('nor with any of the tools chosen', async () => {
     await tool.check({ force: true })
     assert.deepEqual(await faults(page), [], `with the tool ${await tool.getAttribute('data-key')}`)
   }
+})
+
+test('nor with files of one’s own: with morphs, an animation, layers of all kinds, a note on what was saved, and work under way', async () => {
+  const { page } = await site.visit({ viewport: { width: 700, height: 480 }, colorScheme: 'dark' })
+  await drop(page, [await islandCage(1.1), await morphingBalls({ animated: true }), image('paint.png', 8, () => [200, 60, 30, 255])])
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  await page.getByTestId('add-painting').click()
+  await page.locator('#parts summary').click()
+  await page.getByTestId('segment-table').locator('tbody select').first().selectOption('exclude')
+  await page.getByTestId('amount').fill('0.5')
+  await page.locator('#live[aria-busy=false]').waitFor()
+  await saved(page, 'export-glb')
+  for (const id of ['morphs', 'animation', 'swap', 'pose-note']) assert.equal(await page.locator(`#${id}`).isVisible(), true, id)
+  assert.deepEqual(await faults(page), [])
+
+  let letGo = (): void => {}
+  const gate = new Promise<void>((done) => (letGo = done))
+  await page.route(/\/samples\/.*\.glb$/, (route) => gate.then(() => route.continue()))
+  await page.getByTestId('sample-select').selectOption('human')
+  await page.getByTestId('progress').waitFor()
+  assert.deepEqual(await faults(page), [], 'while it works')
+  letGo()
+  assert.equal(await settled(page), 'ready', await shownError(page))
+})
+
+test('nor without WebGL', async () => {
+  const { page } = await site.visit({ viewport: { width: 390, height: 844 } }, `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+    apply: (original, canvas, args) => (String(args[0]).startsWith('webgl') ? null : Reflect.apply(original, canvas, args)),
+  })`)
+  assert.deepEqual(await faults(page), [])
 })

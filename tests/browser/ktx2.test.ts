@@ -1,12 +1,14 @@
 import assert from 'node:assert/strict'
-import { readFile } from 'node:fs/promises'
 import { after, before, test } from 'node:test'
 import { NodeIO } from '@gltf-transform/core'
 import { KHRTextureBasisu } from '@gltf-transform/extensions'
+import { PNG } from 'pngjs'
 import { glb } from './glb'
 import { islandCage, lumpyBall } from './models'
 import { look, modelArea, shareOfHue } from './picture'
+import { saved, validModel } from './saved'
 import { settled, shownCounts, shownError, Site, type Upload } from './site'
+import { texel } from './texture'
 
 let site: Site
 before(async () => void (site = await Site.open()))
@@ -54,31 +56,50 @@ const kUastcZstd =
 const kColor = [200, 0, 220] as const
 const kHue = 295
 
-for (const [kind, image] of [
-  ['UASTC', ktx2Of(...kColor)],
-  ['UASTC packed by Zstandard', new Uint8Array(Buffer.from(kUastcZstd, 'base64'))],
-  ['ETC1S', new Uint8Array(Buffer.from(kEtc1s, 'base64'))],
-] as const) {
-  test(`a KTX2 texture of ${kind} is shown under the page’s own security policy, and saved as it came`, async () => {
-    const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
-    await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
-    await settled(page)
+const kImages = {
+  UASTC: ktx2Of(...kColor),
+  'UASTC packed by Zstandard': new Uint8Array(Buffer.from(kUastcZstd, 'base64')),
+  ETC1S: new Uint8Array(Buffer.from(kEtc1s, 'base64')),
+}
+
+/** How each is painted into: one is enough of what is the same once it is decoded. */
+const kPaints: Record<string, readonly boolean[]> = { UASTC: [false], 'UASTC packed by Zstandard': [], ETC1S: [false, true] }
+
+test('KTX2 textures are shown under the page’s own security policy, saved as they came, and painted into', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
+  await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
+  await settled(page)
+  for (const [kind, image] of Object.entries(kImages)) {
     await page.getByTestId('target-input').setInputFiles(await ballWith(image))
     assert.equal(await settled(page), 'ready', await shownError(page))
     assert.ok((await shownCounts(page)).cosmetic > 0)
     await page.locator('#show-paint').uncheck({ force: true })
     const shown = shareOfHue(await look(page, await modelArea(page)), kHue)
-    assert.ok(shown > 0.1, `${shown} of the picture has its colour`)
+    assert.ok(shown > 0.1, `${shown} of the picture has the colour of ${kind}`)
 
-    const coming = page.waitForEvent('download')
-    await page.getByTestId('export-glb').click()
-    const bytes = await readFile(await (await coming).path())
-    const saved = await new NodeIO().registerExtensions([KHRTextureBasisu]).readBinary(new Uint8Array(bytes))
-    const kept = saved.getRoot().listTextures().find((texture) => texture.getMimeType() === 'image/ktx2')
+    await page.locator('#paint-into [value=overlay]').check({ force: true })
+    const laid = await validModel((await saved(page, 'export-glb')).bytes)
+    const kept = laid.getRoot().listTextures().find((texture) => texture.getMimeType() === 'image/ktx2')
     assert.deepEqual(kept?.getImage(), image)
-    assert.deepEqual(complaints, [])
-  })
-}
+
+    // Into the texture itself: a PNG, as nothing here writes KTX2.
+    await page.locator('#paint-into [value=texture]').check({ force: true })
+    for (const painted of kPaints[kind]!) {
+      await page.getByTestId('layer-list').getByRole('checkbox', { name: 'Show UV checker' }).setChecked(painted, { force: true })
+      const document = await validModel((await saved(page, 'export-glb')).bytes)
+      assert.equal(await page.getByTestId('export-note').textContent(), 'The paint is in one texture of the model’s own.')
+      assert.ok(document.getRoot().listExtensionsUsed().every(({ extensionName }) => extensionName !== 'KHR_texture_basisu'))
+      const [texture, ...others] = document.getRoot().listTextures()
+      assert.deepEqual([texture!.getMimeType(), others.length], ['image/png', 0])
+      const png = PNG.sync.read(Buffer.from(texture!.getImage()!))
+      assert.deepEqual([png.width, png.height], [1024, 1024])
+      const color = texel(png, 700, 512)
+      const apart = Math.max(...kColor.map((value, channel) => Math.abs(value - color[channel]!)))
+      assert.ok(painted ? apart > 30 : apart <= 3, `${color}, ${painted ? 'the checker’s' : 'the own'} colour of ${kind}`)
+    }
+  }
+  assert.deepEqual(complaints, [])
+})
 
 test('a damaged KTX2 texture leaves its model white, and the page says so', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })

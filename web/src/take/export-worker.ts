@@ -29,7 +29,8 @@ async function paintModel({ files, cage, texture, into, options }: ExportRequest
   await document.transform(cagecast({ ...options, cage, texture }))
   const isOverlay = (material: Material): boolean => !own.has(material)
   const baked = into === 'texture' ? await paintIntoTextures(document, isOverlay, await readPixels(new Blob([texture]))) : undefined
-  for (const extension of document.getRoot().listExtensionsUsed()) if (kCompressions.includes(extension.extensionName)) extension.dispose()
+  const left = document.getRoot().listTextures().some((texture) => texture.getMimeType() === 'image/ktx2') ? kCompressions : [...kCompressions, 'KHR_texture_basisu']
+  for (const extension of document.getRoot().listExtensionsUsed()) if (left.includes(extension.extensionName)) extension.dispose()
   return { glb: await io.writeBinary(document), ...(baked && { baked }) }
 }
 

@@ -1,4 +1,5 @@
 import { encodePng } from '../../encode-png'
+import { readKtx2 } from './ktx2'
 
 /** An image: 4 bytes per pixel, sRGB and alpha, colours not multiplied by it; its upper row first, as glTF's UVs have it. */
 export interface Pixels {
@@ -8,13 +9,14 @@ export interface Pixels {
 }
 
 /**
- * Reads an image file to the byte, also what is transparent: through WebGL, as a canvas in 2D multiplies colours by alpha.
+ * Reads an image file, KTX2 too, to the byte, also what is transparent: through WebGL, as a canvas in 2D multiplies colours by alpha.
  * @param fit Chooses the size to read it in by the size it has, 8 bits a channel.
  * @throws Error in plain words, without a name, if the browser cannot.
  */
 export async function readPixels(file: Blob, fit: (width: number, height: number) => [number, number] = (...size) => size): Promise<Pixels> {
   const asItIs: ImageBitmapOptions = { premultiplyAlpha: 'none', colorSpaceConversion: 'none' }
-  let bitmap = await createImageBitmap(file, asItIs).catch(() => {
+  const source = file.type === 'image/ktx2' ? await readKtx2(await file.arrayBuffer()) : file
+  let bitmap = await createImageBitmap(source, asItIs).catch(() => {
     throw new Error('there is an image the browser cannot read')
   })
   const [width, height] = fit(bitmap.width, bitmap.height)
