@@ -22,10 +22,11 @@ export interface Answer {
   at: number;
 }
 
-const u8 = (bytes: ArrayBuffer) => new Uint8Array(bytes);
-const u32 = (bytes: ArrayBuffer) => new Uint32Array(bytes);
-const f32 = (bytes: ArrayBuffer) => new Float32Array(bytes);
-const f64 = (bytes: ArrayBuffer) => new Float64Array(bytes);
+// Copies of views: a slice of the memory itself would be filled with zeros before it is written.
+const u8 = (memory: ArrayBuffer, at: number, bytes: number) => new Uint8Array(new Uint8Array(memory, at, bytes));
+const u32 = (memory: ArrayBuffer, at: number, bytes: number) => new Uint32Array(new Uint32Array(memory, at, bytes / 4));
+const f32 = (memory: ArrayBuffer, at: number, bytes: number) => new Float32Array(new Float32Array(memory, at, bytes / 4));
+const f64 = (memory: ArrayBuffer, at: number, bytes: number) => new Float64Array(new Float64Array(memory, at, bytes / 8));
 
 // The arrays of answers, in the order of bindings.cpp.
 const presetArrays = { options: f64 };
@@ -52,7 +53,7 @@ const projectArrays = {
   margins: f64,
 };
 
-type Layout = Record<string, (bytes: ArrayBuffer) => object>;
+type Layout = Record<string, (memory: ArrayBuffer, at: number, bytes: number) => object>;
 /** An answer and its arrays, which are copies. Those of a failure are missing. */
 type AnswerOf<L extends Layout> = Answer & { [Name in keyof L]: ReturnType<L[Name]> };
 export type ProjectAnswer = AnswerOf<typeof projectArrays>;
@@ -115,7 +116,7 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
   const take = <L extends Layout>(table: number, layout: L): AnswerOf<L> => {
     const names = Object.keys(layout);
     const [code = 0, argument = 0, at = 0, ...places] = new Uint32Array(memory.buffer, table, 3 + 2 * names.length);
-    const array = (name: string, i: number) => layout[name]!(memory.buffer.slice(places[2 * i]!, places[2 * i]! + places[2 * i + 1]!));
+    const array = (name: string, i: number) => layout[name]!(memory.buffer, places[2 * i]!, places[2 * i + 1]!);
     const arrays = code === 0 ? Object.fromEntries(names.map((name, i) => [name, array(name, i)])) : {};
     core._release();
     return { code, argument, at, ...arrays } as AnswerOf<L>;
