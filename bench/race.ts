@@ -19,7 +19,7 @@ export interface RaceResult {
   turns: number;
   /** ms of CPU time of the thread that runs scripts, per transfer. */
   cagecast: Spread;
-  /** Medians in ms of wall time. */
+  /** Medians in ms of wall time, over turns. */
   stages: Record<string, number>;
   peer?: { total: Spread; stages: Record<string, number>; ratio: number; otherZones: number; otherTriangles: number };
 }
@@ -68,7 +68,7 @@ export async function race(realm: Realm, options: RaceOptions): Promise<RaceResu
       if (runs[who] === 0) continue;
       const { cpu, block } = await turn(realm, who, runs[who]);
       pair[who] = cpu;
-      stages[who].push(...block.stages);
+      stages[who].push(block.stages);
     }
     pairs.push(pair);
   }
