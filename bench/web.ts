@@ -1,4 +1,5 @@
-import { mkdir, readFile } from 'node:fs/promises';
+import { readFileSync } from 'node:fs';
+import { mkdir } from 'node:fs/promises';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { build } from 'esbuild';
@@ -37,17 +38,16 @@ async function serve(): Promise<Server> {
   const types: Record<string, string> = { js: 'text/javascript', html: 'text/html' };
   const page = (script: string): string => `<!doctype html><meta charset="utf-8"><title>bench</title><script type="module" src="/build/bench/web/${script}.js"></script>`;
   const server = createServer((request, response) => {
-    void (async () => {
-      const path = new URL(request.url!, 'http://localhost').pathname;
-      response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
-      response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
-      response.setHeader('Content-Type', types[path.split('.').at(-1)!] ?? 'application/octet-stream');
-      try {
-        response.end(path.endsWith('.html') ? page(path.slice(1, -5)) : path === '/favicon.ico' ? '' : await readFile(root + path.slice(1)));
-      } catch {
-        response.writeHead(404).end();
-      }
-    })();
+    const path = new URL(request.url!, 'http://localhost').pathname;
+    response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
+    response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
+    response.setHeader('Content-Type', types[path.split('.').at(-1)!] ?? 'application/octet-stream');
+    try {
+      // At once, and not by a thread that would have to be woken: the page's first use of the package waits for it.
+      response.end(path.endsWith('.html') ? page(path.slice(1, -5)) : path === '/favicon.ico' ? '' : readFileSync(root + path.slice(1)));
+    } catch {
+      response.writeHead(404).end();
+    }
   });
   await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
   return server;
