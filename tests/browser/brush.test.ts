@@ -219,6 +219,40 @@ test('a stroke stops at what must not be painted, and goes on behind it', async 
   assert.deepEqual(complaints, [])
 })
 
+test('fine painting goes on a layer of its own, with twice as many texels along a side, and is undone to the byte as well', async () => {
+  const { page, complaints } = visit
+  await openBall()
+  const area = await modelArea(page)
+  await choose('Brush')
+  await set({ ...kHard, 'brush-size': '30' })
+  const line: Spot[] = [[0.4, 0.5], [0.6, 0.45]]
+  await draw(area, line)
+  const plain = await savedTexture(page)
+  assert.equal(plain.width, 1024)
+
+  const fine = page.getByTestId('painting-fine')
+  await fine.check()
+  await draw(area, line)
+  assert.deepEqual(await names(page), ['Painting 2', 'Painting 1'])
+  await page.getByRole('button', { name: 'Remove Painting 1', exact: true }).click()
+  const sharp = await savedTexture(page)
+  assert.equal(sharp.width, 2048)
+  const ratio = filled(sharp) / filled(plain)
+  assert.ok(Math.abs(ratio - 4) < 0.2, `${ratio} times as many texels`)
+  // What is but larger has soft edges of two texels at least, between none and all.
+  const soft = ({ data }: PNG): number => data.filter((value, at) => at % 4 === 3 && value > 25 && value < 230).length / Math.sqrt(filled({ data } as PNG))
+  assert.ok(soft(sharp) < 1.4 * soft(plain), `${soft(sharp)} beside ${soft(plain)}`)
+
+  await draw(area, [[0.45, 0.3], [0.55, 0.3]])
+  assert.notDeepEqual((await savedTexture(page)).data, sharp.data)
+  await page.keyboard.press('Control+z')
+  assert.deepEqual((await savedTexture(page)).data, sharp.data)
+  await page.keyboard.press('Control+z')
+  await page.locator('.layer .choose', { hasText: 'Painting 1' }).click()
+  assert.equal(await fine.isChecked(), false, 'it says what is painted on')
+  assert.deepEqual(complaints, [])
+})
+
 test('a lost graphics context costs nobody a stroke', async () => {
   const { page } = visit
   const before = await savedTexture(page)

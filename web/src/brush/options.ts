@@ -1,4 +1,5 @@
 import { element } from '../page'
+import { kPaintedSizes, type PaintedSize } from './painted-sheet'
 
 /** What a tool of painting is; each shows the options that concern it. */
 export type Kind = 'brush' | 'eraser' | 'sticker'
@@ -15,6 +16,7 @@ export class PaintOptions {
   readonly #hardness = element('brush-hardness', HTMLInputElement)
   readonly #opacity = element('brush-opacity', HTMLInputElement)
   readonly #mirror = element('brush-mirror', HTMLInputElement)
+  readonly #fine = element('painting-fine', HTMLInputElement)
   readonly #text = element('sticker-text', HTMLInputElement)
   readonly #turn = element('sticker-turn', HTMLInputElement)
 
@@ -46,6 +48,15 @@ export class PaintOptions {
 
   get mirror(): boolean {
     return this.#mirror.checked
+  }
+
+  /** Texels a side of what is painted on. */
+  get texels(): PaintedSize {
+    return kPaintedSizes[this.#fine.checked ? 1 : 0]
+  }
+
+  set texels(texels: PaintedSize) {
+    this.#fine.checked = texels === kPaintedSizes[1]
   }
 
   get text(): string {

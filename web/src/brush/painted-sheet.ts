@@ -2,15 +2,16 @@ import { DataTexture, SRGBColorSpace, Vector2, WebGLRenderTarget, type Texture, 
 import type { Sheet } from '../layers/layer'
 import { isEmpty, type Rect } from '../layers/rect'
 
-/** Texels a side of everything that is painted. */
-export const kPaintedSize = 1024
+/** Texels a side that paintings may have. */
+export const kPaintedSizes = [1024, 2048] as const
+export type PaintedSize = (typeof kPaintedSizes)[number]
 
 // One transparent pixel.
 const kNoPicture = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEKAAEALAAAAAABAAEAAAICTAEAOw=='
 
 /** Storage on the GPU for what is painted: sRGB, its colours multiplied by their alpha, transparent at first. */
-export function makePaintTarget(): WebGLRenderTarget {
-  return new WebGLRenderTarget(kPaintedSize, kPaintedSize, { colorSpace: SRGBColorSpace, depthBuffer: false })
+export function makePaintTarget(size: number): WebGLRenderTarget {
+  return new WebGLRenderTarget(size, size, { colorSpace: SRGBColorSpace, depthBuffer: false })
 }
 
 /**
@@ -20,10 +21,17 @@ export function makePaintTarget(): WebGLRenderTarget {
 export class PaintedSheet implements Sheet {
   readonly premultiplied = true
   /** Where strokes are drawn to; tell `take` afterwards. */
-  readonly target = makePaintTarget()
-  readonly #bytes = new Uint8Array(4 * kPaintedSize * kPaintedSize)
-  readonly bytes = this.#bytes.length
+  readonly target: WebGLRenderTarget
+  readonly #bytes: Uint8Array
+  readonly bytes: number
   picture = kNoPicture
+
+  /** @param size Texels a side. */
+  constructor(readonly size: PaintedSize) {
+    this.target = makePaintTarget(size)
+    this.bytes = 4 * size * size
+    this.#bytes = new Uint8Array(this.bytes)
+  }
 
   get texture(): Texture {
     return this.target.texture
@@ -32,7 +40,7 @@ export class PaintedSheet implements Sheet {
   /** The texels of a part, row by row. @param rect In texels. */
   get(rect: Rect): Uint8Array {
     const part = new Uint8Array(4 * (rect.right - rect.left) * (rect.bottom - rect.top))
-    eachRow(rect, (place, inPart, length) => part.set(this.#bytes.subarray(place, place + length), inPart))
+    eachRow(rect, this.size, (place, inPart, length) => part.set(this.#bytes.subarray(place, place + length), inPart))
     return part
   }
 
@@ -53,18 +61,18 @@ export class PaintedSheet implements Sheet {
 
   /** Makes the texture again from the bytes, after the graphics context was lost. */
   restore(renderer: WebGLRenderer): void {
-    upload(renderer, this.target, { left: 0, top: 0, right: kPaintedSize, bottom: kPaintedSize }, this.#bytes)
+    upload(renderer, this.target, { left: 0, top: 0, right: this.size, bottom: this.size }, this.#bytes)
   }
 
   #keep(rect: Rect, part: Uint8Array): void {
-    eachRow(rect, (place, inPart, length) => this.#bytes.set(part.subarray(inPart, inPart + length), place))
+    eachRow(rect, this.size, (place, inPart, length) => this.#bytes.set(part.subarray(inPart, inPart + length), place))
   }
 }
 
-/** @param visit Called for each row with where it begins in the sheet's bytes and in the part's, and how long it is. */
-function eachRow({ left, top, right, bottom }: Rect, visit: (place: number, inPart: number, length: number) => void): void {
+/** @param size Texels a side of the sheet. @param visit Called for each row with where it begins in the sheet's bytes and in the part's, and how long it is. */
+function eachRow({ left, top, right, bottom }: Rect, size: number, visit: (place: number, inPart: number, length: number) => void): void {
   const length = 4 * (right - left)
-  for (let row = top; row < bottom; row++) visit(4 * (row * kPaintedSize + left), (row - top) * length, length)
+  for (let row = top; row < bottom; row++) visit(4 * (row * size + left), (row - top) * length, length)
 }
 
 function upload(renderer: WebGLRenderer, target: WebGLRenderTarget, rect: Rect, part: Uint8Array): void {

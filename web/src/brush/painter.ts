@@ -10,7 +10,8 @@ import type { Spot } from '../pick'
 import type { Session, Shown } from '../session'
 import type { Viewer } from '../viewer'
 import { CageAtlas, type Capsule, type Place } from './atlas'
-import { kPaintedSize, PaintedSheet } from './painted-sheet'
+import type { PaintOptions } from './options'
+import { PaintedSheet, type PaintedSize } from './painted-sheet'
 import type { StickerSheet, StickerStyle } from './sticker'
 import { WetPaint, type StrokeStyle } from './wet-paint'
 
@@ -34,6 +35,10 @@ export class Painter {
   readonly #stack: LayerStack
   readonly #composite: Composite
   readonly #edits: Edits
+  readonly #options: PaintOptions
+  /** For the cage of what is on show, by the texels a side. */
+  readonly #surfaces = new Map<PaintedSize, WetPaint>()
+  /** The one that is painted on, or was last. */
   #wet: WetPaint | undefined
   #cage: Shown['cage'] | undefined
   /** The layer that something wet lies on, and what undoing that is called. */
@@ -43,16 +48,20 @@ export class Painter {
   /** All that may come back: on show, or removed and kept to be undone. */
   readonly #sheets: WeakRef<PaintedSheet>[] = []
 
-  constructor(session: Session, viewer: Viewer, { stack, composite, edits }: Layers) {
+  constructor(session: Session, viewer: Viewer, { stack, composite, edits }: Layers, options: PaintOptions) {
     this.#session = session
     this.#viewer = viewer
     this.#stack = stack
     this.#composite = composite
     this.#edits = edits
+    this.#options = options
     session.on('transfer', () => this.cancel())
+    stack.on('select', (layer) => {
+      if (layer?.sheet instanceof PaintedSheet) options.texels = layer.sheet.size
+    })
   }
 
-  /** The cage of what is on show, unrolled. Cost: tens of milliseconds the first time for each cage. */
+  /** The cage of what is on show, unrolled. Cost: tens of milliseconds the first time for each cage and number of texels. */
   get atlas(): CageAtlas | undefined {
     return this.#surface()?.atlas
   }
@@ -82,6 +91,7 @@ export class Painter {
     const layer = painted ?? this.addLayer()
     this.#layer = layer
     this.#name = name
+    this.#wet = wet
     this.#stack.select(layer)
     if (!layer.visible) this.#stack.restyle(layer, { visible: true })
     wet.begin(layer.sheet as PaintedSheet, style)
@@ -130,7 +140,7 @@ export class Painter {
 
   /** Adds an empty layer to paint on. @throws Error if there are too many. */
   addLayer(): Layer {
-    const sheet = new PaintedSheet()
+    const sheet = new PaintedSheet(this.#options.texels)
     this.#sheets.push(new WeakRef(sheet))
     let number = 1
     while (this.#stack.layers.some(({ name }) => name === `Painting ${number}`)) number++
@@ -150,7 +160,7 @@ export class Painter {
   }
 
   #changed(sheet: PaintedSheet, rects: readonly Rect[]): void {
-    this.#show(rects.map((rect) => toShares(rect, kPaintedSize)))
+    this.#show(rects.map((rect) => toShares(rect, sheet.size)))
     // Its picture in the list can wait until the hand rests.
     clearTimeout(this.#picturing)
     this.#picturing = setTimeout(() => {
@@ -159,20 +169,26 @@ export class Painter {
     }, kPictureDelay)
   }
 
-  /** The layer that is painted on: the one worked on, or the uppermost painting. */
+  /** The layer that is painted on: the one worked on, or the uppermost painting, of those with the texels that are wanted. */
   #paintedLayer(): Layer | undefined {
     const { selected, layers } = this.#stack
-    return selected?.sheet instanceof PaintedSheet ? selected : layers.findLast(({ sheet }) => sheet instanceof PaintedSheet)
+    const fits = ({ sheet }: Layer): boolean => sheet instanceof PaintedSheet && sheet.size === this.#options.texels
+    return selected && fits(selected) ? selected : layers.findLast(fits)
   }
 
   #surface(): WetPaint | undefined {
     const cage = this.#session.shown?.cage
-    if (cage === this.#cage) return this.#wet
-    this.#wet?.dispose()
-    this.#cage = cage
+    if (cage !== this.#cage) {
+      for (const surface of this.#surfaces.values()) surface.dispose()
+      this.#surfaces.clear()
+      this.#cage = cage
+    }
     const { positions, indices, uvs } = cage?.mesh ?? {}
-    this.#wet = positions && indices && uvs && new WetPaint(new CageAtlas({ positions, indices, uvs }, kPaintedSize))
-    return this.#wet
+    if (!positions || !indices || !uvs) return undefined
+    const { texels } = this.#options
+    const surface = this.#surfaces.get(texels) ?? new WetPaint(new CageAtlas({ positions, indices, uvs }, texels))
+    this.#surfaces.set(texels, surface)
+    return surface
   }
 }
 

@@ -19,8 +19,8 @@ const kOffers: Record<Kind, Pick<Offer, 'title' | 'key' | 'icon'>> = {
 
 /** Offers brush, eraser and stickers on the rail of tools, with their options below the layers. */
 export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, layers: Layers): void {
-  const painter = new Painter(session, viewer, layers)
   const options = new PaintOptions()
+  const painter = new Painter(session, viewer, layers, options)
   const ring = new Ring()
   const sticker = new StickerTool(painter, viewer, options, ring)
   const chosen = {

@@ -17,12 +17,13 @@ import {
   type ShaderMaterialParameters,
   type Texture,
   type WebGLRenderer,
+  type WebGLRenderTarget,
 } from 'three'
 import type { Wet } from '../layers/composite'
 import { kMostRects, Pass } from '../layers/pass'
 import { apart, toShares, toTexels, type Rect } from '../layers/rect'
 import { CageAtlas, kFacing, kPatchTexels, type Capsule, type Place } from './atlas'
-import { kPaintedSize, makePaintTarget, type PaintedSheet } from './painted-sheet'
+import { makePaintTarget, type PaintedSheet } from './painted-sheet'
 
 /** What is laid on in one go, from a press to the release. */
 export interface StrokeStyle {
@@ -50,7 +51,8 @@ const kTableWidth = 1024 // a power of two
 const kWithin = 0.999 // the GPU reckons in single precision
 const kMostCapsules = 8 // in one pass
 
-const kPlaceShader = /* glsl */ `
+/** @param size Texels a side. */
+const placeShader = (size: number): string => /* glsl */ `
 uniform highp isampler2D owners;
 uniform sampler2D patches;
 const float kFacing = ${kFacing};
@@ -65,7 +67,7 @@ bool place(out vec3 point, out vec3 normal) {
   int owner = texelFetch(owners, ivec2(gl_FragCoord.xy), 0).r;
   if (owner < 0) return false;
   vec4 a = row(owner, 0), b = row(owner, 1), c = row(owner, 2), growth = row(owner, 3);
-  vec2 from = gl_FragCoord.xy / ${kPaintedSize}.0 - vec2(a.w, b.w);
+  vec2 from = gl_FragCoord.xy / ${size}.0 - vec2(a.w, b.w);
   vec2 shares = vec2(dot(from, growth.xy), dot(from, growth.zw));
   vec3 inside = max(vec3(1.0 - shares.x - shares.y, shares), 0.0);
   point = mat3(a.xyz, b.xyz, c.xyz) * inside / (inside.x + inside.y + inside.z);
@@ -74,8 +76,8 @@ bool place(out vec3 point, out vec3 normal) {
 }
 `
 
-const kBrushShader = /* glsl */ `
-${kPlaceShader}
+const brushShader = (size: number): string => /* glsl */ `
+${placeShader(size)}
 uniform vec3 from[${kMostCapsules}];
 uniform vec3 to[${kMostCapsules}];
 uniform vec3 fromNormal[${kMostCapsules}];
@@ -101,8 +103,8 @@ void main() {
 }
 `
 
-const kStickerShader = /* glsl */ `
-${kPlaceShader}
+const stickerShader = (size: number): string => /* glsl */ `
+${placeShader(size)}
 uniform sampler2D picture;
 uniform vec3 center;
 uniform vec3 outward;
@@ -145,7 +147,7 @@ const joined = (blendEquation: typeof AddEquation | typeof MaxEquation, src: typ
 
 /** Paint that is being laid on: it covers a sheet without being part of it, until it is settled. */
 export class WetPaint {
-  readonly #target = makePaintTarget()
+  readonly #target: WebGLRenderTarget
   readonly #brush: Pass<ReturnType<typeof brushUniforms>>
   readonly #sticker: Pass<ReturnType<typeof stickerUniforms>>
   readonly #lay = new Pass(kSettleShader, settleUniforms(), joined(AddEquation, OneFactor, OneMinusSrcAlphaFactor))
@@ -160,7 +162,9 @@ export class WetPaint {
   readonly #full = new Set<number>()
 
   constructor(readonly atlas: CageAtlas) {
-    const owners = new DataTexture(atlas.owners, kPaintedSize, kPaintedSize, RedIntegerFormat, IntType)
+    const { size } = atlas
+    this.#target = makePaintTarget(size)
+    const owners = new DataTexture(atlas.owners, size, size, RedIntegerFormat, IntType)
     owners.internalFormat = 'R32I'
     const numbers = atlas.table()
     const rows = Math.max(1, Math.ceil(numbers.length / (4 * kTableWidth)))
@@ -173,8 +177,8 @@ export class WetPaint {
       texture.unpackAlignment = 4
       texture.needsUpdate = true
     }
-    this.#brush = new Pass(kBrushShader, brushUniforms(owners, patches), joined(MaxEquation, OneFactor, OneFactor))
-    this.#sticker = new Pass(kStickerShader, stickerUniforms(owners, patches))
+    this.#brush = new Pass(brushShader(size), brushUniforms(owners, patches), joined(MaxEquation, OneFactor, OneFactor))
+    this.#sticker = new Pass(stickerShader(size), stickerUniforms(owners, patches))
   }
 
   /** What the composite is to show; nothing while nothing is laid. */
@@ -183,7 +187,7 @@ export class WetPaint {
     return this.#sheet && { sheet: this.#sheet, texture: this.#target.texture, opacity, erases }
   }
 
-  /** Begins a stroke, or a sticker, over a sheet. */
+  /** Begins a stroke, or a sticker, over a sheet of as many texels. */
   begin(sheet: PaintedSheet, style: StrokeStyle): void {
     this.#sheet = sheet
     this.#style = style
@@ -234,7 +238,7 @@ export class WetPaint {
     const rects = this.#rects
     this.#rects = []
     this.#dry.run(renderer, this.#target, rects)
-    return rects.map((rect) => toShares(rect, kPaintedSize))
+    return rects.map((rect) => toShares(rect, this.atlas.size))
   }
 
   /**
@@ -267,10 +271,10 @@ export class WetPaint {
   }
 
   #draw(renderer: WebGLRenderer, pass: { run: Pass<never>['run'] }, touched: readonly Rect[]): Rect[] {
-    const rects = apart(touched.map((rect) => toTexels(rect, kPaintedSize)), kMostRects)
+    const rects = apart(touched.map((rect) => toTexels(rect, this.atlas.size)), kMostRects)
     pass.run(renderer, this.#target, rects)
     this.#rects = apart([...this.#rects, ...rects], kMostRects)
-    return rects.map((rect) => toShares(rect, kPaintedSize))
+    return rects.map((rect) => toShares(rect, this.atlas.size))
   }
 }
 
