@@ -44,8 +44,9 @@ export function basis(): Plugin {
     enforce: 'pre',
     configureServer(server) {
       server.middlewares.use(async (request, response, next) => {
-        const { pathname } = new URL(request.url ?? '/', 'http://localhost')
-        if (!kFile.test(pathname)) return next()
+        const { pathname, searchParams } = new URL(request.url ?? '/', 'http://localhost')
+        // A module that asks for the address alone gets that from Vite.
+        if (!kFile.test(pathname) || searchParams.has('url')) return next()
         response.setHeader('Content-Type', 'text/javascript')
         response.end(withoutEval(await readFile(new URL(import.meta.resolve('three/addons/libs/basis/basis_transcoder.js')), 'utf8')))
       })

@@ -3,11 +3,12 @@ import { after, before, test } from 'node:test'
 import { NodeIO } from '@gltf-transform/core'
 import { KHRTextureBasisu } from '@gltf-transform/extensions'
 import { PNG } from 'pngjs'
+import { createServer } from 'vite'
 import { glb } from './glb'
 import { islandCage, lumpyBall } from './models'
 import { look, modelArea, shareOfHue } from './picture'
 import { saved, validModel } from './saved'
-import { settled, shownCounts, shownError, Site, type Upload } from './site'
+import { inRepository, settled, shownCounts, shownError, Site, type Upload } from './site'
 import { texel } from './texture'
 
 let site: Site
@@ -112,4 +113,18 @@ test('a damaged KTX2 texture leaves its model white, and the page says so', asyn
   await page.locator('#show-paint').uncheck({ force: true })
   assert.ok(shareOfHue(await look(page, await modelArea(page)), kHue) < 0.001)
   assert.ok(complaints.every((complaint) => !/Content Security Policy|EvalError/.test(complaint)), complaints.join())
+})
+
+test('in development the transcoder is served as it is in the built page, and its address to modules that ask for that', async () => {
+  const server = await createServer({ configFile: inRepository('web/vite.config.ts'), logLevel: 'error', server: { host: '127.0.0.1', port: 0 } })
+  try {
+    await server.listen()
+    const address = `${server.resolvedUrls!.local[0]}@fs${inRepository('node_modules/three/examples/jsm/libs/basis/basis_transcoder.js')}`
+    const [script, module] = await Promise.all([address, `${address}?url`].map(async (url) => (await fetch(url)).text()))
+    assert.match(script!, /var BASIS/)
+    assert.doesNotMatch(script!, /newFunc\(Function/)
+    assert.match(module!, /^export default ".*basis_transcoder\.js"/)
+  } finally {
+    await server.close()
+  }
 })
