@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -13,7 +12,7 @@
 #include "reference_scene.hpp"
 #include "traps.hpp"
 #ifdef CAGECAST_GLTF
-#include "gltf/gltf.hpp"
+#include "assets.hpp"
 #endif
 
 using namespace cagecast;
@@ -261,19 +260,10 @@ TEST_CASE("cut borders follow the projected rims on heads", "[borders]") {
 
 #ifdef CAGECAST_GLTF
 TEST_CASE("cut borders follow the projected rims on real models", "[borders][assets]") {
-  const char* folder = std::getenv("CAGECAST_ASSETS");
-  if (folder == nullptr) {
-    WARN("CAGECAST_ASSETS is not set: no real models were cut");
-    return;
-  }
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string path = entry.path().string();
-    if (!std::filesystem::exists(path + "/target.glb") || !std::filesystem::exists(path + "/cage.glb")) continue;
-    gltf::Model target, cage;
-    REQUIRE(gltf::read(path + "/target.glb", target).ok());
-    REQUIRE(gltf::read(path + "/cage.glb", cage).ok());
+  for (const std::filesystem::path& folder : assetFolders()) {
+    const gltf::Model target = readAsset(folder / "target.glb"), cage = readAsset(folder / "cage.glb");
     for (const Seams seams : {Seams::vertex, Seams::corner}) {
-      const std::string name = entry.path().filename().string() + (seams == Seams::corner ? ", seams too" : "");
+      const std::string name = folder.filename().string() + (seams == Seams::corner ? ", seams too" : "");
       const Found found = checkCut(name, cage.view(), target.view(), cutting(seams));
       std::cout << name << ": " << found.added << " triangles more, borders at most " << found.mostOff << " of the diagonal off\n";
       CHECK(found.mostOff <= kTolerance);
