@@ -13,9 +13,13 @@
 /// of them; every leaf has up to four triangles, which lie side by side when it is looked at.
 namespace cagecast {
 
-/// A node's child: the index of a node, or the first triangle of a leaf with the high bit set. An unused child is some leaf,
-/// in a box that is a point far away.
+/// A node's child: the index of a node, or a leaf with the high bit set: its first triangle, and in the two bits below the high
+/// one how many it has less than four. An unused child is some leaf, in a box that is a point far away.
 inline constexpr std::uint32_t kLeafBit = 0x8000'0000u;
+inline constexpr std::uint32_t leafOf(std::uint32_t first, std::uint32_t foreign = 0) { return kLeafBit | foreign << 29 | first; }
+inline constexpr std::uint32_t firstOf(std::uint32_t leaf) { return leaf & ((1u << 29) - 1); }
+inline constexpr std::uint32_t foreignIn(std::uint32_t leaf) { return leaf >> 29 & 3; }
+static_assert(kMaxTriangles < 1u << 29);
 
 /// Four boxes: low[axis][child], high[axis][child]. Each is a little larger than what it holds, by more than the
 /// rounding of the kernels that use it, so that no box hides a triangle that its kernel would hit.
@@ -204,7 +208,8 @@ class HitSearch {
   const RayTree& tree_;
   double from_;
   float boxFrom_;           ///< The same for boxes.
-  float loose_;             ///< Hits beyond this are worth deciding in double.
+  float loose_;             ///< Hits beyond this are worth deciding in double,
+  float strict_;            ///< and beyond this they count for sure.
   float zero_;              ///< 0 if a hit at distance 0 is none, else no number.
   Slabs* slabs_;            ///< 1 per ray.
   std::uint16_t* lists_;    ///< `kListRoom`.

@@ -157,7 +157,7 @@ void fillNodes(Box* boxes, Node* nodes, CageTree& out) {
         nodes[levelBegin + i].child[lane] = kLeafBit;
         children[lane] = Box::nowhere();
         if (child >= width) continue;
-        nodes[levelBegin + i].child[lane] = overLeaves ? kLeafBit | 4 * child : childBase + child;
+        nodes[levelBegin + i].child[lane] = overLeaves ? leafOf(4 * child) : childBase + child;
         children[lane] = boxes[child];
         around.grow(boxes[child]);
       }
@@ -388,7 +388,7 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
           for (int k = 0; k < 3; ++k) below[lane].grow(load(target.at(corner[k])));
         }
         below[lane] = below[lane].padded(kPadding * units.reach);
-        nodes[node].child[lane] = kLeafBit | first;
+        nodes[node].child[lane] = leafOf(first, 3 - (child & 3));
       } else {
         below[lane] = boxes[child];
         nodes[node].child[lane] = child;

@@ -22,9 +22,10 @@ using simd::wide;
 /// away by their sum; this is for what rounding leaves of them. No test has needed it yet.)
 constexpr double kParallel = 1e-10;
 
-/// The rounding of an edge function in float, for a ray that hits, as a share of the scene's reach R times the size E of the
-/// leaf's box: corners are moved and sheared with errors up to 2^-21 R, then lie within 2 E of the ray; of their products four
-/// are off by as much. The double of that. (Of triangles beyond the leaf's own it may say too little: they have their leaf.)
+/// The rounding of an edge function in float, for a ray that comes into the leaf's box, as a share of the scene's reach R times
+/// the size E of that box: corners are moved and sheared with errors up to 2^-21 R, then lie within 2 E of the ray; of their
+/// products four are off by as much. The double of that. (Of triangles beyond the leaf's own it may say too little: they have
+/// their leaf.)
 constexpr float kEdgeRounding = 0x1p-17f;
 
 /// The rounding of a distance in `mightHit`: three times that of an edge function, times a corner's distance from the ray's
@@ -36,6 +37,8 @@ constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 /// An end in float that is not before the exact one.
 float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end)); }
+/// One that is not behind it.
+float strictEnd(double end) { return std::isfinite(end) ? static_cast<float>(end - 1e-6 * std::abs(end)) : static_cast<float>(end); }
 
 }  // namespace
 
@@ -45,10 +48,11 @@ struct RayLeaf {
   float corner[3][3][4];  ///< corner[a, b, c][axis][lane].
   float rounding;          ///< What the edge functions of a ray that hits may be off in float.
   float distanceRounding;  ///< And its distance, times the sum of these functions.
+  unsigned own;            ///< Which triangles are the leaf's own: a bit each. What rounding may do is known of these.
 
-  RayLeaf(const RayTree& tree, std::uint32_t first, float size)
-      : rounding(size * kEdgeRounding * tree.reach), distanceRounding(rounding * kDistanceRounding * tree.reach) {
-    const std::uint32_t* index = tree.corners + std::size_t{3} * first;
+  RayLeaf(const RayTree& tree, std::uint32_t child, float size)
+      : rounding(size * kEdgeRounding * tree.reach), distanceRounding(rounding * kDistanceRounding * tree.reach), own(15u >> foreignIn(child)) {
+    const std::uint32_t* index = tree.corners + std::size_t{3} * firstOf(child);
     for (int i = 0; i < 3; ++i) {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
       f32x4 rows[4] = {row(0), row(1), row(2), row(3)};
@@ -96,11 +100,15 @@ namespace {
   return sum != 0 ? (u * z[0] + v * z[1] + w * z[2]) / sum : kNowhere;
 }
 
-/// Which of four triangles the ray might hit: the test of `hitDistance` in float, with room for its rounding.
-/// @param loose   Hits beyond it are worth deciding.
-/// @param nowhere  0 if a hit at distance 0 is none, else no number.
-/// @param slack    What a distance may be off, times the sum of the edge functions.
-inline unsigned mightHit(const RayLeaf& leaf, const Ray& ray, f32x4 loose, f32x4 nowhere) {
+/// What the test of `hitDistance` comes to in float, for four triangles.
+struct Estimate {
+  f32x4 least, most;  ///< Of the three edge functions.
+  f32x4 size;         ///< Of their sum.
+  f32x4 depths;       ///< 0 at the ray's origin, exactly.
+  f32x4 distances;    ///< Times the square of `size`: so there is no division.
+};
+
+inline Estimate estimate(const RayLeaf& leaf, const Ray& ray) {
   const RayDirection& direction = *ray.direction;
   const f32x4 shearX = splat(direction.shearX);
   const f32x4 shearY = splat(direction.shearY);
@@ -119,18 +127,33 @@ inline unsigned mightHit(const RayLeaf& leaf, const Ray& ray, f32x4 loose, f32x4
   const f32x4 u = simd::subtractProduct(x[2] * y[1], y[2], x[1]);
   const f32x4 v = simd::subtractProduct(x[0] * y[2], y[0], x[2]);
   const f32x4 w = simd::subtractProduct(x[1] * y[0], y[1], x[0]);
-  // None is negative, or none is positive.
-  const f32x4 least = simd::min(u, simd::min(v, w));
-  const f32x4 most = simd::max(u, simd::max(v, w));
-  const mask4 through = simd::min(splat(0) - least, most) <= splat(leaf.rounding);
-  // The distance is −(u·z0 + v·z1 + w·z2)·scale / (u + v + w); multiplied by the square of the divisor there is no division.
+  // The distance is −(u·z0 + v·z1 + w·z2)·scale / (u + v + w).
   const f32x4 sum = u + v + w;
-  const f32x4 size = simd::abs(sum);
   const f32x4 depths = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
-  const f32x4 slack = splat(leaf.distanceRounding);
-  const mask4 beyond = (loose * size - slack) * size <= depths * splat(-direction.scaleZ) * sum;
+  return {simd::min(u, simd::min(v, w)), simd::max(u, simd::max(v, w)), simd::abs(sum), depths,
+          depths * splat(-direction.scaleZ) * sum};
+}
+
+/// Which triangles the ray might hit, as far as float can tell.
+/// @param loose    Hits beyond it are worth deciding.
+/// @param nowhere  0 if a hit at distance 0 is none, else no number.
+inline unsigned mightHit(const RayLeaf& leaf, const Estimate& of, f32x4 loose, f32x4 nowhere) {
+  // None is negative, or none is positive.
+  const mask4 through = simd::min(splat(0) - of.least, of.most) <= splat(leaf.rounding);
+  const mask4 beyond = (loose * of.size - splat(leaf.distanceRounding)) * of.size <= of.distances;
   // Triangles at the origin itself come out at 0 exactly; they are many, and no hits if hits begin beyond 0.
-  return simd::bits(through & beyond & (depths != nowhere));
+  return simd::bits(through & beyond & (of.depths != nowhere));
+}
+
+/// Which of the leaf's own triangles the ray hits whatever rounding did: double would say the same.
+/// @param strict  Hits beyond it count, in double as well.
+inline unsigned mustHit(const RayLeaf& leaf, const Estimate& of, const Ray& ray, float strict) {
+  const f32x4 slack = splat(leaf.distanceRounding);
+  const mask4 through = splat(leaf.rounding) < simd::max(of.least, splat(0) - of.most);
+  const mask4 beyond = (splat(strict) * of.size + slack) * of.size <= of.distances;
+  const mask4 before = of.distances <= (splat(strictEnd(ray.end)) * of.size - slack) * of.size;
+  const bool isExact = ray.rest[0] == 0 && ray.rest[1] == 0 && ray.rest[2] == 0;
+  return isExact ? simd::bits(through & beyond & before) & leaf.own : 0;
 }
 
 }  // namespace
@@ -140,6 +163,7 @@ HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcep
       from_(from),
       boxFrom_(static_cast<float>(from)),
       loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
+      strict_(static_cast<float>(from > 0 ? from * 2 : from / 2)),
       zero_(from > 0 ? 0.0f : std::numeric_limits<float>::quiet_NaN()),
       slabs_(scratch.take<Slabs>(kMostRays)),
       lists_(scratch.take<std::uint16_t>(kListRoom)) {}
@@ -236,7 +260,7 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
 /// Tries rays with the four triangles from the first of a leaf on.
 void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* rays, std::uint32_t count) noexcept {
   const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
-  const RayLeaf leaf(tree_, node.child[child] & ~kLeafBit, side(0) + side(1) + side(2));
+  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2));
   const f32x4 loose = splat(loose_);
   const f32x4 zero = splat(zero_);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -244,7 +268,15 @@ void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* rays,
     if (slabs.end() < loose_) continue;
     const std::size_t id = rays[i] / sizeof(Slabs);
     Ray& ray = rays_[id];
-    for (unsigned close = mightHit(leaf, ray, loose, zero); close != 0; close &= close - 1) {
+    const Estimate estimated = estimate(leaf, ray);
+    unsigned close = mightHit(leaf, estimated, loose, zero);
+    if (close == 0) continue;
+    if (find_ == Find::any && mustHit(leaf, estimated, ray, strict_) != 0) {
+      hit_[id] = true;
+      slabs.end() = static_cast<float>(kNowhere);
+      continue;
+    }
+    for (; close != 0; close &= close - 1) {
       const double distance = hitDistance(leaf, std::countr_zero(close), ray);
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;

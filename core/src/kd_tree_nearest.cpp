@@ -95,7 +95,7 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
   alignas(32) float distances[kBatch][kGroup];
   wide nearest[kGroup / kWide];
   for (wide& n : nearest) n = simd::splatWide(std::numeric_limits<float>::infinity());
-  const auto leafAt = [leaves](std::uint32_t j) { return (leaves[j] & ~kLeafBit) / 4; };
+  const auto leafAt = [leaves](std::uint32_t j) { return firstOf(leaves[j]) / 4; };
   for (std::uint32_t j = 0; j < leafCount; ++j) {
     const LeafBox& box = tree_.boxes[leafAt(j)];
     wide squared[kGroup / kWide];
@@ -165,7 +165,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
   std::uint32_t leafCount = listLeaves(low, high, simd::highest(most), leaves);
-  leafCount = static_cast<std::uint32_t>(std::remove(leaves, leaves + leafCount, kLeafBit | 4 * seed) - leaves);
+  leafCount = static_cast<std::uint32_t>(std::remove(leaves, leaves + leafCount, leafOf(4 * seed)) - leaves);
   for (std::uint32_t begin = 0; begin < leafCount; begin += kBatch) {
     searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
   }
@@ -198,7 +198,7 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) c
   std::uint32_t* leaves;
   const std::uint32_t leafCount = listLeaves(box, box, limit, leaves);
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const std::uint32_t leaf = (leaves[j] & ~kLeafBit) / 4;
+    const std::uint32_t leaf = firstOf(leaves[j]) / 4;
     takeLanes(leaf, simd::bits(squaredDistanceToTriangles(tree_.near[leaf], point) <= limit));
   }
   return count;
