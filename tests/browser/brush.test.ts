@@ -11,7 +11,7 @@ let site: Site
 let visit: Visit
 before(async () => {
   site = await Site.open()
-  visit = await site.visit({ viewport: kWindow })
+  visit = await site.visit({ viewport: kWindow, deviceScaleFactor: 1 })
 })
 after(() => site?.close())
 
@@ -260,9 +260,10 @@ test('a lost graphics context costs nobody a stroke', async () => {
   await page.evaluate(async () => {
     const canvas = document.querySelector('canvas')!
     const extension = canvas.getContext('webgl2')!.getExtension('WEBGL_lose_context')!
-    const restored = new Promise((done) => canvas.addEventListener('webglcontextrestored', done, { once: true }))
+    const [lost, restored] = ['webglcontextlost', 'webglcontextrestored'].map((event) => new Promise((done) => canvas.addEventListener(event, done, { once: true })))
     extension.loseContext()
-    await new Promise((done) => setTimeout(done, 100))
+    await lost
+    await new Promise((done) => setTimeout(done)) // not while it is being told
     extension.restoreContext()
     await restored
   })

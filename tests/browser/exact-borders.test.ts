@@ -141,12 +141,24 @@ test('cutting can be given up: the switch goes off, and what was on show stays',
 
 test('what is decided otherwise while borders are cut is cut in its place, once', async () => {
   const { page, complaints } = await site.visit({}, kSlowWorker)
-  await page.getByTestId('exact-borders').check()
-  await page.waitForFunction(() => document.querySelector('[data-testid=status]')!.textContent === 'working')
   const seen = await watchNote(page)
-  await setThreshold(page, 1)
-  assert.equal(await page.getByTestId('status').textContent(), 'ready')
-  await cut(page)
+  // Within the page: from outside it may come when all is done.
+  const statuses = page.evaluate(
+    () =>
+      new Promise<string[]>((done) => {
+        const [status, threshold] = ['status', 'threshold'].map((id) => document.querySelector<HTMLInputElement>(`[data-testid=${id}]`)!)
+        const said: string[] = []
+        new MutationObserver(() => {
+          said.push(status!.textContent!)
+          if (said.length === 1) {
+            threshold!.value = '1'
+            threshold!.dispatchEvent(new Event('input', { bubbles: true }))
+          } else if (said.filter((text) => text === 'ready').length === 2) done(said)
+        }).observe(status!, { childList: true })
+      }),
+  )
+  await page.getByTestId('exact-borders').check()
+  assert.deepEqual(await statuses, ['working', 'ready', 'working', 'ready'])
   await page.waitForTimeout(1500)
   assert.equal((await seen()).filter((text) => text !== '').length, 1)
   assert.match((await note(page))!, isCut)

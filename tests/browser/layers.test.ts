@@ -231,7 +231,7 @@ test('a sample’s paint lies over the others as well, and a link brings back ho
   await rows(page).filter({ hasText: 'Tiger stripes' }).locator('.choose').click()
   await page.getByLabel('Tint of Tiger stripes').fill('#80c0ff')
   const texture = await savedTexture(page)
-  await page.waitForTimeout(300) // the link follows when the hand rests
+  await page.getByTestId('share-link').focus() // else the link follows when the hand rests
   const link = await page.getByTestId('share-link').evaluate((anchor) => (anchor as HTMLAnchorElement).hash)
   const other = await site.visit({ viewport: { width: 900, height: 500 } }, undefined, link)
   await rows(other.page).filter({ hasText: 'War paint' }).waitFor()

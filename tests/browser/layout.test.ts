@@ -107,7 +107,6 @@ test('a finger turns the model and moves the line', async () => {
     await touch('touchStart', x)
     for (let step = 1; step <= 4; step++) await touch('touchMove', x + (by * step) / 4)
     await touch('touchEnd')
-    await page.waitForTimeout(600)
   }
   const before = await look(page, area)
   await swipe(area.x + 40, area.y + area.height / 3, 90)

@@ -6,7 +6,7 @@ import type { Page } from 'playwright-core'
 import { Box3, Vector3 } from 'three'
 import { deform } from '../../web/src/live/deform'
 import { islandCage, islandPaint, morphingBalls } from './models'
-import { difference, look, modelArea, shareOfHue } from './picture'
+import { difference, frames, look, modelArea, shareOfHue, watch } from './picture'
 import { primitivesOf, saved, validModel } from './saved'
 import { drop, settled, shownCounts, shownError, Site, type Upload } from './site'
 
@@ -132,16 +132,11 @@ test('morphs and an animation that moves the same do not get into each other’s
   await page.getByTestId('animation').selectOption('0')
   await moved(page)
   assert.equal(await slider(page, 'drop').inputValue(), '0', 'the animation has the word')
-  const seen = async (): Promise<number> => {
-    let most = 0
-    for (let i = 0; i < 8; i++) most = Math.max(most, difference(rest, await look(page, area)))
-    return most
-  }
-  assert.ok((await seen()) > 0.02, 'it plays')
+  await watch(page, area, (picture) => difference(rest, picture) > 0.02)
   await morph(page, 'grow', 0.5)
   assert.equal(await page.getByTestId('animation').inputValue(), '-1', 'it has ended')
   const still = await look(page, area)
-  await page.waitForTimeout(300)
+  await frames(page, 10)
   assert.equal(difference(still, await look(page, area)), 0)
   await page.locator('#morphs-reset').click()
   await moved(page)

@@ -93,6 +93,7 @@ test('exact borders go into the texture as well', async () => {
   const skinOf = (document: Document): PNG => textureOf(primitivesOf(document).find((primitive) => primitive.getMaterial()?.getName() === 'skin')!.getMaterial())
   const whole = await savedInTexture(page)
   await page.getByTestId('exact-borders').check()
+  await page.waitForFunction(() => /triangles more/.test(document.querySelector('[data-testid=borders-note]')!.textContent!))
   assert.equal(await settled(page), 'ready', await shownError(page))
   const cut = await savedInTexture(page)
   assert.equal(cut.note, whole.note)

@@ -15,10 +15,17 @@ export async function modelArea(page: Page): Promise<Area> {
   return { x: box.x + 0.1 * box.width, y: box.y + 0.14 * box.height, width: 0.8 * box.width, height: 0.5 * box.height }
 }
 
+/** Waits for frames of the page, in each of which it may draw; as slow as the machine is. */
+export function frames(page: Page, count: number): Promise<void> {
+  return page.evaluate(async (count) => {
+    for (let i = 0; i < count; i++) await new Promise(requestAnimationFrame)
+  }, count)
+}
+
 /** What is to be seen in an area of the page, two frames from now, when they are drawn. */
 export async function look(page: Page, area: Area): Promise<PNG> {
+  await frames(page, 2)
   await page.evaluate(async () => {
-    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))
     // What draws behind the page may take longer. Reading a pixel would wait as well, but leave an empty picture behind.
     const gl = document.querySelector<HTMLCanvasElement>('#view')!.getContext('webgl2')
     const sync = gl?.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0)
@@ -28,6 +35,11 @@ export async function look(page: Page, area: Area): Promise<PNG> {
     gl.deleteSync(sync)
   })
   return PNG.sync.read(await page.screenshot({ clip: area }))
+}
+
+/** Looks at an area again and again, until something is to be seen there. @throws Error if it is not within a minute. */
+export async function watch(page: Page, area: Area, seen: (picture: PNG) => boolean): Promise<void> {
+  for (const deadline = Date.now() + 60_000; !seen(await look(page, area)); ) if (Date.now() > deadline) throw new Error('it is not seen')
 }
 
 /** The share of pixels that differ visibly between two pictures of one size, 0..1. */

@@ -9,7 +9,7 @@ const kModels = ['Lizard head', 'Human bust', 'Saloon car']
 
 /** The model alone, naive beside filtered. */
 async function compare(site: Site): Promise<void> {
-  const { page } = await site.visit({ viewport: { width: 1480, height: 720 } })
+  const { page } = await site.visit({ viewport: { width: 1480, height: 720 }, deviceScaleFactor: 1 })
   await hideControls(page)
   await rest(page)
   const box = (await page.locator('#stage').boundingBox())!
@@ -48,7 +48,7 @@ async function first(site: Site): Promise<void> {
 async function desktopAndPhone(site: Site): Promise<void> {
   const shots: string[] = []
   for (const [width, height, colorScheme] of [[1440, 900, 'light'], [390, 900, 'dark']] as const) {
-    const { page } = await site.visit({ viewport: { width, height }, colorScheme })
+    const { page } = await site.visit({ viewport: { width, height }, deviceScaleFactor: 1, colorScheme })
     if (width < 600) await choose(page, 'Human bust')
     await rest(page)
     shots.push(dataUri(await page.screenshot({ type: 'png' })))
@@ -60,7 +60,7 @@ async function desktopAndPhone(site: Site): Promise<void> {
 async function modes(site: Site): Promise<void> {
   const shown = { zones: 'zones', segments: 'parts', checker: 'UV checker', distance: 'distance to the cage', stretch: 'stretch' }
   const rows: string[] = []
-  const { page } = await site.visit({ viewport: { width: 900, height: 520 } })
+  const { page } = await site.visit({ viewport: { width: 900, height: 520 }, deviceScaleFactor: 1 })
   await hideControls(page)
   for (const model of kModels) {
     await choose(page, model)
@@ -79,7 +79,7 @@ async function modes(site: Site): Promise<void> {
 /** The stories of an eye, and of a spot that the model hides. */
 async function why(site: Site): Promise<void> {
   const shots: string[] = []
-  const { page } = await site.visit({ viewport: { width: 1200, height: 760 } })
+  const { page } = await site.visit({ viewport: { width: 1200, height: 760 }, deviceScaleFactor: 1 })
   await page.locator('#view-mode input[value=result]').check({ force: true })
   await page.getByRole('radio', { name: 'Why?' }).check({ force: true })
   const stage = (await page.locator('#stage').boundingBox())!
@@ -128,7 +128,7 @@ const rest = (page: Page): Promise<void> => page.waitForTimeout(2500)
 const dataUri = (png: Buffer): string => `data:image/png;base64,${png.toString('base64')}`
 
 async function compose(site: Site, name: string, html: string): Promise<void> {
-  const { page } = await site.visit({ viewport: { width: 1400, height: 700 } })
+  const { page } = await site.visit({ viewport: { width: 1400, height: 700 }, deviceScaleFactor: 1 })
   await page.setContent(`<body style="margin:0;font:600 18px system-ui;color:#445"><div id="all" style="display:inline-block;padding:12px;background:#fff">${html}</div></body>`)
   await page.waitForTimeout(500)
   await page.locator('#all').screenshot({ path: `${kFolder}/${name}.jpg`, type: 'jpeg', quality: 85 })

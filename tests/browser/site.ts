@@ -3,7 +3,6 @@ import { tmpdir } from 'node:os'
 import path from 'node:path'
 import { fileURLToPath } from 'node:url'
 import type { Browser, BrowserContext, BrowserContextOptions, CDPSession, Page } from 'playwright-core'
-import { build, preview } from 'vite'
 import { launchChromium } from '../chromium'
 
 const kRoot = fileURLToPath(new URL('../..', import.meta.url))
@@ -25,6 +24,18 @@ export interface Visit {
   foreign: string[]
 }
 
+async function serve(): Promise<{ url: string; folder: string; stop(): Promise<void> }> {
+  const { build, preview } = await import('vite') // half a second, for those who serve
+  const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-page-'))
+  await build({ configFile: kConfig, logLevel: 'error', build: { outDir: folder } })
+  const server = await preview({ configFile: kConfig, logLevel: 'error', build: { outDir: folder }, preview: { host: '127.0.0.1', port: 0 } })
+  const stop = async (): Promise<void> => {
+    await server.close()
+    await rm(folder, { recursive: true, force: true })
+  }
+  return { url: server.resolvedUrls!.local[0]!, folder, stop }
+}
+
 /** The built page, served, and a browser to visit it with. */
 export class Site {
   private visitor: BrowserContext | undefined
@@ -38,19 +49,15 @@ export class Site {
   ) {}
 
   /**
-   * Builds the page as it is published, serves it on a free port and starts Chromium. The environment variable CAGECAST_PAGE
-   * names a folder where it is already built, by whoever runs many files of tests.
+   * Starts Chromium, and builds and serves the page as it is published, on a free port. Whoever runs many files of tests has done
+   * that once for all: the environment variables CAGECAST_SITE and CAGECAST_PAGE are the address and the folder of the built page.
    */
   static async open(): Promise<Site> {
-    const built = process.env.CAGECAST_PAGE || undefined // an empty name would be the folder of the sources
-    const outDir = built ?? (await mkdtemp(path.join(tmpdir(), 'cagecast-page-')))
-    if (!built) await build({ configFile: kConfig, logLevel: 'error', build: { outDir } })
-    const server = await preview({ configFile: kConfig, logLevel: 'error', build: { outDir }, preview: { host: '127.0.0.1', port: 0 } })
-    const browser = await launchChromium({ drawing: true })
-    return new Site(server.resolvedUrls!.local[0]!, outDir, browser, async () => {
+    const { CAGECAST_SITE: url, CAGECAST_PAGE: folder } = process.env
+    const [served, browser] = await Promise.all([url && folder ? { url, folder, stop: async () => {} } : serve(), launchChromium({ drawing: true })])
+    return new Site(served.url, served.folder, browser, async () => {
       await browser.close()
-      await server.close()
-      if (!built) await rm(outDir, { recursive: true, force: true })
+      await served.stop()
     })
   }
 
@@ -60,7 +67,8 @@ export class Site {
 
   /**
    * Opens the page and waits until it shows the first sample. One visit at a time: a new one ends the last.
-   * @param options   A still picture 1000 × 700 in light colours, nothing kept for later, unless they say otherwise.
+   * @param options   A still picture 1000 × 700 in light colours, of half as many pixels each way, as drawing takes most of the
+   *                  time; nothing kept for later; unless they say otherwise.
    * @param prepare   A script that runs in the page before its own, or what is to be done with the page before it goes there.
    * @param fragment  What the address ends with, from its `#` on.
    */
@@ -68,6 +76,7 @@ export class Site {
     await this.visitor?.close()
     this.visitor = await this.browser.newContext({
       viewport: { width: 1000, height: 700 },
+      deviceScaleFactor: 0.5,
       colorScheme: 'light',
       reducedMotion: 'reduce',
       serviceWorkers: 'block',
@@ -139,7 +148,7 @@ export async function processorTime(site: Site): Promise<{ page: number; graphic
   }
   const before = await graphics()
   let session: CDPSession | undefined
-  const { page } = await site.visit({}, async (page) => {
+  const { page } = await site.visit({ deviceScaleFactor: 1 }, async (page) => {
     session = await page.context().newCDPSession(page)
     await session.send('Performance.enable', { timeDomain: 'threadTicks' })
   })
@@ -166,13 +175,13 @@ interface TraceEvent {
 
 /** Waits until the page neither loads nor works, and returns its status. */
 export async function settled(page: Page): Promise<string> {
-  const status = page.getByTestId('status')
-  await page.waitForFunction(
-    () => ['ready', 'error'].includes(document.querySelector('[data-testid=status]')?.textContent ?? ''),
+  // What was found, not what is there by the time one asks again: it may be at work again.
+  const status = await page.waitForFunction(
+    () => ['ready', 'error'].find((status) => status === document.querySelector('[data-testid=status]')?.textContent),
     undefined,
     { timeout: kPatience },
   )
-  return (await status.textContent())!
+  return (await status.jsonValue())!
 }
 
 /** Numbers of target vertices by zone. */

@@ -63,13 +63,11 @@ test('two fingers turn the model, and the first of them has not painted', async 
   const { page } = visit
   const before = await seen()
   await touch([[0.45, 0.45]], [[0.45, 0.45], [0.6, 0.45]], [[0.55, 0.5], [0.7, 0.5]], [[0.7, 0.5], [0.85, 0.5]])
-  await page.waitForTimeout(700)
   assert.ok(difference(before, await seen()) > 0.02, 'it turned')
   assert.equal(filled(await savedTexture(page)), 0)
   assert.equal(await page.getByTestId('undo').isDisabled(), false, 'what was there to be undone, the removal of the paint, still is')
   await page.locator('#view').focus()
   await page.keyboard.press('Home')
-  await page.waitForTimeout(700)
   assert.ok(difference(before, await seen()) < 0.01)
 })
 

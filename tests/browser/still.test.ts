@@ -49,7 +49,7 @@ async function hold(page: Page, address: RegExp): Promise<() => void> {
 for (const [screen, viewport, most] of [['a desk', { width: 1440, height: 900 }, 0.01], ['a phone', { width: 390, height: 844 }, 0.05]] as const) {
   test(`before any script runs, the page shows what it will draw first, on ${screen}`, async () => {
     let early: PNG | undefined
-    const { page, complaints } = await site.visit({ viewport }, async (page) => {
+    const { page, complaints } = await site.visit({ viewport, deviceScaleFactor: 1 }, async (page) => {
       const letGo = await hold(page, kScript)
       void page
         .waitForFunction(() => document.querySelector<HTMLImageElement>('#still')?.complete)

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict'
 import { after, before, test } from 'node:test'
 import type { CDPSession, Page } from 'playwright-core'
+import { look, modelArea } from './picture'
 import { Site } from './site'
 import { filled, savedTexture } from './texture'
 
@@ -40,7 +41,7 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
   await page.getByRole('radio', { name: 'Brush' }).check({ force: true })
   // A tiny picture: it is drawn anew for each move, and is not what this is about.
   await page.addStyleTag({ content: '.stage { width: 180px; height: 200px !important } .stage > :not(canvas) { display: none !important }' })
-  await page.waitForTimeout(500)
+  await look(page, await modelArea(page))
   const box = (await page.locator('#view').boundingBox())!
   const [x, y] = [box.x + 0.5 * box.width, box.y + 0.24 * box.height]
   /** Moves the mouse, or turns the model, once a frame. */
@@ -80,7 +81,6 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
       costs.push((painting.page + painting.graphics - turning.page - turning.graphics) / kMoves)
     }
     assert.ok(Math.min(...costs) < 16, `the brush ${brush}: ${costs.map((cost) => cost.toFixed(1)).join(', ')} ms`)
-    console.log(`the brush ${brush}: ${costs.map((cost) => cost.toFixed(1)).join(', ')} ms`)
   }
   assert.ok(filled(await savedTexture(page)) > 1000)
 })

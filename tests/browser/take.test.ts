@@ -117,6 +117,15 @@ test('the zones are saved as numbers, the same as on the page', async () => {
   assert.deepEqual(options, { preset: 'default', threshold: 0.5, locks: { segments: {} } })
 })
 
+/** Changes the part of the address that says what to show. */
+function goTo(page: Page, hash: string): Promise<void> {
+  return page.evaluate(async (hash) => {
+    const told = new Promise((done) => addEventListener('hashchange', done, { once: true }))
+    location.hash = hash
+    await told
+  }, hash)
+}
+
 test('a link restores the sample, its paint, rules, locks, view and angle, in another visit and in this one', async () => {
   const { page } = await site.visit()
   await page.getByTestId('sample-select').selectOption({ index: 1 })
@@ -135,7 +144,6 @@ test('a link restores the sample, its paint, rules, locks, view and angle, in an
   for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', '+', '+']) await page.locator('#view').press(key)
   const seen = { counts: await shownCounts(page), parts: await shownParts(page), paint: await page.locator('.paints input').nth(1).isChecked(), picture: await look(page, area) }
   assert.ok(difference(front, seen.picture) > 0.1, 'it is turned')
-  await page.waitForTimeout(200)
   await page.getByTestId('share-link').focus()
   const link = await page.getByTestId('share-link').evaluate((anchor) => (anchor as HTMLAnchorElement).href)
   assert.ok(link.startsWith(`${site.url}#`), link)
@@ -158,16 +166,13 @@ test('a link restores the sample, its paint, rules, locks, view and angle, in an
   // In a page that shows something else.
   await other.page.getByTestId('sample-select').selectOption({ index: 0 })
   await settled(other.page)
-  await other.page.evaluate(() => (location.hash = '#'))
-  await other.page.evaluate((hash) => (location.hash = hash), new URL(link).hash)
+  for (const hash of ['#', new URL(link).hash]) await goTo(other.page, hash)
   await other.page.waitForFunction(() => document.querySelector<HTMLSelectElement>('#sample-select')!.selectedIndex === 1)
   await check(other.page)
   // In one that shows it from elsewhere: it is turned, and not opened anew.
   await other.page.locator('#view').press('Home')
   assert.ok(difference(seen.picture, await look(other.page, area)) > 0.1)
-  await other.page.evaluate(() => (location.hash = '#'))
-  await other.page.evaluate((hash) => (location.hash = hash), new URL(link).hash)
-  await other.page.waitForTimeout(100)
+  for (const hash of ['#', new URL(link).hash]) await goTo(other.page, hash)
   await check(other.page)
 })
 

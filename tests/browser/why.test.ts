@@ -5,14 +5,14 @@ import { PNG } from 'pngjs'
 import { report, type Report } from './cli'
 import { glb, tetrahedron, writeGlb } from './glb'
 import { ball, islandCage } from './models'
-import { difference, look, modelArea, shareOfHue, type Area } from './picture'
+import { difference, frames, look, modelArea, shareOfHue, type Area } from './picture'
 import { drop, inRepository, settled, setThreshold, shownError, Site, type Upload, type Visit } from './site'
 
 let site: Site
 let visit: Visit
 before(async () => {
   site = await Site.open()
-  visit = await site.visit({ viewport: { width: 760, height: 500 } })
+  visit = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 })
 })
 after(() => site?.close())
 
@@ -62,7 +62,7 @@ test('what is told of a spot is what the picture shows there', async () => {
 })
 
 test('the story follows the mouse, stays with a click, follows the threshold, and ends with Escape as if it had not been', async () => {
-  const { page } = await site.visit({ viewport: { width: 760, height: 500 } })
+  const { page } = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 })
   visit.page = page
   await mode(page, 'result')
   const area = await modelArea(page)
@@ -75,7 +75,7 @@ test('the story follows the mouse, stays with a click, follows the threshold, an
 
   const told = await bubble(page)
   await page.mouse.move(eye.x - 60, eye.y + 40)
-  await page.waitForTimeout(200)
+  await frames(page, 5)
   assert.equal(await bubble(page), told, 'another spot under the mouse changes nothing')
 
   const { segments } = await report(kLizard('target'), kLizard('cage'))
@@ -192,7 +192,6 @@ test('on a phone a tap asks, and a swipe still turns the model', async () => {
   await touch('touchStart', 120)
   for (const x of [150, 180, 210]) await touch('touchMove', x)
   await touch('touchEnd')
-  await page.waitForTimeout(600)
   assert.ok(difference(before, await look(page, area)) > 0.02, 'it turned')
   assert.equal(await bubble(page), told)
 })

@@ -232,7 +232,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
   test('a pipe is written to, not replaced', { skip: process.platform === 'win32' && 'there are no such pipes' }, () => {
     const [pipe, copy] = [at('pipe'), at('copy.json')];
     const script = `mkfifo "$1" && { cat "$1" > "$2" & "$3" dist/cli.js transfer "$4" --cage "$5" --report "$1" && test -p "$1" && wait; }`;
-    const { status, stderr } = spawnSync('sh', ['-c', script, 'sh', pipe, copy, process.execPath, at('target.glb'), at('cage.glb')], { encoding: 'utf8', timeout: 20000 });
+    const { status, stderr } = spawnSync('sh', ['-c', script, 'sh', pipe, copy, process.execPath, at('target.glb'), at('cage.glb')], { encoding: 'utf8', timeout: 60000 });
     assert.equal(status, 0, stderr);
     assert.equal((JSON.parse(readFileSync(copy, 'utf8')) as Report).parts.length, 1);
     rmSync(pipe);

@@ -73,7 +73,7 @@ describe('the worker', () => {
     const controller = new AbortController();
     const first = failure(transfer(large.cage, large.target, { signal: controller.signal }));
     const second = transfer(scene.cage, scene.target);
-    setTimeout(() => controller.abort(new Error('never mind')), 20);
+    setImmediate(() => controller.abort(new Error('never mind'))); // however quick the machine, it is not done by then
     assert.equal(((await first) as Error).message, 'never mind');
     assert.deepEqual((await second).zones, direct.transfer(scene.cage, scene.target).zones);
   });
@@ -102,7 +102,7 @@ describe('the worker', () => {
       await init();
       const mesh = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) };
       console.log((await transfer(mesh, mesh)).zones.length);`;
-    assert.equal(execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8', timeout: 10000 }).trim(), '3');
+    assert.equal(execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8', timeout: 60000 }).trim(), '3');
   });
 });
 

@@ -288,7 +288,7 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
         await page.goto(origin + path);
         // Playwright's own waiting evaluates strings in the page, which the policy forbids.
         let found: unknown;
-        for (const deadline = Date.now() + 20000; found === undefined && faults.length === 0 && Date.now() < deadline; await setTimeout(50)) {
+        for (const deadline = Date.now() + 60000; found === undefined && faults.length === 0 && Date.now() < deadline; await setTimeout(50)) {
           found = await page.evaluate('globalThis.answer');
         }
         assert.deepEqual(faults, [], path);
