@@ -19,6 +19,8 @@ export class Opener {
   readonly #select = element('sample-select', HTMLSelectElement)
   readonly #renderer: WebGLRenderer | undefined
   #samples: Sample[] = []
+  /** What is to be said of the files that came in last, once they are on show. */
+  #doubts: readonly string[] = []
 
   /** @param renderer What shows them, if anything can. */
   constructor(session: Session, stack: LayerStack, edits: Edits, renderer: WebGLRenderer | undefined) {
@@ -29,7 +31,12 @@ export class Opener {
     setUpFiles((intake) => this.#take(intake))
     this.#select.addEventListener('change', () => this.openSample(this.#select.value))
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap())
-    session.on('progress', ({ state }) => state === 'ready' && this.#describe(session.shown!))
+    session.on('progress', ({ state }) => {
+      if (state === 'working') return
+      if (state === 'ready') this.#describe(session.shown!)
+      if (state !== 'failed' && this.#doubts.length > 0) showError(this.#doubts.join(' '))
+      this.#doubts = []
+    })
     stack.on('change', () => session.shown && this.#describe(session.shown))
   }
 
@@ -52,6 +59,7 @@ export class Opener {
     const sample = this.#samples.find((candidate) => candidate.name === name)
     if (!sample) return
     this.#select.value = name
+    this.#doubts = []
     const { target, cage, paints } = sample
     const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0])
     const model = async (address: string): Promise<Model> => ({ ...(await loadModel(await fetchFile(address), this.#renderer)), sample })
@@ -94,13 +102,8 @@ export class Opener {
       wanted.cage = pair.then(([, smaller]) => smaller!)
     }
     if (texture) wanted.paint = loadPaint(texture)
+    this.#doubts = doubts
     this.#session.want(wanted)
-    if (doubts.length === 0) return
-    const end = this.#session.on('progress', ({ state }) => {
-      if (state === 'working') return
-      end()
-      if (state !== 'failed') showError(doubts.join(' '))
-    })
   }
 
   #describe({ target, cage, paint }: Shown): void {
