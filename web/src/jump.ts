@@ -11,6 +11,7 @@ export function setUpJump(): void {
 
   let current: HTMLElement | undefined
   const follow = (): void => {
+    bar.classList.toggle('more', bar.scrollLeft + bar.clientWidth < bar.scrollWidth - 1)
     const edge = bar.getBoundingClientRect().bottom + kNear
     const now = sections.findLast((section) => section.getBoundingClientRect().top <= edge) ?? sections[0]
     if (now === current) return
@@ -21,6 +22,7 @@ export function setUpJump(): void {
   }
   // On a phone the page scrolls, on a desk the panel does.
   addEventListener('scroll', follow, { capture: true, passive: true })
+  addEventListener('resize', follow)
   follow()
 }
 
