@@ -191,8 +191,8 @@ class HitSearch {
   static constexpr std::size_t kListRoom = std::size_t{12} * kMostRays;
   /// From so many rays on, a list is worth being moved.
   static constexpr std::uint32_t kLong = 64;
-  /// What is left of it for rays that go alone, four lists of one at each level: a tree is not that deep.
-  static constexpr std::ptrdiff_t kLastRoom = 4 * 64;
+  /// What is left of it for rays that go alone, four lists with room for two at each level: a tree is not that deep.
+  static constexpr std::ptrdiff_t kLastRoom = 8 * 64;
 
   /// Lists name rays by where in memory their slabs are, from the first on.
   static_assert(kMostRays * sizeof(Slabs) <= std::size_t{1} << 16);
