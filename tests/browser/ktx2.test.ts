@@ -3,7 +3,6 @@ import { after, before, test } from 'node:test'
 import { NodeIO } from '@gltf-transform/core'
 import { KHRTextureBasisu } from '@gltf-transform/extensions'
 import { PNG } from 'pngjs'
-import { createServer } from 'vite'
 import { glb } from './glb'
 import { islandCage, lumpyBall } from './models'
 import { look, modelArea, shareOfHue } from './picture'
@@ -116,6 +115,7 @@ test('a damaged KTX2 texture leaves its model white, and the page says so', asyn
 })
 
 test('in development the transcoder is served as it is in the built page, and its address to modules that ask for that', async () => {
+  const { createServer } = await import('vite')
   const server = await createServer({ configFile: inRepository('web/vite.config.ts'), logLevel: 'error', server: { host: '127.0.0.1', port: 0 } })
   try {
     await server.listen()
