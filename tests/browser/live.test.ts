@@ -107,7 +107,10 @@ test('it moves by itself, frame after frame, until it is told to stop or another
   const { page, complaints } = await site.visit({ viewport: { width: 960, height: 500 } })
   const amount = (): Promise<string> => page.getByTestId('amount').inputValue()
   await page.getByTestId('deform-moves').check()
-  for (const seen = new Set<string>(); seen.size < 3; await frames(page, 1)) seen.add(await amount())
+  await page.waitForFunction(() => {
+    const all = globalThis as unknown as { amounts?: Set<string> }
+    return (all.amounts ??= new Set()).add(document.querySelector<HTMLInputElement>('[data-testid=amount]')!.value).size >= 3
+  })
   assert.ok(Number(await page.getByTestId('frame-time').textContent()) > 0)
   await page.getByTestId('deform-moves').uncheck()
   await page.locator('#live[aria-busy=false]').waitFor()
