@@ -3,7 +3,6 @@ import { after, before, test } from 'node:test'
 import type { CDPSession, Page } from 'playwright-core'
 import { look, modelArea } from './picture'
 import { Site } from './site'
-import { filled, savedTexture } from './texture'
 
 let site: Site
 before(async () => void (site = await Site.open()))
@@ -66,21 +65,23 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
     await page.mouse.down()
     const cost = await processorTime(page, session, () => frames(true))
     await page.mouse.up()
+    assert.equal(await page.getByTestId('undo').getAttribute('title'), 'Undo: stroke', 'it was painted')
+    await page.keyboard.press('Control+z')
     await page.waitForTimeout(400) // the layer's small picture is made once the hand rests
     return cost
   }
   await stroke() // what is done but once
   for (const [brush, slider] of Object.entries(kBrushes)) {
     await page.getByTestId('brush-size').fill(slider)
+    await page.evaluate(() => scrollTo(0, 0)) // to where the picture was
     const costs: number[] = []
     for (let run = 0; run < 3; run++) {
       // A stroke of its own each time: what it has painted in full it does not paint again.
       const painting = await stroke()
-      assert.ok(painting.page > 0.2 * kMoves, 'painting was measured')
       const turning = await processorTime(page, session, () => frames(false))
       costs.push((painting.page + painting.graphics - turning.page - turning.graphics) / kMoves)
     }
+    assert.ok(Math.max(...costs) > 0.2, 'painting was measured')
     assert.ok(Math.min(...costs) < 16, `the brush ${brush}: ${costs.map((cost) => cost.toFixed(1)).join(', ')} ms`)
   }
-  assert.ok(filled(await savedTexture(page)) > 1000)
 })
