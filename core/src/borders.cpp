@@ -18,6 +18,8 @@ constexpr double kStraight = 2.5e-4;
 constexpr double kFound = 1e-7;
 /// and how near to a vertex it may be before it is taken to be there: no triangle is cut so thin.
 constexpr double kSnap = 1e-5;
+/// A polygon no wider than this is not divided around its middle: its parts would be ever thinner, and never simpler.
+constexpr double kThin = 1e-4;
 /// How often a triangle is divided because something lies inside it, at most.
 constexpr int kMostDivisions = 256;
 constexpr std::uint32_t kNone = UINT32_MAX;
@@ -83,6 +85,7 @@ class Cutter {
         straight_(kStraight * diagonal),
         found_(kFound * diagonal),
         snap_(kSnap * diagonal),
+        thin_(kThin * diagonal),
         looks_(scratch.take<Look>(vertexCount_)),
         rangeOfSide_(scratch.take<Range>(target.indices.size())),
         sides_(target.indices.size(), scratch) {}
@@ -114,7 +117,7 @@ class Cutter {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t v = target_.indices[3 * triangle_ + k];
       corners[k] = positionOf(v);
-      if (takesPart_[v] != 0) least = looks_[v].landing.distance;
+      if (takesPart_[v] != 0) least = length(corners[k] - looks_[v].q);
     }
     // The middle is nearer to any corner than the corners are to each other.
     return near_ = looker_.around(corners, least + length(corners[1] - corners[0]) + length(corners[2] - corners[1]));
@@ -154,8 +157,8 @@ class Cutter {
   void search(Edge& edge, Nearby nearby, double t0, const Look& look0, double t1, const Look& look1) noexcept {
     if (edge.stops.size() > edge.enough) return;
     const double apart = (t1 - t0) * edge.length;
-    const bool isBetween = looker_.isBetween(look0, look1, apart);
-    if (!isBetween && (apart <= feature_ || (look0.side != 0 && look0.cell == look1.cell))) return;
+    const bool isBetween = looker_.isBetween(look0, look1);
+    if (!isBetween && apart <= feature_) return;
     const Vec3 ends[2] = {edge.at(t0), edge.at(t1)};
     if (!isBetween && looker_.clearance(look0, ends[0]) + looker_.clearance(look1, ends[1]) >= apart) return;
     nearby = looker_.within(nearby.count == 0 ? nearTriangle() : nearby, ends);
@@ -172,11 +175,10 @@ class Cutter {
     while ((high - low) * edge.length > found_) {
       const double middle = (low + high) / 2;
       const Look look = looker_.at(nearby, edge.at(middle));
-      const double half = (high - low) / 2 * edge.length;
-      if (looker_.isBetween(below, look, half)) {
+      if (looker_.isBetween(below, look)) {
         high = middle;
         above = look;
-      } else if (looker_.isBetween(look, above, half)) {
+      } else if (looker_.isBetween(look, above)) {
         low = middle;
         below = look;
       } else {
@@ -281,6 +283,8 @@ class Cutter {
       corners[k] = {positionOf(index[k]), static_cast<double>(k == 1), static_cast<double>(k == 2), looks_[index[k]], index[k]};
       takesPart = takesPart && takesPart_[index[k]] != 0;
     }
+    pieces_.cut(0);
+    if (index[0] == index[1] || index[1] == index[2] || index[2] == index[0]) return emit(corners, {});  // No more than an edge: it stays.
     nodes_.cut(0);
     inner_.cut(0);
     near_ = {};
@@ -303,7 +307,6 @@ class Cutter {
     }
     // Nothing of it is painted, or there is nothing of it: it only has what its neighbours have on its edges.
     emitPolygon(0, nodes_.size());
-    pieces_.cut(0);
   }
 
   /// Divides a convex polygon until there are triangles with at most one border on each side, and none inside that does not
@@ -345,7 +348,7 @@ class Cutter {
     }
     if (fewest == kMany) return emitPolygon(first, count);  // All corners are on one line.
     const Spot start = nodes_[from].spot, end = nodes_[to].spot;
-    if (fewest > 1 && divisions_ > 0) {
+    if (fewest > 1 && divisions_ > 0 && !isThin(first, count)) {
       // Every line crosses several borders: what is between the corners and the middle is smaller.
       Spot middle = nodes_[first].spot;
       for (std::size_t i = 1; i < count; ++i) middle = between(middle, nodes_[first + i].spot, 1.0 / static_cast<double>(i + 1));
@@ -363,6 +366,17 @@ class Cutter {
     divide(far, nodes_.size() - far);
     divide(near, nodes_.size() - near);
     inner_.cut(begin);
+  }
+
+  /// Whether a polygon is too thin to be divided around its middle.
+  [[nodiscard]] bool isThin(std::size_t first, std::size_t count) const noexcept {
+    double doubleArea = 0, reach = 0;
+    for (std::size_t i = first + 1; i < first + count; ++i) {
+      const Vec3 along = nodes_[i].spot.p - nodes_[first].spot.p, before = nodes_[i - 1].spot.p - nodes_[first].spot.p;
+      doubleArea += length(cross(before, along));
+      reach = std::max(reach, length(along));
+    }
+    return doubleArea <= thin_ * reach;
   }
 
   /// Whether a line between two corners of a polygon divides its area.
@@ -462,12 +476,9 @@ class Cutter {
     return isSimple && !findHidden(hidden);
   }
 
-  /// Whether no border can run inside a triangle whose corners are on one side.
+  /// Whether, for sure, no rim is nearest to any place in a triangle: each is within this share of the longest side of a corner.
   [[nodiscard]] bool isClear(const Spot (&corners)[3]) noexcept {
-    const auto& [a, b, c] = corners;
-    if (a.look.cell == b.look.cell && b.look.cell == c.look.cell) return true;
-    // Every place is so near to one of the corners.
-    constexpr double kCovering = 0.58;
+    constexpr double kCovering = 0.58;  // 1 / √3, of the triangle with equal sides, and less of others.
     const double enough = kCovering * longestSide(corners);
     return std::all_of(corners, corners + 3, [&](const Spot& spot) { return looker_.clearance(spot.look, spot.p) >= enough; });
   }
@@ -485,7 +496,7 @@ class Cutter {
   /// @return false if the sides do not part so simply there: then `meeting` is a place that is on another side than it should be.
   bool findMeeting(const Spot (&corners)[3], Spot& meeting) noexcept {
     Spot t[6] = {corners[0], corners[1], corners[2]};
-    const auto areApart = [&](const Spot& a, const Spot& b) { return looker_.isBetween(a.look, b.look, length(b.p - a.p)); };
+    const auto areApart = [&](const Spot& a, const Spot& b) { return looker_.isBetween(a.look, b.look); };
     while (longestSide(t) > found_) {
       addMiddles(t, nearTriangle());
       const auto* part = std::find_if(std::begin(kQuarters), std::end(kQuarters), [&](const int(&p)[3]) {
@@ -535,8 +546,8 @@ class Cutter {
     if (look.side != a.side || a.side != b.side) return look.side == a.side;
     // One island on either side: what is nearer in the texture.
     const auto apart = [&](const Look& other) {
-      const double u = look.landing.uv.u - other.landing.uv.u;
-      const double v = look.landing.uv.v - other.landing.uv.v;
+      const double u = look.uv.u - other.uv.u;
+      const double v = look.uv.v - other.uv.v;
       return u * u + v * v;
     };
     return apart(a) < apart(b);
@@ -668,13 +679,16 @@ class Cutter {
         shortest = cut;
       }
       if (ear == n) ear = 1;  // What is left has no area.
-      const Spot corners[3] = {polygon_[(ear + n - 1) % n], polygon_[ear], polygon_[(ear + 1) % n]};
-      for (const Spot& corner : corners) out_.indices.add(corner.vertex);
-      out_.origins.add(triangle_);
-      out_.sides.add(look.side);
-      pieces_.add({{corners[0], corners[1], corners[2]}, look});
+      emit({polygon_[(ear + n - 1) % n], polygon_[ear], polygon_[(ear + 1) % n]}, look);
       polygon_.remove(ear);
     }
+  }
+
+  void emit(const Spot (&corners)[3], const Look& look) noexcept {
+    for (const Spot& corner : corners) out_.indices.add(corner.vertex);
+    out_.origins.add(triangle_);
+    out_.sides.add(look.side);
+    pieces_.add({{corners[0], corners[1], corners[2]}, look});
   }
 
   /// A triangle that was made, and what is to be found everywhere inside it.
@@ -697,7 +711,7 @@ class Cutter {
     parts_.cut(0);
     for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
       const Spot(&corners)[3] = pieces_[i].corners;
-      addPart({{corners[0], corners[1], corners[2]}, i, nearby}, true);
+      addPart({{corners[0], corners[1], corners[2]}, i, nearby});
     }
     bool isFound = false;
     // Part by part by fours.
@@ -717,7 +731,7 @@ class Cutter {
   }
 
   /// Adds a part to those that are looked through, unless what is well inside of it is on the right side for sure.
-  void addPart(Part part, bool isWhole = false) noexcept {
+  void addPart(Part part) noexcept {
     if (isSmall(part.corners)) return;
     const Piece& piece = pieces_[part.piece];
     // Well inside is what lies beyond three lines.
@@ -737,14 +751,19 @@ class Cutter {
     if (count == 0) return;
     const std::size_t mark = looker_.mark();
     const Hull hull(core, count);
-    const bool isSure = looker_.areAllOn(piece.look.side, looker_.within(part.nearby, hull), hull);
-    looker_.rewind(mark);
-    if (isSure) return;
-    for (Spot& spot : part.corners) {
-      if (isWhole) spot.look = looker_.at(part.nearby, spot.p);
+    // What is near all of it is near its core too, and is listed for its parts anyway.
+    const auto isSure = [&](Nearby nearby) { return looker_.areAllOn(piece.look.side, nearby, hull); };
+    bool isDone = isSure(part.nearby);
+    if (!isDone) {
+      part.nearby = looker_.within(part.nearby, std::array{part.corners[0].p, part.corners[1].p, part.corners[2].p});
+      isDone = isSure(part.nearby);
     }
-    if (part.corners[0].look.side == piece.look.side && isClear(part.corners)) return;
-    part.nearby = looker_.within(part.nearby, std::array{part.corners[0].p, part.corners[1].p, part.corners[2].p});
+    if (!isDone) {
+      const std::size_t listed = looker_.mark();
+      isDone = isSure(looker_.within(part.nearby, hull));
+      looker_.rewind(listed);
+    }
+    if (isDone) return looker_.rewind(mark);
     parts_.add(part);
   }
 
@@ -771,7 +790,7 @@ class Cutter {
   CutTriangles& out_;
   std::uint32_t vertexCount_;
   double scale_;
-  double feature_, straight_, found_, snap_;  ///< The constants above, scaled.
+  double feature_, straight_, found_, snap_, thin_;  ///< The constants above, scaled.
   Look* looks_;                ///< 1 per vertex that takes part.
   Range* rangeOfSide_;         ///< 1 per side of a triangle that is the first on its edge: in `edgeStops_`.
   IndexTable sides_;

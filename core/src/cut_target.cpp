@@ -10,6 +10,33 @@
 namespace cagecast {
 namespace {
 
+/// Lets vertices in one place take part together if any does: they are the ends of edges that are cut alike.
+/// @param[in,out] takesPart  1 per vertex.
+/// @return false if memory ran out.
+bool joinPlaces(std::span<const float> positions, Scratch& scratch, std::uint8_t* takesPart) noexcept {
+  struct Site {
+    float x, y, z;
+    bool operator==(const Site& other) const { return std::memcmp(this, &other, sizeof(Site)) == 0; }
+  };
+  const auto count = static_cast<std::uint32_t>(positions.size() / 3);
+  const auto siteOf = [&](std::uint32_t v) {
+    const float* p = positions.data() + std::size_t{3} * v;
+    return Site{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // Now −0 is 0.
+  };
+  const Scratch::Mark mark = scratch.mark();
+  IndexTable places(count, scratch);
+  auto* first = scratch.take<std::uint32_t>(count);
+  if (scratch.failed()) return false;
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const Site site = siteOf(v);
+    first[v] = places.firstEqual(v, IndexTable::hash(site), [&](std::uint32_t other) { return siteOf(other) == site; });
+    takesPart[first[v]] |= takesPart[v];
+  }
+  for (std::uint32_t v = 0; v < count; ++v) takesPart[v] = takesPart[first[v]];
+  scratch.rewind(mark);
+  return true;
+}
+
 /// A blend of up to three vertices of the target.
 class Blend {
  public:
@@ -94,9 +121,10 @@ bool takeOver(const MeshView& target, const CutTriangles& cut, CutMesh& out) noe
 }  // namespace
 
 bool cutTarget(const MeshView& cageMesh, const MeshView& target, const Cage& cage, const CageTree& tree, const Rims& rims,
-               const Atlas* atlas, const Units& units, const std::uint8_t* takesPart, Scratch& scratch, CutMesh& out) noexcept {
+               const Atlas* atlas, const Units& units, std::uint8_t* takesPart, Scratch& scratch, CutMesh& out) noexcept {
   const auto scale = static_cast<double>(units.scale);
   const std::size_t ownCount = target.positions.size() / 3;
+  if (!joinPlaces(target.positions, scratch, takesPart)) return false;
   {
     const Scratch::Mark mark = scratch.mark();
     Looker looker(cageMesh, cage, tree, rims, nullptr, units, scratch);
@@ -127,28 +155,11 @@ bool cutTarget(const MeshView& cageMesh, const MeshView& target, const Cage& cag
   auto* isPainted = scratch.take<std::uint8_t>(count);
   Looker looker(cageMesh, cage, tree, rims, atlas, units, scratch);
   if (scratch.failed()) return false;
-  // Vertices in one place take part, or not, together: they are the ends of edges that are cut alike.
-  IndexTable places(count, scratch);
-  auto* first = scratch.take<std::uint32_t>(count);
-  if (scratch.failed()) return false;
-  for (std::uint32_t v = 0; v < count; ++v) {
-    struct Site {
-      float x, y, z;
-      bool operator==(const Site& other) const { return std::memcmp(this, &other, sizeof(Site)) == 0; }
-    };
-    const auto siteOf = [&](std::uint32_t i) {
-      const float* p = out.positions.data() + std::size_t{3} * i;
-      return Site{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};
-    };
-    const Site site = siteOf(v);
-    first[v] = places.firstEqual(v, IndexTable::hash(site), [&](std::uint32_t other) { return siteOf(other) == site; });
-    isPainted[v] = 0;
-  }
   for (std::size_t v = 0; v < count; ++v) {
     const auto takes = [&](std::size_t i) { return takesPart[out.sources[3 * (v - ownCount) + i]] != 0; };
-    isPainted[first[v]] |= out.vertexSides[v] != RimSide::beyond && (v < ownCount ? takesPart[v] != 0 : takes(0) && takes(1) && takes(2));
+    isPainted[v] = out.vertexSides[v] != RimSide::beyond && (v < ownCount ? takesPart[v] != 0 : takes(0) && takes(1) && takes(2));
   }
-  for (std::size_t v = 0; v < count; ++v) isPainted[v] = isPainted[first[v]];
+  if (!joinPlaces(out.positions, scratch, isPainted)) return false;
   CutTriangles cut;
   Array<std::uint32_t> before;
   if (!before.reset(out.indices.size())) return false;

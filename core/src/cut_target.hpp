@@ -19,9 +19,9 @@ struct CutMesh {
 };
 
 /// Step 10: cuts the target along the rims, and then, if there is an atlas, what is not beyond them along the seams.
-/// @param takesPart  1 per vertex of the target: an edge is cut if both its ends have 1 here.
+/// @param[in,out] takesPart  1 per vertex of the target: an edge is cut if both its ends have 1 here. Those in one place get the same.
 /// @return false if memory ran out.
 bool cutTarget(const MeshView& cageMesh, const MeshView& target, const Cage& cage, const CageTree& tree, const Rims& rims,
-               const Atlas* atlas, const Units& units, const std::uint8_t* takesPart, Scratch& scratch, CutMesh& out) noexcept;
+               const Atlas* atlas, const Units& units, std::uint8_t* takesPart, Scratch& scratch, CutMesh& out) noexcept;
 
 }  // namespace cagecast

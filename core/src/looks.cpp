@@ -7,6 +7,9 @@
 namespace cagecast {
 namespace {
 
+/// Of more triangles it is not asked whether the texture hangs together.
+constexpr std::uint32_t kMostPatches = 8;
+
 /// Where the middle of a part is, and how far it reaches from there.
 struct Extent {
   Vec3 middle{0, 0, 0};
@@ -36,7 +39,7 @@ Looker::Looker(const MeshView& mesh, const Cage& cage, const CageTree& tree, con
       search_(tree, units.diagonal + static_cast<double>(units.reach), scratch),
       found_(scratch.take<std::uint32_t>(cage.count)),
       candidates_(scratch.take<Candidate>(cage.count)),
-      lines_(cage, tree, rims, atlas, scratch),
+      lines_(cage, tree, rims, scratch),
       clearances_(scratch.take<double>(mesh.positions.size() / 3)) {
   if (!scratch.failed()) std::fill(clearances_, clearances_ + mesh.positions.size() / 3, -1.0);
 }
@@ -72,14 +75,9 @@ Look Looker::at(Nearby nearby, Vec3 p) noexcept {
 Look Looker::judge(const Candidate& nearest) const noexcept {
   const auto& [slot, place] = nearest;
   const CageTriangle& t = cage_.triangles[slot];
-  Look look{atlas_ == nullptr ? 0 : atlas_->islands[slot], 4 * slot + 3, {slot, place.distance, uvAt(t, place)}};
-  const std::uint32_t side = atlas_ == nullptr ? rims_.sideAt(t, slot, positionOf(t, place), diagonal_) : Rims::kNone;
-  if (side != Rims::kNone) {
-    constexpr std::uint32_t kCorner = 1u << 31;
-    look.side = 1;
-    look.cell = side < 3 ? 4 * slot + side : kCorner | rims_.vertexOf[cornersOf(slot)[side - 3]];
-  }
-  return look;
+  const Vec3 q = positionOf(t, place);
+  const std::uint32_t side = atlas_ != nullptr ? atlas_->islands[slot] : rims_.sideAt(t, slot, q, diagonal_) != Rims::kNone;
+  return {side, slot, q, uvAt(t, place)};
 }
 
 Nearby Looker::around(Hull hull, double distance) noexcept {
@@ -112,8 +110,11 @@ Nearby Looker::within(Nearby nearby, Hull hull) noexcept {
   return failed() ? nearby : Nearby{first, static_cast<std::uint32_t>(listed_.size()) - first};
 }
 
-bool Looker::isBetween(const Look& a, const Look& b, double apart) const noexcept {
-  return atlas_ == nullptr ? a.side != b.side : atlas_->tears(a.landing, b.landing, apart);
+bool Looker::isBetween(const Look& a, const Look& b) const noexcept {
+  if (a.side != b.side || atlas_ == nullptr) return a.side != b.side;
+  const double du = b.uv.u - a.uv.u, dv = b.uv.v - a.uv.v;
+  const double explained = std::max(atlas_->stretch[a.slot], atlas_->stretch[b.slot]) * length(b.q - a.q);
+  return std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack;
 }
 
 bool Looker::areAllOn(std::uint32_t side, Nearby nearby, Hull hull) const noexcept {
@@ -127,42 +128,53 @@ bool Looker::areAllOn(std::uint32_t side, Nearby nearby, Hull hull) const noexce
 bool Looker::isWhole(std::uint32_t side, Nearby nearby, Hull hull) const noexcept {
   if (!areAllOn(side, nearby, hull)) return false;
   if (atlas_ == nullptr) return true;
+  // What is nearest to a place of the part, on each triangle: it moves no farther than the place.
+  struct Patch {
+    Vec3 q;
+    Uv uv;
+    double fastest, stretch;  ///< How fast the texture changes across the triangle, at most, and along its edges.
+  };
+  Patch patches[kMostPatches];
+  if (nearby.count > kMostPatches) return false;
   const auto& [middle, radius] = Extent(hull);
-  Uv first{};
   for (std::uint32_t i = 0; i < nearby.count; ++i) {
     const std::uint32_t slot = listed_[nearby.first + i];
     const CageTriangle& t = cage_.triangles[slot];
-    // How fast the texture changes across the triangle, at most.
     double squares = 0;
     for (int k = 0; k < 2; ++k) {
       const double a = static_cast<double>(t.uvs[k]);
       const Vec3 change = (static_cast<double>(t.uvs[2 + k]) - a) * t.towardsB + (static_cast<double>(t.uvs[4 + k]) - a) * t.towardsC;
       squares += dot(change, change);
     }
-    const double fastest = std::sqrt(squares);
-    // Mostly that is explained by its edges.
-    if (nearby.count == 1 && fastest <= kSmear * atlas_->stretch[slot]) return true;
-    // What is nearest to a place moves no farther than the place.
-    const Uv uv = uvAt(t, placeOf(t, middle));
-    if (i == 0) first = uv;
-    const double du = uv.u - first.u, dv = uv.v - first.v;
-    if (std::sqrt(du * du + dv * dv) + fastest * radius > kSmearSlack / 2) return false;
+    const Place place = placeOf(t, middle);
+    const Patch& p = patches[i] = {positionOf(t, place), uvAt(t, place), std::sqrt(squares), atlas_->stretch[slot]};
+    // On one triangle the texture is mostly explained by its edges.
+    if (p.fastest > kSmear * p.stretch && 2 * p.fastest * radius > kSmearSlack) return false;
+    for (std::uint32_t j = 0; j < i; ++j) {
+      const Patch& o = patches[j];
+      const double apart = std::max(0.0, length(p.q - o.q) - 2 * radius);
+      const double du = p.uv.u - o.uv.u, dv = p.uv.v - o.uv.v;
+      if (std::sqrt(du * du + dv * dv) + (p.fastest + o.fastest) * radius > kSmear * std::max(p.stretch, o.stretch) * apart + kSmearSlack) return false;
+    }
   }
   return true;
 }
 
 double Looker::clearance(const Look& look, Vec3 p) noexcept {
-  const CageTriangle& t = cage_.triangles[look.landing.slot];
+  if (atlas_ != nullptr) return 0;
+  const CageTriangle& t = cage_.triangles[look.slot];
+  const std::uint32_t* index = mesh_.indices.data() + std::size_t{3} * t.index;
   const float* corners[3] = {t.a, t.b, t.c};
   double least = 0;
   for (std::uint32_t k = 0; k < 3; ++k) {
-    double& known = clearances_[cornersOf(look.landing.slot)[k]];
+    double& known = clearances_[index[k]];
     const Vec3 corner = Vec3::from(corners[k]);
     if (known < 0) known = lines_.distance(corner);
     least = std::max(least, known - length(p - corner));
   }
-  // The distance to the cage, and that to its rims or seams, change by no more than one steps.
-  return (least - look.landing.distance) / 2;
+  // Rims are at least so far from p. The distance to them, and that to the cage, change by no more than one steps: as long as the
+  // one is greater than the other, what is nearest lies on no rim.
+  return (least - length(p - look.q)) / 2;
 }
 
 }  // namespace cagecast

@@ -14,9 +14,10 @@ namespace cagecast {
 
 /// What is known of a place of the target.
 struct Look {
-  std::uint32_t side;   ///< Between places on two sides runs a border. Of rims: 1 beyond one, else 0. Of seams: the island.
-  std::uint32_t cell;   ///< What of the cage it is nearest to: a triangle, an open edge, an end of open edges.
-  Landing landing;
+  std::uint32_t side;  ///< Between places on two sides runs a border. Of rims: 1 beyond one, else 0. Of seams: the island.
+  std::uint32_t slot;  ///< The cage triangle that it is nearest to,
+  Vec3 q;              ///< where,
+  Uv uv;               ///< and what of the texture is there.
 };
 
 /// A part of the target: all that lies between some places, the corners of a segment or of a triangle.
@@ -57,16 +58,13 @@ class Looker {
   /// Whether, for sure, no border runs between any two places of a part, one of which is on a side.
   [[nodiscard]] bool isWhole(std::uint32_t side, Nearby nearby, Hull hull) const noexcept;
 
-  /// So far around a place that was looked at no other is nearest to one of the cage's rims, or seams. At least: it is quick.
+  /// So far around a place that was looked at no other is nearest to a rim, for sure; 0 where seams are looked for.
   [[nodiscard]] double clearance(const Look& look, Vec3 p) noexcept;
 
-  /// Whether a border runs between two places, so far apart.
-  [[nodiscard]] bool isBetween(const Look& a, const Look& b, double apart) const noexcept;
+  /// Whether a border runs between two places.
+  [[nodiscard]] bool isBetween(const Look& a, const Look& b) const noexcept;
 
  private:
-  [[nodiscard]] const std::uint32_t* cornersOf(std::uint32_t slot) const noexcept {
-    return mesh_.indices.data() + std::size_t{3} * cage_.triangles[slot].index;
-  }
   /// Finds the triangles that are farther from a place than the nearest by up to `more`.
   /// @param distance  As in `NearestSearch::widen`.
   /// @return How many there are in `found_`.

@@ -6,14 +6,13 @@
 
 namespace cagecast {
 
-RimLines::RimLines(const Cage& cage, const CageTree& tree, const Rims& rims, const Atlas* atlas, Scratch& scratch) noexcept
+RimLines::RimLines(const Cage& cage, const CageTree& tree, const Rims& rims, Scratch& scratch) noexcept
     : lines_(scratch.take<Line>(std::size_t{3} * cage.count)), boxes_(scratch.take<Rims::Box>(std::size_t{3} * cage.count / kRun + 1)) {
   if (scratch.failed()) return;
   for (std::uint32_t i = 0; i < 3 * cage.count; ++i) {
     // In the order of the tree's leaves neighbours are neighbours in space.
     const std::uint32_t slot = tree.near[i / 12].slot[i / 3 % 4], k = i % 3;
-    // An edge that the texture has one side of is a seam, if it is no rim.
-    if (atlas != nullptr ? atlas->nextSide[3 * slot + k] != 3 * slot + k : rims.ofSides[std::size_t{6} * slot + k] == Rims::kNone) continue;
+    if (rims.ofSides[std::size_t{6} * slot + k] == Rims::kNone) continue;
     const CageTriangle& t = cage.triangles[slot];
     const float* corners[3] = {t.a, t.b, t.c};
     const Vec3 from = Vec3::from(corners[k]), to = Vec3::from(corners[(k + 1) % 3]);

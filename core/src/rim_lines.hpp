@@ -2,17 +2,16 @@
 
 #include <cstddef>
 
-#include "atlas.hpp"
+#include "kd_tree.hpp"
 #include "rims.hpp"
 
 namespace cagecast {
 
-/// The edges of the cage's triangles along which rims run, or seams.
+/// The open edges of the cage.
 class RimLines {
  public:
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
-  /// @param atlas  For seams, rims among them; null for rims alone.
-  RimLines(const Cage& cage, const CageTree& tree, const Rims& rims, const Atlas* atlas, Scratch& scratch) noexcept;
+  RimLines(const Cage& cage, const CageTree& tree, const Rims& rims, Scratch& scratch) noexcept;
 
   /// How far a place is from the nearest; infinity if there is none.
   /// Cost: a look at a box for every `kRun` lines, and at some lines.

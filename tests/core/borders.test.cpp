@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "cagecast/borders.hpp"
 #include "checks.hpp"
+#include "cuts.hpp"
 #include "hash.hpp"
 #include "reference_scene.hpp"
 #include "traps.hpp"
@@ -22,51 +22,6 @@ namespace {
 
 /// What a border may be off, as a share of the diagonal.
 constexpr double kTolerance = 1e-3;
-
-TransferOptions cutting(Seams seams = Seams::corner) {
-  TransferOptions options = TransferOptions::standard();
-  options.seams = seams;
-  return options;
-}
-
-/// Cuts the target of a transfer.
-CutTarget cutOf(const MeshView& cage, const MeshView& target, const TransferOptions& options, const TransferResult& result) {
-  CutTarget cut;
-  const Status status =
-      cutBorders(cage, target, options, {result.zones.zones, result.projection.segments, result.zones.culledSegments}, cut);
-  INFO(describe(status, cage, target));
-  REQUIRE(status.ok());
-  return cut;
-}
-
-CutTarget cutOf(const MeshView& cage, const MeshView& target, const TransferOptions& options) {
-  return cutOf(cage, target, options, transferred(cage, target, options));
-}
-
-/// The target as it was cut.
-scenes::Mesh meshOf(const MeshView& target, const CutTarget& cut) {
-  scenes::Mesh mesh;
-  mesh.positions.assign(target.positions.begin(), target.positions.end());
-  mesh.groups.assign(target.groups.begin(), target.groups.end());
-  mesh.groups.resize(mesh.vertexCount());
-  for (std::size_t i = 0; i < cut.sources.size(); i += 3) {
-    scenes::Point p{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      double sum = 0;
-      for (std::size_t j = 0; j < 3; ++j)
-        sum += static_cast<double>(cut.weights[i + j]) * static_cast<double>(target.positions[cut.sources[i + j] * std::size_t{3} + k]);
-      p[k] = static_cast<float>(sum);
-    }
-    mesh.addVertex(p, 0, 0, mesh.groups[cut.sources[i]]);
-  }
-  mesh.indices.assign(cut.indices.begin(), cut.indices.end());
-  return mesh;
-}
-
-Vec areaOf(const MeshView& mesh, std::size_t t) {
-  const Vec a = reference::vertex(mesh, mesh.indices[3 * t]);
-  return cross(reference::vertex(mesh, mesh.indices[3 * t + 1]) - a, reference::vertex(mesh, mesh.indices[3 * t + 2]) - a) * 0.5;
-}
 
 /// The length of all edges that one triangle more runs along in one direction than in the other: where the surface is open.
 /// Vertices with equal position and group are one.
@@ -286,6 +241,16 @@ TEST_CASE("cut borders follow the projected rims of strewn triangles", "[borders
   }
 }
 
+TEST_CASE("cut borders follow the projected rims of patchwork", "[borders]") {
+  for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 12; ++seed) {
+    const scenes::Scene scene = scenes::patchwork(seed);
+    INFO("CAGECAST_SEED=" << seed);
+    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner));
+    CHECK(found.mostOff <= kTolerance);
+    CHECK(found.otherSide == 0);
+  }
+}
+
 TEST_CASE("cut borders follow the projected rims in triangles larger than the holes", "[borders]") {
   // A box of twelve triangles under a box of 12 by 12 cells a side, with two windows; one of them is within a single triangle.
   const auto inWindow = [](scenes::Point p) {
@@ -311,12 +276,14 @@ TEST_CASE("a cut does not depend on the unit, and is made alike on both sides of
   const scenes::Scene scene = scenes::head(12);
   const CutTarget cut = cutOf(scene.cage.view(), scene.target.view(), cutting());
   SECTION("unit") {
-    const auto larger = [](scenes::Point p) { return scenes::Point{1024 * p[0], 1024 * p[1], 1024 * p[2]}; };
-    const CutTarget other = cutOf(mapped(scene.cage, larger).view(), mapped(scene.target, larger).view(), cutting());
-    CHECK(copied(cut.sources) == copied(other.sources));
-    CHECK(copied(cut.weights) == copied(other.weights));
-    CHECK(copied(cut.indices) == copied(other.indices));
-    CHECK(copied(cut.cosmeticTriangles) == copied(other.cosmeticTriangles));
+    for (const float unit : {0x1p-20f, 0x1p10f, 0x1p20f}) {
+      const auto other = [unit](scenes::Point p) { return scenes::Point{unit * p[0], unit * p[1], unit * p[2]}; };
+      const CutTarget again = cutOf(mapped(scene.cage, other).view(), mapped(scene.target, other).view(), cutting());
+      CHECK(copied(cut.sources) == copied(again.sources));
+      CHECK(copied(cut.weights) == copied(again.weights));
+      CHECK(copied(cut.indices) == copied(again.indices));
+      CHECK(copied(cut.cosmeticTriangles) == copied(again.cosmeticTriangles));
+    }
   }
   SECTION("every triangle with vertices of its own") {
     scenes::Mesh apart;

@@ -182,6 +182,36 @@ Scene gridded(std::uint64_t seed, int triangles) {
   return scene;
 }
 
+Scene patchwork(std::uint64_t seed) {
+  Random random(seed);
+  Scene scene{"patchwork " + std::to_string(seed), {}, {}};
+  const auto cells = [&](std::uint32_t most) { return 2 + static_cast<int>(random.below(most - 1)); };
+  const float size = random.between(1.05f, 1.4f);
+  const int count = cells(10);
+  scene.target = random.below(3) == 0 ? box({}, {0.7f, 0.7f, 0.7f}, count) : ellipsoid({}, {1, 0.95f, 0.9f}, count);
+  scene.cage = random.below(2) == 0 ? box({}, {size, size, size}, cells(8)) : ellipsoid({}, {size, size, size}, cells(8));
+  for (std::uint32_t holes = random.below(4); holes > 0; --holes) {
+    const Point middle = scene.cage.vertex(random.below(static_cast<std::uint32_t>(scene.cage.vertexCount())));
+    const float radius = random.between(0.2f, 0.8f);
+    scene.cage = without(std::move(scene.cage), [&](Point p) { return distance(p, middle) < radius; });
+  }
+  if (random.below(2) == 0) {
+    const std::size_t perSide = scene.target.vertexCount() / 6;
+    for (std::size_t v = 0; v < scene.target.vertexCount(); ++v) scene.target.groups[v] = static_cast<std::uint32_t>(v / perSide % 2);
+  }
+  const float lumps = random.between(0, 0.1f);
+  // Moved by their place, so that vertices that were equal stay so.
+  scene.target = mapped(std::move(scene.target), [&](Point p) {
+    const auto lump = [&](float x) { return lumps * std::abs(x * 3.7f - std::floor(x * 3.7f) - 0.5f); };
+    return Point{p[0] + lump(p[1]), p[1] + lump(p[2]), p[2] + lump(p[0])};
+  });
+  const auto part = [&] { return static_cast<int>(random.below(9)); };
+  const std::array<int, 4> quaternion{1 + part(), part(), part(), part()};
+  scene.cage = rotated(scene.cage, quaternion);
+  scene.target = rotated(scene.target, quaternion);
+  return scene;
+}
+
 Scene lattice(int cells) {
   const float half = static_cast<float>(cells);  // One unit is half a cell, so that every coordinate is whole.
   return {"lattice " + std::to_string(cells), box({}, {half + 2, half + 2, half + 2}, cells + 2),

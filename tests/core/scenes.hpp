@@ -97,6 +97,10 @@ Scene strewn(std::uint64_t seed, int triangles);
 /// most rays go through edges and corners.
 Scene gridded(std::uint64_t seed, int triangles);
 
+/// A box or a ball, lumpy or not, often of two groups that meet along edges, in a box or a ball of other cells, with up to three
+/// holes, all of it turned: islands, rims and edges cross each other anyhow.
+Scene patchwork(std::uint64_t seed);
+
 /// A box in a box on one lattice: every nearest point is on a corner or an edge of the cage, and every ray goes exactly
 /// through corners or edges.
 Scene lattice(int cells);
