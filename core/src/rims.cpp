@@ -100,10 +100,15 @@ bool Rims::areOn(const CageTriangle& triangle, std::uint32_t slot, std::span<con
   const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
   const Frame frame(triangle);
   for (std::uint32_t k = 0; k < 3; ++k) {
-    const Vec3 start = frame.corners[k], end = frame.corners[(k + 1) % 3], edge = frame.edges[k], away = -1 * edge;
-    // Beyond an edge, between its ends.
-    if (sides[k] != kNone && leastAlong(-1 * frame.inward(k), start, corners) >= 0 && leastAlong(edge, start, corners) >= 0 &&
-        leastAlong(away, end, corners) >= 0) {
+    const std::uint32_t next = (k + 1) % 3;
+    const Vec3 start = frame.corners[k], end = frame.corners[next];
+    const auto areBehind = [corners](Vec3 direction, Vec3 from) { return leastAlong(-1 * direction, from, corners) >= 0; };
+    const bool areBehindBack = areBehind(frame.back(k), start);
+    // A corner is nearest to what lies behind it along both its edges,
+    if (sides[3 + k] != kNone && areBehindBack && areBehind(frame.edges[k], start)) return true;
+    // and an edge to what lies beyond it, at either end not past that, or behind the other edge there.
+    if (sides[k] != kNone && areBehind(frame.inward(k), start) && (areBehindBack || leastAlong(frame.edges[k], start, corners) >= 0) &&
+        (areBehind(frame.edges[next], end) || areBehind(frame.edges[k], end))) {
       return true;
     }
   }

@@ -327,6 +327,48 @@ TEST_CASE("a result of another target is refused", "[borders]") {
   CHECK(codeOf(scene.target.view(), {result.zones.zones, {}, result.zones.culledSegments}) == Code::resultMismatch);
 }
 
+TEST_CASE("a result of another target with as many vertices cuts what that says", "[borders]") {
+  const scenes::Scene scene = scenes::head(8);
+  scenes::Random random(firstSeed());
+  std::vector<std::uint32_t> order;
+  const scenes::Mesh other = scenes::shuffled(scene.target, random, order);
+  const CutTarget cut = cutOf(scene.cage.view(), scene.target.view(), cutting(), transferred(scene.cage.view(), other.view(), cutting()));
+  const scenes::Mesh mesh = meshOf(scene.target.view(), cut);
+  double before = 0, after = 0;
+  for (std::size_t t = 0; t < scene.target.triangleCount(); ++t) before += length(areaOf(scene.target.view(), t));
+  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) after += length(areaOf(mesh.view(), t));
+  CHECK(after == Approx(before));
+}
+
+TEST_CASE("a cage of thousands of islands, each a triangle, cuts a target at all of them", "[borders]") {
+  const scenes::Mesh whole = scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 14), target = scenes::ellipsoid({}, {1, 1, 1}, 6);
+  scenes::Mesh cage;
+  for (const std::uint32_t v : whole.indices) {
+    const auto i = static_cast<std::uint32_t>(cage.vertexCount());
+    const auto u = static_cast<float>(i / 3 % 64) + (i % 3 == 1 ? 0.5f : 0), w = static_cast<float>(i / 3 / 64) + (i % 3 == 2 ? 0.5f : 0);
+    cage.addVertex(whole.vertex(v), u / 64, w / 64);
+  }
+  for (std::uint32_t i = 0; i < cage.vertexCount(); i += 3) cage.addTriangle(i, i + 1, i + 2);
+  REQUIRE(cage.triangleCount() > 2000);
+  const CutTarget cut = cutOf(cage.view(), target.view(), cutting());
+  const scenes::Mesh mesh = meshOf(target.view(), cut);
+  CHECK(cut.origins.size() > cage.triangleCount());
+  // In each piece that is larger than what may be overlooked, all UVs are of one island.
+  std::size_t torn = 0, large = 0;
+  for (std::size_t t = 0; t < cut.origins.size(); ++t) {
+    if (length(areaOf(mesh.view(), t)) < 1e-5) continue;
+    ++large;
+    float low[2] = {2, 2}, high[2] = {-2, -2};
+    for (std::size_t i = 6 * t; i < 6 * t + 6; ++i) {
+      low[i % 2] = std::min(low[i % 2], cut.cornerUvs[i]);
+      high[i % 2] = std::max(high[i % 2], cut.cornerUvs[i]);
+    }
+    torn += std::floor(low[0] * 64 + 1e-3f) < std::floor(high[0] * 64 - 1e-3f) || std::floor(low[1] * 64 + 1e-3f) < std::floor(high[1] * 64 - 1e-3f);
+  }
+  CHECK(large > 2000);
+  CHECK(torn == 0);
+}
+
 TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut", "[borders]") {
   scenes::Scene scene = scenes::head(8);
   scenes::Mesh& target = scene.target;

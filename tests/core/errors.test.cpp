@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cagecast/borders.hpp"
 #include "checks.hpp"
 
 using namespace cagecast;
@@ -14,9 +15,21 @@ struct Case {
   scenes::Mesh cage = scenes::box({}, {2, 2, 2}, 1), target = scenes::box({}, {1, 1, 1}, 1);
   TransferOptions options;
 
+  /// Of a transfer; what is wrong with its input must be wrong for `cutBorders` alike, but for locks, which it does not read.
   Status run() const {
     TransferResult result;
-    return transfer(cage.view(), target.view(), options, result);
+    const Status status = transfer(cage.view(), target.view(), options, result);
+    const std::vector<Zone> zones(target.vertexCount(), Zone::cosmetic);
+    const std::vector<std::uint32_t> segments(target.vertexCount(), 0);
+    const std::vector<std::uint8_t> culled(1, 0);
+    CutTarget cut;
+    const Status other = cutBorders(cage.view(), target.view(), options, {zones, segments, culled}, cut);
+    if (status.code != Code::badLocks) {
+      CHECK(other.code == status.code);
+      CHECK(other.argument == status.argument);
+      CHECK(other.at == status.at);
+    }
+    return status;
   }
   std::string text(const Status& status) const { return describe(status, cage.view(), target.view()); }
 };
