@@ -13,8 +13,9 @@ const built = 'build/release/tests/core/cagecast_reference';
  * another. tests/core/reference_main.cpp tells what it does.
  */
 export function nativeCommand(): string {
-  const native = process.env['CAGECAST_REFERENCE'] ?? built;
-  if (native === built) {
+  const given = process.env['CAGECAST_REFERENCE'];
+  const native = given ?? built;
+  if (given === undefined) {
     // A reference of yesterday's library would prove nothing.
     if (!existsSync('build/release/build.ninja')) execFileSync('cmake', ['--preset', 'release'], { stdio: ['ignore', 'ignore', 'inherit'] });
     execFileSync('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference'], { stdio: ['ignore', 'ignore', 'inherit'] });
@@ -23,10 +24,14 @@ export function nativeCommand(): string {
   return native;
 }
 
-/** The package with its WebAssembly as it is shipped, and built without SIMD; ready. */
+/**
+ * The package with its WebAssembly as it is shipped, and built without SIMD; ready. The latter is built if it is not of this code;
+ * CAGECAST_SCALAR names the folder of another.
+ */
 export async function packages(): Promise<Record<'SIMD' | 'scalar', typeof simd & typeof simdBorders>> {
-  execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
-  const load = (name: string) => import(pathToFileURL(resolve('build/wasm-scalar/package', name)).href);
+  const given = process.env['CAGECAST_SCALAR'];
+  if (given === undefined) execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
+  const load = (name: string) => import(pathToFileURL(resolve(given ?? 'build/wasm-scalar/package', name)).href);
   const scalar = { ...((await load('index.js')) as typeof simd), ...((await load('borders.js')) as typeof simdBorders) };
   await Promise.all([simd.init(), scalar.init()]);
   return { SIMD: { ...simd, ...simdBorders }, scalar };
