@@ -13,9 +13,9 @@ namespace cagecast {
 /// (Woop, Benthin, Wald, "Watertight ray/triangle intersection", JCGT 2013). No reciprocal is infinite.
 struct RayDirection {
   float inverse[3];        ///< 1 / component, of at most 1e20.
-  float shearX, shearY;    ///< x/z and y/z of the direction.
-  float scaleZ;            ///< 1/z.
-  std::uint32_t x, y, z;   ///< Which axis serves as which.
+  float shearX, shearY;    ///< −x/z and −y/z of the direction.
+  float scaleZ;            ///< −1/z.
+  std::uint32_t z;         ///< Which axis serves as z; the next two, with x after z, as x and y.
   Vec3 exact;              ///< Unit length.
 
   static RayDirection along(Vec3 unit) noexcept;

@@ -147,10 +147,16 @@ struct RayLeaf;
 
 /// A ray: r(t) = origin + rest + t · direction.
 struct Ray {
-  float origin[3];
+  /// Axes in a row go x, y, z, x, y: from each of them on the next two follow.
+  static constexpr int kRow = 5;
+  float origin[kRow];
   float rest[3];  ///< What the exact origin has beyond the floats.
   const RayDirection* direction;
   double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
+
+  void startAt(const float (&position)[3]) noexcept {
+    for (int k = 0; k < kRow; ++k) origin[k] = position[k % 3];
+  }
 };
 
 /// Finds which rays hit a triangle at a distance greater than `from` and up to their end, from either side. Watertight: a

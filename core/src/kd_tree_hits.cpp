@@ -45,7 +45,7 @@ float strictEnd(double end) { return std::isfinite(end) ? static_cast<float>(end
 /// Four triangles side by side, put so when rays come to them: a leaf is visited by a few rays at a time, and three times as
 /// large as what it is made from.
 struct RayLeaf {
-  float corner[3][3][4];  ///< corner[a, b, c][axis][lane].
+  float corner[Ray::kRow][3][4];  ///< corner[axis in a row][a, b, c][lane].
   float rounding;          ///< What the edge functions of a ray that hits may be off in float.
   float distanceRounding;  ///< And its distance, times the sum of these functions.
   unsigned own;            ///< Which triangles are the leaf's own: a bit each. What rounding may do is known of these.
@@ -57,7 +57,7 @@ struct RayLeaf {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
       f32x4 rows[4] = {row(0), row(1), row(2), row(3)};
       simd::transpose(rows[0], rows[1], rows[2], rows[3]);
-      for (int k = 0; k < 3; ++k) simd::store(corner[i][k], rows[k]);
+      for (int k = 0; k < Ray::kRow; ++k) simd::store(corner[k][i], rows[k % 3]);
     }
   }
 };
@@ -72,25 +72,26 @@ namespace {
 [[gnu::noinline]] double hitDistance(const RayLeaf& leaf, int lane, const Ray& ray) {
   const RayDirection& direction = *ray.direction;
   const auto corner = [&](int i) {
-    return Vec3{static_cast<double>(leaf.corner[i][0][lane]), static_cast<double>(leaf.corner[i][1][lane]),
-                static_cast<double>(leaf.corner[i][2][lane])};
+    return Vec3{static_cast<double>(leaf.corner[0][i][lane]), static_cast<double>(leaf.corner[1][i][lane]),
+                static_cast<double>(leaf.corner[2][i][lane])};
   };
   const Vec3 a = corner(0);
   const Vec3 normal = cross(corner(1) - a, corner(2) - a);
   const double slope = dot(normal, direction.exact);
   if (slope * slope <= kParallel * kParallel * dot(normal, normal)) return kNowhere;
   const double d[3] = {direction.exact.x, direction.exact.y, direction.exact.z};
+  const std::uint32_t axes[3] = {(direction.z + 1) % 3, (direction.z + 2) % 3, direction.z};
   double x[3];
   double y[3];
   double z[3];
   for (int i = 0; i < 3; ++i) {
     const auto offset = [&](std::uint32_t axis) {
-      return static_cast<double>(leaf.corner[i][axis][lane]) -
+      return static_cast<double>(leaf.corner[axis][i][lane]) -
              (static_cast<double>(ray.origin[axis]) + static_cast<double>(ray.rest[axis]));
     };
-    z[i] = offset(direction.z) / d[direction.z];
-    x[i] = offset(direction.x) - z[i] * d[direction.x];
-    y[i] = offset(direction.y) - z[i] * d[direction.y];
+    z[i] = offset(axes[2]) / d[axes[2]];
+    x[i] = offset(axes[0]) - z[i] * d[axes[0]];
+    y[i] = offset(axes[1]) - z[i] * d[axes[1]];
   }
   const double u = x[2] * y[1] - y[2] * x[1];
   const double v = x[0] * y[2] - y[0] * x[2];
@@ -112,17 +113,19 @@ inline Estimate estimate(const RayLeaf& leaf, const Ray& ray) {
   const RayDirection& direction = *ray.direction;
   const f32x4 shearX = splat(direction.shearX);
   const f32x4 shearY = splat(direction.shearY);
-  const f32x4 originX = splat(ray.origin[direction.x]);
-  const f32x4 originY = splat(ray.origin[direction.y]);
-  const f32x4 originZ = splat(ray.origin[direction.z]);
+  const float* origin = ray.origin + direction.z;
+  const f32x4 originZ = splat(origin[0]);
+  const f32x4 originX = splat(origin[1]);
+  const f32x4 originY = splat(origin[2]);
+  const float(*corner)[3][4] = leaf.corner + direction.z;
   // From the corners to the origin: in this order a processor subtracts while it loads. The edge functions do not mind.
   f32x4 x[3];
   f32x4 y[3];
   f32x4 z[3];
   for (int i = 0; i < 3; ++i) {
-    z[i] = originZ - load(leaf.corner[i][direction.z]);
-    x[i] = simd::subtractProduct(originX - load(leaf.corner[i][direction.x]), shearX, z[i]);
-    y[i] = simd::subtractProduct(originY - load(leaf.corner[i][direction.y]), shearY, z[i]);
+    z[i] = originZ - load(corner[0][i]);
+    x[i] = simd::multiplyAdd(z[i], shearX, originX - load(corner[1][i]));
+    y[i] = simd::multiplyAdd(z[i], shearY, originY - load(corner[2][i]));
   }
   const f32x4 u = simd::subtractProduct(x[2] * y[1], y[2], x[1]);
   const f32x4 v = simd::subtractProduct(x[0] * y[2], y[0], x[2]);
@@ -131,7 +134,7 @@ inline Estimate estimate(const RayLeaf& leaf, const Ray& ray) {
   const f32x4 sum = u + v + w;
   const f32x4 depths = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
   return {simd::min(u, simd::min(v, w)), simd::max(u, simd::max(v, w)), simd::abs(sum), depths,
-          depths * splat(-direction.scaleZ) * sum};
+          depths * splat(direction.scaleZ) * sum};
 }
 
 /// Which triangles the ray might hit, as far as float can tell.
@@ -261,11 +264,12 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
 void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* rays, std::uint32_t count) noexcept {
   const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
   const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2));
-  const f32x4 loose = splat(loose_);
+  const float soonest = loose_;
+  const f32x4 loose = splat(soonest);
   const f32x4 zero = splat(zero_);
   for (std::uint32_t i = 0; i < count; ++i) {
     Slabs& slabs = slabsOf(rays[i]);
-    if (slabs.end() < loose_) continue;
+    if (slabs.end() < soonest) continue;
     const std::size_t id = rays[i] / sizeof(Slabs);
     Ray& ray = rays_[id];
     const Estimate estimated = estimate(leaf, ray);
