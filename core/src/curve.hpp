@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 namespace cagecast {
 
@@ -11,37 +12,47 @@ namespace cagecast {
 class HilbertCurve {
  public:
   /// Makes its tables, in a microsecond: as constants they would be a tenth of the WebAssembly.
-  HilbertCurve() noexcept {
-    for (std::uint32_t x = 1; x < kSpreadable / 2; ++x) {
+  /// @param levels  6, 8 or 10: of 2^levels cells on each axis.
+  explicit HilbertCurve(int levels) noexcept : unused_(kBits - 3 * levels) {
+    // Octants begin at the highest bit, where the way to them begins.
+    spread_[1] = 1u << unused_;
+    for (std::size_t x = 1; x < std::size_t{1} << (levels - 1); ++x) {
       spread_[2 * x] = spread_[x] << 3;
-      spread_[2 * x + 1] = spread_[x] << 3 | 1;
+      spread_[2 * x + 1] = spread_[x] << 3 | spread_[1];
     }
-    for (std::uint32_t step = 0; step < kStates * 8; ++step) {
-      const std::uint32_t first = kSteps[step];
-      for (std::uint32_t octant = 0; octant < 8; ++octant) {
-        doubleSteps_[8 * step + octant] = static_cast<std::uint16_t>(kSteps[first / 64 * 8 + octant] | (first & 7) << 3);
-      }
+    // What follows a step is a row of the table; four of its octants at a time.
+    for (std::size_t step = 0; step < kSteps.size(); ++step) {
+      std::uint64_t row[2];
+      std::memcpy(row, &kSteps[kSteps[step] / 64 * std::size_t{8}], sizeof row);
+      for (std::uint64_t& four : row) four |= (kSteps[step] & 7) * std::uint64_t{0x0008'0008'0008'0008};
+      std::memcpy(&doubleSteps_[8 * step], row, sizeof row);
     }
   }
 
-  /// The place of a cell on the curve.
-  /// @param x,y,z   The cell, 0 .. 2^levels − 1 on each axis.
-  /// @param levels  Even, at most 10.
-  [[nodiscard]] std::uint32_t key(std::uint32_t x, std::uint32_t y, std::uint32_t z, int levels) const noexcept {
+  /// The place of a cell on the curve, less than 8^levels.
+  /// @param x,y,z  The cell, 0 .. 2^levels − 1 on each axis.
+  [[nodiscard]] std::uint32_t key(std::uint32_t x, std::uint32_t y, std::uint32_t z) const noexcept {
     const std::uint32_t octants = spread_[x] | spread_[y] << 1 | spread_[z] << 2;
     std::uint32_t result = 0;
-    std::uint32_t state = 0;
-    for (int shift = 3 * levels - 6; shift >= 0; shift -= 6) {
-      const std::uint32_t step = doubleSteps_[state | (octants >> shift & 63)];
+    std::size_t state = 0;
+    const auto takeTwoLevels = [&](int shift) {
+      const std::size_t step = doubleSteps_[state | (octants >> shift & 63)];
       result = result << 6 | (step & 63);
-      state = step & ~63u;
+      state = step & ~std::size_t{63};
+    };
+    takeTwoLevels(24);
+    takeTwoLevels(18);
+    takeTwoLevels(12);
+    if (unused_ <= 6) {
+      takeTwoLevels(6);
+      if (unused_ == 0) takeTwoLevels(0);
     }
     return result;
   }
 
  private:
   static constexpr std::uint32_t kStates = 24;         ///< Entry corners times directions.
-  static constexpr std::uint32_t kSpreadable = 1024;  ///< Numbers of ten bits.
+  static constexpr int kBits = 30;                    ///< Three times ten.
 
   /// state times 8 | octant → next state times 64 | its place along the curve.
   static constexpr auto kSteps = [] {
@@ -71,7 +82,8 @@ class HilbertCurve {
   /// The same for two octants, 64 times.
   std::array<std::uint16_t, kStates * 64> doubleSteps_;
   /// Two zeros between the bits of a number.
-  std::array<std::uint32_t, kSpreadable> spread_{0, 1};
+  std::array<std::uint32_t, 1024> spread_{0};
+  int unused_;  ///< Bits below the octants.
 };
 
 }  // namespace cagecast

@@ -56,7 +56,7 @@ void Rims::Box::grow(Vec3 p) noexcept {
   }
 }
 
-double Rims::Box::diagonal() const noexcept { return length({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
+double Rims::Box::diagonal() const noexcept { return length(Vec3{high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
 
 std::uint32_t Rims::sideAt(const CageTriangle& triangle, std::uint32_t slot, Vec3 q, double diagonal) const noexcept {
   if (!touches(slot)) return kNone;

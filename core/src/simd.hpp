@@ -114,12 +114,38 @@ inline unsigned bits(const mask4 (&m)[4]) {
 }
 /// Turns four rows into columns.
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) { _MM_TRANSPOSE4_PS(a.v, b.v, c.v, d.v); }
+/// Lanes 0 of both, lanes 1 of both.
+inline f32x4 interleaveLow(f32x4 a, f32x4 b) { return {_mm_unpacklo_ps(a.v, b.v)}; }
+/// Lanes 2 of both, lanes 3 of both.
+inline f32x4 interleaveHigh(f32x4 a, f32x4 b) { return {_mm_unpackhi_ps(a.v, b.v)}; }
+/// x, y, z, 0.
+inline f32x4 load3(const float* p) {
+  return {_mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(p))), _mm_load_ss(p + 2))};
+}
+
+/// Two doubles.
+struct f64x2 {
+  __m128d v;
+};
+inline void store(double* p, f64x2 a) { _mm_storeu_pd(p, a.v); }
+inline f64x2 operator+(f64x2 a, f64x2 b) { return {_mm_add_pd(a.v, b.v)}; }
+inline f64x2 operator-(f64x2 a, f64x2 b) { return {_mm_sub_pd(a.v, b.v)}; }
+inline f64x2 operator*(f64x2 a, f64x2 b) { return {_mm_mul_pd(a.v, b.v)}; }
+inline f64x2 splatDouble(double x) { return {_mm_set1_pd(x)}; }
+inline f64x2 min(f64x2 a, f64x2 b) { return {_mm_min_pd(a.v, b.v)}; }
+inline f64x2 sqrt(f64x2 a) { return {_mm_sqrt_pd(a.v)}; }
+/// Lanes 0 and 1.
+inline f64x2 lowDoubles(f32x4 a) { return {_mm_cvtps_pd(a.v)}; }
+/// Lanes 2 and 3.
+inline f64x2 highDoubles(f32x4 a) { return {_mm_cvtps_pd(_mm_movehl_ps(a.v, a.v))}; }
 
 /// Four counters.
 struct count4 {
   __m128i v;
 };
 inline count4 load(const std::uint32_t* p) { return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))}; }
+/// Numbers from 0 on, without what they have behind the point.
+inline count4 wholes(f32x4 a) { return {_mm_cvttps_epi32(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), c.v); }
 /// One more where the mask is set: all its bits are the number −1.
 inline count4 countTrue(count4 c, mask4 m) { return {_mm_sub_epi32(c.v, _mm_castps_si128(m.v))}; }
@@ -191,11 +217,28 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   c.v = vcombine_f32(vget_high_f32(ab.val[0]), vget_high_f32(cd.val[0]));
   d.v = vcombine_f32(vget_high_f32(ab.val[1]), vget_high_f32(cd.val[1]));
 }
+inline f32x4 interleaveLow(f32x4 a, f32x4 b) { return {vzip1q_f32(a.v, b.v)}; }
+inline f32x4 interleaveHigh(f32x4 a, f32x4 b) { return {vzip2q_f32(a.v, b.v)}; }
+inline f32x4 load3(const float* p) { return {vcombine_f32(vld1_f32(p), vset_lane_f32(p[2], vdup_n_f32(0), 0))}; }
+
+struct f64x2 {
+  float64x2_t v;
+};
+inline void store(double* p, f64x2 a) { vst1q_f64(p, a.v); }
+inline f64x2 operator+(f64x2 a, f64x2 b) { return {vaddq_f64(a.v, b.v)}; }
+inline f64x2 operator-(f64x2 a, f64x2 b) { return {vsubq_f64(a.v, b.v)}; }
+inline f64x2 operator*(f64x2 a, f64x2 b) { return {vmulq_f64(a.v, b.v)}; }
+inline f64x2 splatDouble(double x) { return {vdupq_n_f64(x)}; }
+inline f64x2 min(f64x2 a, f64x2 b) { return {vminq_f64(a.v, b.v)}; }
+inline f64x2 sqrt(f64x2 a) { return {vsqrtq_f64(a.v)}; }
+inline f64x2 lowDoubles(f32x4 a) { return {vcvt_f64_f32(vget_low_f32(a.v))}; }
+inline f64x2 highDoubles(f32x4 a) { return {vcvt_high_f64_f32(a.v)}; }
 
 struct count4 {
   uint32x4_t v;
 };
 inline count4 load(const std::uint32_t* p) { return {vld1q_u32(p)}; }
+inline count4 wholes(f32x4 a) { return {vreinterpretq_u32_s32(vcvtq_s32_f32(a.v))}; }
 inline void store(std::uint32_t* p, count4 c) { vst1q_u32(p, c.v); }
 inline count4 countTrue(count4 c, mask4 m) { return {vsubq_u32(c.v, m.v)}; }
 template <int lane>
@@ -264,11 +307,28 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
   c.v = wasm_i64x2_shuffle(abHigh, cdHigh, 0, 2);
   d.v = wasm_i64x2_shuffle(abHigh, cdHigh, 1, 3);
 }
+inline f32x4 interleaveLow(f32x4 a, f32x4 b) { return {wasm_i32x4_shuffle(a.v, b.v, 0, 4, 1, 5)}; }
+inline f32x4 interleaveHigh(f32x4 a, f32x4 b) { return {wasm_i32x4_shuffle(a.v, b.v, 2, 6, 3, 7)}; }
+inline f32x4 load3(const float* p) { return {wasm_v128_load32_lane(p + 2, wasm_v128_load64_zero(p), 2)}; }
+
+struct f64x2 {
+  v128_t v;
+};
+inline void store(double* p, f64x2 a) { wasm_v128_store(p, a.v); }
+inline f64x2 operator+(f64x2 a, f64x2 b) { return {wasm_f64x2_add(a.v, b.v)}; }
+inline f64x2 operator-(f64x2 a, f64x2 b) { return {wasm_f64x2_sub(a.v, b.v)}; }
+inline f64x2 operator*(f64x2 a, f64x2 b) { return {wasm_f64x2_mul(a.v, b.v)}; }
+inline f64x2 splatDouble(double x) { return {wasm_f64x2_splat(x)}; }
+inline f64x2 min(f64x2 a, f64x2 b) { return {wasm_f64x2_pmin(b.v, a.v)}; }
+inline f64x2 sqrt(f64x2 a) { return {wasm_f64x2_sqrt(a.v)}; }
+inline f64x2 lowDoubles(f32x4 a) { return {wasm_f64x2_promote_low_f32x4(a.v)}; }
+inline f64x2 highDoubles(f32x4 a) { return {wasm_f64x2_promote_low_f32x4(wasm_i64x2_shuffle(a.v, a.v, 1, 1))}; }
 
 struct count4 {
   v128_t v;
 };
 inline count4 load(const std::uint32_t* p) { return {wasm_v128_load(p)}; }
+inline count4 wholes(f32x4 a) { return {wasm_i32x4_trunc_sat_f32x4(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
 inline count4 countTrue(count4 c, mask4 m) { return {wasm_i32x4_sub(c.v, m.v)}; }
 template <int lane>
@@ -346,11 +406,31 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
     }
   }
 }
+inline f32x4 interleaveLow(f32x4 a, f32x4 b) { return {{a.v[0], b.v[0], a.v[1], b.v[1]}}; }
+inline f32x4 interleaveHigh(f32x4 a, f32x4 b) { return {{a.v[2], b.v[2], a.v[3], b.v[3]}}; }
+inline f32x4 load3(const float* p) { return {{p[0], p[1], p[2], 0}}; }
+
+struct f64x2 {
+  double v[2];
+};
+inline void store(double* p, f64x2 a) { std::memcpy(p, a.v, sizeof a.v); }
+inline f64x2 operator+(f64x2 a, f64x2 b) { return {{a.v[0] + b.v[0], a.v[1] + b.v[1]}}; }
+inline f64x2 operator-(f64x2 a, f64x2 b) { return {{a.v[0] - b.v[0], a.v[1] - b.v[1]}}; }
+inline f64x2 operator*(f64x2 a, f64x2 b) { return {{a.v[0] * b.v[0], a.v[1] * b.v[1]}}; }
+inline f64x2 splatDouble(double x) { return {{x, x}}; }
+inline f64x2 min(f64x2 a, f64x2 b) { return {{std::min(a.v[0], b.v[0]), std::min(a.v[1], b.v[1])}}; }
+inline f64x2 sqrt(f64x2 a) { return {{std::sqrt(a.v[0]), std::sqrt(a.v[1])}}; }
+inline f64x2 lowDoubles(f32x4 a) { return {{static_cast<double>(a.v[0]), static_cast<double>(a.v[1])}}; }
+inline f64x2 highDoubles(f32x4 a) { return {{static_cast<double>(a.v[2]), static_cast<double>(a.v[3])}}; }
 
 struct count4 {
   std::uint32_t v[4];
 };
 inline count4 load(const std::uint32_t* p) { return {{p[0], p[1], p[2], p[3]}}; }
+inline count4 wholes(f32x4 a) {
+  const auto whole = [&](int i) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(a.v[i])); };
+  return {{whole(0), whole(1), whole(2), whole(3)}};
+}
 inline void store(std::uint32_t* p, count4 c) { std::memcpy(p, c.v, sizeof c.v); }
 inline count4 countTrue(count4 c, mask4 m) { return {{c.v[0] + m.v[0], c.v[1] + m.v[1], c.v[2] + m.v[2], c.v[3] + m.v[3]}}; }
 template <int lane>

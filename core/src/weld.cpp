@@ -2,48 +2,78 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <tuple>
 #include <utility>
 
 #include "curve.hpp"
 #include "point_search.hpp"
+#include "simd.hpp"
 #include "triangle.hpp"
 
 namespace cagecast {
 namespace {
 
-/// A vertex and the place of its cell on the curve.
-struct Placed {
-  std::uint32_t key;
-  std::uint32_t vertex;
-};
+using simd::f32x4;
+
+/// A vertex below the place of its cell on the curve.
+using Placed = std::uint64_t;
+std::uint32_t keyOf(Placed placed) { return static_cast<std::uint32_t>(placed >> 32); }
+std::uint32_t vertexOf(Placed placed) { return static_cast<std::uint32_t>(placed); }
+
+/// More than any key.
+constexpr std::uint32_t kNoKey = ~0u;
+/// So many vertices of a cell are compared each with each; more are sorted, so that no input makes it quadratic.
+constexpr std::uint32_t kFew = 16;
 
 /// Sorts by key, stably: least significant digit first.
-/// @return The one of the two arrays that holds the result.
-Placed* sortByKey(Placed* items, Placed* other, std::uint32_t count, int keyBits) {
-  constexpr int kMostDigitBits = 12;
-  const int digits = (keyBits + kMostDigitBits - 1) / kMostDigitBits;
-  const int digitBits = (keyBits + digits - 1) / digits;
-  const std::uint32_t mask = (1u << digitBits) - 1;
-  std::uint32_t starts[1 << kMostDigitBits];
-  for (int shift = 0; shift < keyBits; shift += digitBits) {
-    std::fill(starts, starts + mask + 1, 0u);
-    for (std::uint32_t i = 0; i < count; ++i) ++starts[items[i].key >> shift & mask];
-    std::uint32_t sum = 0;
-    for (std::uint32_t digit = 0; digit <= mask; ++digit) sum += std::exchange(starts[digit], sum);
-    for (std::uint32_t i = 0; i < count; ++i) other[starts[items[i].key >> shift & mask]++] = items[i];
-    std::swap(items, other);
+class KeySort {
+ public:
+  explicit KeySort(int keyBits) : digits_((keyBits + kMostDigitBits - 1) / kMostDigitBits), bits_((keyBits + digits_ - 1) / digits_) {
+    std::fill(starts_, starts_ + (digits_ << bits_), 0u);
   }
-  return items;
-}
+
+  /// Has to be told all keys first.
+  void add(std::uint32_t key) {
+    ++starts_[key & mask()];
+    ++starts_[1u << bits_ | (key >> bits_ & mask())];
+    if (digits_ > 2) ++starts_[2u << bits_ | key >> 2 * bits_];
+  }
+
+  /// @return The one of the two arrays that holds the result.
+  Placed* sort(Placed* items, Placed* other, std::uint32_t count) {
+    std::uint32_t* starts = starts_;
+    const std::uint32_t highest = mask();
+    for (int shift = 32; shift < 32 + digits_ * bits_; shift += bits_) {
+      std::uint32_t sum = 0;
+      for (std::uint32_t digit = 0; digit <= highest; ++digit) sum += std::exchange(starts[digit], sum);
+      for (std::uint32_t i = 0; i < count; ++i) other[starts[items[i] >> shift & highest]++] = items[i];
+      std::swap(items, other);
+      starts += highest + 1;
+    }
+    return items;
+  }
+
+ private:
+  static constexpr int kMostDigitBits = 12;
+
+  [[nodiscard]] std::uint32_t mask() const { return (1u << bits_) - 1; }
+
+  int digits_, bits_;  ///< 2 · 9, 2 · 12 or 3 · 10.
+  std::uint32_t starts_[2 << kMostDigitBits];
+};
 
 /// A vertex as weld sees it, scaled. Adding 0 made 0 of −0, so equal is the same as equal to the bit.
 struct Site {
   float x, y, z;
   std::uint32_t group;
 
+  void put(f32x4 position, std::uint32_t itsGroup) {
+    simd::store(&x, position);
+    group = itsGroup;
+  }
   /// Makes a point of it: the group takes the place of the fourth float.
-  void put(float* position) const { std::memcpy(position, this, sizeof(Site)); }
+  void putAt(float* position) const { std::memcpy(position, this, sizeof(Site)); }
   [[nodiscard]] bool isAt(const float* position) const { return std::memcmp(position, this, sizeof(Site)) == 0; }
 
   friend bool operator==(const Site& a, const Site& b) { return std::memcmp(&a, &b, sizeof(Site)) == 0; }
@@ -51,16 +81,76 @@ struct Site {
 };
 
 /// Sorts the vertices of the first cell by site, and equal ones by index.
-/// @param end  Of all cells.
-void sortCell(Placed* begin, const Placed* end, const Site* sites) {
-  Placed* cellEnd = begin;
-  while (cellEnd < end && cellEnd->key == begin->key) ++cellEnd;
+void sortCell(Placed* begin, const Site* sites) {
+  Placed* end = begin;
+  while (keyOf(*end) == keyOf(*begin)) ++end;
   // By heap: it happens seldom, and std::sort is 5 KB of WebAssembly.
-  const auto before = [&](const Placed& a, const Placed& b) {
-    return sites[a.vertex] == sites[b.vertex] ? a.vertex < b.vertex : sites[a.vertex] < sites[b.vertex];
+  const auto before = [&](Placed a, Placed b) {
+    const Site& s = sites[vertexOf(a)];
+    const Site& t = sites[vertexOf(b)];
+    return s == t ? a < b : s < t;
   };
-  std::make_heap(begin, cellEnd, before);
-  std::sort_heap(begin, cellEnd, before);
+  std::make_heap(begin, end, before);
+  std::sort_heap(begin, end, before);
+}
+
+/// Makes points of the vertices, in the order of their cells and, within, of the first vertex at each.
+/// @param placed  Sorted, and `kFew` more that are of no cell.
+/// @return How many there are.
+std::uint32_t weldEqual(Placed* placed, std::uint32_t vertexCount, const Site* sites, float* positions, std::uint32_t* places,
+                        std::uint32_t* ofVertex) {
+  std::uint32_t count = 0;
+  std::uint32_t first = 0;  // Point of the cell, or of those that a vertex may still be equal to.
+  bool crowded = false;
+  std::uint32_t lastKey = kNoKey;
+  for (Placed* const end = placed + vertexCount; placed < end; ++placed) {
+    const std::uint32_t key = keyOf(*placed);
+    if (key != lastKey) {
+      lastKey = key;
+      first = count;
+      crowded = keyOf(placed[kFew]) == key;
+      if (crowded) sortCell(placed, sites);
+    }
+    const std::uint32_t v = vertexOf(*placed);
+    std::uint32_t point = first;
+    while (point < count && !sites[v].isAt(positions + Points::kStride * point)) ++point;
+    ofVertex[v] = point;
+    if (point < count) continue;
+    sites[v].putAt(positions + Points::kStride * point);
+    places[point] = key;
+    ++count;
+    if (crowded) first = point;
+  }
+  return count;
+}
+
+/// Finds the corners of the triangles that have an area, and twice that, two by two: there must be room for one more.
+/// @return How many there are.
+std::uint32_t weldTriangles(std::span<const std::uint32_t> indices, const std::uint32_t* ofVertex, const float* positions,
+                            std::uint32_t* triangles, double* areas) {
+  simd::f64x2 least = simd::splatDouble(std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < indices.size(); i += 6) {
+    const std::uint32_t* index = &indices[i];
+    const std::uint32_t* other = i + 3 < indices.size() ? index + 3 : index;
+    const std::uint32_t corners[6] = {ofVertex[index[0]], ofVertex[index[1]], ofVertex[index[2]],
+                                      ofVertex[other[0]], ofVertex[other[1]], ofVertex[other[2]]};
+    std::copy(corners, corners + 6, triangles + i);
+    const simd::f64x2 both = doubleAreas(positions, corners, corners + 3);
+    simd::store(areas + i / 3, both);
+    least = simd::min(least, both);
+  }
+  double leastOf[2];
+  simd::store(leastOf, least);
+  const auto all = static_cast<std::uint32_t>(indices.size() / 3);
+  if (leastOf[0] > 0 && leastOf[1] > 0) return all;
+
+  std::uint32_t kept = 0;
+  for (std::uint32_t t = 0; t < all; ++t) {
+    if (!(areas[t] > 0)) continue;
+    std::copy_n(triangles + std::size_t{3} * t, 3, triangles + std::size_t{3} * kept);
+    areas[kept++] = areas[t];
+  }
+  return kept;
 }
 
 }  // namespace
@@ -71,14 +161,14 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   auto* ofVertex = scratch.take<std::uint32_t>(vertexCount);
   auto* positions = scratch.take<float>(Points::kStride * vertexCount);
   auto* places = scratch.take<std::uint32_t>(vertexCount);
-  auto* triangles = scratch.take<std::uint32_t>(std::size_t{3} * allTriangles);
-  auto* doubleAreas = scratch.take<double>(allTriangles);
+  auto* triangles = scratch.take<std::uint32_t>(std::size_t{3} * (allTriangles + 1));
+  auto* doubleAreas = scratch.take<double>(allTriangles + std::size_t{1});
   const bool tolerant = tolerance > 0;
   auto* groups = scratch.take<std::uint32_t>(tolerant ? vertexCount : 0);
   const Scratch::Mark mark = scratch.mark();
   auto* sites = scratch.take<Site>(vertexCount);
-  auto* placed = scratch.take<Placed>(vertexCount);
-  auto* spare = scratch.take<Placed>(vertexCount);
+  auto* unsorted = scratch.take<Placed>(vertexCount + kFew);
+  auto* spare = scratch.take<Placed>(vertexCount + kFew);
   if (scratch.failed()) return false;
 
   // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
@@ -86,40 +176,24 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   float side = 0;
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
-  const HilbertCurve curve;
-  for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const float* p = target.positions.data() + std::size_t{3} * v;
-    const Site s{p[0] * units.scale + 0.0f, p[1] * units.scale + 0.0f, p[2] * units.scale + 0.0f,
-                 target.groups.empty() ? 0 : target.groups[v]};
-    const auto cell = [cells](float x, float low) { return static_cast<std::uint32_t>(static_cast<std::int32_t>((x - low) * cells)); };
-    sites[v] = s;
-    placed[v] = {curve.key(cell(s.x, units.low[0]), cell(s.y, units.low[1]), cell(s.z, units.low[2]), levels), v};
+  const HilbertCurve curve(levels);
+  KeySort keySort(3 * levels);
+  const float* position = target.positions.data();
+  const std::uint32_t* groupOf = target.groups.empty() ? nullptr : target.groups.data();
+  const f32x4 scale = simd::splat(units.scale);
+  const f32x4 low = simd::load3(units.low);
+  for (std::uint32_t v = 0; v < vertexCount; ++v, position += 3) {
+    const f32x4 p = simd::load3(position) * scale + simd::splat(0);
+    sites[v].put(p, groupOf == nullptr ? 0 : groupOf[v]);
+    const simd::count4 cell = simd::wholes((p - low) * simd::splat(cells));
+    const std::uint32_t key = curve.key(simd::countOf<0>(cell), simd::countOf<1>(cell), simd::countOf<2>(cell));
+    keySort.add(key);
+    unsorted[v] = Placed{key} << 32 | v;
   }
-  if (Placed* sorted = sortByKey(placed, spare, vertexCount, 3 * levels); sorted != placed) std::swap(placed, spare);
+  Placed* placed = keySort.sort(unsorted, spare, vertexCount);
+  std::fill_n(placed + vertexCount, kFew, Placed{kNoKey} << 32);
 
-  // Within a cell, compare each with each while they are few; sort a crowded one, so that no input makes this quadratic.
-  constexpr std::uint32_t kFew = 16;
-  std::uint32_t pointCount = 0;
-  std::uint32_t firstPoint = 0;  // Of the cell.
-  bool crowded = false;
-  for (std::uint32_t i = 0; i < vertexCount; ++i) {
-    const std::uint32_t key = placed[i].key;
-    if (i == 0 || key != placed[i - 1].key) {
-      firstPoint = pointCount;
-      crowded = i + kFew < vertexCount && placed[i + kFew].key == key;
-      if (crowded) sortCell(placed + i, placed + vertexCount, sites);
-    }
-    const std::uint32_t v = placed[i].vertex;
-    const Site& s = sites[v];
-    std::uint32_t point = crowded && pointCount > firstPoint ? pointCount - 1 : firstPoint;
-    while (point < pointCount && !s.isAt(positions + Points::kStride * point)) ++point;
-    if (point == pointCount) {
-      ++pointCount;
-      places[point] = key;
-      s.put(positions + Points::kStride * point);
-    }
-    ofVertex[v] = point;
-  }
+  std::uint32_t pointCount = weldEqual(placed, vertexCount, sites, positions, places, ofVertex);
   if (!target.groups.empty()) {
     for (std::uint32_t i = 0; i < pointCount; ++i) {
       float& group = positions[Points::kStride * i + 3];
@@ -145,17 +219,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
     scratch.rewind(mark);
   }
 
-  std::uint32_t kept = 0;
-  for (std::uint32_t t = 0; t < allTriangles; ++t) {
-    const std::uint32_t* index = target.indices.data() + std::size_t{3} * t;
-    const std::uint32_t corner[3] = {ofVertex[index[0]], ofVertex[index[1]], ofVertex[index[2]]};
-    const auto position = [&](int i) { return positions + Points::kStride * corner[i]; };
-    const double doubleArea = length(areaNormal(position(0), position(1), position(2)));
-    if (!(doubleArea > 0)) continue;
-    std::copy(corner, corner + 3, triangles + std::size_t{3} * kept);
-    doubleAreas[kept++] = doubleArea;
-  }
-
+  const std::uint32_t kept = weldTriangles(target.indices, ofVertex, positions, triangles, doubleAreas);
   out = {pointCount, positions, places, ofVertex, kept, triangles, doubleAreas};
   return true;
 }
