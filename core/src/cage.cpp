@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "triangle.hpp"
 
@@ -15,6 +16,7 @@ RayDirection RayDirection::along(Vec3 unit) noexcept {
     // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
     ray.inverse[k] = std::copysign(1.0f / std::max(std::abs(d[k]), 1e-20f), d[k]);
   }
+  ray.inverse[3] = std::numeric_limits<float>::infinity();
   ray.z = 0;
   for (std::uint32_t k = 1; k < 3; ++k) {
     if (std::abs(d[k]) > std::abs(d[ray.z])) ray.z = k;

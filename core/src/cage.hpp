@@ -12,7 +12,7 @@ namespace cagecast {
 /// A direction, prepared for intersection: the axis it points along most becomes z, and a shear makes it the z-axis
 /// (Woop, Benthin, Wald, "Watertight ray/triangle intersection", JCGT 2013). No reciprocal is infinite.
 struct RayDirection {
-  float inverse[3];        ///< 1 / component, of at most 1e20.
+  float inverse[4];        ///< 1 / component, of at most 1e20; the last is infinity.
   float shearX, shearY;    ///< −x/z and −y/z of the direction.
   float scaleZ;            ///< −1/z.
   std::uint32_t z;         ///< Which axis serves as z; the next two, with x after z, as x and y.

@@ -154,8 +154,13 @@ struct Ray {
   const RayDirection* direction;
   double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
 
-  void startAt(const float (&position)[3]) noexcept {
-    for (int k = 0; k < kRow; ++k) origin[k] = position[k % 3];
+  void startAt(const float* position) noexcept {
+    const float x = position[0];
+    const float y = position[1];
+    const float z = position[2];
+    origin[0] = origin[3] = x;
+    origin[1] = origin[4] = y;
+    origin[2] = z;
   }
 };
 

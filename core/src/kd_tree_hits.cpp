@@ -176,11 +176,10 @@ void HitSearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noe
   hit_ = hit;
   find_ = find;
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      slabs_[i].inverse[k] = rays[i].direction->inverse[k];
-      slabs_[i].offset[k] = -rays[i].origin[k] * rays[i].direction->inverse[k];
-    }
-    slabs_[i].end() = looseEnd(rays[i].end);
+    const f32x4 inverse = load(rays[i].direction->inverse);  // And an end that is nowhere.
+    simd::store(slabs_[i].inverse, inverse);
+    simd::store(slabs_[i].offset, (splat(0) - load(rays[i].origin)) * inverse);
+    if (std::isfinite(rays[i].end)) slabs_[i].end() = looseEnd(rays[i].end);
     hit[i] = false;
     lists_[i] = static_cast<std::uint16_t>(i * sizeof(Slabs));
   }

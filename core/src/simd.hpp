@@ -210,12 +210,14 @@ inline unsigned bits(const mask4 (&m)[4]) {
   return vaddvq_u32(sum);
 }
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
-  const float32x4x2_t ab = vtrnq_f32(a.v, b.v);
-  const float32x4x2_t cd = vtrnq_f32(c.v, d.v);
-  a.v = vcombine_f32(vget_low_f32(ab.val[0]), vget_low_f32(cd.val[0]));
-  b.v = vcombine_f32(vget_low_f32(ab.val[1]), vget_low_f32(cd.val[1]));
-  c.v = vcombine_f32(vget_high_f32(ab.val[0]), vget_high_f32(cd.val[0]));
-  d.v = vcombine_f32(vget_high_f32(ab.val[1]), vget_high_f32(cd.val[1]));
+  const float64x2_t evenAb = vreinterpretq_f64_f32(vtrn1q_f32(a.v, b.v));
+  const float64x2_t evenCd = vreinterpretq_f64_f32(vtrn1q_f32(c.v, d.v));
+  const float64x2_t oddAb = vreinterpretq_f64_f32(vtrn2q_f32(a.v, b.v));
+  const float64x2_t oddCd = vreinterpretq_f64_f32(vtrn2q_f32(c.v, d.v));
+  a.v = vreinterpretq_f32_f64(vtrn1q_f64(evenAb, evenCd));
+  b.v = vreinterpretq_f32_f64(vtrn1q_f64(oddAb, oddCd));
+  c.v = vreinterpretq_f32_f64(vtrn2q_f64(evenAb, evenCd));
+  d.v = vreinterpretq_f32_f64(vtrn2q_f64(oddAb, oddCd));
 }
 inline f32x4 interleaveLow(f32x4 a, f32x4 b) { return {vzip1q_f32(a.v, b.v)}; }
 inline f32x4 interleaveHigh(f32x4 a, f32x4 b) { return {vzip2q_f32(a.v, b.v)}; }
