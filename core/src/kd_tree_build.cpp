@@ -46,9 +46,9 @@ struct Box {
     high = simd::max(high, other.high);
   }
   [[nodiscard]] Box padded(float by) const {
-    // The second term is an ulp of the coordinate: far from the origin the padding alone would round away.
+    // The second term is two ulps of the coordinate: far from the origin the padding alone would round away.
     const f32x4 most = simd::max(simd::max(low, splat(0) - low), simd::max(high, splat(0) - high));
-    const f32x4 pad = splat(by) + most * splat(1.2e-7f);
+    const f32x4 pad = splat(by) + most * splat(2.4e-7f);
     Box box;
     box.low = low - pad;
     box.high = high + pad;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "kd_tree.hpp"
@@ -221,8 +222,16 @@ void HitSearch::enter(const Node& node, std::uint16_t* rays, std::uint32_t count
 /// are put one behind the other, the last first, with room for all rays and one more each.
 void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
                           std::uint32_t (&counts)[4]) const noexcept {
-  const wide low[3] = {repeat(load(node.low[0])), repeat(load(node.low[1])), repeat(load(node.low[2]))};
-  const wide high[3] = {repeat(load(node.high[0])), repeat(load(node.high[1])), repeat(load(node.high[2]))};
+  wide low[3];
+  wide high[3];
+  wide middle[3];
+  wide half[3];
+  for (int k = 0; k < 3; ++k) {
+    low[k] = repeat(load(node.low[k]));
+    high[k] = repeat(load(node.high[k]));
+    middle[k] = simd::splatWide(0.5f) * (low[k] + high[k]);
+    half[k] = simd::splatWide(0.5f) * (high[k] - low[k]);
+  }
   const wide from = simd::splatWide(boxFrom_);
   const std::uint32_t room = count + 1;
   const std::uint32_t begins[4] = {3 * room, 2 * room, room, 0};
@@ -235,16 +244,25 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
     const wide offset = simd::loadParts([&](int i) { return slabsOf(ray[i]).offset; });
     wide first = from;
     wide last = simd::splatLane<3>(inverse);
-    const auto cut = [&](int k, wide inverseOfAxis, wide offsetOfAxis) {
+    const auto cut = [&]<int axis>(std::integral_constant<int, axis>) {
+      const wide inverseOfAxis = simd::splatLane<axis>(inverse);
+      const wide offsetOfAxis = simd::splatLane<axis>(offset);
       // Rays of all directions go together: which side is the near one shows only now.
-      const wide toLow = simd::multiplyAdd(low[k], inverseOfAxis, offsetOfAxis);
-      const wide toHigh = simd::multiplyAdd(high[k], inverseOfAxis, offsetOfAxis);
-      first = simd::max(first, simd::min(toLow, toHigh));
-      last = simd::min(last, simd::max(toLow, toHigh));
+      if constexpr (simd::kMultipliesByLane) {
+        const wide toMiddle = simd::multiplyAdd(middle[axis], inverseOfAxis, offsetOfAxis);
+        const wide within = half[axis] * simd::splatLane<axis>(simd::abs(inverse));
+        first = simd::max(first, toMiddle - within);
+        last = simd::min(last, toMiddle + within);
+      } else {
+        const wide toLow = simd::multiplyAdd(low[axis], inverseOfAxis, offsetOfAxis);
+        const wide toHigh = simd::multiplyAdd(high[axis], inverseOfAxis, offsetOfAxis);
+        first = simd::max(first, simd::min(toLow, toHigh));
+        last = simd::min(last, simd::max(toLow, toHigh));
+      }
     };
-    cut(0, simd::splatLane<0>(inverse), simd::splatLane<0>(offset));
-    cut(1, simd::splatLane<1>(inverse), simd::splatLane<1>(offset));
-    cut(2, simd::splatLane<2>(inverse), simd::splatLane<2>(offset));
+    cut(std::integral_constant<int, 0>{});
+    cut(std::integral_constant<int, 1>{});
+    cut(std::integral_constant<int, 2>{});
     simd::forParts(first <= last, [&](int i, mask4 enters) {
       // Put down at the end of every list, but only counted where it belongs: no branch.
       lists[simd::countOf<0>(ends)] = ray[i];

@@ -477,6 +477,7 @@ template <int lane>
 inline f32x8 splatLane(f32x8 a) {
   return {_mm256_permute_ps(a.v, lane * 0x55)};
 }
+inline f32x8 operator+(f32x8 a, f32x8 b) { return {_mm256_add_ps(a.v, b.v)}; }
 inline f32x8 operator-(f32x8 a, f32x8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
 inline f32x8 operator*(f32x8 a, f32x8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
 inline f32x8 multiplyAdd(f32x8 a, f32x8 b, f32x8 c) {
@@ -486,6 +487,7 @@ inline f32x8 multiplyAdd(f32x8 a, f32x8 b, f32x8 c) {
   return {_mm256_add_ps(_mm256_mul_ps(a.v, b.v), c.v)};
 #endif
 }
+inline f32x8 abs(f32x8 a) { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)}; }
 inline f32x8 min(f32x8 a, f32x8 b) { return {_mm256_min_ps(a.v, b.v)}; }
 inline f32x8 max(f32x8 a, f32x8 b) { return {_mm256_max_ps(a.v, b.v)}; }
 inline mask8 operator<=(f32x8 a, f32x8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OS)}; }
@@ -531,6 +533,13 @@ inline void forParts(mask4 m, Take take) {
 /// Lanes, and times four, of a `wide`.
 inline constexpr int kWide = sizeof(wide) / sizeof(float);
 inline constexpr int kParts = kWide / kWidth;
+
+/// Whether a product with one lane of a vector costs no splat.
+#if defined(CAGECAST_NEON)
+inline constexpr bool kMultipliesByLane = true;
+#else
+inline constexpr bool kMultipliesByLane = false;
+#endif
 
 /// The tag that `withTag` gave.
 template <int tagBits>
