@@ -43,8 +43,8 @@ struct Call {
 
 [[clang::no_destroy]] Call call;
 
-/// The answer of a projection, or of a transfer.
-std::uintptr_t projection(const Status& status, const Array<Zone>& zones) {
+/// The answer of a projection, with the target's indices, or of a transfer.
+std::uintptr_t projection(const Status& status, const Array<Zone>& zones, std::span<const std::uint32_t> indices) {
   cagecast::Projection& p = call.result.projection;
   if (!status.ok()) return answer(status);
   if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats) ||
@@ -52,7 +52,7 @@ std::uintptr_t projection(const Status& status, const Array<Zone>& zones) {
     return answer(kOutOfMemory);
   }
   return answer(status, {bytes(p.uvs), bytes(p.cornerUvs), bytes(zones), bytes(p.triangles), bytes(p.distances), bytes(p.segments),
-                         bytes(call.stats), bytes(p.restores), bytes(call.shares), bytes(call.numbers),
+                         bytes(call.stats), bytes(p.restores), bytes(call.shares), bytes(call.numbers), std::as_bytes(indices),
                          bytes(call.result.zones.cosmeticTriangles), bytes(call.result.zones.culledSegments), bytes(call.result.zones.margins)});
 }
 
@@ -63,13 +63,34 @@ extern "C" {
 /// Of the inputs: options, cage, target.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t project() {
   const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), call.result.projection);
-  return projection(status, call.result.projection.zones);
+  return projection(status, call.result.projection.zones, mesh(5).indices);
 }
 
 /// As `project`.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t transfer() {
   const Status status = cagecast::transfer(mesh(1), mesh(5), givenOptions(), call.result);
-  return projection(status, call.result.zones.zones);
+  return projection(status, call.result.zones.zones, {});
+}
+
+/// The first half of `transfer`, for those who must know the segments to say which are locked: of the answer their numbers alone.
+EMSCRIPTEN_KEEPALIVE std::uintptr_t beginTransfer() {
+  cagecast::Projection& p = call.result.projection;
+  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), p);
+  if (!status.ok()) return answer(status);
+  if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats)) return answer(kOutOfMemory);
+  return answer(status, {bytes(call.stats)});
+}
+
+/// The second half, with what the first was given still there: of a lock per segment besides, after the target.
+EMSCRIPTEN_KEEPALIVE std::uintptr_t endTransfer() {
+  cagecast::ClassifyOptions classifyOptions = givenOptions();
+  classifyOptions.locks = input<cagecast::Lock>(9);
+  cagecast::Projection& p = call.result.projection;
+  const double start = emscripten_get_now();
+  const Status status = cagecast::classify(p.view(), mesh(5).indices, classifyOptions, call.result.zones);
+  p.timings.classify = emscripten_get_now() - start;
+  p.timings.total += p.timings.classify;
+  return projection(status, call.result.zones.zones, {});
 }
 
 /// Of the inputs: options; zones, segments, stats, restores, shares and indices of a projection; a lock per segment, or none.

@@ -31,7 +31,7 @@ namespace cagecast::bridge {
 using Bytes = std::span<const std::byte>;
 
 /// Most arrays of an answer.
-constexpr std::size_t kMostArrays = 13;
+constexpr std::size_t kMostArrays = 14;
 
 /// What goes in and out of a exchange.
 struct Exchange {
@@ -126,7 +126,7 @@ void fromNumbers(const double* numbers, std::span<Thing> out) {
 constexpr Status kOutOfMemory{Code::outOfMemory};
 
 /// Of the first input.
-inline TransferOptions givenOptions() {
+[[gnu::noinline]] inline TransferOptions givenOptions() {
   TransferOptions options;
   fromNumbers(input<double>(0).data(), std::span(&options, 1));
   return options;

@@ -14,7 +14,7 @@ export function checkAnswer(fn: string, answer: Answer, cage: CheckedMesh | unde
   throw new CagecastError(code, `${fn}: ${describe(code, at, name, name === 'cage' ? cage : target, options?.core)}`, at);
 }
 
-function describe(code: string, at: number, name: string, mesh: CheckedMesh | undefined, options: Float64Array | undefined): string {
+function describe(code: string, at: number, name: string, mesh: CheckedMesh | undefined, options: readonly number[] | undefined): string {
   const range = (ranges as Record<string, (typeof ranges)[keyof typeof ranges]>)[code];
   if (range && options) return `options.${range[0]} = ${numberOf(options, range[0])} is not within ${range[1]}`;
   if (code === 'outOfMemory') return `not enough memory for this target${options ? ' and cage' : ''}`;

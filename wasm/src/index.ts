@@ -4,6 +4,7 @@
  */
 export { CagecastError, type Code } from './error.js';
 export { init } from './engine.js';
+export type { Into } from './into.js';
 export type { Mesh } from './mesh.js';
 export { presetOptions, type ClassifyOptions, type Lock, type Locks, type Preset, type PresetOptions, type ProjectOptions, type TransferOptions } from './options.js';
 export { splitVertices, type SplitVertices } from './split.js';

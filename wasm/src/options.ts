@@ -89,7 +89,7 @@ export type PresetOptions = { [Name in Exclude<keyof TransferOptions, 'preset' |
 export interface CheckedOptions {
   preset: Preset;
   /** All of them in numbers, for the core: in the order of bridge.hpp, which is that of `allKinds`. */
-  core: Float64Array;
+  core: readonly number[];
   locks: Locks;
 }
 
@@ -123,8 +123,16 @@ const classifyKinds = {
 const allKinds: Record<keyof PresetOptions, Kind> = { ...projectKinds, ...classifyKinds };
 const allNames = Object.keys(allKinds) as (keyof PresetOptions)[];
 
+/** The options of each function. */
+const namesOf: Record<'project' | 'classify' | 'transfer' | 'cutBorders', readonly string[]> = {
+  project: ['preset', ...Object.keys(projectKinds), 'into'],
+  classify: ['preset', ...Object.keys(classifyKinds), 'locks', 'into'],
+  transfer: ['preset', ...allNames, 'locks', 'into'],
+  cutBorders: ['preset', ...allNames, 'locks'],
+};
+
 /** The value of an option in numbers for the core. */
-export const numberOf = (core: Float64Array, name: keyof PresetOptions): number => core[allNames.indexOf(name)]!;
+export const numberOf = (core: readonly number[], name: keyof PresetOptions): number => core[allNames.indexOf(name)]!;
 
 /** The numbers that the core takes, by the code of its error. */
 export const ranges = {
@@ -153,11 +161,14 @@ export function presetOptions(preset: Preset = 'default'): PresetOptions {
   return Object.fromEntries(entries) as PresetOptions;
 }
 
-/** What a preset stands for, as the core says. */
-function numbersOf(fn: string, name: string, preset: unknown): Float64Array {
+/** By preset, once they are known. */
+const presetNumbers: number[][] = [];
+
+/** What a preset stands for, as the core says. @returns an array of the caller's own. */
+function numbersOf(fn: string, name: string, preset: unknown): number[] {
   const number = presets.indexOf(preset as Preset);
   if (number < 0) throw new CagecastError('badOption', `${fn}: ${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`);
-  return callCore(fn, (core) => core.presetOptions(number));
+  return (presetNumbers[number] ??= callCore(fn, (core) => Array.from(core.presetOptions(number)))).slice();
 }
 
 /**
@@ -165,11 +176,11 @@ function numbersOf(fn: string, name: string, preset: unknown): Float64Array {
  * @param preset  What holds if the options name none.
  * @throws {CagecastError} `badOption`, and `badThreshold` and its like for what is no number
  */
-export function checkOptions(fn: 'project' | 'classify' | 'transfer' | 'cutBorders', options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
+export function checkOptions(fn: keyof typeof namesOf, options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
   if (typeof options !== 'object' || options === null) {
     throw new CagecastError('badOption', `${fn}: options is ${show(options)}, not an object`);
   }
-  const known = ['preset', ...(fn === 'classify' ? [] : Object.keys(projectKinds)), ...(fn === 'project' ? [] : [...Object.keys(classifyKinds), 'locks'])];
+  const known = namesOf[fn];
   for (const name of Object.keys(options)) {
     if (!known.includes(name)) {
       throw new CagecastError('badOption', `${fn}: options.${name} is not an option; there are: ${known.join(', ')}`);

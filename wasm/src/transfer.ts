@@ -2,6 +2,7 @@ import { checkAnswer } from './answer.js';
 import type { ClassifyAnswer, CoreProjection, ProjectAnswer } from './bindings.js';
 import { callCore } from './engine.js';
 import { CagecastError, show } from './error.js';
+import { checkInto, handOver, type Into } from './into.js';
 import { checkMesh, count, type Mesh } from './mesh.js';
 import { checkOptions, locksOf, type ClassifyOptions, type Preset, type ProjectOptions, type TransferOptions } from './options.js';
 
@@ -131,107 +132,108 @@ const shareStride = 4;
  *
  * @param cage    The mesh that the texture was drawn for; it must have UVs.
  * @param target  The mesh that receives it, in the same space and unit.
+ * @param options  With `into`, an earlier result becomes this one.
  * @throws {CagecastError} for anything unusable in the meshes or options, and `outOfMemory`.
  *
  * @example
  * await init();
- * const { uvs, zones } = transfer(cage, target, { threshold: 0.5 });
+ * const result = transfer(cage, target, { threshold: 0.5 });
+ * // The target moves: for every frame
+ * transfer(cage, target, { threshold: 0.5, into: result });
  */
-export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions): TransferResult {
+export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & Into<TransferResult>): TransferResult {
   const checked = checkOptions('transfer', options);
+  const into = options?.into;
+  const arrays = checkInto('transfer', into);
   const [cageMesh, targetMesh] = [checkMesh('transfer', 'cage', cage), checkMesh('transfer', 'target', target)];
   const { segments, groups } = checked.locks;
   const isLocked = Object.keys({ ...segments, ...groups }).length > 0;
-  if (!isLocked) {
-    const answer = callCore('transfer', (core) => core.transfer(cageMesh, targetMesh, checked.core));
-    checkAnswer('transfer', answer, cageMesh, targetMesh, checked);
-    return { ...projected(answer, answer), cosmeticTriangles: answer.cosmeticTriangles };
+  let locks: Uint8Array | undefined;
+  if (isLocked) {
+    // Which segments there are is known after the projection.
+    const begun = callCore('transfer', (core) => core.beginTransfer(cageMesh, targetMesh, checked.core));
+    checkAnswer('transfer', begun, cageMesh, targetMesh, checked);
+    locks = locksOf('transfer', checked.locks, segmentStats(begun.segmentStats));
   }
-  // Which segments there are is known after the projection.
-  const answer = callCore('transfer', (core) => core.project(cageMesh, targetMesh, checked.core));
+  const answer = callCore('transfer', (core) => (locks ? core.endTransfer(locks, arrays) : core.transfer(cageMesh, targetMesh, checked.core, arrays)));
   checkAnswer('transfer', answer, cageMesh, targetMesh, checked);
-  const result = projected(answer);
-  const locks = locksOf('transfer', checked.locks, result.segmentStats);
-  const start = performance.now();
-  const decided = callCore('transfer', (core) => core.classify({ ...answer, indices: targetMesh.indices }, checked.core, locks));
-  checkAnswer('transfer', decided, cageMesh, targetMesh, checked);
-  const classify = performance.now() - start;
-  return {
-    ...result,
-    zones: decided.zones,
-    cosmeticTriangles: decided.cosmeticTriangles,
-    segmentStats: segmentStats(answer.segmentStats, decided),
-    timings: { ...result.timings, classify, total: result.timings.total + classify },
-  };
+  return handOver({ ...projected(answer, answer), cosmeticTriangles: answer.cosmeticTriangles }, into);
 }
 
 /**
  * Does the costly part of `transfer`, which does not depend on the threshold: steps 1 to 4 of the method, and what the later
  * ones need. Give the result to `classify`, for as many thresholds as you like.
+ * @param options  With `into`, an earlier projection becomes this one.
  * @throws {CagecastError} as `transfer` does.
  */
-export function project(cage: Mesh, target: Mesh, options?: ProjectOptions): Projection {
+export function project(cage: Mesh, target: Mesh, options?: ProjectOptions & Into<Projection>): Projection {
   const checked = checkOptions('project', options);
+  const into = options?.into;
+  const arrays = checkInto('project', into);
   const [cageMesh, targetMesh] = [checkMesh('project', 'cage', cage), checkMesh('project', 'target', target)];
-  const answer = callCore('project', (core) => core.project(cageMesh, targetMesh, checked.core));
+  const answer = callCore('project', (core) => core.project(cageMesh, targetMesh, checked.core, arrays));
   checkAnswer('project', answer, cageMesh, targetMesh, checked);
-  return {
-    ...projected(answer),
-    preset: checked.preset,
-    restores: answer.restores,
-    holeShares: holeShares(answer.holeShares),
-    indices: Uint32Array.from<number>(targetMesh.indices),
-  };
+  const { restores, indices } = answer;
+  return handOver({ ...projected(answer), preset: checked.preset, restores, holeShares: holeShares(answer.holeShares), indices }, into);
 }
 
 /**
  * Decides which segments pass the threshold, and so the zone of every vertex, in microseconds.
+ * @param options  With `into`, an earlier classification becomes this one.
  * @throws {CagecastError} `badArgument` if `projection` is not what `project` returned; and for unusable options.
  */
-export function classify(projection: Projection, options?: ClassifyOptions): Classification {
+export function classify(projection: Projection, options?: ClassifyOptions & Into<Classification>): Classification {
   const whole = checkProjection(projection);
   const checked = checkOptions('classify', options, projection.preset);
+  const into = options?.into;
+  const arrays = checkInto('classify', into);
   const locks = locksOf('classify', checked.locks, projection.segmentStats);
-  const answer = callCore('classify', (core) => core.classify(whole, checked.core, locks));
+  const answer = callCore('classify', (core) => core.classify(whole, checked.core, locks, arrays));
   checkAnswer('classify', answer, undefined, undefined, checked);
-  return {
-    zones: answer.zones,
-    cosmeticTriangles: answer.cosmeticTriangles,
-    segmentStats: segmentStats(whole.segmentStats, answer),
-  };
+  const { zones, cosmeticTriangles } = answer;
+  return handOver({ zones, cosmeticTriangles, segmentStats: segmentStats(whole.segmentStats, answer) }, into);
 }
 
 /** What step 5 decided of each segment. */
 type Decided = Pick<ClassifyAnswer, 'culledSegments' | 'margins'>;
 
 function projected(answer: ProjectAnswer, decided?: Decided): Projected {
-  const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, secondLook = 0, holes = 0, seams = 0, classify = 0, total = 0, peakBytes = 0] = answer.numbers;
-  return {
-    uvs: answer.uvs,
-    cornerUvs: answer.cornerUvs,
-    zones: answer.zones,
-    triangles: answer.triangles,
-    distances: answer.distances,
-    segments: answer.segments,
-    segmentStats: segmentStats(answer.segmentStats, decided),
-    timings: { weld, build, project, occluded, covered, segments, secondLook, holes, seams, classify, total },
-    peakBytes,
-  };
+  const { uvs, cornerUvs, zones, triangles, distances, segments } = answer;
+  return { uvs, cornerUvs, zones, triangles, distances, segments, segmentStats: segmentStats(answer.segmentStats, decided), ...measured(answer.numbers) };
+}
+
+function measured(numbers: Float64Array): Pick<Projected, 'timings' | 'peakBytes'> {
+  const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, secondLook = 0, holes = 0, seams = 0, classify = 0, total = 0, peakBytes = 0] = numbers;
+  return { timings: { weld, build, project, occluded, covered, segments, secondLook, holes, seams, classify, total }, peakBytes };
 }
 
 function segmentStats(numbers: Float64Array, decided?: Decided): SegmentStats[] {
-  return Array.from({ length: numbers.length / statsStride }, (_, s) => {
-    const [points = 0, area = 0, exposedArea = 0, coveredArea = 0, sunkArea = 0, group = 0, copyOf = 0] = numbers.subarray(s * statsStride, (s + 1) * statsStride);
-    const coverage = exposedArea > 0 ? coveredArea / exposedArea : 0;
-    return { points, area, exposedArea, coveredArea, coverage, sunkArea, group, copyOf, culled: decided?.culledSegments[s] === 1, margin: decided?.margins[s] ?? Infinity };
-  });
+  const stats: SegmentStats[] = [];
+  // One by one: an array taken apart would be another for every segment, of which a body may have hundreds.
+  for (let s = 0, i = 0; i < numbers.length; ++s, i += statsStride) {
+    const [exposedArea, coveredArea] = [numbers[i + 2]!, numbers[i + 3]!];
+    stats.push({
+      points: numbers[i]!,
+      area: numbers[i + 1]!,
+      exposedArea,
+      coveredArea,
+      coverage: exposedArea > 0 ? coveredArea / exposedArea : 0,
+      sunkArea: numbers[i + 4]!,
+      group: numbers[i + 5]!,
+      copyOf: numbers[i + 6]!,
+      culled: decided?.culledSegments[s] === 1,
+      margin: decided?.margins[s] ?? Infinity,
+    });
+  }
+  return stats;
 }
 
 function holeShares(numbers: Float64Array): HoleShare[] {
-  return Array.from({ length: numbers.length / shareStride }, (_, i) => {
-    const [hole = 0, segment = 0, exposedArea = 0, uncoveredArea = 0] = numbers.subarray(i * shareStride, (i + 1) * shareStride);
-    return { hole, segment, exposedArea, uncoveredArea };
-  });
+  const shares: HoleShare[] = [];
+  for (let i = 0; i < numbers.length; i += shareStride) {
+    shares.push({ hole: numbers[i]!, segment: numbers[i + 1]!, exposedArea: numbers[i + 2]!, uncoveredArea: numbers[i + 3]! });
+  }
+  return shares;
 }
 
 /**

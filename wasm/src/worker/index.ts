@@ -48,7 +48,7 @@ export function init(): Promise<void> {
   return call('init', [], {});
 }
 
-/** As `transfer` of `cagecast`, off the main thread. */
+/** As `transfer` of `cagecast`, off the main thread; without `into`, as the arrays come over anew. */
 export function transfer(cage: Mesh, target: Mesh, options: TransferOptions & CallOptions = {}): Promise<TransferResult> {
   return withOptions('transfer', [cage, target], options);
 }
@@ -85,6 +85,8 @@ export function terminate(): void {
 function withOptions<T>(fn: Request['fn'], args: unknown[], options: CallOptions): Promise<T> {
   if (typeof options !== 'object' || options === null) return call(fn, [...args, options], {});
   const { signal, move, ...rest } = options;
+  // A copy of it would be written over there, and what it is here would stay as it is.
+  if ('into' in rest && rest.into !== undefined) return Promise.reject(new CagecastError('badOption', `${fn}: options.into is for calls on one thread; from a worker all arrays are new`));
   return call(fn, [...args, rest], { signal, move });
 }
 
