@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simd.hpp"
 #include "triangle.hpp"
 
 namespace cagecast {
@@ -37,9 +38,8 @@ bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage
     float* corners[3] = {triangle.a, triangle.b, triangle.c};
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t v = cage.indices[3 * t + i];
-      for (std::size_t k = 0; k < 3; ++k) corners[i][k] = cage.positions[3 * v + k] * units.scale;
-      corners[i][3] = 0;
-      for (std::size_t k = 0; k < 2; ++k) triangle.uvs[2 * i + k] = cage.uvs[2 * v + k];
+      simd::store(corners[i], simd::load3(&cage.positions[3 * v]) * simd::splat(units.scale));
+      std::copy_n(&cage.uvs[2 * v], 2, triangle.uvs + 2 * i);
     }
     const Vec3 normal = areaNormal(triangle.a, triangle.b, triangle.c);
     const double doubleArea = length(normal);

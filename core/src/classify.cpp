@@ -103,11 +103,15 @@ void explainHoles(std::span<const HoleShare> shares, Zones& out) {
 
 void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const ClassifyOptions& options,
                   Array<std::uint8_t>& cosmetic) noexcept {
-  // The depth buffer hides what is occluded of a triangle.
-  const unsigned counting = options.partialTriangles ? ~(1u << static_cast<unsigned>(Zone::occluded)) : ~0u;
-  for (std::size_t t = 0; t < cosmetic.size(); ++t) {
-    const auto zone = [&](std::size_t corner) { return 1u << static_cast<unsigned>(zones[indices[3 * t + corner]]); };
-    cosmetic[t] = ((zone(0) | zone(1) | zone(2)) & counting) == 1u << static_cast<unsigned>(Zone::cosmetic);
+  static_assert(static_cast<int>(Zone::cosmetic) == 0 && static_cast<int>(Zone::occluded) == 1);
+  // The depth buffer hides what is occluded of a triangle. Squares of the others are too much for any sum.
+  const int most = options.partialTriangles ? 2 : 0;
+  const Zone* zone = zones.data();
+  const std::uint32_t* index = indices.data();
+  for (std::uint8_t& itsCosmetic : cosmetic) {
+    const auto squared = [&](std::size_t corner) { return static_cast<int>(zone[index[corner]]) * static_cast<int>(zone[index[corner]]); };
+    itsCosmetic = squared(0) + squared(1) + squared(2) <= most;
+    index += 3;
   }
 }
 

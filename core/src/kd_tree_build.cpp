@@ -47,7 +47,7 @@ struct Box {
   }
   [[nodiscard]] Box padded(float by) const {
     // The second term is two ulps of the coordinate: far from the origin the padding alone would round away.
-    const f32x4 most = simd::max(simd::max(low, splat(0) - low), simd::max(high, splat(0) - high));
+    const f32x4 most = simd::max(splat(0) - low, high);
     const f32x4 pad = splat(by) + most * splat(2.4e-7f);
     Box box;
     box.low = low - pad;
@@ -180,8 +180,13 @@ void fillNodes(Box* boxes, Node* nodes, CageTree& out) {
 /// with leaves half empty: 8 % slower.)
 class CageOrder {
  public:
-  /// @param centres  Of the triangles, 4 floats each.
-  CageOrder(const float* centres, std::uint32_t* order) : centres_(centres), order_(order) {}
+  /// A triangle to be ordered: twice the middle of its box.
+  struct alignas(16) Item {
+    float centre[3];
+    std::uint32_t slot;
+  };
+
+  explicit CageOrder(Item* items) : items_(items) {}
 
   /// @param run  Triangles below one child: 4, 16, 64 …
   void sort(std::uint32_t begin, std::uint32_t end, std::uint32_t run) {
@@ -189,20 +194,19 @@ class CageOrder {
     const std::uint32_t children = (end - begin + run - 1) / run;
     if (children < 2) return;
     Box box;
-    for (std::uint32_t i = begin; i < end; ++i) box.grow(load(centres_ + 4 * order_[i]));
+    for (std::uint32_t i = begin; i < end; ++i) box.grow(load(items_[i].centre));
     float spread[4];
     simd::store(spread, box.high - box.low);
-    const float* along = centres_ + (std::max_element(spread, spread + 3) - spread);
+    const auto axis = std::max_element(spread, spread + 3) - spread;
     const std::uint32_t middle = begin + children / 2 * run;
-    std::nth_element(order_ + begin, order_ + middle, order_ + end,
-                     [along](std::uint32_t a, std::uint32_t b) { return along[4 * a] < along[4 * b]; });
+    std::nth_element(items_ + begin, items_ + middle, items_ + end,
+                     [axis](const Item& a, const Item& b) { return a.centre[axis] < b.centre[axis]; });
     sort(begin, middle, run);
     sort(middle, end, run);
   }
 
  private:
-  const float* centres_;
-  std::uint32_t* order_;
+  Item* items_;
 };
 
 /// The children of a node to be: nodes, or leaves with the high bit set, their first triangle, and in the lowest two bits how
@@ -212,6 +216,8 @@ struct Children {
   std::uint32_t of[4];
 };
 
+std::uint32_t firstPointOf(const std::uint32_t* corner) { return std::min({corner[0], corner[1], corner[2]}); }
+
 /// Cuts triangles that are in the order of a curve where the curve goes from one half of a cell to the other, so that what is
 /// between two cuts has a box of its own.
 class CurveCuts {
@@ -219,8 +225,10 @@ class CurveCuts {
   /// Nodes that n triangles make at most: it is a chain, in which each has three leaves of one triangle.
   static constexpr std::uint32_t mostNodes(std::uint32_t triangles) { return std::max(1u, triangles / 3); }
 
-  /// @param places  Of the triangles along the curve, ascending.
-  CurveCuts(const std::uint32_t* places, Children* nodes) : places_(places), nodes_(nodes) {}
+  /// @param corners  Of the triangles, in the order of their first points.
+  /// @param places   Of the points along the curve, ascending.
+  CurveCuts(const std::uint32_t* corners, const std::uint32_t* places, Children* nodes)
+      : corners_(corners), places_(places), nodes_(nodes) {}
 
   [[nodiscard]] std::uint32_t nodeCount() const { return count_; }
 
@@ -263,13 +271,23 @@ class CurveCuts {
   }
 
   [[nodiscard]] std::uint32_t cutBetween(std::uint32_t begin, std::uint32_t end) const {
-    const std::uint32_t first = places_[begin];
-    const std::uint32_t last = places_[end - 1];
+    const std::uint32_t first = placeOf(begin);
+    const std::uint32_t last = placeOf(end - 1);
     if (first == last) return begin + (end - begin) / 2;
     const auto bit = std::bit_width(first ^ last) - 1;
-    return static_cast<std::uint32_t>(std::lower_bound(places_ + begin, places_ + end, last >> bit << bit) - places_);
+    const std::uint32_t cut = last >> bit << bit;
+    while (begin < end) {
+      const std::uint32_t middle = begin + (end - begin) / 2;
+      (placeOf(middle) < cut ? begin = middle + 1 : end = middle);
+    }
+    return begin;
   }
 
+  [[nodiscard]] std::uint32_t placeOf(std::uint32_t triangle) const {
+    return places_[firstPointOf(corners_ + std::size_t{3} * triangle)];
+  }
+
+  const std::uint32_t* corners_;
   const std::uint32_t* places_;
   Children* nodes_;
   std::uint32_t count_ = 0;
@@ -284,8 +302,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
   auto* leafBoxes = scratch.take<LeafBox>(leafCount);
   auto* nodes = takeNodes(leafCount, scratch, out);
   const Scratch::Mark mark = scratch.mark();
-  auto* order = scratch.take<std::uint32_t>(cage.count);
-  auto* centres = scratch.take<float>(std::size_t{4} * cage.count);
+  auto* items = scratch.take<CageOrder::Item>(cage.count);
   auto* boxes = scratch.take<Box>(leafCount);
   if (scratch.failed()) return false;
   Box all;
@@ -294,20 +311,20 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     Box box;
     for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
     all.grow(box);
-    simd::store(centres + 4 * i, box.low + box.high);
-    order[i] = i;
+    simd::store(items[i].centre, box.low + box.high);
+    items[i].slot = i;
   }
   simd::store(out.middle, all.low * splat(0.5f) + all.high * splat(0.5f));
   std::uint32_t run = 4;
   while (run < cage.count) run *= 4;
-  CageOrder(centres, order).sort(0, cage.count, run);
+  CageOrder(items).sort(0, cage.count, run);
 
   for (std::uint32_t leaf = 0; leaf < leafCount; ++leaf) {
     Box box;
     const CageTriangle* triangles[4];
     for (std::uint32_t lane = 0; lane < 4; ++lane) {
       const std::uint32_t i = 4 * leaf + lane;
-      const std::uint32_t slot = order[std::min(i, cage.count - 1)];
+      const std::uint32_t slot = items[std::min(i, cage.count - 1)].slot;
       const CageTriangle& t = cage.triangles[slot];
       triangles[lane] = &t;
       for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
@@ -337,28 +354,28 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
   constexpr std::uint32_t kBeyond = 4;  // What a leaf may be tried with beyond its own.
   auto* corners = scratch.take<std::uint32_t>(std::size_t{3} * (count + kBeyond));
   const Scratch::Mark mark = scratch.mark();
-  auto* places = scratch.take<std::uint32_t>(count);
-  auto* starts = scratch.take<std::uint32_t>(std::size_t{target.count} + 1);
+  auto* starts = scratch.take<std::uint32_t>(target.count);
   auto* children = scratch.take<Children>(CurveCuts::mostNodes(count));
   if (scratch.failed()) return false;
 
   // Points are in curve order; sorting triangles by their first point puts them in curve order as well.
-  const auto firstPoint = [&](std::uint32_t t) {
-    const std::uint32_t* corner = target.triangles + std::size_t{3} * t;
-    return std::min({corner[0], corner[1], corner[2]});
-  };
-  std::fill(starts, starts + target.count + 1, 0u);
-  for (std::uint32_t t = 0; t < count; ++t) ++starts[firstPoint(t)];
+  const std::uint32_t* triangles = target.triangles;
+  std::fill(starts, starts + target.count, 0u);
+  for (std::uint32_t t = 0; t < count; ++t) ++starts[firstPointOf(triangles + std::size_t{3} * t)];
   std::uint32_t sum = 0;
-  for (std::uint32_t p = 0; p < target.count; ++p) sum += std::exchange(starts[p], sum);
+  for (std::uint32_t* start = starts; start < starts + target.count; ++start) sum += std::exchange(*start, sum);
   for (std::uint32_t t = 0; t < count; ++t) {
-    const std::uint32_t point = firstPoint(t);
-    const std::uint32_t i = starts[point]++;
-    for (std::size_t k = 0; k < 3; ++k) corners[std::size_t{3} * i + k] = target.triangles[std::size_t{3} * t + k];
-    places[i] = target.places[point];
+    const std::uint32_t* corner = triangles + std::size_t{3} * t;
+    const std::uint32_t a = corner[0];
+    const std::uint32_t b = corner[1];
+    const std::uint32_t c = corner[2];
+    std::uint32_t* to = corners + std::size_t{3} * starts[std::min({a, b, c})]++;
+    to[0] = a;
+    to[1] = b;
+    to[2] = c;
   }
   std::fill_n(corners + std::size_t{3} * count, 3 * kBeyond, 0u);
-  CurveCuts cuts(places, children);
+  CurveCuts cuts(corners, target.places, children);
   cuts.add(0, count);
 
   // How many nodes there are is known only now: they take the place of what they were found from.

@@ -5,8 +5,13 @@
 namespace cagecast {
 namespace {
 
+/// Areas of a segment: of each zone, and what corners have but votes have not.
 struct Sums {
-  std::int64_t all, exposed, covered;
+  std::int64_t ofZone[4];
+  std::int64_t notVoting;
+
+  void add(Zone zone, std::int64_t area) { ofZone[static_cast<std::size_t>(zone)] += area; }
+  [[nodiscard]] std::int64_t of(Zone zone) const { return ofZone[static_cast<std::size_t>(zone)]; }
 };
 
 }  // namespace
@@ -18,32 +23,34 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
   auto* firstVertex = scratch.take<std::uint32_t>(points.count);
   if (scratch.failed()) return false;
   UnionFind sets(parents, points.count);
-  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
-    const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
-    sets.join(corner[0], corner[1]);
-    sets.join(corner[0], corner[2]);
+  const std::uint32_t* corner = points.triangles;
+  for (std::uint32_t t = 0; t < points.triangleCount; ++t, corner += 3) {
+    const std::uint32_t a = corner[0];
+    sets.join(a, corner[1]);
+    sets.join(a, corner[2]);
   }
-
   sets.flatten(points.count);
 
   // Number the components in the order in which the vertices meet them.
-  std::fill(results.segments, results.segments + points.count, UINT32_MAX);
+  std::uint32_t* segments = results.segments;
+  std::fill(segments, segments + points.count, UINT32_MAX);
   std::uint32_t count = 0;
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
     const std::uint32_t root = parents[points.ofVertex[v]];
-    if (results.segments[root] != UINT32_MAX) continue;
+    if (segments[root] != UINT32_MAX) continue;
     firstVertex[count] = v;
-    results.segments[root] = count++;
+    segments[root] = count++;
   }
-  for (std::uint32_t i = 0; i < points.count; ++i) results.segments[i] = results.segments[parents[i]];
-
   if (!stats.reset(count)) return false;
   for (std::uint32_t s = 0; s < count; ++s) {
     stats[s] = {};
     stats[s].copyOf = s;
     if (!groups.empty()) stats[s].group = groups[firstVertex[s]];
   }
-  for (std::uint32_t i = 0; i < points.count; ++i) ++stats[results.segments[i]].points;
+  for (std::uint32_t i = 0, end = points.count; i < end; ++i) {
+    segments[i] = segments[parents[i]];
+    ++stats[segments[i]].points;
+  }
   scratch.rewind(mark);
   return true;
 }
@@ -64,28 +71,26 @@ bool addUpAreas(const Points& points, const Voters& voters, const Units& units, 
     const std::int64_t third = unit.third(points.doubleAreas[t]);
     for (int i = 0; i < 3; ++i) all[corner[i]] += third;
   }
-  const auto count = [](Sums& sum, std::int64_t area, Zone zone) {
-    sum.exposed += zone != Zone::occluded ? area : 0;
-    sum.covered += zone == Zone::cosmetic ? area : 0;
-  };
   if (voters.count > 0) std::copy(all, all + points.count, votes);
   for (std::uint32_t i = 0; i < voters.count; ++i) {
     const std::uint32_t t = voters.triangles[i];
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
     const Zone* zones = voters.results.zones + std::size_t{4} * i;
-    for (int k = 0; k < 3; ++k) votes[corner[k]] -= unit.third(points.doubleAreas[t]);
-    for (int k = 0; k < 4; ++k) count(sums[results.segments[corner[0]]], unit.quarter(points.doubleAreas[t]), zones[k]);
+    const std::int64_t third = unit.third(points.doubleAreas[t]);
+    const std::int64_t quarter = unit.quarter(points.doubleAreas[t]);
+    Sums& sum = sums[results.segments[corner[0]]];
+    for (int k = 0; k < 3; ++k) votes[corner[k]] -= third;
+    for (int k = 0; k < 4; ++k) sum.add(zones[k], quarter);
+    sum.notVoting += 3 * third - 4 * quarter;
   }
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    Sums& sum = sums[results.segments[i]];
-    sum.all += all[i];
-    count(sum, votes[i], results.zones[i]);
-  }
+  for (std::uint32_t i = 0; i < points.count; ++i) sums[results.segments[i]].add(results.zones[i], votes[i]);
   const double toInput = 1.0 / units.scale / units.scale;
   for (std::size_t s = 0; s < stats.size(); ++s) {
-    stats[s].area = unit.area(sums[s].all) * toInput;
-    stats[s].exposedArea = unit.area(sums[s].exposed) * toInput;
-    stats[s].coveredArea = stats[s].sunkArea = unit.area(sums[s].covered) * toInput;
+    const std::int64_t covered = sums[s].of(Zone::cosmetic);
+    const std::int64_t exposed = covered + sums[s].of(Zone::uncovered);
+    stats[s].area = unit.area(exposed + sums[s].of(Zone::occluded) + sums[s].notVoting) * toInput;
+    stats[s].exposedArea = unit.area(exposed) * toInput;
+    stats[s].coveredArea = stats[s].sunkArea = unit.area(covered) * toInput;
   }
   scratch.rewind(mark);
   return true;

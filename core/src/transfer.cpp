@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "check.hpp"
 #include "cpu_clock.hpp"
@@ -64,14 +65,22 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
     return false;
   }
   const float toInput = 1 / units.scale;  // A power of two, like the scale.
+  // Where all is, in variables of this function: what else knows of them is asked for each vertex.
+  const auto [uvs, distances, triangles, zones, meetsCage, cageDistances, segments] = results;
+  const std::uint32_t* ofVertex = points.ofVertex;
+  const CageTriangle* ofCage = cage.triangles;
+  float* uvsOut = out.uvs.data();
+  Zone* zonesOut = out.zones.data();
+  std::uint32_t* trianglesOut = out.triangles.data();
+  float* distancesOut = out.distances.data();
+  std::uint32_t* segmentsOut = out.segments.data();
   for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const std::uint32_t i = points.ofVertex[v];
-    out.uvs[std::size_t{2} * v] = results.uvs[std::size_t{2} * i];
-    out.uvs[std::size_t{2} * v + 1] = results.uvs[std::size_t{2} * i + 1];
-    out.zones[v] = results.zones[i];
-    out.triangles[v] = cage.triangles[results.triangles[i]].index;
-    out.distances[v] = results.distances[i] * toInput;
-    out.segments[v] = results.segments[i];
+    const std::uint32_t i = ofVertex[v];
+    std::memcpy(uvsOut + std::size_t{2} * v, uvs + std::size_t{2} * i, 2 * sizeof(float));
+    zonesOut[v] = zones[i];
+    trianglesOut[v] = ofCage[triangles[i]].index;
+    distancesOut[v] = distances[i] * toInput;
+    segmentsOut[v] = segments[i];
   }
   return true;
 }

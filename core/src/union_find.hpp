@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace cagecast {
@@ -12,15 +13,20 @@ class UnionFind {
     for (std::uint32_t i = 0; i < count; ++i) parents_[i] = i;
   }
   std::uint32_t find(std::uint32_t i) noexcept {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
+    std::uint32_t parent = parents_[i];
+    for (;;) {
+      const std::uint32_t next = parents_[parent];
+      if (next == parent) return parent;
+      parents_[i] = next;
+      i = parent;
+      parent = next;
+    }
   }
   void join(std::uint32_t a, std::uint32_t b) noexcept {
     if (parents_[a] == parents_[b]) return;
     a = find(a);
     b = find(b);
-    if (a < b) parents_[b] = a;
-    if (b < a) parents_[a] = b;
+    parents_[std::max(a, b)] = std::min(a, b);  // Whichever is which cannot be guessed.
   }
   /// Makes every parent a root, once all is joined.
   void flatten(std::uint32_t count) noexcept {
