@@ -14,7 +14,7 @@ namespace {
 constexpr float kMaxProportion = 1e8f;
 /// Rays may begin between floats, and then round with the distance from the origin of coordinates; where that is so many
 /// times the scene, it is what the kernels must allow for.
-constexpr float kRestReach = 0.25f;
+constexpr float kRestReach = 0.5f;
 /// Largest weld tolerance, as a share of the diagonal: beyond it a head is a handful of points.
 constexpr float kMaxWeldTolerance = 0.01f;
 
