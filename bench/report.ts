@@ -93,7 +93,7 @@ function markdown(results: Results): string {
           return [scene, ms(page?.cagecast.median), ms(page?.peer?.total.median), times(page?.peer?.ratio), ms(node?.cagecast.median), ms(node?.peer?.total.median), times(node?.peer?.ratio)];
         }),
       ),
-      `three-mesh-bvh in the form in which it is fastest at this (bench/web/bvh-peer.ts says what was tried), in the same page. Native Embree on the same core, in turn with Chromium, takes ${times(web.againstNativeEmbree.ratio)} the package’s time at 4.8k (${ms(web.againstNativeEmbree.embree)} and ${ms(web.againstNativeEmbree.cagecast)} ms).`,
+      `three-mesh-bvh in the form in which it is fastest at this (bench/web/bvh-peer.ts says what was tried), in the same page. Both write over the arrays of the answer before. Native Embree on the same core, in turn with Chromium, takes ${times(web.againstNativeEmbree.ratio)} the package’s time at 4.8k (${ms(web.againstNativeEmbree.embree)} and ${ms(web.againstNativeEmbree.cagecast)} ms).`,
     );
   }
   if (presets) {

@@ -43,17 +43,21 @@ struct Call {
 
 [[clang::no_destroy]] Call call;
 
-/// The answer of a projection, with the target's indices, or of a transfer.
-std::uintptr_t projection(const Status& status, const Array<Zone>& zones, std::span<const std::uint32_t> indices) {
+/// What a projection and a transfer both answer, and more.
+std::uintptr_t projected(const Status& status, const Array<Zone>& zones, const Bytes (&more)[3]) {
   cagecast::Projection& p = call.result.projection;
   if (!status.ok()) return answer(status);
-  if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats) ||
-      !toNumbers(std::span(p.holeShares.begin(), p.holeShares.end()), call.shares) || !toNumbers(std::span(&p, 1), call.numbers)) {
+  if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats) || !toNumbers(std::span(&p, 1), call.numbers)) {
     return answer(kOutOfMemory);
   }
   return answer(status, {bytes(p.uvs), bytes(p.cornerUvs), bytes(zones), bytes(p.triangles), bytes(p.distances), bytes(p.segments),
-                         bytes(call.stats), bytes(p.restores), bytes(call.shares), bytes(call.numbers), std::as_bytes(indices),
-                         bytes(call.result.zones.cosmeticTriangles), bytes(call.result.zones.culledSegments), bytes(call.result.zones.margins)});
+                         bytes(call.stats), bytes(call.numbers), more[0], more[1], more[2]});
+}
+
+/// The answer of a transfer.
+std::uintptr_t transferred(const Status& status) {
+  const cagecast::Zones& zones = call.result.zones;
+  return projected(status, zones.zones, {bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.margins)});
 }
 
 }  // namespace
@@ -62,14 +66,15 @@ extern "C" {
 
 /// Of the inputs: options, cage, target.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t project() {
-  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), call.result.projection);
-  return projection(status, call.result.projection.zones, mesh(5).indices);
+  cagecast::Projection& p = call.result.projection;
+  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), p);
+  if (status.ok() && !toNumbers(std::span(p.holeShares.begin(), p.holeShares.end()), call.shares)) return answer(kOutOfMemory);
+  return projected(status, p.zones, {bytes(p.restores), bytes(call.shares), std::as_bytes(mesh(5).indices)});
 }
 
 /// As `project`.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t transfer() {
-  const Status status = cagecast::transfer(mesh(1), mesh(5), givenOptions(), call.result);
-  return projection(status, call.result.zones.zones, {});
+  return transferred(cagecast::transfer(mesh(1), mesh(5), givenOptions(), call.result));
 }
 
 /// The first half of `transfer`, for those who must know the segments to say which are locked: of the answer their numbers alone.
@@ -90,7 +95,7 @@ EMSCRIPTEN_KEEPALIVE std::uintptr_t endTransfer() {
   const Status status = cagecast::classify(p.view(), mesh(5).indices, classifyOptions, call.result.zones);
   p.timings.classify = emscripten_get_now() - start;
   p.timings.total += p.timings.classify;
-  return projection(status, call.result.zones.zones, {});
+  return transferred(status);
 }
 
 /// Of the inputs: options; zones, segments, stats, restores, shares and indices of a projection; a lock per segment, or none.

@@ -31,7 +31,7 @@ namespace cagecast::bridge {
 using Bytes = std::span<const std::byte>;
 
 /// Most arrays of an answer.
-constexpr std::size_t kMostArrays = 14;
+constexpr std::size_t kMostArrays = 11;
 
 /// What goes in and out of a exchange.
 struct Exchange {

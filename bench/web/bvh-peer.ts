@@ -1,6 +1,7 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Ray, Vector3, type Box3 } from 'three';
 import { CENTER, MeshBVH } from 'three-mesh-bvh';
 import type { Scene, SceneMesh } from '../scene-file.js';
+import type { Kept } from './kept.js';
 import { alongCurve, weld, type Welded } from './weld.js';
 
 // The form in which three-mesh-bvh 0.9 is fastest at this, found by trying on the sample (ms in Node, in CPU time, each form in
@@ -39,22 +40,22 @@ const occluded = 1;
 const uncovered = 2;
 const culled = 3;
 
-/** The whole pipeline on three-mesh-bvh, from raw arrays to zones. */
-export function transferByBvh({ cage, target }: Scene): PeerResult {
+/** The whole pipeline on three-mesh-bvh, from raw arrays to zones. The arrays of the result are the next transfer's as well. */
+export function transferByBvh({ cage, target }: Scene, kept: Kept): PeerResult {
   const laps = [performance.now()];
   const lap = (): void => void laps.push(performance.now());
-  const welded = weld(target);
-  const order = alongCurve(welded);
+  const welded = weld(target, kept);
+  const order = alongCurve(welded, kept);
   lap();
   const cageTree = buildTree(cage, cageLeaf);
   const targetTree = buildTree(target, targetLeaf);
-  const patches = prepare(cage);
+  const patches = prepare(cage, kept);
   lap();
-  const points = project(welded, order, patches, cageTree);
+  const points = project(welded, order, patches, cageTree, kept);
   lap();
   const meetsTarget = caster(targetTree);
   const meetsCage = caster(cageTree);
-  const zones = new Uint8Array(welded.count);
+  const zones = kept.take('pointZones', Uint8Array, welded.count).fill(cosmetic);
   const start = 1e-5 * welded.diagonal;
   const { positions } = welded;
   const { normals } = patches;
@@ -71,7 +72,7 @@ export function transferByBvh({ cage, target }: Scene): PeerResult {
     if (!meetsCage(positions[3 * i]! + back * nx, positions[3 * i + 1]! + back * ny, positions[3 * i + 2]! + back * nz, nx, ny, nz, 0)) zones[i] = uncovered;
   }
   lap();
-  const decided = decide(target, welded, zones, points);
+  const decided = decide(target, welded, zones, points, kept);
   lap();
   const [weldTime, build, nearest, selfRays, cageRays, segments] = laps.slice(1).map((time, i) => time - laps[i]!) as [number, number, number, number, number, number];
   return {
@@ -112,10 +113,10 @@ interface Patches {
  */
 const stride = 19;
 
-function prepare({ indices, positions, uvs }: SceneMesh): Patches {
+function prepare({ indices, positions, uvs }: SceneMesh, kept: Kept): Patches {
   const count = indices.length / 3;
-  const frames = new Float64Array(stride * count);
-  const normals = new Float64Array(3 * count);
+  const frames = kept.take('frames', Float64Array, stride * count);
+  const normals = kept.take('normals', Float64Array, 3 * count).fill(0);
   for (let t = 0; t < count; ++t) {
     const corner = [0, 1, 2].map((k) => new Vector3().fromArray(positions, 3 * indices[3 * t + k]!)) as [Vector3, Vector3, Vector3];
     const normal = corner[1].clone().sub(corner[0]).cross(corner[2].clone().sub(corner[0]));
@@ -243,13 +244,13 @@ function place(i: number, t: number, px: number, py: number, pz: number, start: 
 }
 
 /** Step 1, with the tie rule. */
-function project(welded: Welded, order: Uint32Array, patches: Patches, tree: Tree): PointResults {
+function project(welded: Welded, order: Uint32Array, patches: Patches, tree: Tree, kept: Kept): PointResults {
   const { count: pointCount, positions } = welded;
   const out = {
-    uvs: new Float32Array(2 * pointCount),
-    distances: new Float32Array(pointCount),
-    triangles: new Uint32Array(pointCount),
-    meetsCage: new Uint8Array(pointCount),
+    uvs: kept.take('pointUvs', Float32Array, 2 * pointCount),
+    distances: kept.take('pointDistances', Float32Array, pointCount),
+    triangles: kept.take('pointTriangles', Uint32Array, pointCount),
+    meetsCage: kept.take('meetsCage', Uint8Array, pointCount),
   };
   const { frames, normals } = patches;
   const { sorted } = tree;
@@ -339,9 +340,10 @@ function caster({ bvh }: Tree): Caster {
 }
 
 /** Segments, the threshold, and the results of the points handed out to the vertices. */
-function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, points: PointResults): Omit<PeerResult, 'timings'> {
+function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, points: PointResults, kept: Kept): Omit<PeerResult, 'timings'> {
   const { ofVertex, positions } = welded;
-  const parents = Uint32Array.from({ length: welded.count }, (_, i) => i);
+  const parents = kept.take('parents', Uint32Array, welded.count);
+  for (let i = 0; i < parents.length; ++i) parents[i] = i;
   const root = (i: number): number => {
     while (parents[i] !== i) i = parents[i] = parents[parents[i]!]!;
     return i;
@@ -352,8 +354,8 @@ function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, point
     parents[root(ofVertex[indices[i + 1]!]!)] = a;
     parents[root(ofVertex[indices[i + 2]!]!)] = a;
   }
-  const exposedArea = new Float64Array(welded.count);
-  const coveredArea = new Float64Array(welded.count);
+  const exposedArea = kept.take('exposedArea', Float64Array, welded.count).fill(0);
+  const coveredArea = kept.take('coveredArea', Float64Array, welded.count).fill(0);
   for (let i = 0; i < indices.length; i += 3) {
     const corners = [ofVertex[indices[i]!]!, ofVertex[indices[i + 1]!]!, ofVertex[indices[i + 2]!]!] as const;
     const [a, b, c] = [3 * corners[0], 3 * corners[1], 3 * corners[2]];
@@ -373,11 +375,11 @@ function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, point
     }
   }
   const vertexCount = ofVertex.length;
-  const uvs = new Float32Array(2 * vertexCount);
-  const zones = new Uint8Array(vertexCount);
-  const triangles = new Uint32Array(vertexCount);
-  const distances = new Float32Array(vertexCount);
-  const segments = new Uint32Array(vertexCount);
+  const uvs = kept.take('uvs', Float32Array, 2 * vertexCount);
+  const zones = kept.take('zones', Uint8Array, vertexCount);
+  const triangles = kept.take('triangles', Uint32Array, vertexCount);
+  const distances = kept.take('distances', Float32Array, vertexCount);
+  const segments = kept.take('segments', Uint32Array, vertexCount);
   for (let v = 0; v < vertexCount; ++v) {
     const i = ofVertex[v]!;
     const segment = root(i);
@@ -388,7 +390,7 @@ function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, point
     triangles[v] = points.triangles[i]!;
     distances[v] = points.distances[i]!;
   }
-  const cosmeticTriangles = new Uint8Array(indices.length / 3);
+  const cosmeticTriangles = kept.take('cosmeticTriangles', Uint8Array, indices.length / 3);
   for (let t = 0; t < cosmeticTriangles.length; ++t) {
     cosmeticTriangles[t] = Number(zones[indices[3 * t]!] === cosmetic && zones[indices[3 * t + 1]!] === cosmetic && zones[indices[3 * t + 2]!] === cosmetic);
   }

@@ -1,7 +1,8 @@
-import { init, transfer } from 'cagecast';
+import { init, transfer, type TransferResult } from 'cagecast';
 import type { Scene } from '../scene-file.js';
 import { median } from '../statistics.js';
-import { transferByBvh } from './bvh-peer.js';
+import { transferByBvh, type PeerResult } from './bvh-peer.js';
+import { Kept } from './kept.js';
 
 /** The package, or the same pipeline on three-mesh-bvh. */
 export type Who = 'cagecast' | 'peer';
@@ -15,8 +16,14 @@ export interface Block {
   stages: Record<string, number>;
 }
 
-/** Runs transfers of one scene in this realm, page or process: the method of the poster, which is what the peer does. */
+/**
+ * Runs transfers of one scene in this realm, page or process: the method of the poster, which is what the peer does. As on a page
+ * whose model moves, answers are thrown away: both write them into the arrays of the one before.
+ */
 export class Runner {
+  private result: TransferResult | undefined;
+  private readonly kept = new Kept();
+
   private constructor(private readonly scene: Scene) {}
 
   static async start(scene: Scene): Promise<Runner> {
@@ -43,7 +50,8 @@ export class Runner {
     return { otherZones: count(ours.zones, theirs.zones), otherTriangles: count(ours.triangles, theirs.triangles) };
   }
 
-  private transferBy(who: Who) {
-    return who === 'cagecast' ? transfer(this.scene.cage, this.scene.target, { preset: 'paper' }) : transferByBvh(this.scene);
+  private transferBy(who: Who): TransferResult | PeerResult {
+    if (who === 'peer') return transferByBvh(this.scene, this.kept);
+    return (this.result = transfer(this.scene.cage, this.scene.target, { preset: 'paper', into: this.result }));
   }
 }

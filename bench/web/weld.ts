@@ -1,4 +1,5 @@
 import type { SceneMesh } from '../scene-file.js';
+import type { Kept } from './kept.js';
 
 /** A target whose vertices of equal position and group are one point. */
 export interface Welded {
@@ -13,13 +14,13 @@ export interface Welded {
 }
 
 /** Welds by a hash table in typed arrays: a Map of strings or numbers takes five times as long. */
-export function weld({ positions, groups }: SceneMesh): Welded {
+export function weld({ positions, groups }: SceneMesh, kept: Kept): Welded {
   const vertexCount = positions.length / 3;
   const slots = 2 ** Math.ceil(Math.log2(2 * vertexCount));
-  const table = new Int32Array(slots).fill(-1);
-  const firstVertex = new Uint32Array(vertexCount);
-  const ofVertex = new Uint32Array(vertexCount);
-  const points = new Float32Array(positions.length);
+  const table = kept.take('table', Int32Array, slots).fill(-1);
+  const firstVertex = kept.take('firstVertex', Uint32Array, vertexCount);
+  const ofVertex = kept.take('ofVertex', Uint32Array, vertexCount);
+  const points = kept.take('points', Float32Array, positions.length);
   const bits = new Uint32Array(positions.buffer, positions.byteOffset, positions.length);
   let count = 0;
   let [lx, ly, lz, hx, hy, hz] = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
@@ -61,19 +62,19 @@ export function weld({ positions, groups }: SceneMesh): Welded {
 }
 
 /** The points in the order of a Morton curve, so that neighbours come one after the other. */
-export function alongCurve({ count, positions, low, side }: Welded): Uint32Array {
+export function alongCurve({ count, positions, low, side }: Welded, kept: Kept): Uint32Array {
   const few = count < 2 ** 16;
   const digitBits = few ? 11 : 10;
   const scale = side > 0 ? (few ? 127 : 1023) / side : 0;
-  const keys = new Uint32Array(count);
-  let order = new Uint32Array(count);
-  let spare = new Uint32Array(count);
+  const keys = kept.take('keys', Uint32Array, count);
+  let order = kept.take('order', Uint32Array, count);
+  let spare = kept.take('spare', Uint32Array, count);
   for (let i = 0; i < count; ++i) {
     order[i] = i;
     keys[i] =
       spread((positions[3 * i]! - low[0]) * scale) | (spread((positions[3 * i + 1]! - low[1]) * scale) << 1) | (spread((positions[3 * i + 2]! - low[2]) * scale) << 2);
   }
-  const starts = new Uint32Array(2 ** digitBits);
+  const starts = kept.take('starts', Uint32Array, 2 ** digitBits);
   for (let shift = 0; shift < (few ? 21 : 30); shift += digitBits) {
     starts.fill(0);
     const mask = starts.length - 1;

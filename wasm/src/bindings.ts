@@ -40,7 +40,7 @@ const classifyArrays = { zones: u8, cosmeticTriangles: u8, culledSegments: u8, m
 const begunArrays = { segmentStats: f64 };
 const splitArrays = { sources: u32, indices: u32, uvs: f32 };
 const cutArrays = { sources: u32, weights: f32, indices: u32, triangles: u32, uvs: f32, cornerUvs: f32, zones: u8, cosmeticTriangles: u8 };
-const projectArrays = {
+const projectedArrays = {
   uvs: f32,
   cornerUvs: f32,
   zones: u8,
@@ -49,18 +49,18 @@ const projectArrays = {
   segments: u32,
   /** Points, A, E, C, D, group and first copy of each segment. */
   segmentStats: f64,
+  /** The timings, in their order, and the peak of memory. */
+  numbers: f64,
+};
+const projectArrays = {
+  ...projectedArrays,
   restores: u32,
   /** Hole, segment, exposed and uncovered area of each share. */
   holeShares: f64,
-  /** The timings, in their order, and the peak of memory. */
-  numbers: f64,
-  /** The target's, after `project` only; else empty. */
+  /** The target's. */
   indices: u32,
-  /** This and the next ones after `transfer` only; else empty. */
-  cosmeticTriangles: u8,
-  culledSegments: u8,
-  margins: f64,
 };
+const transferArrays = { ...projectedArrays, cosmeticTriangles: u8, culledSegments: u8, margins: f64 };
 
 type Layout = Record<string, (memory: ArrayBuffer, at: number, bytes: number) => AnyArray>;
 /**
@@ -68,7 +68,9 @@ type Layout = Record<string, (memory: ArrayBuffer, at: number, bytes: number) =>
  * views, which the next call takes away. All else is the caller's own.
  */
 type AnswerOf<L extends Layout> = Answer & { [Name in keyof L]: ReturnType<L[Name]> };
+export type ProjectedAnswer = AnswerOf<typeof projectedArrays>;
 export type ProjectAnswer = AnswerOf<typeof projectArrays>;
+export type TransferAnswer = AnswerOf<typeof transferArrays>;
 export type BegunAnswer = AnswerOf<typeof begunArrays>;
 export type ClassifyAnswer = AnswerOf<typeof classifyArrays>;
 export type SplitAnswer = AnswerOf<typeof splitArrays>;
@@ -101,10 +103,10 @@ export interface CoreDecided {
 export interface Bindings {
   presetOptions(preset: number): Float64Array;
   project(cage: CheckedMesh, target: CheckedMesh, options: readonly number[], into?: Reusable): ProjectAnswer;
-  transfer(cage: CheckedMesh, target: CheckedMesh, options: readonly number[], into?: Reusable): ProjectAnswer;
+  transfer(cage: CheckedMesh, target: CheckedMesh, options: readonly number[], into?: Reusable): TransferAnswer;
   /** Does what of a transfer goes before locks; `endTransfer`, called next, does the rest. */
   beginTransfer(cage: CheckedMesh, target: CheckedMesh, options: readonly number[]): BegunAnswer;
-  endTransfer(locks: Uint8Array, into?: Reusable): ProjectAnswer;
+  endTransfer(locks: Uint8Array, into?: Reusable): TransferAnswer;
   classify(projection: CoreProjection, options: readonly number[], locks: Uint8Array, into?: Reusable): ClassifyAnswer;
   splitVertices(indices: Indices, cornerUvs: Float32Array, vertexCount: number): SplitAnswer;
   cutBorders(cage: CheckedMesh, target: CheckedMesh, options: readonly number[], decided: CoreDecided): CutAnswer;
@@ -157,7 +159,7 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
     },
     transfer(cage, target, options, into) {
       putMeshes(options, cage, target);
-      return take(core._transfer(), projectArrays, into);
+      return take(core._transfer(), transferArrays, into);
     },
     beginTransfer(cage, target, options) {
       putMeshes(options, cage, target);
@@ -165,7 +167,7 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
     },
     endTransfer(locks, into) {
       put(9, Uint8Array, locks);
-      return take(core._endTransfer(), projectArrays, into);
+      return take(core._endTransfer(), transferArrays, into);
     },
     classify({ zones, segments, segmentStats, restores, holeShares, indices }, options, locks, into) {
       core._release();

@@ -4,9 +4,9 @@ import { CagecastError, show } from './error.js';
 /** An option of calls that answer with arrays. */
 export interface Into<Answer> {
   /**
-   * An earlier answer of the same function that is no longer needed. Its arrays are written over where they have the length
-   * that is needed, else new ones take their place, and it is itself what is returned: nothing is left to collect, and no memory
-   * to be had from the system. It may share arrays with the arguments. If the call throws, it stays as it was.
+   * An earlier answer of the same function that is no longer needed. Its typed arrays are written over where they have the
+   * length that is needed, else new ones take their place, and it is itself what is returned: no memory is to be had for them, and
+   * none to be collected. They may be those of the arguments too. If the call throws, it stays as it was.
    */
   into?: Answer | undefined;
 }

@@ -1,5 +1,5 @@
 import { checkAnswer } from './answer.js';
-import type { ClassifyAnswer, CoreProjection, ProjectAnswer } from './bindings.js';
+import type { ClassifyAnswer, CoreProjection, ProjectedAnswer } from './bindings.js';
 import { callCore } from './engine.js';
 import { CagecastError, show } from './error.js';
 import { checkInto, handOver, type Into } from './into.js';
@@ -197,7 +197,7 @@ export function classify(projection: Projection, options?: ClassifyOptions & Int
 /** What step 5 decided of each segment. */
 type Decided = Pick<ClassifyAnswer, 'culledSegments' | 'margins'>;
 
-function projected(answer: ProjectAnswer, decided?: Decided): Projected {
+function projected(answer: ProjectedAnswer, decided?: Decided): Projected {
   const { uvs, cornerUvs, zones, triangles, distances, segments } = answer;
   return { uvs, cornerUvs, zones, triangles, distances, segments, segmentStats: segmentStats(answer.segmentStats, decided), ...measured(answer.numbers) };
 }
@@ -274,17 +274,14 @@ function checkProjection(projection: Projection): CoreProjection {
     shares.set([hole, segment, exposedArea, uncoveredArea], i * shareStride);
   });
 
-  for (let v = 0; v < segments.length; ++v) {
-    if (segments[v]! >= segmentStats.length) {
-      throw wrong(`.segments[${v}] = ${segments[v]} is out of range (${segmentStats.length} segments)`, v);
-    }
+  const outOfRange = (name: string, array: Uint32Array, limit: number, what: string) => {
+    for (let i = 0; i < array.length; ++i) if (array[i]! >= limit) throw wrong(`.${name}[${i}] = ${array[i]} is out of range (${what})`, i);
+  };
+  outOfRange('segments', segments, segmentStats.length, `${segmentStats.length} segments`);
+  outOfRange('restores', restores, 2 + holes, `${holes} holes`);
+  outOfRange('indices', indices, zones.length, count(zones.length, 'vertex'));
+  for (let v = 0; v < zones.length; ++v) {
     if (zones[v]! > 2) throw wrong(`.zones[${v}] = ${zones[v]} is not a zone that project() gives (0..2)`, v);
-  }
-  for (let v = 0; v < restores.length; ++v) {
-    if (restores[v]! >= 2 + holes) throw wrong(`.restores[${v}] = ${restores[v]} is out of range (${holes} holes)`, v);
-  }
-  for (let i = 0; i < indices.length; ++i) {
-    if (indices[i]! >= zones.length) throw wrong(`.indices[${i}] = ${indices[i]} is out of range (${count(zones.length, 'vertex')})`, i);
   }
   return { zones, segments, segmentStats: stats, restores, holeShares: shares, indices };
 }
