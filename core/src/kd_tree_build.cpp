@@ -193,19 +193,59 @@ class CageOrder {
     while (run > 4 && end - begin <= run) run /= 4;
     const std::uint32_t children = (end - begin + run - 1) / run;
     if (children < 2) return;
-    Box box;
-    for (std::uint32_t i = begin; i < end; ++i) box.grow(load(items_[i].centre));
-    float spread[4];
-    simd::store(spread, box.high - box.low);
-    const auto axis = std::max_element(spread, spread + 3) - spread;
     const std::uint32_t middle = begin + children / 2 * run;
-    std::nth_element(items_ + begin, items_ + middle, items_ + end,
-                     [axis](const Item& a, const Item& b) { return a.centre[axis] < b.centre[axis]; });
+    split(begin, middle, end);
     sort(begin, middle, run);
     sort(middle, end, run);
   }
 
  private:
+  /// Puts those that come first along the longest side of the box around all before `middle`, the others after it.
+  /// As `std::nth_element`, but what is less than a pivot moves without a branch, which could not be guessed.
+  void split(std::uint32_t begin, std::uint32_t middle, std::uint32_t end) const {
+    float* const all = items_->centre;
+    float low[4];
+    float high[4];
+    const auto measure = [&] {
+      Box box;
+      for (std::uint32_t i = begin; i < end; ++i) box.grow(load(all + kStride * i));
+      simd::store(low, box.low);
+      simd::store(high, box.high);
+    };
+    measure();
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    }
+    bool helped = true;
+    while (begin < middle && low[axis] < high[axis]) {
+      // Where the middle would be, were they evenly spread; if that did not help much, the middle of the box.
+      const float share = helped ? static_cast<float>(middle - begin) / static_cast<float>(end - begin) : 0.5f;
+      const float between = low[axis] + share * (high[axis] - low[axis]);
+      const float pivot = between > low[axis] ? between : high[axis];
+      float* less = all + kStride * begin;
+      for (float* item = less; item < all + kStride * end; item += kStride) {
+        const f32x4 moved = load(item);
+        const bool isLess = item[axis] < pivot;
+        simd::store(item, load(less));
+        simd::store(less, moved);
+        less += isLess ? kStride : 0;
+      }
+      const std::uint32_t before = end - begin;
+      const auto cut = static_cast<std::uint32_t>((less - all) / std::ptrdiff_t{kStride});
+      if (cut <= middle) {
+        begin = cut;
+        low[axis] = pivot;
+      } else {
+        end = cut;
+        high[axis] = pivot;
+      }
+      helped = 2 * (end - begin) <= before;
+      if (!helped) measure();
+    }
+  }
+
+  static constexpr std::size_t kStride = sizeof(Item) / sizeof(float);
   Item* items_;
 };
 

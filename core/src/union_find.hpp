@@ -26,7 +26,15 @@ class UnionFind {
     if (parents_[a] == parents_[b]) return;
     a = find(a);
     b = find(b);
-    parents_[std::max(a, b)] = std::min(a, b);  // Whichever is which cannot be guessed.
+    parents_[std::max(a, b)] = std::min(a, b);
+  }
+  /// Joins three at once, which is one guess for the processor instead of two.
+  void join(std::uint32_t a, std::uint32_t b, std::uint32_t c) noexcept {
+    const std::uint32_t parent = parents_[a];
+    if (((parents_[b] ^ parent) | (parents_[c] ^ parent)) == 0) return;
+    const std::uint32_t roots[3] = {find(a), find(b), find(c)};
+    const std::uint32_t root = std::min({roots[0], roots[1], roots[2]});
+    for (const std::uint32_t i : {roots[0], roots[1], roots[2], a, b, c}) parents_[i] = root;
   }
   /// Makes every parent a root, once all is joined.
   void flatten(std::uint32_t count) noexcept {

@@ -26,41 +26,43 @@ constexpr std::uint32_t kNoKey = ~0u;
 /// So many vertices of a cell are compared each with each; more are sorted, so that no input makes it quadratic.
 constexpr std::uint32_t kFew = 16;
 
-/// Sorts by key, stably: least significant digit first.
-class KeySort {
+/// Keys are sorted by two or three digits: 2 · 9, 2 · 12 or 3 · 10 bits.
+class Digits {
  public:
-  explicit KeySort(int keyBits) : digits_((keyBits + kMostDigitBits - 1) / kMostDigitBits), bits_((keyBits + digits_ - 1) / digits_) {
-    std::fill(starts_, starts_ + (digits_ << bits_), 0u);
+  static constexpr std::uint32_t kMostValues = 2 << 12;
+
+  explicit Digits(int keyBits) : count_(keyBits > 24 ? 3 : 2), bits_(keyBits / count_) {}
+
+  [[nodiscard]] std::uint32_t values() const { return 1u << bits_; }  ///< Of one digit.
+  [[nodiscard]] std::uint32_t allValues() const { return static_cast<std::uint32_t>(count_) << bits_; }
+
+  /// Counts a key's digits.
+  /// @param counts  `allValues()`, digit by digit, 0 in the beginning.
+  void count(std::uint32_t key, std::uint32_t* counts) const {
+    const std::uint32_t mask = values() - 1;
+    ++counts[key & mask];
+    ++(counts + values())[key >> bits_ & mask];
+    if (count_ > 2) ++(counts + 2 * std::size_t{values()})[key >> 2 * bits_];
   }
 
-  /// Has to be told all keys first.
-  void add(std::uint32_t key) {
-    ++starts_[key & mask()];
-    ++starts_[1u << bits_ | (key >> bits_ & mask())];
-    if (digits_ > 2) ++starts_[2u << bits_ | key >> 2 * bits_];
-  }
-
+  /// Sorts by key, stably: least significant digit first.
+  /// @param counts  Of all keys; used up.
   /// @return The one of the two arrays that holds the result.
-  Placed* sort(Placed* items, Placed* other, std::uint32_t count) {
-    std::uint32_t* starts = starts_;
-    const std::uint32_t highest = mask();
-    for (int shift = 32; shift < 32 + digits_ * bits_; shift += bits_) {
+  Placed* sort(Placed* items, Placed* other, std::uint32_t itemCount, std::uint32_t* counts) const {
+    for (int digit = 0; digit < count_; ++digit) {
       std::uint32_t sum = 0;
-      for (std::uint32_t digit = 0; digit <= highest; ++digit) sum += std::exchange(starts[digit], sum);
-      for (std::uint32_t i = 0; i < count; ++i) other[starts[items[i] >> shift & highest]++] = items[i];
+      for (std::uint32_t value = 0; value < values(); ++value) sum += std::exchange(counts[value], sum);
+      const int shift = 32 + digit * bits_;
+      const std::uint32_t mask = values() - 1;
+      for (std::uint32_t i = 0; i < itemCount; ++i) other[counts[items[i] >> shift & mask]++] = items[i];
       std::swap(items, other);
-      starts += highest + 1;
+      counts += values();
     }
     return items;
   }
 
  private:
-  static constexpr int kMostDigitBits = 12;
-
-  [[nodiscard]] std::uint32_t mask() const { return (1u << bits_) - 1; }
-
-  int digits_, bits_;  ///< 2 · 9, 2 · 12 or 3 · 10.
-  std::uint32_t starts_[2 << kMostDigitBits];
+  int count_, bits_;
 };
 
 /// A vertex as weld sees it, scaled. Adding 0 made 0 of −0, so equal is the same as equal to the bit.
@@ -177,7 +179,9 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
   const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
   const HilbertCurve curve(levels);
-  KeySort keySort(3 * levels);
+  const Digits digits(3 * levels);
+  std::uint32_t counts[Digits::kMostValues];
+  std::fill(counts, counts + digits.allValues(), 0u);
   const float* position = target.positions.data();
   const std::uint32_t* groupOf = target.groups.empty() ? nullptr : target.groups.data();
   const f32x4 scale = simd::splat(units.scale);
@@ -187,10 +191,10 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
     sites[v].put(p, groupOf == nullptr ? 0 : groupOf[v]);
     const simd::count4 cell = simd::wholes((p - low) * simd::splat(cells));
     const std::uint32_t key = curve.key(simd::countOf<0>(cell), simd::countOf<1>(cell), simd::countOf<2>(cell));
-    keySort.add(key);
+    digits.count(key, counts);
     unsorted[v] = Placed{key} << 32 | v;
   }
-  Placed* placed = keySort.sort(unsorted, spare, vertexCount);
+  Placed* placed = digits.sort(unsorted, spare, vertexCount, counts);
   std::fill_n(placed + vertexCount, kFew, Placed{kNoKey} << 32);
 
   std::uint32_t pointCount = weldEqual(placed, vertexCount, sites, positions, places, ofVertex);
