@@ -22,7 +22,7 @@ RayDirection RayDirection::along(Vec3 unit) noexcept {
   for (std::uint32_t k = 1; k < 3; ++k) {
     if (std::abs(d[k]) > std::abs(d[ray.z])) ray.z = k;
   }
-  ray.scaleZ = -1.0f / d[ray.z];
+  ray.scaleZ = -ray.inverse[ray.z];
   ray.shearX = d[(ray.z + 1) % 3] * ray.scaleZ;
   ray.shearY = d[(ray.z + 2) % 3] * ray.scaleZ;
   return ray;

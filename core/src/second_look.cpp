@@ -135,10 +135,15 @@ struct Outlooks {
 /// exact, and so do not depend on the order of the triangles.
 class NormalSums {
  public:
-  NormalSums(const AreaUnit& unit, const std::int64_t* areas, Vec3* sums) noexcept : unit_(unit), areas_(areas), sums_(sums) {}
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
+  NormalSums(const AreaUnit& unit, const std::int64_t* areas, std::uint32_t pointCount, Vec3* sums, Scratch& scratch) noexcept
+      : unit_(unit), areas_(areas), large_(scratch.take<double>(pointCount)), sums_(sums) {
+    if (scratch.failed()) return;
+    for (std::uint32_t p = 0; p < pointCount; ++p) large_[p] = unit.area(areas[p] + 1) * kLarge;
+  }
   void add(std::uint32_t point, Vec3 areaNormal) noexcept {
     // Added to so large a number, and taken from it again, only the bits that all terms have remain.
-    const double large = unit_.area(areas_[point] + 1) * kLarge;
+    const double large = large_[point];
     sums_[point] = sums_[point] + Vec3{areaNormal.x + large - large, areaNormal.y + large - large, areaNormal.z + large - large};
   }
   /// Brings the sum of a point to unit length, or to zero if the normals cancel out.
@@ -152,6 +157,7 @@ class NormalSums {
   static constexpr double kLarge = 0x1.8p21;
   const AreaUnit& unit_;
   const std::int64_t* areas_;
+  double* large_;  ///< 1 per point.
   Vec3* sums_;
 };
 
@@ -168,12 +174,12 @@ bool findOutlooks(const Points& points, const Cage& cage, const Units& units, co
   outlooks.isTurned = scratch.take<bool>(segmentCount);
   const Scratch::Mark mark = scratch.mark();
   auto* agreement = scratch.take<std::int64_t>(segmentCount);
+  const AreaUnit unit(points.triangleCount, units.diagonal);
+  NormalSums sums(unit, areas.all, points.count, normals, scratch);
   if (scratch.failed()) return false;
   std::fill(normals, normals + points.count, Vec3{0, 0, 0});
   std::fill(outlooks.isTwoSided, outlooks.isTwoSided + points.count, false);
   std::fill(agreement, agreement + segmentCount, 0);
-  const AreaUnit unit(points.triangleCount, units.diagonal);
-  NormalSums sums(unit, areas.all, normals);
   const auto eachWanted = [&](auto call) {
     for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
       const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
