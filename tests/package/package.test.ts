@@ -213,6 +213,7 @@ describe('the packed package', () => {
         const decided: Classification = classify(projection, { threshold: 0.3 });
         const [first]: SegmentStats[] = decided.segmentStats;
         const timings: Timings = result.timings;
+        const again: [TransferResult, Projection, Classification] = [transfer(mesh, mesh, { ...options, into: result }), project(mesh, mesh, { into: projection }), classify(projection, { into: decided })];
         const buffers: ArrayBuffer[] = [result.uvs.buffer, result.zones.buffer, result.triangles.buffer, result.cosmeticTriangles.buffer];
         const zone: Zone = Zone.Cosmetic;
         try { transfer(mesh, mesh); } catch (error) { if (error instanceof CagecastError) { const code: Code = error.code; const at: number = error.at; void [code, at]; } }
@@ -222,7 +223,9 @@ describe('the packed package', () => {
         transfer(mesh, mesh, { treshold: 0.5 });
         // @ts-expect-error no such preset
         transfer(mesh, mesh, { preset: 'papre' });
-        void [first, timings, buffers, zone];`,
+        // @ts-expect-error not an answer of this function
+        transfer(mesh, mesh, { into: projection });
+        void [first, timings, again, buffers, zone];`,
       );
       run(process.execPath, [join(tools, 'typescript/bin/tsc'), '-p', 'tsconfig.json'], folder);
     });
