@@ -6,6 +6,7 @@
 
 #include <emscripten/emscripten.h>
 
+#include <array>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -18,7 +19,7 @@ namespace cagecast {
 
 /// In the order of wasm/src/options.ts.
 template <typename Visit>
-void eachField(TransferOptions& o, const Visit& visit) {
+constexpr void eachField(TransferOptions& o, const Visit& visit) {
   visit(o.projection), visit(o.weldTolerance), visit(o.seams), visit(o.occlusionReach), visit(o.pokeThrough);
   visit(o.votes), visit(o.depths), visit(o.secondLook), visit(o.bothSides), visit(o.holes);
   visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.maxUncovered), visit(o.copies), visit(o.partialTriangles);
@@ -36,7 +37,6 @@ constexpr std::size_t kMostArrays = 11;
 /// What goes in and out of a exchange.
 struct Exchange {
   Array<std::byte> inputs[12];
-  Array<double> options;
   /// Code, argument and place of the status; then for each array of the answer its address and its size in bytes.
   std::uintptr_t answer[3 + 2 * kMostArrays];
 };
@@ -92,7 +92,7 @@ Bytes bytes(const Array<T>& array) {
 }
 
 template <typename Thing>
-std::size_t fieldsOf() {
+constexpr std::size_t fieldsOf() {
   Thing thing;
   std::size_t count = 0;
   eachField(thing, [&](const auto&) { ++count; });
@@ -132,11 +132,21 @@ constexpr Status kOutOfMemory{Code::outOfMemory};
   return options;
 }
 
+using OptionNumbers = std::array<double, fieldsOf<TransferOptions>()>;
+
+constexpr OptionNumbers numbersOf(TransferOptions options) {
+  OptionNumbers numbers{};
+  std::size_t next = 0;
+  eachField(options, [&](const auto& field) { numbers[next++] = static_cast<double>(field); });
+  return numbers;
+}
+
+/// In numbers already: the code to make them of fields is longer than they are.
+constexpr OptionNumbers kPresets[] = {numbersOf(TransferOptions::paper()), numbersOf(TransferOptions::standard())};
+
 /// The options of a preset: 0 `paper`, 1 `default`.
 extern "C" EMSCRIPTEN_KEEPALIVE inline std::uintptr_t presetOptions(unsigned preset) {
-  auto options = preset == 0 ? TransferOptions::paper() : TransferOptions::standard();
-  if (!toNumbers(std::span(&options, 1), exchange.options)) return answer(kOutOfMemory);
-  return answer({}, {bytes(exchange.options)});
+  return answer({}, {std::as_bytes(std::span(kPresets[preset]))});
 }
 
 }  // namespace cagecast::bridge
