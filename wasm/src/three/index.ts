@@ -46,7 +46,7 @@ export interface Applied {
   overlays: Mesh[];
   /**
    * Shows another decision of `classify`, in microseconds. Where borders were cut, a segment that has another verdict now ends at its
-   * own triangles.
+   * own triangles. Nothing of the decision is kept: the next `classify` may have it as `into`, as it may not have `result`.
    */
   update(classification: Pick<Classification, 'zones' | 'cosmeticTriangles'>): void;
   /** Takes the overlays away and frees their buffers. The new attributes stay. */
