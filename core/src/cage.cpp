@@ -5,23 +5,24 @@
 #include <limits>
 
 #include "simd.hpp"
+#include "simd.hpp"
 #include "triangle.hpp"
 
 namespace cagecast {
 
 RayDirection RayDirection::along(Vec3 unit) noexcept {
-  const float d[3] = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
+  const float d[4] = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z), 1};
   RayDirection ray{};
   ray.exact = unit;
-  for (int k = 0; k < 3; ++k) {
-    // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
-    ray.inverse[k] = std::copysign(1.0f / std::max(std::abs(d[k]), 1e-20f), d[k]);
-  }
+  // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
+  const simd::f32x4 direction = simd::load(d);
+  const simd::f32x4 size = simd::splat(1) / simd::max(simd::abs(direction), simd::splat(1e-20f));
+  simd::store(ray.inverse, simd::select(direction < simd::splat(0), simd::splat(0) - size, size));
   ray.inverse[3] = std::numeric_limits<float>::infinity();
-  ray.z = 0;
-  for (std::uint32_t k = 1; k < 3; ++k) {
-    if (std::abs(d[k]) > std::abs(d[ray.z])) ray.z = k;
-  }
+  // No branch: nobody can guess where rays go.
+  const float sizes[3] = {std::abs(d[0]), std::abs(d[1]), std::abs(d[2])};
+  const auto second = static_cast<std::uint32_t>(sizes[1] > sizes[0]);
+  ray.z = second + (2 - second) * static_cast<std::uint32_t>(sizes[2] > std::max(sizes[0], sizes[1]));
   ray.scaleZ = -ray.inverse[ray.z];
   ray.shearX = d[(ray.z + 1) % 3] * ray.scaleZ;
   ray.shearY = d[(ray.z + 2) % 3] * ray.scaleZ;

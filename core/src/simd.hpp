@@ -45,6 +45,7 @@ inline f32x4 splat(float x) { return {_mm_set1_ps(x)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {_mm_add_ps(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {_mm_sub_ps(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {_mm_mul_ps(a.v, b.v)}; }
+inline f32x4 operator/(f32x4 a, f32x4 b) { return {_mm_div_ps(a.v, b.v)}; }
 /// a · b + c.
 inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) {
 #if defined(__FMA__)
@@ -173,6 +174,7 @@ inline f32x4 splat(float x) { return {vdupq_n_f32(x)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {vaddq_f32(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {vsubq_f32(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {vmulq_f32(a.v, b.v)}; }
+inline f32x4 operator/(f32x4 a, f32x4 b) { return {vdivq_f32(a.v, b.v)}; }
 inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) { return {vfmaq_f32(c.v, a.v, b.v)}; }
 inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return {vfmsq_f32(c.v, a.v, b.v)}; }
 inline f32x4 min(f32x4 a, f32x4 b) { return {vminq_f32(a.v, b.v)}; }
@@ -263,6 +265,7 @@ inline f32x4 splat(float x) { return {wasm_f32x4_splat(x)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {wasm_f32x4_add(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {wasm_f32x4_sub(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {wasm_f32x4_mul(a.v, b.v)}; }
+inline f32x4 operator/(f32x4 a, f32x4 b) { return {wasm_f32x4_div(a.v, b.v)}; }
 inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) { return a * b + c; }
 inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return c - a * b; }
 inline f32x4 min(f32x4 a, f32x4 b) { return {wasm_f32x4_pmin(b.v, a.v)}; }
@@ -361,6 +364,7 @@ inline f32x4 splat(float x) { return {{x, x, x, x}}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] + b.v[i]; }); }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] - b.v[i]; }); }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] * b.v[i]; }); }
+inline f32x4 operator/(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] / b.v[i]; }); }
 inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) { return a * b + c; }
 inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return c - a * b; }
 inline f32x4 min(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; }); }
