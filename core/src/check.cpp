@@ -47,6 +47,15 @@ std::size_t firstNonFinite(std::span<const float> values) {
       std::find_if(values.begin(), values.end(), [](float x) { return !std::isfinite(x); }) - values.begin());
 }
 
+std::uint32_t highestOf(std::span<const std::uint32_t> indices) {
+  simd::count4 fours = simd::splatCount(0);
+  std::size_t i = 0;
+  for (; i + simd::kWidth <= indices.size(); i += simd::kWidth) fours = simd::max(fours, simd::load(&indices[i]));
+  std::uint32_t highest = std::max({simd::countOf<0>(fours), simd::countOf<1>(fours), simd::countOf<2>(fours), simd::countOf<3>(fours)});
+  for (; i < indices.size(); ++i) highest = std::max(highest, indices[i]);
+  return highest;
+}
+
 Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
   const auto fault = [argument](Code code, std::size_t at = 0) {
     return Status{code, argument, static_cast<std::uint32_t>(std::min<std::size_t>(at, UINT32_MAX))};
@@ -66,8 +75,7 @@ Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
     return fault(Code::nonFinitePosition, at);
   }
   if (const std::size_t at = firstNonFinite(mesh.uvs); at < mesh.uvs.size()) return fault(Code::nonFiniteUv, at);
-  std::uint32_t highest = 0;
-  for (const std::uint32_t index : mesh.indices) highest = std::max(highest, index);
+  const std::uint32_t highest = highestOf(mesh.indices);
   if (highest >= vertices) {
     const auto first = std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t i) { return i >= vertices; });
     return fault(Code::indexOutOfRange, static_cast<std::size_t>(first - mesh.indices.begin()));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "kd_tree.hpp"
@@ -376,7 +377,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
       }
     }
     boxes[leaf] = box.padded(kPadding * units.reach);
-    leafBoxes[leaf] = boxAround(nearLeaves[leaf], triangles, out.middle, kTurnedPadding * units.reach);
+    new (leafBoxes + leaf) LeafBox(boxAround(nearLeaves[leaf], triangles, out.middle, kTurnedPadding * units.reach));
   }
   fillNodes(boxes, nodes, out);
   scratch.rewind(mark);

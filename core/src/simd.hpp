@@ -148,6 +148,17 @@ inline count4 load(const std::uint32_t* p) { return {_mm_loadu_si128(reinterpret
 /// Numbers from 0 on, without what they have behind the point.
 inline count4 wholes(f32x4 a) { return {_mm_cvttps_epi32(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), c.v); }
+inline count4 splatCount(std::uint32_t x) { return {_mm_set1_epi32(static_cast<int>(x))}; }
+inline count4 max(count4 a, count4 b) {
+#if defined(__SSE4_1__)
+  return {_mm_max_epu32(a.v, b.v)};
+#else
+  // As numbers with a sign, from half as low.
+  const __m128i half = _mm_set1_epi32(INT32_MIN);
+  const __m128i isMore = _mm_cmpgt_epi32(_mm_xor_si128(a.v, half), _mm_xor_si128(b.v, half));
+  return {_mm_or_si128(_mm_and_si128(isMore, a.v), _mm_andnot_si128(isMore, b.v))};
+#endif
+}
 /// One more where the mask is set: all its bits are the number −1.
 inline count4 countTrue(count4 c, mask4 m) { return {_mm_sub_epi32(c.v, _mm_castps_si128(m.v))}; }
 template <int lane>
@@ -244,6 +255,8 @@ struct count4 {
 inline count4 load(const std::uint32_t* p) { return {vld1q_u32(p)}; }
 inline count4 wholes(f32x4 a) { return {vreinterpretq_u32_s32(vcvtq_s32_f32(a.v))}; }
 inline void store(std::uint32_t* p, count4 c) { vst1q_u32(p, c.v); }
+inline count4 splatCount(std::uint32_t x) { return {vdupq_n_u32(x)}; }
+inline count4 max(count4 a, count4 b) { return {vmaxq_u32(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {vsubq_u32(c.v, m.v)}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
@@ -335,6 +348,8 @@ struct count4 {
 inline count4 load(const std::uint32_t* p) { return {wasm_v128_load(p)}; }
 inline count4 wholes(f32x4 a) { return {wasm_i32x4_trunc_sat_f32x4(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
+inline count4 splatCount(std::uint32_t x) { return {wasm_u32x4_splat(x)}; }
+inline count4 max(count4 a, count4 b) { return {wasm_u32x4_max(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {wasm_i32x4_sub(c.v, m.v)}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
@@ -438,6 +453,10 @@ inline count4 wholes(f32x4 a) {
   return {{whole(0), whole(1), whole(2), whole(3)}};
 }
 inline void store(std::uint32_t* p, count4 c) { std::memcpy(p, c.v, sizeof c.v); }
+inline count4 splatCount(std::uint32_t x) { return {{x, x, x, x}}; }
+inline count4 max(count4 a, count4 b) {
+  return {{std::max(a.v[0], b.v[0]), std::max(a.v[1], b.v[1]), std::max(a.v[2], b.v[2]), std::max(a.v[3], b.v[3])}};
+}
 inline count4 countTrue(count4 c, mask4 m) { return {{c.v[0] + m.v[0], c.v[1] + m.v[1], c.v[2] + m.v[2], c.v[3] + m.v[3]}}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {

@@ -76,9 +76,16 @@ struct Site {
   }
   /// Makes a point of it: the group takes the place of the fourth float.
   void putAt(float* position) const { std::memcpy(position, this, sizeof(Site)); }
-  [[nodiscard]] bool isAt(const float* position) const { return std::memcmp(position, this, sizeof(Site)) == 0; }
+  [[nodiscard]] bool isAt(const float* position) const {
+    // By halves: memcmp is a loop in WebAssembly.
+    std::uint64_t halves[2];
+    std::uint64_t others[2];
+    std::memcpy(halves, this, sizeof halves);
+    std::memcpy(others, position, sizeof others);
+    return ((halves[0] ^ others[0]) | (halves[1] ^ others[1])) == 0;
+  }
 
-  friend bool operator==(const Site& a, const Site& b) { return std::memcmp(&a, &b, sizeof(Site)) == 0; }
+  friend bool operator==(const Site& a, const Site& b) { return a.isAt(&b.x); }
   friend bool operator<(const Site& a, const Site& b) { return std::tie(a.x, a.y, a.z, a.group) < std::tie(b.x, b.y, b.z, b.group); }
 };
 
