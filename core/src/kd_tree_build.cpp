@@ -25,6 +25,7 @@ constexpr float kTurnedPadding = 1.2e-5f;
 constexpr float kFar = 1e15f;
 
 using simd::f32x4;
+using simd::f64x2;
 using simd::load;
 using simd::splat;
 
@@ -73,51 +74,57 @@ void setChildren(Node& node, const Box (&boxes)[4]) {
   }
 }
 
-void setNearTriangle(NearLeaf& leaf, int lane, const CageTriangle& triangle, std::uint32_t slot) {
-  const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
-  int longest = 0;
-  double longestSquared = -1;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 edge = corners[(i + 1) % 3] - corners[i];
-    if (dot(edge, edge) > longestSquared) {
-      longestSquared = dot(edge, edge);
-      longest = i;
-    }
+/// Sets two lanes of a leaf.
+/// @param lane  The first of them.
+void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& one, const CageTriangle& other) {
+  const float* const corners[2][3] = {{one.a, one.b, one.c}, {other.a, other.b, other.c}};
+  const auto points = [&](std::size_t i, std::size_t j) { return pointsAt(corners[0][i % 3], corners[1][j % 3]); };
+  double squares[3][2];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const TwoVec3 edges = points(i + 1, i + 1) - points(i, i);
+    simd::store(squares[i], dot(edges, edges));
   }
-  const Vec3 a = corners[longest];
-  const Vec3 ab = corners[(longest + 1) % 3] - a;
-  const Vec3 ac = corners[(longest + 2) % 3] - a;
-  const double base = length(ab);
-  const Vec3 axisX = 1 / base * ab;
-  const Vec3 axisZ = triangle.normal.exact;
-  const Vec3 axisY = cross(axisZ, axisX);
-  const double footX = dot(ac, axisX);
-  const double height = dot(ac, axisY);
+  const auto longest = [&](int k) {
+    const std::size_t first = squares[1][k] > squares[0][k] ? 1 : 0;
+    return squares[2][k] > squares[first][k] ? std::size_t{2} : first;
+  };
+  const std::size_t i = longest(0);
+  const std::size_t j = longest(1);
+  const TwoVec3 a = points(i, j);
+  const TwoVec3 ab = points(i + 1, j + 1) - a;
+  const TwoVec3 ac = points(i + 2, j + 2) - a;
+  const f64x2 base = length(ab);
+  const TwoVec3 axisX = simd::splatDouble(1) / base * ab;
+  const Vec3& n = one.normal.exact;
+  const Vec3& m = other.normal.exact;
+  const TwoVec3 axisZ = {simd::doubles(n.x, m.x), simd::doubles(n.y, m.y), simd::doubles(n.z, m.z)};
+  const TwoVec3 axisY = cross(axisZ, axisX);
+  const f64x2 footX = dot(ac, axisX);
+  const f64x2 height = dot(ac, axisY);
 
-  const auto put = [lane](float (&to)[4], double value) { to[lane] = static_cast<float>(value); };
-  const auto putVector = [&put](float (&to)[3][4], Vec3 v) {
+  const auto put = [lane](float (&to)[4], f64x2 values) { simd::storeRounded(to + lane, values); };
+  const auto putVectors = [&put](float (&to)[3][4], const TwoVec3& v) {
     put(to[0], v.x);
     put(to[1], v.y);
     put(to[2], v.z);
   };
-  const auto putEdge = [&put, height](NearLeaf::Edge& edge, double toFoot) {
-    const double edgeLength = std::sqrt(toFoot * toFoot + height * height);
+  const auto putEdges = [&put, height](NearLeaf::Edge& edge, f64x2 toFoot) {
+    const f64x2 edgeLength = sqrt(toFoot * toFoot + height * height);
     put(edge.x, toFoot / edgeLength);
     put(edge.y, height / edgeLength);
     put(edge.length, edgeLength);
   };
-  putVector(leaf.origin, a);
-  putVector(leaf.axes[0], axisX);
-  putVector(leaf.axes[1], axisY);
-  putVector(leaf.axes[2], axisZ);
+  putVectors(leaf.origin, a);
+  putVectors(leaf.axes[0], axisX);
+  putVectors(leaf.axes[1], axisY);
+  putVectors(leaf.axes[2], axisZ);
   put(leaf.base, base);
   put(leaf.foot, footX);
-  putEdge(leaf.left, footX);
-  putEdge(leaf.right, base - footX);
-  leaf.slot[lane] = slot;
+  putEdges(leaf.left, footX);
+  putEdges(leaf.right, base - footX);
 }
 
-void clearNearTriangle(NearLeaf& leaf, int lane) {
+void clearNearTriangle(NearLeaf& leaf, std::uint32_t lane) {
   for (int k = 0; k < 3; ++k) {
     leaf.origin[k][lane] = kFar;
     for (int i = 0; i < 3; ++i) leaf.axes[i][k][lane] = i == k ? 1.0f : 0.0f;
@@ -368,14 +375,12 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
       const std::uint32_t slot = items[std::min(i, cage.count - 1)].slot;
       const CageTriangle& t = cage.triangles[slot];
       triangles[lane] = &t;
+      nearLeaves[leaf].slot[lane] = slot;
       for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
       for (std::uint32_t k = 0; k < 3; ++k) corners[3 * i + k] = kCageStride * slot + k;
-      if (i < cage.count) {
-        setNearTriangle(nearLeaves[leaf], static_cast<int>(lane), t, slot);
-      } else {
-        clearNearTriangle(nearLeaves[leaf], static_cast<int>(lane));
-      }
     }
+    for (std::uint32_t lane = 0; lane < 4; lane += 2) setNearTriangles(nearLeaves[leaf], lane, *triangles[lane], *triangles[lane + 1]);
+    for (std::uint32_t lane = 4; 4 * leaf + lane > cage.count;) clearNearTriangle(nearLeaves[leaf], --lane);
     boxes[leaf] = box.padded(kPadding * units.reach);
     new (leafBoxes + leaf) LeafBox(boxAround(nearLeaves[leaf], triangles, out.middle, kTurnedPadding * units.reach));
   }
@@ -404,7 +409,7 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
   std::fill(starts, starts + target.count, 0u);
   for (std::uint32_t t = 0; t < count; ++t) ++starts[firstPointOf(triangles + std::size_t{3} * t)];
   std::uint32_t sum = 0;
-  for (std::uint32_t* start = starts; start < starts + target.count; ++start) sum += std::exchange(*start, sum);
+  for (std::uint32_t point = 0, end = target.count; point < end; ++point) sum += std::exchange(starts[point], sum);
   for (std::uint32_t t = 0; t < count; ++t) {
     const std::uint32_t* corner = triangles + std::size_t{3} * t;
     const std::uint32_t a = corner[0];
@@ -430,7 +435,7 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
   std::memmove(found, children, nodeCount * sizeof(Children));
   for (std::uint32_t node = nodeCount; node-- > 0;) {
     Box below[4];
-    boxes[node] = {};
+    Box around;
     for (int lane = 0; lane < 4; ++lane) {
       const std::uint32_t child = found[node].of[lane];
       if (child == Children::kNone) {
@@ -451,8 +456,9 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
         below[lane] = boxes[child];
         nodes[node].child[lane] = child;
       }
-      boxes[node].grow(below[lane]);
+      around.grow(below[lane]);
     }
+    boxes[node] = around;
     setChildren(nodes[node], below);
   }
   scratch.rewind(end);

@@ -132,6 +132,10 @@ inline void store(double* p, f64x2 a) { _mm_storeu_pd(p, a.v); }
 inline f64x2 operator+(f64x2 a, f64x2 b) { return {_mm_add_pd(a.v, b.v)}; }
 inline f64x2 operator-(f64x2 a, f64x2 b) { return {_mm_sub_pd(a.v, b.v)}; }
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {_mm_mul_pd(a.v, b.v)}; }
+inline f64x2 operator/(f64x2 a, f64x2 b) { return {_mm_div_pd(a.v, b.v)}; }
+inline f64x2 doubles(double a, double b) { return {_mm_set_pd(b, a)}; }
+/// Two floats.
+inline void storeRounded(float* p, f64x2 a) { _mm_storel_pi(reinterpret_cast<__m64*>(p), _mm_cvtpd_ps(a.v)); }
 inline f64x2 splatDouble(double x) { return {_mm_set1_pd(x)}; }
 inline f64x2 min(f64x2 a, f64x2 b) { return {_mm_min_pd(a.v, b.v)}; }
 inline f64x2 sqrt(f64x2 a) { return {_mm_sqrt_pd(a.v)}; }
@@ -243,6 +247,9 @@ inline void store(double* p, f64x2 a) { vst1q_f64(p, a.v); }
 inline f64x2 operator+(f64x2 a, f64x2 b) { return {vaddq_f64(a.v, b.v)}; }
 inline f64x2 operator-(f64x2 a, f64x2 b) { return {vsubq_f64(a.v, b.v)}; }
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {vmulq_f64(a.v, b.v)}; }
+inline f64x2 operator/(f64x2 a, f64x2 b) { return {vdivq_f64(a.v, b.v)}; }
+inline f64x2 doubles(double a, double b) { return {vsetq_lane_f64(b, vdupq_n_f64(a), 1)}; }
+inline void storeRounded(float* p, f64x2 a) { vst1_f32(p, vcvt_f32_f64(a.v)); }
 inline f64x2 splatDouble(double x) { return {vdupq_n_f64(x)}; }
 inline f64x2 min(f64x2 a, f64x2 b) { return {vminq_f64(a.v, b.v)}; }
 inline f64x2 sqrt(f64x2 a) { return {vsqrtq_f64(a.v)}; }
@@ -336,6 +343,9 @@ inline void store(double* p, f64x2 a) { wasm_v128_store(p, a.v); }
 inline f64x2 operator+(f64x2 a, f64x2 b) { return {wasm_f64x2_add(a.v, b.v)}; }
 inline f64x2 operator-(f64x2 a, f64x2 b) { return {wasm_f64x2_sub(a.v, b.v)}; }
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {wasm_f64x2_mul(a.v, b.v)}; }
+inline f64x2 operator/(f64x2 a, f64x2 b) { return {wasm_f64x2_div(a.v, b.v)}; }
+inline f64x2 doubles(double a, double b) { return {wasm_f64x2_make(a, b)}; }
+inline void storeRounded(float* p, f64x2 a) { wasm_v128_store64_lane(p, wasm_f32x4_demote_f64x2_zero(a.v), 0); }
 inline f64x2 splatDouble(double x) { return {wasm_f64x2_splat(x)}; }
 inline f64x2 min(f64x2 a, f64x2 b) { return {wasm_f64x2_pmin(b.v, a.v)}; }
 inline f64x2 sqrt(f64x2 a) { return {wasm_f64x2_sqrt(a.v)}; }
@@ -438,6 +448,12 @@ inline void store(double* p, f64x2 a) { std::memcpy(p, a.v, sizeof a.v); }
 inline f64x2 operator+(f64x2 a, f64x2 b) { return {{a.v[0] + b.v[0], a.v[1] + b.v[1]}}; }
 inline f64x2 operator-(f64x2 a, f64x2 b) { return {{a.v[0] - b.v[0], a.v[1] - b.v[1]}}; }
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {{a.v[0] * b.v[0], a.v[1] * b.v[1]}}; }
+inline f64x2 operator/(f64x2 a, f64x2 b) { return {{a.v[0] / b.v[0], a.v[1] / b.v[1]}}; }
+inline f64x2 doubles(double a, double b) { return {{a, b}}; }
+inline void storeRounded(float* p, f64x2 a) {
+  p[0] = static_cast<float>(a.v[0]);
+  p[1] = static_cast<float>(a.v[1]);
+}
 inline f64x2 splatDouble(double x) { return {{x, x}}; }
 inline f64x2 min(f64x2 a, f64x2 b) { return {{std::min(a.v[0], b.v[0]), std::min(a.v[1], b.v[1])}}; }
 inline f64x2 sqrt(f64x2 a) { return {{std::sqrt(a.v[0]), std::sqrt(a.v[1])}}; }

@@ -11,16 +11,22 @@ inline Vec3 areaNormal(const float* a, const float* b, const float* c) {
   return cross(Vec3::from(b) - origin, Vec3::from(c) - origin);
 }
 
+/// Two points, axis by axis.
+using TwoVec3 = Vector<simd::f64x2>;
+
+/// @param p,q  Four floats each, the last of which does not count.
+inline TwoVec3 pointsAt(const float* p, const float* q) {
+  const simd::f32x4 a = simd::load(p);
+  const simd::f32x4 b = simd::load(q);
+  const simd::f32x4 xy = simd::interleaveLow(a, b);
+  return {simd::lowDoubles(xy), simd::highDoubles(xy), simd::lowDoubles(simd::interleaveHigh(a, b))};
+}
+
 /// Twice the areas of two triangles: to the bit the length of `areaNormal` of each.
 /// @param positions  4 floats each, by index.
 inline simd::f64x2 doubleAreas(const float* positions, const std::uint32_t* one, const std::uint32_t* other) {
-  const auto corners = [&](int i) -> Vector<simd::f64x2> {
-    const simd::f32x4 a = simd::load(positions + std::size_t{4} * one[i]);
-    const simd::f32x4 b = simd::load(positions + std::size_t{4} * other[i]);
-    const simd::f32x4 xy = simd::interleaveLow(a, b);
-    return {simd::lowDoubles(xy), simd::highDoubles(xy), simd::lowDoubles(simd::interleaveHigh(a, b))};
-  };
-  const Vector<simd::f64x2> origins = corners(0);
+  const auto corners = [&](int i) { return pointsAt(positions + std::size_t{4} * one[i], positions + std::size_t{4} * other[i]); };
+  const TwoVec3 origins = corners(0);
   return length(cross(corners(1) - origins, corners(2) - origins));
 }
 
