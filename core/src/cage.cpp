@@ -11,11 +11,11 @@
 namespace cagecast {
 
 RayDirection RayDirection::along(Vec3 unit) noexcept {
-  const float d[4] = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z), 1};
+  const float d[3] = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
   RayDirection ray{};
   ray.exact = unit;
   // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
-  const simd::f32x4 direction = simd::load(d);
+  const simd::f32x4 direction = simd::of(d[0], d[1], d[2], 1);
   const simd::f32x4 size = simd::splat(1) / simd::max(simd::abs(direction), simd::splat(1e-20f));
   simd::store(ray.inverse, simd::select(direction < simd::splat(0), simd::splat(0) - size, size));
   ray.inverse[3] = std::numeric_limits<float>::infinity();

@@ -242,9 +242,9 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
   }
   const wide from = simd::splatWide(boxFrom_);
   const std::uint32_t room = count + 1;
-  const std::uint32_t begins[4] = {3 * room, 2 * room, room, 0};
-  simd::count4 ends = simd::load(begins);  // Of the lists.
-  simd::count4 before = ends;              // Without the last ray.
+  const simd::count4 begins = simd::of(3 * room, 2 * room, room, 0);
+  simd::count4 ends = begins;    // Of the lists.
+  simd::count4 before = begins;  // Without the last ray.
   if (simd::kParts > 1) rays[count] = rays[count - 1];
   for (const std::uint16_t* next = rays; next < rays + count; next += simd::kParts) {
     const std::uint16_t ray[] = {next[0], next[simd::kParts - 1]};  // As many as there are parts.
@@ -281,8 +281,7 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
       ends = simd::countTrue(ends, enters);
     });
   }
-  simd::store(counts, count % simd::kParts == 0 ? ends : before);
-  for (int i = 0; i < 4; ++i) counts[i] -= begins[i];
+  simd::store(counts, (count % simd::kParts == 0 ? ends : before) - begins);
 }
 
 /// Tries rays with the four triangles from the first of a leaf on.

@@ -42,6 +42,8 @@ struct mask4 {
 inline f32x4 load(const float* p) { return {_mm_loadu_ps(p)}; }
 inline void store(float* p, f32x4 a) { _mm_storeu_ps(p, a.v); }
 inline f32x4 splat(float x) { return {_mm_set1_ps(x)}; }
+/// Four numbers, not by way of memory: a load of what was just stored in parts waits.
+inline f32x4 of(float a, float b, float c, float d) { return {_mm_setr_ps(a, b, c, d)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {_mm_add_ps(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {_mm_sub_ps(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {_mm_mul_ps(a.v, b.v)}; }
@@ -149,6 +151,9 @@ struct count4 {
   __m128i v;
 };
 inline count4 load(const std::uint32_t* p) { return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))}; }
+inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  return {_mm_setr_epi32(static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d))};
+}
 /// Numbers from 0 on, without what they have behind the point.
 inline count4 wholes(f32x4 a) { return {_mm_cvttps_epi32(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), c.v); }
@@ -163,6 +168,7 @@ inline count4 max(count4 a, count4 b) {
   return {_mm_or_si128(_mm_and_si128(isMore, a.v), _mm_andnot_si128(isMore, b.v))};
 #endif
 }
+inline count4 operator-(count4 a, count4 b) { return {_mm_sub_epi32(a.v, b.v)}; }
 /// One more where the mask is set: all its bits are the number −1.
 inline count4 countTrue(count4 c, mask4 m) { return {_mm_sub_epi32(c.v, _mm_castps_si128(m.v))}; }
 template <int lane>
@@ -186,6 +192,7 @@ struct mask4 {
 inline f32x4 load(const float* p) { return {vld1q_f32(p)}; }
 inline void store(float* p, f32x4 a) { vst1q_f32(p, a.v); }
 inline f32x4 splat(float x) { return {vdupq_n_f32(x)}; }
+inline f32x4 of(float a, float b, float c, float d) { return {float32x4_t{a, b, c, d}}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {vaddq_f32(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {vsubq_f32(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {vmulq_f32(a.v, b.v)}; }
@@ -260,10 +267,12 @@ struct count4 {
   uint32x4_t v;
 };
 inline count4 load(const std::uint32_t* p) { return {vld1q_u32(p)}; }
+inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { return {uint32x4_t{a, b, c, d}}; }
 inline count4 wholes(f32x4 a) { return {vreinterpretq_u32_s32(vcvtq_s32_f32(a.v))}; }
 inline void store(std::uint32_t* p, count4 c) { vst1q_u32(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {vdupq_n_u32(x)}; }
 inline count4 max(count4 a, count4 b) { return {vmaxq_u32(a.v, b.v)}; }
+inline count4 operator-(count4 a, count4 b) { return {vsubq_u32(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {vsubq_u32(c.v, m.v)}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
@@ -282,6 +291,7 @@ struct mask4 {
 inline f32x4 load(const float* p) { return {wasm_v128_load(p)}; }
 inline void store(float* p, f32x4 a) { wasm_v128_store(p, a.v); }
 inline f32x4 splat(float x) { return {wasm_f32x4_splat(x)}; }
+inline f32x4 of(float a, float b, float c, float d) { return {wasm_f32x4_make(a, b, c, d)}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return {wasm_f32x4_add(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {wasm_f32x4_sub(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {wasm_f32x4_mul(a.v, b.v)}; }
@@ -356,10 +366,12 @@ struct count4 {
   v128_t v;
 };
 inline count4 load(const std::uint32_t* p) { return {wasm_v128_load(p)}; }
+inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { return {wasm_i32x4_make(a, b, c, d)}; }
 inline count4 wholes(f32x4 a) { return {wasm_i32x4_trunc_sat_f32x4(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {wasm_u32x4_splat(x)}; }
 inline count4 max(count4 a, count4 b) { return {wasm_u32x4_max(a.v, b.v)}; }
+inline count4 operator-(count4 a, count4 b) { return {wasm_i32x4_sub(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {wasm_i32x4_sub(c.v, m.v)}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
@@ -386,6 +398,7 @@ inline mask4 test(F f) {
 inline f32x4 load(const float* p) { return {{p[0], p[1], p[2], p[3]}}; }
 inline void store(float* p, f32x4 a) { std::memcpy(p, a.v, sizeof a.v); }
 inline f32x4 splat(float x) { return {{x, x, x, x}}; }
+inline f32x4 of(float a, float b, float c, float d) { return {{a, b, c, d}}; }
 inline f32x4 operator+(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] + b.v[i]; }); }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] - b.v[i]; }); }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] * b.v[i]; }); }
@@ -464,6 +477,7 @@ struct count4 {
   std::uint32_t v[4];
 };
 inline count4 load(const std::uint32_t* p) { return {{p[0], p[1], p[2], p[3]}}; }
+inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { return {{a, b, c, d}}; }
 inline count4 wholes(f32x4 a) {
   const auto whole = [&](int i) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(a.v[i])); };
   return {{whole(0), whole(1), whole(2), whole(3)}};
@@ -473,6 +487,7 @@ inline count4 splatCount(std::uint32_t x) { return {{x, x, x, x}}; }
 inline count4 max(count4 a, count4 b) {
   return {{std::max(a.v[0], b.v[0]), std::max(a.v[1], b.v[1]), std::max(a.v[2], b.v[2]), std::max(a.v[3], b.v[3])}};
 }
+inline count4 operator-(count4 a, count4 b) { return {{a.v[0] - b.v[0], a.v[1] - b.v[1], a.v[2] - b.v[2], a.v[3] - b.v[3]}}; }
 inline count4 countTrue(count4 c, mask4 m) { return {{c.v[0] + m.v[0], c.v[1] + m.v[1], c.v[2] + m.v[2], c.v[3] + m.v[3]}}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
