@@ -123,7 +123,9 @@ inline f32x4 interleaveLow(f32x4 a, f32x4 b) { return {_mm_unpacklo_ps(a.v, b.v)
 inline f32x4 interleaveHigh(f32x4 a, f32x4 b) { return {_mm_unpackhi_ps(a.v, b.v)}; }
 /// x, y, z, 0.
 inline f32x4 load3(const float* p) {
-  return {_mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(p))), _mm_load_ss(p + 2))};
+  double xy;  // Two floats, which need not be aligned as a double.
+  std::memcpy(&xy, p, sizeof xy);
+  return {_mm_movelh_ps(_mm_castpd_ps(_mm_set_sd(xy)), _mm_load_ss(p + 2))};
 }
 
 /// Two doubles.
@@ -137,7 +139,10 @@ inline f64x2 operator*(f64x2 a, f64x2 b) { return {_mm_mul_pd(a.v, b.v)}; }
 inline f64x2 operator/(f64x2 a, f64x2 b) { return {_mm_div_pd(a.v, b.v)}; }
 inline f64x2 doubles(double a, double b) { return {_mm_set_pd(b, a)}; }
 /// Two floats.
-inline void storeRounded(float* p, f64x2 a) { _mm_storel_pi(reinterpret_cast<__m64*>(p), _mm_cvtpd_ps(a.v)); }
+inline void storeRounded(float* p, f64x2 a) {
+  const double both = _mm_cvtsd_f64(_mm_castps_pd(_mm_cvtpd_ps(a.v)));
+  std::memcpy(p, &both, sizeof both);
+}
 inline f64x2 splatDouble(double x) { return {_mm_set1_pd(x)}; }
 inline f64x2 min(f64x2 a, f64x2 b) { return {_mm_min_pd(a.v, b.v)}; }
 inline f64x2 sqrt(f64x2 a) { return {_mm_sqrt_pd(a.v)}; }
