@@ -18,7 +18,7 @@ constexpr float kPadding = 1e-6f;
 
 /// The same for boxes that are turned: `NearestSearch` writes a tag over the last bits of the squared distance, which makes the
 /// distance larger by up to 2^-18 of itself, that is of √3 scenes at most; coordinates along axes, themselves rounded, are
-/// sums of three products that are each rounded by up to 2^-24 of a scene, of the box's corners and of points alike.
+/// sums of a few products that are each rounded by up to 2^-24 of a scene, of the box's corners and of points alike.
 constexpr float kTurnedPadding = 1.2e-5f;
 
 /// A coordinate where nothing is: products with it, and its square, are still finite.
@@ -382,7 +382,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     for (std::uint32_t lane = 0; lane < 4; lane += 2) setNearTriangles(nearLeaves[leaf], lane, *triangles[lane], *triangles[lane + 1]);
     for (std::uint32_t lane = 4; 4 * leaf + lane > cage.count;) clearNearTriangle(nearLeaves[leaf], --lane);
     boxes[leaf] = box.padded(kPadding * units.reach);
-    new (leafBoxes + leaf) LeafBox(boxAround(nearLeaves[leaf], triangles, out.middle, kTurnedPadding * units.reach));
+    new (leafBoxes + leaf) LeafBox(boxAround(triangles, out.middle, kTurnedPadding * units.reach));
   }
   fillNodes(boxes, nodes, out);
   scratch.rewind(mark);
