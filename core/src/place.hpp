@@ -21,20 +21,26 @@ struct Place {
   bool inside;     ///< Strictly: not on an edge or a corner.
 };
 
-/// The place on a triangle of a point that lies beside it: on one of the edges that its foot is beyond.
-/// @param height  Of p over the plane.
-/// @param v,w     Barycentrics of b and c of its foot.
-Place placeOnEdge(const CageTriangle& t, Vec3 p, double height, double v, double w) noexcept;
+/// The point of a triangle's border that is nearest to a point p.
+struct BorderPlace {
+  double distance;
+  double v, w;
+};
+
+/// Finds it for a point that lies beside the triangle: on one of the edges that its foot is beyond.
+/// @param v,w  Barycentrics of b and c of its foot.
+BorderPlace placeOnBorder(const CageTriangle& t, const Vec3& p, double v, double w) noexcept;
 
 /// Finds the point of a triangle that is nearest to p.
-inline Place placeOn(const CageTriangle& t, Vec3 p) {
+inline Place placeOn(const CageTriangle& t, const Vec3& p) {
   const Vec3 offset = p - Vec3::from(t.a);
   const double height = dot(offset, t.normal.exact);
   // Most points lie straight under their triangle.
   const double v = dot(offset, t.towardsB);
   const double w = dot(offset, t.towardsC);
   if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
-  return placeOnEdge(t, p, height, v, w);
+  const BorderPlace place = placeOnBorder(t, p, v, w);
+  return {place.distance, place.v, place.w, height, false};
 }
 
 /// A triangle that could be the nearest.
