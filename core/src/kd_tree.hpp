@@ -34,16 +34,17 @@ struct alignas(16) Node {
 /// edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B.
 /// Unused lanes are infinitely far away.
 struct alignas(16) NearLeaf {
-  /// One of the two upper edges, from its foot on AB to C; x is counted from that foot, towards the other one.
-  struct Edge {
-    float x[4], y[4];  ///< Unit vector.
-    float length[4];
+  /// What makes a coordinate of a point: where the middle of the cage is, from which the point is counted, and a unit vector.
+  struct Axis {
+    float middle[4];
+    float direction[3][4];
   };
-  float origin[3][4];
-  float axes[3][3][4];    ///< axes[x, y, z][component]: unit vectors.
-  float base[4];          ///< B = (base, 0).
-  float foot[4];          ///< x of C.
-  Edge left, right;       ///< AC and BC.
+  Axis axes[3];
+  float base[4];  ///< B = (base, 0).
+  float foot[4];  ///< x of C.
+  /// The two upper edges, AC and BC, each from its foot on AB to C; x is counted from that foot, towards the other one.
+  float edgeX[2][4], edgeY[2][4];  ///< Unit vector.
+  float edgeLength[2][4];
   std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
 };
 
@@ -98,7 +99,7 @@ class NearestSearch {
   void widen(double more, double distance) noexcept;
 
   /// Searches for `count` ≤ `kGroup` points that are near each other.
-  /// @param positions  As in `Points`.
+  /// @param positions  As in `Points`; `candidates` may look at them again.
   void search(const float* positions, std::uint32_t count) noexcept;
 
   /// The triangles that could be the nearest to point i of the last search by the tie rule: all whose distance is within
@@ -137,7 +138,6 @@ class NearestSearch {
   };
 
   /// Leaves that are near enough to a box, level by level.
-  /// @param[out] leaves  As a node's children.
   /// @return How many.
   std::uint32_t listLeaves(const simd::f32x4 (&low)[3], const simd::f32x4 (&high)[3], simd::f32x4 limit,
                            std::uint32_t*& leaves) const noexcept;
@@ -150,8 +150,9 @@ class NearestSearch {
   float growth_;                      ///< 1 + r,
   float fixedSlack_;                  ///< and s² · (1 + 1/r).
   std::uint32_t lastLeaf_ = 0;
-  alignas(16) float points_[kGroup][4];   ///< x, y, z, 0 each.
-  alignas(32) float columns_[3][kGroup];  ///< The same, by axis, from the middle of the cage.
+  const float* positions_ = nullptr;           ///< Of the last search.
+  alignas(16) float points_[kGroup][4];        ///< x, y, z, 0 each, from the middle of the cage.
+  alignas(32) float columns_[3][kGroup] = {};  ///< The same, by axis; any, where points are fewer.
   alignas(32) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
   std::uint32_t* list_;               ///< Room for all leaves, and four more.
   std::uint32_t* otherList_;

@@ -75,8 +75,9 @@ void setChildren(Node& node, const Box (&boxes)[4]) {
 }
 
 /// Sets two lanes of a leaf.
-/// @param lane  The first of them.
-void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& one, const CageTriangle& other) {
+/// @param lane    The first of them.
+/// @param middle  Of the cage.
+void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& one, const CageTriangle& other, const float* middle) {
   const float* const corners[2][3] = {{one.a, one.b, one.c}, {other.a, other.b, other.c}};
   const auto points = [&](std::size_t i, std::size_t j) { return pointsAt(corners[0][i % 3], corners[1][j % 3]); };
   double squares[3][2];
@@ -103,34 +104,34 @@ void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& on
   const f64x2 height = dot(ac, axisY);
 
   const auto put = [lane](float (&to)[4], f64x2 values) { simd::storeRounded(to + lane, values); };
-  const auto putVectors = [&put](float (&to)[3][4], const TwoVec3& v) {
-    put(to[0], v.x);
-    put(to[1], v.y);
-    put(to[2], v.z);
+  const auto putAxis = [&put, fromA = pointsAt(middle, middle) - a](NearLeaf::Axis& axis, const TwoVec3& direction) {
+    put(axis.middle, dot(fromA, direction));
+    put(axis.direction[0], direction.x);
+    put(axis.direction[1], direction.y);
+    put(axis.direction[2], direction.z);
   };
-  const auto putEdges = [&put, height](NearLeaf::Edge& edge, f64x2 toFoot) {
+  const auto putEdges = [&](int side, f64x2 toFoot) {
     const f64x2 edgeLength = sqrt(toFoot * toFoot + height * height);
-    put(edge.x, toFoot / edgeLength);
-    put(edge.y, height / edgeLength);
-    put(edge.length, edgeLength);
+    put(leaf.edgeX[side], toFoot / edgeLength);
+    put(leaf.edgeY[side], height / edgeLength);
+    put(leaf.edgeLength[side], edgeLength);
   };
-  putVectors(leaf.origin, a);
-  putVectors(leaf.axes[0], axisX);
-  putVectors(leaf.axes[1], axisY);
-  putVectors(leaf.axes[2], axisZ);
+  putAxis(leaf.axes[0], axisX);
+  putAxis(leaf.axes[1], axisY);
+  putAxis(leaf.axes[2], axisZ);
   put(leaf.base, base);
   put(leaf.foot, footX);
-  putEdges(leaf.left, footX);
-  putEdges(leaf.right, base - footX);
+  putEdges(0, footX);
+  putEdges(1, base - footX);
 }
 
 void clearNearTriangle(NearLeaf& leaf, std::uint32_t lane) {
-  for (int k = 0; k < 3; ++k) {
-    leaf.origin[k][lane] = kFar;
-    for (int i = 0; i < 3; ++i) leaf.axes[i][k][lane] = i == k ? 1.0f : 0.0f;
+  for (int i = 0; i < 3; ++i) {
+    leaf.axes[i].middle[lane] = kFar;
+    for (int k = 0; k < 3; ++k) leaf.axes[i].direction[k][lane] = i == k ? 1.0f : 0.0f;
   }
   leaf.base[lane] = leaf.foot[lane] = 0;
-  for (NearLeaf::Edge* edge : {&leaf.left, &leaf.right}) edge->x[lane] = edge->y[lane] = edge->length[lane] = 0;
+  for (int side = 0; side < 2; ++side) leaf.edgeX[side][lane] = leaf.edgeY[side][lane] = leaf.edgeLength[side][lane] = 0;
   leaf.slot[lane] = 0;
 }
 
@@ -379,7 +380,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
       for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
       for (std::uint32_t k = 0; k < 3; ++k) corners[3 * i + k] = kCageStride * slot + k;
     }
-    for (std::uint32_t lane = 0; lane < 4; lane += 2) setNearTriangles(nearLeaves[leaf], lane, *triangles[lane], *triangles[lane + 1]);
+    for (std::uint32_t lane = 0; lane < 4; lane += 2) setNearTriangles(nearLeaves[leaf], lane, *triangles[lane], *triangles[lane + 1], out.middle);
     for (std::uint32_t lane = 4; 4 * leaf + lane > cage.count;) clearNearTriangle(nearLeaves[leaf], --lane);
     boxes[leaf] = box.padded(kPadding * units.reach);
     new (leafBoxes + leaf) LeafBox(boxAround(triangles, out.middle, kTurnedPadding * units.reach));

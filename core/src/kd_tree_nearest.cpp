@@ -19,15 +19,16 @@ using simd::wide;
 
 /// Squared distance of a box to four boxes.
 f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x4 (&high)[3]) {
-  f32x4 sum = splat(0);
+  f32x4 sum;
   for (int k = 0; k < 3; ++k) {
     const f32x4 outside = simd::max(simd::max(load(node.low[k]) - high[k], low[k] - load(node.high[k])), splat(0));
-    sum = simd::multiplyAdd(outside, outside, sum);
+    sum = k == 0 ? outside * outside : simd::multiplyAdd(outside, outside, sum);
   }
   return sum;
 }
 
 /// Squared distance of p to four triangles.
+/// @param p  From the middle of the cage.
 f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
   return squaredDistances(leaf, simd::splatLane<0>(p), simd::splatLane<1>(p), simd::splatLane<2>(p),
                           [](const float (&field)[4]) { return load(field); });
@@ -54,14 +55,16 @@ std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&hig
   std::uint32_t* from = list_;
   std::uint32_t* to = otherList_;
   std::uint32_t count = tree_.entryCount;
-  for (std::uint32_t i = 0; i < count; ++i) from[i] = tree_.entry + i;
+  for (std::uint32_t i = 0; i < count; ++i) from[i] = i;
+  const Node* row = tree_.rays.nodes + tree_.entry;
   for (std::uint32_t level = 0; level <= tree_.levelsBelowEntry; ++level) {
+    if (level > 0) row = tree_.rays.nodes + row->child[0];
     std::size_t found = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Node& node = tree_.rays.nodes[from[i]];
-      const unsigned close = simd::bits(squaredDistanceToBoxes(node, low, high) <= limit);
+      const std::uint32_t node = from[i];
+      const unsigned close = simd::bits(squaredDistanceToBoxes(row[node], low, high) <= limit);
       for (std::uint32_t lane = 0; lane < 4; ++lane) {
-        to[found] = node.child[lane];
+        to[found] = 4 * node + lane;
         found += close >> lane & 1;
       }
     }
@@ -95,9 +98,8 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
   alignas(32) float distances[kBatch][kGroup];
   wide nearest[kGroup / kWide];
   for (wide& n : nearest) n = simd::splatWide(std::numeric_limits<float>::infinity());
-  const auto leafAt = [leaves](std::uint32_t j) { return firstOf(leaves[j]) / 4; };
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const LeafBox& box = tree_.boxes[leafAt(j)];
+    const LeafBox& box = tree_.boxes[leaves[j]];
     wide squared[kGroup / kWide];
     const auto addAxis = [&]<int axis>(std::integral_constant<int, axis>) {
       const wide x = simd::splatWideAt<axis>(box.axes[0]);
@@ -128,56 +130,53 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!(least[i] <= limits_[i])) continue;
     const std::uint32_t j = simd::tagOf<kTagBits>(least[i]);
-    searchLeaf(leafAt(j), 1u << i);
+    searchLeaf(leaves[j], 1u << i);
     distances[j][i] = std::numeric_limits<float>::infinity();
   }
   for (std::uint32_t j = 0; j < leafCount; ++j) {
     simd::wideMask close[kGroup / kWide];
     for (unsigned i = 0; i < kGroup; i += kWide) close[i / kWide] = loadWide(distances[j] + i) <= loadWide(limits_ + i);
-    if (const unsigned members = simd::bits(close); members != 0) searchLeaf(leafAt(j), members);
+    if (const unsigned members = simd::bits(close); members != 0) searchLeaf(leaves[j], members);
   }
 }
 
 void NearestSearch::search(const float* positions, std::uint32_t count) noexcept {
+  positions_ = positions;
+  const f32x4 middle = load(tree_.middle);
   f32x4 lowCorner = load(positions);
   f32x4 highCorner = lowCorner;
-  for (std::uint32_t i = 0; i < kGroup; i += simd::kWidth) {
+  for (std::uint32_t i = 0; i < count; i += simd::kWidth) {
     f32x4 rows[simd::kWidth];
     for (std::uint32_t j = 0; j < simd::kWidth; ++j) {
       rows[j] = load(positions + Points::kStride * std::min(i + j, count - 1));
       lowCorner = simd::min(lowCorner, rows[j]);
       highCorner = simd::max(highCorner, rows[j]);
+      rows[j] = rows[j] - middle;
       simd::store(points_[i + j], rows[j]);
-      rows[j] = rows[j] - load(tree_.middle);
     }
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);
   }
   const f32x4 low[3] = {simd::splatLane<0>(lowCorner), simd::splatLane<1>(lowCorner), simd::splatLane<2>(lowCorner)};
   const f32x4 high[3] = {simd::splatLane<0>(highCorner), simd::splatLane<1>(highCorner), simd::splatLane<2>(highCorner)};
-  for (std::uint32_t i = 0; i < kGroup; ++i) {
-    limits_[i] = i < count ? std::numeric_limits<float>::max() : -1.0f;
-    nearCount_[i] = 0;
-  }
+  for (unsigned i = 0; i < kGroup; i += simd::kWidth) simd::store(limits_ + i, splat(std::numeric_limits<float>::max()));
+  std::fill(limits_ + count, limits_ + kGroup, -1.0f);
+  std::fill(nearCount_, nearCount_ + kGroup, 0u);
   const std::uint32_t seed = lastLeaf_;
   searchLeaf(seed, (1u << count) - 1);  // For a limit to begin with.
   f32x4 most = load(limits_);
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
   std::uint32_t leafCount = listLeaves(low, high, simd::highest(most), leaves);
-  leafCount = static_cast<std::uint32_t>(std::remove(leaves, leaves + leafCount, leafOf(4 * seed)) - leaves);
+  if (std::uint32_t* const known = std::find(leaves, leaves + leafCount, seed); known < leaves + leafCount) *known = leaves[--leafCount];
   for (std::uint32_t begin = 0; begin < leafCount; begin += kBatch) {
     searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
   }
 
   // Where the last point is nearest, the next group begins.
   const std::uint32_t last = count - 1;
-  float least = std::numeric_limits<float>::infinity();
-  for (std::uint32_t j = 0; j < std::min(nearCount_[last], kRoom); ++j) {
-    if (near_[last][j].squaredDistance >= least) continue;
-    least = near_[last][j].squaredDistance;
-    lastLeaf_ = near_[last][j].lanes >> 4;
-  }
+  const Near* const near = near_[last];
+  lastLeaf_ = std::min_element(near, near + std::min(nearCount_[last], kRoom), [](Near a, Near b) { return a.squaredDistance < b.squaredDistance; })->lanes >> 4;
 }
 
 std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) const noexcept {
@@ -192,14 +191,13 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) c
     return count;
   }
   // A fan around a corner, or a stack of copies: collect all within the limit, which is known by now.
-  const f32x4 point = load(points_[i]);
+  const f32x4 point = load(positions_ + Points::kStride * i);
   const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
   const f32x4 limit = splat(limits_[i]);
   std::uint32_t* leaves;
   const std::uint32_t leafCount = listLeaves(box, box, limit, leaves);
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const std::uint32_t leaf = firstOf(leaves[j]) / 4;
-    takeLanes(leaf, simd::bits(squaredDistanceToTriangles(tree_.near[leaf], point) <= limit));
+    takeLanes(leaves[j], simd::bits(squaredDistanceToTriangles(tree_.near[leaves[j]], load(points_[i])) <= limit));
   }
   return count;
 }

@@ -205,9 +205,10 @@ class Mender {
     const auto& [from, place] = corners[k].at;
     const Vec3 q = positionOf(cage_.triangles[from], place);
     // One look at a triangle, in float, tells how far it is from the three corners and from q.
+    const Vec3 middle = Vec3::from(tree_.middle);
     const auto four = [&](double Vec3::*axis) {
-      const float lanes[4] = {static_cast<float>(corners[0].p.*axis), static_cast<float>(corners[1].p.*axis),
-                              static_cast<float>(corners[2].p.*axis), static_cast<float>(q.*axis)};
+      const auto lane = [&](Vec3 p) { return static_cast<float>(p.*axis - middle.*axis); };
+      const float lanes[4] = {lane(corners[0].p), lane(corners[1].p), lane(corners[2].p), lane(q)};
       return simd::load(lanes);
     };
     patch.x = four(&Vec3::x);

@@ -71,8 +71,6 @@ inline mask4 operator<(f32x4 a, f32x4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {_mm_cmple_ps(a.v, b.v)}; }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return {_mm_cmpneq_ps(a.v, b.v)}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {_mm_and_ps(a.v, b.v)}; }
-/// a where the mask is set, else 0.
-inline f32x4 keep(mask4 m, f32x4 a) { return {_mm_and_ps(m.v, a.v)}; }
 /// Numbers from 0 on with a tag of so many bits in place of their last ones, which makes them a little less or more.
 template <int tagBits>
 inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
@@ -211,7 +209,6 @@ inline mask4 operator<(f32x4 a, f32x4 b) { return {vcltq_f32(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {vcleq_f32(a.v, b.v)}; }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return {vmvnq_u32(vceqq_f32(a.v, b.v))}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {vandq_u32(a.v, b.v)}; }
-inline f32x4 keep(mask4 m, f32x4 a) { return {vreinterpretq_f32_u32(vandq_u32(m.v, vreinterpretq_u32_f32(a.v)))}; }
 template <int tagBits>
 inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
   return {vbslq_f32(vdupq_n_u32((1u << tagBits) - 1), vreinterpretq_f32_u32(vdupq_n_u32(tag)), a.v)};
@@ -310,7 +307,6 @@ inline mask4 operator<(f32x4 a, f32x4 b) { return {wasm_f32x4_lt(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {wasm_f32x4_le(a.v, b.v)}; }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return {wasm_f32x4_ne(a.v, b.v)}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {wasm_v128_and(a.v, b.v)}; }
-inline f32x4 keep(mask4 m, f32x4 a) { return {wasm_v128_and(m.v, a.v)}; }
 template <int tagBits>
 inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
   return {wasm_v128_bitselect(wasm_i32x4_splat(static_cast<int>(tag)), a.v, wasm_i32x4_splat((1 << tagBits) - 1))};
@@ -417,7 +413,6 @@ inline mask4 operator<(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i
 inline mask4 operator<=(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] <= b.v[i]; }); }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] != b.v[i]; }); }
 inline mask4 operator&(mask4 a, mask4 b) { return test([&](int i) { return a.v[i] && b.v[i]; }); }
-inline f32x4 keep(mask4 m, f32x4 a) { return lanes([&](int i) { return m.v[i] ? a.v[i] : 0.0f; }); }
 template <int tagBits>
 inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
   return lanes([&](int i) {
