@@ -367,7 +367,9 @@ struct count4 {
   v128_t v;
 };
 inline count4 load(const std::uint32_t* p) { return {wasm_v128_load(p)}; }
-inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { return {wasm_i32x4_make(a, b, c, d)}; }
+inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  return {wasm_i32x4_make(static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d))};
+}
 inline count4 wholes(f32x4 a) { return {wasm_i32x4_trunc_sat_f32x4(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {wasm_u32x4_splat(x)}; }
