@@ -42,7 +42,8 @@ class Digits {
     const std::uint32_t mask = values() - 1;
     ++counts[key & mask];
     ++(counts + values())[key >> bits_ & mask];
-    if (count_ > 2) ++(counts + 2 * std::size_t{values()})[key >> 2 * bits_];
+    // Of large meshes: others need not even prepare for it.
+    if (count_ > 2) [[unlikely]] ++(counts + 2 * std::size_t{values()})[key >> 2 * bits_];
   }
 
   /// Sorts by key, stably: least significant digit first.
