@@ -27,10 +27,13 @@ constexpr double kFirstLook = 0.99 * kSmear * kSmear;
 constexpr double kFirstSlack = 0.9 * kSmearSlack * kSmearSlack;
 
 /// What the first look knows of the place of a point of the target.
-struct FirstLook {
-  std::uint32_t island;
+struct alignas(16) FirstLook {
+  float u, v;
   float explains;  ///< Squared UV length per squared length, on the triangle of the cage under the point.
+  float island;    ///< Of that triangle: the number.
 };
+/// Numbers up to here are exact as floats.
+constexpr std::uint32_t kMostIslands = 1u << 24;
 
 /// A corner of a target triangle, and its place on the cage.
 struct Corner {
@@ -108,8 +111,8 @@ class Mender {
     }
     const double reach = kPatchEdges * std::sqrt(longest) + kPatchSlack * diagonal_;
 
-    // In float first: which of the patches might bring the corners nearest. They grow in turn, because rings wait for each
-    // other, but not for those of another patch.
+    // In float first: which of the patches might bring the corners nearest. They grow in turn, ring by ring. How many triangles a
+    // ring leaves is known only when its looks are through: until then there are those of the other patches.
     ++triangle_;
     const auto isKnown = [&](int k) {
       return std::any_of(corners, corners + k, [&](const Corner& c) { return c.at.slot == corners[k].at.slot; });
@@ -123,7 +126,8 @@ class Mender {
       }
     }
     while (patches_[0].isGrowing() || patches_[1].isGrowing() || patches_[2].isGrowing()) {
-      for (Patch& patch : patches_) grow(patch);
+      for (Patch& patch : patches_) look(patch);
+      for (Patch& patch : patches_) meet(patch);
     }
     double sums[3];
     double least = std::numeric_limits<double>::infinity();
@@ -175,8 +179,9 @@ class Mender {
     Vec3 place;
     double reach;
     std::uint32_t first;         ///< The lane of the triangle that the place is on.
-    std::uint32_t size;          ///< Triangles so far; behind them, up to `end`, those next to the last ring.
-    std::uint32_t end;
+    std::uint32_t size;          ///< Triangles so far,
+    std::uint32_t kept;          ///< with what was kept of those next to the last ring,
+    std::uint32_t end;           ///< and, before they are looked at, with all of those.
     std::uint32_t* lanes;
     float* squaredDistances;     ///< 4 per triangle.
     simd::f32x4 leastSquares;    ///< For each of the four.
@@ -208,8 +213,7 @@ class Mender {
     const Vec3 middle = Vec3::from(tree_.middle);
     const auto four = [&](double Vec3::*axis) {
       const auto lane = [&](Vec3 p) { return static_cast<float>(p.*axis - middle.*axis); };
-      const float lanes[4] = {lane(corners[0].p), lane(corners[1].p), lane(corners[2].p), lane(q)};
-      return simd::load(lanes);
+      return simd::of(lane(corners[0].p), lane(corners[1].p), lane(corners[2].p), lane(q));
     };
     patch.x = four(&Vec3::x);
     patch.y = four(&Vec3::y);
@@ -218,8 +222,7 @@ class Mender {
     const double surely = std::max(0.0, reach - rounding);
     const auto within = static_cast<float>(surely * surely);
     const auto beyond = static_cast<float>((reach + rounding) * (reach + rounding));
-    const float limits[4] = {within, beyond, beyond, beyond};
-    patch.limits = simd::load(limits);
+    patch.limits = simd::of(within, beyond, beyond, beyond);
     patch.leastSquares = simd::splat(std::numeric_limits<float>::max());
     patch.place = q;
     patch.reach = reach;
@@ -230,31 +233,42 @@ class Mender {
     patch.end = 1;
   }
 
-  /// Looks at the triangles next to the last ring, keeps those near enough, and finds what is next to them.
-  void grow(Patch& patch) noexcept {
+  /// Looks at the triangles next to the last ring, and keeps those near enough.
+  void look(Patch& patch) noexcept {
+    // In registers, as stores might change the patch for all the compiler knows.
+    std::uint32_t* const lanes = patch.lanes;
+    float* const rows = patch.squaredDistances;
+    const NearLeaf* const leaves = tree_.near;
+    const std::uint32_t end = patch.end;
     std::uint32_t size = patch.size;
-    for (std::uint32_t i = size; i < patch.end; ++i) {
-      const std::uint32_t lane = patch.lanes[i];
-      const simd::f32x4 squared = squaredDistances(tree_.near[lane / 4], patch.x, patch.y, patch.z,
+    for (std::uint32_t i = size; i < end; ++i) {
+      const std::uint32_t lane = lanes[i];
+      const simd::f32x4 squared = squaredDistances(leaves[lane / 4], patch.x, patch.y, patch.z,
                                                    [lane](const float (&field)[4]) { return simd::splat(field[lane % 4]); });
       // No branch that is a coin toss: what is not kept is written over by the next.
       const unsigned isWithin = simd::bits(simd::splatLane<kPlace>(squared) <= patch.limits);
       std::uint32_t isNear = isWithin & 1;
       if (isWithin == kUnsure) isNear = lane == patch.first || placeOf(patch.place, slotOf(lane)).place.distance <= patch.reach;
-      simd::store(patch.squaredDistances + 4 * size, squared);
-      patch.lanes[size] = lane;
+      simd::store(rows + std::size_t{4} * size, squared);
+      lanes[size] = lane;
       size += isNear;
     }
-    std::uint32_t end = size;
-    const auto meet = [&](std::uint32_t lane) {
+    patch.kept = size;
+  }
+
+  /// Adds the triangles that were kept, and finds what is next to them.
+  void meet(Patch& patch) noexcept {
+    simd::f32x4 least = patch.leastSquares;
+    std::uint32_t end = patch.kept;
+    const auto add = [&](std::uint32_t lane) {
       patch.lanes[end] = lane;
       end += patch.seen[lane] != triangle_;
       patch.seen[lane] = triangle_;
     };
-    for (std::uint32_t i = patch.size; i < size; ++i) {
-      patch.leastSquares = simd::min(patch.leastSquares, simd::load(patch.squaredDistances + 4 * i));
+    for (std::uint32_t i = patch.size; i < patch.kept; ++i) {
+      least = simd::min(least, simd::load(patch.squaredDistances + std::size_t{4} * i));
       const Across& across = across_[patch.lanes[i]];
-      for (const std::uint32_t lane : across.lanes) meet(lane);
+      for (const std::uint32_t lane : across.lanes) add(lane);
       if (across.isOnFan == 0) continue;
       const std::uint32_t sides = 3 * slotOf(patch.lanes[i]);
       for (std::uint32_t side = sides; side < sides + 3; ++side) {
@@ -262,11 +276,12 @@ class Mender {
         // One round for all triangles that share the edge, however many.
         for (std::uint32_t more = atlas_.nextSide[side]; more != side; more = atlas_.nextSide[more]) {
           patch.sideSeen[more] = triangle_;
-          meet(laneOf_[more / 3]);
+          add(laneOf_[more / 3]);
         }
       }
     }
-    patch.size = size;
+    patch.leastSquares = least;
+    patch.size = patch.kept;
     patch.end = end;
   }
 
@@ -327,38 +342,38 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
   if (!findAtlas(cageMesh, cage, scratch, atlas)) return false;
   Mender mender(cage, tree, atlas, units.diagonal, scratch);
   auto* looks = scratch.take<FirstLook>(points.count);
-  auto* uvs = scratch.take<float>(std::size_t{4} * points.count);  // Two are 0.
   if (scratch.failed()) return false;
 
   // A first look in float: most triangles are clearly whole in the texture.
+  const bool looksTell = atlas.mostUv <= kMostUv && cage.count <= kMostIslands;
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const std::uint32_t slot = results.triangles[i];
     // Below infinity, so that a product with it stays a number.
     const double explained = std::min(kFirstLook * atlas.stretch[slot] * atlas.stretch[slot], 1e30);
-    looks[i] = {atlas.islands[slot], atlas.mostUv <= kMostUv ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity()};
-    const float uv[4] = {results.uvs[2 * i], results.uvs[2 * i + 1], 0, 0};
-    std::memcpy(uvs + std::size_t{4} * i, uv, sizeof uv);
+    looks[i] = {results.uvs[2 * i], results.uvs[2 * i + 1], looksTell ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity(),
+                static_cast<float>(atlas.islands[slot])};
   }
   const auto isWhole = [&](const std::uint32_t (&point)[3]) {
-    const FirstLook& a = looks[point[0]];
-    const FirstLook& b = looks[point[1]];
-    const FirstLook& c = looks[point[2]];
-    // What the least of the three explains.
-    const simd::f32x4 explains = simd::splat(std::min({a.explains, b.explains, c.explains}));
-    const auto row = [](const float* rows, std::uint32_t i) { return simd::load(rows + std::size_t{4} * i); };
-    // By how much an edge's squared length in UV is less, by axis, and then by edge.
-    const auto explainsMore = [&](std::uint32_t i, std::uint32_t j) {
-      const simd::f32x4 edge = row(points.positions, j) - row(points.positions, i);
-      const simd::f32x4 inUv = row(uvs, j) - row(uvs, i);
-      return explains * (edge * edge) - inUv * inUv;
-    };
-    simd::f32x4 x = explainsMore(point[0], point[1]);
-    simd::f32x4 y = explainsMore(point[1], point[2]);
-    simd::f32x4 z = explainsMore(point[2], point[0]);
-    simd::f32x4 none = simd::splat(0);
-    simd::transpose(x, y, z, none);
-    const simd::f32x4 more = x + y + z + simd::splat(static_cast<float>(kFirstSlack));
-    return a.island == b.island && b.island == c.island && simd::bits(simd::splat(0) <= more) == 0xF;
+    const simd::f32x4 zero = simd::splat(0);
+    const simd::mask4 isThird = zero < simd::of(0.0f, 0.0f, 1.0f, 0.0f);
+    // First by edge, then by axis: how far it goes, how far in UV, what the more stretched of its ends explains, and from island
+    // to island.
+    simd::f32x4 lengths[4], inUv[4];
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t i = point[k], j = point[(k + 1) % 3];
+      lengths[k] = simd::load(points.at(j)) - simd::load(points.at(i));
+      const simd::f32x4 from = simd::load(&looks[i].u), to = simd::load(&looks[j].u);
+      inUv[k] = simd::select(isThird, simd::max(from, to), to - from);
+    }
+    lengths[3] = inUv[3] = zero;
+    auto& [x, y, z, unused] = lengths;
+    auto& [u, v, explains, islands] = inUv;
+    simd::transpose(x, y, z, unused);
+    simd::transpose(u, v, explains, islands);
+    const simd::f32x4 squared = simd::multiplyAdd(z, z, simd::multiplyAdd(y, y, x * x));
+    const simd::f32x4 limit = simd::multiplyAdd(explains, squared, simd::splat(static_cast<float>(kFirstSlack)));
+    const simd::f32x4 squaredInUv = simd::multiplyAdd(v, v, u * u);
+    return simd::bits((squaredInUv <= limit) & (islands * islands <= zero)) == 0xF;
   };
   // The triangles around a point often come one soon after the other.
   constexpr std::uint32_t kRecent = 64;
@@ -371,7 +386,7 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     const std::uint32_t* index = targetMesh.indices.data() + 3 * t;
     const std::uint32_t point[3] = {points.ofVertex[index[0]], points.ofVertex[index[1]], points.ofVertex[index[2]]};
     float* ofCorners = cornerUvs + 6 * t;
-    for (int c = 0; c < 3; ++c) std::memcpy(ofCorners + 2 * c, uvs + std::size_t{4} * point[c], 2 * sizeof(float));
+    for (int c = 0; c < 3; ++c) std::memcpy(ofCorners + 2 * c, &looks[point[c]].u, 2 * sizeof(float));
     // `points.triangles` has those with an area, in the same order.
     if (usable == points.triangleCount || !std::equal(point, point + 3, points.triangles + std::size_t{3} * usable)) continue;
     ++usable;
