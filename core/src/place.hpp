@@ -59,14 +59,16 @@ struct Uv {
 };
 
 /// Blends the UVs of a triangle's corners at a place on it.
+inline simd::f64x2 blendUvs(const CageTriangle& t, const Place& place) {
+  const simd::f64x2 a = simd::lowDoubles(simd::load(t.uvs));
+  const simd::f64x2 ab = simd::lowDoubles(simd::load(t.uvs + 2)) - a;
+  const simd::f64x2 ac = simd::highDoubles(simd::load(t.uvs + 2)) - a;
+  return a + simd::splatDouble(place.v) * ab + simd::splatDouble(place.w) * ac;
+}
 inline Uv uvAt(const CageTriangle& t, const Place& place) {
-  const auto blend = [&](int k) {
-    const double a = static_cast<double>(t.uvs[k]);
-    const double ab = static_cast<double>(t.uvs[2 + k]) - a;
-    const double ac = static_cast<double>(t.uvs[4 + k]) - a;
-    return a + place.v * ab + place.w * ac;
-  };
-  return {blend(0), blend(1)};
+  double uv[2];
+  simd::store(uv, blendUvs(t, place));
+  return {uv[0], uv[1]};
 }
 
 }  // namespace cagecast

@@ -67,9 +67,7 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
     const Candidate nearest = only == NearestSearch::kSeveral ? nearestOfSeveral(member, p) : Candidate{only, placeOn(cage.triangles[only], p)};
 
     const Place& q = nearest.place;
-    const Uv uv = uvAt(cage.triangles[nearest.slot], q);
-    out.uvs[2 * i] = static_cast<float>(uv.u);
-    out.uvs[2 * i + 1] = static_cast<float>(uv.v);
+    simd::storeRounded(out.uvs + std::size_t{2} * i, blendUvs(cage.triangles[nearest.slot], q));
     out.distances[i] = static_cast<float>(q.distance);
     out.triangles[i] = nearest.slot;
     // Strictly inside its triangle, q = p − height · n, so the ray hits it at −height.
