@@ -80,9 +80,10 @@ void setChildren(Node& node, const Box (&boxes)[4]) {
 void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& one, const CageTriangle& other, const float* middle) {
   const float* const corners[2][3] = {{one.a, one.b, one.c}, {other.a, other.b, other.c}};
   const auto points = [&](std::size_t i, std::size_t j) { return pointsAt(corners[0][i % 3], corners[1][j % 3]); };
+  const TwoVec3 asTheyAre[3] = {points(0, 0), points(1, 1), points(2, 2)};
   double squares[3][2];
   for (std::size_t i = 0; i < 3; ++i) {
-    const TwoVec3 edges = points(i + 1, i + 1) - points(i, i);
+    const TwoVec3 edges = asTheyAre[(i + 1) % 3] - asTheyAre[i];
     simd::store(squares[i], dot(edges, edges));
   }
   const auto longest = [&](int k) {
