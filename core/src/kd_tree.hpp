@@ -232,7 +232,8 @@ class HitSearch {
   void enter(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept;
   void testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
                  std::uint32_t (&counts)[4]) const noexcept;
-  void testLeaf(const Node& node, int child, const std::uint16_t* rays, std::uint32_t count) noexcept;
+  void testLeaf(const Node& node, int child, std::uint16_t* rays, std::uint32_t count) noexcept;
+  void decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept;
 
   const RayTree& tree_;
   double from_;

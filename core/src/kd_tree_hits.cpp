@@ -36,6 +36,9 @@ constexpr float kDistanceRounding = 8.0f;
 /// than the former where the depth is the reach.
 constexpr float kDepthRounding = 0x1p-19f;
 
+/// The most that the edge functions of a ray that comes into a leaf's box add up to, in squares of the box's size.
+constexpr float kMostSum = 24.0f;
+
 /// The distance of a ray that hits nothing, and the end of one that need not look any further.
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
@@ -51,13 +54,17 @@ float strictEnd(double end) { return std::isfinite(end) ? static_cast<float>(end
 struct RayLeaf {
   float corner[Ray::kRow][3][4];  ///< corner[axis in a row][a, b, c][lane].
   float rounding;          ///< What the edge functions of a ray that hits may be off in float.
-  float distanceRounding;  ///< And its distance, times the sum of these functions, as far as the reach.
+  float nearest;           ///< The least that the distance of such a hit, times the sum of these functions, may come out at.
   float depthRounding;     ///< `kDepthRounding` of the reach.
   unsigned own;            ///< Which triangles are the leaf's own: a bit each. What rounding may do is known of these.
 
-  RayLeaf(const RayTree& tree, std::uint32_t child, float size)
-      : rounding(size * kEdgeRounding * tree.reach), distanceRounding(rounding * kDistanceRounding * tree.reach),
-        depthRounding(kDepthRounding * tree.reach), own(15u >> foreignIn(child)) {
+  /// @param size   Of the leaf's box: its sides together.
+  /// @param loose  Hits beyond it are worth deciding.
+  RayLeaf(const RayTree& tree, std::uint32_t child, float size, float loose)
+      : rounding(size * kEdgeRounding * tree.reach),
+        nearest(std::min(loose, 0.0f) * (kMostSum * size * size) - rounding * kDistanceRounding * tree.reach),
+        depthRounding(kDepthRounding * tree.reach),
+        own(15u >> foreignIn(child)) {
     const std::uint32_t* index = tree.corners + std::size_t{3} * firstOf(child);
     for (int i = 0; i < 3; ++i) {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
@@ -110,9 +117,9 @@ namespace {
 /// What the test of `hitDistance` comes to in float, for four triangles.
 struct Estimate {
   f32x4 least, most;  ///< Of the three edge functions.
-  f32x4 size;         ///< Of their sum.
+  f32x4 sum;          ///< Of them.
   f32x4 depths;       ///< 0 at the ray's origin, exactly.
-  f32x4 distances;    ///< Times the square of `size`: so there is no division.
+  f32x4 distances;    ///< Times the size of `sum`: so there is no division.
 };
 
 inline Estimate estimate(const RayLeaf& leaf, const Ray& ray) {
@@ -139,17 +146,17 @@ inline Estimate estimate(const RayLeaf& leaf, const Ray& ray) {
   // The distance is −(u·z0 + v·z1 + w·z2)·scale / (u + v + w).
   const f32x4 sum = u + v + w;
   const f32x4 depths = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
-  return {simd::min(u, simd::min(v, w)), simd::max(u, simd::max(v, w)), simd::abs(sum), depths,
-          depths * splat(direction.scaleZ) * sum};
+  return {simd::min(u, simd::min(v, w)), simd::max(u, simd::max(v, w)), sum, depths,
+          simd::turned(depths * splat(direction.scaleZ), sum)};
 }
 
 /// Which triangles the ray might hit, as far as float can tell.
-/// @param loose    Hits beyond it are worth deciding.
 /// @param nowhere  0 if a hit at distance 0 is none, else no number.
-inline unsigned mightHit(const RayLeaf& leaf, const Estimate& of, f32x4 loose, f32x4 nowhere) {
+inline unsigned mightHit(const RayLeaf& leaf, const Estimate& of, f32x4 nowhere) {
   // None is negative, or none is positive.
   const mask4 through = simd::min(splat(0) - of.least, of.most) <= splat(leaf.rounding);
-  const mask4 beyond = (loose * of.size - splat(leaf.distanceRounding)) * of.size <= of.distances;
+  // Where hits count from is nearer than distances are exact.
+  const mask4 beyond = splat(leaf.nearest) <= of.distances;
   // Triangles at the origin itself come out at 0 exactly; they are many, and no hits if hits begin beyond 0.
   return simd::bits(through & beyond & (of.depths != nowhere));
 }
@@ -161,10 +168,11 @@ inline unsigned mustHit(const RayLeaf& leaf, const Estimate& of, const Ray& ray,
   const std::uint32_t z = ray.direction->z;
   const auto depth = [&](int i) { return simd::abs(splat(ray.origin[z]) - load(leaf.corner[z][i])); };
   const f32x4 deepest = simd::max(depth(0), simd::max(depth(1), depth(2)));
-  const f32x4 slack = deepest * splat(kDistanceRounding * leaf.rounding) + of.size * splat(leaf.depthRounding);
+  const f32x4 size = simd::abs(of.sum);
+  const f32x4 slack = deepest * splat(kDistanceRounding * leaf.rounding) + size * splat(leaf.depthRounding);
   const mask4 through = splat(leaf.rounding) < simd::max(of.least, splat(0) - of.most);
-  const mask4 beyond = (splat(strict) * of.size + slack) * of.size <= of.distances;
-  const mask4 before = of.distances <= (splat(strictEnd(ray.end)) * of.size - slack) * of.size;
+  const mask4 beyond = splat(strict) * size + slack <= of.distances;
+  const mask4 before = of.distances <= splat(strictEnd(ray.end)) * size - slack;
   return simd::bits(through & beyond & before) & leaf.own;
 }
 
@@ -284,36 +292,48 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
   simd::store(counts, (count % simd::kParts == 0 ? ends : before) - begins);
 }
 
-/// Tries rays with the four triangles from the first of a leaf on.
-void HitSearch::testLeaf(const Node& node, int child, const std::uint16_t* rays, std::uint32_t count) noexcept {
+/// Tries rays with the four triangles from the first of a leaf on. The list of rays is used up.
+void HitSearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::uint32_t count) noexcept {
   const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
-  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2));
+  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2), loose_);
   const float soonest = loose_;
-  const f32x4 loose = splat(soonest);
   const f32x4 zero = splat(zero_);
+  const Ray* const all = rays_;
+  // No branch on what is a coin toss: a ray that surely hits nothing is written over by the next.
+  static_assert(sizeof(Slabs) > 15);  // So the mask fits below what names a ray.
+  std::uint32_t left = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    Slabs& slabs = slabsOf(rays[i]);
-    if (slabs.end() < soonest) continue;
+    const std::uint16_t ray = rays[i];
+    if (slabsOf(ray).end() < soonest) continue;
+    const unsigned close = mightHit(leaf, estimate(leaf, all[ray / sizeof(Slabs)]), zero);
+    rays[left] = static_cast<std::uint16_t>(ray | close);
+    left += close != 0;
+  }
+  if (left > 0) decide(leaf, rays, left);
+}
+
+/// Decides which rays hit a leaf's triangles.
+/// @param rays  With the triangles that they might hit: a bit each.
+void HitSearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept {
+  for (std::uint32_t i = 0; i < count; ++i) {
     const std::size_t id = rays[i] / sizeof(Slabs);
     Ray& ray = rays_[id];
-    const Estimate estimated = estimate(leaf, ray);
-    unsigned close = mightHit(leaf, estimated, loose, zero);
-    if (close == 0) continue;
-    if (find_ == Find::any && mustHit(leaf, estimated, ray, strict_) != 0) {
+    float& end = slabs_[id].end();
+    if (find_ == Find::any && mustHit(leaf, estimate(leaf, ray), ray, strict_) != 0) {
       hit_[id] = true;
-      slabs.end() = static_cast<float>(kNowhere);
+      end = static_cast<float>(kNowhere);
       continue;
     }
-    for (; close != 0; close &= close - 1) {
+    for (unsigned close = rays[i] % sizeof(Slabs); close != 0; close &= close - 1) {
       const double distance = hitDistance(leaf, std::countr_zero(close), ray);
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
       if (find_ == Find::any) {
-        slabs.end() = static_cast<float>(kNowhere);
+        end = static_cast<float>(kNowhere);
         break;
       }
       ray.end = distance;
-      slabs.end() = looseEnd(distance);
+      end = looseEnd(distance);
     }
   }
 }

@@ -67,6 +67,8 @@ inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) {
 inline f32x4 min(f32x4 a, f32x4 b) { return {_mm_min_ps(a.v, b.v)}; }
 inline f32x4 max(f32x4 a, f32x4 b) { return {_mm_max_ps(a.v, b.v)}; }
 inline f32x4 abs(f32x4 a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
+/// a, its sign turned where b is negative.
+inline f32x4 turned(f32x4 a, f32x4 b) { return {_mm_xor_ps(a.v, _mm_and_ps(_mm_set1_ps(-0.0f), b.v))}; }
 inline mask4 operator<(f32x4 a, f32x4 b) { return {_mm_cmplt_ps(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {_mm_cmple_ps(a.v, b.v)}; }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return {_mm_cmpneq_ps(a.v, b.v)}; }
@@ -205,6 +207,10 @@ inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return {vfmsq_f32(c.v,
 inline f32x4 min(f32x4 a, f32x4 b) { return {vminq_f32(a.v, b.v)}; }
 inline f32x4 max(f32x4 a, f32x4 b) { return {vmaxq_f32(a.v, b.v)}; }
 inline f32x4 abs(f32x4 a) { return {vabsq_f32(a.v)}; }
+inline f32x4 turned(f32x4 a, f32x4 b) {
+  const uint32x4_t sign = vandq_u32(vdupq_n_u32(0x8000'0000u), vreinterpretq_u32_f32(b.v));
+  return {vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a.v), sign))};
+}
 inline mask4 operator<(f32x4 a, f32x4 b) { return {vcltq_f32(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {vcleq_f32(a.v, b.v)}; }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return {vmvnq_u32(vceqq_f32(a.v, b.v))}; }
@@ -303,6 +309,7 @@ inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return c - a * b; }
 inline f32x4 min(f32x4 a, f32x4 b) { return {wasm_f32x4_pmin(b.v, a.v)}; }
 inline f32x4 max(f32x4 a, f32x4 b) { return {wasm_f32x4_pmax(b.v, a.v)}; }
 inline f32x4 abs(f32x4 a) { return {wasm_f32x4_abs(a.v)}; }
+inline f32x4 turned(f32x4 a, f32x4 b) { return {wasm_v128_xor(a.v, wasm_v128_and(wasm_f32x4_splat(-0.0f), b.v))}; }
 inline mask4 operator<(f32x4 a, f32x4 b) { return {wasm_f32x4_lt(a.v, b.v)}; }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return {wasm_f32x4_le(a.v, b.v)}; }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return {wasm_f32x4_ne(a.v, b.v)}; }
@@ -411,6 +418,7 @@ inline f32x4 subtractProduct(f32x4 c, f32x4 a, f32x4 b) { return c - a * b; }
 inline f32x4 min(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; }); }
 inline f32x4 max(f32x4 a, f32x4 b) { return lanes([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; }); }
 inline f32x4 abs(f32x4 a) { return lanes([&](int i) { return std::abs(a.v[i]); }); }
+inline f32x4 turned(f32x4 a, f32x4 b) { return lanes([&](int i) { return std::signbit(b.v[i]) ? -a.v[i] : a.v[i]; }); }
 inline mask4 operator<(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] < b.v[i]; }); }
 inline mask4 operator<=(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] <= b.v[i]; }); }
 inline mask4 operator!=(f32x4 a, f32x4 b) { return test([&](int i) { return a.v[i] != b.v[i]; }); }
