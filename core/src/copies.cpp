@@ -21,6 +21,7 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
   auto* centres = scratch.take<Vec3>(count);
   auto* extents = scratch.take<double>(count);  // Sums of squared distances of the points from their mean.
   auto* order = scratch.take<std::uint32_t>(count);
+  auto* shares = scratch.take<double>(count);   // Of a point in their mean.
   auto* runs = scratch.take<std::uint32_t>(count);  // By their first.
   auto* isAlone = scratch.take<bool>(count);        // With so many points: it has no copy, and needs no extent.
   if (scratch.failed()) return false;
@@ -35,6 +36,7 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
     isAlone[order[i]] = !isAsMany(i - 1) && !isAsMany(i + 1);
   }
 
+  for (std::uint32_t s = 0; s < count; ++s) shares[s] = 1.0 / stats[s].points;
   std::fill(centres, centres + count, Vec3{0, 0, 0});
   std::fill(extents, extents + count, 0.0);
   const auto eachPoint = [&](auto call) {
@@ -42,7 +44,7 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
       if (!isAlone[results.segments[i]]) call(results.segments[i], Vec3::from(points.at(i)));
     }
   };
-  eachPoint([&](std::uint32_t s, Vec3 p) { centres[s] = centres[s] + 1.0 / stats[s].points * p; });
+  eachPoint([&](std::uint32_t s, Vec3 p) { centres[s] = centres[s] + shares[s] * p; });
   eachPoint([&](std::uint32_t s, Vec3 p) { extents[s] += dot(p - centres[s], p - centres[s]); });
 
   std::uint32_t runCount = 0;

@@ -12,16 +12,6 @@ namespace {
 /// A place within this share of the diagonal of an open edge is on it, so that rounding does not decide.
 constexpr double kOnRim = 1e-6;
 
-/// Calls for each side of the cage's triangles with its number (3 · triangle + corner) and the vertices at its ends.
-template <typename Call>
-void eachSide(const MeshView& mesh, const Cage& cage, const std::uint32_t* vertexOf, Call call) {
-  for (std::uint32_t t = 0; t < cage.count; ++t) {
-    const std::uint32_t* index = mesh.indices.data() + std::size_t{3} * cage.triangles[t].index;
-    const std::uint32_t corners[3] = {vertexOf[index[0]], vertexOf[index[1]], vertexOf[index[2]]};
-    for (std::uint32_t k = 0; k < 3; ++k) call(3 * t + k, corners[k], corners[(k + 1) % 3]);
-  }
-}
-
 /// A triangle's corners, its edges as unit vectors and their lengths, and its outward normal.
 struct Frame {
   Vec3 corners[3], edges[3], normal;
@@ -123,6 +113,8 @@ bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& ou
   auto* vertexOf = scratch.take<std::uint32_t>(vertexCount);
   const Scratch::Mark mark = scratch.mark();
   auto* edges = scratch.take<std::uint64_t>(sideCount);
+  auto* starts = scratch.take<std::uint32_t>(sideCount);  // The vertices that sides (3 · triangle + corner) begin at.
+  auto* open = scratch.take<std::uint32_t>(sideCount);    // Sides that no other triangle has.
   auto* parents = scratch.take<std::uint32_t>(vertexCount);
   auto* isShared = scratch.take<bool>(sideCount);
   auto* loopAt = scratch.take<std::uint32_t>(vertexCount);
@@ -140,36 +132,47 @@ bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& ou
   }
   // An edge is shared if it is met again. It is named by the first side on it.
   std::fill(isShared, isShared + sideCount, false);
-  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
-    edges[side] = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-    const std::uint32_t first =
-        edgeTable.firstEqual(side, IndexTable::mix(0, edges[side]), [&](std::uint32_t other) { return edges[other] == edges[side]; });
-    if (first != side) isShared[side] = isShared[first] = true;
-  });
+  const auto endOf = [starts](std::uint32_t side) { return starts[side % 3 == 2 ? side - 2 : side + 1]; };
+  for (std::uint32_t t = 0; t < cage.count; ++t) {
+    const std::uint32_t* index = mesh.indices.data() + std::size_t{3} * cage.triangles[t].index;
+    for (std::uint32_t k = 0; k < 3; ++k) starts[3 * t + k] = vertexOf[index[k]];
+    for (std::uint32_t side = 3 * t; side < 3 * t + 3; ++side) {
+      edges[side] = std::uint64_t{std::min(starts[side], endOf(side))} << 32 | std::max(starts[side], endOf(side));
+      const std::uint32_t first =
+          edgeTable.firstEqual(side, IndexTable::mix(0, edges[side]), [&](std::uint32_t other) { return edges[other] == edges[side]; });
+      isShared[first] = isShared[side] = first != side;
+    }
+  }
+  std::uint32_t openCount = 0;
+  for (std::uint32_t side = 0; side < sideCount; ++side) {
+    open[openCount] = side;
+    openCount += !isShared[side];
+  }
   UnionFind sets(parents, vertexCount);
-  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
-    if (!isShared[side]) sets.join(a, b);
-  });
+  for (std::uint32_t i = 0; i < openCount; ++i) sets.join(starts[open[i]], endOf(open[i]));
   std::fill(loopAt, loopAt + vertexCount, Rims::kNone);
   out.count = 0;
-  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t b) {
-    if (isShared[side]) return;
-    std::uint32_t& loop = loopAt[sets.find(a)];
+  for (std::uint32_t i = 0; i < openCount; ++i) {
+    const std::uint32_t side = open[i];
+    std::uint32_t& loop = loopAt[sets.find(starts[side])];
     if (loop == Rims::kNone) {
       boxes[out.count] = {};
       loop = out.count++;
     }
-    loopAt[a] = loopAt[b] = loop;
+    loopAt[starts[side]] = loopAt[endOf(side)] = loop;
     const CageTriangle& t = cage.triangles[side / 3];
     const float* corners[3] = {t.a, t.b, t.c};
     boxes[loop].grow(Vec3::from(corners[side % 3]));
     boxes[loop].grow(Vec3::from(corners[(side % 3 + 1) % 3]));
-  });
-  eachSide(mesh, cage, vertexOf, [&](std::uint32_t side, std::uint32_t a, std::uint32_t) {
-    std::uint32_t* sides = ofSides + std::size_t{6} * (side / 3);
-    sides[3 + side % 3] = loopAt[a];
-    sides[side % 3] = isShared[side] ? Rims::kNone : loopAt[a];
-  });
+  }
+  for (std::uint32_t t = 0; t < cage.count; ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t side = 3 * t + k;
+      const std::uint32_t loop = loopAt[starts[side]];
+      ofSides[6 * std::size_t{t} + k] = isShared[side] ? Rims::kNone : loop;
+      ofSides[6 * std::size_t{t} + 3 + k] = loop;
+    }
+  }
   out.boxes = boxes;
   out.ofSides = ofSides;
   out.vertexOf = vertexOf;
