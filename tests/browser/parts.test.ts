@@ -113,6 +113,21 @@ test('the part that is pointed at, or that has the keyboard, lights up', async (
   assert.ok(difference(before, await look(page, area)) < 0.0005)
 })
 
+test('a part that has the keyboard as soon as the card is open stays lit', async () => {
+  const { page } = visit
+  const area = await modelArea(page)
+  await page.locator('#parts').evaluate((card: HTMLDetailsElement) => (card.open = false))
+  const before = await look(page, area)
+  // The page is told of the opening after that.
+  await page.locator('#parts').evaluate((card: HTMLDetailsElement) => {
+    card.open = true
+    card.querySelector('select')!.focus()
+  })
+  assert.ok(difference(before, await look(page, area)) > 0.002, 'lit')
+  await page.evaluate(() => (document.activeElement as HTMLElement).blur())
+  assert.ok(difference(before, await look(page, area)) < 0.0005, 'and dark again')
+})
+
 test('the keyboard opens the table, and chooses in it', async () => {
   const { page } = visit
   const counts = await shownCounts(page)

@@ -48,7 +48,8 @@ export class PartsTable {
     addEventListener('pointerdown', ({ target }) => this.#body.contains(target as Node) || this.#light([]))
     this.#body.addEventListener('focusout', () => this.#light([]))
     // A card that is closed under the pointer no longer points at anything.
-    element('parts', HTMLDetailsElement).addEventListener('toggle', () => this.#light([]))
+    const card = element('parts', HTMLDetailsElement)
+    card.addEventListener('toggle', () => card.open || this.#light([]))
     session.on('transfer', (shown) => this.#list(shown, session.locks))
     session.on('zones', ({ classification }) => {
       // Something else than the table may have locked parts, even some that share a row.
