@@ -172,6 +172,7 @@ struct Ray {
   const RayDirection* direction;
   double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
 
+  /// @param position  x, y, z.
   void startAt(const float* position) noexcept {
     const float x = position[0];
     const float y = position[1];

@@ -34,6 +34,7 @@ const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev'];
 // The last three count instructions, which a test holds against a budget.
 const kTests = [...kPage, 'g++', 'libtinygltf-dev', 'nlohmann-json3-dev', 'catch2', 'chromium', 'valgrind', 'qemu-user', 'g++-aarch64-linux-gnu'];
 const kPurposes = {
+  assets: [],
   start: kPage,
   test: kTests,
   bench: [...kTests, 'libembree-dev'],
