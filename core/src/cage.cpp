@@ -4,10 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "simd.hpp"
-#include "simd.hpp"
-#include "triangle.hpp"
-
 namespace cagecast {
 
 RayDirection RayDirection::along(Vec3 unit) noexcept {
@@ -46,10 +42,9 @@ bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage
     const double doubleArea = length(normal);
     if (!(doubleArea > 0)) continue;
     const Vec3 unit = 1 / doubleArea * normal;
-    const Vec3 a = Vec3::from(triangle.a);
     triangle.index = static_cast<std::uint32_t>(t);
-    triangle.towardsB = 1 / doubleArea * cross(unit, a - Vec3::from(triangle.c));
-    triangle.towardsC = 1 / doubleArea * cross(unit, Vec3::from(triangle.b) - a);
+    const TwoVec3 edges = pointsAt(triangle.a, triangle.b) - pointsAt(triangle.c, triangle.a);
+    triangle.gradients = simd::splatDouble(1 / doubleArea) * cross(twice(unit), edges);
     triangle.normal = RayDirection::along(unit);
     ++count;
   }

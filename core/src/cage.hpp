@@ -5,7 +5,7 @@
 #include "cagecast/mesh.hpp"
 #include "check.hpp"
 #include "scratch.hpp"
-#include "vec3.hpp"
+#include "triangle.hpp"
 
 namespace cagecast {
 
@@ -26,7 +26,7 @@ struct alignas(16) CageTriangle {
   float a[4], b[4], c[4];  ///< Corners (x, y, z, 0), scaled.
   float uvs[6];            ///< Of the corners.
   std::uint32_t index;     ///< In the caller's mesh.
-  Vec3 towardsB, towardsC; ///< dot(p − a, towardsB) is the barycentric of b of the foot of p, and likewise for c.
+  TwoVec3 gradients;       ///< Of the barycentrics of b and c: times p − a, they are those of the foot of p.
   RayDirection normal;     ///< Outward; the direction of the rays of the points that project here.
 };
 

@@ -142,8 +142,12 @@ bool Looker::isWhole(std::uint32_t side, Nearby nearby, Hull hull) const noexcep
     const CageTriangle& t = cage_.triangles[slot];
     double squares = 0;
     for (int k = 0; k < 2; ++k) {
-      const double a = static_cast<double>(t.uvs[k]);
-      const Vec3 change = (static_cast<double>(t.uvs[2 + k]) - a) * t.towardsB + (static_cast<double>(t.uvs[4 + k]) - a) * t.towardsC;
+      const auto a = static_cast<double>(t.uvs[k]);
+      const auto b = static_cast<double>(t.uvs[2 + k]);
+      const auto c = static_cast<double>(t.uvs[4 + k]);
+      const TwoVec3 changes = simd::doubles(b - a, c - a) * t.gradients;
+      const auto sum = [](simd::f64x2 both) { return simd::doubleOf<0>(both) + simd::doubleOf<1>(both); };
+      const Vec3 change{sum(changes.x), sum(changes.y), sum(changes.z)};
       squares += dot(change, change);
     }
     const Place place = placeOf(t, middle);

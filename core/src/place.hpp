@@ -36,8 +36,9 @@ inline Place placeOn(const CageTriangle& t, const Vec3& p) {
   const Vec3 offset = p - Vec3::from(t.a);
   const double height = dot(offset, t.normal.exact);
   // Most points lie straight under their triangle.
-  const double v = dot(offset, t.towardsB);
-  const double w = dot(offset, t.towardsC);
+  const simd::f64x2 both = dot(twice(offset), t.gradients);
+  const double v = simd::doubleOf<0>(both);
+  const double w = simd::doubleOf<1>(both);
   if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
   const BorderPlace place = placeOnBorder(t, p, v, w);
   return {place.distance, place.v, place.w, height, false};

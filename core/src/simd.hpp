@@ -138,6 +138,10 @@ inline f64x2 operator-(f64x2 a, f64x2 b) { return {_mm_sub_pd(a.v, b.v)}; }
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {_mm_mul_pd(a.v, b.v)}; }
 inline f64x2 operator/(f64x2 a, f64x2 b) { return {_mm_div_pd(a.v, b.v)}; }
 inline f64x2 doubles(double a, double b) { return {_mm_set_pd(b, a)}; }
+template <int lane>
+inline double doubleOf(f64x2 a) {
+  return _mm_cvtsd_f64(lane == 0 ? a.v : _mm_unpackhi_pd(a.v, a.v));
+}
 /// Two floats.
 inline void storeRounded(float* p, f64x2 a) {
   const double both = _mm_cvtsd_f64(_mm_castps_pd(_mm_cvtpd_ps(a.v)));
@@ -264,6 +268,10 @@ inline f64x2 operator-(f64x2 a, f64x2 b) { return {vsubq_f64(a.v, b.v)}; }
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {vmulq_f64(a.v, b.v)}; }
 inline f64x2 operator/(f64x2 a, f64x2 b) { return {vdivq_f64(a.v, b.v)}; }
 inline f64x2 doubles(double a, double b) { return {vsetq_lane_f64(b, vdupq_n_f64(a), 1)}; }
+template <int lane>
+inline double doubleOf(f64x2 a) {
+  return vgetq_lane_f64(a.v, lane);
+}
 inline void storeRounded(float* p, f64x2 a) { vst1_f32(p, vcvt_f32_f64(a.v)); }
 inline f64x2 splatDouble(double x) { return {vdupq_n_f64(x)}; }
 inline f64x2 min(f64x2 a, f64x2 b) { return {vminq_f64(a.v, b.v)}; }
@@ -363,6 +371,10 @@ inline f64x2 operator-(f64x2 a, f64x2 b) { return {wasm_f64x2_sub(a.v, b.v)}; }
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {wasm_f64x2_mul(a.v, b.v)}; }
 inline f64x2 operator/(f64x2 a, f64x2 b) { return {wasm_f64x2_div(a.v, b.v)}; }
 inline f64x2 doubles(double a, double b) { return {wasm_f64x2_make(a, b)}; }
+template <int lane>
+inline double doubleOf(f64x2 a) {
+  return wasm_f64x2_extract_lane(a.v, lane);
+}
 inline void storeRounded(float* p, f64x2 a) { wasm_v128_store64_lane(p, wasm_f32x4_demote_f64x2_zero(a.v), 0); }
 inline f64x2 splatDouble(double x) { return {wasm_f64x2_splat(x)}; }
 inline f64x2 min(f64x2 a, f64x2 b) { return {wasm_f64x2_pmin(b.v, a.v)}; }
@@ -473,6 +485,10 @@ inline f64x2 operator-(f64x2 a, f64x2 b) { return {{a.v[0] - b.v[0], a.v[1] - b.
 inline f64x2 operator*(f64x2 a, f64x2 b) { return {{a.v[0] * b.v[0], a.v[1] * b.v[1]}}; }
 inline f64x2 operator/(f64x2 a, f64x2 b) { return {{a.v[0] / b.v[0], a.v[1] / b.v[1]}}; }
 inline f64x2 doubles(double a, double b) { return {{a, b}}; }
+template <int lane>
+inline double doubleOf(f64x2 a) {
+  return a.v[lane];
+}
 inline void storeRounded(float* p, f64x2 a) {
   p[0] = static_cast<float>(a.v[0]);
   p[1] = static_cast<float>(a.v[1]);

@@ -14,6 +14,8 @@ inline Vec3 areaNormal(const float* a, const float* b, const float* c) {
 /// Two points, axis by axis.
 using TwoVec3 = Vector<simd::f64x2>;
 
+inline TwoVec3 twice(Vec3 p) { return {simd::splatDouble(p.x), simd::splatDouble(p.y), simd::splatDouble(p.z)}; }
+
 /// @param p,q  Four floats each, the last of which does not count.
 inline TwoVec3 pointsAt(const float* p, const float* q) {
   const simd::f32x4 a = simd::load(p);
