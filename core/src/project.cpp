@@ -59,23 +59,20 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
   };
   const PointResults out = results;
   const double start = kRayStart * units.diagonal;
-  for (std::uint32_t begin = 0; begin < points.count; begin += NearestSearch::kGroup) {
-    const std::uint32_t members = std::min(NearestSearch::kGroup, points.count - begin);
-    search.search(points.at(begin), members);
-    for (std::uint32_t member = 0; member < members; ++member) {
-      const std::uint32_t i = begin + member;
-      const Vec3 p = points.exactly(i);
-      const std::uint32_t only = search.onlyCandidate(member);
-      const Candidate nearest = only == NearestSearch::kSeveral ? nearestOfSeveral(member, p) : Candidate{only, placeOn(cage.triangles[only], p)};
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const std::uint32_t member = i % NearestSearch::kGroup;
+    if (member == 0) search.search(points.at(i), std::min(NearestSearch::kGroup, points.count - i));
+    const Vec3 p = points.exactly(i);
+    const std::uint32_t only = search.onlyCandidate(member);
+    const Candidate nearest = only == NearestSearch::kSeveral ? nearestOfSeveral(member, p) : Candidate{only, placeOn(cage.triangles[only], p)};
 
-      const Place& q = nearest.place;
-      simd::storeRounded(out.uvs + std::size_t{2} * i, blendUvs(cage.triangles[nearest.slot], q));
-      out.distances[i] = static_cast<float>(q.distance);
-      out.triangles[i] = nearest.slot;
-      // Strictly inside its triangle, q = p − height · n, so the ray hits it at −height.
-      out.meetsCage[i] = q.inside && -q.height > -start;
-      if (out.cageDistances != nullptr) out.cageDistances[i] = std::max(0.0, -q.height);
-    }
+    const Place& q = nearest.place;
+    simd::storeRounded(out.uvs + std::size_t{2} * i, blendUvs(cage.triangles[nearest.slot], q));
+    out.distances[i] = static_cast<float>(q.distance);
+    out.triangles[i] = nearest.slot;
+    // Strictly inside its triangle, q = p − height · n, so the ray hits it at −height.
+    out.meetsCage[i] = q.inside && -q.height > -start;
+    if (out.cageDistances != nullptr) out.cageDistances[i] = std::max(0.0, -q.height);
   }
   std::fill(out.zones, out.zones + points.count, Zone::cosmetic);
   scratch.rewind(mark);
