@@ -35,6 +35,7 @@ bool findVoters(const Points& points, const Rims& rims, const Units& units, cons
   const double bigEdge = kBigEdge * units.diagonal;
   const Scratch::Mark mark = scratch.mark();
   auto* boxes = scratch.take<Rims::Box>(stats.size());
+  auto* mayVote = scratch.take<bool>(stats.size());
   auto* triangles = scratch.take<std::uint32_t>(points.triangleCount);
   if (scratch.failed()) return false;
 
@@ -43,19 +44,23 @@ bool findVoters(const Points& points, const Rims& rims, const Units& units, cons
     const std::uint32_t s = results.segments[i];
     if (isSmall(stats[s])) boxes[s].grow(Vec3::from(points.at(i)));
   }
-  // Big triangles are few; only their segments are held against the rims.
+  // Small segments mostly have no room for a big edge, and then nobody has to look for one.
+  bool anyMayVote = false;
+  for (std::uint32_t s = 0; s < stats.size(); ++s) {
+    const Rims::Box& box = boxes[s];
+    mayVote[s] = isSmall(stats[s]) && box.diagonal() >= bigEdge &&
+                 std::any_of(rims.boxes, rims.boxes + rims.count, [&](const Rims::Box& rim) { return meets(box, rim, margin); });
+    anyMayVote = anyMayVote || mayVote[s];
+  }
   std::uint32_t count = 0;
-  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+  for (std::uint32_t t = 0; anyMayVote && t < points.triangleCount; ++t) {
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
-    const std::uint32_t s = results.segments[corner[0]];
-    if (!isSmall(stats[s])) continue;
+    if (!mayVote[results.segments[corner[0]]]) continue;
     const Vec3 a = Vec3::from(points.at(corner[0]));
     const Vec3 b = Vec3::from(points.at(corner[1]));
     const Vec3 c = Vec3::from(points.at(corner[2]));
-    if (std::max({length(b - a), length(c - b), length(a - c)}) < bigEdge) continue;
-    if (std::any_of(rims.boxes, rims.boxes + rims.count, [&](const Rims::Box& rim) { return meets(boxes[s], rim, margin); })) {
-      triangles[count++] = t;
-    }
+    triangles[count] = t;
+    count += std::max({length(b - a), length(c - b), length(a - c)}) >= bigEdge;
   }
   if (count == 0) {
     scratch.rewind(mark);
