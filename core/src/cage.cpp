@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cagecast {
 
 RayDirection RayDirection::along(Vec3 unit) noexcept {
   const float d[3] = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
-  RayDirection ray{};
-  ray.exact = unit;
+  RayDirection::Rough ray{};
   // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
   const simd::f32x4 direction = simd::of(d[0], d[1], d[2], 1);
   const simd::f32x4 size = simd::splat(1) / simd::max(simd::abs(direction), simd::splat(1e-20f));
   simd::store(ray.inverse, simd::select(direction < simd::splat(0), simd::splat(0) - size, size));
-  ray.inverse[3] = std::numeric_limits<float>::infinity();
   // No branch: nobody can guess where rays go.
   const float sizes[3] = {std::abs(d[0]), std::abs(d[1]), std::abs(d[2])};
   const auto second = static_cast<std::uint32_t>(sizes[1] > sizes[0]);
@@ -22,7 +19,7 @@ RayDirection RayDirection::along(Vec3 unit) noexcept {
   ray.scaleZ = -ray.inverse[ray.z];
   ray.shearX = d[(ray.z + 1) % 3] * ray.scaleZ;
   ray.shearY = d[(ray.z + 2) % 3] * ray.scaleZ;
-  return ray;
+  return {ray, unit};
 }
 
 bool gatherCage(const MeshView& cage, const Units& units, Scratch& scratch, Cage& out) noexcept {

@@ -12,11 +12,15 @@ namespace cagecast {
 /// A direction, prepared for intersection: the axis it points along most becomes z, and a shear makes it the z-axis
 /// (Woop, Benthin, Wald, "Watertight ray/triangle intersection", JCGT 2013). No reciprocal is infinite.
 struct RayDirection {
-  float inverse[4];        ///< 1 / component, of at most 1e20; the last is infinity.
-  float shearX, shearY;    ///< −x/z and −y/z of the direction.
-  float scaleZ;            ///< −1/z.
-  std::uint32_t z;         ///< Which axis serves as z; the next two, with x after z, as x and y.
-  Vec3 exact;              ///< Unit length.
+  /// For filters.
+  struct Rough {
+    float inverse[4];      ///< 1 / component, of at most 1e20; the last is any.
+    float shearX, shearY;  ///< −x/z and −y/z of the direction.
+    float scaleZ;          ///< −1/z.
+    std::uint32_t z;       ///< Which axis serves as z; the next two, with x after z, as x and y.
+  };
+  Rough rough;
+  Vec3 exact;  ///< Unit length.
 
   static RayDirection along(Vec3 unit) noexcept;
 };

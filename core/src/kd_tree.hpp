@@ -14,13 +14,12 @@
 /// of them; every leaf has up to four triangles, which lie side by side when it is looked at.
 namespace cagecast {
 
-/// A node's child: the index of a node, or a leaf with the high bit set: its first triangle, and in the two bits below the high
-/// one how many it has less than four. An unused child is some leaf, in a box that is a point far away.
+/// A node's child: the index of a node, or a leaf with the high bit set: its first triangle. An unused child is some leaf, in a
+/// box that is a point far away.
 inline constexpr std::uint32_t kLeafBit = 0x8000'0000u;
-inline constexpr std::uint32_t leafOf(std::uint32_t first, std::uint32_t foreign = 0) { return kLeafBit | foreign << 29 | first; }
-inline constexpr std::uint32_t firstOf(std::uint32_t leaf) { return leaf & ((1u << 29) - 1); }
-inline constexpr std::uint32_t foreignIn(std::uint32_t leaf) { return leaf >> 29 & 3; }
-static_assert(kMaxTriangles < 1u << 29);
+inline constexpr std::uint32_t leafOf(std::uint32_t first) { return kLeafBit | first; }
+inline constexpr std::uint32_t firstOf(std::uint32_t leaf) { return leaf & ~kLeafBit; }
+static_assert(kMaxTriangles < kLeafBit);
 
 /// Four boxes: low[axis][child], high[axis][child]. Each is a little larger than what it holds, by more than the
 /// rounding of the kernels that use it, so that no box hides a triangle that its kernel would hit.
@@ -167,20 +166,36 @@ struct RayLeaf;
 struct Ray {
   /// Axes in a row go x, y, z, x, y: from each of them on the next two follow.
   static constexpr int kRow = 5;
-  float origin[kRow];
-  float rest[3];  ///< What the exact origin has beyond the floats.
+  /// The origin in floats, in a row; then what the exact one has beyond them: x, y, z. So four can be loaded from each axis on.
+  float place[kRow + 3];
   const RayDirection* direction;
   double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
 
-  /// @param position  x, y, z.
-  void startAt(const float* position) noexcept {
+  /// @param position  x, y, z,
+  /// @param rest      and what the exact origin has beyond.
+  void startAt(const float* position, const float* rest) noexcept {
     const float x = position[0];
     const float y = position[1];
     const float z = position[2];
-    origin[0] = origin[3] = x;
-    origin[1] = origin[4] = y;
-    origin[2] = z;
+    place[0] = place[3] = x;
+    place[1] = place[4] = y;
+    place[2] = z;
+    for (int axis = 0; axis < 3; ++axis) place[kRow + axis] = rest[axis];
   }
+  [[nodiscard]] double origin(std::uint32_t axis) const noexcept {
+    return static_cast<double>(place[axis]) + static_cast<double>(place[kRow + axis]);
+  }
+};
+
+/// What filters look at of a ray, side by side.
+struct alignas(16) RoughRay {
+  float origin[4];  ///< For leaves: x, y, z of it, from the direction's own z on; the last is any.
+  float offset[4];  ///< For boxes: −origin · inverse.
+  RayDirection::Rough direction;
+
+  /// Not before the ray's end; less than anything once there is no more to find.
+  [[nodiscard]] float end() const noexcept { return direction.inverse[3]; }
+  void endAt(float end) noexcept { direction.inverse[3] = end; }
 };
 
 /// Finds which rays hit a triangle at a distance greater than `from` and up to their end, from either side. Watertight: a
@@ -192,7 +207,7 @@ struct Ray {
 class HitSearch {
  public:
   /// Rays that go together: enough to share nodes, few enough for their lists to stay in the cache.
-  static constexpr std::uint32_t kMostRays = 2048;
+  static constexpr std::uint32_t kMostRays = 1792;
 
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
   /// @param from  Scaled.
@@ -209,25 +224,18 @@ class HitSearch {
   void search(Ray* rays, std::uint32_t count, bool* hit, Find find = Find::any) noexcept;
 
  private:
-  /// What the box test needs of a ray.
-  struct alignas(16) Slabs {
-    float inverse[4];  ///< The last is the end.
-    float offset[4];   ///< −origin · inverse.
-    /// Not before the ray's end; less than anything once there is no more to find.
-    float& end() noexcept { return inverse[3]; }
-  };
-
   /// Room for lists, of all levels: enough but for odd trees. Where it ends, rays go in smaller parties.
-  static constexpr std::size_t kListRoom = std::size_t{12} * kMostRays;
+  static constexpr std::size_t kListRoom = std::size_t{8} * kMostRays;
   /// From so many rays on, a list is worth being moved.
   static constexpr std::uint32_t kLong = 64;
   /// What is left of it for rays that go alone, four lists with room for two at each level: a tree is not that deep.
   static constexpr std::ptrdiff_t kLastRoom = 8 * 64;
 
-  /// Lists name rays by where in memory their slabs are, from the first on.
-  static_assert(kMostRays * sizeof(Slabs) <= std::size_t{1} << 16);
-  [[nodiscard]] Slabs& slabsOf(std::uint16_t ray) const noexcept {
-    return *reinterpret_cast<Slabs*>(reinterpret_cast<char*>(slabs_) + ray);
+  /// Lists name rays by where in memory they are, from the first on, in halves of their size.
+  static constexpr std::uint32_t kStep = sizeof(RoughRay) / 2;
+  static_assert(kMostRays * kStep <= std::size_t{1} << 16);
+  [[nodiscard]] const RoughRay& roughRay(std::uint16_t ray) const noexcept {
+    return *reinterpret_cast<const RoughRay*>(reinterpret_cast<const char*>(rough_) + std::size_t{2} * ray);
   }
 
   void enter(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept;
@@ -242,7 +250,7 @@ class HitSearch {
   float loose_;             ///< Hits beyond this are worth deciding in double,
   float strict_;            ///< and beyond this they count for sure.
   float zero_;              ///< 0 if a hit at distance 0 is none, else no number.
-  Slabs* slabs_;            ///< 1 per ray.
+  RoughRay* rough_;         ///< 1 per ray.
   std::uint16_t* lists_;    ///< `kListRoom`.
   Ray* rays_ = nullptr;
   bool* hit_ = nullptr;

@@ -453,7 +453,7 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
           for (int k = 0; k < 3; ++k) below[lane].grow(load(target.at(corner[k])));
         }
         below[lane] = below[lane].padded(kPadding * units.reach);
-        nodes[node].child[lane] = leafOf(first, 3 - (child & 3));
+        nodes[node].child[lane] = leafOf(first);
       } else {
         below[lane] = boxes[child];
         nodes[node].child[lane] = child;

@@ -29,6 +29,12 @@ constexpr double kParallel = 1e-10;
 /// triangles beyond the leaf's own it may say too little: they have their leaf.)
 constexpr float kEdgeRounding = 0x1p-17f;
 
+/// The same of a triangle whose corners are known to lie within s of the ray, and within d of its origin along it: corners are
+/// moved and sheared with errors up to (4 R + 7 d + 2 s) · 2^-24, which makes (20 R + 35 d + 13 s) · 2^-24 s. What R is multiplied by,
+constexpr float kOriginRounding = 0x1p-19f;
+/// and d + s.
+constexpr float kShearRounding = 0x1p-18f;
+
 /// The rounding of a distance times the sum of the edge functions: three times that of an edge function, times a corner's depth
 /// along the ray (at most the reach), times the stretch of the shear (less than 2),
 constexpr float kDistanceRounding = 8.0f;
@@ -44,8 +50,8 @@ constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 /// An end in float that is not before the exact one.
 float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end)); }
-/// One that is not behind it.
-float strictEnd(double end) { return std::isfinite(end) ? static_cast<float>(end - 1e-6 * std::abs(end)) : static_cast<float>(end); }
+/// What makes one that is not behind it of that, if it is not less than 0.
+constexpr float kStrictEnd = 0.999996f;
 
 }  // namespace
 
@@ -55,16 +61,11 @@ struct RayLeaf {
   float corner[Ray::kRow][3][4];  ///< corner[axis in a row][a, b, c][lane].
   float rounding;          ///< What the edge functions of a ray that hits may be off in float.
   float nearest;           ///< The least that the distance of such a hit, times the sum of these functions, may come out at.
-  float depthRounding;     ///< `kDepthRounding` of the reach.
-  unsigned own;            ///< Which triangles are the leaf's own: a bit each. What rounding may do is known of these.
 
   /// @param size   Of the leaf's box: its sides together.
-  /// @param loose  Hits beyond it are worth deciding.
-  RayLeaf(const RayTree& tree, std::uint32_t child, float size, float loose)
-      : rounding(size * kEdgeRounding * tree.reach),
-        nearest(std::min(loose, 0.0f) * (kMostSum * size * size) - rounding * kDistanceRounding * tree.reach),
-        depthRounding(kDepthRounding * tree.reach),
-        own(15u >> foreignIn(child)) {
+  /// @param before  `nearest` without rounding, of a box of size 1.
+  RayLeaf(const RayTree& tree, std::uint32_t child, float size, float before)
+      : rounding(size * kEdgeRounding * tree.reach), nearest(size * size * before - rounding * kDistanceRounding * tree.reach) {
     const std::uint32_t* index = tree.corners + std::size_t{3} * firstOf(child);
     for (int i = 0; i < 3; ++i) {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
@@ -93,14 +94,13 @@ namespace {
   const double slope = dot(normal, direction.exact);
   if (slope * slope <= kParallel * kParallel * dot(normal, normal)) return kNowhere;
   const double d[3] = {direction.exact.x, direction.exact.y, direction.exact.z};
-  const std::uint32_t axes[3] = {(direction.z + 1) % 3, (direction.z + 2) % 3, direction.z};
+  const std::uint32_t axes[3] = {(direction.rough.z + 1) % 3, (direction.rough.z + 2) % 3, direction.rough.z};
   double x[3];
   double y[3];
   double z[3];
   for (int i = 0; i < 3; ++i) {
     const auto offset = [&](std::uint32_t axis) {
-      return static_cast<double>(leaf.corner[axis][i][lane]) -
-             (static_cast<double>(ray.origin[axis]) + static_cast<double>(ray.rest[axis]));
+      return static_cast<double>(leaf.corner[axis][i][lane]) - ray.origin(axis);
     };
     z[i] = offset(axes[2]) / d[axes[2]];
     x[i] = offset(axes[0]) - z[i] * d[axes[0]];
@@ -116,25 +116,23 @@ namespace {
 
 /// What the test of `hitDistance` comes to in float, for four triangles.
 struct Estimate {
+  f32x4 x[3], y[3], z[3];  ///< From the corners to the ray's origin, z along the ray.
   f32x4 least, most;  ///< Of the three edge functions.
   f32x4 sum;          ///< Of them.
   f32x4 depths;       ///< 0 at the ray's origin, exactly.
   f32x4 distances;    ///< Times the size of `sum`: so there is no division.
 };
 
-inline Estimate estimate(const RayLeaf& leaf, const Ray& ray) {
-  const RayDirection& direction = *ray.direction;
-  const f32x4 shearX = splat(direction.shearX);
-  const f32x4 shearY = splat(direction.shearY);
-  const float* origin = ray.origin + direction.z;
-  const f32x4 originZ = splat(origin[0]);
-  const f32x4 originX = splat(origin[1]);
-  const f32x4 originY = splat(origin[2]);
-  const float(*corner)[3][4] = leaf.corner + direction.z;
+inline Estimate estimate(const RayLeaf& leaf, const RoughRay& ray) {
+  const f32x4 shearX = splat(ray.direction.shearX);
+  const f32x4 shearY = splat(ray.direction.shearY);
+  const f32x4 originZ = simd::splatAt<0>(ray.origin);
+  const f32x4 originX = simd::splatAt<1>(ray.origin);
+  const f32x4 originY = simd::splatAt<2>(ray.origin);
+  const float(*corner)[3][4] = leaf.corner + ray.direction.z;
   // From the corners to the origin: in this order a processor subtracts while it loads. The edge functions do not mind.
-  f32x4 x[3];
-  f32x4 y[3];
-  f32x4 z[3];
+  Estimate of;
+  auto& [x, y, z, least, most, sum, depths, distances] = of;
   for (int i = 0; i < 3; ++i) {
     z[i] = originZ - load(corner[0][i]);
     x[i] = simd::multiplyAdd(z[i], shearX, originX - load(corner[1][i]));
@@ -144,10 +142,12 @@ inline Estimate estimate(const RayLeaf& leaf, const Ray& ray) {
   const f32x4 v = simd::subtractProduct(x[0] * y[2], y[0], x[2]);
   const f32x4 w = simd::subtractProduct(x[1] * y[0], y[1], x[0]);
   // The distance is −(u·z0 + v·z1 + w·z2)·scale / (u + v + w).
-  const f32x4 sum = u + v + w;
-  const f32x4 depths = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
-  return {simd::min(u, simd::min(v, w)), simd::max(u, simd::max(v, w)), sum, depths,
-          simd::turned(depths * splat(direction.scaleZ), sum)};
+  least = simd::min(u, simd::min(v, w));
+  most = simd::max(u, simd::max(v, w));
+  sum = u + v + w;
+  depths = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
+  distances = simd::turned(depths * splat(ray.direction.scaleZ), sum);
+  return of;
 }
 
 /// Which triangles the ray might hit, as far as float can tell.
@@ -161,19 +161,26 @@ inline unsigned mightHit(const RayLeaf& leaf, const Estimate& of, f32x4 nowhere)
   return simd::bits(through & beyond & (of.depths != nowhere));
 }
 
-/// Which of the leaf's own triangles the ray hits whatever rounding did: double would say the same.
-/// @param strict  Hits beyond it count, in double as well.
-inline unsigned mustHit(const RayLeaf& leaf, const Estimate& of, const Ray& ray, float strict) {
-  // Most hits are near, where less is lost.
-  const std::uint32_t z = ray.direction->z;
-  const auto depth = [&](int i) { return simd::abs(splat(ray.origin[z]) - load(leaf.corner[z][i])); };
-  const f32x4 deepest = simd::max(depth(0), simd::max(depth(1), depth(2)));
+/// What is known of four triangles that a ray might hit: a bit each.
+struct Verdict {
+  unsigned hit;   ///< It does, whatever rounding did: double would say the same.
+  unsigned open;  ///< Double has to say.
+};
+
+/// Looks at an estimate again. Most triangles are near the ray, where less is lost than `mightHit` allows for.
+/// @param loose,strict  Hits beyond the one are worth deciding, beyond the other they count, in double as well.
+/// @param end           Hits behind it do not.
+inline Verdict judge(const Estimate& of, float reach, float loose, float strict, float end) {
+  const auto most = [](const f32x4(&a)[3]) { return simd::max(simd::abs(a[0]), simd::max(simd::abs(a[1]), simd::abs(a[2]))); };
+  const f32x4 depth = most(of.z);
+  const f32x4 width = simd::max(most(of.x), most(of.y));
+  const f32x4 rounding = width * simd::multiplyAdd(depth + width, splat(kShearRounding), splat(kOriginRounding * reach));
   const f32x4 size = simd::abs(of.sum);
-  const f32x4 slack = deepest * splat(kDistanceRounding * leaf.rounding) + size * splat(leaf.depthRounding);
-  const mask4 through = splat(leaf.rounding) < simd::max(of.least, splat(0) - of.most);
-  const mask4 beyond = splat(strict) * size + slack <= of.distances;
-  const mask4 before = of.distances <= splat(strictEnd(ray.end)) * size - slack;
-  return simd::bits(through & beyond & before) & leaf.own;
+  const f32x4 slack = simd::multiplyAdd(depth * rounding, splat(kDistanceRounding), size * splat(kDepthRounding * reach));
+  const f32x4 inside = simd::max(of.least, splat(0) - of.most);
+  const mask4 isHit = (rounding < inside) & (splat(strict) * size + slack <= of.distances) & (of.distances <= splat(end) * size - slack);
+  const mask4 isOpen = (splat(0) - rounding <= inside) & (splat(loose) * size - slack <= of.distances);
+  return {simd::bits(isHit), simd::bits(isOpen)};
 }
 
 }  // namespace
@@ -185,20 +192,27 @@ HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcep
       loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
       strict_(static_cast<float>(from > 0 ? from * 2 : from / 2)),
       zero_(from > 0 ? 0.0f : std::numeric_limits<float>::quiet_NaN()),
-      slabs_(scratch.take<Slabs>(kMostRays)),
+      rough_(scratch.take<RoughRay>(kMostRays)),
       lists_(scratch.take<std::uint16_t>(kListRoom)) {}
 
 void HitSearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noexcept {
   rays_ = rays;
   hit_ = hit;
   find_ = find;
+  RoughRay* const rough = rough_;  // In variables of this function, as nothing that is written changes them.
+  std::uint16_t* const list = lists_;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const f32x4 inverse = load(rays[i].direction->inverse);  // And an end that is nowhere.
-    simd::store(slabs_[i].inverse, inverse);
-    simd::store(slabs_[i].offset, (splat(0) - load(rays[i].origin)) * inverse);
-    if (std::isfinite(rays[i].end)) slabs_[i].end() = looseEnd(rays[i].end);
+    const Ray& ray = rays[i];
+    const RayDirection::Rough& direction = ray.direction->rough;
+    const f32x4 inverse = load(direction.inverse);
+    const f32x4 shear = load(&direction.shearX);
+    simd::store(rough[i].origin, load(ray.place + direction.z));
+    simd::store(rough[i].offset, (splat(0) - load(ray.place)) * inverse);
+    simd::store(rough[i].direction.inverse, inverse);
+    simd::store(&rough[i].direction.shearX, shear);
+    rough[i].endAt(looseEnd(ray.end));
     hit[i] = false;
-    lists_[i] = static_cast<std::uint16_t>(i * sizeof(Slabs));
+    list[i] = static_cast<std::uint16_t>(i * kStep);
   }
   if (count > 0) enter(tree_.nodes[0], lists_, count, lists_ + count + 1);
 }
@@ -256,8 +270,8 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
   if (simd::kParts > 1) rays[count] = rays[count - 1];
   for (const std::uint16_t* next = rays; next < rays + count; next += simd::kParts) {
     const std::uint16_t ray[] = {next[0], next[simd::kParts - 1]};  // As many as there are parts.
-    const wide inverse = simd::loadParts([&](int i) { return slabsOf(ray[i]).inverse; });
-    const wide offset = simd::loadParts([&](int i) { return slabsOf(ray[i]).offset; });
+    const wide inverse = simd::loadParts([&](int i) { return roughRay(ray[i]).direction.inverse; });
+    const wide offset = simd::loadParts([&](int i) { return roughRay(ray[i]).offset; });
     wide first = from;
     wide last = simd::splatLane<3>(inverse);
     const auto cut = [&]<int axis>(std::integral_constant<int, axis>) {
@@ -295,17 +309,17 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
 /// Tries rays with the four triangles from the first of a leaf on. The list of rays is used up.
 void HitSearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::uint32_t count) noexcept {
   const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
-  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2), loose_);
+  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2), std::min(loose_, 0.0f) * kMostSum);
   const float soonest = loose_;
   const f32x4 zero = splat(zero_);
-  const Ray* const all = rays_;
   // No branch on what is a coin toss: a ray that surely hits nothing is written over by the next.
-  static_assert(sizeof(Slabs) > 15);  // So the mask fits below what names a ray.
+  static_assert(kStep > 15);  // So the mask fits below what names a ray.
   std::uint32_t left = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t ray = rays[i];
-    if (slabsOf(ray).end() < soonest) continue;
-    const unsigned close = mightHit(leaf, estimate(leaf, all[ray / sizeof(Slabs)]), zero);
+    const RoughRay& rough = roughRay(ray);
+    if (rough.end() < soonest) continue;
+    const unsigned close = mightHit(leaf, estimate(leaf, rough), zero);
     rays[left] = static_cast<std::uint16_t>(ray | close);
     left += close != 0;
   }
@@ -316,24 +330,25 @@ void HitSearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
 /// @param rays  With the triangles that they might hit: a bit each.
 void HitSearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::size_t id = rays[i] / sizeof(Slabs);
+    const std::size_t id = rays[i] / kStep;
     Ray& ray = rays_[id];
-    float& end = slabs_[id].end();
-    if (find_ == Find::any && mustHit(leaf, estimate(leaf, ray), ray, strict_) != 0) {
-      hit_[id] = true;
-      end = static_cast<float>(kNowhere);
-      continue;
+    RoughRay& rough = rough_[id];
+    unsigned open = rays[i] % kStep;
+    if (find_ == Find::any) {
+      const Verdict verdict = judge(estimate(leaf, rough), tree_.reach, loose_, strict_, kStrictEnd * rough.end());
+      if (verdict.hit != 0) {
+        hit_[id] = true;
+        rough.endAt(static_cast<float>(kNowhere));
+        continue;
+      }
+      open &= verdict.open;
     }
-    for (unsigned close = rays[i] % sizeof(Slabs); close != 0; close &= close - 1) {
-      const double distance = hitDistance(leaf, std::countr_zero(close), ray);
+    for (; open != 0; open &= open - 1) {
+      const double distance = hitDistance(leaf, std::countr_zero(open), ray);
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
-      if (find_ == Find::any) {
-        end = static_cast<float>(kNowhere);
-        break;
-      }
       ray.end = distance;
-      end = looseEnd(distance);
+      rough.endAt(find_ == Find::any ? static_cast<float>(kNowhere) : looseEnd(distance));
     }
   }
 }

@@ -326,8 +326,7 @@ class Lookout {
       // In place: a direction that is copied right after it was written stalls.
       new (&directions_[r]) RayDirection(RayDirection::along(d[2] * normal + (d[0] * t1 + d[1] * t2)));
       Ray& ray = rays_[r];
-      ray.startAt(position);
-      std::copy(rest, rest + 3, ray.rest);
+      ray.startAt(position, rest);
       ray.direction = &directions_[r];
       ray.end = std::numeric_limits<double>::infinity();
     }

@@ -36,8 +36,8 @@ struct Voters {
 /// Makes the ray of docs/method.md, step 1: from the point, along the normal of its nearest cage triangle, without end.
 inline void setRay(Ray& ray, const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
   // In place, field by field: a ray that is copied as a whole right after it was written stalls.
-  ray.startAt(points.at(point));
-  for (std::size_t k = 0; k < 3; ++k) ray.rest[k] = points.rests == nullptr ? 0.0f : points.rests[std::size_t{3} * point + k];
+  static constexpr float kNothing[3] = {};
+  ray.startAt(points.at(point), points.rests == nullptr ? kNothing : points.rests + std::size_t{3} * point);
   ray.direction = &cage.triangles[results.triangles[point]].normal;
   ray.end = std::numeric_limits<double>::infinity();
 }
