@@ -19,10 +19,8 @@ constexpr float kRestReach = 0.5f;
 constexpr float kMaxWeldTolerance = 0.01f;
 
 struct Box {
-  float low[3] = {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
-                  std::numeric_limits<float>::infinity()};
-  float high[3] = {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-                   -std::numeric_limits<float>::infinity()};
+  float low[4];  ///< x, y, z; the fourth is of no use.
+  float high[4];
 
   [[nodiscard]] double diagonal() const {
     double sum = 0;
@@ -34,26 +32,70 @@ struct Box {
   }
 };
 
-/// The place of the first value that is not finite, or the size.
-std::size_t firstNonFinite(std::span<const float> values) {
-  // x · 0 is 0 for finite x and NaN otherwise: one sum tells whether there is anything to look for.
-  simd::f32x4 sums = simd::splat(0);
+/// What is known of four rows of numbers.
+struct Rows {
+  simd::f32x4 low = simd::splat(std::numeric_limits<float>::infinity());
+  simd::f32x4 high = simd::splat(-std::numeric_limits<float>::infinity());
+  simd::f32x4 sum = simd::splat(0);  ///< Of x · 0, which is 0 for a finite x and NaN otherwise.
+
+  void take(simd::f32x4 x) {
+    low = simd::min(low, x);
+    high = simd::max(high, x);
+    sum = sum + x * simd::splat(0);
+  }
+  [[nodiscard]] bool areFinite() const { return simd::bits(sum <= simd::splat(0)) == 15; }
+};
+
+bool areFinite(std::span<const float> values) {
+  Rows rows;
   std::size_t i = 0;
-  for (; i + simd::kWidth <= values.size(); i += simd::kWidth) sums = sums + simd::load(&values[i]) * simd::splat(0);
-  bool finite = simd::bits(sums <= simd::splat(0)) == 15;
-  for (; i < values.size(); ++i) finite = finite && std::isfinite(values[i]);
-  if (finite) return values.size();
-  return static_cast<std::size_t>(
-      std::find_if(values.begin(), values.end(), [](float x) { return !std::isfinite(x); }) - values.begin());
+  for (; i + simd::kWidth <= values.size(); i += simd::kWidth) rows.take(simd::load(&values[i]));
+  for (; i < values.size(); ++i) rows.take(simd::splat(values[i]));
+  return rows.areFinite();
+}
+
+/// The place of the first value that is not finite; there must be one.
+std::size_t firstNonFinite(std::span<const float> values) {
+  std::size_t i = 0;
+  while (std::isfinite(values[i])) ++i;
+  return i;
+}
+
+/// Finds the box around positions.
+/// @return false if any is not finite.
+bool bound(std::span<const float> positions, Box& box) {
+  // Four vertices are three vectors; what row is of which axis repeats.
+  Rows rows[3];
+  const float* p = positions.data();
+  const float* const end = p + positions.size();
+  for (; end - p >= 12; p += 12) {
+    for (int j = 0; j < 3; ++j) rows[j].take(simd::load(p + 4 * j));
+  }
+  for (; p != end; p += 3) rows[0].take(simd::of(p[0], p[1], p[2], p[0]));
+  float lows[12];
+  float highs[12];
+  for (int j = 0; j < 3; ++j) {
+    simd::store(lows + 4 * j, rows[j].low);
+    simd::store(highs + 4 * j, rows[j].high);
+  }
+  simd::f32x4 low = simd::load3(lows);
+  simd::f32x4 high = simd::load3(highs);
+  for (int i = 3; i < 12; i += 3) {
+    low = simd::min(low, simd::load3(lows + i));
+    high = simd::max(high, simd::load3(highs + i));
+  }
+  simd::store(box.low, low);
+  simd::store(box.high, high);
+  rows[0].sum = rows[0].sum + rows[1].sum + rows[2].sum;
+  return rows[0].areFinite();
 }
 
 std::uint32_t highestOf(std::span<const std::uint32_t> indices) {
   simd::count4 fours = simd::splatCount(0);
   std::size_t i = 0;
   for (; i + simd::kWidth <= indices.size(); i += simd::kWidth) fours = simd::max(fours, simd::load(&indices[i]));
-  std::uint32_t highest = std::max({simd::countOf<0>(fours), simd::countOf<1>(fours), simd::countOf<2>(fours), simd::countOf<3>(fours)});
-  for (; i < indices.size(); ++i) highest = std::max(highest, indices[i]);
-  return highest;
+  for (; i < indices.size(); ++i) fours = simd::max(fours, simd::splatCount(indices[i]));
+  return std::max({simd::countOf<0>(fours), simd::countOf<1>(fours), simd::countOf<2>(fours), simd::countOf<3>(fours)});
 }
 
 Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
@@ -71,55 +113,21 @@ Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
   if (argument == Argument::cage && mesh.uvs.empty()) return fault(Code::missingUvs);
   if (!mesh.groups.empty() && mesh.groups.size() != vertices) return fault(Code::groupCountMismatch, mesh.groups.size());
 
-  if (const std::size_t at = firstNonFinite(mesh.positions); at < mesh.positions.size()) {
-    return fault(Code::nonFinitePosition, at);
-  }
-  if (const std::size_t at = firstNonFinite(mesh.uvs); at < mesh.uvs.size()) return fault(Code::nonFiniteUv, at);
-  const std::uint32_t highest = highestOf(mesh.indices);
-  if (highest >= vertices) {
-    const auto first = std::find_if(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t i) { return i >= vertices; });
-    return fault(Code::indexOutOfRange, static_cast<std::size_t>(first - mesh.indices.begin()));
-  }
-
-  // Four vertices are three vectors; what lane holds which axis repeats.
-  const float* p = mesh.positions.data();
-  const std::size_t fours = vertices / simd::kWidth * simd::kWidth;
-  if (fours > 0) {
-    simd::f32x4 low[3] = {simd::load(p), simd::load(p + 4), simd::load(p + 8)};
-    simd::f32x4 high[3] = {low[0], low[1], low[2]};
-    for (std::size_t v = simd::kWidth; v < fours; v += simd::kWidth) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        const simd::f32x4 row = simd::load(p + 3 * v + 4 * j);
-        low[j] = simd::min(low[j], row);
-        high[j] = simd::max(high[j], row);
-      }
-    }
-    float lows[12];
-    float highs[12];
-    for (std::size_t j = 0; j < 3; ++j) {
-      simd::store(lows + 4 * j, low[j]);
-      simd::store(highs + 4 * j, high[j]);
-    }
-    for (std::size_t j = 0; j < 12; ++j) {
-      box.low[j % 3] = std::min(box.low[j % 3], lows[j]);
-      box.high[j % 3] = std::max(box.high[j % 3], highs[j]);
-    }
-  }
-  for (std::size_t v = fours; v < vertices; ++v) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], p[3 * v + k]);
-      box.high[k] = std::max(box.high[k], p[3 * v + k]);
-    }
+  if (!bound(mesh.positions, box)) return fault(Code::nonFinitePosition, firstNonFinite(mesh.positions));
+  if (!areFinite(mesh.uvs)) return fault(Code::nonFiniteUv, firstNonFinite(mesh.uvs));
+  if (highestOf(mesh.indices) >= vertices) {
+    std::size_t first = 0;
+    while (mesh.indices[first] < vertices) ++first;
+    return fault(Code::indexOutOfRange, first);
   }
   return {};
 }
 
-/// The place of the first coordinate that is out of proportion, or the size.
+/// The place of the first coordinate that is out of proportion; there must be one.
 std::size_t firstTooLarge(std::span<const float> positions, double scale) {
-  const auto found = std::find_if(positions.begin(), positions.end(), [&](float x) {
-    return std::abs(static_cast<double>(x) * scale) > static_cast<double>(kMaxProportion);
-  });
-  return static_cast<std::size_t>(found - positions.begin());
+  std::size_t i = 0;
+  while (std::abs(static_cast<double>(positions[i]) * scale) <= static_cast<double>(kMaxProportion)) ++i;
+  return i;
 }
 
 }  // namespace
@@ -143,15 +151,11 @@ Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOpt
   float reach = 0;
   for (int k = 0; k < 3; ++k) {
     const auto scaled = [scale](float x) { return static_cast<float>(static_cast<double>(x) * scale); };
-    for (const float x : {cageBox.low[k], cageBox.high[k]}) {
-      if (std::abs(scaled(x)) > kMaxProportion) {
-        return {Code::tooLarge, Argument::cage, static_cast<std::uint32_t>(firstTooLarge(cage.positions, scale))};
-      }
-    }
-    for (const float x : {targetBox.low[k], targetBox.high[k]}) {
-      if (std::abs(scaled(x)) > kMaxProportion) {
-        return {Code::tooLarge, Argument::target, static_cast<std::uint32_t>(firstTooLarge(target.positions, scale))};
-      }
+    for (const bool ofCage : {true, false}) {
+      const Box& box = ofCage ? cageBox : targetBox;
+      if (std::max(-scaled(box.low[k]), scaled(box.high[k])) <= kMaxProportion) continue;
+      const std::size_t at = firstTooLarge((ofCage ? cage : target).positions, scale);
+      return {Code::tooLarge, ofCage ? Argument::cage : Argument::target, static_cast<std::uint32_t>(at)};
     }
     units.low[k] = scaled(targetBox.low[k]);
     units.high[k] = scaled(targetBox.high[k]);
