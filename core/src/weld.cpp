@@ -139,14 +139,15 @@ std::uint32_t weldEqual(Placed* placed, std::uint32_t vertexCount, const Site* s
 std::uint32_t weldTriangles(std::span<const std::uint32_t> indices, const std::uint32_t* ofVertex, const float* positions,
                             std::uint32_t* triangles, double* areas) {
   simd::f64x2 least = simd::splatDouble(std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < indices.size(); i += 6) {
+  double* area = areas;
+  for (std::size_t i = 0; i < indices.size(); i += 6, area += 2) {
     const std::uint32_t* index = &indices[i];
     const std::uint32_t* other = i + 3 < indices.size() ? index + 3 : index;
     const std::uint32_t corners[6] = {ofVertex[index[0]], ofVertex[index[1]], ofVertex[index[2]],
                                       ofVertex[other[0]], ofVertex[other[1]], ofVertex[other[2]]};
-    std::copy(corners, corners + 6, triangles + i);
+    for (std::size_t k = 0; k < 6; ++k) triangles[i + k] = corners[k];
     const simd::f64x2 both = doubleAreas(positions, corners, corners + 3);
-    simd::store(areas + i / 3, both);
+    simd::store(area, both);
     least = simd::min(least, both);
   }
   double leastOf[2];
