@@ -136,9 +136,10 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
   }
   explainHoles(shares, out);
   for (std::size_t v = 0; v < zones.size(); ++v) {
-    // As numbers: clang takes a `&` of truth values for a mistake, and `&&` branches.
-    const int culled = static_cast<int>(zones[v] == Zone::cosmetic) & static_cast<int>(out.culledSegments[segments[v]] != 0);
-    out.zones[v] = culled != 0 ? Zone::culled : zones[v];
+    // As numbers, without a branch: cosmetic is 0, less than the 1 of a segment that is culled.
+    const auto zone = static_cast<unsigned>(zones[v]);
+    const unsigned becomes = out.culledSegments[segments[v]] > zone ? static_cast<unsigned>(Zone::culled) : 0;
+    out.zones[v] = static_cast<Zone>(zone | becomes);
   }
   for (std::size_t v = 0; v < restores.size(); ++v) {
     if (restores[v] == Restores::never || out.culledSegments[segments[v]]) continue;
