@@ -435,6 +435,8 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
   auto* boxes = scratch.take<Box>(nodeCount);
   if (scratch.failed()) return false;
   std::memmove(found, children, nodeCount * sizeof(Children));
+  const float* const positions = target.positions;
+  const float padding = kPadding * units.reach;
   for (std::uint32_t node = nodeCount; node-- > 0;) {
     Box below[4];
     Box around;
@@ -447,12 +449,11 @@ bool buildTargetTree(const Points& target, const Units& units, Scratch& scratch,
       }
       if (child & kLeafBit) {
         const std::uint32_t first = (child & ~kLeafBit) >> 2;
-        // Always four, the last again where there are fewer: a loop of another length each time is mispredicted.
-        for (std::uint32_t i = 0; i < 4; ++i) {
-          const std::uint32_t* corner = corners + std::size_t{3} * (first + std::min(i, child & 3));
-          for (int k = 0; k < 3; ++k) below[lane].grow(load(target.at(corner[k])));
-        }
-        below[lane] = below[lane].padded(kPadding * units.reach);
+        const std::uint32_t* corner = corners + std::size_t{3} * first;
+        const std::uint32_t cornerCount = 3 * (child & 3) + 3;
+        Box box;
+        for (std::uint32_t i = 0; i < cornerCount; ++i) box.grow(load(positions + Points::kStride * corner[i]));
+        below[lane] = box.padded(padding);
         nodes[node].child[lane] = leafOf(first);
       } else {
         below[lane] = boxes[child];
