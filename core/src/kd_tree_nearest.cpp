@@ -34,6 +34,22 @@ f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
                           [](const float (&field)[4]) { return load(field); });
 }
 
+/// For every choice of a node's children, a bit each: which they are, one after the other, and each as its number below 0.
+constexpr auto kChosen = [] {
+  struct Table {
+    alignas(16) std::uint32_t rows[16][4];
+  } table{};
+  for (std::uint32_t choice = 0; choice < 16; ++choice) {
+    std::uint32_t* next = table.rows[choice];
+    for (std::uint32_t lane = 0; lane < 4; ++lane) {
+      if (choice >> lane & 1) *next++ = 0 - lane;
+    }
+  }
+  return table;
+}();
+/// How many they are, a hexadecimal digit for each choice.
+constexpr std::uint64_t kChosenCounts = 0x4332'3221'3221'2110;
+
 }  // namespace
 
 NearestSearch::NearestSearch(const CageTree& tree, double diagonal, Scratch& scratch) noexcept
@@ -54,22 +70,23 @@ void NearestSearch::widen(double more, double distance) noexcept {
 std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
   std::uint32_t* from = list_;
   std::uint32_t* to = otherList_;
+  // Copies stay in registers: the others might be what is written to.
+  const f32x4 ownLow[3] = {low[0], low[1], low[2]};
+  const f32x4 ownHigh[3] = {high[0], high[1], high[2]};
   std::uint32_t count = tree_.entryCount;
   for (std::uint32_t i = 0; i < count; ++i) from[i] = i;
   const Node* row = tree_.rays.nodes + tree_.entry;
   for (std::uint32_t level = 0; level <= tree_.levelsBelowEntry; ++level) {
     if (level > 0) row = tree_.rays.nodes + row->child[0];
-    std::size_t found = 0;
+    std::uint32_t* end = to;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t node = from[i];
-      const unsigned close = simd::bits(squaredDistanceToBoxes(row[node], low, high) <= limit);
-      for (std::uint32_t lane = 0; lane < 4; ++lane) {
-        to[found] = 4 * node + lane;
-        found += close >> lane & 1;
-      }
+      const unsigned close = simd::bits(squaredDistanceToBoxes(row[node], ownLow, ownHigh) <= limit);
+      simd::store(end, simd::splatCount(4 * node) - simd::load(kChosen.rows[close]));
+      end += kChosenCounts >> 4 * close & 7;
     }
+    count = static_cast<std::uint32_t>(end - to);
     std::swap(from, to);
-    count = static_cast<std::uint32_t>(found);
   }
   leaves = from;
   return count;
@@ -98,8 +115,9 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
   alignas(32) float distances[kBatch][kGroup];
   wide nearest[kGroup / kWide];
   for (wide& n : nearest) n = simd::splatWide(std::numeric_limits<float>::infinity());
+  const LeafBox* const boxes = tree_.boxes;
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const LeafBox& box = tree_.boxes[leaves[j]];
+    const LeafBox& box = boxes[leaves[j]];
     wide squared[kGroup / kWide];
     const auto addAxis = [&]<int axis>(std::integral_constant<int, axis>) {
       const wide x = simd::splatWideAt<axis>(box.axes[0]);
