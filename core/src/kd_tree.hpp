@@ -140,6 +140,8 @@ class NearestSearch {
   /// @return How many.
   std::uint32_t listLeaves(const simd::f32x4 (&low)[3], const simd::f32x4 (&high)[3], simd::f32x4 limit,
                            std::uint32_t*& leaves) const noexcept;
+  /// Some leaf whose box is near a point: at each node the nearest child.
+  [[nodiscard]] std::uint32_t leafNear(simd::f32x4 point) const noexcept;
   /// Searches up to `kBatch` leaves for each of `count` points.
   void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept;
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;

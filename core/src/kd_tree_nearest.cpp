@@ -92,6 +92,17 @@ std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&hig
   return count;
 }
 
+std::uint32_t NearestSearch::leafNear(f32x4 point) const noexcept {
+  const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
+  for (std::uint32_t i = 0;;) {
+    const Node& node = tree_.rays.nodes[i];
+    const f32x4 squared = squaredDistanceToBoxes(node, box, box);
+    const std::uint32_t child = node.child[std::countr_zero(simd::bits(squared <= simd::lowest(squared)))];
+    if ((child & kLeafBit) != 0) return firstOf(child) / 4;
+    i = child;
+  }
+}
+
 void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
   const NearLeaf& leaf = tree_.near[leafIndex];
   const f32x4 growth = splat(growth_);
@@ -180,19 +191,24 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   for (unsigned i = 0; i < kGroup; i += simd::kWidth) simd::store(limits_ + i, splat(std::numeric_limits<float>::max()));
   std::fill(limits_ + count, limits_ + kGroup, -1.0f);
   std::fill(nearCount_, nearCount_ + kGroup, 0u);
-  const std::uint32_t seed = lastLeaf_;
-  searchLeaf(seed, (1u << count) - 1);  // For a limit to begin with.
+  // For limits to begin with: a leaf near where the last group ends, and one near where this one does.
+  const std::uint32_t last = count - 1;
+  const std::uint32_t seeds[] = {lastLeaf_, leafNear(load(positions + Points::kStride * last))};
+  const unsigned all = (1u << count) - 1;
+  searchLeaf(seeds[0], all);
+  if (seeds[1] != seeds[0]) searchLeaf(seeds[1], all);
   f32x4 most = load(limits_);
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
   std::uint32_t leafCount = listLeaves(low, high, simd::highest(most), leaves);
-  if (std::uint32_t* const known = std::find(leaves, leaves + leafCount, seed); known < leaves + leafCount) *known = leaves[--leafCount];
+  for (const std::uint32_t seed : seeds) {
+    if (std::uint32_t* const known = std::find(leaves, leaves + leafCount, seed); known < leaves + leafCount) *known = leaves[--leafCount];
+  }
   for (std::uint32_t begin = 0; begin < leafCount; begin += kBatch) {
     searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
   }
 
   // Where the last point is nearest, the next group begins.
-  const std::uint32_t last = count - 1;
   const Near* const near = near_[last];
   lastLeaf_ = std::min_element(near, near + std::min(nearCount_[last], kRoom), [](Near a, Near b) { return a.squaredDistance < b.squaredDistance; })->lanes >> 4;
 }
