@@ -84,7 +84,7 @@ inline constexpr double kTieDistance = 1e-6;
 /// Searches the cage's triangles for the nearest to a few points at once.
 ///
 /// Points that are neighbours are near the same triangles: the tree is walked once for all of them, by the box around them,
-/// and only its leaves are looked at by each. The walk begins with the limits that the leaf last found gives them.
+/// and only its leaves are looked at by each. The walk begins with the limits that two leaves give them, one near each end.
 class NearestSearch {
  public:
   static constexpr std::uint32_t kGroup = 16;  ///< Points searched for at once.
@@ -105,7 +105,7 @@ class NearestSearch {
   /// `kTieDistance` of the least, and some that rounding cannot tell from them.
   /// @param[out] found  Room for every triangle of the cage.
   /// @return How many were found: at least 1.
-  std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) const noexcept;
+  std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) noexcept;
   /// The same where there is but one, as most often: quicker.
   /// @return That triangle; `kSeveral` if there are more.
   [[nodiscard]] std::uint32_t onlyCandidate(std::uint32_t i) const noexcept {

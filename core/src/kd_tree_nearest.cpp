@@ -213,26 +213,29 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   lastLeaf_ = std::min_element(near, near + std::min(nearCount_[last], kRoom), [](Near a, Near b) { return a.squaredDistance < b.squaredDistance; })->lanes >> 4;
 }
 
-std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) const noexcept {
+std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) noexcept {
   std::uint32_t count = 0;
-  const auto takeLanes = [&](std::uint32_t leaf, unsigned lanes) {
-    for (; lanes != 0; lanes &= lanes - 1) found[count++] = tree_.near[leaf].slot[std::countr_zero(lanes)];
+  const auto take = [&](Near near) {
+    const NearLeaf& leaf = tree_.near[near.lanes >> 4];
+    for (unsigned lanes = near.lanes & 15; lanes != 0; lanes &= lanes - 1) found[count++] = leaf.slot[std::countr_zero(lanes)];
   };
   if (nearCount_[i] < kRoom) {
     for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
-      if (near_[i][j].squaredDistance <= limits_[i]) takeLanes(near_[i][j].lanes >> 4, near_[i][j].lanes & 15);
+      if (near_[i][j].squaredDistance <= limits_[i]) take(near_[i][j]);
     }
     return count;
   }
   // A fan around a corner, or a stack of copies: collect all within the limit, which is known by now.
   const f32x4 point = load(positions_ + Points::kStride * i);
   const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
-  const f32x4 limit = splat(limits_[i]);
   std::uint32_t* leaves;
-  const std::uint32_t leafCount = listLeaves(box, box, limit, leaves);
+  const std::uint32_t leafCount = listLeaves(box, box, splat(limits_[i]), leaves);
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    takeLanes(leaves[j], simd::bits(squaredDistanceToTriangles(tree_.near[leaves[j]], load(points_[i])) <= limit));
+    nearCount_[i] = 0;  // What is found is the first then.
+    searchLeaf(leaves[j], 1u << i);
+    take(near_[i][0]);
   }
+  nearCount_[i] = kRoom;
   return count;
 }
 
