@@ -185,12 +185,12 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     }
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);
+    simd::store(limits_ + i, splat(std::numeric_limits<float>::max()));
+    simd::store(nearCount_ + i, simd::splatCount(0));
   }
   const f32x4 low[3] = {simd::splatLane<0>(lowCorner), simd::splatLane<1>(lowCorner), simd::splatLane<2>(lowCorner)};
   const f32x4 high[3] = {simd::splatLane<0>(highCorner), simd::splatLane<1>(highCorner), simd::splatLane<2>(highCorner)};
-  for (unsigned i = 0; i < kGroup; i += simd::kWidth) simd::store(limits_ + i, splat(std::numeric_limits<float>::max()));
   std::fill(limits_ + count, limits_ + kGroup, -1.0f);
-  std::fill(nearCount_, nearCount_ + kGroup, 0u);
   // For limits to begin with: a leaf near where the last group ends, and one near where this one does.
   const std::uint32_t last = count - 1;
   const std::uint32_t seeds[] = {lastLeaf_, leafNear(load(positions + Points::kStride * last))};
