@@ -49,10 +49,11 @@ simd::f32x4 squaredDistances(const NearLeaf& leaf, simd::f32x4 x, simd::f32x4 y,
   const simd::f32x4 past = along - simd::clamp(along, zero, side(leaf.edgeLength));
   const simd::f32x4 beyond = simd::max(simd::subtractProduct(up * edgeX, fromCorner, edgeY), zero);
   const simd::f32x4 toEdge = simd::multiplyAdd(beyond, beyond, past * past);
-  // Below AB: nearest to AB, or to its end.
+  // Below AB: nearest to AB, or to its end. Neither of the two is ever more than the distance, which one of them is.
   const simd::f32x4 outside = simd::min(fromCorner, zero);
-  const simd::f32x4 toBase = simd::multiplyAdd(outside, outside, up * up);
-  return simd::multiplyAdd(height, height, simd::select(up < zero, toBase, toEdge));
+  const simd::f32x4 below = simd::min(up, zero);
+  const simd::f32x4 toBase = simd::multiplyAdd(outside, outside, below * below);
+  return simd::multiplyAdd(height, height, simd::max(toBase, toEdge));
 }
 
 }  // namespace cagecast
