@@ -56,7 +56,7 @@ bool findAtlas(const MeshView& mesh, const Cage& cage, Scratch& scratch, Atlas& 
       const std::uint64_t edge = low << 32 | std::max(siteOf[index[k]], siteOf[index[l]]);
       edges[side] = edge;
       const std::uint32_t first =
-          edgeTable.firstEqual(side, IndexTable::hash(edge), [&](std::uint32_t other) { return edges[other] == edge; });
+          edgeTable.firstEqual(side, IndexTable::mix(0, edge), [&](std::uint32_t other) { return edges[other] == edge; });
       out.nextSide[side] = side;
       std::swap(out.nextSide[side], out.nextSide[first]);
       sets.join(t, first / 3);
