@@ -29,21 +29,25 @@ struct alignas(16) Node {
   std::uint32_t child[4];
 };
 
-/// Four triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
+/// Triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
 /// edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B.
-/// Unused lanes are infinitely far away.
-struct alignas(16) NearLeaf {
+template <int count>
+struct NearTriangles {
   /// What makes a coordinate of a point: where the middle of the cage is, from which the point is counted, and a unit vector.
   struct Axis {
-    float middle[4];
-    float direction[3][4];
+    float middle[count];
+    float direction[3][count];
   };
   Axis axes[3];
-  float base[4];  ///< B = (base, 0).
-  float foot[4];  ///< x of C.
+  float base[count];  ///< B = (base, 0).
+  float foot[count];  ///< x of C.
   /// The two upper edges, AC and BC, each from its foot on AB to C; x is counted from that foot, towards the other one.
-  float edgeX[2][4], edgeY[2][4];  ///< Unit vector.
-  float edgeLength[2][4];
+  float edgeX[2][count], edgeY[2][count];  ///< Unit vector.
+  float edgeLength[2][count];
+};
+
+/// Four of them. Unused lanes are infinitely far away.
+struct alignas(16) NearLeaf : NearTriangles<4> {
   std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
 };
 

@@ -26,9 +26,9 @@ inline float fixedSlack(double slack, double ratio) { return static_cast<float>(
 /// Squared distances of points to triangles, each in its own frame.
 /// @param x,y,z  Of four points, or of one four times, from the middle of the cage.
 /// @param get    Gives the four numbers to use for a field of the leaf: `simd::load`, or one of them four times.
-template <typename Get>
-simd::f32x4 squaredDistances(const NearLeaf& leaf, simd::f32x4 x, simd::f32x4 y, simd::f32x4 z, Get get) {
-  const auto coordinate = [&](const NearLeaf::Axis& axis) {
+template <int count, typename Get>
+simd::f32x4 squaredDistances(const NearTriangles<count>& leaf, simd::f32x4 x, simd::f32x4 y, simd::f32x4 z, Get get) {
+  const auto coordinate = [&](const typename NearTriangles<count>::Axis& axis) {
     const auto& [alongX, alongY, alongZ] = axis.direction;
     return simd::multiplyAdd(z, get(alongZ), simd::multiplyAdd(y, get(alongY), simd::multiplyAdd(x, get(alongX), get(axis.middle))));
   };
@@ -40,7 +40,7 @@ simd::f32x4 squaredDistances(const NearLeaf& leaf, simd::f32x4 x, simd::f32x4 y,
   // A perpendicular through C parts the points that can be nearest to the left edge from those that can be to the right
   // one. Mirrored if need be, x counts from the lower end of that edge.
   const simd::mask4 isLeft = across < get(leaf.foot);
-  const auto side = [&](const float (&of)[2][4]) { return simd::select(isLeft, get(of[0]), get(of[1])); };
+  const auto side = [&](const float (&of)[2][count]) { return simd::select(isLeft, get(of[0]), get(of[1])); };
   const simd::f32x4 fromCorner = simd::select(isLeft, across, get(leaf.base) - across);
   const simd::f32x4 edgeX = side(leaf.edgeX);
   const simd::f32x4 edgeY = side(leaf.edgeY);
