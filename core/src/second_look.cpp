@@ -46,7 +46,8 @@ constexpr double kCancelled = 1e-6;
 /// Triangles that differ in area by less than this share are equally large.
 constexpr double kSameArea = 1e-12;
 
-bool isZero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+/// Here and below nothing branches on what nobody can guess.
+bool isZero(Vec3 v) { return (v.x == 0) & (v.y == 0) & (v.z == 0); }
 
 /// The occluded points of the segments that are looked at, and which triangles join them.
 class Occluded {
@@ -60,7 +61,7 @@ class Occluded {
     auto* joining = scratch.take<std::uint32_t>(points.triangleCount);
     if (scratch.failed()) return;
     for (std::uint32_t p = 0; p < points.count; ++p) {
-      isOccluded_[p] = results.zones[p] == Zone::occluded && stats[results.segments[p]].coveredArea > 0;
+      isOccluded_[p] = (results.zones[p] == Zone::occluded) & (stats[results.segments[p]].coveredArea > 0);
     }
     std::fill(isQueued_, isQueued_ + points.count, false);
     std::fill(starts_, starts_ + points.count + 1, 0u);
@@ -70,7 +71,7 @@ class Occluded {
       const unsigned occluded = unsigned{isOccluded_[corner[0]]} + unsigned{isOccluded_[corner[1]]} + unsigned{isOccluded_[corner[2]]};
       if (occluded == 0) continue;
       for (int i = 0; i < 3; ++i) {
-        isQueued_[corner[i]] = isQueued_[corner[i]] || (occluded < 3 && isOccluded_[corner[i]]);
+        isQueued_[corner[i]] = isQueued_[corner[i]] | ((occluded < 3) & isOccluded_[corner[i]]);
         starts_[corner[i]] += occluded > 1;
       }
       joining[joiningCount] = t;
@@ -198,7 +199,7 @@ bool findOutlooks(const Points& points, const Cage& cage, const Units& units, co
     const std::uint32_t s = results.segments[p];
     if (!isWanted[s]) continue;
     sums.normalize(p);
-    anyCancelled = anyCancelled || (asks[p] && isZero(normals[p]));
+    anyCancelled = anyCancelled | (asks[p] & isZero(normals[p]));
     const double agrees = dot(normals[p], cage.triangles[results.triangles[p]].normal.exact);
     agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas.all[p]) * agrees);
   }
