@@ -65,16 +65,24 @@ class Occluded {
     }
     std::fill(isQueued_, isQueued_ + points.count, false);
     std::fill(starts_, starts_ + points.count + 1, 0u);
-    std::uint32_t joiningCount = 0;
+    const auto occludedAt = [&](const std::uint32_t* corner) {
+      return unsigned{isOccluded_[corner[0]]} + unsigned{isOccluded_[corner[1]]} + unsigned{isOccluded_[corner[2]]};
+    };
+    // Those with any corner that is occluded are listed first: few are, and where they begin and end nobody can guess.
+    std::uint32_t listed = 0;
     for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
-      const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
-      const unsigned occluded = unsigned{isOccluded_[corner[0]]} + unsigned{isOccluded_[corner[1]]} + unsigned{isOccluded_[corner[2]]};
-      if (occluded == 0) continue;
-      for (int i = 0; i < 3; ++i) {
-        isQueued_[corner[i]] = isQueued_[corner[i]] | ((occluded < 3) & isOccluded_[corner[i]]);
-        starts_[corner[i]] += occluded > 1;
+      joining[listed] = t;
+      listed += occludedAt(points.triangles + std::size_t{3} * t) > 0;
+    }
+    std::uint32_t joiningCount = 0;
+    for (std::uint32_t i = 0; i < listed; ++i) {
+      const std::uint32_t* corner = points.triangles + std::size_t{3} * joining[i];
+      const unsigned occluded = occludedAt(corner);
+      for (int k = 0; k < 3; ++k) {
+        isQueued_[corner[k]] = isQueued_[corner[k]] | ((occluded < 3) & isOccluded_[corner[k]]);
+        starts_[corner[k]] += occluded > 1;
       }
-      joining[joiningCount] = t;
+      joining[joiningCount] = joining[i];
       joiningCount += occluded > 1;
     }
     std::uint32_t total = 0;
