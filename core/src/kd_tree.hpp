@@ -177,15 +177,12 @@ struct Ray {
   const RayDirection* direction;
   double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
 
-  /// @param position  x, y, z,
-  /// @param rest      and what the exact origin has beyond.
+  /// @param position  x, y, z, and a fourth float,
+  /// @param rest      and what the exact origin has beyond them.
   void startAt(const float* position, const float* rest) noexcept {
-    const float x = position[0];
-    const float y = position[1];
-    const float z = position[2];
-    place[0] = place[3] = x;
-    place[1] = place[4] = y;
-    place[2] = z;
+    const simd::f32x4 from = simd::load(position);
+    simd::store(place, from);
+    simd::store(place + 3, from);
     for (int axis = 0; axis < 3; ++axis) place[kRow + axis] = rest[axis];
   }
   [[nodiscard]] double origin(std::uint32_t axis) const noexcept {

@@ -324,7 +324,7 @@ class Lookout {
     const Vec3 t2 = cross(normal, t1);
     const Vec3 origin = points_.exactly(look.point) + lift_ * normal;
     const double at[3] = {origin.x, origin.y, origin.z};
-    float position[3];
+    float position[4] = {};
     float rest[3];
     for (int axis = 0; axis < 3; ++axis) {
       position[axis] = static_cast<float>(at[axis]);

@@ -37,8 +37,8 @@ struct Voters {
 inline void setRay(Ray& ray, const Points& points, const Cage& cage, const PointResults& results, std::uint32_t point) {
   // In place, field by field: a ray that is copied as a whole right after it was written stalls.
   static constexpr float kNothing[3] = {};
-  ray.startAt(points.at(point), points.rests == nullptr ? kNothing : points.rests + std::size_t{3} * point);
   ray.direction = &cage.triangles[results.triangles[point]].normal;
+  ray.startAt(points.at(point), points.rests == nullptr ? kNothing : points.rests + std::size_t{3} * point);
   ray.end = std::numeric_limits<double>::infinity();
 }
 
