@@ -38,7 +38,8 @@ constexpr std::uint32_t kMostIslands = 1u << 24;
 /// A corner of a target triangle, and its place on the cage.
 struct Corner {
   std::uint32_t point;
-  Vec3 p;
+  const float* position;  ///< x, y, z.
+  Vec3 p;                 ///< The same.
   Candidate at;
   Uv uv;  ///< Of that place.
 };
@@ -86,9 +87,10 @@ class Mender {
   }
 
   /// A point of the target, and its place on the triangle that it is nearest to.
-  [[nodiscard]] Corner cornerAt(std::uint32_t point, Vec3 p, std::uint32_t t) const noexcept {
+  [[nodiscard]] Corner cornerAt(std::uint32_t point, const float* position, std::uint32_t t) const noexcept {
+    const Vec3 p = Vec3::from(position);
     const Candidate at = placeOf(p, t);
-    return {point, p, at, uvOf(at)};
+    return {point, position, p, at, uvOf(at)};
   }
 
   /// Whether the texture is torn or smeared over a triangle, in double.
@@ -214,14 +216,13 @@ class Mender {
     const auto& [from, place] = corners[k].at;
     const Vec3 q = positionOf(cage_.triangles[from], place);
     // One look at a triangle, in float, tells how far it is from the three corners and from q.
-    const Vec3 middle = Vec3::from(tree_.middle);
-    const auto four = [&](double Vec3::*axis) {
-      const auto lane = [&](Vec3 p) { return static_cast<float>(p.*axis - middle.*axis); };
-      return simd::of(lane(corners[0].p), lane(corners[1].p), lane(corners[2].p), lane(q));
+    const auto four = [&](int axis, double ofPlace) {
+      const auto lane = [&](int c) { return corners[c].position[axis]; };
+      return simd::of(lane(0), lane(1), lane(2), static_cast<float>(ofPlace)) - simd::splat(tree_.middle[axis]);
     };
-    patch.x = four(&Vec3::x);
-    patch.y = four(&Vec3::y);
-    patch.z = four(&Vec3::z);
+    patch.x = four(0, q.x);
+    patch.y = four(1, q.y);
+    patch.z = four(2, q.z);
     const double rounding = 2 * kRounding * (tree_.extent + reach + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
     const double surely = std::max(0.0, reach - rounding);
     const auto within = static_cast<float>(surely * surely);
@@ -400,7 +401,7 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     Corner corners[3];
     for (int c = 0; c < 3; ++c) {
       Corner& corner = recent[point[c] % kRecent];
-      if (corner.point != point[c]) corner = mender.cornerAt(point[c], Vec3::from(points.at(point[c])), results.triangles[point[c]]);
+      if (corner.point != point[c]) corner = mender.cornerAt(point[c], points.at(point[c]), results.triangles[point[c]]);
       corners[c] = corner;
     }
     if (mender.isAcross(corners)) mender.mend(corners, ofCorners);
