@@ -241,12 +241,6 @@ class HitSearch {
     return *reinterpret_cast<const RoughRay*>(reinterpret_cast<const char*>(rough_) + std::size_t{2} * ray);
   }
 
-  /// What a leaf's `RayLeaf::rounding` and `nearest` are made of: by the size of its box, for its distance, by the square of the size.
-  struct LeafBounds {
-    float rounding, distance, before;
-  };
-  friend RayLeaf;
-
   void enter(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept;
   void testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
                  std::uint32_t (&counts)[4]) const noexcept;
@@ -259,7 +253,6 @@ class HitSearch {
   float loose_;             ///< Hits beyond this are worth deciding in double,
   float strict_;            ///< and beyond this they count for sure.
   float zero_;              ///< 0 if a hit at distance 0 is none, else no number.
-  LeafBounds bounds_;
   RoughRay* rough_;         ///< 1 per ray.
   std::uint16_t* lists_;    ///< `kListRoom`.
   Ray* rays_ = nullptr;

@@ -62,9 +62,10 @@ struct RayLeaf {
   float rounding;          ///< What the edge functions of a ray that hits may be off in float.
   float nearest;           ///< The least that the distance of such a hit, times the sum of these functions, may come out at.
 
-  /// @param size  Of the leaf's box: its sides together.
-  RayLeaf(const RayTree& tree, std::uint32_t child, float size, const HitSearch::LeafBounds& of)
-      : rounding(size * of.rounding), nearest(size * (size * of.before - of.distance)) {
+  /// @param size    Of the leaf's box: its sides together.
+  /// @param before  `nearest` without rounding, of a box of size 1.
+  RayLeaf(const RayTree& tree, std::uint32_t child, float size, float before)
+      : rounding(size * kEdgeRounding * tree.reach), nearest(size * size * before - rounding * kDistanceRounding * tree.reach) {
     const std::uint32_t* index = tree.corners + std::size_t{3} * firstOf(child);
     for (int i = 0; i < 3; ++i) {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
@@ -191,7 +192,6 @@ HitSearch::HitSearch(const RayTree& tree, double from, Scratch& scratch) noexcep
       loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
       strict_(static_cast<float>(from > 0 ? from * 2 : from / 2)),
       zero_(from > 0 ? 0.0f : std::numeric_limits<float>::quiet_NaN()),
-      bounds_{kEdgeRounding * tree.reach, kEdgeRounding * tree.reach * kDistanceRounding * tree.reach, std::min(loose_, 0.0f) * kMostSum},
       rough_(scratch.take<RoughRay>(kMostRays)),
       lists_(scratch.take<std::uint16_t>(kListRoom)) {}
 
@@ -311,7 +311,7 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
 /// Tries rays with the four triangles from the first of a leaf on. The list of rays is used up.
 void HitSearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::uint32_t count) noexcept {
   const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
-  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2), bounds_);
+  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2), std::min(loose_, 0.0f) * kMostSum);
   const float soonest = loose_;
   const f32x4 zero = splat(zero_);
   // No branch on what is a coin toss: a ray that surely hits nothing is written over by the next.
