@@ -17,7 +17,7 @@ class AreaUnit {
   [[nodiscard]] std::int64_t third(double doubleArea) const { return static_cast<std::int64_t>(doubleArea / 6 * perArea_); }
   /// What it gives to each of its four quarters.
   [[nodiscard]] std::int64_t quarter(double doubleArea) const { return static_cast<std::int64_t>(doubleArea / 8 * perArea_); }
-  [[nodiscard]] double area(std::int64_t units) const { return static_cast<double>(units) / perArea_; }
+  [[nodiscard]] double area(std::int64_t units) const { return static_cast<double>(units) * size_; }
   /// Cut to so few bits that doubles add such areas up exactly.
   [[nodiscard]] double summableArea(std::int64_t units) const { return area(units >> kCutBits << kCutBits); }
 
@@ -25,6 +25,7 @@ class AreaUnit {
   static constexpr int kCutBits = 10;
   static constexpr int kHugeBits = 6;  // (14 / 2)² is less than 2⁶
   double perArea_;
+  double size_ = 1 / perArea_;  ///< Exactly, as it is a power of two.
 };
 
 }  // namespace cagecast

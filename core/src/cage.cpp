@@ -6,20 +6,22 @@
 namespace cagecast {
 
 RayDirection RayDirection::along(Vec3 unit) noexcept {
-  const float d[3] = {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)};
+  const auto x = static_cast<float>(unit.x);
+  const auto y = static_cast<float>(unit.y);
+  const auto z = static_cast<float>(unit.z);
+  const float row[] = {x, y, z, x, y};  // From each axis on the next two follow.
   RayDirection ray{{}, unit};
   Rough& rough = ray.rough;
   // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
-  const simd::f32x4 direction = simd::of(d[0], d[1], d[2], 1);
+  const simd::f32x4 direction = simd::of(x, y, z, 1);
   const simd::f32x4 size = simd::splat(1) / simd::max(simd::abs(direction), simd::splat(1e-20f));
   simd::store(rough.inverse, simd::select(direction < simd::splat(0), simd::splat(0) - size, size));
   // No branch: nobody can guess where rays go.
-  const float sizes[3] = {std::abs(d[0]), std::abs(d[1]), std::abs(d[2])};
-  const auto second = static_cast<std::uint32_t>(sizes[1] > sizes[0]);
-  rough.z = second + (2 - second) * static_cast<std::uint32_t>(sizes[2] > std::max(sizes[0], sizes[1]));
+  const auto second = static_cast<std::uint32_t>(std::abs(y) > std::abs(x));
+  rough.z = second + (2 - second) * static_cast<std::uint32_t>(std::abs(z) > std::max(std::abs(x), std::abs(y)));
   rough.scaleZ = -rough.inverse[rough.z];
-  rough.shearX = d[(rough.z + 1) % 3] * rough.scaleZ;
-  rough.shearY = d[(rough.z + 2) % 3] * rough.scaleZ;
+  rough.shearX = row[rough.z + 1] * rough.scaleZ;
+  rough.shearY = row[rough.z + 2] * rough.scaleZ;
   return ray;
 }
 
