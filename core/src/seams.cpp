@@ -72,6 +72,8 @@ class Mender {
     // Leaves are full but for the last.
     for (std::uint32_t i = 0; i < cage.count; ++i) laneOf_[slotOf(i)] = i;
     for (std::uint32_t i = 0; i < cage.count; ++i) {
+      // Field by field: a leaf has each of them four times.
+      static_assert(sizeof(NearTriangles<4>) == 4 * sizeof(NearTriangles<1>));
       const auto* fields = reinterpret_cast<const float*>(tree.near + i / 4) + i % 4;
       auto* row = reinterpret_cast<float*>(rows_ + i);
       for (std::size_t k = 0; k < sizeof *rows_ / sizeof(float); ++k) row[k] = fields[4 * k];
