@@ -41,7 +41,8 @@ struct NearTriangles {
   Axis axes[3];
   float base[count];  ///< B = (base, 0).
   float foot[count];  ///< x of C.
-  /// The two upper edges, AC and BC, each from its foot on AB to C; x is counted from that foot, towards the other one.
+  /// The two upper edges, AC and BC, each from its foot on AB to C; x is counted from that foot, towards the other one. The first is
+  /// as `simd::toChoose` has it.
   float edgeX[2][count], edgeY[2][count];  ///< Unit vector.
   float edgeLength[2][count];
 };

@@ -383,6 +383,9 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     }
     for (std::uint32_t lane = 0; lane < 4; lane += 2) setNearTriangles(nearLeaves[leaf], lane, *triangles[lane], *triangles[lane + 1], out.middle);
     for (std::uint32_t lane = 4; 4 * leaf + lane > cage.count;) clearNearTriangle(nearLeaves[leaf], --lane);
+    for (auto* const edges : {nearLeaves[leaf].edgeX, nearLeaves[leaf].edgeY, nearLeaves[leaf].edgeLength}) {
+      simd::store(edges[0], simd::toChoose(load(edges[0]), load(edges[1])));
+    }
     boxes[leaf] = box.padded(kPadding * units.reach);
     new (leafBoxes + leaf) LeafBox(boxAround(triangles, out.middle, kTurnedPadding * units.reach));
   }

@@ -40,7 +40,7 @@ simd::f32x4 squaredDistances(const NearTriangles<count>& leaf, simd::f32x4 x, si
   // A perpendicular through C parts the points that can be nearest to the left edge from those that can be to the right
   // one. Mirrored if need be, x counts from the lower end of that edge.
   const simd::mask4 isLeft = across < get(leaf.foot);
-  const auto side = [&](const float (&of)[2][count]) { return simd::select(isLeft, get(of[0]), get(of[1])); };
+  const auto side = [&](const float (&of)[2][count]) { return simd::choose(isLeft, get(of[0]), get(of[1])); };
   const simd::f32x4 fromCorner = simd::select(isLeft, across, get(leaf.base) - across);
   const simd::f32x4 edgeX = side(leaf.edgeX);
   const simd::f32x4 edgeY = side(leaf.edgeY);
