@@ -118,8 +118,8 @@ class NearestSearch {
     std::uint32_t count = 0;
     std::uint32_t found = 0;
     for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
-      const bool isNear = near_[i][j].squaredDistance <= limits_[i];
-      found = isNear ? near_[i][j].lanes : found;
+      const bool isNear = squaredDistances_[j][i] <= limits_[i];
+      found = isNear ? lanes_[j][i] : found;
       count += isNear;
     }
     const unsigned lanes = found & 15;
@@ -135,12 +135,6 @@ class NearestSearch {
   /// One more than the leaves to remember of a point; if more come close, `candidates` looks again.
   static constexpr std::uint32_t kRoom = 8;
 
-  /// A leaf that had triangles within the limit, as it was then.
-  struct Near {
-    float squaredDistance;  ///< Of the nearest of them.
-    std::uint32_t lanes;    ///< Which they were: a bit each, below the leaf's index.
-  };
-
   /// Leaves that are near enough to a box, level by level.
   /// @return How many.
   std::uint32_t listLeaves(const simd::f32x4 (&low)[3], const simd::f32x4 (&high)[3], simd::f32x4 limit,
@@ -150,6 +144,9 @@ class NearestSearch {
   /// Searches up to `kBatch` leaves for each of `count` points.
   void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept;
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
+  /// Searches a leaf for all points, which have all found as much until then.
+  /// @param place  What they found.
+  void searchSeed(std::uint32_t leaf, std::uint32_t place) noexcept;
 
   const CageTree& tree_;
   double slack_;                      ///< The s of `kRelativeSlack`.
@@ -162,8 +159,10 @@ class NearestSearch {
   alignas(32) float limits_[kGroup];  ///< Squared distance within which a triangle is of interest.
   std::uint32_t* list_;               ///< Room for all leaves, and four more.
   std::uint32_t* otherList_;
-  std::uint32_t nearCount_[kGroup];   ///< From `kRoom` on some may be written over.
-  Near near_[kGroup][kRoom];
+  alignas(16) std::uint32_t nearCount_[kGroup];  ///< From `kRoom` on some may be written over.
+  // By place of these: a leaf that had triangles within the limit, as it was then.
+  alignas(32) float squaredDistances_[kRoom][kGroup];  ///< Of the nearest of them.
+  alignas(16) std::uint32_t lanes_[kRoom][kGroup];     ///< Which they were: a bit each, below the leaf's index.
 };
 
 /// Four triangles for rays.

@@ -116,8 +116,40 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
     limits_[i] = simd::first(limit);
     // No branch: whether a leaf is of interest is a coin toss. One that is not is written over by the next.
     const std::uint32_t count = nearCount_[i];
-    near_[i][count % kRoom] = {simd::first(least), leafIndex << 4 | lanes};
+    squaredDistances_[count % kRoom][i] = simd::first(least);
+    lanes_[count % kRoom][i] = leafIndex << 4 | lanes;
     nearCount_[i] = count + (lanes != 0);
+  }
+}
+
+void NearestSearch::searchSeed(std::uint32_t leafIndex, std::uint32_t place) noexcept {
+  const NearLeaf& leaf = tree_.near[leafIndex];
+  for (unsigned i = 0; i < kGroup; i += kWide) {
+    // Where all points are looked at, each has a lane, and triangles come one after the other.
+    const wide x = loadWide(columns_[0] + i), y = loadWide(columns_[1] + i), z = loadWide(columns_[2] + i);
+    alignas(32) float squared[4][kWide];
+    wide least = simd::splatWide(std::numeric_limits<float>::max());
+    #ifdef __clang__
+#pragma clang loop unroll(disable)
+#endif
+    for (int lane = 0; lane < 4; ++lane) {
+      const wide one = squaredDistances(leaf, x, y, z, [lane](const float (&field)[4]) { return simd::splatWide(field[lane]); });
+      simd::store(squared[lane], one);
+      least = simd::min(one, least);
+    }
+    const wide limit = simd::min(simd::multiplyAdd(least, simd::splatWide(growth_), simd::splatWide(fixedSlack_)), loadWide(limits_ + i));
+    simd::store(limits_ + i, limit);
+    simd::store(squaredDistances_[place] + i, least);
+    simd::count4 lanes[simd::kParts];
+    for (simd::count4& l : lanes) l = simd::splatCount(leafIndex);
+    for (int lane = 4; lane-- > 0;) {
+      simd::forParts(loadWide(squared[lane]) <= limit, [&](int part, simd::mask4 isNear) { lanes[part] = simd::countTrue(lanes[part] + lanes[part], isNear); });
+    }
+    simd::forParts(least <= limit, [&](int part, simd::mask4 isNear) {
+      const unsigned at = i + static_cast<unsigned>(part) * simd::kWidth;
+      simd::store(lanes_[place] + at, lanes[part]);
+      simd::store(nearCount_ + at, simd::countTrue(simd::splatCount(place), isNear));
+    });
   }
 }
 
@@ -186,7 +218,6 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);
     simd::store(limits_ + i, splat(std::numeric_limits<float>::max()));
-    simd::store(nearCount_ + i, simd::splatCount(0));
   }
   const f32x4 low[3] = {simd::splatLane<0>(lowCorner), simd::splatLane<1>(lowCorner), simd::splatLane<2>(lowCorner)};
   const f32x4 high[3] = {simd::splatLane<0>(highCorner), simd::splatLane<1>(highCorner), simd::splatLane<2>(highCorner)};
@@ -194,9 +225,8 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   // For limits to begin with: a leaf near where the last group ends, and one near where this one does.
   const std::uint32_t last = count - 1;
   const std::uint32_t seeds[] = {lastLeaf_, leafNear(load(positions + Points::kStride * last))};
-  const unsigned all = (1u << count) - 1;
-  searchLeaf(seeds[0], all);
-  if (seeds[1] != seeds[0]) searchLeaf(seeds[1], all);
+  searchSeed(seeds[0], 0);
+  if (seeds[1] != seeds[0]) searchSeed(seeds[1], 1);
   f32x4 most = load(limits_);
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
@@ -209,19 +239,22 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   }
 
   // Where the last point is nearest, the next group begins.
-  const Near* const near = near_[last];
-  lastLeaf_ = std::min_element(near, near + std::min(nearCount_[last], kRoom), [](Near a, Near b) { return a.squaredDistance < b.squaredDistance; })->lanes >> 4;
+  std::uint32_t nearest = 0;
+  for (std::uint32_t j = 1; j < std::min(nearCount_[last], kRoom); ++j) {
+    if (squaredDistances_[j][last] < squaredDistances_[nearest][last]) nearest = j;
+  }
+  lastLeaf_ = lanes_[nearest][last] >> 4;
 }
 
 std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) noexcept {
   std::uint32_t count = 0;
-  const auto take = [&](Near near) {
-    const NearLeaf& leaf = tree_.near[near.lanes >> 4];
-    for (unsigned lanes = near.lanes & 15; lanes != 0; lanes &= lanes - 1) found[count++] = leaf.slot[std::countr_zero(lanes)];
+  const auto take = [&](std::uint32_t place) {
+    const NearLeaf& leaf = tree_.near[lanes_[place][i] >> 4];
+    for (unsigned lanes = lanes_[place][i] & 15; lanes != 0; lanes &= lanes - 1) found[count++] = leaf.slot[std::countr_zero(lanes)];
   };
   if (nearCount_[i] < kRoom) {
     for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
-      if (near_[i][j].squaredDistance <= limits_[i]) take(near_[i][j]);
+      if (squaredDistances_[j][i] <= limits_[i]) take(j);
     }
     return count;
   }
@@ -233,7 +266,7 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) n
   for (std::uint32_t j = 0; j < leafCount; ++j) {
     nearCount_[i] = 0;  // What is found is the first then.
     searchLeaf(leaves[j], 1u << i);
-    take(near_[i][0]);
+    take(0);
   }
   nearCount_[i] = kRoom;
   return count;

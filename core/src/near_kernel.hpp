@@ -24,35 +24,35 @@ inline double slackOf(const CageTree& tree, double diagonal) { return kTieDistan
 inline float fixedSlack(double slack, double ratio) { return static_cast<float>(slack * slack * (1 + 1 / ratio)); }
 
 /// Squared distances of points to triangles, each in its own frame.
-/// @param x,y,z  Of four points, or of one four times, from the middle of the cage.
-/// @param get    Gives the four numbers to use for a field of the leaf: `simd::load`, or one of them four times.
-template <int count, typename Get>
-simd::f32x4 squaredDistances(const NearTriangles<count>& leaf, simd::f32x4 x, simd::f32x4 y, simd::f32x4 z, Get get) {
+/// @param x,y,z  Of as many points as there are lanes, or of one in all of them, from the middle of the cage.
+/// @param get    Gives the numbers to use for a field of the leaf: four side by side, or one of them in all lanes.
+template <typename Floats, int count, typename Get>
+Floats squaredDistances(const NearTriangles<count>& leaf, Floats x, Floats y, Floats z, Get get) {
   const auto coordinate = [&](const typename NearTriangles<count>::Axis& axis) {
     const auto& [alongX, alongY, alongZ] = axis.direction;
     return simd::multiplyAdd(z, get(alongZ), simd::multiplyAdd(y, get(alongY), simd::multiplyAdd(x, get(alongX), get(axis.middle))));
   };
-  const simd::f32x4 across = coordinate(leaf.axes[0]);
-  const simd::f32x4 up = coordinate(leaf.axes[1]);
-  const simd::f32x4 height = coordinate(leaf.axes[2]);
-  const simd::f32x4 zero = simd::splat(0);
+  const Floats across = coordinate(leaf.axes[0]);
+  const Floats up = coordinate(leaf.axes[1]);
+  const Floats height = coordinate(leaf.axes[2]);
+  const Floats zero = simd::zeros<Floats>();
 
   // A perpendicular through C parts the points that can be nearest to the left edge from those that can be to the right
   // one. Mirrored if need be, x counts from the lower end of that edge.
-  const simd::mask4 isLeft = across < get(leaf.foot);
+  const auto isLeft = across < get(leaf.foot);
   const auto side = [&](const float (&of)[2][count]) { return simd::choose(isLeft, get(of[0]), get(of[1])); };
-  const simd::f32x4 fromCorner = simd::select(isLeft, across, get(leaf.base) - across);
-  const simd::f32x4 edgeX = side(leaf.edgeX);
-  const simd::f32x4 edgeY = side(leaf.edgeY);
+  const Floats fromCorner = simd::select(isLeft, across, get(leaf.base) - across);
+  const Floats edgeX = side(leaf.edgeX);
+  const Floats edgeY = side(leaf.edgeY);
   // Above AB: beyond the edge by `beyond`, and past one of its ends by `past`; or inside, where both are 0.
-  const simd::f32x4 along = simd::multiplyAdd(fromCorner, edgeX, up * edgeY);
-  const simd::f32x4 past = along - simd::clamp(along, zero, side(leaf.edgeLength));
-  const simd::f32x4 beyond = simd::max(simd::subtractProduct(up * edgeX, fromCorner, edgeY), zero);
-  const simd::f32x4 toEdge = simd::multiplyAdd(beyond, beyond, past * past);
+  const Floats along = simd::multiplyAdd(fromCorner, edgeX, up * edgeY);
+  const Floats past = along - simd::clamp(along, zero, side(leaf.edgeLength));
+  const Floats beyond = simd::max(simd::subtractProduct(up * edgeX, fromCorner, edgeY), zero);
+  const Floats toEdge = simd::multiplyAdd(beyond, beyond, past * past);
   // Below AB: nearest to AB, or to its end. Neither of the two is ever more than the distance, which one of them is.
-  const simd::f32x4 outside = simd::min(fromCorner, zero);
-  const simd::f32x4 below = simd::min(up, zero);
-  const simd::f32x4 toBase = simd::multiplyAdd(outside, outside, below * below);
+  const Floats outside = simd::min(fromCorner, zero);
+  const Floats below = simd::min(up, zero);
+  const Floats toBase = simd::multiplyAdd(outside, outside, below * below);
   return simd::multiplyAdd(height, height, simd::max(toBase, toEdge));
 }
 

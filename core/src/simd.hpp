@@ -180,6 +180,7 @@ inline count4 max(count4 a, count4 b) {
   return {_mm_or_si128(_mm_and_si128(isMore, a.v), _mm_andnot_si128(isMore, b.v))};
 #endif
 }
+inline count4 operator+(count4 a, count4 b) { return {_mm_add_epi32(a.v, b.v)}; }
 inline count4 operator-(count4 a, count4 b) { return {_mm_sub_epi32(a.v, b.v)}; }
 /// One more where the mask is set: all its bits are the number −1.
 inline count4 countTrue(count4 c, mask4 m) { return {_mm_sub_epi32(c.v, _mm_castps_si128(m.v))}; }
@@ -293,6 +294,7 @@ inline count4 wholes(f32x4 a) { return {vreinterpretq_u32_s32(vcvtq_s32_f32(a.v)
 inline void store(std::uint32_t* p, count4 c) { vst1q_u32(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {vdupq_n_u32(x)}; }
 inline count4 max(count4 a, count4 b) { return {vmaxq_u32(a.v, b.v)}; }
+inline count4 operator+(count4 a, count4 b) { return {vaddq_u32(a.v, b.v)}; }
 inline count4 operator-(count4 a, count4 b) { return {vsubq_u32(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {vsubq_u32(c.v, m.v)}; }
 template <int lane>
@@ -401,6 +403,7 @@ inline count4 wholes(f32x4 a) { return {wasm_i32x4_trunc_sat_f32x4(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {wasm_u32x4_splat(x)}; }
 inline count4 max(count4 a, count4 b) { return {wasm_u32x4_max(a.v, b.v)}; }
+inline count4 operator+(count4 a, count4 b) { return {wasm_i32x4_add(a.v, b.v)}; }
 inline count4 operator-(count4 a, count4 b) { return {wasm_i32x4_sub(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {wasm_i32x4_sub(c.v, m.v)}; }
 template <int lane>
@@ -523,6 +526,7 @@ inline count4 splatCount(std::uint32_t x) { return {{x, x, x, x}}; }
 inline count4 max(count4 a, count4 b) {
   return {{std::max(a.v[0], b.v[0]), std::max(a.v[1], b.v[1]), std::max(a.v[2], b.v[2]), std::max(a.v[3], b.v[3])}};
 }
+inline count4 operator+(count4 a, count4 b) { return {{a.v[0] + b.v[0], a.v[1] + b.v[1], a.v[2] + b.v[2], a.v[3] + b.v[3]}}; }
 inline count4 operator-(count4 a, count4 b) { return {{a.v[0] - b.v[0], a.v[1] - b.v[1], a.v[2] - b.v[2], a.v[3] - b.v[3]}}; }
 inline count4 countTrue(count4 c, mask4 m) { return {{c.v[0] + m.v[0], c.v[1] + m.v[1], c.v[2] + m.v[2], c.v[3] + m.v[3]}}; }
 template <int lane>
@@ -580,7 +584,17 @@ inline f32x8 multiplyAdd(f32x8 a, f32x8 b, f32x8 c) {
 inline f32x8 abs(f32x8 a) { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0f), a.v)}; }
 inline f32x8 min(f32x8 a, f32x8 b) { return {_mm256_min_ps(a.v, b.v)}; }
 inline f32x8 max(f32x8 a, f32x8 b) { return {_mm256_max_ps(a.v, b.v)}; }
+inline f32x8 subtractProduct(f32x8 c, f32x8 a, f32x8 b) {
+#if defined(__FMA__)
+  return {_mm256_fnmadd_ps(a.v, b.v, c.v)};
+#else
+  return {_mm256_sub_ps(c.v, _mm256_mul_ps(a.v, b.v))};
+#endif
+}
+inline mask8 operator<(f32x8 a, f32x8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OS)}; }
 inline mask8 operator<=(f32x8 a, f32x8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OS)}; }
+inline f32x8 select(mask8 m, f32x8 a, f32x8 b) { return {_mm256_blendv_ps(b.v, a.v, m.v)}; }
+inline f32x8 choose(mask8 m, f32x8 a, f32x8 b) { return select(m, a, b); }
 template <int tagBits>
 inline f32x8 withTag(f32x8 a, std::uint32_t tag) {
   const __m256 kept = _mm256_and_ps(a.v, _mm256_castsi256_ps(_mm256_set1_epi32(-1 << tagBits)));
@@ -619,6 +633,16 @@ inline void forParts(mask4 m, Take take) {
 }
 
 #endif
+
+/// As many zeros as there are lanes.
+template <typename Floats>
+inline Floats zeros() {
+  if constexpr (sizeof(Floats) == sizeof(wide)) {
+    return splatWide(0);
+  } else {
+    return splat(0);
+  }
+}
 
 /// Lanes, and times four, of a `wide`.
 inline constexpr int kWide = sizeof(wide) / sizeof(float);
