@@ -343,7 +343,7 @@ inline f32x4 splatLane(f32x4 a) {
 }
 template <int lane>
 inline f32x4 splatAt(const float* p) {
-  return splatLane<lane>(load(p));  // One load for all lanes.
+  return {wasm_v128_load32_splat(p + lane)};
 }
 inline f32x4 lowest(f32x4 a) {
   a = min(a, {wasm_i64x2_shuffle(a.v, a.v, 1, 0)});
