@@ -272,17 +272,17 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
   if (simd::kParts > 1) rays[count] = rays[count - 1];
   for (const std::uint16_t* next = rays; next < rays + count; next += simd::kParts) {
     const std::uint16_t ray[] = {next[0], next[simd::kParts - 1]};  // As many as there are parts.
-    const wide inverse = simd::loadParts([&](int i) { return roughRay(ray[i]).direction.inverse; });
-    const wide offset = simd::loadParts([&](int i) { return roughRay(ray[i]).offset; });
+    const auto inverse = [&](int i) { return roughRay(ray[i]).direction.inverse; };
+    const auto offset = [&](int i) { return roughRay(ray[i]).offset; };
     wide first = from;
-    wide last = simd::splatLane<3>(inverse);
+    wide last = simd::splatParts<3>(inverse);
     const auto cut = [&]<int axis>(std::integral_constant<int, axis>) {
-      const wide inverseOfAxis = simd::splatLane<axis>(inverse);
-      const wide offsetOfAxis = simd::splatLane<axis>(offset);
+      const wide inverseOfAxis = simd::splatParts<axis>(inverse);
+      const wide offsetOfAxis = simd::splatParts<axis>(offset);
       // Rays of all directions go together: which side is the near one shows only now.
       if constexpr (simd::kMultipliesByLane) {
         const wide toMiddle = simd::multiplyAdd(middle[axis], inverseOfAxis, offsetOfAxis);
-        const wide within = half[axis] * simd::splatLane<axis>(simd::abs(inverse));
+        const wide within = half[axis] * simd::splatLane<axis>(simd::abs(simd::loadParts(inverse)));
         first = simd::max(first, toMiddle - within);
         last = simd::min(last, toMiddle + within);
       } else {

@@ -571,6 +571,11 @@ template <int lane>
 inline f32x8 splatLane(f32x8 a) {
   return {_mm256_permute_ps(a.v, lane * 0x55)};
 }
+/// The same, of four floats in memory for each part.
+template <int lane, typename At>
+inline f32x8 splatParts(At at) {
+  return splatLane<lane>(loadParts(at));
+}
 inline f32x8 operator+(f32x8 a, f32x8 b) { return {_mm256_add_ps(a.v, b.v)}; }
 inline f32x8 operator-(f32x8 a, f32x8 b) { return {_mm256_sub_ps(a.v, b.v)}; }
 inline f32x8 operator*(f32x8 a, f32x8 b) { return {_mm256_mul_ps(a.v, b.v)}; }
@@ -626,6 +631,10 @@ inline f32x4 repeat(f32x4 a) { return a; }
 template <typename At>
 inline f32x4 loadParts(At at) {
   return load(at(0));
+}
+template <int lane, typename At>
+inline f32x4 splatParts(At at) {
+  return splatAt<lane>(at(0));
 }
 template <typename Take>
 inline void forParts(mask4 m, Take take) {
