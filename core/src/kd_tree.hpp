@@ -114,17 +114,9 @@ class NearestSearch {
   /// The same where there is but one, as most often: quicker.
   /// @return That triangle; `kSeveral` if there are more.
   [[nodiscard]] std::uint32_t onlyCandidate(std::uint32_t i) const noexcept {
-    if (nearCount_[i] >= kRoom) return kSeveral;
-    std::uint32_t count = 0;
-    std::uint32_t found = 0;
-    for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
-      const bool isNear = squaredDistances_[j][i] <= limits_[i];
-      found = isNear ? lanes_[j][i] : found;
-      count += isNear;
-    }
-    const unsigned lanes = found & 15;
-    if (count != 1 || (lanes & (lanes - 1)) != 0) return kSeveral;
-    return tree_.near[found >> 4].slot[std::countr_zero(lanes)];
+    const unsigned lanes = found_[i] & 15;
+    if (nearCount_[i] >= kRoom || foundCount_[i] != 1 || (lanes & (lanes - 1)) != 0) return kSeveral;
+    return tree_.near[found_[i] >> 4].slot[std::countr_zero(lanes)];
   }
   static constexpr std::uint32_t kSeveral = UINT32_MAX;
 
@@ -144,9 +136,9 @@ class NearestSearch {
   /// Searches up to `kBatch` leaves for each of `count` points.
   void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept;
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
-  /// Searches a leaf for all points, which have all found as much until then.
-  /// @param place  What they found.
-  void searchSeed(std::uint32_t leaf, std::uint32_t place) noexcept;
+  /// Searches a leaf for all of `count` points.
+  /// @param place  How many leaves they have been searched for before: triangles of each came within the limit.
+  void searchSeed(std::uint32_t leaf, std::uint32_t place, std::uint32_t count) noexcept;
 
   const CageTree& tree_;
   double slack_;                      ///< The s of `kRelativeSlack`.
@@ -163,6 +155,8 @@ class NearestSearch {
   // By place of these: a leaf that had triangles within the limit, as it was then.
   alignas(32) float squaredDistances_[kRoom][kGroup];  ///< Of the nearest of them.
   alignas(16) std::uint32_t lanes_[kRoom][kGroup];     ///< Which they were: a bit each, below the leaf's index.
+  alignas(16) std::uint32_t foundCount_[kGroup];       ///< How many of them still are,
+  alignas(16) std::uint32_t found_[kGroup];            ///< and, if there is but one, which.
 };
 
 /// Four triangles for rays.

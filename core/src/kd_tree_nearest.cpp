@@ -122,9 +122,9 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
   }
 }
 
-void NearestSearch::searchSeed(std::uint32_t leafIndex, std::uint32_t place) noexcept {
+void NearestSearch::searchSeed(std::uint32_t leafIndex, std::uint32_t place, std::uint32_t count) noexcept {
   const NearLeaf& leaf = tree_.near[leafIndex];
-  for (unsigned i = 0; i < kGroup; i += kWide) {
+  for (std::uint32_t i = 0; i < count; i += kWide) {
     // Where all points are looked at, each has a lane, and triangles come one after the other.
     const wide x = loadWide(columns_[0] + i), y = loadWide(columns_[1] + i), z = loadWide(columns_[2] + i);
     alignas(32) float squared[4][kWide];
@@ -146,7 +146,7 @@ void NearestSearch::searchSeed(std::uint32_t leafIndex, std::uint32_t place) noe
       simd::forParts(loadWide(squared[lane]) <= limit, [&](int part, simd::mask4 isNear) { lanes[part] = simd::countTrue(lanes[part] + lanes[part], isNear); });
     }
     simd::forParts(least <= limit, [&](int part, simd::mask4 isNear) {
-      const unsigned at = i + static_cast<unsigned>(part) * simd::kWidth;
+      const std::uint32_t at = i + static_cast<std::uint32_t>(part) * simd::kWidth;
       simd::store(lanes_[place] + at, lanes[part]);
       simd::store(nearCount_ + at, simd::countTrue(simd::splatCount(place), isNear));
     });
@@ -218,6 +218,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);
     simd::store(limits_ + i, splat(std::numeric_limits<float>::max()));
+    for (auto& squaredDistances : squaredDistances_) simd::store(squaredDistances + i, splat(std::numeric_limits<float>::infinity()));
   }
   const f32x4 low[3] = {simd::splatLane<0>(lowCorner), simd::splatLane<1>(lowCorner), simd::splatLane<2>(lowCorner)};
   const f32x4 high[3] = {simd::splatLane<0>(highCorner), simd::splatLane<1>(highCorner), simd::splatLane<2>(highCorner)};
@@ -225,8 +226,8 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   // For limits to begin with: a leaf near where the last group ends, and one near where this one does.
   const std::uint32_t last = count - 1;
   const std::uint32_t seeds[] = {lastLeaf_, leafNear(load(positions + Points::kStride * last))};
-  searchSeed(seeds[0], 0);
-  if (seeds[1] != seeds[0]) searchSeed(seeds[1], 1);
+  searchSeed(seeds[0], 0, count);
+  if (seeds[1] != seeds[0]) searchSeed(seeds[1], 1, count);
   f32x4 most = load(limits_);
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
@@ -236,6 +237,19 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   }
   for (std::uint32_t begin = 0; begin < leafCount; begin += kBatch) {
     searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
+  }
+
+  for (std::uint32_t i = 0; i < count; i += simd::kWidth) {
+    const f32x4 limits = load(limits_ + i);
+    simd::count4 foundCount = simd::splatCount(0);
+    simd::count4 found = foundCount;
+    for (std::uint32_t j = 0; j < kRoom; ++j) {
+      const simd::mask4 isNear = load(squaredDistances_[j] + i) <= limits;
+      foundCount = simd::countTrue(foundCount, isNear);
+      found = simd::with(found, simd::load(lanes_[j] + i), isNear);
+    }
+    simd::store(foundCount_ + i, foundCount);
+    simd::store(found_ + i, found);
   }
 
   // Where the last point is nearest, the next group begins.

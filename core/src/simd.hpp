@@ -184,6 +184,8 @@ inline count4 operator+(count4 a, count4 b) { return {_mm_add_epi32(a.v, b.v)}; 
 inline count4 operator-(count4 a, count4 b) { return {_mm_sub_epi32(a.v, b.v)}; }
 /// One more where the mask is set: all its bits are the number −1.
 inline count4 countTrue(count4 c, mask4 m) { return {_mm_sub_epi32(c.v, _mm_castps_si128(m.v))}; }
+/// c, and what of d is where the mask is set.
+inline count4 with(count4 c, count4 d, mask4 m) { return {_mm_or_si128(c.v, _mm_and_si128(d.v, _mm_castps_si128(m.v)))}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
 #if defined(__SSE4_1__)
@@ -297,6 +299,7 @@ inline count4 max(count4 a, count4 b) { return {vmaxq_u32(a.v, b.v)}; }
 inline count4 operator+(count4 a, count4 b) { return {vaddq_u32(a.v, b.v)}; }
 inline count4 operator-(count4 a, count4 b) { return {vsubq_u32(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {vsubq_u32(c.v, m.v)}; }
+inline count4 with(count4 c, count4 d, mask4 m) { return {vorrq_u32(c.v, vandq_u32(d.v, m.v))}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
   return vgetq_lane_u32(c.v, lane);
@@ -406,6 +409,7 @@ inline count4 max(count4 a, count4 b) { return {wasm_u32x4_max(a.v, b.v)}; }
 inline count4 operator+(count4 a, count4 b) { return {wasm_i32x4_add(a.v, b.v)}; }
 inline count4 operator-(count4 a, count4 b) { return {wasm_i32x4_sub(a.v, b.v)}; }
 inline count4 countTrue(count4 c, mask4 m) { return {wasm_i32x4_sub(c.v, m.v)}; }
+inline count4 with(count4 c, count4 d, mask4 m) { return {wasm_v128_or(c.v, wasm_v128_and(d.v, m.v))}; }
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
   return static_cast<std::uint32_t>(wasm_i32x4_extract_lane(c.v, lane));
@@ -529,6 +533,10 @@ inline count4 max(count4 a, count4 b) {
 inline count4 operator+(count4 a, count4 b) { return {{a.v[0] + b.v[0], a.v[1] + b.v[1], a.v[2] + b.v[2], a.v[3] + b.v[3]}}; }
 inline count4 operator-(count4 a, count4 b) { return {{a.v[0] - b.v[0], a.v[1] - b.v[1], a.v[2] - b.v[2], a.v[3] - b.v[3]}}; }
 inline count4 countTrue(count4 c, mask4 m) { return {{c.v[0] + m.v[0], c.v[1] + m.v[1], c.v[2] + m.v[2], c.v[3] + m.v[3]}}; }
+inline count4 with(count4 c, count4 d, mask4 m) {
+  const auto one = [&](int i) { return m.v[i] ? c.v[i] | d.v[i] : c.v[i]; };
+  return {{one(0), one(1), one(2), one(3)}};
+}
 template <int lane>
 inline std::uint32_t countOf(count4 c) {
   return c.v[lane];
