@@ -67,7 +67,8 @@ void NearestSearch::widen(double more, double distance) noexcept {
   fixedSlack_ = fixedSlack(slack, ratio);
 }
 
-std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
+/// Not inlined: it is long, and called from two places.
+[[gnu::noinline]] std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
   std::uint32_t* from = list_;
   std::uint32_t* to = otherList_;
   // Copies stay in registers: the others might be what is written to.
