@@ -166,8 +166,8 @@ inline count4 load(const std::uint32_t* p) { return {_mm_loadu_si128(reinterpret
 inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   return {_mm_setr_epi32(static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d))};
 }
-/// Numbers from 0 on, without what they have behind the point.
-inline count4 wholes(f32x4 a) { return {_mm_cvttps_epi32(a.v)}; }
+/// Numbers from 0 to 2^22, rounded; halves to even ones.
+inline count4 rounded(f32x4 a) { return {_mm_cvtps_epi32(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), c.v); }
 inline count4 splatCount(std::uint32_t x) { return {_mm_set1_epi32(static_cast<int>(x))}; }
 inline count4 max(count4 a, count4 b) {
@@ -292,7 +292,7 @@ struct count4 {
 };
 inline count4 load(const std::uint32_t* p) { return {vld1q_u32(p)}; }
 inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { return {uint32x4_t{a, b, c, d}}; }
-inline count4 wholes(f32x4 a) { return {vreinterpretq_u32_s32(vcvtq_s32_f32(a.v))}; }
+inline count4 rounded(f32x4 a) { return {vcvtnq_u32_f32(a.v)}; }
 inline void store(std::uint32_t* p, count4 c) { vst1q_u32(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {vdupq_n_u32(x)}; }
 inline count4 max(count4 a, count4 b) { return {vmaxq_u32(a.v, b.v)}; }
@@ -402,7 +402,8 @@ inline count4 load(const std::uint32_t* p) { return {wasm_v128_load(p)}; }
 inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   return {wasm_i32x4_make(static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d))};
 }
-inline count4 wholes(f32x4 a) { return {wasm_i32x4_trunc_sat_f32x4(a.v)}; }
+/// From 2^23 on floats are whole, and what they are beyond it is in their last bits: to convert them takes five instructions.
+inline count4 rounded(f32x4 a) { return {wasm_v128_and(wasm_f32x4_add(a.v, wasm_f32x4_splat(0x1p23f)), wasm_i32x4_splat(0x7F'FFFF))}; }
 inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {wasm_u32x4_splat(x)}; }
 inline count4 max(count4 a, count4 b) { return {wasm_u32x4_max(a.v, b.v)}; }
@@ -521,9 +522,9 @@ struct count4 {
 };
 inline count4 load(const std::uint32_t* p) { return {{p[0], p[1], p[2], p[3]}}; }
 inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { return {{a, b, c, d}}; }
-inline count4 wholes(f32x4 a) {
-  const auto whole = [&](int i) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(a.v[i])); };
-  return {{whole(0), whole(1), whole(2), whole(3)}};
+inline count4 rounded(f32x4 a) {
+  const auto one = [&](int i) { return static_cast<std::uint32_t>(a.v[i] + 0x1p23f) - 0x80'0000u; };
+  return {{one(0), one(1), one(2), one(3)}};
 }
 inline void store(std::uint32_t* p, count4 c) { std::memcpy(p, c.v, sizeof c.v); }
 inline count4 splatCount(std::uint32_t x) { return {{x, x, x, x}}; }

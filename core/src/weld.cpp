@@ -198,7 +198,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& 
   for (std::uint32_t v = 0; v < vertexCount; ++v, position += 3) {
     const f32x4 p = simd::load3(position) * scale + simd::splat(0);
     sites[v].put(p, groupOf == nullptr ? 0 : groupOf[v]);
-    const simd::count4 cell = simd::wholes((p - low) * simd::splat(cells));
+    const simd::count4 cell = simd::rounded((p - low) * simd::splat(cells));
     const std::uint32_t key = curve.key(simd::countOf<0>(cell), simd::countOf<1>(cell), simd::countOf<2>(cell));
     digits.count(key, counts);
     unsorted[v] = Placed{key} << 32 | v;
