@@ -29,27 +29,24 @@ struct alignas(16) Node {
   std::uint32_t child[4];
 };
 
-/// Triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
-/// edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B.
-template <int count>
-struct NearTriangles {
+/// Four triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
+/// edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B. Unused lanes are
+/// infinitely far away.
+struct alignas(16) NearLeaf {
   /// What makes a coordinate of a point: where the middle of the cage is, from which the point is counted, and a unit vector.
   struct Axis {
-    float middle[count];
-    float direction[3][count];
+    float middle[4];
+    float direction[3][4];
   };
   Axis axes[3];
-  float base[count];  ///< B = (base, 0).
-  float foot[count];  ///< x of C.
-  /// The two upper edges, AC and BC, each from its foot on AB to C; x is counted from that foot, towards the other one. The first is
-  /// as `simd::toChoose` has it.
-  float edgeX[2][count], edgeY[2][count];  ///< Unit vector.
-  float edgeLength[2][count];
-};
-
-/// Four of them. Unused lanes are infinitely far away.
-struct alignas(16) NearLeaf : NearTriangles<4> {
-  std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
+  /// The two upper edges, AC on the left and BC, each from its foot on AB to C; x is counted from that foot, towards the other
+  /// one. Unit vectors, and lengths. What is of the left one is as `simd::toChoose` has it.
+  float rightX[4], rightY[4], leftY[4], leftX[4];
+  float rightLength[4];
+  float base[4];           ///< B = (base, 0).
+  float foot[4];           ///< x of C.
+  float leftLength[4];
+  std::uint32_t slot[4];   ///< The place in `Cage::triangles`.
 };
 
 /// A tree for rays: boxes, and under them triangles that stay where they are.

@@ -111,19 +111,19 @@ void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& on
     put(axis.direction[1], direction.y);
     put(axis.direction[2], direction.z);
   };
-  const auto putEdges = [&](int side, f64x2 toFoot) {
+  const auto putEdge = [&](f64x2 toFoot, float (&x)[4], float (&y)[4], float (&along)[4]) {
     const f64x2 edgeLength = sqrt(toFoot * toFoot + height * height);
-    put(leaf.edgeX[side], toFoot / edgeLength);
-    put(leaf.edgeY[side], height / edgeLength);
-    put(leaf.edgeLength[side], edgeLength);
+    put(x, toFoot / edgeLength);
+    put(y, height / edgeLength);
+    put(along, edgeLength);
   };
   putAxis(leaf.axes[0], axisX);
   putAxis(leaf.axes[1], axisY);
   putAxis(leaf.axes[2], axisZ);
   put(leaf.base, base);
   put(leaf.foot, footX);
-  putEdges(0, footX);
-  putEdges(1, base - footX);
+  putEdge(footX, leaf.leftX, leaf.leftY, leaf.leftLength);
+  putEdge(base - footX, leaf.rightX, leaf.rightY, leaf.rightLength);
 }
 
 void clearNearTriangle(NearLeaf& leaf, std::uint32_t lane) {
@@ -132,7 +132,8 @@ void clearNearTriangle(NearLeaf& leaf, std::uint32_t lane) {
     for (int k = 0; k < 3; ++k) leaf.axes[i].direction[k][lane] = i == k ? 1.0f : 0.0f;
   }
   leaf.base[lane] = leaf.foot[lane] = 0;
-  for (int side = 0; side < 2; ++side) leaf.edgeX[side][lane] = leaf.edgeY[side][lane] = leaf.edgeLength[side][lane] = 0;
+  leaf.leftX[lane] = leaf.leftY[lane] = leaf.leftLength[lane] = 0;
+  leaf.rightX[lane] = leaf.rightY[lane] = leaf.rightLength[lane] = 0;
   leaf.slot[lane] = 0;
 }
 
@@ -383,9 +384,11 @@ bool buildCageTree(const Cage& cage, const Units& units, Scratch& scratch, CageT
     }
     for (std::uint32_t lane = 0; lane < 4; lane += 2) setNearTriangles(nearLeaves[leaf], lane, *triangles[lane], *triangles[lane + 1], out.middle);
     for (std::uint32_t lane = 4; 4 * leaf + lane > cage.count;) clearNearTriangle(nearLeaves[leaf], --lane);
-    for (auto* const edges : {nearLeaves[leaf].edgeX, nearLeaves[leaf].edgeY, nearLeaves[leaf].edgeLength}) {
-      simd::store(edges[0], simd::toChoose(load(edges[0]), load(edges[1])));
-    }
+    NearLeaf& near = nearLeaves[leaf];
+    const auto prepare = [](float* left, const float* right) { simd::store(left, simd::toChoose(load(left), load(right))); };
+    prepare(near.leftX, near.rightX);
+    prepare(near.leftY, near.rightY);
+    prepare(near.leftLength, near.rightLength);
     boxes[leaf] = box.padded(kPadding * units.reach);
     new (leafBoxes + leaf) LeafBox(boxAround(triangles, out.middle, kTurnedPadding * units.reach));
   }

@@ -55,7 +55,7 @@ class Mender {
         diagonal_(diagonal),
         fixedSlack_(fixedSlack(slackOf(tree, diagonal), kRelativeSlack)),
         laneOf_(scratch.take<std::uint32_t>(cage.count)),
-        rows_(scratch.take<NearTriangles<1>>(cage.count)),
+        rows_(scratch.take<NearTriangle[4]>(tree.leafCount)),
         across_(scratch.take<Across>(cage.count)),
         candidates_(scratch.take<Candidate>(cage.count)) {
     for (int k = 0; k < 3; ++k) {
@@ -69,14 +69,10 @@ class Mender {
       std::fill(patch.seen, patch.seen + cage.count, 0u);
       std::fill(patch.sideSeen, patch.sideSeen + std::size_t{3} * cage.count, 0u);
     }
+    for (std::uint32_t i = 0; i < tree.leafCount; ++i) NearTriangle::of(tree.near[i], rows_[i]);
     // Leaves are full but for the last.
     for (std::uint32_t i = 0; i < cage.count; ++i) laneOf_[slotOf(i)] = i;
     for (std::uint32_t i = 0; i < cage.count; ++i) {
-      // Field by field: a leaf has each of them four times.
-      static_assert(sizeof(NearTriangles<4>) == 4 * sizeof(NearTriangles<1>));
-      const auto* fields = reinterpret_cast<const float*>(tree.near + i / 4) + i % 4;
-      auto* row = reinterpret_cast<float*>(rows_ + i);
-      for (std::size_t k = 0; k < sizeof *rows_ / sizeof(float); ++k) row[k] = fields[4 * k];
       across_[i].isOnFan = 0;
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t side = 3 * slotOf(i) + k;
@@ -245,13 +241,12 @@ class Mender {
     // In registers, as stores might change the patch for all the compiler knows.
     std::uint32_t* const lanes = patch.lanes;
     float* const rows = patch.squaredDistances;
-    const NearTriangles<1>* const triangles = rows_;
+    const NearTriangle* const triangles = *rows_;
     const std::uint32_t end = patch.end;
     std::uint32_t size = patch.size;
     for (std::uint32_t i = size; i < end; ++i) {
       const std::uint32_t lane = lanes[i];
-      const simd::f32x4 squared = squaredDistances(triangles[lane], patch.x, patch.y, patch.z,
-                                                   [](const float (&field)[1]) { return simd::splat(*field); });
+      const simd::f32x4 squared = squaredDistances(triangles[lane], patch.x, patch.y, patch.z);
       // No branch that is a coin toss: what is not kept is written over by the next.
       const unsigned isWithin = simd::bits(simd::splatLane<kPlace>(squared) <= patch.limits);
       std::uint32_t isNear = isWithin & 1;
@@ -332,7 +327,7 @@ class Mender {
   float fixedSlack_;
   // Patches know triangles by their lanes: 4 · leaf of the tree + place in it.
   std::uint32_t* laneOf_;        ///< 1 per triangle.
-  NearTriangles<1>* rows_;       ///< 1 per lane: all that a look needs of it in two cache lines, where a leaf has it in six.
+  NearTriangle (*rows_)[4];      ///< 4 per leaf: all that a look needs in two cache lines, where a leaf has it in six.
   Across* across_;               ///< 1 per lane.
   std::uint32_t triangle_ = 0;   ///< How many of the target's were mended.
   Patch patches_[3];             ///< Around each corner's place,

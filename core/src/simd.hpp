@@ -666,6 +666,23 @@ inline Floats zeros() {
 inline constexpr int kWide = sizeof(wide) / sizeof(float);
 inline constexpr int kParts = kWide / kWidth;
 
+/// Of a table of four floats, the last where it is true, else the first; the last two are as `toChoose` has them.
+inline f32x4 outer(mask4 m, const float* table) {
+#if defined(CAGECAST_SSE) && defined(__AVX__)
+  return {_mm_permutevar_ps(load(table).v, _mm_castps_si128(m.v))};  // By the lowest two bits.
+#else
+  return choose(m, splat(table[3]), splat(table[0]));
+#endif
+}
+/// The third, else the second.
+inline f32x4 inner(mask4 m, const float* table) {
+#if defined(CAGECAST_SSE) && defined(__AVX__)
+  return {_mm_permutevar_ps(load(table).v, _mm_xor_si128(_mm_castps_si128(m.v), _mm_set1_epi32(1)))};
+#else
+  return choose(m, splat(table[2]), splat(table[1]));
+#endif
+}
+
 /// Whether a product with one lane of a vector costs no splat.
 #if defined(CAGECAST_NEON)
 inline constexpr bool kMultipliesByLane = true;
