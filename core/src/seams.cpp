@@ -129,10 +129,7 @@ class Mender {
         begin(corners, k, reach, patches_[k]);
       }
     }
-    while (patches_[0].isGrowing() || patches_[1].isGrowing() || patches_[2].isGrowing()) {
-      for (Patch& patch : patches_) look(patch);
-      for (Patch& patch : patches_) meet(patch);
-    }
+    grow();
     double sums[3];
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
@@ -236,6 +233,14 @@ class Mender {
     patch.end = 1;
   }
 
+  /// Grows the patches, ring by ring.
+  [[gnu::noinline]] void grow() noexcept {
+    while (patches_[0].isGrowing() || patches_[1].isGrowing() || patches_[2].isGrowing()) {
+      for (Patch& patch : patches_) look(patch);
+      for (Patch& patch : patches_) meet(patch);
+    }
+  }
+
   /// Looks at the triangles next to the last ring, and keeps those near enough.
   void look(Patch& patch) noexcept {
     // In registers, as stores might change the patch for all the compiler knows.
@@ -260,16 +265,23 @@ class Mender {
 
   /// Adds the triangles that were kept, and finds what is next to them.
   void meet(Patch& patch) noexcept {
+    // In registers, as above.
+    std::uint32_t* const lanes = patch.lanes;
+    std::uint32_t* const seen = patch.seen;
+    const float* const rows = patch.squaredDistances;
+    const Across* const acrossOf = across_;
+    const std::uint32_t triangle = triangle_;
+    const std::uint32_t kept = patch.kept;
     simd::f32x4 least = patch.leastSquares;
-    std::uint32_t end = patch.kept;
+    std::uint32_t end = kept;
     const auto add = [&](std::uint32_t lane) {
-      patch.lanes[end] = lane;
-      end += patch.seen[lane] != triangle_;
-      patch.seen[lane] = triangle_;
+      lanes[end] = lane;
+      end += seen[lane] != triangle;
+      seen[lane] = triangle;
     };
-    for (std::uint32_t i = patch.size; i < patch.kept; ++i) {
-      least = simd::min(least, simd::load(patch.squaredDistances + std::size_t{4} * i));
-      const Across& across = across_[patch.lanes[i]];
+    for (std::uint32_t i = patch.size; i < kept; ++i) {
+      least = simd::min(least, simd::load(rows + std::size_t{4} * i));
+      const Across& across = acrossOf[lanes[i]];
       for (const std::uint32_t lane : across.lanes) add(lane);
       if (across.isOnFan == 0) continue;
       const std::uint32_t sides = 3 * slotOf(patch.lanes[i]);
@@ -283,7 +295,7 @@ class Mender {
       }
     }
     patch.leastSquares = least;
-    patch.size = patch.kept;
+    patch.size = kept;
     patch.end = end;
   }
 
