@@ -368,45 +368,35 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     looks[i] = {results.uvs[2 * i], results.uvs[2 * i + 1], looksTell ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity(),
                 static_cast<float>(atlas.islands[slot])};
   }
-  const auto isWhole = [&](const std::uint32_t (&point)[3]) {
-    const simd::f32x4 zero = simd::splat(0);
-    const simd::mask4 isThird = zero < simd::of(0.0f, 0.0f, 1.0f, 0.0f);
+  // A bit for each, all set if it is whole; two at a time where there are eight lanes.
+  const auto areWhole = [&](const std::uint32_t (&point)[simd::kParts][3]) {
+    const simd::wide zero = simd::splatWide(0);
     // First by edge, then by axis: how far it goes, how far in UV, what the more stretched of its ends explains, and from island
     // to island.
-    simd::f32x4 lengths[4], inUv[4];
+    simd::wide lengths[4], inUv[4];
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t i = point[k], j = point[(k + 1) % 3];
-      lengths[k] = simd::load(points.at(j)) - simd::load(points.at(i));
-      const simd::f32x4 from = simd::load(&looks[i].u), to = simd::load(&looks[j].u);
-      inUv[k] = simd::select(isThird, simd::max(from, to), to - from);
+      const int l = (k + 1) % 3;
+      const auto place = [&](int corner) { return simd::loadParts([&](int part) { return points.at(point[part][corner]); }); };
+      const auto look = [&](int corner) { return simd::loadParts([&](int part) { return &looks[point[part][corner]].u; }); };
+      lengths[k] = place(l) - place(k);
+      inUv[k] = simd::withLane<2>(look(l) - look(k), simd::max(look(k), look(l)));
     }
     lengths[3] = inUv[3] = zero;
     auto& [x, y, z, unused] = lengths;
     auto& [u, v, explains, islands] = inUv;
     simd::transpose(x, y, z, unused);
     simd::transpose(u, v, explains, islands);
-    const simd::f32x4 squared = simd::multiplyAdd(z, z, simd::multiplyAdd(y, y, x * x));
-    const simd::f32x4 limit = simd::multiplyAdd(explains, squared, simd::splat(static_cast<float>(kFirstSlack)));
-    const simd::f32x4 squaredInUv = simd::multiplyAdd(v, v, u * u);
-    return simd::bits((squaredInUv <= limit) & (islands * islands <= zero)) == 0xF;
+    const simd::wide squared = simd::multiplyAdd(z, z, simd::multiplyAdd(y, y, x * x));
+    const simd::wide limit = simd::multiplyAdd(explains, squared, simd::splatWide(static_cast<float>(kFirstSlack)));
+    const simd::wide squaredInUv = simd::multiplyAdd(v, v, u * u);
+    return simd::bits((squaredInUv <= limit) & (islands * islands <= zero));
   };
   // The triangles around a point often come one soon after the other.
   constexpr std::uint32_t kRecent = 64;
   auto* recent = scratch.take<Corner>(kRecent);
   if (scratch.failed()) return false;
   for (std::uint32_t i = 0; i < kRecent; ++i) recent[i].point = UINT32_MAX;
-  const std::size_t allTriangles = targetMesh.indices.size() / 3;
-  std::uint32_t usable = 0;
-  for (std::size_t t = 0; t < allTriangles; ++t) {
-    const std::uint32_t* index = targetMesh.indices.data() + 3 * t;
-    const std::uint32_t point[3] = {points.ofVertex[index[0]], points.ofVertex[index[1]], points.ofVertex[index[2]]};
-    float* ofCorners = cornerUvs + 6 * t;
-    for (int c = 0; c < 3; ++c) std::memcpy(ofCorners + 2 * c, &looks[point[c]].u, 2 * sizeof(float));
-    // `points.triangles` has those with an area, in the same order.
-    if (usable == points.triangleCount || !std::equal(point, point + 3, points.triangles + std::size_t{3} * usable)) continue;
-    ++usable;
-    if (isWhole(point)) continue;
-
+  const auto mendIfAcross = [&](const std::uint32_t (&point)[3], float* ofCorners) {
     Corner corners[3];
     for (int c = 0; c < 3; ++c) {
       Corner& corner = recent[point[c] % kRecent];
@@ -414,6 +404,27 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
       corners[c] = corner;
     }
     if (mender.isAcross(corners)) mender.mend(corners, ofCorners);
+  };
+  const std::size_t allTriangles = targetMesh.indices.size() / 3;
+  const bool haveArea = points.triangleCount == allTriangles;
+  const auto hasArea = [&](const std::uint32_t (&point)[3]) {
+    return length(areaNormal(points.at(point[0]), points.at(point[1]), points.at(point[2]))) > 0;
+  };
+  for (std::size_t first = 0; first < allTriangles; first += simd::kParts) {
+    std::uint32_t point[simd::kParts][3];
+    for (std::size_t part = 0; part < simd::kParts; ++part) {
+      const std::size_t t = std::min(first + part, allTriangles - 1);
+      for (std::size_t c = 0; c < 3; ++c) {
+        point[part][c] = points.ofVertex[targetMesh.indices[3 * t + c]];
+        std::memcpy(cornerUvs + 6 * t + 2 * c, &looks[point[part][c]].u, 2 * sizeof(float));
+      }
+    }
+    const unsigned whole = areWhole(point);
+    if (whole == (1u << simd::kWide) - 1) continue;
+    for (std::size_t part = 0; part < simd::kParts && first + part < allTriangles; ++part) {
+      if ((whole >> 4 * part & 0xF) == 0xF) continue;
+      if (haveArea || hasArea(point[part])) mendIfAcross(point[part], cornerUvs + 6 * (first + part));
+    }
   }
   scratch.rewind(mark);
   return true;

@@ -89,6 +89,15 @@ inline f32x4 select(mask4 m, f32x4 a, f32x4 b) {
 /// What `choose` takes in place of a, where it is known beforehand that one of a and b will be chosen.
 inline f32x4 toChoose(f32x4 a, f32x4) { return a; }
 inline f32x4 choose(mask4 m, f32x4 a, f32x4 b) { return select(m, a, b); }
+/// Lane `lane` of b, the others of a.
+template <int lane>
+inline f32x4 withLane(f32x4 a, f32x4 b) {
+#if defined(__SSE4_1__)
+  return {_mm_blend_ps(a.v, b.v, 1 << lane)};
+#else
+  return select({_mm_castsi128_ps(_mm_setr_epi32(-(lane == 0), -(lane == 1), -(lane == 2), -(lane == 3)))}, b, a);
+#endif
+}
 /// Lane `lane` in all four lanes.
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {
@@ -233,6 +242,10 @@ inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {vbslq_f32(m.v, a.v, b.v
 inline f32x4 toChoose(f32x4 a, f32x4) { return a; }
 inline f32x4 choose(mask4 m, f32x4 a, f32x4 b) { return select(m, a, b); }
 template <int lane>
+inline f32x4 withLane(f32x4 a, f32x4 b) {
+  return {vcopyq_laneq_f32(a.v, lane, b.v, lane)};
+}
+template <int lane>
 inline f32x4 splatLane(f32x4 a) {
   return {vdupq_laneq_f32(a.v, lane)};
 }
@@ -340,6 +353,10 @@ inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {wasm_v128_bitselect(a.v
 // A choice is three instructions where processors have none for it; from what the two differ by, two.
 inline f32x4 toChoose(f32x4 a, f32x4 b) { return {wasm_v128_xor(a.v, b.v)}; }
 inline f32x4 choose(mask4 m, f32x4 difference, f32x4 b) { return {wasm_v128_xor(b.v, wasm_v128_and(m.v, difference.v))}; }
+template <int lane>
+inline f32x4 withLane(f32x4 a, f32x4 b) {
+  return {wasm_i32x4_shuffle(a.v, b.v, lane == 0 ? 4 : 0, lane == 1 ? 5 : 1, lane == 2 ? 6 : 2, lane == 3 ? 7 : 3)};
+}
 template <int lane>
 inline f32x4 splatLane(f32x4 a) {
   return {wasm_i32x4_shuffle(a.v, a.v, lane, lane, lane, lane)};
@@ -466,6 +483,11 @@ inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return lanes([&](int i) { retur
 inline f32x4 toChoose(f32x4 a, f32x4) { return a; }
 inline f32x4 choose(mask4 m, f32x4 a, f32x4 b) { return select(m, a, b); }
 template <int lane>
+inline f32x4 withLane(f32x4 a, f32x4 b) {
+  a.v[lane] = b.v[lane];
+  return a;
+}
+template <int lane>
 inline f32x4 splatLane(f32x4 a) {
   return splat(a.v[lane]);
 }
@@ -575,6 +597,22 @@ template <typename At>
 inline f32x8 loadParts(At at) {
   return {_mm256_set_m128(load(at(1)).v, load(at(0)).v)};
 }
+/// Lane `lane` of each part of b, the others of a.
+template <int lane>
+inline f32x8 withLane(f32x8 a, f32x8 b) {
+  return {_mm256_blend_ps(a.v, b.v, 0x11 << lane)};
+}
+/// Turns four rows of each part into columns.
+inline void transpose(f32x8& a, f32x8& b, f32x8& c, f32x8& d) {
+  const __m256 abLow = _mm256_unpacklo_ps(a.v, b.v);
+  const __m256 abHigh = _mm256_unpackhi_ps(a.v, b.v);
+  const __m256 cdLow = _mm256_unpacklo_ps(c.v, d.v);
+  const __m256 cdHigh = _mm256_unpackhi_ps(c.v, d.v);
+  a.v = _mm256_shuffle_ps(abLow, cdLow, 0x44);
+  b.v = _mm256_shuffle_ps(abLow, cdLow, 0xEE);
+  c.v = _mm256_shuffle_ps(abHigh, cdHigh, 0x44);
+  d.v = _mm256_shuffle_ps(abHigh, cdHigh, 0xEE);
+}
 /// Lane `lane` of each part in all of that part.
 template <int lane>
 inline f32x8 splatLane(f32x8 a) {
@@ -609,6 +647,9 @@ inline mask8 operator<(f32x8 a, f32x8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_
 inline mask8 operator<=(f32x8 a, f32x8 b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OS)}; }
 inline f32x8 select(mask8 m, f32x8 a, f32x8 b) { return {_mm256_blendv_ps(b.v, a.v, m.v)}; }
 inline f32x8 choose(mask8 m, f32x8 a, f32x8 b) { return select(m, a, b); }
+inline mask8 operator&(mask8 a, mask8 b) { return {_mm256_and_ps(a.v, b.v)}; }
+/// Bit i is lane i.
+inline unsigned bits(mask8 m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
 template <int tagBits>
 inline f32x8 withTag(f32x8 a, std::uint32_t tag) {
   const __m256 kept = _mm256_and_ps(a.v, _mm256_castsi256_ps(_mm256_set1_epi32(-1 << tagBits)));
