@@ -84,18 +84,20 @@ class Mender {
     }
   }
 
-  /// A point of the target, and its place on the triangle that it is nearest to.
-  [[nodiscard]] Corner cornerAt(std::uint32_t point, const float* position, std::uint32_t t) const noexcept {
-    const Vec3 p = Vec3::from(position);
-    const Candidate at = placeOf(p, t);
-    return {point, position, p, at, uvOf(at)};
+  /// Finds the place of a point of the target on the triangle that it is nearest to.
+  void setCorner(Corner& corner, std::uint32_t point, const float* position, std::uint32_t t) const noexcept {
+    corner.point = point;
+    corner.position = position;
+    corner.p = Vec3::from(position);
+    setPlace(corner.at, corner.p, t);
+    corner.uv = uvOf(corner.at);
   }
 
   /// Whether the texture is torn or smeared over a triangle, in double.
-  [[nodiscard]] bool isAcross(const Corner (&corners)[3]) const noexcept {
+  [[nodiscard]] bool isAcross(const Corner* const (&corners)[3]) const noexcept {
     for (int k = 0; k < 3; ++k) {
-      const Corner& a = corners[k];
-      const Corner& b = corners[(k + 1) % 3];
+      const Corner& a = *corners[k];
+      const Corner& b = *corners[(k + 1) % 3];
       const Landing from{a.at.slot, a.at.place.distance, a.uv};
       const Landing to{b.at.slot, b.at.place.distance, b.uv};
       if (atlas_.tears(from, to, length(b.p - a.p))) return true;
@@ -105,13 +107,12 @@ class Mender {
 
   /// Projects the corners onto the patch around that one of them which brings all of them nearest.
   /// @param[out] uvs  6 floats.
-  void mend(const Corner (&corners)[3], float* uvs) noexcept {
+  void mend(const Corner* const (&corners)[3], float* uvs) noexcept {
     double longest = 0;  // Squared.
     for (int k = 0; k < 3; ++k) {
-      const Vec3 edge = corners[(k + 1) % 3].p - corners[k].p;
+      const Vec3 edge = corners[(k + 1) % 3]->p - corners[k]->p;
       longest = std::max(longest, dot(edge, edge));
-      known_[k].count = 1;
-      known_[k].places[0] = corners[k].at;
+      known_[k].count = 0;
     }
     const double reach = kPatchEdges * std::sqrt(longest) + kPatchSlack * diagonal_;
 
@@ -119,7 +120,7 @@ class Mender {
     // ring leaves is known only when its looks are through: until then there are those of the other patches.
     ++triangle_;
     const auto isKnown = [&](int k) {
-      return std::any_of(corners, corners + k, [&](const Corner& c) { return c.at.slot == corners[k].at.slot; });
+      return std::any_of(corners, corners + k, [&](const Corner* c) { return c->at.slot == corners[k]->at.slot; });
     };
     for (int k = 0; k < 3; ++k) {
       if (isKnown(k)) {
@@ -148,22 +149,18 @@ class Mender {
     }
     int chosen = 0;
     while (choices[chosen].sum > least + kTieSum * diagonal_) ++chosen;
-    for (int c = 0; c < 3; ++c) {
-      const Uv uv = uvOf(choices[chosen].corners[c]);
-      uvs[2 * c] = static_cast<float>(uv.u);
-      uvs[2 * c + 1] = static_cast<float>(uv.v);
-    }
+    std::copy_n(choices[chosen].uvs, 6, uvs);
   }
 
  private:
   /// The corners' places on one patch.
   struct Choice {
-    double sum;  ///< Of the distances.
-    Candidate corners[3];
+    double sum;    ///< Of the distances.
+    float uvs[6];
   };
   /// Places of a corner that were decided already: patches of a triangle have most of them in common.
   struct Known {
-    static constexpr std::uint32_t kMost = 4;
+    static constexpr std::uint32_t kMost = 3;
     std::uint32_t count;
     Candidate places[kMost];
   };
@@ -207,12 +204,12 @@ class Mender {
   static constexpr unsigned kUnsure = 0b1110;
 
   /// Begins the patch of corner k.
-  void begin(const Corner (&corners)[3], int k, double reach, Patch& patch) noexcept {
-    const auto& [from, place] = corners[k].at;
+  void begin(const Corner* const (&corners)[3], int k, double reach, Patch& patch) noexcept {
+    const auto& [from, place] = corners[k]->at;
     const Vec3 q = positionOf(cage_.triangles[from], place);
     // One look at a triangle, in float, tells how far it is from the three corners and from q.
     const auto four = [&](int axis, double ofPlace) {
-      const auto lane = [&](int c) { return corners[c].position[axis]; };
+      const auto lane = [&](int c) { return corners[c]->position[axis]; };
       return simd::of(lane(0), lane(1), lane(2), static_cast<float>(ofPlace)) - simd::splat(tree_.middle[axis]);
     };
     patch.x = four(0, q.x);
@@ -255,7 +252,7 @@ class Mender {
       // No branch that is a coin toss: what is not kept is written over by the next.
       const unsigned isWithin = simd::bits(simd::splatLane<kPlace>(squared) <= patch.limits);
       std::uint32_t isNear = isWithin & 1;
-      if (isWithin == kUnsure) isNear = lane == patch.first || placeOf(patch.place, slotOf(lane)).place.distance <= patch.reach;
+      if (isWithin == kUnsure) isNear = lane == patch.first || placeOn(cage_.triangles[slotOf(lane)], patch.place).distance <= patch.reach;
       simd::store(rows + std::size_t{4} * size, squared);
       lanes[size] = lane;
       size += isNear;
@@ -300,7 +297,7 @@ class Mender {
   }
 
   /// Projects the corners onto a patch: step 1 once more, with the patch for a cage.
-  void project(const Corner (&corners)[3], const Patch& patch, Choice& out) noexcept {
+  void project(const Corner* const (&corners)[3], const Patch& patch, Choice& out) noexcept {
     const simd::f32x4 limits = patch.leastSquares * simd::splat(1 + static_cast<float>(kRelativeSlack)) + simd::splat(fixedSlack_);
     std::uint32_t counts[3] = {};
     for (std::uint32_t i = 0; i < patch.size; ++i) {
@@ -312,9 +309,18 @@ class Mender {
     }
     out.sum = 0;
     for (int c = 0; c < 3; ++c) {
-      for (std::uint32_t i = 0; i < counts[c]; ++i) candidates_[i] = placeOf(corners[c], known_[c], slotOf(near_[c][i]));
-      out.corners[c] = counts[c] == 1 ? candidates_[0] : nearestOf(candidates_, counts[c], diagonal_);
-      out.sum += out.corners[c].place.distance;
+      const auto placeOn = [&](std::uint32_t i) -> const Candidate& {
+        return placeOf(*corners[c], known_[c], slotOf(near_[c][i]), candidates_[i]);
+      };
+      // Copied only if there are several.
+      const Candidate* nearest = &placeOn(0);
+      if (counts[c] > 1) {
+        candidates_[0] = *nearest;
+        for (std::uint32_t i = 1; i < counts[c]; ++i) candidates_[i] = placeOn(i);
+        nearest = &nearestOf(candidates_, counts[c], diagonal_);
+      }
+      out.sum += nearest->place.distance;
+      simd::storeRounded(out.uvs + 2 * c, blendUvs(cage_.triangles[nearest->slot], nearest->place));
     }
   }
 
@@ -322,14 +328,19 @@ class Mender {
   [[nodiscard]] std::uint32_t slotOf(std::uint32_t lane) const noexcept { return tree_.near[lane / 4].slot[lane % 4]; }
   [[nodiscard]] Uv uvOf(const Candidate& at) const noexcept { return uvAt(cage_.triangles[at.slot], at.place); }
 
-  [[nodiscard]] Candidate placeOf(Vec3 p, std::uint32_t t) const noexcept { return {t, placeOn(cage_.triangles[t], p)}; }
-  [[nodiscard]] Candidate placeOf(const Corner& corner, Known& known, std::uint32_t t) const noexcept {
+  void setPlace(Candidate& at, const Vec3& p, std::uint32_t t) const noexcept {
+    at.slot = t;
+    at.place = placeOn(cage_.triangles[t], p);
+  }
+  /// @param spare  Where to put the place if too many are known.
+  [[nodiscard]] const Candidate& placeOf(const Corner& corner, Known& known, std::uint32_t t, Candidate& spare) const noexcept {
+    if (corner.at.slot == t) return corner.at;
     for (std::uint32_t i = 0; i < known.count; ++i) {
       if (known.places[i].slot == t) return known.places[i];
     }
-    const Candidate found = placeOf(corner.p, t);
-    if (known.count < Known::kMost) known.places[known.count++] = found;
-    return found;
+    Candidate& place = known.count < Known::kMost ? known.places[known.count++] : spare;
+    setPlace(place, corner.p, t);
+    return place;
   }
 
   const Cage& cage_;
@@ -393,14 +404,18 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
   };
   // The triangles around a point often come one soon after the other.
   constexpr std::uint32_t kRecent = 64;
-  auto* recent = scratch.take<Corner>(kRecent);
+  auto* recent = scratch.take<Corner>(kRecent + 3);
   if (scratch.failed()) return false;
   for (std::uint32_t i = 0; i < kRecent; ++i) recent[i].point = UINT32_MAX;
   const auto mendIfAcross = [&](const std::uint32_t (&point)[3], float* ofCorners) {
-    Corner corners[3];
+    // Not copied: what was just written field by field cannot be read as a whole yet.
+    const Corner* corners[3];
     for (int c = 0; c < 3; ++c) {
-      Corner& corner = recent[point[c] % kRecent];
-      if (corner.point != point[c]) corner = mender.cornerAt(point[c], points.at(point[c]), results.triangles[point[c]]);
+      Corner* corner = recent + point[c] % kRecent;
+      if (corner->point != point[c]) {
+        if (std::find(corners, corners + c, corner) != corners + c) corner = recent + kRecent + c;
+        mender.setCorner(*corner, point[c], points.at(point[c]), results.triangles[point[c]]);
+      }
       corners[c] = corner;
     }
     if (mender.isAcross(corners)) mender.mend(corners, ofCorners);
