@@ -30,16 +30,18 @@ inline float fixedSlack(double slack, double ratio) { return static_cast<float>(
 template <typename Floats>
 Floats squaredDistances(Floats fromCorner, Floats up, Floats height, Floats edgeX, Floats edgeY, Floats edgeLength) {
   const Floats zero = simd::zeros<Floats>();
+  // In an order in which little waits for what comes last, which is `past`.
+  const Floats toPlane = height * height;
   // Above AB: beyond the edge by `beyond`, and past one of its ends by `past`; or inside, where both are 0.
   const Floats along = simd::multiplyAdd(fromCorner, edgeX, up * edgeY);
-  const Floats past = along - simd::clamp(along, zero, edgeLength);
+  const Floats past = simd::max(along - edgeLength, simd::min(along, zero));
   const Floats beyond = simd::max(simd::subtractProduct(up * edgeX, fromCorner, edgeY), zero);
-  const Floats toEdge = simd::multiplyAdd(beyond, beyond, past * past);
+  const Floats toEdge = simd::multiplyAdd(past, past, simd::multiplyAdd(beyond, beyond, toPlane));
   // Below AB: nearest to AB, or to its end. Neither of the two is ever more than the distance, which one of them is.
   const Floats outside = simd::min(fromCorner, zero);
   const Floats below = simd::min(up, zero);
-  const Floats toBase = simd::multiplyAdd(outside, outside, below * below);
-  return simd::multiplyAdd(height, height, simd::max(toBase, toEdge));
+  const Floats toBase = simd::multiplyAdd(outside, outside, simd::multiplyAdd(below, below, toPlane));
+  return simd::max(toBase, toEdge);
 }
 
 /// Squared distances of points to the triangles of a leaf.
