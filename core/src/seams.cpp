@@ -63,11 +63,10 @@ class Mender {
       Patch& patch = patches_[k];
       patch.lanes = scratch.take<std::uint32_t>(std::size_t{cage.count} + 3);
       patch.squaredDistances = scratch.take<float>(std::size_t{4} * (std::size_t{cage.count} + 1));
-      patch.seen = scratch.take<std::uint32_t>(cage.count);
-      patch.sideSeen = scratch.take<std::uint32_t>(std::size_t{3} * cage.count);
+      patch.seen = scratch.take<std::uint32_t>(std::size_t{4} * cage.count);
       if (scratch.failed()) return;
-      std::fill(patch.seen, patch.seen + cage.count, 0u);
-      std::fill(patch.sideSeen, patch.sideSeen + std::size_t{3} * cage.count, 0u);
+      patch.sideSeen = patch.seen + cage.count;
+      std::fill(patch.seen, patch.sideSeen + std::size_t{3} * cage.count, 0u);
     }
     for (std::uint32_t i = 0; i < tree.leafCount; ++i) NearTriangle::of(tree.near[i], rows_[i]);
     // Leaves are full but for the last.
@@ -155,7 +154,7 @@ class Mender {
  private:
   /// The corners' places on one patch.
   struct Choice {
-    double sum;    ///< Of the distances.
+    double sum;  ///< Of the distances.
     float uvs[6];
   };
   /// Places of a corner that were decided already: patches of a triangle have most of them in common.
@@ -230,7 +229,7 @@ class Mender {
     patch.end = 1;
   }
 
-  /// Grows the patches, ring by ring.
+  /// Grows the patches, ring by ring. By itself, so that it has all registers.
   [[gnu::noinline]] void grow() noexcept {
     while (patches_[0].isGrowing() || patches_[1].isGrowing() || patches_[2].isGrowing()) {
       for (Patch& patch : patches_) look(patch);
@@ -309,14 +308,14 @@ class Mender {
     }
     out.sum = 0;
     for (int c = 0; c < 3; ++c) {
-      const auto placeOn = [&](std::uint32_t i) -> const Candidate& {
+      const auto candidate = [&](std::uint32_t i) -> const Candidate& {
         return placeOf(*corners[c], known_[c], slotOf(near_[c][i]), candidates_[i]);
       };
       // Copied only if there are several.
-      const Candidate* nearest = &placeOn(0);
+      const Candidate* nearest = &candidate(0);
       if (counts[c] > 1) {
         candidates_[0] = *nearest;
-        for (std::uint32_t i = 1; i < counts[c]; ++i) candidates_[i] = placeOn(i);
+        for (std::uint32_t i = 1; i < counts[c]; ++i) candidates_[i] = candidate(i);
         nearest = &nearestOf(candidates_, counts[c], diagonal_);
       }
       out.sum += nearest->place.distance;
@@ -379,7 +378,7 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     looks[i] = {results.uvs[2 * i], results.uvs[2 * i + 1], looksTell ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity(),
                 static_cast<float>(atlas.islands[slot])};
   }
-  // A bit for each, all set if it is whole; two at a time where there are eight lanes.
+  // Of each triangle four bits, all of them set if it is whole; two triangles at a time where there are eight lanes.
   const auto areWhole = [&](const std::uint32_t (&point)[simd::kParts][3]) {
     const simd::wide zero = simd::splatWide(0);
     // First by edge, then by axis: how far it goes, how far in UV, what the more stretched of its ends explains, and from island
@@ -421,9 +420,10 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     if (mender.isAcross(corners)) mender.mend(corners, ofCorners);
   };
   const std::size_t allTriangles = targetMesh.indices.size() / 3;
-  const bool haveArea = points.triangleCount == allTriangles;
+  const bool allHaveArea = points.triangleCount == allTriangles;
   const auto hasArea = [&](const std::uint32_t (&point)[3]) {
-    return length(areaNormal(points.at(point[0]), points.at(point[1]), points.at(point[2]))) > 0;
+    const Vec3 normal = areaNormal(points.at(point[0]), points.at(point[1]), points.at(point[2]));
+    return dot(normal, normal) > 0;
   };
   for (std::size_t first = 0; first < allTriangles; first += simd::kParts) {
     std::uint32_t point[simd::kParts][3];
@@ -438,7 +438,7 @@ bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const P
     if (whole == (1u << simd::kWide) - 1) continue;
     for (std::size_t part = 0; part < simd::kParts && first + part < allTriangles; ++part) {
       if ((whole >> 4 * part & 0xF) == 0xF) continue;
-      if (haveArea || hasArea(point[part])) mendIfAcross(point[part], cornerUvs + 6 * (first + part));
+      if (allHaveArea || hasArea(point[part])) mendIfAcross(point[part], cornerUvs + 6 * (first + part));
     }
   }
   scratch.rewind(mark);
