@@ -2,6 +2,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "sort.hpp"
 #include "steps.hpp"
 
 namespace cagecast {
@@ -20,20 +21,21 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
   const auto count = static_cast<std::uint32_t>(stats.size());
   auto* centres = scratch.take<Vec3>(count);
   auto* extents = scratch.take<double>(count);  // Sums of squared distances of the points from their mean.
-  auto* order = scratch.take<std::uint32_t>(count);
+  auto* order = scratch.take<std::uint64_t>(count);  // Segments.
   auto* shares = scratch.take<double>(count);   // Of a point in their mean.
   auto* runs = scratch.take<std::uint32_t>(count);  // By their first.
   auto* isAlone = scratch.take<bool>(count);        // With so many points: it has no copy, and needs no extent.
   if (scratch.failed()) return false;
   for (std::uint32_t s = 0; s < count; ++s) order[s] = s;
-  const auto before = [&](std::uint32_t s, std::uint32_t t) {
-    return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
-  };
-  std::make_heap(order, order + count, before);  // By heap: std::sort is 5 KB of WebAssembly.
-  std::sort_heap(order, order + count, before);
+  sortSeldom(order, order + count, [&](std::uint64_t s, std::uint64_t t) {
+    const SegmentStats& a = stats[static_cast<std::uint32_t>(s)];
+    const SegmentStats& b = stats[static_cast<std::uint32_t>(t)];
+    return std::tie(a.points, a.area, s) < std::tie(b.points, b.area, t);
+  });
+  const auto at = [order](std::uint32_t i) { return static_cast<std::uint32_t>(order[i]); };
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto isAsMany = [&](std::uint32_t j) { return j < count && stats[order[j]].points == stats[order[i]].points; };
-    isAlone[order[i]] = !isAsMany(i - 1) && !isAsMany(i + 1);
+    const auto isAsMany = [&](std::uint32_t j) { return j < count && stats[at(j)].points == stats[at(i)].points; };
+    isAlone[at(i)] = !isAsMany(i - 1) && !isAsMany(i + 1);
   }
 
   for (std::uint32_t s = 0; s < count; ++s) shares[s] = 1.0 / stats[s].points;
@@ -49,7 +51,7 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
 
   std::uint32_t runCount = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t s = order[i];
+    const std::uint32_t s = at(i);
     const auto isLike = [&](std::uint32_t first) {
       return stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
              std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];

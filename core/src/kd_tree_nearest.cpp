@@ -244,6 +244,9 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     const f32x4 limits = load(limits_ + i);
     simd::count4 foundCount = simd::splatCount(0);
     simd::count4 found = foundCount;
+#ifdef __clang__
+#pragma clang loop unroll(disable)
+#endif
     for (std::uint32_t j = 0; j < kRoom; ++j) {
       const simd::mask4 isNear = load(squaredDistances_[j] + i) <= limits;
       foundCount = simd::countTrue(foundCount, isNear);

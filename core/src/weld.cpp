@@ -9,6 +9,7 @@
 #include "curve.hpp"
 #include "point_search.hpp"
 #include "simd.hpp"
+#include "sort.hpp"
 #include "triangle.hpp"
 
 namespace cagecast {
@@ -94,14 +95,11 @@ struct Site {
 void sortCell(Placed* begin, const Site* sites) {
   Placed* end = begin;
   while (keyOf(*end) == keyOf(*begin)) ++end;
-  // By heap: it happens seldom, and std::sort is 5 KB of WebAssembly.
-  const auto before = [&](Placed a, Placed b) {
+  sortSeldom(begin, end, [&](Placed a, Placed b) {
     const Site& s = sites[vertexOf(a)];
     const Site& t = sites[vertexOf(b)];
     return s == t ? a < b : s < t;
-  };
-  std::make_heap(begin, end, before);
-  std::sort_heap(begin, end, before);
+  });
 }
 
 /// Makes points of the vertices, in the order of their cells and, within, of the first vertex at each.
