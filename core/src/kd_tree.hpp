@@ -149,11 +149,11 @@ class NearestSearch {
   std::uint32_t* list_;               ///< Room for all leaves, and four more.
   std::uint32_t* otherList_;
   alignas(16) std::uint32_t nearCount_[kGroup];  ///< From `kRoom` on some may be written over.
-  // By place of these: a leaf that had triangles within the limit, as it was then.
-  alignas(32) float squaredDistances_[kRoom][kGroup];  ///< Of the nearest of them.
-  alignas(16) std::uint32_t lanes_[kRoom][kGroup];     ///< Which they were: a bit each, below the leaf's index.
-  alignas(16) std::uint32_t foundCount_[kGroup];       ///< How many of them still are,
-  alignas(16) std::uint32_t found_[kGroup];            ///< and, if there is but one, which.
+  // Of each point's leaves that had triangles within the limit, as it was then:
+  alignas(32) float squaredDistances_[kRoom][kGroup];     ///< that of the nearest of these triangles,
+  alignas(16) std::uint32_t lanes_[kRoom][kGroup] = {};   ///< which they were, a bit each, below the leaf's index,
+  alignas(16) std::uint32_t foundCount_[kGroup];          ///< how many leaves still have some in the end,
+  alignas(16) std::uint32_t found_[kGroup];               ///< and, if one has, its `lanes_`.
 };
 
 /// Four triangles for rays.

@@ -67,8 +67,9 @@ void NearestSearch::widen(double more, double distance) noexcept {
   fixedSlack_ = fixedSlack(slack, ratio);
 }
 
-/// Not inlined: it is long, and called from two places.
-[[gnu::noinline]] std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit, std::uint32_t*& leaves) const noexcept {
+// Not inlined: it is long, and called from two places.
+[[gnu::noinline]] std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit,
+                                                          std::uint32_t*& leaves) const noexcept {
   std::uint32_t* from = list_;
   std::uint32_t* to = otherList_;
   // Copies stay in registers: the others might be what is written to.
@@ -130,9 +131,7 @@ void NearestSearch::searchSeed(std::uint32_t leafIndex, std::uint32_t place, std
     const wide x = loadWide(columns_[0] + i), y = loadWide(columns_[1] + i), z = loadWide(columns_[2] + i);
     alignas(32) float squared[4][kWide];
     wide least = simd::splatWide(std::numeric_limits<float>::max());
-    #ifdef __clang__
-#pragma clang loop unroll(disable)
-#endif
+#pragma GCC unroll 1
     for (int lane = 0; lane < 4; ++lane) {
       const wide one = squaredDistances(leaf, x, y, z, [lane](const float (&field)[4]) { return simd::splatWide(field[lane]); });
       simd::store(squared[lane], one);
@@ -240,13 +239,12 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
   }
 
+  // For all points at once: how many leaves each still has would be guessed wrong.
   for (std::uint32_t i = 0; i < count; i += simd::kWidth) {
     const f32x4 limits = load(limits_ + i);
     simd::count4 foundCount = simd::splatCount(0);
     simd::count4 found = foundCount;
-#ifdef __clang__
-#pragma clang loop unroll(disable)
-#endif
+#pragma GCC unroll 1
     for (std::uint32_t j = 0; j < kRoom; ++j) {
       const simd::mask4 isNear = load(squaredDistances_[j] + i) <= limits;
       foundCount = simd::countTrue(foundCount, isNear);

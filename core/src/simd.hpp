@@ -363,7 +363,7 @@ inline f32x4 splatLane(f32x4 a) {
 }
 template <int lane>
 inline f32x4 splatAt(const float* p) {
-  return {wasm_v128_load32_splat(p + lane)};
+  return {wasm_v128_load32_splat(p + lane)};  // To spread what is in a vector takes a unit that does arithmetic.
 }
 inline f32x4 lowest(f32x4 a) {
   a = min(a, {wasm_i64x2_shuffle(a.v, a.v, 1, 0)});
@@ -419,7 +419,7 @@ inline count4 load(const std::uint32_t* p) { return {wasm_v128_load(p)}; }
 inline count4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   return {wasm_i32x4_make(static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d))};
 }
-/// From 2^23 on floats are whole, and what they are beyond it is in their last bits: to convert them takes five instructions.
+// From 2^23 on floats are whole, and what they are beyond it is in their last bits: to convert them takes five instructions.
 inline count4 rounded(f32x4 a) { return {wasm_v128_and(wasm_f32x4_add(a.v, wasm_f32x4_splat(0x1p23f)), wasm_i32x4_splat(0x7F'FFFF))}; }
 inline void store(std::uint32_t* p, count4 c) { wasm_v128_store(p, c.v); }
 inline count4 splatCount(std::uint32_t x) { return {wasm_u32x4_splat(x)}; }

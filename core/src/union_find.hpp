@@ -12,6 +12,7 @@ class UnionFind {
   UnionFind(std::uint32_t* parents, std::uint32_t count) noexcept : parents_(parents) {
     for (std::uint32_t i = 0; i < count; ++i) parents_[i] = i;
   }
+  /// Not inlined: where it is called often, it is seldom needed.
   [[gnu::noinline]] std::uint32_t find(std::uint32_t i) noexcept {
     std::uint32_t parent = parents_[i];
     for (;;) {
