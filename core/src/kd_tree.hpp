@@ -221,7 +221,7 @@ class HitSearch {
   /// Room for lists, of all levels: enough but for odd trees. Where it ends, rays go in smaller parties.
   static constexpr std::size_t kListRoom = std::size_t{8} * kMostRays;
   /// From so many rays on, a list is worth being moved.
-  static constexpr std::uint32_t kLong = 64;
+  static constexpr std::uint32_t kLong = 256;
   /// What is left of it for rays that go alone, four lists with room for two at each level: a tree is not that deep.
   static constexpr std::ptrdiff_t kLastRoom = 8 * 64;
 
