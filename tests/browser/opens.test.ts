@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict'
 import { after, before, test } from 'node:test'
 import { columns, difference, frames, look, modelArea, shareOfHue, watch } from './picture'
-import { shownCounts, shownError, Site, type Visit } from './site'
+import { setThreshold, shownCounts, shownError, Site, type Visit } from './site'
 
 const kFrames = 30 // in which whatever moves does
 
@@ -25,6 +25,20 @@ test('the page opens with the first sample transferred, silently and without ask
   assert.ok((await page.getByTestId('sample-select').locator('option').count()) > 0)
   assert.deepEqual(complaints, [])
   assert.deepEqual(foreign, [])
+})
+
+test('after a while the page tells how long a transfer takes once the browser has compiled it, and what the first one took', async () => {
+  const { page } = visit
+  const first = page.locator('#time-first')
+  await first.waitFor({ state: 'visible' })
+  const shown = async (): Promise<number> => Number(await page.getByTestId('time-total').textContent())
+  const [, before] = /^([\d.]+) ms the first time/.exec((await first.textContent())!)!
+  assert.ok((await shown()) < Number(before))
+  const steps = (await page.locator('#timings dd').allTextContents()).map(Number)
+  assert.ok(steps.reduce((sum, step) => sum + step) <= 1.01 * (await shown()), 'the steps are of the same run')
+  await setThreshold(page, 0.6)
+  await setThreshold(page, 0.5)
+  assert.ok((await shown()) < Number(before), 'another threshold does not bring the first time back')
 })
 
 test('paint, zones and cage are really drawn, and the line shows naive and filtered side by side', async () => {

@@ -1,6 +1,6 @@
-import type { Classification, Preset, Timings } from 'cagecast'
+import type { Classification, Timings } from 'cagecast'
 import { announce, element } from './page'
-import type { Session } from './session'
+import type { Session, Shown } from './session'
 
 const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const
 /** What each step is called. */
@@ -16,14 +16,24 @@ const kSteps = {
   seams: 'seams',
   classify: 'classify',
 } as const
+/** So many times as long the first time is worth telling. */
+const kMuchLonger = 1.5
 const kBeyondPaper: readonly string[] = ['secondLook', 'holes', 'seams']
 
 /** Writes what came of each transfer: the zones in numbers, and how long it took. */
 export function showResults(session: Session): void {
+  const first = element('time-first', HTMLElement)
+  let latest = 0
+  session.on('transfer', () => (first.hidden = true))
   session.on('zones', ({ classification, spent }) => {
-    const { timings, preset } = session.shown!.projection
     showCounts(classification)
-    showTimings({ ...timings, classify: spent, total: timings.total + spent }, preset)
+    latest = showTimings(session.shown!, spent)
+  })
+  session.on('again', ({ spent }) => {
+    const before = latest
+    latest = showTimings(session.shown!, spent)
+    first.hidden = before < kMuchLonger * latest
+    first.textContent = `${round(before)} ms the first time, while the browser still compiled it.`
   })
 }
 
@@ -44,8 +54,12 @@ function showCounts({ zones, segmentStats }: Classification): void {
   )
 }
 
-/** Writes how long the transfer took, step by step, as far as the preset takes them. */
-function showTimings(timings: Timings, preset: Preset): void {
+/**
+ * Writes how long the transfer took, step by step, as far as the preset takes them.
+ * @returns The whole, in milliseconds.
+ */
+function showTimings({ projection: { timings: projected, preset } }: Shown, spent: number): number {
+  const timings: Timings = { ...projected, classify: spent, total: projected.total + spent }
   element('time-total', HTMLElement).textContent = round(timings.total)
   const steps = (Object.keys(kSteps) as (keyof typeof kSteps)[]).filter((step) => preset !== 'paper' || !kBeyondPaper.includes(step))
   const longest = Math.max(...steps.map((step) => timings[step]), Number.MIN_VALUE)
@@ -61,6 +75,7 @@ function showTimings(timings: Timings, preset: Preset): void {
       return row
     }),
   )
+  return timings.total
 }
 
 function round(milliseconds: number): string {

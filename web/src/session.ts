@@ -1,4 +1,4 @@
-import { CagecastError, classify, init, type Classification, type Lock, type Preset } from 'cagecast'
+import { CagecastError, classify, init, type Classification, type Lock, type Preset, type Timings } from 'cagecast'
 import type { Borders } from 'cagecast/three'
 import { Emitter } from './events'
 import type { Model } from './load'
@@ -55,6 +55,8 @@ export interface SessionEvents {
   frame: Placed
   /** The zones were decided: after a transfer, and for another threshold or lock. `spent` is in milliseconds. */
   zones: { classification: Classification; spent: number }
+  /** What is on show was timed again, a while after it was transferred: how long that takes now that the browser has compiled it. */
+  again: { timings: Timings; spent: number }
   /** The scene on show has another paint; after `transfer` if both are new. */
   paint: Paint
   rules: Rules
@@ -71,6 +73,8 @@ export class Session extends Emitter<SessionEvents> {
   readonly #client = new TransferClient()
   #wanted: Wanted = {}
   #shown: Shown | undefined
+  /** What the worker answered last. */
+  #projected: Placed | undefined
   #classification: Classification | undefined
   #rules: Rules = { preset: 'default', threshold: 0.5, borders: 'triangle' }
   #locks: Locks = {}
@@ -84,6 +88,11 @@ export class Session extends Emitter<SessionEvents> {
   #moved = false
   /** The paint that was told of last. */
   #painted: Paint | undefined
+
+  constructor() {
+    super()
+    this.#client.onAgain = (timings) => this.#timeAgain(timings)
+  }
 
   /** What is on show; undefined before the first transfer. */
   get shown(): Shown | undefined {
@@ -293,6 +302,7 @@ export class Session extends Emitter<SessionEvents> {
     try {
       // The threshold is decided here on the page, the rest in the worker: both start at once.
       const [projection] = await Promise.all([this.#client.ask('project', cage, target, { preset }, () => this.#tell('Splitting seams', 0.7)), init()])
+      this.#projected = projection
       return projection
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error
@@ -314,9 +324,22 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Decides by the threshold and the locks as they stand. */
   #classify(): void {
+    const decided = this.#decide()
+    this.#classification = decided.classification
+    this.emit('zones', decided)
+  }
+
+  #decide(): SessionEvents['zones'] {
     const started = performance.now()
     const classification = classify(this.#shown!.projection, { threshold: this.#rules.threshold, locks: { segments: this.#locks } })
-    this.#classification = classification
-    this.emit('zones', { classification, spent: performance.now() - started })
+    return { classification, spent: performance.now() - started }
+  }
+
+  #timeAgain(timings: Timings): void {
+    // What has moved since was timed with each frame.
+    if (this.#working || !this.#shown || this.#shown.projection !== this.#projected) return
+    this.#shown.projection.timings = timings
+    const { spent } = Array.from({ length: 9 }, () => this.#decide()).sort((a, b) => a.spent - b.spent)[4]!
+    this.emit('again', { timings, spent })
   }
 }

@@ -1,4 +1,4 @@
-import { CagecastError, type Mesh } from 'cagecast'
+import { CagecastError, type Mesh, type Timings } from 'cagecast'
 import type { Model } from './load'
 import type { Reply, Request, Tasks } from './transfer-messages'
 
@@ -10,6 +10,8 @@ export class Superseded extends Error {}
  * The latest request wins: it ends the one under way at once.
  */
 export class TransferClient {
+  /** Called a while after a projection that was quick, with how long it takes once the browser has compiled what it runs. */
+  onAgain?: (timings: Timings) => void
   #worker = this.#start()
   #lastId = 0
   #pending: { id: number; onHalf?: (() => void) | undefined; resolve(answer: Tasks[keyof Tasks]['answer']): void; reject(error: Error): void } | undefined
@@ -40,6 +42,7 @@ export class TransferClient {
   #start(): Worker {
     const worker = new Worker(new URL('./transfer-worker.ts', import.meta.url), { type: 'module' })
     worker.onmessage = ({ data }: MessageEvent<Reply>) => {
+      if ('again' in data) return data.id === this.#lastId ? this.onAgain?.(data.again) : undefined
       if (data.id !== this.#pending?.id) return
       if ('half' in data) return this.#pending.onHalf?.()
       if ('code' in data) return this.#fail(new CagecastError(data.code, data.message))

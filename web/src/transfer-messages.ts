@@ -1,4 +1,4 @@
-import type { Code, Mesh, Projection, ProjectOptions, SplitVertices, TransferOptions, TransferResult } from 'cagecast'
+import type { Code, Mesh, Projection, ProjectOptions, SplitVertices, Timings, TransferOptions, TransferResult } from 'cagecast'
 import type { CutTarget } from 'cagecast/borders'
 import type { InspectOptions, Inspection } from 'cagecast/inspect'
 
@@ -24,5 +24,12 @@ export interface Tasks {
 /** What the page asks of the worker. */
 export type Request = { [Task in keyof Tasks]: { id: number; task: Task; cage: Mesh; target: Mesh; options: Tasks[Task]['options'] } }[keyof Tasks]
 
-/** What the worker replies, with the id it was asked with; `half` when the first half of it is done. */
-export type Reply = { id: number; half: true } | { id: number; answer: Tasks[keyof Tasks]['answer'] } | { id: number; code: Code; message: string }
+/**
+ * What the worker replies, with the id it was asked with; `half` when the first half of it is done. `again` comes a while after a
+ * projection that was quick, if nothing else was asked since: how long it takes once the browser has compiled what it runs.
+ */
+export type Reply =
+  | { id: number; half: true }
+  | { id: number; answer: Tasks[keyof Tasks]['answer'] }
+  | { id: number; code: Code; message: string }
+  | { id: number; again: Timings }
