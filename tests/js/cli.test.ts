@@ -592,6 +592,31 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(path), expected());
   });
 
+  /** The target, 128 times as large as it is shown, held by two joints of a rig that is turned. @param bent Whether one has moved since. */
+  const rigged = (maker: GlbMaker, times: number, bent = false): void => {
+    const turned = [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1];
+    const back = [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1].map((x, i) => (i < 12 ? x / times : x));
+    const mesh = maker.mesh({ ...scene.target, positions: scene.target.positions.map((x) => times * x) });
+    const vertices = scene.target.positions.length / 3;
+    const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
+    attributes['JOINTS_0'] = maker.accessor(Uint8Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? (i / 4) % 2 : 2)), 'VEC4');
+    attributes['WEIGHTS_0'] = maker.accessor(Float32Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    const inverses = [back, back.map((x, i) => (i === 12 ? x - 0.5 : x)), back.map(() => 7)]; // the third holds nothing
+    maker.json.skins = [{ joints: [1, 2, 0], inverseBindMatrices: maker.accessor(Float32Array.from(inverses.flat()), 'MAT4') }];
+    maker.json.nodes.push({ name: 'unused' }, { name: 'rig', matrix: turned, children: [2] }, { name: 'tip', translation: [bent ? 3 : 0.5, 0, 0] });
+    maker.json.scenes![0]!.nodes!.push(0, 1);
+    maker.node({ mesh, skin: 0, translation: [100, 0, 0] });
+  };
+
+  test('a skinned mesh is where its skeleton holds it, whatever the unit and axes it is stored in', () => {
+    assert.deepEqual(answer(made('rigged', (maker) => rigged(maker, 128))), expected());
+  });
+
+  test('a skinned mesh whose joints have moved is taken in its bind pose', () => {
+    assert.deepEqual(answer(made('bent', (maker) => rigged(maker, 1, true))), expected());
+    assert.deepEqual(answer(made('bent-large', (maker) => rigged(maker, 128, true))), expected());
+  });
+
   test('strips and fans', () => {
     // A strip and a fan of the same flat quad, against its two triangles.
     const positions = new Float32Array([-0.1, -0.1, 0.9, 0.1, -0.1, 0.9, -0.1, 0.1, 0.9, 0.1, 0.1, 0.9]);

@@ -82,6 +82,23 @@ describe('document.transform(cagecast(…))', () => {
     assert.deepEqual(await validate(at('twins.glb')), []);
   });
 
+  test('a skinned mesh is where its skeleton holds it, whatever the unit it is stored in', async () => {
+    const maker = new GlbMaker();
+    const mesh = maker.mesh({ ...scene.target, positions: scene.target.positions.map((x) => 128 * x) });
+    const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
+    const vertices = scene.target.positions.length / 3;
+    attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
+    attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    const inverse = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -256, 0, 0, 128].map((x) => x / 128);
+    maker.json.skins = [{ joints: [1], inverseBindMatrices: maker.accessor(Float32Array.from(inverse), 'MAT4') }];
+    maker.node({ mesh, skin: 0, translation: [9, 9, 9] });
+    maker.node({ name: 'bone', translation: [2, 0, 0] });
+    let uvs: Float32Array | undefined;
+    const document = await documentOf(maker.finish());
+    await document.transform(cagecastTransform({ cage: scene.cage, onResult: (result) => (uvs = result.uvs) }));
+    assert.deepEqual(uvs, transfer(scene.cage, { ...scene.target, groups: undefined }).uvs);
+  });
+
   test('skins and morph targets go with the overlay', async () => {
     const maker = new GlbMaker();
     const mesh = maker.mesh(scene.target);

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import {
-  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InterleavedBuffer, InterleavedBufferAttribute, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
+  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
   Uint16BufferAttribute, Vector3,
 } from 'three';
 import { CagecastError, classify, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
@@ -234,15 +234,31 @@ describe('applyTransfer', () => {
     }
   });
 
+  test('a skinned mesh is where its bones hold it, whatever the unit it is stored in', () => {
+    const vertices = scene.target.positions.length / 3;
+    const geometry = geometryOf({ ...scene.target, positions: scene.target.positions.map((x) => 128 * x) })
+      .setAttribute('skinIndex', new BufferAttribute(Uint16Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? (i / 4) % 2 : 0)), 4))
+      .setAttribute('skinWeight', new BufferAttribute(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 4));
+    const [rig, tip] = [new Bone(), new Bone()];
+    rig.add(tip);
+    tip.position.x = 0.5;
+    const target = new SkinnedMesh(geometry, new MeshStandardMaterial());
+    target.position.x = 100;
+    const inverse = (x: number) => new Matrix4().makeTranslation(x, 0, 0).scale(new Vector3(1 / 128, 1 / 128, 1 / 128));
+    target.bind(new Skeleton([rig, tip], [inverse(0), inverse(-0.5)]), new Matrix4());
+    const { result } = applyTransfer(new Group().add(rig, target), meshOf(scene.cage));
+    assert.deepEqual(result.uvs, transfer(scene.cage, { ...scene.target, groups: undefined }).uvs);
+  });
+
   test('skins go with the overlay; the target is taken in its bind pose', () => {
     const vertices = scene.target.positions.length / 3;
     const geometry = geometryOf(scene.target)
-      .setAttribute('skinIndex', new BufferAttribute(new Uint16Array(4 * vertices), 4))
+      .setAttribute('skinIndex', new BufferAttribute(Uint16Array.from({ length: 4 * vertices }, (_, i) => (i === 4 * vertices - 4 ? 1 : 0)), 4))
       .setAttribute('skinWeight', new BufferAttribute(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 4));
-    const bone = new Bone();
+    const [bone, still] = [new Bone(), new Bone()];
     const target = new SkinnedMesh(geometry, new MeshStandardMaterial());
-    const root = new Group().add(bone, target);
-    target.bind(new Skeleton([bone]));
+    const root = new Group().add(bone, still, target);
+    target.bind(new Skeleton([bone, still]));
     bone.quaternion.copy(new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), 1));
     root.updateMatrixWorld(true);
     const { result, overlays } = applyTransfer(root, meshOf(scene.cage), { texture: new Texture() });

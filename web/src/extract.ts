@@ -1,4 +1,5 @@
-import { Matrix4, Mesh, SkinnedMesh, Vector3, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three'
+import { placeOf } from 'cagecast/three'
+import { Matrix4, Mesh, Vector3, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three'
 import { Pace } from './pace'
 
 /** One triangle mesh of the scene, and where its elements lie in the concatenated arrays. */
@@ -34,11 +35,6 @@ export interface ExtractedMesh {
 
 const kIdentity = new Matrix4()
 const kSlice = 16384 // vertices or triangles that are read at a stretch: some milliseconds
-
-/** Where a mesh lies in the scene. A skinned one is taken in its bind pose: glTF gives its node's transform no say. */
-function matrixOf(mesh: Mesh): Matrix4 {
-  return mesh instanceof SkinnedMesh ? kIdentity : mesh.matrixWorld
-}
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute
 
@@ -97,7 +93,7 @@ function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): 
       throw new Error(`“${name}” has ${cornerCount} triangle corners, which is not a multiple of three`)
     }
     const triangleCount = cornerCount / 3
-    const matrix = matrixOf(object).clone()
+    const matrix = placeOf(object).clone()
     parts.push({ mesh: object, name, firstVertex, vertexCount, firstTriangle, triangleCount, matrix, mirrored: matrix.determinant() < 0 })
     firstVertex += vertexCount
     firstTriangle += triangleCount

@@ -1,9 +1,10 @@
-import type { Accessor, Document, Material, Mesh as DocumentMesh, Node, Primitive, Property, Texture, TypedArray } from '@gltf-transform/core';
+import type { Accessor, Document, Material, Mesh as DocumentMesh, Node, Primitive, Property, Skin, Texture, TypedArray } from '@gltf-transform/core';
 import type * as cutting from '../cut/index.js';
 import type { Mesh, TransferResult } from '../index.js';
+import { skinMatrix, usedJoints } from '../skin.js';
 import { gather, splitPart, type SplitPart } from '../split-part.js';
 import { InputError } from './input-error.js';
-import { identity, isTurned, localMatrix, multiply } from './matrix.js';
+import { identity, isTurned, localMatrix, multiply, type Matrix } from './matrix.js';
 import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, isOverlay, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
 import { aliasesOf, cutPiece, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 
@@ -25,7 +26,7 @@ export interface ExtractedDocument {
 /**
  * Collects the triangles of a document's default scene (else its first), depth first, in the scene's space, by the same
  * rules as the command does from a file: vertices keep their order, every primitive of every node is a group of its own,
- * skinned meshes are taken in their bind pose.
+ * skinned meshes are taken where their skeletons hold them, in their bind pose.
  * @throws {InputError} that names the primitive and the element.
  */
 export function extractDocument(document: Document): ExtractedDocument {
@@ -54,7 +55,7 @@ function listParts(document: Document): DocumentPart[] {
     const { node, parent } = next;
     const matrix = multiply(parent, localMatrix({ translation: node.getTranslation(), rotation: node.getRotation(), scale: node.getScale() }));
     for (const child of node.listChildren().reverse()) stack.push({ node: child, parent: matrix });
-    const mesh = node.getMesh();
+    const [mesh, skin] = [node.getMesh(), node.getSkin()];
     mesh?.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
@@ -71,7 +72,7 @@ function listParts(document: Document): DocumentPart[] {
         node,
         mesh,
         primitive,
-        matrix: node.getSkin() === null ? matrix : identity,
+        matrix: skin === null ? matrix : matrixOfSkin(skin, primitive, localPositions),
         firstVertex: last ? last.firstVertex + last.vertexCount : 0,
         vertexCount: localPositions.length / 3,
         firstTriangle: last ? last.firstTriangle + last.triangleCount : 0,
@@ -82,6 +83,17 @@ function listParts(document: Document): DocumentPart[] {
     });
   }
   return parts;
+}
+
+/** Where a skin holds a primitive. */
+function matrixOfSkin(skin: Skin, primitive: Primitive, positions: Float32Array): Matrix {
+  const [held, weights] = [primitive.getAttribute('JOINTS_0')?.getArray(), primitive.getAttribute('WEIGHTS_0')?.getArray()];
+  const joints = skin.listJoints();
+  const inverses = skin.getInverseBindMatrices()?.getArray();
+  if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
+  const products: Matrix[] = joints.map((joint, j) => (inverses ? multiply(joint.getWorldMatrix(), Array.from(inverses.subarray(16 * j, 16 * j + 16))) : joint.getWorldMatrix()));
+  const isFloat = primitive.getAttribute('POSITION')!.getArray() instanceof Float32Array;
+  return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
 }
 
 /** A target as it was cut, and what cuts its parts, which is loaded only then. */

@@ -1,10 +1,11 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../mesh.js';
 import { InputError } from './input-error.js';
-import { identity, localMatrix, multiply } from './matrix.js';
+import { identity, localMatrix, multiply, type Matrix } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import { aliasesOf, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
+import { skinMatrix, usedJoints } from '../skin.js';
 
 /** A piece, and its place in the file's JSON. */
 export interface Part extends Piece {
@@ -26,7 +27,7 @@ export interface Extracted {
  *
  * Vertices keep their order and number; each primitive of each node is a group of its own. Transforms are applied in
  * double precision and rounded last; the winding of mirrored parts is turned, so that outside stays outside. A skinned
- * mesh is taken as it is stored, in its bind pose: as the format demands, the transform of its node does not move it.
+ * mesh is taken where its skeleton holds it, in its bind pose: as the format demands, the transform of its node does not move it.
  * Points and lines are left out, and so are morphs, and overlays that were added before.
  * @throws {InputError} that names the file, the primitive and the element.
  */
@@ -80,7 +81,7 @@ function listParts(file: GltfFile): Part[] {
         node: next.node,
         mesh: nodeDef.mesh!,
         primitive: p,
-        matrix: nodeDef.skin === undefined ? matrix : identity,
+        matrix: nodeDef.skin === undefined ? matrix : matrixOfSkin(file, nodeDef.skin, place, nodeDef.mesh!, p, localPositions),
         firstVertex,
         vertexCount: localPositions.length / 3,
         firstTriangle,
@@ -94,6 +95,26 @@ function listParts(file: GltfFile): Part[] {
     });
   }
   return parts;
+}
+
+/** Where a skin holds a primitive. */
+function matrixOfSkin(file: GltfFile, skin: number, place: string, mesh: number, primitive: number, positions: Float32Array): Matrix {
+  const { nodes = [], skins = [] } = file.json;
+  const { joints = [], inverseBindMatrices } = skins[skin]!;
+  const accessor = (semantic: string) => accessorOf(file, place, mesh, primitive, semantic);
+  const [held, weights] = [accessor('JOINTS_0')?.getArray(), accessor('WEIGHTS_0')?.getArray()];
+  const inverses = inverseBindMatrices === undefined ? undefined : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
+  if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
+  const parents = new Map(nodes.flatMap(({ children = [] }, n) => children.map((child) => [child, n] as const)));
+  const matrixOf = (joint: number): Matrix => {
+    let matrix = identity;
+    let depth = 0;
+    for (let node: number | undefined = joint; node !== undefined && depth++ < nodes.length; node = parents.get(node)) matrix = multiply(localMatrix(nodes[node] ?? {}), matrix);
+    return matrix;
+  };
+  const products = joints.map((joint, j) => (inverses ? multiply(matrixOf(joint), Array.from(inverses.subarray(16 * j, 16 * j + 16))) : matrixOf(joint)));
+  const isFloat = accessor('POSITION')?.getArray() instanceof Float32Array;
+  return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
 }
 
 function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {

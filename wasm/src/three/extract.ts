@@ -1,5 +1,6 @@
-import { BufferGeometry, Matrix4, Mesh as ThreeMesh, SkinnedMesh, type BufferAttribute, type InterleavedBufferAttribute, type Object3D } from 'three';
+import { BufferGeometry, Matrix4, Mesh as ThreeMesh, type BufferAttribute, type InterleavedBufferAttribute, type Object3D, type SkinnedMesh } from 'three';
 import { CagecastError, type Mesh } from '../index.js';
+import { skinMatrix, usedJoints } from '../skin.js';
 
 /** One mesh of a scene, or a geometry alone, and where its elements lie in the concatenated arrays. */
 export interface Part {
@@ -30,8 +31,8 @@ const identity = new Matrix4();
  * Collects the triangles of a geometry, or of all meshes of a scene, depth first, as arrays for `transfer`.
  *
  * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision
- * and rounded last, the winding of mirrored meshes is turned. A skinned mesh is taken in its bind pose, a morphed one at
- * rest. Each mesh is a group of its own, and so is each of its material groups.
+ * and rounded last, the winding of mirrored meshes is turned. A skinned mesh is taken where its skeleton holds it, in its bind
+ * pose, a morphed one at rest. Each mesh is a group of its own, and so is each of its material groups.
  * @param argument  What it is, for messages.
  * @throws {CagecastError} that names the part and the element.
  */
@@ -84,10 +85,33 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   object.updateWorldMatrix(true, true);
   object.traverse((child) => {
     if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
-    // Three moves the vertices of a skinned mesh by its bind matrix first; the matrix of its node does not count.
-    add(child.name || child.parent?.name || `mesh ${parts.length}`, child, child.geometry, child instanceof SkinnedMesh ? child.bindMatrix : child.matrixWorld);
+    add(child.name || child.parent?.name || `mesh ${parts.length}`, child, child.geometry, placeOf(child));
   });
   return parts;
+}
+
+/**
+ * Where a mesh lies in the scene, as a transfer sees it: by its matrix, or, if it is skinned, where its skeleton holds it, in its
+ * bind pose. World matrices have to be up to date. Cost: that of a look at all vertices, if it is skinned.
+ */
+export function placeOf(mesh: ThreeMesh): Matrix4 {
+  if (!isSkinned(mesh)) return mesh.matrixWorld;
+  const { skeleton, bindMatrix, geometry } = mesh;
+  const [position, held, weights] = ['position', 'skinIndex', 'skinWeight'].map((name) => geometry.getAttribute(name) as Attribute | undefined);
+  // Three moves the vertices by the bind matrix first.
+  if (!position || !held || !weights || !skeleton) return bindMatrix;
+  const products = skeleton.bones.map((bone, b) => new Matrix4().multiplyMatrices(bone.matrixWorld, skeleton.boneInverses[b]!).multiply(bindMatrix).elements);
+  const matrix = skinMatrix<ArrayLike<number>>(products, usedJoints(valuesOf(held), valuesOf(weights)), valuesOf(position), position.array instanceof Float32Array, bindMatrix.elements);
+  return new Matrix4().fromArray(matrix);
+}
+
+/** The numbers of an attribute, decoded. */
+function valuesOf(attribute: Attribute): Float32Array {
+  const { count, itemSize } = attribute;
+  const values = new Float32Array(count * itemSize);
+  const get = (['getX', 'getY', 'getZ', 'getW'] as const).slice(0, itemSize);
+  for (let i = 0; i < count; ++i) get.forEach((axis, k) => (values[i * itemSize + k] = attribute[axis](i)));
+  return values;
 }
 
 /**
@@ -99,6 +123,7 @@ export const overlayMark = 'cagecastOverlay';
 // By three's own marks, not by class: a page may have a second copy of three.
 const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry => (object as BufferGeometry | undefined)?.isBufferGeometry === true;
 const isObject = (object: Object3D): boolean => object?.isObject3D === true;
+export const isSkinned = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).isSkinnedMesh === true;
 const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
 /** What a value of the wrong kind is, for messages. */

@@ -7,11 +7,11 @@ import { isCut, type Borders } from '../cut/option.js';
 import { CagecastError, transfer, type Classification, type Mesh as Arrays, type TransferOptions, type TransferResult } from '../index.js';
 import { splitPart } from '../split-part.js';
 import type * as borders from './borders.js';
-import { extract, isTurned, nameOf, type Extracted, type Part } from './extract.js';
+import { extract, isTurned, nameOf, placeOf, type Extracted, type Part } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
 import { splitGeometry } from './split.js';
 
-export { extract, type Borders, type Extracted, type Part };
+export { extract, placeOf, type Borders, type Extracted, type Part };
 
 /** The attribute that holds each vertex's `Zone`: the name that GLTFLoader gives to `_NCZ`. */
 export const zoneAttribute = '_ncz';

@@ -1,5 +1,5 @@
 import { BufferAttribute, BufferGeometry, LessEqualDepth, Mesh, MeshStandardMaterial, SkinnedMesh, type Material, type Texture } from 'three';
-import { overlayMark, type Part } from './extract.js';
+import { isSkinned, overlayMark, type Part } from './extract.js';
 
 /**
  * Makes a mesh of the triangles of a part that may be painted. It shares the vertices, skin and morphs of the part's mesh
@@ -19,7 +19,7 @@ export function makeOverlay(part: Part, base: Mesh, uvName: string, material: Ma
   geometry.boundingSphere = source.boundingSphere;
 
   let overlay: Mesh;
-  if (base instanceof SkinnedMesh) {
+  if (isSkinned(base)) {
     const skinned = new SkinnedMesh(geometry, material);
     skinned.bindMode = base.bindMode;
     skinned.bind(base.skeleton, base.bindMatrix);
