@@ -689,6 +689,14 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(Buffer.from(document.getRoot().listTextures()[0]!.getImage()!), paint());
   });
 
+  test('a file beside it may have a name that is no address', () => {
+    const { json, bin } = unpackGlb(glbOf(scene.target));
+    json.buffers![0]!.uri = 'head 50%.bin';
+    writeFileSync(at('head 50%.bin'), bin);
+    writeFileSync(at('percent.gltf'), JSON.stringify(json));
+    assert.deepEqual(answer(at('percent.gltf')), expected());
+  });
+
   test('an extension of materials that nobody knows, though required, is no obstacle', () => {
     const path = made('required', (maker) => {
       maker.node({ mesh: maker.mesh(scene.target) });

@@ -178,7 +178,11 @@ describe('applyTransfer', () => {
     update(decided);
     assert.deepEqual([...attribute(target.geometry, '_ncz')].slice(0, decided.zones.length), [...decided.zones]);
     assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
+    // The renderer frees what a geometry has when it goes.
+    let freed: unknown[] = [target.geometry.getAttribute('position')];
+    overlay.geometry.addEventListener('dispose', () => (freed = Object.values(overlay.geometry.attributes)));
     dispose();
+    assert.deepEqual(freed, []);
     assert.equal(target.children.length, 0);
   });
 

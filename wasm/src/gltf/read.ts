@@ -119,13 +119,22 @@ export async function readUri(name: string, uri: string, folder: string): Promis
   const data = /^data:[^,]*?(;base64)?,/.exec(uri);
   if (data) {
     const text = uri.slice(data[0].length);
-    return data[1] ? Buffer.from(text, 'base64') : Buffer.from(decodeURIComponent(text));
+    return data[1] ? Buffer.from(text, 'base64') : Buffer.from(decoded(text));
   }
   if (/^[a-z][a-z0-9+.-]+:/i.test(uri)) throw new InputError(`${name} is at ${uri.slice(0, 60)}; only files are read`);
   try {
-    return await readBytes(resolve(folder, decodeURIComponent(uri)));
+    return await readBytes(resolve(folder, decoded(uri)));
   } catch (error) {
     throw error instanceof InputError ? new InputError(`${name} is in ${uri}: ${error.message}`) : error;
+  }
+}
+
+/** The name of a file; as it stands, if it is not encoded as an address has to be. */
+function decoded(uri: string): string {
+  try {
+    return decodeURIComponent(uri);
+  } catch {
+    return uri;
   }
 }
 

@@ -164,6 +164,8 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     dispose() {
       for (const overlay of overlays) {
         overlay.removeFromParent();
+        // The renderer frees the buffers of all attributes of what goes, whoever else uses them: these are the model's.
+        for (const name of Object.keys(overlay.geometry.attributes)) overlay.geometry.deleteAttribute(name);
         overlay.geometry.dispose();
       }
       for (const paint of own) paint.dispose();

@@ -123,6 +123,10 @@ function next(): void {
   if (job === undefined) return thread?.setBusy(false);
   try {
     thread ??= spawn(onReply, onFailure);
+  } catch (cause) {
+    return finish(job, new CagecastError('unsupported', `${job.request.fn}: this host cannot start the worker (${String(cause)})`, 0, { cause }));
+  }
+  try {
     thread.setBusy(true);
     thread.post(job.request, job.move ? buffersOf(job.request.args) : []);
   } catch (cause) {
