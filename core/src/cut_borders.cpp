@@ -44,7 +44,8 @@ Status cutAlone(const MeshView& cageMesh, const MeshView& target, const Transfer
   if (scratch.failed() || !gatherCage(cageMesh, units, scratch, cage)) return kOutOfMemory;
   if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
   if (!weld(target, units, options.weldTolerance, scratch, points) || !findParts(target, points, decided, scratch, takesPart)) return kOutOfMemory;
-  if (options.projection != ProjectionMode::nearestPoint) std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
+  // A target in one place has nothing to cut, nor a length to search by.
+  if (options.projection != ProjectionMode::nearestPoint || !(units.diagonal > 0)) std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
   const bool isDone = buildCageTree(cage, units, scratch, cageTree) && findRims(cageMesh, cage, scratch, rims) &&
                       findAtlas(cageMesh, cage, scratch, atlas) &&
                       cutTarget(cageMesh, target, cage, cageTree, rims, options.seams == Seams::corner ? &atlas : nullptr, units,

@@ -157,6 +157,14 @@ TEST_CASE("a target whose triangles all have no area is not", "[errors]") {
   REQUIRE(transfer(call.cage.view(), call.target.view(), {}, result).ok());
   CHECK(result.zones.zones.size() == 24);
   requireSameAsReference("flat", call.cage.view(), call.target.view());
+  // Nor for cutting, whatever was decided.
+  const std::vector<Zone> zones(24, Zone::cosmetic);
+  const std::vector<std::uint32_t> segments(24, 0);
+  const std::vector<std::uint8_t> culled(1, 0);
+  for (const TransferOptions& options : {TransferOptions::paper(), TransferOptions::standard()}) {
+    CutTarget cut;
+    REQUIRE(cutBorders(call.cage.view(), call.target.view(), options, {zones, segments, culled}, cut).ok());
+  }
 }
 
 TEST_CASE("sizes beyond the limits are errors before anything is read", "[errors]") {
