@@ -113,6 +113,29 @@ for (const way of ['button', 'Escape'] as const) {
   })
 }
 
+test('a preset that is given up is not the one that is said and saved', async () => {
+  const { page } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker)
+  const before = await shownCounts(page)
+  const givenUp = giveUpOnceShown(page, 'button')
+  await page.getByTestId('preset').selectOption('paper')
+  await givenUp
+  assert.equal(await page.getByTestId('preset').inputValue(), 'default')
+  assert.deepEqual(await shownCounts(page), before)
+  await page.getByTestId('preset').selectOption('paper')
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.notDeepEqual(await shownCounts(page), before)
+})
+
+test('a sample that is given up is not the one that is named', async () => {
+  const { page } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker)
+  const samples = page.getByTestId('sample-select')
+  const name = await samples.inputValue()
+  const givenUp = giveUpOnceShown(page, 'button')
+  await samples.selectOption({ index: 1 })
+  await givenUp
+  assert.equal(await samples.inputValue(), name)
+})
+
 test('it is too late to give up what is already on show: paint and all, it stays', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker)
   const before = await shownCounts(page)

@@ -89,6 +89,27 @@ test('a deformed model is seen so, with the paint on it, and goes back to rest t
   assert.deepEqual(complaints, [])
 })
 
+test('the model follows every step while naive and filtered are compared, and once parts were lit', async () => {
+  const { page } = await site.visit({ viewport: { width: 1000, height: 600 } })
+  const area = await modelArea(page)
+  const paint = page.locator('#show-paint')
+  const bare = async (): Promise<PNG> => {
+    await paint.uncheck({ force: true })
+    const picture = await look(page, area)
+    await paint.check({ force: true })
+    return picture
+  }
+  await bend(page, 0.8)
+  const at = await bare()
+  for (const amount of [0.2, 0.5]) {
+    await bend(page, amount)
+    await look(page, area)
+  }
+  assert.ok(difference(at, await bare()) > 0.01)
+  await bend(page, 0.8)
+  assert.equal(difference(at, await bare()), 0)
+})
+
 test('how far a model is seen to bend does not hang on its size', async () => {
   const { page } = await site.visit({ viewport: { width: 1000, height: 600 } })
   await page.locator('input[value=naive]').check({ force: true })

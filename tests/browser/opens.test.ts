@@ -117,6 +117,27 @@ test('the model turns by mouse and by keys, and comes back home', async () => {
   assert.ok(difference(home, await look(page, area)) > 0.02, 'a drag turns it')
 })
 
+test('what the visitor looks at stays when the picture gets higher or lower, as when a phone hides its address bar', async () => {
+  const { page } = visit
+  const angle = async (): Promise<string[]> => {
+    await page.locator('#share-link').focus()
+    return /angle=[^&]*/.exec((await page.locator('#share-link').getAttribute('href'))!)![0].match(/-?[\d.]+/g)!
+  }
+  const size = page.viewportSize()!
+  await page.locator('#view').focus()
+  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', '+']) await page.keyboard.press(key)
+  await frames(page, 3)
+  const before = await angle()
+  for (const height of [size.height - 60, size.height]) {
+    await page.setViewportSize({ ...size, height })
+    await frames(page, 3)
+    const now = await angle()
+    now.forEach((number, i) => assert.ok(Math.abs(Number(number) - Number(before[i])) <= 0.02 * Math.max(1, Math.abs(Number(before[i]))), `${now} instead of ${before}`))
+  }
+  await page.locator('#view').focus()
+  await page.keyboard.press('Home')
+})
+
 test('the content security policy forbids other hosts, inline scripts and eval', async () => {
   const { page } = visit
   const outcome = await page.evaluate(async () => {

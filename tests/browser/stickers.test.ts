@@ -71,6 +71,16 @@ test('two fingers turn the model, and the first of them has not painted', async 
   assert.ok(difference(before, await seen()) < 0.01)
 })
 
+test('nor has the second, where the first was put down beside the model', async () => {
+  const { page } = visit
+  const before = await seen()
+  await touch([[0.9, 0.3]], [[0.9, 0.3], [0.5, 0.42]], [[0.9, 0.35], [0.5, 0.44]], [[0.9, 0.4], [0.5, 0.46]])
+  assert.equal(filled(await savedTexture(page)), 0)
+  await page.locator('#view').focus()
+  await page.keyboard.press('Home')
+  assert.ok(difference(before, await seen()) < 0.01)
+})
+
 test('a text is stuck on by a tap, in its colour, size and turn', async () => {
   const { page } = visit
   await choose('Sticker')

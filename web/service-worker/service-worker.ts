@@ -5,15 +5,23 @@ declare const FILES: string[]
 /** Differs wherever a file differs. */
 declare const VERSION: string
 
-const kPrefix = 'cagecast-'
+// Of this page alone: another copy of it may lie in another folder of the same host.
+const kPrefix = `cagecast-${new URL('./', self.location.href).pathname}-`
 const kCache = kPrefix + VERSION
 
 const worker = self as unknown as ServiceWorkerGlobalScope // what the library of types takes any worker for
 
 worker.addEventListener('install', (event) => {
   // All or nothing: half a page would fail where nobody can help it.
-  event.waitUntil(caches.open(kCache).then((cache) => cache.addAll(FILES.map((file) => new Request(file, { cache: 'no-cache' })))))
+  event.waitUntil(caches.open(kCache).then((cache) => Promise.all(FILES.map((file) => keep(cache, file)))))
 })
+
+async function keep(cache: Cache, file: string): Promise<void> {
+  const response = await fetch(file, { cache: 'no-cache' })
+  if (!response.ok) throw new TypeError(`${file}: ${response.status}`)
+  // A server may send from index.html to its folder, but no visit may be answered by what was sent elsewhere.
+  await cache.put(file, response.redirected ? new Response(response.body, response) : response)
+}
 
 worker.addEventListener('activate', (event) => event.waitUntil(takeOver()))
 

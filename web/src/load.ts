@@ -42,7 +42,7 @@ export async function loadModel(file: File, renderer: WebGLRenderer | undefined,
     try {
       const gltf = await loader.parseAsync(bytes, '')
       const scene = await sceneOf(gltf)
-      const files = [file, ...companions.filter((other) => other !== file)]
+      const files = [file, ...new Set(head.uris.map((uri) => findCompanion(uri, companions)))]
       const mesh = await extractMesh(scene, (mesh) => nameOf(mesh, gltf))
       const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer())
       return { name: file.name, files, scene, animations: gltf.animations, mesh, ...(damage && { damage: `${file.name}: ${damage}` }) }

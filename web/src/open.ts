@@ -33,7 +33,10 @@ export class Opener {
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap())
     session.on('progress', ({ state }) => {
       if (state === 'working') return
-      if (state === 'ready') this.#describe(session.shown!)
+      if (session.shown) this.#describe(session.shown)
+      // Another that was chosen may have been given up, or cannot be had.
+      const { sample } = session.shown?.target ?? {}
+      if (sample && sample === session.shown?.cage.sample) this.#select.value = sample.name
       if (state !== 'failed' && this.#doubts.length > 0) showError(this.#doubts.join(' '))
       this.#doubts = []
     })

@@ -330,6 +330,13 @@ export function shareVertices(source: BufferGeometry): BufferGeometry {
   geometry.morphTargetsRelative = source.morphTargetsRelative
   geometry.boundingSphere = source.boundingSphere
   geometry.setIndex(source.index)
+  // The renderer frees the buffers of all that a geometry has when it goes, whoever else uses them. It listens after this.
+  const { attributes, index } = source
+  const shared = new Set<unknown>(Object.values(attributes))
+  geometry.addEventListener('dispose', () => {
+    for (const [name, attribute] of Object.entries(geometry.attributes)) if (shared.has(attribute)) geometry.deleteAttribute(name)
+    if (geometry.index === index) geometry.setIndex(null)
+  })
   return geometry
 }
 

@@ -25,6 +25,8 @@ export class Pointing {
   readonly #leave: (turns: boolean) => void
   #taken: { id: number; tool: Tool } | undefined
   #pressed: { id: number; x: number; y: number } | undefined
+  /** The fingers on the canvas. */
+  readonly #fingers = new Set<number>()
   #hovering = 0
 
   /**
@@ -45,12 +47,16 @@ export class Pointing {
   }
 
   #down(canvas: HTMLCanvasElement, event: PointerEvent): void {
-    if (this.#taken) {
-      if (event.pointerType !== 'touch') return
-      this.#taken.tool.cancel?.()
-      this.#taken = undefined
-      return
+    if (event.pointerType === 'touch') {
+      this.#fingers.add(event.pointerId)
+      if (this.#fingers.size > 1) {
+        // What the first has begun, or may have tapped, is not meant.
+        this.#taken?.tool.cancel?.()
+        this.#taken = this.#pressed = undefined
+        return
+      }
     }
+    if (this.#taken) return
     this.#leave(true)
     if (!this.tool || event.button !== 0) return
     if (this.tool.down?.(this.#spot(event), event)) {
@@ -69,6 +75,7 @@ export class Pointing {
   }
 
   #up(event: PointerEvent): void {
+    this.#fingers.delete(event.pointerId)
     if (this.#taken?.id === event.pointerId) {
       this.#taken.tool.up?.(event)
       this.#taken = undefined

@@ -197,6 +197,7 @@ export class Session extends Emitter<SessionEvents> {
     this.#client.cancel()
     this.#endWork('cancelled')
     for (const slot of ['target', 'cage', 'paint'] as const) this.#giveUp(slot)
+    this.#giveUpPreset()
     this.emit('progress', this.#shown ? { state: 'ready' } : { state: 'waiting', missing: ['target', 'cage'] })
   }
 
@@ -279,6 +280,7 @@ export class Session extends Emitter<SessionEvents> {
       this.emit('progress', { state: 'ready' })
     } catch (error) {
       if (superseded() || error instanceof Superseded) return
+      this.#giveUpPreset()
       this.fail(error)
     }
   }
@@ -320,6 +322,14 @@ export class Session extends Emitter<SessionEvents> {
     const { [slot]: _, ...rest } = this.#wanted
     this.#wanted = rest
     if (this.#shown) this.#wanted = { ...rest, [slot]: Promise.resolve(this.#shown[slot]) }
+  }
+
+  /** Goes back to the preset of what is shown. */
+  #giveUpPreset(): void {
+    const { preset } = this.#shown?.projection ?? this.#rules
+    if (preset === this.#rules.preset) return
+    this.#rules = { ...this.#rules, preset }
+    this.emit('rules', this.#rules)
   }
 
   /** Decides by the threshold and the locks as they stand. */

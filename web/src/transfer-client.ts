@@ -12,7 +12,7 @@ export class Superseded extends Error {}
 export class TransferClient {
   /** Called a while after a projection that was quick, with how long it takes once the browser has compiled what it runs. */
   onAgain?: (timings: Timings) => void
-  #worker = this.#start()
+  #worker: Worker | undefined = this.#start()
   #lastId = 0
   #pending: { id: number; onHalf?: (() => void) | undefined; resolve(answer: Tasks[keyof Tasks]['answer']): void; reject(error: Error): void } | undefined
 
@@ -26,6 +26,7 @@ export class TransferClient {
     return new Promise((resolve, reject) => {
       const id = ++this.#lastId
       this.#pending = { id, onHalf, resolve, reject }
+      this.#worker ??= this.#start()
       this.#worker.postMessage({ id, task, cage: cageArrays(cage), target: targetArrays(target), options } as Request)
     })
   }
@@ -34,7 +35,7 @@ export class TransferClient {
   cancel(): void {
     if (!this.#pending) return
     // A call into WebAssembly cannot be interrupted from outside; its worker can.
-    this.#worker.terminate()
+    this.#worker?.terminate()
     this.#worker = this.#start()
     this.#fail(new Superseded())
   }
@@ -51,6 +52,9 @@ export class TransferClient {
     }
     worker.onerror = (event) => {
       event.preventDefault()
+      // It will answer nothing more: the next request has another.
+      worker.terminate()
+      if (worker === this.#worker) this.#worker = undefined
       this.#fail(new Error(`the transfer could not be started${event.message ? `: ${event.message}` : ''}`))
     }
     return worker

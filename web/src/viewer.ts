@@ -64,6 +64,8 @@ export class Viewer {
   #drawn = 0
   /** Whether it is looked at from where the visitor said. */
   #taken = false
+  /** From how far away all of it is seen, in a picture as large as it was last. */
+  #far = 1
   #mixer: AnimationMixer | undefined
   #played = 0
 
@@ -327,7 +329,13 @@ export class Viewer {
     this.#camera.aspect = width / height
     // The model stands in the middle of what the toolbar leaves free.
     this.#camera.setViewOffset(width, height, 0, kToolbar / 2, width, height)
-    if (before !== this.#camera.aspect) this.home()
+    const far = this.#far
+    this.#far = this.#farness
+    // As when a phone hides its address bar: the visitor's view stays, and as much of the model in it.
+    if (this.#taken) {
+      const { radius, phi, theta } = new Spherical().setFromVector3(this.#camera.position)
+      this.#look({ radius: (radius * this.#far) / far, phi, theta })
+    } else if (before !== this.#camera.aspect) this.home()
     // At once: the canvas was cleared, and a frame's wait would flicker.
     this.#draw()
   }

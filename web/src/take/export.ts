@@ -14,7 +14,7 @@ import type { Baked } from './texture/bake'
  */
 export async function exportGlb({ shown, rules, locks }: Session, texture: Blob, into: PaintInto): Promise<{ glb: Blob; baked?: Baked }> {
   const { target, cage } = shown!
-  const files = await Promise.all(target.files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })))
+  const files = await Promise.all(target.files.map(async (file) => ({ name: file.name, bytes: await read(file) })))
   const request: ExportRequest = {
     files,
     cage: cageOf(cage.mesh),
@@ -34,6 +34,12 @@ export async function exportGlb({ shown, rules, locks }: Session, texture: Blob,
   } finally {
     worker.terminate()
   }
+}
+
+async function read(file: File): Promise<ArrayBuffer> {
+  return file.arrayBuffer().catch((cause) => {
+    throw new Error(`${file.name}: it can no longer be read, as it has changed or is gone since it was opened; open it again`, { cause })
+  })
 }
 
 /** As in its file: so is the target. */

@@ -20,6 +20,7 @@ export function paintOf(session: Session, stack: LayerStack, edits: Edits, opene
     const name = paintName(sheet.picture)
     return opener.has(name) ? name : undefined
   }
+  let wishes = 0
   return {
     png,
     layers: {
@@ -34,9 +35,13 @@ export function paintOf(session: Session, stack: LayerStack, edits: Edits, opene
         return stack.layers.filter((layer) => !nameOf(layer)).length
       },
       restore(layers) {
+        const before = session.shown
+        const wish = ++wishes
         const end = session.on('progress', async ({ state }) => {
-          if (state !== 'ready') return
+          if (state === 'working') return
           end()
+          // The sample was given up, or cannot be had, or another link was followed.
+          if (state !== 'ready' || session.shown?.target === before?.target || wish !== wishes) return
           // The visitor's own stay: no link may cost anyone their work.
           for (const layer of stack.layers) if (layer !== stack.base && nameOf(layer)) stack.remove(layer.id)
           const { base } = stack

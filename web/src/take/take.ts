@@ -87,9 +87,10 @@ export class Take {
     showNotice('export-note', '')
     try {
       const { exportGlb } = await import('./export')
+      const stem = this.#stem
       const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto
       const { glb, baked } = await exportGlb(this.#session, await this.#png(), into)
-      download(glb, `${this.#stem}-painted.glb`)
+      download(glb, `${stem}-painted.glb`)
       announce(`The model is saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`)
       showNotice('export-note', baked ? sayBaked(baked) : '')
     } catch (error) {
