@@ -612,6 +612,33 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(made('rigged', (maker) => rigged(maker, 128))), expected());
   });
 
+  test('a mesh that a node shows in many places is told of, and not taken for one', () => {
+    const path = made('instanced', (maker) => {
+      const translation = maker.accessor(new Float32Array([0, 0, 0, 3, 0, 0]), 'VEC3');
+      maker.node({ mesh: maker.mesh(scene.target), extensions: { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: translation } } } });
+      maker.json.extensionsUsed = ['EXT_mesh_gpu_instancing'];
+    });
+    const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '-o', at('instanced-out.glb'));
+    assert.equal(status, 1);
+    assert.match(stderr, /instanced\.glb: nodes\[0\] shows its mesh in many places at once/);
+  });
+
+  test('skins that refer to what is not there are told of', () => {
+    for (const [skin, says] of [
+      [{ joints: [99] }, /skins\[0\]\.joints/],
+      [{ joints: 'all' }, /skins\[0\]\.joints is not a list of numbers/],
+      [{ joints: [0], inverseBindMatrices: 99 }, /skins\[0\]\.inverseBindMatrices/],
+    ] as const) {
+      const path = made('stray', (maker) => {
+        maker.json.skins = [skin as unknown as GLTF.ISkin];
+        maker.node({ mesh: maker.mesh(scene.target), skin: 0 });
+      });
+      const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '-o', at('stray-out.glb'));
+      assert.equal(status, 1);
+      assert.match(stderr, says);
+    }
+  });
+
   test('a skinned mesh whose joints have moved is taken in its bind pose', () => {
     assert.deepEqual(answer(made('bent', (maker) => rigged(maker, 1, true))), expected());
     assert.deepEqual(answer(made('bent-large', (maker) => rigged(maker, 128, true))), expected());

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { CagecastError, init, transfer, type Mesh } from 'cagecast';
+import { CagecastError, init, project, transfer, type Mesh, type TransferResult } from 'cagecast';
 import { inspect, type FindingCode, type Inspection } from 'cagecast/inspect';
 import { ball, head, join3d } from './scenes.js';
 
@@ -263,6 +263,13 @@ describe('UVs', () => {
 });
 
 describe('holes and segments', () => {
+  test('a result of another target is told of', () => {
+    const [target, other] = [ball([0, 0, 0], () => 1, 12, 24), ball([0, 0, 0], () => 1, 8, 12)];
+    assert.throws(() => inspect(cage, target, { result: transfer(cage, other) }), { code: 'resultMismatch', message: /result\.zones has \d+ entries, not 1 for each of the \d+ vertices of target/ });
+    assert.throws(() => inspect(cage, target, { result: project(cage, target) as TransferResult }), { code: 'badArgument', message: /result\.cosmeticTriangles is undefined: nothing was decided yet/ });
+    assert.throws(() => inspect(cage, target, { result: 5 as unknown as TransferResult }), { code: 'badArgument' });
+  });
+
   test('a hole over skin alone is pointed out', () => {
     const skin = ball([0, 0, 0], () => 1, 24, 48);
     const inspection = inspect(cage, skin);

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import {
-  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
+  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InstancedMesh, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
   Uint16BufferAttribute, Vector3,
 } from 'three';
 import { CagecastError, classify, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
@@ -184,6 +184,29 @@ describe('applyTransfer', () => {
     dispose();
     assert.deepEqual(freed, []);
     assert.equal(target.children.length, 0);
+  });
+
+  test('a UV set that a model has of its own stays, also when it is transferred again', () => {
+    const target = meshOf(scene.target);
+    const own = new BufferAttribute(new Float32Array((2 * scene.target.positions.length) / 3), 2);
+    target.geometry.setAttribute('uv1', own);
+    for (let i = 0; i < 2; ++i) {
+      const texture = new Texture();
+      applyTransfer(target, meshOf(scene.cage), { texture, seams: 'vertex' }).dispose();
+      assert.equal(texture.channel, 2);
+      assert.equal(target.geometry.getAttribute('uv1'), own);
+      assert.equal(target.geometry.hasAttribute('uv3'), false);
+    }
+    target.geometry.setAttribute('uv2', own.clone()).setAttribute('uv3', own.clone());
+    applyTransfer(target, meshOf(scene.cage), { channel: 3, seams: 'vertex' });
+    const other = meshOf(scene.target);
+    for (const name of ['uv1', 'uv2', 'uv3']) other.geometry.setAttribute(name, own);
+    assert.throws(() => applyTransfer(other, meshOf(scene.cage)), /has uv1, uv2 and uv3 of its own/);
+  });
+
+  test('instances are told of, and not taken for one mesh', () => {
+    const { geometry, material } = meshOf(scene.target);
+    assert.throws(() => extract(new Group().add(new InstancedMesh(geometry, material, 2))), /many places at once/);
   });
 
   test('overlays that are in its file are no part of a model', () => {

@@ -11,18 +11,26 @@ let instance: Bindings | undefined;
 function instantiate(module: WebAssembly.Module): Bindings {
   const glue: Partial<Glue> = {};
   let memory: WebAssembly.Memory | undefined;
+  let failure: unknown;
   // The glue takes the instance and registers the functions at once; what it returns is a promise for the same object.
-  void createModule(
+  createModule(
     Object.assign(glue, {
       instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
-        const made = new WebAssembly.Instance(module, imports);
+        let made: WebAssembly.Instance;
+        try {
+          made = new WebAssembly.Instance(module, imports);
+        } catch (cause) {
+          // The glue keeps it to itself.
+          throw (failure = cause);
+        }
         // It goes by another name with every release of Emscripten.
         memory = Object.values(made.exports).find((entry) => entry instanceof WebAssembly.Memory);
         receive(made);
         return made.exports;
       },
     }),
-  );
+  ).then(undefined, () => {});
+  if (failure !== undefined) throw failure;
   if (glue._room === undefined || memory === undefined) throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
   return bind(glue as Glue, memory);
 }

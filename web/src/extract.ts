@@ -86,6 +86,7 @@ function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): 
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return
     const name = nameOf(object) || object.name || object.parent?.name || `part ${parts.length}`
+    if ('isInstancedMesh' in object) throw new Error(`“${name}” is shown in many places at once (instances); give each a node of its own first`)
     const { index, attributes } = object.geometry as Mesh['geometry']
     const vertexCount = attributes.position?.count ?? 0
     const cornerCount = index ? index.count : vertexCount

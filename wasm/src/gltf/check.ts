@@ -47,6 +47,7 @@ export function checkLists(json: GLTF.IGLTF): void {
     mesh.primitives.forEach(({ targets }, p) => listOf(`meshes[${m}].primitives[${p}].targets`, targets, isObject, 'objects'));
   });
   json.nodes?.forEach((node, n) => listOf(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers'));
+  json.skins?.forEach((skin, s) => listOf(`skins[${s}].joints`, skin.joints, Number.isInteger, 'numbers'));
   json.scenes?.forEach((scene, s) => listOf(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
 }
 
@@ -138,6 +139,10 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
       if (parents[child] !== undefined) throw new InputError(`nodes[${child}] has two parents, nodes[${parents[child]}] and nodes[${n}]`);
       parents[child] = n;
     }
+  });
+  skins.forEach(({ joints = [], inverseBindMatrices }, s) => {
+    for (const joint of joints) index(`skins[${s}].joints`, joint, nodes.length, 'nodes');
+    if (inverseBindMatrices !== undefined) index(`skins[${s}].inverseBindMatrices`, inverseBindMatrices, accessors.length, 'accessors');
   });
   if (json.scene !== undefined) index('scene', json.scene, scenes.length, 'scenes');
   scenes.forEach((scene, s) => {

@@ -4,6 +4,7 @@ import type { Mesh, TransferResult } from '../index.js';
 import { skinMatrix, usedJoints } from '../skin.js';
 import { gather, splitPart, type SplitPart } from '../split-part.js';
 import { InputError } from './input-error.js';
+import { instancing, isInstanced } from './instancing.js';
 import { identity, isTurned, localMatrix, multiply, type Matrix } from './matrix.js';
 import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, isOverlay, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
 import { aliasesOf, cutPiece, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
@@ -56,6 +57,7 @@ function listParts(document: Document): DocumentPart[] {
     const matrix = multiply(parent, localMatrix({ translation: node.getTranslation(), rotation: node.getRotation(), scale: node.getScale() }));
     for (const child of node.listChildren().reverse()) stack.push({ node: child, parent: matrix });
     const [mesh, skin] = [node.getMesh(), node.getSkin()];
+    if (mesh && node.getExtension(instancing)) throw new InputError(`"${node.getName() || mesh.getName()}" ${isInstanced}`);
     mesh?.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');

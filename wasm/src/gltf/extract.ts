@@ -3,6 +3,7 @@ import type { Mesh } from '../mesh.js';
 import { InputError } from './input-error.js';
 import { identity, localMatrix, multiply, type Matrix } from './matrix.js';
 import { isOverlay } from './overlay.js';
+import { instancing, isInstanced } from './instancing.js';
 import { aliasesOf, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 import { skinMatrix, usedJoints } from '../skin.js';
@@ -58,12 +59,14 @@ function listParts(file: GltfFile): Part[] {
   let firstVertex = 0;
   let firstTriangle = 0;
   // A stack of its own: a chain of nodes may be longer than the one of JavaScript.
-  const stack = roots(file.json).map((node) => ({ node, parent: identity })).reverse();
-  for (let next = stack.pop(); next; next = stack.pop()) {
-    const nodeDef = nodes[next.node]!;
-    const matrix = multiply(next.parent, localMatrix(nodeDef));
-    for (const child of [...(nodeDef.children ?? [])].reverse()) stack.push({ node: child, parent: matrix });
+  const placeOf = placeNodes(file.json);
+  const stack = [...roots(file.json)].reverse();
+  for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
+    const nodeDef = nodes[node]!;
+    const matrix = placeOf[node]!;
+    for (const child of [...(nodeDef.children ?? [])].reverse()) stack.push(child);
     if (nodeDef.mesh === undefined) continue;
+    if (nodeDef.extensions?.[instancing] !== undefined) throw new InputError(`nodes[${node}] ${isInstanced}`);
     const meshDef = meshes[nodeDef.mesh]!;
     meshDef.primitives.forEach((primitive, p) => {
       if (isOverlay(primitive.extras)) return;
@@ -72,16 +75,16 @@ function listParts(file: GltfFile): Part[] {
       if (localPositions === undefined) return;
       const localIndices = readTriangles(file, place, nodeDef.mesh!, p, localPositions.length / 3);
       if (localIndices === undefined) return;
-      const name = nodeDef.name ?? meshDef.name ?? `nodes[${next.node}]`;
+      const name = nodeDef.name ?? meshDef.name ?? `nodes[${node}]`;
       const material = primitive.material === undefined ? undefined : materials[primitive.material]?.name;
       const fullName = material !== undefined && material !== name && meshDef.primitives.length > 1 ? `${name}/${material}` : name;
       const part: Part = {
         name: fullName,
         aliases: aliasesOf(nodeDef.name, meshDef.name, material, fullName),
-        node: next.node,
+        node,
         mesh: nodeDef.mesh!,
         primitive: p,
-        matrix: nodeDef.skin === undefined ? matrix : matrixOfSkin(file, nodeDef.skin, place, nodeDef.mesh!, p, localPositions),
+        matrix: nodeDef.skin === undefined ? matrix : matrixOfSkin(file, nodeDef.skin, placeOf, place, nodeDef.mesh!, p, localPositions),
         firstVertex,
         vertexCount: localPositions.length / 3,
         firstTriangle,
@@ -98,23 +101,29 @@ function listParts(file: GltfFile): Part[] {
 }
 
 /** Where a skin holds a primitive. */
-function matrixOfSkin(file: GltfFile, skin: number, place: string, mesh: number, primitive: number, positions: Float32Array): Matrix {
-  const { nodes = [], skins = [] } = file.json;
-  const { joints = [], inverseBindMatrices } = skins[skin]!;
+function matrixOfSkin(file: GltfFile, skin: number, placeOf: readonly Matrix[], place: string, mesh: number, primitive: number, positions: Float32Array): Matrix {
+  const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
   const accessor = (semantic: string) => accessorOf(file, place, mesh, primitive, semantic);
   const [held, weights] = [accessor('JOINTS_0')?.getArray(), accessor('WEIGHTS_0')?.getArray()];
   const inverses = inverseBindMatrices === undefined ? undefined : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
   if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
-  const parents = new Map(nodes.flatMap(({ children = [] }, n) => children.map((child) => [child, n] as const)));
-  const matrixOf = (joint: number): Matrix => {
-    let matrix = identity;
-    let depth = 0;
-    for (let node: number | undefined = joint; node !== undefined && depth++ < nodes.length; node = parents.get(node)) matrix = multiply(localMatrix(nodes[node] ?? {}), matrix);
-    return matrix;
-  };
-  const products = joints.map((joint, j) => (inverses ? multiply(matrixOf(joint), Array.from(inverses.subarray(16 * j, 16 * j + 16))) : matrixOf(joint)));
+  const products = joints.map((joint, j) => (inverses ? multiply(placeOf[joint]!, Array.from(inverses.subarray(16 * j, 16 * j + 16))) : placeOf[joint]!));
   const isFloat = accessor('POSITION')?.getArray() instanceof Float32Array;
   return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
+}
+
+/** The matrix of each node to the scene, of those too that no scene shows. */
+function placeNodes({ nodes = [] }: GLTF.IGLTF): Matrix[] {
+  const children = new Set(nodes.flatMap((node) => node.children ?? []));
+  const places = nodes.map(() => identity);
+  // Those in a cycle are reached from nowhere.
+  const stack = nodes.flatMap((_, node) => (children.has(node) ? [] : [{ node, parent: identity }]));
+  for (let next = stack.pop(); next; next = stack.pop()) {
+    const place = multiply(next.parent, localMatrix(nodes[next.node]!));
+    places[next.node] = place;
+    for (const node of nodes[next.node]!.children ?? []) stack.push({ node, parent: place });
+  }
+  return places;
 }
 
 function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {

@@ -92,6 +92,7 @@ const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings]
 function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
   if (typeof given !== 'object' || given === null) throw new CagecastError('badOption', `inspect: options is ${show(given)}, not an object`);
   const { result, parts, ...options } = given;
+  if (result !== undefined) checkResult(result, target);
   const scene = sceneOf(cage, target, result ?? transfer(cage, target, options), options.threshold ?? 0.5, parts ?? partsByGroup(target));
   const orientation = orientationOf(scene);
   const upright = orientation.share > 0 ? uprightScene() : scene;
@@ -114,6 +115,21 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
     const turned = turnedRight(cage, orientation);
     return sceneOf(turned, target, transfer(turned, target, options), scene.threshold, scene.parts);
   }
+}
+
+/** Checks that a result is one, and of this target. */
+function checkResult(result: TransferResult, { positions }: Mesh): void {
+  const wrong = (text: string) => new CagecastError('badArgument', `inspect: result${text}; pass what transfer() returned`);
+  if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);
+  const { zones, segments, triangles, distances, segmentStats, cosmeticTriangles } = result;
+  if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
+  if (!ArrayBuffer.isView(cosmeticTriangles)) throw wrong(`.cosmeticTriangles is ${show(cosmeticTriangles)}: nothing was decided yet`);
+  for (const [name, array] of Object.entries({ zones, segments, triangles, distances })) {
+    if (!ArrayBuffer.isView(array)) throw wrong(`.${name} is ${show(array)}, not a typed array`);
+    if (array.length !== positions.length / 3) throw new CagecastError('resultMismatch', `inspect: result.${name} has ${array.length} entries, not 1 for each of the ${positions.length / 3} vertices of target`, array.length);
+  }
+  const stray = segments.findIndex((segment) => segment >= segmentStats.length);
+  if (stray >= 0) throw new CagecastError('resultMismatch', `inspect: result.segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);
 }
 
 function partsByGroup({ positions, groups }: Mesh): PartName[] {

@@ -85,7 +85,9 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   object.updateWorldMatrix(true, true);
   object.traverse((child) => {
     if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
-    add(child.name || child.parent?.name || `mesh ${parts.length}`, child, child.geometry, placeOf(child));
+    const name = child.name || child.parent?.name || `mesh ${parts.length}`;
+    if ('isInstancedMesh' in child || 'isBatchedMesh' in child) throw wrong(argument, name, 'shows its geometry in many places at once (instances); make each a mesh of its own first');
+    add(name, child, child.geometry, placeOf(child));
   });
   return parts;
 }

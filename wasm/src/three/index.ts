@@ -24,7 +24,10 @@ export interface ApplyOptions extends TransferOptions {
   texture?: Texture | undefined;
   /** The material of the overlays, in place of one that shows `texture` with the gloss and relief of what it lies on. */
   material?: Material | undefined;
-  /** The channel of the new UVs, 1 … 3: the attribute `uv1`, `uv2` or `uv3`; 1 by default. `texture.channel` is set to it. */
+  /**
+   * The channel of the new UVs, 1 … 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten; by default the lowest that no geometry
+   * has of its own. `texture.channel` is set to it.
+   */
   channel?: 1 | 2 | 3 | undefined;
   /**
    * Lets paint end at the target's own triangles (`triangle`, by default), or cuts these where it does, at holes and seams (`cut`):
@@ -54,8 +57,9 @@ export interface Applied {
 }
 
 /**
- * Carries a cage's UVs to the meshes of a scene: each geometry gets the attributes `uv1` (2 per vertex) and `_ncz` (the
- * `Zone`: 0 may be painted), and, with a texture, each mesh a child that shows the texture on the cosmetic triangles.
+ * Carries a cage's UVs to the meshes of a scene: each geometry gets the attributes `uv1` (2 per vertex; `uv2` or `uv3` if some
+ * have one of their own) and `_ncz` (the `Zone`: 0 may be painted), and, with a texture, each mesh a child that shows the texture
+ * on the cosmetic triangles.
  * Skins and morph targets keep working: the overlays share them. A geometry that several meshes show is copied for all but
  * the first. Where triangles that share a vertex have different UVs there, the geometry gets copies of it after the vertices
  * that it has, with all of its attributes and morph deltas, so that no triangle stretches across the texture. Where borders are
@@ -108,8 +112,17 @@ function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays
   return result;
 }
 
+/** What was given to geometries before, to be overwritten by the next transfer. */
+const givenChannels = new WeakMap<BufferGeometry, number>();
+
+function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
+  const free = ([1, 2, 3] as const).find((channel) => parts.every(({ geometry }) => givenChannels.get(geometry) === channel || !geometry.hasAttribute(`uv${channel}`)));
+  if (free === undefined) throw new CagecastError('badArgument', 'cagecast/three: target has uv1, uv2 and uv3 of its own; say by options.channel which of them is to go');
+  return free;
+}
+
 /** @param cut  The target as it was cut, and what cuts its parts, which is loaded only then. */
-function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, material, channel = 1 }: ApplyOptions, cut?: { target: borders.CutTarget; tools: typeof borders }): Applied {
+function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, material, channel = freeChannel(parts) }: ApplyOptions, cut?: { target: borders.CutTarget; tools: typeof borders }): Applied {
   const uvName = `uv${channel}`;
   const taken = new Set<BufferGeometry>();
   for (const part of parts) {
@@ -123,6 +136,7 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     const { pieces, split } = cut?.tools.cutGeometry(geometry, whole, cut.target, mesh.positions.length / 3) ?? { pieces: undefined, split: splitPart(whole, result) };
     if (!pieces && split.copies > 0) splitGeometry(geometry, split);
     geometry.setAttribute(uvName, new BufferAttribute(split.uvs, 2));
+    givenChannels.set(geometry, channel);
     geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
     return { part, whole, pieces, split };
   });
