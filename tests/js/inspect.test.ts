@@ -266,7 +266,7 @@ describe('holes and segments', () => {
   test('a result of another target is told of', () => {
     const [target, other] = [ball([0, 0, 0], () => 1, 12, 24), ball([0, 0, 0], () => 1, 8, 12)];
     assert.throws(() => inspect(cage, target, { result: transfer(cage, other) }), { code: 'resultMismatch', message: /result\.zones has \d+ entries, not 1 for each of the \d+ vertices of target/ });
-    assert.throws(() => inspect(cage, target, { result: project(cage, target) as TransferResult }), { code: 'badArgument', message: /result\.cosmeticTriangles is undefined: nothing was decided yet/ });
+    assert.throws(() => inspect(cage, target, { result: project(cage, target) as unknown as TransferResult }), { code: 'badArgument', message: /result\.cosmeticTriangles is undefined: nothing was decided yet/ });
     assert.throws(() => inspect(cage, target, { result: 5 as unknown as TransferResult }), { code: 'badArgument' });
   });
 

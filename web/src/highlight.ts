@@ -1,6 +1,6 @@
 import { BufferAttribute, DoubleSide, MeshBasicMaterial, type Mesh } from 'three'
 import type { ExtractedMesh } from './extract'
-import { onSurface, overlayMesh, shareVertices } from './overlay'
+import { leaveShared, onSurface, overlayMesh, shareVertices } from './overlay'
 
 const kColor = '#22d3ff'
 
@@ -17,6 +17,7 @@ export class Highlight {
       if (own.length === 0) continue
       const vertices = Uint32Array.from({ length: 3 * own.length }, (_, i) => indices[3 * own[Math.floor(i / 3)]! + (i % 3)]! - firstVertex)
       const geometry = shareVertices(base.geometry).setIndex(new BufferAttribute(vertices, 1))
+      leaveShared(geometry, base.geometry)
       geometry.addGroup(0, vertices.length, 0)
       geometry.addGroup(0, vertices.length, 1)
       const mesh = overlayMesh(base, geometry)

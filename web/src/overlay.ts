@@ -170,6 +170,7 @@ class Layer {
 
     const naive = shareVertices(mesh.geometry)
     naive.setAttribute(kUvName, new BufferAttribute(uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount)), 2))
+    leaveShared(naive, mesh.geometry)
     const filtered = copyVertices(mesh.geometry, sources)
     filtered.setAttribute(kUvName, new BufferAttribute(split.uvs.slice(2 * first, 2 * (first + count)), 2))
     filtered.setIndex(new BufferAttribute(new Uint32Array(3 * triangleCount), 1))
@@ -190,6 +191,7 @@ class Layer {
     const reasons = reasonsOf(cosmeticTriangles, zones, pieces.geometry.localIndices)
     geometry.setIndex(new BufferAttribute(new Uint32Array(split.indices.length), 1))
     sortByReason(geometry, split.indices, reasons)
+    leaveShared(geometry, mesh.geometry)
     this.forgetCut()
     this.#cut = overlayMesh(mesh, geometry)
     mesh.add(this.#cut)
@@ -330,14 +332,17 @@ export function shareVertices(source: BufferGeometry): BufferGeometry {
   geometry.morphTargetsRelative = source.morphTargetsRelative
   geometry.boundingSphere = source.boundingSphere
   geometry.setIndex(source.index)
-  // The renderer frees the buffers of all that a geometry has when it goes, whoever else uses them. It listens after this.
-  const { attributes, index } = source
+  return geometry
+}
+
+/** Lets a geometry that is done, and not drawn yet, leave what it shares alone when it goes. */
+export function leaveShared(geometry: BufferGeometry, { attributes, index }: BufferGeometry): void {
+  // The renderer frees the buffers of all that a geometry has then, whoever else uses them. It listens after this.
   const shared = new Set<unknown>(Object.values(attributes))
   geometry.addEventListener('dispose', () => {
     for (const [name, attribute] of Object.entries(geometry.attributes)) if (shared.has(attribute)) geometry.deleteAttribute(name)
     if (geometry.index === index) geometry.setIndex(null)
   })
-  return geometry
 }
 
 /** A geometry of copies of vertices, with all their attributes and morphs. @param sources 1 per copy: the vertex it is of. */
