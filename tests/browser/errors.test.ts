@@ -156,3 +156,14 @@ test('a page without its samples says so and takes files all the same', async ()
   assert.equal(await settled(page), 'ready', await shownError(page))
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 })
 })
+
+test('a worker that cannot be had is told of, and the next transfer has another', async () => {
+  const kWorker = /\/transfer-worker-[^/]*\.js$/
+  const { page } = await site.visit({ viewport: { width: 700, height: 500 } }, (page) => page.route(kWorker, (route) => route.abort()))
+  assert.equal(await page.getByTestId('status').textContent(), 'error')
+  assert.match(await shownError(page), /the transfer could not be started/)
+  await page.unroute(kWorker)
+  await page.getByTestId('sample-select').selectOption({ index: 1 })
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.equal(await shownError(page), '')
+})

@@ -2,6 +2,7 @@ import assert from 'node:assert/strict'
 import { after, before, test } from 'node:test'
 import type { Locator } from 'playwright-core'
 import { PNG } from 'pngjs'
+import { giveUpOnceShown, kSlowWorker } from './give-up'
 import { difference, look, modelArea } from './picture'
 import { saved, validModel } from './saved'
 import { settled, shownError, Site, type Upload, type Visit } from './site'
@@ -251,4 +252,17 @@ test('a sample’s paint lies over the others as well, and a link brings back ho
   assert.equal(filled(await savedTexture(other.page)), 0)
   await other.page.waitForFunction(() => document.querySelector<HTMLButtonElement>('#undo')!.disabled)
   assert.deepEqual([...complaints, ...other.complaints], [])
+})
+
+test('a link that is given up takes no layer away and brings none', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } }, kSlowWorker)
+  await page.getByRole('button', { name: 'Add War paint as a layer' }).click()
+  await rows(page).filter({ hasText: 'War paint' }).waitFor()
+  const before = await names(page)
+  const givenUp = giveUpOnceShown(page, 'button')
+  await page.getByTestId('sample-select').evaluate((select) => (location.hash = `sample=${(select as HTMLSelectElement).options[1]!.value}&layer=none`))
+  await givenUp
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  assert.deepEqual(await names(page), before)
+  assert.deepEqual(complaints, [])
 })

@@ -41,3 +41,44 @@ test('what is not of the page is not kept, and asks the network', async () => {
   await page.context().setOffline(true)
   assert.equal(await ask(), 'failed')
 })
+
+test('so it does where the server sends from index.html to the folder, beside another copy of the page', async () => {
+  const { preview } = await import('vite')
+  const server = await preview({
+    configFile: false,
+    logLevel: 'error',
+    build: { outDir: site.folder },
+    preview: { host: '127.0.0.1', port: 0 },
+    plugins: [
+      {
+        name: 'folders',
+        configurePreviewServer: ({ middlewares }) => {
+          middlewares.use((request, response, next) => {
+            const [, copy, rest] = /^(\/(?:one|other)\/)(.*)$/.exec(request.url ?? '') ?? []
+            if (rest === 'index.html') return void response.writeHead(308, { location: copy! }).end()
+            if (copy) request.url = `/${rest}`
+            next()
+          })
+        },
+      },
+    ],
+  })
+  const context = await site.browser.newContext({ viewport: { width: 700, height: 500 }, reducedMotion: 'reduce', serviceWorkers: 'allow' })
+  try {
+    const page = await context.newPage()
+    const copies = ['one/', 'other/'].map((name) => server.resolvedUrls!.local[0] + name)
+    for (const copy of copies) {
+      await page.goto(copy)
+      assert.equal(await settled(page), 'ready', await shownError(page))
+      await page.evaluate(() => navigator.serviceWorker.ready)
+    }
+    await context.setOffline(true)
+    for (const copy of copies) {
+      await page.goto(copy)
+      assert.equal(await settled(page), 'ready', await shownError(page))
+    }
+  } finally {
+    await context.close()
+    await server.close()
+  }
+})

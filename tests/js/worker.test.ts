@@ -104,6 +104,17 @@ describe('the worker', () => {
       console.log((await transfer(mesh, mesh)).zones.length);`;
     assert.equal(execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8', timeout: 60000 }).trim(), '3');
   });
+
+  test('where no worker may be started, that is said, not that the arguments were wrong', () => {
+    const script = `
+      import { init, transfer } from 'cagecast/worker';
+      const mesh = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) };
+      for (const call of [() => init(), () => transfer(mesh, mesh)]) await call().catch(({ code, message }) => console.log(code, message));`;
+    const forbidden = ['--experimental-permission', '--no-warnings', '--allow-fs-read=*', '--input-type=module', '-e', script];
+    const [ofInit, ofTransfer] = execFileSync(process.execPath, forbidden, { encoding: 'utf8', timeout: 60000 }).split('\n');
+    assert.match(ofInit!, /^unsupported init: this host cannot start the worker \(.+\)$/);
+    assert.match(ofTransfer!, /^unsupported transfer: this host cannot start the worker \(.+\)$/);
+  });
 });
 
 describe('slim', () => {
