@@ -159,7 +159,9 @@ test('a page without its samples says so and takes files all the same', async ()
 
 test('a worker that cannot be had is told of, and the next transfer has another', async () => {
   const kWorker = /\/transfer-worker-[^/]*\.js$/
-  const { page } = await site.visit({ viewport: { width: 700, height: 500 } }, (page) => page.route(kWorker, (route) => route.abort()))
+  const { page } = await site.visit({ viewport: { width: 700, height: 500 } }, async (page) => {
+    await page.route(kWorker, (route) => route.abort())
+  })
   assert.equal(await page.getByTestId('status').textContent(), 'error')
   assert.match(await shownError(page), /the transfer could not be started/)
   await page.unroute(kWorker)

@@ -266,3 +266,12 @@ test('a link that is given up takes no layer away and brings none', async () => 
   assert.deepEqual(await names(page), before)
   assert.deepEqual(complaints, [])
 })
+
+test('where a link’s paint cannot be had, that is told, and what lies there stays', async () => {
+  const { page } = await site.visit({ viewport: { width: 900, height: 500 } }, (page) => page.route(/paint-war-paint\.png$/, (route) => route.abort()).then(() => {}))
+  const before = await names(page)
+  await page.evaluate(() => (location.hash = 'sample=lizard&layer=lizard/paint-tiger.png,0.5,ffffff,normal&layer=lizard/paint-war-paint.png,1,ffffff,normal'))
+  await page.getByTestId('error').waitFor()
+  assert.match(await shownError(page), /^lizard\/paint-war-paint\.png: the file cannot be fetched$/)
+  assert.equal((await names(page)).length, before.length)
+})

@@ -2,7 +2,7 @@ import type { Edits } from '../layers/edits'
 import { kBlends, type Blend, type Layer, type Style } from '../layers/layer'
 import type { LayerStack } from '../layers/stack'
 import type { Opener } from '../open'
-import { titleOf } from '../paint'
+import { titleOf, type Paint } from '../paint'
 import { pngOf } from '../png'
 import { kChecker, paintName } from '../samples'
 import type { Session } from '../session'
@@ -35,25 +35,35 @@ export function paintOf(session: Session, stack: LayerStack, edits: Edits, opene
         return stack.layers.filter((layer) => !nameOf(layer)).length
       },
       restore(layers) {
-        const before = session.shown
+        const before = session.shown?.target
         const wish = ++wishes
         const end = session.on('progress', async ({ state }) => {
           if (state === 'working') return
           end()
           // The sample was given up, or cannot be had, or another link was followed.
-          if (state !== 'ready' || session.shown?.target === before?.target || wish !== wishes) return
+          const target = session.shown?.target
+          if (state !== 'ready' || target === before || wish !== wishes) return
+          const known = layers.filter(({ paint }) => opener.has(paint))
+          // The lowest of them is what the sample opened with, unless that was taken away.
+          const isBase = stack.base !== undefined && nameOf(stack.base) === known[0]?.paint
+          const rest = isBase ? known.slice(1) : known
+          let paints: (Paint | undefined)[]
+          try {
+            paints = await Promise.all(rest.map(({ paint }) => opener.paint(paint)))
+          } catch (error) {
+            return session.fail(error)
+          }
+          // Another sample or link may have come while they were read. From here on all is done in one go.
+          if (session.shown?.target !== target || wish !== wishes) return
           // The visitor's own stay: no link may cost anyone their work.
           for (const layer of stack.layers) if (layer !== stack.base && nameOf(layer)) stack.remove(layer.id)
           const { base } = stack
-          const known = layers.filter(({ paint }) => opener.has(paint))
-          // The lowest of them is what the sample opened with, unless that was taken away.
-          const isBase = base !== undefined && nameOf(base) === known[0]?.paint
-          if (isBase) stack.restyle(base, styleOf(known[0]!))
+          if (base && isBase) stack.restyle(base, styleOf(known[0]!))
           else if (base && known.length === layers.length) stack.remove(base.id)
-          for (const layer of isBase ? known.slice(1) : known) {
-            const paint = await opener.paint(layer.paint)
+          rest.forEach((layer, i) => {
+            const paint = paints[i]
             if (paint && !stack.full) stack.add(titleOf(paint), paint, styleOf(layer))
-          }
+          })
           // What was done before it led to something else.
           edits.forget()
         })
