@@ -207,6 +207,20 @@ describe('the surface', () => {
     assert.ok(codes(finned).includes('nonManifoldEdges'));
   });
 
+  test('an edge that is open by itself has nothing beneath it, not a share of nothing', () => {
+    const corners = Array.from({ length: cage.indices.length / 3 }, (_, t) => [...cage.indices.slice(3 * t, 3 * t + 3)] as [number, number, number]);
+    let lone = 0; // the others meet the hole's border
+    for (let t = 100; t < 110; ++t) {
+      // Half of two triangles that share an edge, cut the other way: only the cut is new.
+      const [a, b, c] = corners[t]!;
+      const next = corners.find((other) => !other.includes(a) && other.includes(b) && other.includes(c))!;
+      const { holes, topology } = look({ indices: Uint32Array.from([...cage.indices, a, b, next.find((v) => v !== b && v !== c)!]) });
+      lone += topology.slits;
+      assert.ok(holes.every(({ beneath }) => beneath.every(({ share }) => share > 0 && share <= 1.001)), JSON.stringify(holes));
+    }
+    assert.ok(lone > 0);
+  });
+
   test('a seam that does not meet is a crack', () => {
     // The meridian where the UVs meet: the last column of every ring is moved by a hair.
     const positions = cage.positions.slice();
