@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "cage.hpp"
+#include "cage_edges.hpp"
 #include "place.hpp"
 #include "scratch.hpp"
 
@@ -21,13 +22,19 @@ struct Landing {
   Uv uv;
 };
 
+/// What a triangle of the cage shares its edges with, in the texture.
+struct Beside {
+  std::uint32_t triangles[3];  ///< One per edge: itself if no other triangle has the edge, or more than one.
+  std::uint32_t isOnFan;       ///< Whether more than one other has any of them.
+};
+
 /// How the cage's triangles hang together in the texture: over edges with equal position and UV at both ends.
-/// Side 3 · t + k goes from corner k of triangle t to the next one.
 struct Atlas {
-  std::uint32_t* nextSide;  ///< 1 per side: another side on the same edge; all sides of an edge form a ring.
-  std::uint32_t* islands;   ///< 1 per triangle: equal for those that hang together.
-  double* stretch;          ///< 1 per triangle: the most of its edges' UV length / length.
-  float mostUv;             ///< The largest UV, without its sign.
+  Beside* beside;            ///< 1 per triangle.
+  std::uint32_t* nextSide;   ///< 1 per side, as in `CageEdges`: another side on the same edge; all sides of an edge form a ring.
+  std::uint32_t* islands;    ///< 1 per triangle: equal for those that hang together.
+  double* stretch;           ///< 1 per triangle: the most of its edges' UV length / length.
+  float mostUv;              ///< The largest UV, without its sign.
 
   /// Whether the texture is torn or smeared between two places of the target, so far apart.
   [[nodiscard]] bool tears(const Landing& a, const Landing& b, double apart) const noexcept {
@@ -40,8 +47,7 @@ struct Atlas {
   }
 };
 
-/// @param mesh  The cage as it was given: vertices are compared as they are there, not scaled.
 /// @return false if memory ran out.
-bool findAtlas(const MeshView& mesh, const Cage& cage, Scratch& scratch, Atlas& out) noexcept;
+bool findAtlas(const Cage& cage, const CageEdges& edges, Scratch& scratch, Atlas& out) noexcept;
 
 }  // namespace cagecast

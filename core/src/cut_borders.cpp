@@ -37,6 +37,7 @@ Status cutAlone(const MeshView& cageMesh, const MeshView& target, const Transfer
   if (const Status status = checkInput(cageMesh, target, options, units); !status.ok()) return status;
   Cage cage;
   CageTree cageTree;
+  CageEdges edges;
   Rims rims;
   Atlas atlas;
   Points points;
@@ -46,8 +47,8 @@ Status cutAlone(const MeshView& cageMesh, const MeshView& target, const Transfer
   if (!weld(target, units, options.weldTolerance, scratch, points) || !findParts(target, points, decided, scratch, takesPart)) return kOutOfMemory;
   // A target in one place has nothing to cut, nor a length to search by.
   if (options.projection != ProjectionMode::nearestPoint || !(units.diagonal > 0)) std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
-  const bool isDone = buildCageTree(cage, units, scratch, cageTree) && findRims(cageMesh, cage, scratch, rims) &&
-                      findAtlas(cageMesh, cage, scratch, atlas) &&
+  const bool isDone = buildCageTree(cage, units, scratch, cageTree) && findCageEdges(cageMesh, cage, scratch, edges) &&
+                      findRims(cage, edges, cageMesh.positions.size() / 3, scratch, rims) && findAtlas(cage, edges, scratch, atlas) &&
                       cutTarget(cageMesh, target, cage, cageTree, rims, options.seams == Seams::corner ? &atlas : nullptr, units,
                                 takesPart, scratch, out);
   return isDone ? Status{} : kOutOfMemory;

@@ -18,7 +18,7 @@ struct Covered {
 
 }  // namespace
 
-bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& cage, const Rims& rims, const Voters& voters,
+bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& cage, const CageEdges& edges, const Voters& voters,
                    const PointAreas& areas, const Units& units, const PointResults& results, Scratch& scratch,
                    Array<SegmentStats>& stats) noexcept {
   const Scratch::Mark mark = scratch.mark();
@@ -50,9 +50,7 @@ bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& c
     inTriangles[slot].add({area, static_cast<std::int64_t>(static_cast<double>(area) * (depth / deepest))});
   });
   std::fill(aroundVertices, aroundVertices + vertexCount, Covered{});
-  const auto vertexAt = [&](std::uint32_t slot, std::size_t corner) {
-    return rims.vertexOf[cageMesh.indices[std::size_t{3} * cage.triangles[slot].index + corner]];
-  };
+  const auto vertexAt = [&](std::uint32_t slot, std::size_t corner) { return edges.starts[std::size_t{3} * slot + corner]; };
   for (std::uint32_t slot = 0; slot < cage.count; ++slot) {
     if (inTriangles[slot].area == 0) continue;
     for (std::size_t k = 0; k < 3; ++k) aroundVertices[vertexAt(slot, k)].add(inTriangles[slot]);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "index_table.hpp"
 #include "union_find.hpp"
 
 namespace cagecast {
@@ -105,50 +104,25 @@ bool Rims::areOn(const CageTriangle& triangle, std::uint32_t slot, std::span<con
   return false;
 }
 
-bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& out) noexcept {
+bool findRims(const Cage& cage, const CageEdges& edges, std::size_t vertexCount, Scratch& scratch, Rims& out) noexcept {
   const std::uint32_t sideCount = 3 * cage.count;
-  const auto vertexCount = static_cast<std::uint32_t>(mesh.positions.size() / 3);
+  const std::uint32_t* starts = edges.starts;
   auto* ofSides = scratch.take<std::uint32_t>(std::size_t{2} * sideCount);
-  auto* boxes = scratch.take<Rims::Box>(std::min(sideCount, vertexCount));
-  auto* vertexOf = scratch.take<std::uint32_t>(vertexCount);
+  auto* boxes = scratch.take<Rims::Box>(std::min<std::size_t>(sideCount, vertexCount));
   const Scratch::Mark mark = scratch.mark();
-  auto* edges = scratch.take<std::uint64_t>(sideCount);
-  auto* starts = scratch.take<std::uint32_t>(sideCount);  // The vertices that sides (3 · triangle + corner) begin at.
-  auto* open = scratch.take<std::uint32_t>(sideCount);    // Sides that no other triangle has.
+  auto* open = scratch.take<std::uint32_t>(sideCount);  // Sides that no other triangle has.
   auto* parents = scratch.take<std::uint32_t>(vertexCount);
-  auto* isShared = scratch.take<bool>(sideCount);
   auto* loopAt = scratch.take<std::uint32_t>(vertexCount);
-  IndexTable vertices(vertexCount, scratch);
-  IndexTable edgeTable(sideCount, scratch);
   if (scratch.failed()) return false;
 
-  for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const float* p = mesh.positions.data() + std::size_t{3} * v;
-    const float site[3] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // Now −0 is 0.
-    vertexOf[v] = vertices.firstEqual(v, IndexTable::hash(site), [&](std::uint32_t other) {
-      const float* o = mesh.positions.data() + std::size_t{3} * other;
-      return o[0] == p[0] && o[1] == p[1] && o[2] == p[2];
-    });
-  }
-  // An edge is shared if it is met again. It is named by the first side on it.
-  std::fill(isShared, isShared + sideCount, false);
-  const auto endOf = [starts](std::uint32_t side) { return starts[side % 3 == 2 ? side - 2 : side + 1]; };
-  for (std::uint32_t t = 0; t < cage.count; ++t) {
-    const std::uint32_t* index = mesh.indices.data() + std::size_t{3} * cage.triangles[t].index;
-    for (std::uint32_t k = 0; k < 3; ++k) starts[3 * t + k] = vertexOf[index[k]];
-    for (std::uint32_t side = 3 * t; side < 3 * t + 3; ++side) {
-      edges[side] = std::uint64_t{std::min(starts[side], endOf(side))} << 32 | std::max(starts[side], endOf(side));
-      const std::uint32_t first =
-          edgeTable.firstEqual(side, IndexTable::mix(0, edges[side]), [&](std::uint32_t other) { return edges[other] == edges[side]; });
-      isShared[first] = isShared[side] = first != side;
-    }
-  }
+  const auto isOpen = [&edges](std::uint32_t side) { return edges.next[side] == side; };
+  const auto endOf = [starts](std::uint32_t side) { return starts[CageEdges::after(side)]; };
   std::uint32_t openCount = 0;
   for (std::uint32_t side = 0; side < sideCount; ++side) {
     open[openCount] = side;
-    openCount += !isShared[side];
+    openCount += isOpen(side);
   }
-  UnionFind sets(parents, vertexCount);
+  UnionFind sets(parents, static_cast<std::uint32_t>(vertexCount));
   for (std::uint32_t i = 0; i < openCount; ++i) sets.join(starts[open[i]], endOf(open[i]));
   std::fill(loopAt, loopAt + vertexCount, Rims::kNone);
   out.count = 0;
@@ -169,13 +143,12 @@ bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& ou
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t side = 3 * t + k;
       const std::uint32_t loop = loopAt[starts[side]];
-      ofSides[6 * std::size_t{t} + k] = isShared[side] ? Rims::kNone : loop;
+      ofSides[6 * std::size_t{t} + k] = isOpen(side) ? loop : Rims::kNone;
       ofSides[6 * std::size_t{t} + 3 + k] = loop;
     }
   }
   out.boxes = boxes;
   out.ofSides = ofSides;
-  out.vertexOf = vertexOf;
   scratch.rewind(mark);
   return true;
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "cage.hpp"
+#include "cage_edges.hpp"
 #include "place.hpp"
 #include "scratch.hpp"
 
@@ -30,7 +31,6 @@ struct Rims {
   const Box* boxes = nullptr;
   /// 6 per triangle of the cage: the rim that its edges ab, bc, ca lie on, and the one that its corners a, b, c do.
   const std::uint32_t* ofSides = nullptr;
-  const std::uint32_t* vertexOf = nullptr;  ///< 1 per vertex of the mesh: the first with the same position.
 
   /// The side of its triangle that a place on a rim lies on, or `kNone`: an edge 0, 1, 2 or else a corner 3, 4, 5.
   /// @param slot  The triangle of the place.
@@ -63,7 +63,8 @@ inline Vec3 positionOf(const CageTriangle& t, const Place& place) {
   return a + place.v * (Vec3::from(t.b) - a) + place.w * (Vec3::from(t.c) - a);
 }
 
+/// @param vertexCount  Of the mesh.
 /// @return false if memory ran out.
-bool findRims(const MeshView& mesh, const Cage& cage, Scratch& scratch, Rims& out) noexcept;
+bool findRims(const Cage& cage, const CageEdges& edges, std::size_t vertexCount, Scratch& scratch, Rims& out) noexcept;
 
 }  // namespace cagecast

@@ -54,32 +54,23 @@ class Mender {
         atlas_(atlas),
         diagonal_(diagonal),
         fixedSlack_(fixedSlack(slackOf(tree, diagonal), kRelativeSlack)),
-        laneOf_(scratch.take<std::uint32_t>(cage.count)),
-        rows_(scratch.take<NearTriangle[4]>(tree.leafCount)),
-        across_(scratch.take<Across>(cage.count)),
+        rows_(scratch.take<NearTriangle>(cage.count)),
         candidates_(scratch.take<Candidate>(cage.count)) {
     for (int k = 0; k < 3; ++k) {
       near_[k] = scratch.take<std::uint32_t>(std::size_t{cage.count} + 1);
       Patch& patch = patches_[k];
-      patch.lanes = scratch.take<std::uint32_t>(std::size_t{cage.count} + 3);
+      patch.triangles = scratch.take<std::uint32_t>(std::size_t{cage.count} + 3);
       patch.squaredDistances = scratch.take<float>(std::size_t{4} * (std::size_t{cage.count} + 1));
       patch.seen = scratch.take<std::uint32_t>(std::size_t{4} * cage.count);
       if (scratch.failed()) return;
       patch.sideSeen = patch.seen + cage.count;
       std::fill(patch.seen, patch.sideSeen + std::size_t{3} * cage.count, 0u);
     }
-    for (std::uint32_t i = 0; i < tree.leafCount; ++i) NearTriangle::of(tree.near[i], rows_[i]);
-    // Leaves are full but for the last.
-    for (std::uint32_t i = 0; i < cage.count; ++i) laneOf_[slotOf(i)] = i;
-    for (std::uint32_t i = 0; i < cage.count; ++i) {
-      across_[i].isOnFan = 0;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t side = 3 * slotOf(i) + k;
-        const std::uint32_t other = atlas.nextSide[side];  // Itself if there is no other.
-        const bool isOnFan = atlas.nextSide[other] != side;
-        across_[i].lanes[k] = isOnFan ? i : laneOf_[other / 3];
-        across_[i].isOnFan |= unsigned{isOnFan};
-      }
+    for (std::uint32_t i = 0; i < tree.leafCount; ++i) {
+      NearTriangle four[4];
+      NearTriangle::of(tree.near[i], four);
+      // Leaves are full but for the last.
+      for (std::uint32_t k = 0; k < std::min(4u, cage.count - 4 * i); ++k) rows_[tree.near[i].slot[k]] = four[k];
     }
   }
 
@@ -164,27 +155,21 @@ class Mender {
     Candidate places[kMost];
   };
 
-  /// What a triangle of the cage shares its edges with, in the texture.
-  struct Across {
-    std::uint32_t lanes[3];  ///< One per edge: itself if no other triangle has the edge, or more than one.
-    std::uint32_t isOnFan;   ///< Whether more than one other has any of them.
-  };
-
   /// What hangs together in the texture with the triangle under a corner, within reach of the corner's place: rings of
   /// triangles, and how far they are from the three corners and, lane 3, from the place.
   struct Patch {
     Vec3 place;
     double reach;
-    std::uint32_t first;         ///< The lane of the triangle that the place is on.
+    std::uint32_t first;         ///< The triangle that the place is on.
     std::uint32_t size;          ///< Triangles so far,
     std::uint32_t kept;          ///< with what was kept of those next to the last ring,
     std::uint32_t end;           ///< and, before they are looked at, with all of those.
-    std::uint32_t* lanes;
+    std::uint32_t* triangles;
     float* squaredDistances;     ///< 4 per triangle.
     simd::f32x4 leastSquares;    ///< For each of the four.
     simd::f32x4 x, y, z;         ///< The corners and the place.
     simd::f32x4 limits;          ///< Squared distances: up to lane 0 surely within reach, up to the others perhaps.
-    std::uint32_t* seen;         ///< 1 per lane: the last triangle of the target for which it was met.
+    std::uint32_t* seen;         ///< 1 per triangle: the last one of the target for which it was met.
     std::uint32_t* sideSeen;     ///< 1 per side: the last one for which a round about its edge was made.
 
     [[nodiscard]] bool isGrowing() const noexcept { return size < end; }
@@ -222,9 +207,9 @@ class Mender {
     patch.leastSquares = simd::splat(std::numeric_limits<float>::max());
     patch.place = q;
     patch.reach = reach;
-    patch.first = laneOf_[from];
+    patch.first = from;
     patch.seen[patch.first] = triangle_;
-    patch.lanes[0] = patch.first;
+    patch.triangles[0] = patch.first;
     patch.size = 0;
     patch.end = 1;
   }
@@ -240,20 +225,20 @@ class Mender {
   /// Looks at the triangles next to the last ring, and keeps those near enough.
   void look(Patch& patch) noexcept {
     // In registers, as stores might change the patch for all the compiler knows.
-    std::uint32_t* const lanes = patch.lanes;
-    float* const rows = patch.squaredDistances;
-    const NearTriangle* const triangles = *rows_;
+    std::uint32_t* const triangles = patch.triangles;
+    float* const squares = patch.squaredDistances;
+    const NearTriangle* const rows = rows_;
     const std::uint32_t end = patch.end;
     std::uint32_t size = patch.size;
     for (std::uint32_t i = size; i < end; ++i) {
-      const std::uint32_t lane = lanes[i];
-      const simd::f32x4 squared = squaredDistances(triangles[lane], patch.x, patch.y, patch.z);
+      const std::uint32_t t = triangles[i];
+      const simd::f32x4 squared = squaredDistances(rows[t], patch.x, patch.y, patch.z);
       // No branch that is a coin toss: what is not kept is written over by the next.
       const unsigned isWithin = simd::bits(simd::splatLane<kPlace>(squared) <= patch.limits);
       std::uint32_t isNear = isWithin & 1;
-      if (isWithin == kUnsure) isNear = lane == patch.first || placeOn(cage_.triangles[slotOf(lane)], patch.place).distance <= patch.reach;
-      simd::store(rows + std::size_t{4} * size, squared);
-      lanes[size] = lane;
+      if (isWithin == kUnsure) isNear = t == patch.first || placeOn(cage_.triangles[t], patch.place).distance <= patch.reach;
+      simd::store(squares + std::size_t{4} * size, squared);
+      triangles[size] = t;
       size += isNear;
     }
     patch.kept = size;
@@ -262,31 +247,31 @@ class Mender {
   /// Adds the triangles that were kept, and finds what is next to them.
   void meet(Patch& patch) noexcept {
     // In registers, as above.
-    std::uint32_t* const lanes = patch.lanes;
+    std::uint32_t* const triangles = patch.triangles;
     std::uint32_t* const seen = patch.seen;
-    const float* const rows = patch.squaredDistances;
-    const Across* const acrossOf = across_;
+    const float* const squares = patch.squaredDistances;
+    const Beside* const besides = atlas_.beside;
     const std::uint32_t triangle = triangle_;
     const std::uint32_t kept = patch.kept;
     simd::f32x4 least = patch.leastSquares;
     std::uint32_t end = kept;
-    const auto add = [&](std::uint32_t lane) {
-      lanes[end] = lane;
-      end += seen[lane] != triangle;
-      seen[lane] = triangle;
+    const auto add = [&](std::uint32_t t) {
+      triangles[end] = t;
+      end += seen[t] != triangle;
+      seen[t] = triangle;
     };
     for (std::uint32_t i = patch.size; i < kept; ++i) {
-      least = simd::min(least, simd::load(rows + std::size_t{4} * i));
-      const Across& across = acrossOf[lanes[i]];
-      for (const std::uint32_t lane : across.lanes) add(lane);
-      if (across.isOnFan == 0) continue;
-      const std::uint32_t sides = 3 * slotOf(patch.lanes[i]);
+      least = simd::min(least, simd::load(squares + std::size_t{4} * i));
+      const Beside& beside = besides[triangles[i]];
+      for (const std::uint32_t t : beside.triangles) add(t);
+      if (beside.isOnFan == 0) continue;
+      const std::uint32_t sides = 3 * triangles[i];
       for (std::uint32_t side = sides; side < sides + 3; ++side) {
         if (patch.sideSeen[side] == triangle_) continue;
         // One round for all triangles that share the edge, however many.
         for (std::uint32_t more = atlas_.nextSide[side]; more != side; more = atlas_.nextSide[more]) {
           patch.sideSeen[more] = triangle_;
-          add(laneOf_[more / 3]);
+          add(more / 3);
         }
       }
     }
@@ -302,14 +287,14 @@ class Mender {
     for (std::uint32_t i = 0; i < patch.size; ++i) {
       const unsigned isNear = simd::bits(simd::load(patch.squaredDistances + 4 * i) <= limits);
       for (int c = 0; c < 3; ++c) {
-        near_[c][counts[c]] = patch.lanes[i];
+        near_[c][counts[c]] = patch.triangles[i];
         counts[c] += isNear >> c & 1;
       }
     }
     out.sum = 0;
     for (int c = 0; c < 3; ++c) {
       const auto candidate = [&](std::uint32_t i) -> const Candidate& {
-        return placeOf(*corners[c], known_[c], slotOf(near_[c][i]), candidates_[i]);
+        return placeOf(*corners[c], known_[c], near_[c][i], candidates_[i]);
       };
       // Copied only if there are several.
       const Candidate* nearest = &candidate(0);
@@ -323,8 +308,6 @@ class Mender {
     }
   }
 
-  /// The triangle of a lane of the tree's leaves.
-  [[nodiscard]] std::uint32_t slotOf(std::uint32_t lane) const noexcept { return tree_.near[lane / 4].slot[lane % 4]; }
   [[nodiscard]] Uv uvOf(const Candidate& at) const noexcept { return uvAt(cage_.triangles[at.slot], at.place); }
 
   void setPlace(Candidate& at, const Vec3& p, std::uint32_t t) const noexcept {
@@ -347,10 +330,7 @@ class Mender {
   const Atlas& atlas_;
   double diagonal_;
   float fixedSlack_;
-  // Patches know triangles by their lanes: 4 · leaf of the tree + place in it.
-  std::uint32_t* laneOf_;        ///< 1 per triangle.
-  NearTriangle (*rows_)[4];      ///< 4 per leaf: all that a look needs in two cache lines, where a leaf has it in six.
-  Across* across_;               ///< 1 per lane.
+  NearTriangle* rows_;           ///< 1 per triangle: all that a look needs in two cache lines, where a leaf has it in six.
   std::uint32_t triangle_ = 0;   ///< How many of the target's were mended.
   Patch patches_[3];             ///< Around each corner's place,
   std::uint32_t* near_[3];       ///< what of it might be nearest to each corner,
@@ -360,11 +340,11 @@ class Mender {
 
 }  // namespace
 
-bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const Points& points, const Cage& cage,
+bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage& cage, const CageEdges& edges,
                    const CageTree& tree, const Units& units, const PointResults& results, Scratch& scratch, float* cornerUvs) noexcept {
   const Scratch::Mark mark = scratch.mark();
   Atlas atlas;
-  if (!findAtlas(cageMesh, cage, scratch, atlas)) return false;
+  if (!findAtlas(cage, edges, scratch, atlas)) return false;
   Mender mender(cage, tree, atlas, units.diagonal, scratch);
   auto* looks = scratch.take<FirstLook>(points.count);
   if (scratch.failed()) return false;

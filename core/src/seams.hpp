@@ -11,7 +11,7 @@ namespace cagecast {
 /// @return false if memory ran out.
 /// Cost: O(N + M) for N triangles of the target and M of the cage; a triangle across a seam costs as much as the cage has
 /// triangles within 1.5 of its edges.
-bool findCornerUvs(const MeshView& cageMesh, const MeshView& targetMesh, const Points& points, const Cage& cage,
+bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage& cage, const CageEdges& edges,
                    const CageTree& tree, const Units& units, const PointResults& results, Scratch& scratch, float* cornerUvs) noexcept;
 
 }  // namespace cagecast

@@ -26,6 +26,7 @@ struct Scene {
   Cage cage;
   CageTree cageTree;
   RayTree targetTree;
+  CageEdges cageEdges;
   Rims rims;
 };
 
@@ -43,7 +44,7 @@ bool takeResults(std::uint32_t count, const ProjectOptions& options, PointResult
 /// Steps 1 to 3: where points lie on the cage, and what lies over them.
 bool judge(const Points& points, const Scene& scene, const ProjectOptions& options, PointResults& results, Timings& timings,
            StopWatch& watch) {
-  const auto& [units, cage, cageTree, targetTree, rims] = scene;
+  const auto& [units, cage, cageTree, targetTree, cageEdges, rims] = scene;
   if (!projectPoints(points, cage, cageTree, units, scratch, results)) return false;
   timings.project += watch.lap();
   if (results.cageDistances != nullptr && !findCageDistances(points, cage, cageTree, units, scratch, results)) return false;
@@ -88,7 +89,7 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
 /// Steps 6 and 7: what brings each point back if its segment passes, handed to its vertices.
 bool findRestores(const Points& points, const Scene& scene, const ProjectOptions& options, const PointResults& results,
                   const PointAreas& areas, std::uint32_t vertexCount, Projection& out, StopWatch& watch) {
-  const auto& [units, cage, cageTree, targetTree, rims] = scene;
+  const auto& [units, cage, cageTree, targetTree, cageEdges, rims] = scene;
   const auto segmentCount = static_cast<std::uint32_t>(out.segmentStats.size());
   auto* restores = scratch.take<std::uint32_t>(points.count);
   if (scratch.failed() || !out.restores.reset(vertexCount)) return false;
@@ -133,8 +134,10 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
     out.timings.project = watch.lap();
   } else {
     const bool asksForRims = options.pokeThrough > 0 || options.votes || options.depths || options.holes;
+    const bool asksForEdges = asksForRims || options.seams == Seams::corner;
     if (!buildCageTree(cage, units, scratch, scene.cageTree) || !buildTargetTree(points, units, scratch, scene.targetTree) ||
-        (asksForRims && !findRims(cageMesh, cage, scratch, scene.rims))) {
+        (asksForEdges && !findCageEdges(cageMesh, cage, scratch, scene.cageEdges)) ||
+        (asksForRims && !findRims(cage, scene.cageEdges, cageMesh.positions.size() / 3, scratch, scene.rims))) {
       return kOutOfMemory;
     }
     out.timings.build = watch.lap();
@@ -155,7 +158,7 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   PointAreas areas;
   if (!addUpAreas(points, voters, units, results, scratch, areas, out.segmentStats)) return kOutOfMemory;
   if (isFiltered && options.depths &&
-      (!findSunkAreas(cageMesh, points, cage, scene.rims, voters, areas, units, results, scratch, out.segmentStats) ||
+      (!findSunkAreas(cageMesh, points, cage, scene.cageEdges, voters, areas, units, results, scratch, out.segmentStats) ||
        !findCopies(points, results, scratch, out.segmentStats))) {
     return kOutOfMemory;
   }
@@ -170,7 +173,7 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
 
   const bool atCorners = options.seams == Seams::corner && options.projection == ProjectionMode::nearestPoint;
   if (!out.cornerUvs.reset(atCorners ? 2 * targetMesh.indices.size() : 0)) return kOutOfMemory;
-  if (atCorners && !findCornerUvs(cageMesh, targetMesh, points, cage, scene.cageTree, units, results, scratch, out.cornerUvs.data())) return kOutOfMemory;
+  if (atCorners && !findCornerUvs(targetMesh, points, cage, scene.cageEdges, scene.cageTree, units, results, scratch, out.cornerUvs.data())) return kOutOfMemory;
   out.timings.seams = watch.lap();
   const Timings& t = out.timings;
   out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments + t.secondLook + t.holes + t.seams;
