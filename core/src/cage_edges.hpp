@@ -10,7 +10,7 @@ namespace cagecast {
 /// Which triangles of the cage share an edge. Vertices with equal positions are one.
 /// Side 3 · t + k goes from corner k of triangle t to the next one.
 struct CageEdges {
-  const std::uint32_t* starts;  ///< 1 per side: the vertex that it begins at, by the first with its position.
+  const std::uint32_t* starts;  ///< 1 per side: the vertex that it begins at, by the first vertex of the mesh with its position.
   const std::uint32_t* next;    ///< 1 per side: another side on the same edge; all sides of an edge form a ring.
 
   /// The side that begins where this one ends.
