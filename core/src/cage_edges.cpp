@@ -53,7 +53,7 @@ bool findCageEdges(const MeshView& mesh, const Cage& cage, Scratch& scratch, Cag
         edgeTable.firstEqual(side, IndexTable::mix(0, edge), [&](std::uint32_t other) { return edges[other] == edge; });
     std::swap(next[side], next[known]);
   }
-  out = {starts, next};
+  out = {vertexCount, starts, next};
   scratch.rewind(mark);
   return true;
 }

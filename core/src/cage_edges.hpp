@@ -10,8 +10,9 @@ namespace cagecast {
 /// Which triangles of the cage share an edge. Vertices with equal positions are one.
 /// Side 3 · t + k goes from corner k of triangle t to the next one.
 struct CageEdges {
-  const std::uint32_t* starts;  ///< 1 per side: the vertex that it begins at, by the first vertex of the mesh with its position.
-  const std::uint32_t* next;    ///< 1 per side: another side on the same edge; all sides of an edge form a ring.
+  std::uint32_t vertexCount = 0;          ///< Of the mesh.
+  const std::uint32_t* starts = nullptr;  ///< 1 per side: the vertex that it begins at, by the first in the mesh with its position.
+  const std::uint32_t* next = nullptr;    ///< 1 per side: another side on the same edge; all sides of an edge form a ring.
 
   /// The side that begins where this one ends.
   static std::uint32_t after(std::uint32_t side) noexcept { return side % 3 == 2 ? side - 2 : side + 1; }

@@ -48,7 +48,7 @@ Status cutAlone(const MeshView& cageMesh, const MeshView& target, const Transfer
   // A target in one place has nothing to cut, nor a length to search by.
   if (options.projection != ProjectionMode::nearestPoint || !(units.diagonal > 0)) std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
   const bool isDone = buildCageTree(cage, units, scratch, cageTree) && findCageEdges(cageMesh, cage, scratch, edges) &&
-                      findRims(cage, edges, cageMesh.positions.size() / 3, scratch, rims) && findAtlas(cage, edges, scratch, atlas) &&
+                      findRims(cage, edges, scratch, rims) && findAtlas(cage, edges, scratch, atlas) &&
                       cutTarget(cageMesh, target, cage, cageTree, rims, options.seams == Seams::corner ? &atlas : nullptr, units,
                                 takesPart, scratch, out);
   return isDone ? Status{} : kOutOfMemory;

@@ -18,13 +18,11 @@ struct Covered {
 
 }  // namespace
 
-bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& cage, const CageEdges& edges, const Voters& voters,
-                   const PointAreas& areas, const Units& units, const PointResults& results, Scratch& scratch,
-                   Array<SegmentStats>& stats) noexcept {
+bool findSunkAreas(const Points& points, const Cage& cage, const CageEdges& edges, const Voters& voters, const PointAreas& areas,
+                   const Units& units, const PointResults& results, Scratch& scratch, Array<SegmentStats>& stats) noexcept {
   const Scratch::Mark mark = scratch.mark();
-  const std::size_t vertexCount = cageMesh.positions.size() / 3;
   auto* inTriangles = scratch.take<Covered>(cage.count);
-  auto* aroundVertices = scratch.take<Covered>(vertexCount);
+  auto* aroundVertices = scratch.take<Covered>(edges.vertexCount);
   auto* usual = scratch.take<double>(cage.count);
   auto* sunk = scratch.take<std::int64_t>(stats.size());
   if (scratch.failed()) return false;
@@ -49,7 +47,7 @@ bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& c
   eachCovered([&](std::uint32_t, std::uint32_t slot, double depth, std::int64_t area) {
     inTriangles[slot].add({area, static_cast<std::int64_t>(static_cast<double>(area) * (depth / deepest))});
   });
-  std::fill(aroundVertices, aroundVertices + vertexCount, Covered{});
+  std::fill(aroundVertices, aroundVertices + edges.vertexCount, Covered{});
   const auto vertexAt = [&](std::uint32_t slot, std::size_t corner) { return edges.starts[std::size_t{3} * slot + corner]; };
   for (std::uint32_t slot = 0; slot < cage.count; ++slot) {
     if (inTriangles[slot].area == 0) continue;

@@ -104,11 +104,12 @@ bool Rims::areOn(const CageTriangle& triangle, std::uint32_t slot, std::span<con
   return false;
 }
 
-bool findRims(const Cage& cage, const CageEdges& edges, std::size_t vertexCount, Scratch& scratch, Rims& out) noexcept {
+bool findRims(const Cage& cage, const CageEdges& edges, Scratch& scratch, Rims& out) noexcept {
   const std::uint32_t sideCount = 3 * cage.count;
+  const std::uint32_t vertexCount = edges.vertexCount;
   const std::uint32_t* starts = edges.starts;
   auto* ofSides = scratch.take<std::uint32_t>(std::size_t{2} * sideCount);
-  auto* boxes = scratch.take<Rims::Box>(std::min<std::size_t>(sideCount, vertexCount));
+  auto* boxes = scratch.take<Rims::Box>(std::min(sideCount, vertexCount));
   const Scratch::Mark mark = scratch.mark();
   auto* open = scratch.take<std::uint32_t>(sideCount);  // Sides that no other triangle has.
   auto* parents = scratch.take<std::uint32_t>(vertexCount);
@@ -116,13 +117,13 @@ bool findRims(const Cage& cage, const CageEdges& edges, std::size_t vertexCount,
   if (scratch.failed()) return false;
 
   const auto isOpen = [&edges](std::uint32_t side) { return edges.next[side] == side; };
-  const auto endOf = [starts](std::uint32_t side) { return starts[CageEdges::after(side)]; };
+  const auto endOf = [&edges](std::uint32_t side) { return edges.starts[CageEdges::after(side)]; };
   std::uint32_t openCount = 0;
   for (std::uint32_t side = 0; side < sideCount; ++side) {
     open[openCount] = side;
     openCount += isOpen(side);
   }
-  UnionFind sets(parents, static_cast<std::uint32_t>(vertexCount));
+  UnionFind sets(parents, vertexCount);
   for (std::uint32_t i = 0; i < openCount; ++i) sets.join(starts[open[i]], endOf(open[i]));
   std::fill(loopAt, loopAt + vertexCount, Rims::kNone);
   out.count = 0;

@@ -63,8 +63,7 @@ inline Vec3 positionOf(const CageTriangle& t, const Place& place) {
   return a + place.v * (Vec3::from(t.b) - a) + place.w * (Vec3::from(t.c) - a);
 }
 
-/// @param vertexCount  Of the mesh.
 /// @return false if memory ran out.
-bool findRims(const Cage& cage, const CageEdges& edges, std::size_t vertexCount, Scratch& scratch, Rims& out) noexcept;
+bool findRims(const Cage& cage, const CageEdges& edges, Scratch& scratch, Rims& out) noexcept;
 
 }  // namespace cagecast

@@ -86,9 +86,8 @@ bool addUpAreas(const Points& points, const Voters& voters, const Units& units, 
                 PointAreas& areas, Array<SegmentStats>& stats) noexcept;
 
 /// Step 5′: finds how much of what is covered lies no deeper than its neighbours.
-bool findSunkAreas(const MeshView& cageMesh, const Points& points, const Cage& cage, const CageEdges& edges, const Voters& voters,
-                   const PointAreas& areas, const Units& units, const PointResults& results, Scratch& scratch,
-                   Array<SegmentStats>& stats) noexcept;
+bool findSunkAreas(const Points& points, const Cage& cage, const CageEdges& edges, const Voters& voters, const PointAreas& areas,
+                   const Units& units, const PointResults& results, Scratch& scratch, Array<SegmentStats>& stats) noexcept;
 
 /// Step 5′: finds which segments are copies of others.
 bool findCopies(const Points& points, const PointResults& results, Scratch& scratch, Array<SegmentStats>& stats) noexcept;

@@ -137,7 +137,7 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
     const bool asksForEdges = asksForRims || options.seams == Seams::corner;
     if (!buildCageTree(cage, units, scratch, scene.cageTree) || !buildTargetTree(points, units, scratch, scene.targetTree) ||
         (asksForEdges && !findCageEdges(cageMesh, cage, scratch, scene.cageEdges)) ||
-        (asksForRims && !findRims(cage, scene.cageEdges, cageMesh.positions.size() / 3, scratch, scene.rims))) {
+        (asksForRims && !findRims(cage, scene.cageEdges, scratch, scene.rims))) {
       return kOutOfMemory;
     }
     out.timings.build = watch.lap();
@@ -158,7 +158,7 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   PointAreas areas;
   if (!addUpAreas(points, voters, units, results, scratch, areas, out.segmentStats)) return kOutOfMemory;
   if (isFiltered && options.depths &&
-      (!findSunkAreas(cageMesh, points, cage, scene.cageEdges, voters, areas, units, results, scratch, out.segmentStats) ||
+      (!findSunkAreas(points, cage, scene.cageEdges, voters, areas, units, results, scratch, out.segmentStats) ||
        !findCopies(points, results, scratch, out.segmentStats))) {
     return kOutOfMemory;
   }

@@ -235,6 +235,27 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
     for (int copy = 0; copy < 3; ++copy) stacked.indices.insert(stacked.indices.end(), strewn.cage.indices.begin(), strewn.cage.indices.end());
     compareCorners("stacked", stacked.view(), ball.view());
   }
+  SECTION("edges of many triangles, of which some are one in the texture") {
+    // Of two to four copies of each triangle two have UVs that meet, the others their own. Which is first, and so the nearest, changes.
+    const scenes::Mesh shell = scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 5);
+    scenes::Mesh mixed;
+    const auto add = [&](std::size_t triangle, float shift) {
+      const auto first = static_cast<std::uint32_t>(mixed.vertexCount());
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t index = shell.indices[3 * triangle + k];
+        mixed.addVertex(shell.vertex(index), shell.uvs[index * std::size_t{2}] + shift, shell.uvs[index * std::size_t{2} + 1]);
+      }
+      mixed.addTriangle(first, first + 1, first + 2);
+    };
+    for (std::size_t t = 0; t < shell.indices.size() / 3; ++t) {
+      const bool isFirst = t / 7 % 2 == 0;
+      add(t, isFirst ? 0.0f : 3.0f);
+      add(t, isFirst ? 3.0f : 0.0f);
+      if (t % 3 == 0) add(t, 0);
+      if (t % 5 == 0) add(t, 5.0f + static_cast<float>(t));
+    }
+    CHECK(compareCorners("mixed", mixed.view(), ball.view()).mended > 50);
+  }
   SECTION("vertices split, or equal up to the sign of zero, hold together all the same") {
     scenes::Mesh split;
     for (const std::uint32_t index : strewn.cage.indices) {
