@@ -1,36 +1,22 @@
-import packed from '#wasm-text';
+import digits from '#wasm-text';
 
 /**
  * Compiles the WebAssembly module that this script carries within itself. It is the one form that works unchanged in
  * every bundler, server and worker; `cagecast/slim` has the module as a file of its own.
  */
 export function compile(): Promise<WebAssembly.Module> {
-  return WebAssembly.compile(unpack(packed));
+  return WebAssembly.compile(bytesOf(digits));
 }
 
-/** Bytes as printable text; `packText` in wasm/tools/build.mjs says how and why. */
-interface PackedText {
-  length: number;
-  /** All 256 bytes in hexadecimal, the most frequent first. A byte goes by its place in here. */
-  order: string;
-  text: string;
-}
-
-const symbols = 91;
-const short = 89;
-
-function unpack({ length, order, text }: PackedText): Uint8Array<ArrayBuffer> {
-  const byteAt = Uint8Array.from({ length: 256 }, (_, place) => parseInt(order.slice(2 * place, 2 * place + 2), 16));
-  const bytes = new Uint8Array(length);
-  let at = 0;
-  const symbol = () => {
-    const code = text.charCodeAt(at++);
-    return code - (code > 92 ? 36 : 35);
+/** Reads hexadecimal digits. Hosts of since 2025 do so by themselves, in a tenth of the time. */
+function bytesOf(hex: string): Uint8Array<ArrayBuffer> {
+  const host = Uint8Array as { fromHex?: (hex: string) => Uint8Array<ArrayBuffer> };
+  if (host.fromHex) return host.fromHex(hex);
+  const bytes = new Uint8Array(hex.length / 2);
+  const digit = (at: number) => {
+    const code = hex.charCodeAt(at);
+    return code - (code < 58 ? 48 : 87);
   };
-  for (let i = 0; i < length; ++i) {
-    let place = symbol();
-    if (place >= short) place = short + (place - short) * symbols + symbol();
-    bytes[i] = byteAt[place]!;
-  }
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = 16 * digit(2 * i) + digit(2 * i + 1);
   return bytes;
 }

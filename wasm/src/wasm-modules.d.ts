@@ -5,10 +5,10 @@ declare module '#glue' {
   export default function createModule(module: object): PromiseLike<unknown>;
 }
 
-/** The WebAssembly module as text. */
+/** The WebAssembly module in hexadecimal digits, without capitals. */
 declare module '#wasm-text' {
-  const packed: { length: number; order: string; text: string };
-  export default packed;
+  const digits: string;
+  export default digits;
 }
 
 /** Google's Draco decoder; its package has types for its main module only. */
