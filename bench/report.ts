@@ -4,6 +4,7 @@ import { stages, stagesOfDefault } from './native.js';
 import { scalingPlot, stagesPlot, totalsPlot } from './plots.js';
 import { resultsFolder, type Results } from './results.js';
 import { table } from './table.js';
+import type { FirstUse } from './web/first-page.js';
 
 const ms = (value: number | undefined): string => (value === undefined ? '–' : value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(value < 0.1 ? 3 : 2));
 const times = (value: number | undefined): string => (value === undefined ? '–' : `${value >= 10 ? value.toFixed(1) : value.toFixed(2)}×`);
@@ -123,13 +124,19 @@ function markdown(results: Results): string {
       '## Phones',
       `64-bit ARM (NEON) under QEMU: ${(mobile.aarch64.perRun / 1e6).toFixed(2)} M instructions a transfer at 4.8k${mobile.aarch64.sameAnswer ? ', with bit-identical results' : ', BUT WITH ANOTHER RESULT'}. That is ${ms(estimate)} ms on a ${phone.name}, assuming one instruction per cycle. x86-64: ${(mobile.x86_64.perRun / 1e6).toFixed(2)} M.`,
       table(
-        ['Chromium, 4.8k', 'warm', 'first use, at rest', '= import', '+ init', '+ transfer', 'first use, at once', '= import', '+ init', '+ transfer'],
+        ['Chromium, 4.8k', 'warm', 'first use, at rest', '= import', '+ init', '+ transfer', 'the same with `paper`', 'first use, at once', '= import', '+ init', '+ transfer'],
         Object.keys(mobile.firstUse).map((rate) => {
-          const first = [mobile.firstUseAtRest?.[rate], mobile.firstUse[rate]];
-          return [rate === '1' ? 'as it is' : `slowed ${rate}×`, ms(mobile.warm[rate]?.median), ...first.flatMap((use) => [ms(use?.total), ms(use?.import), ms(use?.init), ms(use?.transfer)])];
+          const parts = (use: FirstUse | undefined): string[] => [ms(use?.total), ms(use?.import), ms(use?.init), ms(use?.transfer)];
+          return [
+            rate === '1' ? 'as it is' : `slowed ${rate}×`,
+            ms(mobile.warm[rate]?.median),
+            ...parts(mobile.firstUseAtRest?.[rate]),
+            ms(mobile.firstUseOfPaper?.[rate]?.total),
+            ...parts(mobile.firstUse[rate]),
+          ];
         }),
       ),
-      'Wall time. Warm is the preset `paper`, the first use `default`, in a browser that never loaded the package: at rest, when the browser’s own start is over; at once, while its processes still start and share the two cores with the page.',
+      'Wall time. Warm is the preset `paper`, the first use `default` unless it says otherwise, in a browser that never loaded the package: at rest, when the browser’s own start is over; at once, while its processes still start and share the two cores with the page.',
     );
   }
   if (results.size) {

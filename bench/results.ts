@@ -24,10 +24,12 @@ export interface Results {
     x86_64: InstructionCount;
     /** By how many times Chromium is slowed down; ms of wall time. */
     warm: Record<string, Spread>;
-    /** In a browser that was just started, and is still busy with that. */
+    /** With `default`, in a browser that was just started, and is still busy with that. */
     firstUse: Record<string, FirstUse>;
     /** In a new browser that has come to rest. */
     firstUseAtRest?: Record<string, FirstUse>;
+    /** The same with `paper`. */
+    firstUseOfPaper?: Record<string, FirstUse>;
   };
   size?: Record<string, Size>;
 }

@@ -195,18 +195,22 @@ async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullab
   const aarch64 = await countAarch64(sampleScene.path);
   const native = await measureNative(sampleScene.path, 1, []);
   const firstUseAtRest: Record<string, FirstUse> = {};
+  const firstUseOfPaper: Record<string, FirstUse> = {};
+  const launches = quick ? 3 : 9;
   const mobile: NonNullable<Results['mobile']> = {
     aarch64: { ...aarch64, sameAnswer: (await hashOnAarch64(sampleScene.path)) === native.hash },
     x86_64: x86,
     warm: {},
     firstUse: {},
     firstUseAtRest,
+    firstUseOfPaper,
   };
   for (const rate of [1, 4, 6]) {
     say(`Chromium slowed ${rate}×`);
-    mobile.warm[rate] = await bench.throttled(sampleScene, rate, 101);
-    mobile.firstUse[rate] = await bench.firstUse(sampleScene, rate, quick ? 3 : 9, 'at once');
-    firstUseAtRest[rate] = await bench.firstUse(sampleScene, rate, quick ? 3 : 9, 'at rest');
+    mobile.warm[rate] = await bench.throttled(sampleScene, rate, quick ? 1 : 5, 101);
+    mobile.firstUse[rate] = await bench.firstUse(sampleScene, rate, launches, 'default', 'at once');
+    firstUseAtRest[rate] = await bench.firstUse(sampleScene, rate, launches, 'default', 'at rest');
+    firstUseOfPaper[rate] = await bench.firstUse(sampleScene, rate, launches, 'paper', 'at rest');
   }
   return mobile;
 }

@@ -1,4 +1,5 @@
 // What a page's first use of the package costs. It imports nothing at its start but what reads the input.
+import type { Preset } from 'cagecast';
 import { readScene } from '../scene-file.js';
 
 export interface FirstUse {
@@ -23,18 +24,18 @@ WebAssembly.Instance = new Proxy(WebAssembly.Instance, {
 });
 const heap = (): number => memories.reduce((sum, { buffer }) => sum + buffer.byteLength, 0);
 
-async function firstUse(url: string, script: string): Promise<FirstUse> {
+async function firstUse(url: string, script: string, preset: Preset): Promise<FirstUse> {
   const { cage, target } = readScene(await (await fetch(url)).arrayBuffer());
   const laps = [performance.now()];
   const { init, transfer } = (await import(script)) as typeof import('cagecast');
   laps.push(performance.now());
   await init();
   laps.push(performance.now());
-  transfer(cage, target);
+  transfer(cage, target, { preset });
   laps.push(performance.now());
   const [start, imported, started, done] = laps as [number, number, number, number];
   const heapFirst = heap();
-  for (let i = 0; i < 20; ++i) transfer(cage, target);
+  for (let i = 0; i < 20; ++i) transfer(cage, target, { preset });
   return { import: imported - start, init: started - imported, transfer: done - started, total: done - start, heap: heapFirst, heapLater: heap() };
 }
 
