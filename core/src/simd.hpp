@@ -347,7 +347,7 @@ inline mask4 operator!=(f32x4 a, f32x4 b) { return {wasm_f32x4_ne(a.v, b.v)}; }
 inline mask4 operator&(mask4 a, mask4 b) { return {wasm_v128_and(a.v, b.v)}; }
 template <int tagBits>
 inline f32x4 withTag(f32x4 a, std::uint32_t tag) {
-  return {wasm_v128_bitselect(wasm_i32x4_splat(static_cast<int>(tag)), a.v, wasm_i32x4_splat((1 << tagBits) - 1))};
+  return {wasm_v128_or(wasm_v128_andnot(a.v, wasm_i32x4_splat((1 << tagBits) - 1)), wasm_i32x4_splat(static_cast<int>(tag)))};
 }
 inline f32x4 select(mask4 m, f32x4 a, f32x4 b) { return {wasm_v128_bitselect(a.v, b.v, m.v)}; }
 // A choice is three instructions where processors have none for it; from what the two differ by, two.
