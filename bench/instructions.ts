@@ -8,6 +8,15 @@ export interface InstructionCount {
   compiler: string;
 }
 
+/** How many a transfer takes in WebAssembly: machine code and the engine's own work together. */
+export interface WasmCount {
+  /** Once the engine has optimised all of it. */
+  optimised: number;
+  /** The first of all, compiled function by function as they are called, and not optimised. */
+  first: number;
+}
+
+const plugin = `${root}build/release/bench/libcagecast_count_instructions.so`;
 const runs = { few: 2, many: 12 };
 
 /** What all runs together take beyond the first few, per run: reading the file and the first run's allocations fall out. */
@@ -41,12 +50,22 @@ export async function countAarch64(scene: string, preset: Preset = 'paper'): Pro
   await output('cmake', ['--preset', 'aarch64', '-Wno-dev', '--log-level=WARNING']);
   await output('cmake', ['--build', '--preset', 'aarch64', '--target', 'cagecast_bench']);
   const program = `${root}build/aarch64/bench/cagecast_bench`;
-  const plugin = `${root}build/release/bench/libcagecast_count_instructions.so`;
   const count = async (n: number): Promise<number> => {
     const { stderr } = await output('qemu-aarch64', ['-plugin', plugin, program, scene, '--preset', preset, '--runs', String(n)]);
     return numberIn(stderr, /^instructions (\d+)/m);
   };
   return { perRun: await perRun(count), compiler: await compilerOf('qemu-aarch64', [program], scene) };
+}
+
+/** Counts the package in this Node, by QEMU for the processor that it runs on. `bundle` is that of bench/web/count.ts. */
+export async function countWasm(bundle: string, scene: string, preset: Preset): Promise<WasmCount> {
+  const qemu = process.arch === 'arm64' ? 'qemu-aarch64' : 'qemu-x86_64';
+  const counted = (...engine: string[]) => async (n: number): Promise<number> => {
+    const { stderr } = await output(qemu, ['-cpu', 'max', '-plugin', plugin, process.execPath, '--single-threaded', '--predictable', ...engine, bundle, scene, preset, String(n)]);
+    return numberIn(stderr, /^instructions (\d+)/m);
+  };
+  const unoptimised = counted('--wasm-lazy-compilation', '--no-wasm-tier-up', '--no-wasm-dynamic-tiering');
+  return { optimised: await perRun(counted('--no-liftoff')), first: (await unoptimised(1)) - (await unoptimised(0)) };
 }
 
 /** The result's hash, as computed on 64-bit ARM. */

@@ -1,5 +1,6 @@
 import { writeFile } from 'node:fs/promises';
 import { goalsOf, isReached, phone } from './goals.js';
+import type { Preset, WasmCount } from './instructions.js';
 import { stages, stagesOfDefault } from './native.js';
 import { scalingPlot, stagesPlot, totalsPlot } from './plots.js';
 import { resultsFolder, type Results } from './results.js';
@@ -8,6 +9,11 @@ import type { FirstUse } from './web/first-page.js';
 
 const ms = (value: number | undefined): string => (value === undefined ? '–' : value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(value < 0.1 ? 3 : 2));
 const times = (value: number | undefined): string => (value === undefined ? '–' : `${value >= 10 ? value.toFixed(1) : value.toFixed(2)}×`);
+
+function inWasm({ paper, default: preset }: Record<Preset, WasmCount>, node: string): string {
+  const million = (count: number): string => `${(count / 1e6).toFixed(1)} M`;
+  return `In WebAssembly, in Node ${node}, optimised: ${million(paper.optimised)}, with \`default\` ${million(preset.optimised)}; the first of all, compiled as it goes and not optimised: ${million(paper.first)} and ${million(preset.first)}.`;
+}
 
 /** Writes the table and the plots of results, over those of earlier ones. */
 export async function writeReport(results: Results): Promise<void> {
@@ -122,7 +128,7 @@ function markdown(results: Results): string {
     const estimate = (1e3 * mobile.aarch64.perRun) / phone.instructionsPerSecond;
     parts.push(
       '## Phones',
-      `64-bit ARM (NEON) under QEMU: ${(mobile.aarch64.perRun / 1e6).toFixed(2)} M instructions a transfer at 4.8k${mobile.aarch64.sameAnswer ? ', with bit-identical results' : ', BUT WITH ANOTHER RESULT'}. That is ${ms(estimate)} ms on a ${phone.name}, assuming one instruction per cycle. x86-64: ${(mobile.x86_64.perRun / 1e6).toFixed(2)} M.`,
+      `64-bit ARM (NEON) under QEMU: ${(mobile.aarch64.perRun / 1e6).toFixed(2)} M instructions a transfer at 4.8k${mobile.aarch64.sameAnswer ? ', with bit-identical results' : ', BUT WITH ANOTHER RESULT'}. That is ${ms(estimate)} ms on a ${phone.name}, assuming one instruction per cycle. x86-64: ${(mobile.x86_64.perRun / 1e6).toFixed(2)} M.${mobile.wasm ? ` ${inWasm(mobile.wasm, results.machine.node)}` : ''}`,
       table(
         ['Chromium, 4.8k', 'warm', 'first use, at rest', '= import', '+ init', '+ transfer', 'the same with `paper`', 'first use, at once', '= import', '+ init', '+ transfer'],
         Object.keys(mobile.firstUse).map((rate) => {

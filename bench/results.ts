@@ -1,6 +1,6 @@
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
 import { root, type NativeResult, type Spread, type StageOfDefault } from './native.js';
-import type { InstructionCount } from './instructions.js';
+import type { InstructionCount, Preset, WasmCount } from './instructions.js';
 import type { Size } from './size.js';
 import type { RaceResult } from './race.js';
 import type { FirstUse } from './web/first-page.js';
@@ -22,6 +22,8 @@ export interface Results {
   mobile?: {
     aarch64: InstructionCount & { sameAnswer: boolean };
     x86_64: InstructionCount;
+    /** In Node, on this machine's kind of processor. */
+    wasm?: Record<Preset, WasmCount>;
     /** By how many times Chromium is slowed down; ms of wall time. */
     warm: Record<string, Spread>;
     /** With `default`, in a browser that was just started, and is still busy with that. */

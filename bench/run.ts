@@ -14,7 +14,7 @@ import { parseArgs } from 'node:util';
 import { readFile, writeFile } from 'node:fs/promises';
 import { checkInstructions, checkSizes, recordBudget } from './budget.js';
 import { goalsOf, isReached } from './goals.js';
-import { countAarch64, countX86, hashOnAarch64 } from './instructions.js';
+import { countAarch64, countWasm, countX86, hashOnAarch64 } from './instructions.js';
 import { islandCount, unfolded } from './islands.js';
 import { buildNative, measureNative, root, saveScene } from './native.js';
 import { writeReport } from './report.js';
@@ -22,7 +22,7 @@ import { readResults, resultsFolder, writeResults, type PresetCost, type Results
 import { readScene, writeScene } from './scene-file.js';
 import { makeScenes, sampleScene, scenes, type BenchScene } from './scenes.js';
 import { measureSizes } from './size.js';
-import { buildWeb, raceInNode, WebBench } from './web.js';
+import { buildWeb, countBundle, raceInNode, WebBench } from './web.js';
 import type { FirstUse } from './web/first-page.js';
 
 const parts = ['native', 'presets', 'web', 'mobile', 'size'] as const;
@@ -200,6 +200,7 @@ async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullab
   const mobile: NonNullable<Results['mobile']> = {
     aarch64: { ...aarch64, sameAnswer: (await hashOnAarch64(sampleScene.path)) === native.hash },
     x86_64: x86,
+    wasm: { paper: await countWasm(countBundle, sampleScene.path, 'paper'), default: await countWasm(countBundle, sampleScene.path, 'default') },
     warm: {},
     firstUse: {},
     firstUseAtRest,

@@ -14,6 +14,8 @@ import type { FirstUse } from './web/first-page.js';
 import type { Block, Runner } from './web/runner.js';
 
 const bundles = `${root}build/bench/web`;
+/** Transfers in Node, to be counted. */
+export const countBundle = `${bundles}/count.mjs`;
 
 /** Bundles the pages and the script for Node. The package stays outside of them: it is measured as it is shipped. */
 export async function buildWeb(): Promise<void> {
@@ -25,7 +27,9 @@ export async function buildWeb(): Promise<void> {
       b.onResolve({ filter: /^cagecast$/ }, () => ({ path, external: true })),
   });
   await build({ ...common, entryPoints: ['bench/web/page.ts', 'bench/web/first-page.ts'], outdir: bundles, plugins: [packageAt('/dist/index.js')] });
-  await build({ ...common, entryPoints: ['bench/web/node-race.ts'], outfile: `${bundles}/node-race.mjs`, platform: 'node', plugins: [packageAt(`${root}dist/index.js`)] });
+  const inNode = { ...common, platform: 'node' as const, plugins: [packageAt(`${root}dist/index.js`)] };
+  await build({ ...inNode, entryPoints: ['bench/web/node-race.ts'], outfile: `${bundles}/node-race.mjs` });
+  await build({ ...inNode, entryPoints: ['bench/web/count.ts'], outfile: countBundle });
 }
 
 /** Races in Node, on one core. */
