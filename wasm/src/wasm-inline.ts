@@ -1,4 +1,4 @@
-import digits from '#wasm-text';
+import digits from '#wasm-digits';
 
 /**
  * Compiles the WebAssembly module that this script carries within itself. It is the one form that works unchanged in

@@ -6,9 +6,15 @@ declare module '#glue' {
 }
 
 /** The WebAssembly module in hexadecimal digits, without capitals. */
-declare module '#wasm-text' {
+declare module '#wasm-digits' {
   const digits: string;
   export default digits;
+}
+
+/** The same as text of printable symbols. */
+declare module '#wasm-packed' {
+  const packed: { length: number; order: string; text: string };
+  export default packed;
 }
 
 /** Google's Draco decoder; its package has types for its main module only. */
