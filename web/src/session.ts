@@ -246,9 +246,9 @@ export class Session extends Emitter<SessionEvents> {
       const { preset } = this.#rules
       const same = scene.target === before?.target && scene.cage === before.cage && preset === before.projection.preset
       if (!same) this.#tell('Transferring', 0.3)
+      const pace = new Pace() // from here on: to receive what the worker answers takes the page a while as well
       const projection = same ? before.projection : await this.#project(scene, preset, superseded)
       if (superseded()) return
-      const pace = new Pace()
       // Segments are the target's alone: what was said about them holds for another cage and preset too.
       if (scene.target !== before?.target) {
         const known = Object.entries(this.#wantedLocks).filter(([segment]) => Number(segment) < projection.segmentStats.length)
