@@ -22,10 +22,10 @@ test('the first picture takes little of the processor, and most of that is not t
   const runs: { page: number; graphics: number; computation: number; picture: number }[] = []
   for (let run = 0; run < 3; run++) runs.push(await processorTime(site))
   const page = Math.min(...runs.map((run) => run.page / run.computation))
-  assert.ok(page < 1.4, `scripts, layout and style take as long as ${page} computations of 0.3 s: ${JSON.stringify(runs)}`)
-  // Everything is drawn by the processor here; filtering an environment map alone once took as long as nine
-  // pictures, more of which are drawn right after.
+  assert.ok(page < 1.4, `scripts, layout and style take as long as ${page} computations: ${JSON.stringify(runs)}`)
+  // Everything is drawn by the processor here, as are the pictures right after. Usually it is 2.3 to 3.5 of these; filtering an
+  // environment map once made it 2.9 times as long.
   for (const { picture } of runs) assert.ok(picture > 0.02, `drawing another picture was measured: ${picture} s`)
   const pictures = Math.min(...runs.map(({ graphics, picture }) => graphics / picture))
-  assert.ok(pictures < 8, `drawing the first picture takes as long as ${pictures} more: ${JSON.stringify(runs)}`)
+  assert.ok(pictures < 6, `drawing the first picture takes as long as ${pictures} more: ${JSON.stringify(runs)}`)
 })
