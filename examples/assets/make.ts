@@ -1,8 +1,10 @@
 /**
  * Makes the sample models into build/assets: `npm run assets [-- --force] [model …]`.
  *
- * Nothing is made twice: a model is skipped while the sources it comes from are unchanged, unless --force is given.
+ * Nothing is made twice: a model is skipped while the sources it comes from are unchanged, unless --force is given. Models of
+ * different sources are made at once, each in a process of its own.
  */
+import { fork } from 'node:child_process'
 import { createHash } from 'node:crypto'
 import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs'
 import { dirname, join } from 'node:path'
@@ -82,35 +84,53 @@ if (unknown !== undefined) {
   process.exit(2)
 }
 
-mkdirSync(out, { recursive: true })
-const index: Entry[] = []
-for (const [name, { make, source }] of Object.entries(models)) {
-  const chosen = wanted.length === 0 || wanted.includes(name)
-  const folder = join(out, name)
-  const stamp = join(folder, 'made.json')
-  const made = existsSync(stamp) ? (JSON.parse(readFileSync(stamp, 'utf8')) as { print: string; entry: Entry }) : undefined
-  const print = fingerprint(source)
-  if (!chosen || (made?.print === print && !force)) {
-    if (made) index.push(made.entry)
-    continue
-  }
+interface Made {
+  print: string
+  entry: Entry
+}
+
+const stampOf = (name: string): string => join(out, name, 'made.json')
+
+/** What was made of a model, if it was. */
+const madeOf = (name: string): Made | undefined => (existsSync(stampOf(name)) ? JSON.parse(readFileSync(stampOf(name), 'utf8')) : undefined)
+
+/** Makes a model aside and moves it into place whole, so that nobody finds half of one. */
+const makeHere = async (name: string): Promise<void> => {
+  const { make, source } = models[name]!
   const started = performance.now()
-  // Made aside and moved into place whole, so that nobody finds half a model.
+  const folder = join(out, name)
   const aside = join(out, `.${name}-${process.pid}`)
   try {
     mkdirSync(aside, { recursive: true })
     const model = make()
-    const entry = await write(model, aside, (other) => index.find((e) => e.name === other)?.paints ?? [])
-    writeFileSync(join(aside, 'made.json'), JSON.stringify({ print, entry }))
+    const entry = await write(model, aside, (other) => madeOf(other)?.entry.paints ?? [])
+    const made: Made = { print: fingerprint(source), entry }
+    writeFileSync(join(aside, 'made.json'), JSON.stringify(made))
     rmSync(folder, { recursive: true, force: true })
     renameSync(aside, folder)
-    index.push(entry)
     const triangles = model.parts.reduce((n, p) => n + triangleCount(p.mesh), 0)
     console.log(`${name}: ${triangles} triangles, cage ${triangleCount(model.cage)}, ${((performance.now() - started) / 1000).toFixed(1)} s`)
   } finally {
     rmSync(aside, { recursive: true, force: true })
   }
 }
+
+/** Makes models in a process of their own. @returns Whether that went well; else it has said why not. */
+const makeAside = (names: string[]): Promise<boolean> =>
+  new Promise((done) => fork(fileURLToPath(import.meta.url), ['--force', ...names]).on('close', (code) => done(code === 0)))
+
+mkdirSync(out, { recursive: true })
+const stale = Object.keys(models).filter((name) => {
+  if (wanted.length > 0 && !wanted.includes(name)) return false
+  return force || madeOf(name)?.print !== fingerprint(models[name]!.source)
+})
+const sources = [...new Set(stale.map((name) => models[name]!.source))]
+if (sources.length > 1) {
+  const went = await Promise.all(sources.map((source) => makeAside(stale.filter((name) => models[name]!.source === source))))
+  if (!went.every(Boolean)) process.exit(1)
+} else for (const name of stale) await makeHere(name)
+
 const list = join(out, `.index-${process.pid}.json`)
+const index = Object.keys(models).flatMap((name) => madeOf(name)?.entry ?? [])
 writeFileSync(list, JSON.stringify(index, null, 2) + '\n')
 renameSync(list, join(out, 'index.json'))
