@@ -1,5 +1,5 @@
 import { writeFile } from 'node:fs/promises';
-import { goalsOf, isReached, phone } from './goals.js';
+import { embreeWhereSet, goalsOf, isReached, phone, type Goal } from './goals.js';
 import type { Preset, WasmCount } from './instructions.js';
 import { stages, stagesOfDefault } from './native.js';
 import { scalingPlot, stagesPlot, totalsPlot } from './plots.js';
@@ -22,6 +22,12 @@ export async function writeReport(results: Results): Promise<void> {
   await writeFile(`${resultsFolder}/totals.svg`, totalsPlot(results));
   await writeFile(`${resultsFolder}/stages.svg`, stagesPlot(results));
   await writeFile(`${resultsFolder}/scaling.svg`, scalingPlot(results));
+}
+
+/** What the goals in milliseconds come to on the processor that they were set on, if all goes as Embree does. */
+function inProportion(goals: readonly Goal[]): string[] {
+  const each = goals.flatMap(({ what, value, limit, embree }) => (value === undefined || embree === undefined ? [] : [`${what}: ${ms((value * embreeWhereSet) / embree)} (${limit}; Embree ${ms(embree)})`]));
+  return each.length === 0 ? [] : [`Goals in milliseconds were set where Embree takes ${ms(embreeWhereSet)} ms at 4.8k. In proportion to what it took here, in the same run: ${each.join('; ')}.`];
 }
 
 /** Where Embree's answer differs, scene by scene. */
@@ -54,6 +60,7 @@ function markdown(results: Results): string {
         return [goal.what, goal.value === undefined ? 'not measured' : `${ms(goal.value)}${unit}`, `${goal.kind} ${goal.limit}${unit}`, reached === undefined ? '' : reached ? 'yes' : 'no'];
       }),
     ),
+    ...inProportion(goals),
   );
   if (native) {
     parts.push(

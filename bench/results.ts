@@ -48,6 +48,8 @@ export interface PresetCost {
   ratio: number;
   /** What only the preset `default` does. */
   stages: Record<StageOfDefault, number>;
+  /** What Embree takes for `paper`, right after these. */
+  embree?: number;
 }
 
 /** Where results are kept; the plots and the table always show the newest. */
