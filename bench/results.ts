@@ -48,7 +48,7 @@ export interface PresetCost {
   ratio: number;
   /** What only the preset `default` does. */
   stages: Record<StageOfDefault, number>;
-  /** What Embree takes for `paper`, right after these. */
+  /** What Embree takes for `paper`, in turn with these. */
   embree?: number;
 }
 
