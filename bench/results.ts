@@ -32,6 +32,8 @@ export interface Results {
     firstUseAtRest?: Record<string, FirstUse>;
     /** The same with `paper`. */
     firstUseOfPaper?: Record<string, FirstUse>;
+    /** What native Embree takes between these, not slowed, in ms of CPU time. */
+    embree?: Record<string, number>;
   };
   size?: Record<string, Size>;
 }

@@ -23,6 +23,7 @@ import { readScene, writeScene } from './scene-file.js';
 import { makeScenes, sampleScene, scenes, type BenchScene } from './scenes.js';
 import { measureSizes } from './size.js';
 import { buildWeb, countBundle, raceInNode, WebBench } from './web.js';
+import { median } from './statistics.js';
 import type { FirstUse } from './web/first-page.js';
 
 const parts = ['native', 'presets', 'web', 'mobile', 'size'] as const;
@@ -206,13 +207,21 @@ async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullab
     firstUse: {},
     firstUseAtRest,
     firstUseOfPaper,
+    embree: {},
   };
   for (const rate of [1, 4, 6]) {
     say(`Chromium slowed ${rate}×`);
-    mobile.warm[rate] = await bench.throttled(sampleScene, rate, quick ? 1 : 5, 101);
-    mobile.firstUse[rate] = await bench.firstUse(sampleScene, rate, launches, 'default', 'at once');
-    firstUseAtRest[rate] = await bench.firstUse(sampleScene, rate, launches, 'default', 'at rest');
-    firstUseOfPaper[rate] = await bench.firstUse(sampleScene, rate, launches, 'paper', 'at rest');
+    const embree: number[] = [];
+    const besideEmbree = async <T>(measure: Promise<T>): Promise<T> => {
+      const measured = await measure;
+      embree.push((await measureNative(sampleScene.path, 21, ['embree'])).peers['embree']!.times.total.median);
+      return measured;
+    };
+    mobile.warm[rate] = await besideEmbree(bench.throttled(sampleScene, rate, quick ? 1 : 5, 101));
+    mobile.firstUse[rate] = await besideEmbree(bench.firstUse(sampleScene, rate, launches, 'default', 'at once'));
+    firstUseAtRest[rate] = await besideEmbree(bench.firstUse(sampleScene, rate, launches, 'default', 'at rest'));
+    firstUseOfPaper[rate] = await besideEmbree(bench.firstUse(sampleScene, rate, launches, 'paper', 'at rest'));
+    mobile.embree![rate] = median(embree);
   }
   return mobile;
 }
