@@ -198,6 +198,7 @@ async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullab
   const native = await measureNative(sampleScene.path, 1, []);
   const firstUseAtRest: Record<string, FirstUse> = {};
   const firstUseOfPaper: Record<string, FirstUse> = {};
+  const embree: Record<string, number> = {};
   const launches = quick ? 3 : 9;
   const mobile: NonNullable<Results['mobile']> = {
     aarch64: { ...aarch64, sameAnswer: (await hashOnAarch64(sampleScene.path)) === native.hash },
@@ -207,21 +208,21 @@ async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullab
     firstUse: {},
     firstUseAtRest,
     firstUseOfPaper,
-    embree: {},
+    embree,
   };
   for (const rate of [1, 4, 6]) {
     say(`Chromium slowed ${rate}×`);
-    const embree: number[] = [];
+    const beside: number[] = [];
     const besideEmbree = async <T>(measure: Promise<T>): Promise<T> => {
       const measured = await measure;
-      embree.push((await measureNative(sampleScene.path, 21, ['embree'])).peers['embree']!.times.total.median);
+      beside.push((await measureNative(sampleScene.path, 21, ['embree'])).peers['embree']!.times.total.median);
       return measured;
     };
     mobile.warm[rate] = await besideEmbree(bench.throttled(sampleScene, rate, quick ? 1 : 5, 101));
     mobile.firstUse[rate] = await besideEmbree(bench.firstUse(sampleScene, rate, launches, 'default', 'at once'));
     firstUseAtRest[rate] = await besideEmbree(bench.firstUse(sampleScene, rate, launches, 'default', 'at rest'));
     firstUseOfPaper[rate] = await besideEmbree(bench.firstUse(sampleScene, rate, launches, 'paper', 'at rest'));
-    mobile.embree![rate] = median(embree);
+    embree[rate] = median(beside);
   }
   return mobile;
 }

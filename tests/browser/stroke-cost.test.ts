@@ -10,7 +10,7 @@ after(() => site?.close())
 
 const kMoves = 30
 const kMostMs = 16
-/** Milliseconds of processor time that `drawSame` takes where `compute` takes `kComputation`: that far the limit holds as it is. */
+/** Milliseconds of processor time that `drawSame` takes, more or less, where `compute` takes `kComputation`. */
 const kDrawing = 600
 
 /**
@@ -93,6 +93,7 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
   await session.send('Performance.enable', { timeDomain: 'threadTicks' })
   await page.locator('#view-mode input[value=result]').check({ force: true })
   await page.getByRole('radio', { name: 'Brush' }).check({ force: true })
+  // A small stage, and nothing over it: the browser puts the page together anew for each move.
   await page.addStyleTag({ content: '.stage { width: 180px; height: 200px !important } .stage > :not(canvas) { display: none !important }' })
   await look(page, await modelArea(page))
   const box = (await page.locator('#view').boundingBox())!
@@ -138,7 +139,7 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
       const turning = await processorTime(page, session, () => frames(false))
       const drawing = await processorTime(page, session, () => drawSame(page))
       runs.push({ painting, turning, drawing })
-      assert.ok(drawing > 0.2 * kDrawing, `what always takes the same took ${drawing} ms`)
+      assert.ok(drawing > 0.05 * kDrawing, `what always takes the same took ${drawing} ms`)
       cost = Math.min(cost, (painting - turning) / kMoves / Math.max(1, drawing / kDrawing))
     }
     assert.ok(cost > 0.2, `painting was measured: ${cost} ms, of ${JSON.stringify(runs)}`)
