@@ -340,7 +340,7 @@ function sortByReason(geometry: BufferGeometry, corners: Uint32Array, reasons: U
   index.needsUpdate = true
 }
 
-/** Copies numbers, each less the same. A loop, as the arrays' own `map` takes several times as long. */
+/** Copies numbers, each less the same. A loop, as the arrays' own `map` takes two to three times as long. */
 function less(numbers: Uint32Array, by: number): Uint32Array<ArrayBuffer> {
   const copy = new Uint32Array(numbers.length)
   for (let i = 0; i < copy.length; i++) copy[i] = numbers[i]! - by
