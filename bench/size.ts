@@ -10,8 +10,8 @@ export interface Size {
 
 /** The files whose size counts. */
 export const sizedFiles = {
-  'cagecast.wasm': 'build/wasm/wasm/cagecast.wasm',
-  'cagecast-borders.wasm': 'build/wasm/wasm/cagecast-borders.wasm',
+  'cagecast.wasm': 'dist/cagecast.wasm',
+  'cagecast-borders.wasm': 'dist/cagecast-borders.wasm',
   'cagecast (wasm, glue and API in one)': 'dist/index.js',
 } as const;
 

@@ -51,6 +51,7 @@ describe('init', () => {
         import { readFileSync } from 'node:fs';
         const reads = ${host !== 'does not'};
         let asked = 0;
+        WebAssembly.validate = () => false;
         Uint8Array.fromHex = reads ? (hex) => (++asked, new Uint8Array(Buffer.from(hex, 'hex'))) : undefined;
         const { compile } = WebAssembly;
         WebAssembly.compile = (bytes) => {
@@ -60,6 +61,38 @@ describe('init', () => {
         await (await import('cagecast')).init();`;
       const said = execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim();
       assert.equal(said, host === 'does not' ? '0 true' : '1 true');
+    });
+  }
+
+  for (const entry of ['index', 'slim']) {
+    test(`where the host fuses multiply-adds, products and sums that belong together are joined, and nothing else is touched: ${entry}`, () => {
+      // What is compiled is looked at only, lest this host not know it.
+      const script = `
+        import { readFileSync } from 'node:fs';
+        const plain = readFileSync('dist/cagecast.wasm');
+        const at = (bytes, i) => Buffer.from(bytes.subarray(i, i + 3)).toString('hex');
+        WebAssembly.validate = () => true;
+        const { compile } = WebAssembly;
+        WebAssembly.compile = (bytes) => {
+          const found = {};
+          for (let i = 0; i < plain.length; ++i) {
+            if (bytes[i] === plain[i]) continue;
+            const change = at(plain, i) + ' ' + at(bytes, i);
+            const second = at(plain, i - 1) + ' ' + at(bytes, i - 1);
+            const name = change === 'fde601 010101' ? 'products' : second === 'fde401 fd8502' ? 'sums' : change;
+            found[name] = (found[name] ?? 0) + 1;
+            i += name === 'products' ? 2 : 1;
+          }
+          console.log(JSON.stringify([bytes.length - plain.length, found]));
+          return compile(plain);
+        };
+        await (await import('./dist/${entry}.js')).init();`;
+      const said = execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' });
+      const [longer, { products, sums, ...others }] = JSON.parse(said) as [number, Record<string, number>];
+      assert.equal(longer, 0);
+      assert.deepEqual(others, {});
+      assert.ok(products! > 100, `${products} products`);
+      assert.equal(sums, products);
     });
   }
 });

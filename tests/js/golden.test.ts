@@ -40,7 +40,7 @@ describe('the answer of the package on fixed scenes has the golden hash', () => 
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 
-  for (const build of ['SIMD', 'scalar'] as const) {
+  for (const build of ['SIMD', 'fused', 'scalar'] as const) {
     // Of `default` the same is said in reference.test.ts, scene by scene.
     test(`paper, ${build}`, () => {
       const hash = new Hash();

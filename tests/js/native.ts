@@ -3,6 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { setFlagsFromString } from 'node:v8';
 import * as simd from 'cagecast';
 import * as simdBorders from 'cagecast/borders';
 
@@ -24,15 +25,26 @@ export function nativeCommand(): string {
   return native;
 }
 
+/** Lets Node do what newer ones do by themselves: multiply and add in one go. */
+export function allowFusing(): void {
+  if (Number.parseFloat(process.versions.v8) < 11.4) setFlagsFromString('--experimental-wasm-relaxed-simd');
+}
+
 /**
- * The package with its WebAssembly as it is shipped, and built without SIMD; ready. The latter is built if it is not of this code;
- * CAGECAST_SCALAR names the folder of another.
+ * The package with its WebAssembly as it is shipped, where the host does not fuse multiply-adds and where it does, and built without
+ * SIMD; ready. The latter is built if it is not of this code; CAGECAST_SCALAR names the folder of another.
  */
-export async function packages(): Promise<Record<'SIMD' | 'scalar', typeof simd & typeof simdBorders>> {
+export async function packages(): Promise<Record<'SIMD' | 'fused' | 'scalar', typeof simd & typeof simdBorders>> {
   const given = process.env['CAGECAST_SCALAR'];
   if (given === undefined) execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
   const load = (name: string) => import(pathToFileURL(resolve(given ?? 'build/wasm-scalar/package', name)).href);
   const scalar = { ...((await load('index.js')) as typeof simd), ...((await load('borders.js')) as typeof simdBorders) };
+  const { validate } = WebAssembly;
+  WebAssembly.validate = () => false;
   await Promise.all([simd.init(), scalar.init()]);
-  return { SIMD: { ...simd, ...simdBorders }, scalar };
+  WebAssembly.validate = validate;
+  allowFusing();
+  const fused = (await import(`${pathToFileURL(resolve('dist/index.js')).href}?fused`)) as typeof simd;
+  await fused.init();
+  return { SIMD: { ...simd, ...simdBorders }, fused: { ...simdBorders, ...fused }, scalar };
 }

@@ -92,7 +92,7 @@ describe('the packed package', () => {
 
   test('is small: the entry with its WebAssembly at most 60 KB gzipped, the WebAssembly itself at most 40 KB', (context) => {
     const entry = gzipSync(readFileSync(join(installed, 'dist/index.js')), { level: 9 }).length;
-    const wasm = gzipSync(readFileSync('build/wasm/wasm/cagecast.wasm'), { level: 9 }).length;
+    const wasm = gzipSync(readFileSync('dist/cagecast.wasm'), { level: 9 }).length;
     context.diagnostic(`entry ${entry} bytes, WebAssembly ${wasm} bytes, gzipped`);
     assert.ok(entry <= 60 * 1024, `${entry} bytes`);
     assert.ok(wasm <= 40 * 1024, `${wasm} bytes`);

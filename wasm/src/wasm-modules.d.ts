@@ -11,7 +11,13 @@ declare module '#wasm-digits' {
   export default digits;
 }
 
-/** The same as text of printable symbols. */
+/** Where products and sums that belong together are in it, each as bytes from the one before: see wasm/tools/fused.mjs. */
+declare module '#fused' {
+  const sites: readonly number[];
+  export default sites;
+}
+
+/** The module as text of printable symbols. */
 declare module '#wasm-packed' {
   const packed: { length: number; order: string; text: string };
   export default packed;

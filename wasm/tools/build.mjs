@@ -8,6 +8,7 @@ import { chmodSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, re
 import { delimiter, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
+import { takeApart } from './fused.mjs';
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
 const at = (...parts) => join(root, ...parts);
@@ -40,7 +41,7 @@ await buildPackage();
 linkCommand();
 writeFileSync(stamp, hash);
 
-/** The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}, and cagecast-borders.{js,wasm}. */
+/** The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}, and cagecast-borders.{js,wasm}; what is shipped of the latter in plain/. */
 function buildWasm() {
   const emscripten = findEmscripten();
   const env = {
@@ -52,6 +53,11 @@ function buildWasm() {
   };
   run('cmake', ['--preset', preset], env);
   run('cmake', ['--build', '--preset', preset], env);
+  // Binaryen comes with Emscripten: of emsdk in a folder beside it.
+  const folders = [...(process.env.PATH ?? '').split(delimiter), join(emscripten, '../bin')];
+  const tool = (name) => folders.map((folder) => join(folder, name)).find((file) => existsSync(file)) ?? fail(`${name} of Binaryen is missing; Debian: apt install binaryen`);
+  mkdirSync(at('build', preset, 'wasm/plain'), { recursive: true });
+  for (const module of ['cagecast', 'cagecast-borders']) takeApart(at('build', preset, `wasm/${module}.wasm`), tool, at('build', preset, `wasm/plain/${module}`));
 }
 
 /** The folder that holds Emscripten's CMake toolchain: of emsdk where its environment is set, else of the emcc in PATH. */
@@ -115,7 +121,7 @@ async function buildPackage() {
       const more = { define: { ...common.define, CAGECAST_WASM: JSON.stringify(`./${file}`) } };
       await beside('read-wasm.ts', `${name}.js`, 'neutral', {}, more);
       await beside('read-wasm-node.ts', `${name}-node.js`, 'node', {}, more);
-      cpSync(at('build', preset, 'wasm', file), join(fresh, file));
+      cpSync(at('build', preset, 'wasm/plain', file), join(fresh, file));
       chmodSync(join(fresh, file), 0o644);
     }
     await beside('inspect/index.ts', 'inspect.js', 'neutral');
@@ -162,8 +168,9 @@ async function buildPackage() {
   function wasmModules(wasm, { module = 'cagecast', index, errors = false, borders = false } = {}) {
     const files = {
       '#glue': at('build', preset, `wasm/${module}.js`),
-      '#wasm-digits': at('build', preset, `wasm/${module}.wasm`),
-      '#wasm-packed': at('build', preset, `wasm/${module}.wasm`),
+      '#wasm-digits': at('build', preset, `wasm/plain/${module}.wasm`),
+      '#wasm-packed': at('build', preset, `wasm/plain/${module}.wasm`),
+      '#fused': at('build', preset, `wasm/plain/${module}.json`),
       '#wasm': at('wasm/src', wasm),
     };
     const reader = module === 'cagecast' ? '#read-wasm' : '#read-borders-wasm';

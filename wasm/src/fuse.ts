@@ -1,0 +1,29 @@
+import sites from '#fused';
+
+/** A module that multiplies and adds three vectors in one go: engines that do not know the instruction find it invalid. */
+const probe = [
+  [0, 97, 115, 109, 1, 0, 0, 0],
+  [1, 5, 1, 96, 0, 1, 123], // a type: () → v128
+  [3, 2, 1, 0],
+  [10, 19, 1, 17, 0, 65, 0, 253, 15, 65, 0, 253, 15, 65, 0, 253, 15, 253, 133, 2, 11],
+].flat();
+
+const product = 0xe6; // f32x4.mul is 0xfd 0xe6 0x01
+const nothing = [1, 1, 1]; // nop
+const fused = [0xfd, 0x85, 0x02]; // f32x4.relaxed_madd
+
+/**
+ * Joins products and sums of the WebAssembly module to fused multiply-adds, where the engine has them: a twentieth of a transfer's time.
+ * These round once instead of twice, which no answer depends on: they are in filters, which have room for either.
+ * (Chromium 114, Firefox 146, Node 22 and later. "Relaxed SIMD" leaves the rounding to the engine.)
+ * @param bytes Written over.
+ */
+export function fuse(bytes: Uint8Array<ArrayBuffer>): Uint8Array<ArrayBuffer> {
+  if (!WebAssembly.validate(new Uint8Array(probe))) return bytes;
+  let at = 0;
+  for (const step of sites) {
+    at += step;
+    bytes.set(bytes[at + 1] === product ? nothing : fused, at);
+  }
+  return bytes;
+}
