@@ -11,6 +11,8 @@ export interface Results {
   machine: { processor: string; cores: number; node: string; compiler?: string; chromium?: string };
   /** By scene. */
   native?: Record<string, NativeResult>;
+  /** Of half a million triangles: the time of shuffled input ÷ that of ordered input, both in turn; the median over turns. */
+  shuffled?: number;
   web?: {
     node: Record<string, RaceResult>;
     chromium: Record<string, RaceResult>;

@@ -113,6 +113,14 @@ async function main(): Promise<void> {
       results.machine.compiler = result.compiler;
       say(`  ${result.cagecast.total.median.toFixed(3)} ms, ${result.peers['embree']!.ratios.total!.toFixed(3)} of Embree's`);
     }
+    const [ordered, shuffled] = ['500k', '500k-shuffled'].map((name) => wanted.find((scene) => scene.name === name)?.path);
+    if (ordered !== undefined && shuffled !== undefined) {
+      say('native: 500k shuffled and not, in turn');
+      const total = async (path: string): Promise<number> => (await measureNative(path, 5, [])).cagecast.total.median;
+      const ratios: number[] = [];
+      for (let i = 0; i < 7; ++i) ratios.push((1 / (await total(ordered))) * (await total(shuffled)));
+      results.shuffled = median(ratios);
+    }
   }
   if (only.includes('presets')) {
     results.presets = {};
