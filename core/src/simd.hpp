@@ -336,11 +336,12 @@ inline f32x4 operator+(f32x4 a, f32x4 b) { return {wasm_f32x4_add(a.v, b.v)}; }
 inline f32x4 operator-(f32x4 a, f32x4 b) { return {wasm_f32x4_sub(a.v, b.v)}; }
 inline f32x4 operator*(f32x4 a, f32x4 b) { return {wasm_f32x4_mul(a.v, b.v)}; }
 inline f32x4 operator/(f32x4 a, f32x4 b) { return {wasm_f32x4_div(a.v, b.v)}; }
-// wasm/tools/fused.mjs makes something of it that all engines know.
 inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) {
-#if __has_builtin(__builtin_wasm_relaxed_madd_f32x4)
+#if !defined(__wasm_relaxed_simd__)
+  return a * b + c;
+#elif __has_builtin(__builtin_wasm_relaxed_madd_f32x4)
   return {(v128_t)__builtin_wasm_relaxed_madd_f32x4((Floats)a.v, (Floats)b.v, (Floats)c.v)};
-#else  // Up to clang 15 it had this name.
+#else  // The name in clang up to 15, and another instruction: wasm/tools/fused.mjs makes what engines know of either.
   return {(v128_t)__builtin_wasm_fma_f32x4((Floats)a.v, (Floats)b.v, (Floats)c.v)};
 #endif
 }
