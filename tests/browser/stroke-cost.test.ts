@@ -72,7 +72,7 @@ async function drawSame(page: Page): Promise<void> {
 }
 
 /** Milliseconds of processor time that something takes: of the page's thread, and of the process that draws. */
-async function processorTime(page: Page, session: CDPSession, run: () => Promise<unknown>): Promise<number> {
+async function costOf(page: Page, session: CDPSession, run: () => Promise<unknown>): Promise<number> {
   const system = await site.browser.newBrowserCDPSession()
   const now = async (): Promise<number> => {
     // Reading a pixel waits until everything before it is drawn.
@@ -126,7 +126,7 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
     await page.evaluate(async () => {
       for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame)
     })
-    const cost = await processorTime(page, session, async () => assert.equal(await move(), kMoves, 'each move was painted'))
+    const cost = await costOf(page, session, async () => assert.equal(await move(), kMoves, 'each move was painted'))
     await page.mouse.up()
     assert.equal(await page.getByTestId('undo').getAttribute('title'), 'Undo: stroke', 'it was painted')
     await page.keyboard.press('Control+z')
@@ -143,7 +143,7 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
     while (runs.length < 3 || (runs.length < 6 && cost >= kMostMs)) {
       // A stroke of its own each time: what it has painted in full it does not paint again.
       const painting = await stroke()
-      const drawing = await processorTime(page, session, () => drawSame(page))
+      const drawing = await costOf(page, session, () => drawSame(page))
       runs.push({ painting, drawing })
       assert.ok(drawing > 0.05 * kDrawing, `what always takes the same took ${drawing} ms`)
       cost = Math.min(cost, painting / kMoves / Math.max(1, drawing / kDrawing))
