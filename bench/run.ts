@@ -106,6 +106,7 @@ async function main(): Promise<void> {
 
   if (only.includes('native')) {
     results.native = {};
+    delete results.shuffled;
     for (const scene of [...wanted, ...models]) {
       say(`native: ${scene.name}`);
       const result = await measureNative(scene.path, runsFor(scene.triangles, quick), ['embree', 'nanoflann']);

@@ -341,7 +341,8 @@ inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) {
   return a * b + c;
 #elif __has_builtin(__builtin_wasm_relaxed_madd_f32x4)
   return {(v128_t)__builtin_wasm_relaxed_madd_f32x4((Floats)a.v, (Floats)b.v, (Floats)c.v)};
-#else  // The name in clang up to 15, and another instruction: wasm/tools/fused.mjs makes what engines know of either.
+#else  // The name in clang up to 15, and another instruction: wasm/tools/fused.mjs makes what engines know of either. Not for constants
+       // alone: tools of that time would work out a + b · c.
   return {(v128_t)__builtin_wasm_fma_f32x4((Floats)a.v, (Floats)b.v, (Floats)c.v)};
 #endif
 }

@@ -14,14 +14,19 @@ const kMostMs = 16
 const kDrawing = 600
 
 /**
- * Where `measures` is set, `drawFrame()` runs what waits for the next frame, and returns how much that was: the browser does not put
+ * While `measure(true)` holds, `drawFrame()` runs what waits for the next frame, and returns how much that was: the browser does not put
  * the page together in between, which would take as long again. And pictures of the model are left out: there is one for each move,
  * and it takes many times as long as what this is about. They are what is drawn where there is a depth buffer; paint needs none.
  */
 const kMeasures = `{
   const waiting = []
   const wait = requestAnimationFrame
-  globalThis.requestAnimationFrame = (run) => (globalThis.measures ? waiting.push(run) : wait(run))
+  let measures = false
+  globalThis.measure = (on) => {
+    measures = on
+    waiting.splice(0).forEach((run) => wait(run))
+  }
+  globalThis.requestAnimationFrame = (run) => (measures ? waiting.push(run) : wait(run))
   globalThis.drawFrame = () => waiting.splice(0).map((run) => run(performance.now())).length
   const { prototype } = WebGL2RenderingContext
   const replace = (names, make) => names.forEach((name) => (prototype[name] = make(prototype[name])))
@@ -33,7 +38,7 @@ const kMeasures = `{
   replace(['drawElements', 'drawArrays'], (draw) => function (...call) {
     const target = this.getParameter(this.FRAMEBUFFER_BINDING)
     const isPicture = target ? deep.has(target) : this.getContextAttributes().depth
-    if (!(isPicture && globalThis.measures)) draw.apply(this, call)
+    if (!(isPicture && measures)) draw.apply(this, call)
   })
 }`
 
@@ -105,16 +110,16 @@ test('from a pointer’s move to painted texels takes less than 16 ms of process
   const move = (): Promise<number> =>
     page.evaluate(
       ({ moves, x, y }) => {
-        const scope = globalThis as { measures?: boolean; drawFrame?(): number }
+        const scope = globalThis as { measure?(on: boolean): void; drawFrame?(): number }
         const canvas = document.querySelector('canvas')!
-        scope.measures = true
+        scope.measure!(true)
         let drew = 0
         for (let i = 0; i < moves; i++) {
           const [clientX, clientY] = [x + 12 * Math.sin(i / 5), y + 5 * Math.sin(i / 3)]
           canvas.dispatchEvent(new PointerEvent('pointermove', { pointerId: 1, pointerType: 'mouse', buttons: 1, clientX, clientY, bubbles: true }))
           drew += Math.min(1, scope.drawFrame!())
         }
-        scope.measures = false
+        scope.measure!(false)
         return drew
       },
       { moves: kMoves, x, y },

@@ -1,6 +1,10 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { before, describe, test } from 'node:test';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
 import { CagecastError, classify, init, presetOptions, project, splitVertices, transfer, Zone, type Lock, type Locks, type Mesh, type Preset, type TransferResult } from 'cagecast';
 import { head, smallest, soup } from './scenes.js';
 
@@ -95,6 +99,30 @@ describe('init', () => {
       assert.equal(sums, products);
     });
   }
+});
+
+describe('a file of WebAssembly that is not as it was shipped', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'cagecast-file-'));
+  after(() => rmSync(folder, { recursive: true, force: true }));
+  const start = (file: Buffer) => {
+    writeFileSync(join(folder, 'package.json'), JSON.stringify({ type: 'module', imports: { '#read-wasm': './read-wasm-node.js' } }));
+    for (const name of ['slim.js', 'read-wasm-node.js']) copyFileSync(join('dist', name), join(folder, name));
+    writeFileSync(join(folder, 'cagecast.wasm'), file);
+    const script = `
+      WebAssembly.validate = () => true;
+      await (await import(${JSON.stringify(pathToFileURL(join(folder, 'slim.js')).href)})).init().then(() => console.log('ready'), (error) => console.log(error.message));`;
+    return execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim();
+  };
+  const shipped = readFileSync('dist/cagecast.wasm');
+
+  test('is run as it is, where a tool has put something in', () => {
+    const section = Buffer.from([0, 3, 2, 104, 105]); // one of its own, by the name of "hi"
+    assert.equal(start(Buffer.concat([shipped.subarray(0, 8), section, shipped.subarray(8)])), 'ready');
+  });
+
+  test('is called what it is, where it is something else', () => {
+    assert.match(start(Buffer.from('<!doctype html><title>Not found</title>')), /cannot run the WebAssembly module .*magic/);
+  });
 });
 
 describe('transfer', () => {

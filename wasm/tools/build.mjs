@@ -54,7 +54,7 @@ function buildWasm() {
   run('cmake', ['--preset', preset], env);
   run('cmake', ['--build', '--preset', preset], env);
   // Binaryen comes with Emscripten: of emsdk in a folder beside it.
-  const folders = [...(process.env.PATH ?? '').split(delimiter), join(emscripten, '../bin')];
+  const folders = [join(emscripten, '../bin'), ...(process.env.PATH ?? '').split(delimiter)];
   const tool = (name) => folders.map((folder) => join(folder, name)).find((file) => existsSync(file)) ?? fail(`${name} of Binaryen is missing; Debian: apt install binaryen`);
   mkdirSync(at('build', preset, 'wasm/plain'), { recursive: true });
   for (const module of ['cagecast', 'cagecast-borders']) takeApart(at('build', preset, `wasm/${module}.wasm`), tool, at('build', preset, `wasm/plain/${module}`));
