@@ -326,7 +326,7 @@ struct f32x4 {
 struct mask4 {
   v128_t v;
 };
-using Floats = float __attribute__((vector_size(16)));
+using FloatVector = float __attribute__((vector_size(16)));  // What clang's own names for instructions take.
 
 inline f32x4 load(const float* p) { return {wasm_v128_load(p)}; }
 inline void store(float* p, f32x4 a) { wasm_v128_store(p, a.v); }
@@ -340,10 +340,11 @@ inline f32x4 multiplyAdd(f32x4 a, f32x4 b, f32x4 c) {
 #if !defined(__wasm_relaxed_simd__)
   return a * b + c;
 #elif __has_builtin(__builtin_wasm_relaxed_madd_f32x4)
-  return {(v128_t)__builtin_wasm_relaxed_madd_f32x4((Floats)a.v, (Floats)b.v, (Floats)c.v)};
-#else  // The name in clang up to 15, and another instruction: wasm/tools/fused.mjs makes what engines know of either. Not for constants
-       // alone: tools of that time would work out a + b · c.
-  return {(v128_t)__builtin_wasm_fma_f32x4((Floats)a.v, (Floats)b.v, (Floats)c.v)};
+  return {(v128_t)__builtin_wasm_relaxed_madd_f32x4((FloatVector)a.v, (FloatVector)b.v, (FloatVector)c.v)};
+#else
+  // The name in clang up to 15, and another instruction: wasm/tools/fused.mjs makes what engines know of either. Not for three
+  // constants, of which tools of that time would work out a + b · c.
+  return {(v128_t)__builtin_wasm_fma_f32x4((FloatVector)a.v, (FloatVector)b.v, (FloatVector)c.v)};
 #endif
 }
 // Not fused: a sum would have to be subtracted from what comes before its product.
@@ -707,7 +708,7 @@ inline void forParts(mask4 m, Take take) {
 /// As many zeros as there are lanes.
 template <typename Floats>
 inline Floats zeros() {
-  if constexpr (sizeof(Floats) == sizeof(wide)) {
+  if constexpr (sizeof(FloatVector) == sizeof(wide)) {
     return splatWide(0);
   } else {
     return splat(0);

@@ -26,7 +26,7 @@ export function nativeCommand(): string {
 }
 
 /** Lets Node do what newer ones do by themselves: multiply and add in one go. */
-export function allowFusing(): void {
+function allowFusing(): void {
   if (Number.parseFloat(process.versions.v8) < 11.4) setFlagsFromString('--experimental-wasm-relaxed-simd');
 }
 

@@ -13,8 +13,9 @@ const nothing = [1, 1, 1]; // nop
 const fused = [0xfd, 0x85, 0x02]; // f32x4.relaxed_madd
 
 /**
- * Joins products and sums of the WebAssembly module to fused multiply-adds, where the engine has them: a transfer takes 0.95 to 0.97 of the time.
- * These round once instead of twice, which no answer depends on: they are in filters, which have room for either.
+ * Joins products and sums of the WebAssembly module to fused multiply-adds, where the engine has them: a transfer then takes 0.95
+ * to 0.97 of the time. These round once instead of twice, which no answer depends on: they are in filters, which have room for
+ * either.
  * (Chromium 114, Firefox 146, Node 22 and later. "Relaxed SIMD" leaves the rounding to the engine.)
  * @param bytes Written over.
  */

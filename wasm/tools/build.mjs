@@ -41,7 +41,10 @@ await buildPackage();
 linkCommand();
 writeFileSync(stamp, hash);
 
-/** The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}, and cagecast-borders.{js,wasm}; what is shipped of the latter in plain/. */
+/**
+ * The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}, and cagecast-borders.{js,wasm}. What is shipped of the
+ * WebAssembly, which all engines know, is in plain/ there.
+ */
 function buildWasm() {
   const emscripten = findEmscripten();
   const env = {
@@ -55,7 +58,8 @@ function buildWasm() {
   run('cmake', ['--build', '--preset', preset], env);
   // Binaryen comes with Emscripten: of emsdk in a folder beside it.
   const folders = [join(emscripten, '../bin'), ...(process.env.PATH ?? '').split(delimiter)];
-  const tool = (name) => folders.map((folder) => join(folder, name)).find((file) => existsSync(file)) ?? fail(`${name} of Binaryen is missing; Debian: apt install binaryen`);
+  const tool = (name) => folders.map((folder) => join(folder, name)).find((file) => existsSync(file)) ??
+    fail(`${name} of Binaryen is missing; Debian: apt install binaryen`);
   mkdirSync(at('build', preset, 'wasm/plain'), { recursive: true });
   for (const module of ['cagecast', 'cagecast-borders']) takeApart(at('build', preset, `wasm/${module}.wasm`), tool, at('build', preset, `wasm/plain/${module}`));
 }
