@@ -708,7 +708,7 @@ inline void forParts(mask4 m, Take take) {
 /// As many zeros as there are lanes.
 template <typename Floats>
 inline Floats zeros() {
-  if constexpr (sizeof(FloatVector) == sizeof(wide)) {
+  if constexpr (sizeof(Floats) == sizeof(wide)) {
     return splatWide(0);
   } else {
     return splat(0);
