@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { CagecastError, classify, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
+import { CagecastError, classify, init, project, transfer, Zone, type Classification, type Mesh, type TransferOptions, type TransferResult } from 'cagecast';
 import { cutBorders, type CutTarget } from 'cagecast/borders';
 import { cagecast as cagecastTransform } from 'cagecast/gltf';
 import { applyTransfer } from 'cagecast/three';
@@ -148,6 +148,7 @@ describe('cutBorders', () => {
     await code(undefined, 'badArgument', /^cutBorders: result is undefined; pass what transfer\(\) returned$/);
     await code({ ...result, zones: [] }, 'badArgument', /result\.zones is of type Array, not a Uint8Array/);
     await code({ ...result, zones: result.zones.slice(1) }, 'resultMismatch', /result\.zones has \d+ entries, not 1 for each of \d+ vertices of target/);
+    await code({ ...result, zones: result.zones.map((zone, v) => (v === 7 ? 200 : zone)) }, 'resultMismatch', /result\.zones\[7\] = 200 is not a zone \(0\.\.3\)/);
     await code({ ...result, segmentStats: [] }, 'resultMismatch', /result\.segments\[0\] = 0 is out of range \(0 segments\)/);
     await assert.rejects(cutBorders({ ...cage, positions: cage.positions.map((x, i) => (i === 0 ? NaN : x)) }, target, result), /cutBorders: cage\.positions\[0\] = NaN is not a finite number/);
     await assert.rejects(cutBorders(cage, target, result, { threshold: 2 }), /cutBorders: options\.threshold = 2 is not within 0\.\.1/);
@@ -389,6 +390,24 @@ describe('with borders: cut', () => {
     const more = kept.cosmeticTriangles.filter((one, t) => one === 1 && result.segmentStats[result.segments[target.indices[3 * t]!]!]!.culled).length;
     assert.ok(more > 0);
     assert.equal(shown(), painted + more);
+  });
+
+  test('of what is excluded later no piece stays painted, and of what is kept later none stays bare', async () => {
+    // Points that are hidden or uncovered never change to or from "culled".
+    const [cage, mesh] = (await Promise.all(['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)))) as [Mesh, Mesh];
+    const plain = { ...mesh, groups: undefined };
+    const projection = project(cage, plain);
+    const [bare, free] = [classify(projection, { locks: { groups: { 0: 'exclude' } } }), classify(projection)];
+    const shownAfter = async (locks: TransferOptions['locks'], now: Classification) => {
+      const mesh = new ThreeMesh(plainGeometry(plain), new MeshStandardMaterial());
+      const { overlays, update } = await applyTransfer(mesh, plainGeometry(cage), { texture: new Texture(), borders: 'cut', locks });
+      update(now);
+      const zones = mesh.geometry.getAttribute('_ncz').array;
+      return { triangles: overlays[0]!.geometry.index!.count / 3, vertices: zones.filter((zone) => zone === Zone.Cosmetic).length };
+    };
+    assert.deepEqual(await shownAfter({}, bare), { triangles: 0, vertices: 0 });
+    const { triangles } = await shownAfter({ groups: { 0: 'exclude' } }, free);
+    assert.equal(triangles, free.cosmeticTriangles.reduce((sum, one) => sum + one, 0));
   });
 
   test('unknown borders are refused in words, and nothing is changed', async () => {

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, realpathSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { chmodSync, copyFileSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, realpathSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
@@ -143,6 +143,8 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     ['a buffer larger than the file', () => changed(({ json }) => { json.buffers![0]!.byteLength = 1e9; }), /bad\.glb: buffers\[0\] is truncated/],
     ['a buffer in a file that is missing', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'gone.bin', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is in gone\.bin: no such file/],
     ['a buffer on another host', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'https://example.com/a.bin', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is at https:.* only files are read/],
+    ['a data URI that is none', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'data:application/octet-stream;base64', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is "data:[^"]*", no data URI that can be read/],
+    ['an attribute of too few vertices', () => changed(({ json }) => { const short = json.accessors!.push({ componentType: 5126, count: 5, type: 'VEC3' }) - 1; json.meshes![0]!.primitives[0]!.attributes['NORMAL'] = short; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.NORMAL has 5 elements for \d+ vertices/],
     ['a reference to no accessor', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.attributes['POSITION'] = 99; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.POSITION = 99 is out of range \(\d+ accessors\)/],
     ['a node that is its own ancestor', () => changed(({ json }) => { json.nodes!.push({ children: [2] }, { children: [1] }); }), /bad\.glb: has no|two parents|nodes/],
     ['a scene whose root is its own ancestor', () => changed(({ json }) => { json.nodes![0]!.children = [0]; }), /bad\.glb: nodes\[0\] is a root of scenes\[0\] and a child of nodes\[0\]/],
@@ -214,7 +216,32 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     assert.equal(status, 1);
     assert.match(stderr, /^cagecast: .*gone\/never\.json: cannot be written \(its folder does not exist\)\n$/);
     assert.ok(!existsSync(at('never.glb')));
+    // A folder is no file that could be replaced.
+    const kept = write('kept.glb', 'before');
+    mkdirSync(at('folder'));
+    const second = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', kept, '--report', at('folder'));
+    assert.deepEqual([second.status, second.stderr], [1, `cagecast: ${at('folder')}: cannot be written (is a folder)\n`]);
+    assert.equal(readFileSync(kept, 'utf8'), 'before');
+    rmSync(kept);
+    rmSync(at('folder'), { recursive: true });
     assert.ok(!readdirSync(folder).some((name) => name.endsWith('.tmp')));
+  });
+
+  test('a link to what is not there yet is written through, one folder by two names is one, and permissions stay', () => {
+    mkdirSync(at('folder'));
+    symlinkSync(at('folder'), at('way'));
+    symlinkSync('folder/later.glb', at('link.glb'));
+    assert.equal(cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('link.glb')).status, 0);
+    assert.ok(lstatSync(at('link.glb')).isSymbolicLink());
+    assert.equal(readFileSync(at('folder/later.glb')).toString('latin1', 0, 4), 'glTF');
+    const clash = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('folder/same.glb'), '--report', at('way/same.glb'));
+    assert.equal(clash.status, 2);
+    assert.match(clash.stderr, /would be written over another file of this command/);
+    assert.deepEqual(readdirSync(at('folder')), ['later.glb']);
+    chmodSync(at('folder/later.glb'), 0o600);
+    assert.equal(cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('folder/later.glb')).status, 0);
+    assert.equal(lstatSync(at('folder/later.glb')).mode & 0o777, 0o600);
+    for (const name of ['link.glb', 'way', 'folder']) rmSync(at(name), { recursive: true });
   });
 
   test('a link is written through, and so is its target kept from being an input', () => {
@@ -716,6 +743,39 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(Buffer.from(document.getRoot().listTextures()[0]!.getImage()!), paint());
   });
 
+  test('buffers and images may be in data URIs of any kind', async () => {
+    const { json, bin } = unpackGlb(glbOf(scene.target));
+    const base64 = (bytes: Uint8Array) => Buffer.from(bytes).toString('base64');
+    const escaped = (bytes: Uint8Array) => [...bytes].map((byte) => `%${byte.toString(16).padStart(2, '0')}`).join('');
+    json.textures = [{ source: 0 }];
+    json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
+    json.meshes![0]!.primitives[0]!.material = 0;
+    for (const [kind, data] of [
+      [';base64', base64],
+      [';BASE64', base64],
+      [';base64', (bytes: Uint8Array) => encodeURIComponent(base64(bytes))],
+      ['', escaped],
+    ] as const) {
+      json.buffers![0]!.uri = `data:application/octet-stream${kind},${data(bin)}`;
+      json.images = [{ uri: `data:image/png${kind},${data(paint())}` }];
+      const path = write('embedded.gltf', JSON.stringify(json));
+      assert.deepEqual(answer(path), expected());
+      report(path, at('cage.glb'), '-o', at('embedded.glb'));
+      const document = await new NodeIO().read(at('embedded.glb'));
+      assert.deepEqual(Buffer.from(document.getRoot().listTextures()[0]!.getImage()!), paint(), kind);
+    }
+  });
+
+  test('the buffer that has all bytes stands in for nothing, whatever it was before', async () => {
+    const path = made('stand-in', (maker) => {
+      maker.node({ mesh: maker.mesh(scene.target) });
+      maker.json.extensionsUsed = ['EXT_meshopt_compression'];
+      maker.json.buffers![0]!.extensions = { EXT_meshopt_compression: { fallback: true } };
+    });
+    report(path, at('cage.glb'), '-o', at('stand-in-out.glb'));
+    assert.deepEqual(unpackGlb(readFileSync(at('stand-in-out.glb'))).json.buffers!.map(({ extensions }) => extensions), [undefined]);
+  });
+
   test('a file beside it may have a name that is no address', () => {
     const { json, bin } = unpackGlb(glbOf(scene.target));
     json.buffers![0]!.uri = 'head 50%.bin';
@@ -766,6 +826,25 @@ describe('several parts', () => {
       for (let i = 0; i < own.length; ++i) assert.ok(Math.abs(written[i]! - own[i]!) < 1e-5);
     });
     assert.notEqual(document.getRoot().listNodes()[0]!.getMesh(), document.getRoot().listNodes()[1]!.getMesh());
+  });
+
+  test('what animates a mesh animates its copies; what only another scene shows stays as it is', () => {
+    const maker = new GlbMaker();
+    const small = ball([0, 0, 0], () => 0.2, 8, 12);
+    const mesh = maker.mesh(small, { targets: [{ POSITION: maker.accessor(new Float32Array(small.positions.length), 'VEC3') }] });
+    for (const x of [-0.6, 0.6]) maker.node({ mesh, translation: [x, 0, 0] });
+    maker.json.scenes!.push({ nodes: [maker.node({ mesh }, false)] });
+    const target = { path: 'pointer', extensions: { KHR_animation_pointer: { pointer: `/meshes/${mesh}/weights` } } };
+    const [input, output] = [maker.accessor(Float32Array.of(0, 1), 'SCALAR', { min: [0], max: [1] }), maker.accessor(Float32Array.of(0, 1), 'SCALAR')];
+    maker.json.animations = [{ samplers: [{ input, output }], channels: [{ sampler: 0, target: target as GLTF.IAnimationChannelTarget }] }];
+    maker.json.extensionsUsed = ['KHR_animation_pointer'];
+    report(write('moved-twins.glb', maker.finish()), at('cage.glb'), '--texture', at('paint.png'), '-o', at('moved-twins-out.glb'));
+    const { json } = unpackGlb(readFileSync(at('moved-twins-out.glb')));
+    assert.deepEqual(json.nodes!.map((node) => node.mesh), [0, 1, 2]);
+    assert.deepEqual(json.meshes!.map(({ primitives }) => primitives.length), [2, 2, 1]);
+    assert.deepEqual(Object.keys(json.meshes![2]!.primitives[0]!.attributes), ['POSITION', 'TEXCOORD_0']);
+    const pointers = json.animations![0]!.channels.map(({ target }) => (target.extensions as typeof target.extensions & { KHR_animation_pointer: { pointer: string } }).KHR_animation_pointer.pointer);
+    assert.deepEqual(pointers.sort(), [0, 1, 2].map((number) => `/meshes/${number}/weights`));
   });
 });
 

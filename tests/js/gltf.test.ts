@@ -82,6 +82,55 @@ describe('document.transform(cagecast(…))', () => {
     assert.deepEqual(await validate(at('twins.glb')), []);
   });
 
+  test('a primitive that two meshes share becomes one for each, and one that another scene shows stays as it is', async () => {
+    const ready = async (other: 'clone' | 'same') => {
+      const document = await documentOf(glbOf(ball([0, 0, 0], () => 0.2, 8, 12)));
+      const [left] = document.getRoot().listNodes();
+      left!.setTranslation([-0.6, 0, 0]);
+      const mesh = left!.getMesh()!;
+      return { document, right: document.createNode('right').setTranslation([0.6, 0, 0]).setMesh(other === 'clone' ? mesh.clone() : mesh) };
+    };
+    const uvsOf = (document: Document) => document.getRoot().listNodes().map((node) => arrayOf(node.getMesh()!.listPrimitives()[0]!, 'TEXCOORD_1'));
+    const answers = [];
+    for (const isReadAgain of [false, true]) {
+      const { document, right } = await ready('clone');
+      document.getRoot().listScenes()[0]!.addChild(right);
+      const written = isReadAgain ? await documentOf(await io.writeBinary(document)) : document;
+      await written.transform(cagecastTransform({ cage: scene.cage, texture: paint }));
+      answers.push(uvsOf(written));
+    }
+    assert.deepEqual(answers[0], answers[1]);
+
+    const { document, right } = await ready('same');
+    document.createScene('other').addChild(right);
+    document.getRoot().setDefaultScene(document.getRoot().listScenes()[0]!);
+    await document.transform(cagecastTransform({ cage: scene.cage, texture: paint }));
+    assert.deepEqual(right.getMesh()!.listPrimitives().map((primitive) => primitive.listSemantics()), [['POSITION', 'TEXCOORD_0']]);
+    assert.equal(document.getRoot().listNodes()[0]!.getMesh()!.listPrimitives().length, 2);
+  });
+
+  test('an overlay has the deltas of what it has, and none of UVs, which are the paint’s', async () => {
+    const document = await documentOf(glbOf(scene.target));
+    const [primitive] = primitives(document);
+    const count = scene.target.positions.length / 3;
+    const buffer = document.getRoot().listBuffers()[0]!;
+    const accessor = (type: 'VEC2' | 'VEC3' | 'VEC4', size: number) => document.createAccessor().setType(type).setArray(new Float32Array(size * count).fill(0.25)).setBuffer(buffer);
+    primitive!.setAttribute('TANGENT', accessor('VEC4', 4).setArray(new Float32Array(4 * count).map((_, i) => Number(i % 4 === 0 || i % 4 === 3))));
+    primitive!.addTarget(document.createPrimitiveTarget().setAttribute('POSITION', accessor('VEC3', 3)).setAttribute('TANGENT', accessor('VEC3', 3)).setAttribute('TEXCOORD_0', accessor('VEC2', 2)));
+    primitive!.addTarget(document.createPrimitiveTarget().setAttribute('TEXCOORD_0', accessor('VEC2', 2)));
+    await io.write(at('morphs.glb'), document);
+    writeFileSync(at('morph-cage.glb'), glbOf(scene.cage));
+    assert.equal(cagecast('transfer', at('morphs.glb'), '--cage', at('morph-cage.glb'), '--texture', at('paint.png'), '-o', at('morphs-command.glb')).status, 0);
+    await document.transform(cagecastTransform({ cage: scene.cage, texture: paint }));
+    await io.write(at('morphs-function.glb'), document);
+    for (const name of ['morphs-command.glb', 'morphs-function.glb']) {
+      assert.deepEqual(await validate(at(name)), [], name);
+      const overlay = primitives(await io.read(at(name)))[1]!;
+      assert.deepEqual(overlay.listTargets().map((target) => target.listSemantics()), [['POSITION'], ['POSITION']]);
+      assert.ok(overlay.listTargets()[1]!.getAttribute('POSITION')!.getArray()!.every((delta: number) => delta === 0));
+    }
+  });
+
   test('a skinned mesh is where its skeleton holds it, whatever the unit it is stored in', async () => {
     const maker = new GlbMaker();
     const mesh = maker.mesh({ ...scene.target, positions: scene.target.positions.map((x) => 128 * x) });
@@ -157,6 +206,7 @@ describe('document.transform(cagecast(…))', () => {
     await fails(async () => ({ threshold: 2 }), 'badThreshold', /threshold = 2/);
     await fails(async () => ({ cage: 'cage.glb' as unknown as Mesh }), 'badArgument', /^cagecast: cage is "cage\.glb", not a document or a mesh/);
     await fails(async () => ({ cage: null as unknown as Mesh }), 'badArgument', /^cagecast: cage is null/);
+    assert.throws(() => (cagecastTransform as unknown as () => void)(), (error) => error instanceof CagecastError && /^cagecast: the argument is undefined, not an object/.test(error.message));
     await fails(async () => ({ texture: paint.buffer as unknown as Uint8Array }), 'badArgument', /^cagecast: texture is of type ArrayBuffer, not a Uint8Array of a file's bytes/);
   });
 

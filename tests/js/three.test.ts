@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import {
-  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InstancedMesh, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
+  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InstancedBufferGeometry, InstancedMesh, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
   Uint16BufferAttribute, Vector3,
 } from 'three';
 import { CagecastError, classify, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
@@ -71,7 +71,7 @@ describe('extract', () => {
     const flat = new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 1, 0, 0, 1], 2));
     assert.throws(() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/);
     const short = geometryOf(scene.cage).setAttribute('uv', new Float32BufferAttribute([0, 0, 1, 1], 2));
-    assert.throws(() => extract(short, 'cage'), new RegExp(`cage: "geometry" has 2 UVs of 2 numbers, not ${scene.cage.positions.length / 3} of 2`));
+    assert.throws(() => extract(short, 'cage'), new RegExp(`cage: "geometry" has 2 uv for ${scene.cage.positions.length / 3} vertices`));
   });
 
   test('arguments that TypeScript would not let through are named', () => {
@@ -84,7 +84,8 @@ describe('extract', () => {
     fails(/cagecast\/three: options\.texture is paint\.png, not a Texture/, target, cage, { texture: 'paint.png' });
     fails(/cagecast\/three: options\.material is an object, not a Material/, target, cage, { material: {} });
     fails(/cagecast\/three: options\.channel is 7, not 1, 2 or 3/, target, cage, { channel: 7 });
-    fails(/cagecast\/three: result is of undefined vertices/, target, cage, { result: {} });
+    fails(/cagecast\/three: options\.result\.zones is no list, the target needs \d+; extract it before/, target, cage, { result: {} });
+    fails(/cagecast\/three: options\.result\.uvs is no list/, target, cage, { result: { ...transfer(scene.cage, { ...scene.target, groups: undefined }), uvs: undefined } });
   });
 });
 
@@ -178,6 +179,9 @@ describe('applyTransfer', () => {
     update(decided);
     assert.deepEqual([...attribute(target.geometry, '_ncz')].slice(0, decided.zones.length), [...decided.zones]);
     assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
+    const { zones, cosmeticTriangles } = decided;
+    // @ts-expect-error that is half a decision
+    assert.throws(() => update({ zones, cosmeticTriangles }), (error) => error instanceof CagecastError && error.code === 'badArgument' && /classification\.segmentStats is no list/.test(error.message));
     // The renderer frees what a geometry has when it goes.
     let freed: unknown[] = [target.geometry.getAttribute('position')];
     overlay.geometry.addEventListener('dispose', () => (freed = Object.values(overlay.geometry.attributes)));
@@ -207,6 +211,9 @@ describe('applyTransfer', () => {
   test('instances are told of, and not taken for one mesh', () => {
     const { geometry, material } = meshOf(scene.target);
     assert.throws(() => extract(new Group().add(new InstancedMesh(geometry, material, 2))), /many places at once/);
+    assert.throws(() => extract(new ThreeMesh(new InstancedBufferGeometry().copy(geometry as InstancedBufferGeometry), material)), /many places at once/);
+    const few = geometry.clone().setAttribute('heat', new BufferAttribute(new Float32Array(5), 1));
+    assert.throws(() => extract(few), /"geometry" has 5 heat for \d+ vertices/);
   });
 
   test('overlays that are in its file are no part of a model', () => {
@@ -228,7 +235,7 @@ describe('applyTransfer', () => {
     assert.equal(applied.result, known);
     assert.ok(applied.splitVertices > 0);
     // It is not of what the target has become.
-    assert.throws(() => applyTransfer(target, meshOf(scene.cage), { result: known }), (error) => error instanceof CagecastError && /result is of \d+ vertices, the target has \d+/.test(error.message));
+    assert.throws(() => applyTransfer(target, meshOf(scene.cage), { result: known }), (error) => error instanceof CagecastError && /options\.result\.zones has \d+ entries, the target needs \d+; extract it before/.test(error.message));
     // Of which a transfer of its own splits no vertex again.
     assert.equal(applyTransfer(target, meshOf(scene.cage)).splitVertices, 0);
   });

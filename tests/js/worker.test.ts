@@ -66,6 +66,12 @@ describe('the worker', () => {
     const unsendable = await failure(transfer(scene.cage, { ...scene.target, extra: () => 0 } as unknown as typeof scene.target));
     assert.ok(unsendable instanceof CagecastError && unsendable.code === 'badArgument');
     assert.equal(((await failure(transfer(scene.cage, scene.target, { threshold: 2 }))) as CagecastError).code, 'badThreshold');
+    const untyped = transfer as (...args: unknown[]) => Promise<unknown>;
+    for (const [options, says] of [[{ signal: {} }, /^transfer: options\.signal is of type Object, not an AbortSignal/], [{ move: 'x' }, /^transfer: options\.move is "x", not true or false/]] as const) {
+      const wrong = await failure(untyped(scene.cage, scene.target, options));
+      assert.ok(wrong instanceof CagecastError && wrong.code === 'badOption');
+      assert.match(wrong.message, says);
+    }
     await transfer(scene.cage, scene.target);
   });
 

@@ -217,8 +217,9 @@ function checkLocks(fn: string, locks: unknown = {}): Locks {
   for (const [field, numbers] of Object.entries(locks)) {
     if (field !== 'segments' && field !== 'groups') throw wrong(`.${field} is unknown; there are: segments, groups`);
     if (numbers === undefined) continue;
-    if (typeof numbers !== 'object' || numbers === null) throw wrong(`.${field} is ${show(numbers)}, not an object of numbers and locks`);
+    if (typeof numbers !== 'object' || numbers === null || numbers instanceof Map) throw wrong(`.${field} is ${show(numbers)}, not an object of numbers and locks`);
     for (const [number, lock] of Object.entries(numbers)) {
+      if (!/^(0|[1-9][0-9]*)$/.test(number)) throw wrong(`.${field} has the entry ${show(number)}, which is no number`);
       if (!lockNames.includes(lock as Lock)) throw wrong(`.${field}[${number}] = ${show(lock)} is unknown; there are: ${lockNames.map(show).join(', ')}`);
     }
   }

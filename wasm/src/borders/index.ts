@@ -73,6 +73,8 @@ function checkResult(result: unknown, { positions }: CheckedMesh) {
   for (const [name, { length }] of Object.entries({ zones, segments })) {
     if (length !== Math.floor(positions.length / 3)) throw mismatch(`${name} has ${length} entries, not 1 for each of ${count(positions.length / 3, 'vertex')} of target`, length);
   }
+  const unknown = zones.findIndex((zone) => zone > 3);
+  if (unknown >= 0) throw mismatch(`zones[${unknown}] = ${zones[unknown]} is not a zone (0..3)`, unknown);
   const stray = segments.findIndex((segment) => segment >= segmentStats.length);
   if (stray >= 0) throw mismatch(`segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);
   return { zones, segments, culledSegments: Uint8Array.from(segmentStats, (segment) => Number(segment?.culled === true)) };

@@ -99,8 +99,8 @@ Examples:
     const { cage, texture, output, report, borders } = flags;
     if (texture !== undefined && output === undefined) command.error('--texture needs -o OUT.glb to show it in', { exitCode: wrongUsage });
     if (borders === 'cut' && output === undefined) command.error('--borders cut needs -o OUT.glb to write the cut target to', { exitCode: wrongUsage });
-    const inputs = [target, cage, texture].filter((path) => path !== undefined).map(placeOf);
-    const outputs = [output, report].filter((path) => path !== undefined).map(placeOf);
+    const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => placeOf(path));
+    const outputs = [output, report].filter((path) => path !== undefined).map((path) => placeOf(path));
     const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
     if (clash !== undefined) command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
     const text = await transferCommand({ target, cage, texture, output, report, borders, rules: rulesOf(flags) }, progress);

@@ -1,10 +1,11 @@
-import { realpathSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { chmodSync, lstatSync, readlinkSync, realpathSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
 import { InputError, firstLine } from '../gltf/input-error.js';
 
 /**
  * Writes files, all of them or none: each under another name first, which it gives up once all are complete. Links lead to
- * the file that is replaced; what is no file, as a pipe or /dev/null, is written to as it is.
+ * the file that is replaced, also where there is none yet; a file that is replaced keeps its permissions. What is no file, as
+ * a pipe or /dev/null, is written to as it is.
  * @throws {InputError} that names the file that cannot be written.
  */
 export function writeFiles(files: readonly { path: string; data: Uint8Array | string }[]): void {
@@ -14,7 +15,7 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
       const place = placeOf(path);
       const temporary = join(dirname(place), `.${basename(place)}.${process.pid}.tmp`);
       written.push({ path, temporary });
-      attempt(path, () => writeFileSync(temporary, data));
+      attempt(path, () => writeAs(place, temporary, data));
     }
     for (const { path, data } of files.filter(({ path }) => isStream(path))) attempt(path, () => writeFileSync(path, data));
     for (const { path, temporary } of written) attempt(path, () => renameSync(temporary, placeOf(path)));
@@ -23,12 +24,25 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
   }
 }
 
-/** The file that a path leads to, behind links; where there is none yet, the path itself, from the root. */
-export function placeOf(path: string): string {
+/** Writes what is to replace a file, if that is there, under another name. */
+function writeAs(place: string, temporary: string, data: Uint8Array | string): void {
+  const before = statSync(place, { throwIfNoEntry: false });
+  if (before?.isDirectory()) throw Object.assign(new Error('is a folder'), { code: 'EISDIR' });
+  const mode = before && before.mode & 0o777;
+  writeFileSync(temporary, data, { mode: mode ?? 0o666 });
+  if (mode !== undefined) chmodSync(temporary, mode); // whatever the process leaves out of those that it makes
+}
+
+/** The file that a path leads to, behind links, from the root; there may be none yet. @param links  That may still be followed. */
+export function placeOf(path: string, links = 40): string {
   try {
     return realpathSync(path);
   } catch {
-    return resolve(path);
+    const place = resolve(path);
+    const folder = dirname(place);
+    if (links === 0 || folder === place) return place;
+    if (lstatSync(place, { throwIfNoEntry: false })?.isSymbolicLink()) return placeOf(resolve(realpathSync(folder), readlinkSync(place)), links - 1);
+    return join(placeOf(folder, links), basename(place));
   }
 }
 

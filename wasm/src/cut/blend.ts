@@ -92,8 +92,9 @@ export function blendSkin<A extends AttributeArray>(arrayOf: (semantic: string) 
       const whole = one(weights[set]!);
       const share = place === 0 ? left : weights[set] instanceof Float32Array ? Math.fround(pull / sum) : Math.round((pull / sum) * whole) / whole;
       left -= share;
-      out.joints[set]![slot] = joint;
-      out.weights[set]![slot] = weights[set] instanceof Float32Array ? share : Math.round(share * whole);
+      const weight = weights[set] instanceof Float32Array ? share : Math.round(share * whole);
+      out.weights[set]![slot] = weight;
+      out.joints[set]![slot] = weight > 0 ? joint : 0; // as the format has it
     }
   }
   return new Map(joints.flatMap((_, set): [string, A][] => [[`JOINTS_${set}`, out.joints[set]!], [`WEIGHTS_${set}`, out.weights[set]!]]));

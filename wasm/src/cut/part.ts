@@ -46,25 +46,24 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
 
 type Decision = Pick<Classification, 'zones' | 'cosmeticTriangles'>;
 
-const culled = 3;
-
 /**
  * What another decision makes of a part that was cut by a first one: where a segment has another verdict now, its pieces follow
  * the triangles that they are of.
  * @param part     As it was before it was cut.
- * @param indices  Of the whole target, as the decisions are.
+ * @param indices  Of the whole target, as the decision is.
+ * @param isOther  1 per vertex of the whole target: whether its segment has another verdict.
  */
-export function decideAgain({ result, blends, origins }: CutPart, { firstVertex, vertexCount }: PartGeometry, indices: ArrayLike<number>, first: Decision, now: Decision): Decision {
-  const isOther = (v: number) => (first.zones[v] === culled) !== (now.zones[v] === culled);
+export function decideAgain({ result, blends, origins }: CutPart, { firstVertex, vertexCount }: PartGeometry, indices: ArrayLike<number>, isOther: ArrayLike<number>, now: Decision): Decision {
   return {
     zones: result.zones.map((zone, v) => {
+      // All of a piece, and all that a new vertex is a blend of, is of one segment.
       const n = v - vertexCount;
-      const sources = n < 0 ? [v] : [...blends.sources.subarray(3 * n, 3 * n + 3)];
-      return sources.some((source) => isOther(firstVertex + source)) ? now.zones[firstVertex + (n < 0 ? v : heaviestOf(blends, n))]! : zone;
+      const source = firstVertex + (n < 0 ? v : heaviestOf(blends, n));
+      return isOther[source] ? now.zones[source]! : zone;
     }),
     cosmeticTriangles: result.cosmeticTriangles.map((cosmetic, piece) => {
       const t = origins[piece]!;
-      return [0, 1, 2].some((k) => isOther(indices[3 * t + k]!)) ? now.cosmeticTriangles[t]! : cosmetic;
+      return isOther[indices[3 * t]!] ? now.cosmeticTriangles[t]! : cosmetic;
     }),
   };
 }

@@ -109,12 +109,15 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
     mesh.primitives.forEach((primitive, p) => {
       const name = `meshes[${m}].primitives[${p}]`;
       if (typeof primitive.attributes !== 'object' || primitive.attributes === null) throw new InputError(`${name} has no attributes`);
-      for (const [semantic, accessor] of Object.entries(primitive.attributes)) {
-        index(`${name}.attributes.${semantic}`, accessor, accessors.length, 'accessors');
-      }
+      const vertexCount = accessors[primitive.attributes['POSITION']!]?.count ?? 0;
+      const attribute = (place: string, accessor: unknown) => {
+        const { count } = accessors[index(place, accessor, accessors.length, 'accessors')]!;
+        if (count < vertexCount) throw new InputError(`${place} has ${count} elements for ${vertexCount} vertices`);
+      };
+      for (const [semantic, accessor] of Object.entries(primitive.attributes)) attribute(`${name}.attributes.${semantic}`, accessor);
       if (primitive.indices !== undefined) index(`${name}.indices`, primitive.indices, accessors.length, 'accessors');
       primitive.targets?.forEach((deltas, t) => {
-        for (const [semantic, accessor] of Object.entries(deltas)) index(`${name}.targets[${t}].${semantic}`, accessor, accessors.length, 'accessors');
+        for (const [semantic, accessor] of Object.entries(deltas)) attribute(`${name}.targets[${t}].${semantic}`, accessor);
       });
       if (primitive.material !== undefined) index(`${name}.material`, primitive.material, materials.length, 'materials');
       const draco = dracoOf(primitive);

@@ -6,7 +6,7 @@ import { gather, splitPart, type SplitPart } from '../split-part.js';
 import { InputError } from './input-error.js';
 import { instancing, isInstanced } from './instancing.js';
 import { identity, isTurned, localMatrix, multiply, type Matrix } from './matrix.js';
-import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, isOverlay, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
+import { cosmeticCorners, diagonal, freeUvSet, isMorphed, isOverlaid, isOverlay, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
 import { aliasesOf, cutPiece, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
 
 /** A piece, and its place in the document. */
@@ -62,6 +62,9 @@ function listParts(document: Document): DocumentPart[] {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
       if (position === null || !hasTriangles(primitive.getMode()) || isOverlay(primitive.getExtras())) return;
+      const all = [primitive, ...primitive.listTargets()].flatMap((of) => of.listSemantics().map((semantic) => [semantic, of.getAttribute(semantic)!.getCount()] as const));
+      const short = all.find(([, count]) => count < position.getCount());
+      if (short) throw new InputError(`${place} has ${short[1]} ${short[0]} for ${position.getCount()} vertices`);
       const localPositions = decodePositions(place, position);
       const localIndices = decodeTriangles(place, primitive.getIndices()?.getArray() ?? null, primitive.getMode(), localPositions.length / 3);
       const name = node.getName() || mesh.getName() || place;
@@ -117,7 +120,7 @@ export function addTransfer(document: Document, { mesh, parts }: ExtractedDocume
   const texture = paint && document.createTexture(paint.name).setMimeType(paint.mimeType).setImage(paint.bytes as Uint8Array<ArrayBuffer>);
   const materials = new Map<string, Material>();
   const offset = overlayOffset * diagonal(mesh.positions);
-  const primitiveOf = separatePrimitives(parts);
+  const primitiveOf = separatePrimitives(document, parts);
 
   parts.forEach((part, p) => {
     const primitive = primitiveOf[p]!;
@@ -146,7 +149,15 @@ export function addTransfer(document: Document, { mesh, parts }: ExtractedDocume
       .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials))
       .setExtras({ ...overlayMark });
     for (const semantic of primitive.listSemantics()) if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
-    for (const morph of primitive.listTargets()) overlay.addTarget(morph);
+    for (const morph of primitive.listTargets()) {
+      const own = document.createPrimitiveTarget(morph.getName());
+      for (const semantic of morph.listSemantics()) {
+        if (isMorphed(semantic, overlay.getAttribute('NORMAL') !== null)) own.setAttribute(semantic, morph.getAttribute(semantic));
+      }
+      // One without anything in it is not allowed.
+      if (own.listSemantics().length === 0) own.setAttribute('POSITION', attribute(new Float32Array(3 * split.sources.length), 'VEC3'));
+      overlay.addTarget(own);
+    }
     part.node.getMesh()!.addPrimitive(overlay);
   });
 }
@@ -191,24 +202,35 @@ function remakePrimitive(primitive: Primitive, { sources }: SplitPart, indices: 
 
 const isUnused = (property: Property): boolean => property.listParents().every((parent) => parent.propertyType === 'Root');
 
-/** Gives every node that shows a mesh one of its own. @returns the primitive of each part. */
-function separatePrimitives(parts: readonly DocumentPart[]): Primitive[] {
-  const shownBy = new Map<DocumentMesh, Node>();
-  const copies = new Map<Node, Map<Primitive, Primitive>>();
-  return parts.map(({ node, mesh, primitive }) => {
-    const owner = shownBy.get(mesh);
-    if (owner === undefined) shownBy.set(mesh, node);
-    if (owner === undefined || owner === node) return primitive;
-    let copied = copies.get(node);
-    if (!copied) {
-      const own = mesh.clone();
-      copied = new Map(mesh.listPrimitives().map((original) => [original, original.clone()]));
-      for (const [original, copy] of copied) own.removePrimitive(original).addPrimitive(copy);
-      node.setMesh(own);
-      copies.set(node, copied);
-    }
-    return copied.get(primitive)!;
-  });
+/**
+ * Gives every node that is transferred to a mesh and primitives of its own; those that are not, as of other scenes, share a mesh
+ * that stays as it is. The first to show one keeps it.
+ * @returns the primitive of each part.
+ */
+function separatePrimitives(document: Document, parts: readonly DocumentPart[]): Primitive[] {
+  const nodes = new Set(parts.map(({ node }) => node));
+  const [meshes, primitives] = [new Set<DocumentMesh>(), new Set<Primitive>()];
+  const ownOf = new Map<Node, Map<Primitive, Primitive>>();
+  for (const node of nodes) {
+    const mesh = node.getMesh()!;
+    const own = meshes.has(mesh) ? mesh.clone() : mesh;
+    const before = mesh.listPrimitives();
+    const after = before.map((primitive) => (primitives.has(primitive) ? primitive.clone() : primitive));
+    before.forEach((primitive) => own.removePrimitive(primitive));
+    after.forEach((primitive) => own.addPrimitive(primitive));
+    node.setMesh(own);
+    meshes.add(own);
+    after.forEach((primitive) => primitives.add(primitive));
+    ownOf.set(node, new Map(before.map((primitive, p) => [primitive, after[p]!])));
+  }
+  for (const mesh of document.getRoot().listMeshes()) {
+    const others = mesh.listParents().filter((parent) => parent.propertyType === 'Node' && !nodes.has(parent as Node)) as Node[];
+    if (others.length === 0 || !mesh.listPrimitives().some((primitive) => primitives.has(primitive))) continue;
+    const own = mesh.clone();
+    for (const primitive of mesh.listPrimitives()) own.removePrimitive(primitive).addPrimitive(primitive.clone());
+    for (const node of others) node.setMesh(own);
+  }
+  return parts.map(({ node, primitive }) => ownOf.get(node)!.get(primitive)!);
 }
 
 /** A material that shows the texture alone, as rough and as two-sided as the base's. */

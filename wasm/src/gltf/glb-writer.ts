@@ -1,6 +1,6 @@
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
-import { meshoptView } from './check.js';
+import { meshoptExtensions, meshoptView } from './check.js';
 import { readUri, type GltfFile } from './read.js';
 import { InputError } from './input-error.js';
 import { imageType } from './image.js';
@@ -75,6 +75,9 @@ export class GlbWriter {
     const fallbacks = kept.map((b) => json.buffers![b]!);
     const first = buffers[0] ? json.buffers![0]! : { byteLength: 0 };
     delete first.uri;
+    // It has bytes now, whatever it had before: those of all others too.
+    for (const name of meshoptExtensions) delete first.extensions?.[name];
+    if (Object.keys(first.extensions ?? {}).length === 0) delete first.extensions;
     json.buffers = [first, ...fallbacks];
   }
 

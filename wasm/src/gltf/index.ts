@@ -53,7 +53,9 @@ export interface CagecastOptions extends TransferOptions {
  * await document.transform(cagecast({ cage: await io.read('cage.glb'), texture: await readFile('paint.png') }));
  * await io.write('painted.glb', document);
  */
-export function cagecast({ cage, texture, borders, onResult, ...options }: CagecastOptions): Transform {
+export function cagecast(options: CagecastOptions): Transform {
+  if (typeof options !== 'object' || options === null) throw new CagecastError('badArgument', `cagecast: the argument is ${show(options)}, not an object`);
+  const { cage, texture, borders, onResult, ...rules } = options;
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
     await init();
@@ -63,8 +65,8 @@ export function cagecast({ cage, texture, borders, onResult, ...options }: Cagec
     const paint = texture && within('texture', () => paintOf(texture));
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));
-    const result = transfer(source, target.mesh, options);
-    const cut = cuts ? await cutTarget(source, target.mesh, result, options) : undefined;
+    const result = transfer(source, target.mesh, rules);
+    const cut = cuts ? await cutTarget(source, target.mesh, result, rules) : undefined;
     addTransfer(document, target, result, paint, cut);
     onResult?.(
       result,

@@ -59,6 +59,9 @@ export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uin
  */
 export const isOverlaid = (semantic: string): boolean => semantic === 'NORMAL' || /^(JOINTS|WEIGHTS)_\d+$/.test(semantic);
 
+/** Which deltas of a morph target an overlay takes from its base: those of what it has as well, but not of UVs, which are the paint's. */
+export const isMorphed = (semantic: string, hasNormals: boolean): boolean => semantic === 'POSITION' || (semantic === 'NORMAL' && hasNormals);
+
 /** The positions of an overlay: those of the piece, moved a little off the surface along their normals, by `offset` units of the scene. */
 export function overlayPositions(piece: Piece, offset: number): Float32Array {
   const step = offset / Math.cbrt(Math.abs(determinant(piece.matrix)) || 1);

@@ -116,10 +116,12 @@ async function readBuffers(json: GLTF.IGLTF, binary: Uint8Array | undefined, fol
  * @throws {InputError} that begins with `name`.
  */
 export async function readUri(name: string, uri: string, folder: string): Promise<Uint8Array> {
-  const data = /^data:[^,]*?(;base64)?,/.exec(uri);
-  if (data) {
-    const text = uri.slice(data[0].length);
-    return data[1] ? Buffer.from(text, 'base64') : Buffer.from(decoded(text));
+  if (/^data:/i.test(uri)) {
+    try {
+      return new Uint8Array(await (await fetch(uri)).arrayBuffer());
+    } catch (cause) {
+      throw new InputError(`${name} is ${show(uri)}, no data URI that can be read`, { cause });
+    }
   }
   if (/^[a-z][a-z0-9+.-]+:/i.test(uri)) throw new InputError(`${name} is at ${uri.slice(0, 60)}; only files are read`);
   try {

@@ -8,7 +8,7 @@ import { dracoOf } from './check.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
-import { cosmeticCorners, diagonal, freeUvSet, isOverlaid, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
+import { cosmeticCorners, diagonal, freeUvSet, isMorphed, isOverlaid, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
 import { cutPiece, decodeFloats, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 
@@ -124,18 +124,42 @@ function dropDraco(json: GLTF.IGLTF): void {
   }
 }
 
-/** Gives every node that shows a mesh one of its own. @returns the mesh of each node. */
+/**
+ * Gives every node that is transferred to a mesh of its own; those that are not, as of other scenes, share one that stays as it
+ * is. The first to show a mesh keeps it. What an animation does to a mesh, it does to the copies.
+ * @returns the mesh of each node.
+ */
 function separateMeshes(json: GLTF.IGLTF, parts: Part[]): Map<number, number> {
-  const owners = new Map<number, number>();
+  const copy = (mesh: number): number => {
+    const number = json.meshes!.push(structuredClone(json.meshes![mesh]!)) - 1;
+    for (const { channels } of json.animations ?? []) {
+      for (const channel of [...(channels ?? [])]) {
+        const twin = structuredClone(channel);
+        const extension = twin.target?.extensions?.['KHR_animation_pointer'] as { pointer?: unknown } | undefined;
+        const [, rest] = typeof extension?.pointer === 'string' ? extension.pointer.split(`/meshes/${mesh}/`) : [];
+        if (rest === undefined) continue;
+        extension!.pointer = `/meshes/${number}/${rest}`;
+        channels.push(twin);
+      }
+    }
+    return number;
+  };
   const meshOfNode = new Map<number, number>();
+  const taken = new Set<number>();
   for (const { node, mesh } of parts) {
     if (meshOfNode.has(node)) continue;
-    const taken = owners.has(mesh);
-    if (!taken) owners.set(mesh, node);
-    const own = taken ? json.meshes!.push(structuredClone(json.meshes![mesh]!)) - 1 : mesh;
-    meshOfNode.set(node, own);
-    json.nodes![node]!.mesh = own;
+    meshOfNode.set(node, taken.has(mesh) ? copy(mesh) : mesh);
+    taken.add(mesh);
   }
+  const untouched = new Map<number, number>();
+  json.nodes?.forEach((node, n) => {
+    const own = meshOfNode.get(n);
+    if (own !== undefined) node.mesh = own;
+    else if (node.mesh !== undefined && taken.has(node.mesh)) {
+      if (!untouched.has(node.mesh)) untouched.set(node.mesh, copy(node.mesh));
+      node.mesh = untouched.get(node.mesh)!;
+    }
+  });
   return meshOfNode;
 }
 
@@ -167,9 +191,15 @@ class Painter {
       attributes,
       indices: this.#writer.addIndices(corners, sources.length),
       material: this.#material(base),
-      ...(base.targets && { targets: base.targets }),
+      ...(base.targets && { targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, sources.length)) }),
       extras: overlayMark,
     };
+  }
+
+  /** What a morph target of the base is to the overlay. One without anything in it is not allowed: it moves nothing then. */
+  #morph(deltas: Record<string, number>, hasNormals: boolean, count: number): Record<string, number> {
+    const own = Object.entries(deltas).filter(([semantic]) => isMorphed(semantic, hasNormals));
+    return own.length > 0 ? Object.fromEntries(own) : { POSITION: this.#writer.addAttribute(new Float32Array(3 * count), 3, { min: [0, 0, 0], max: [0, 0, 0] }) };
   }
 
   /** The base's own accessor, or, where it has no bytes because they are in a Draco stream, a decoded copy. */

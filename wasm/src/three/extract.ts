@@ -60,12 +60,19 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   }
   const parts: Part[] = [];
   const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
+    if ((mesh && ('isInstancedMesh' in mesh || 'isBatchedMesh' in mesh)) || 'isInstancedBufferGeometry' in geometry) {
+      throw wrong(argument, name, 'shows its geometry in many places at once (instances); make each a mesh of its own first');
+    }
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
     const corners = geometry.index ? geometry.index.count : vertexCount;
     if (vertexCount === 0 || corners === 0) return;
     if (position!.itemSize !== 3) throw wrong(argument, name, `has positions of ${position!.itemSize} numbers, not 3`);
     if (corners % 3 !== 0) throw wrong(argument, name, `has ${corners} corners, not 3 per triangle`);
+    const morphs = Object.entries(geometry.morphAttributes).flatMap(([of, attributes]) => attributes!.map((attribute): [string, { count: number }] => [`deltas of ${of}`, attribute]));
+    for (const [of, { count }] of [...Object.entries(geometry.attributes), ...morphs]) {
+      if (count < vertexCount) throw wrong(argument, name, `has ${count} ${of} for ${vertexCount} vertices`);
+    }
     const last = parts.at(-1);
     parts.push({
       name,
@@ -86,7 +93,6 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   object.traverse((child) => {
     if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
     const name = child.name || child.parent?.name || `mesh ${parts.length}`;
-    if ('isInstancedMesh' in child || 'isBatchedMesh' in child) throw wrong(argument, name, 'shows its geometry in many places at once (instances); make each a mesh of its own first');
     add(name, child, child.geometry, placeOf(child));
   });
   return parts;

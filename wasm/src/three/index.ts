@@ -50,8 +50,9 @@ export interface Applied {
   /**
    * Shows another decision of `classify`, in microseconds. Where borders were cut, a segment that has another verdict now ends at its
    * own triangles. Nothing of the decision is kept: the next `classify` may have it as `into`, as it may not have `result`.
+   * @throws {CagecastError} `badArgument` if it is of another target.
    */
-  update(classification: Pick<Classification, 'zones' | 'cosmeticTriangles'>): void;
+  update(classification: Classification): void;
   /** Takes the overlays away and frees their buffers. The new attributes stay. */
   dispose(): void;
 }
@@ -104,12 +105,25 @@ async function applyCut(target: Object3D | BufferGeometry, cage: Object3D | Buff
 const rulesOf = ({ result, texture, material, channel, borders, ...rules }: ApplyOptions): TransferOptions => rules;
 
 function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays): TransferResult {
-  const result = options.result ?? transfer(cage(), mesh, rulesOf(options));
-  const vertices = mesh.positions.length / 3;
-  if (result.zones?.length !== vertices || result.cosmeticTriangles?.length !== mesh.indices.length / 3) {
-    throw new CagecastError('badArgument', `cagecast/three: result is of ${result.zones?.length} vertices, the target has ${vertices}: extract it before vertices are split`);
-  }
+  if (options.result === undefined) return transfer(cage(), mesh, rulesOf(options));
+  const { result } = options;
+  const [vertices, triangles] = [mesh.positions.length / 3, mesh.indices.length / 3];
+  const hint = '; extract it before vertices are split';
+  checkDecision('options.result', result, vertices, triangles, result?.segmentStats?.length, hint);
+  checkLengths('options.result', result, { uvs: 2 * vertices, segments: vertices, ...(result.cornerUvs?.length !== 0 && { cornerUvs: 6 * triangles }) }, hint);
   return result;
+}
+
+/** Checks that a decision is one, and of this target. */
+function checkDecision(name: string, decision: Classification, vertices: number, triangles: number, segments: number | undefined, hint = ''): void {
+  checkLengths(name, decision, { zones: vertices, cosmeticTriangles: triangles, segmentStats: segments ?? 0 }, hint);
+}
+
+function checkLengths(name: string, of: object, lengths: Record<string, number>, hint: string): void {
+  for (const [field, length] of Object.entries(lengths)) {
+    const found = (of as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
+    if (found !== length) throw new CagecastError('badArgument', `cagecast/three: ${name}.${field} ${found === undefined ? 'is no list' : `has ${found} entries`}, the target needs ${length}${hint}`);
+  }
 }
 
 /** What was given to geometries before, to be overwritten by the next transfer. */
@@ -152,11 +166,13 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     }
     return makeOverlay(part, part.mesh, uvName, paint);
   });
-  const update: Applied['update'] = (now) => {
+  const culled = result.segmentStats.map((segment) => segment.culled);
+  const show = (now: Classification) => {
+    const isOther = cut && Uint8Array.from(result.segments, (s) => Number(now.segmentStats[s]!.culled !== culled[s]));
     made.forEach(({ part, whole, pieces, split }, p) => {
       const { firstVertex, firstTriangle, triangleCount, vertexCount } = part;
       const { zones, cosmeticTriangles } = pieces
-        ? cut!.tools.decideAgain(pieces, whole, mesh.indices, result, now)
+        ? cut!.tools.decideAgain(pieces, whole, mesh.indices, isOther!, now)
         : { zones: now.zones.subarray(firstVertex, firstVertex + vertexCount), cosmeticTriangles: now.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount) };
       const attribute = part.geometry.getAttribute(zoneAttribute) as BufferAttribute;
       split.sources.forEach((source, v) => (attribute.array[v] = zones[source]!));
@@ -165,7 +181,7 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
       if (overlay) showTriangles(overlay, part, cosmeticTriangles);
     });
   };
-  update(result);
+  show(result);
   layers.forEach((overlay, p) => overlay && parts[p]!.mesh!.add(overlay));
   const overlays = layers.filter((overlay) => overlay !== undefined);
   return {
@@ -174,7 +190,10 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     cutTriangles: cut ? (cut.target.indices.length - mesh.indices.length) / 3 : 0,
     parts,
     overlays,
-    update,
+    update(classification) {
+      checkDecision('classification', classification, result.zones.length, result.cosmeticTriangles.length, culled.length);
+      show(classification);
+    },
     dispose() {
       for (const overlay of overlays) {
         overlay.removeFromParent();

@@ -35,9 +35,7 @@ export function likeAttribute(attribute: Attribute, values: TypedArray): BufferA
 /** Replaces all attributes and morph targets of a geometry, and its triangles, and has its buffers on the graphics card made anew. */
 export function remakeGeometry(geometry: BufferGeometry, indices: Uint32Array, remake: (attribute: Attribute, name: string, isMorph: boolean) => BufferAttribute): void {
   geometry.dispose();
-  for (const [name, attribute] of Object.entries(geometry.attributes)) {
-    if (!('isInstancedBufferAttribute' in attribute)) geometry.setAttribute(name, remake(attribute, name, false));
-  }
+  for (const [name, attribute] of Object.entries(geometry.attributes)) geometry.setAttribute(name, remake(attribute, name, false));
   for (const [name, morphs] of Object.entries(geometry.morphAttributes)) {
     geometry.morphAttributes[name as keyof typeof geometry.morphAttributes] = morphs!.map((morph) => remake(morph, name, true));
   }

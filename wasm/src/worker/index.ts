@@ -18,6 +18,7 @@ import {
   type TransferOptions,
   type TransferResult,
 } from '../index.js';
+import { show } from '../error.js';
 import type { Reply, Request, Thread } from './protocol.js';
 
 export * from '../index.js';
@@ -85,6 +86,9 @@ export function terminate(): void {
 function withOptions<T>(fn: Request['fn'], args: unknown[], options: CallOptions): Promise<T> {
   if (typeof options !== 'object' || options === null) return call(fn, [...args, options], {});
   const { signal, move, ...rest } = options;
+  const wrong = (text: string) => Promise.reject(new CagecastError('badOption', `${fn}: options.${text}`));
+  if (signal !== undefined && typeof signal?.addEventListener !== 'function') return wrong(`signal is ${show(signal)}, not an AbortSignal`);
+  if (move !== undefined && typeof move !== 'boolean') return wrong(`move is ${show(move)}, not true or false`);
   // A copy of it would be written over there, and what it is here would stay as it is.
   if ('into' in rest && rest.into !== undefined) return Promise.reject(new CagecastError('badOption', `${fn}: options.into is for calls on one thread; from a worker all arrays are new`));
   return call(fn, [...args, rest], { signal, move });
