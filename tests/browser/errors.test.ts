@@ -169,3 +169,47 @@ test('a worker that cannot be had is told of, and the next transfer has another'
   assert.equal(await settled(page), 'ready', await shownError(page))
   assert.equal(await shownError(page), '')
 })
+
+test('a sample of which a file cannot be had leaves nothing behind, and files that still wait for another do not mix with what is shown', async () => {
+  const { page } = await site.visit({}, (page) => page.route(/(car\/target|human\/cage)\.glb$/, (route) => route.abort()).then(() => {}))
+  const again = async (): Promise<object> => {
+    await page.getByTestId('preset').selectOption('paper')
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    const counts = await shownCounts(page)
+    await page.getByTestId('preset').selectOption('default')
+    assert.equal(await settled(page), 'ready', await shownError(page))
+    return { paper: counts, default: await shownCounts(page), cage: await page.locator('#cage-name').textContent() }
+  }
+  const before = await again()
+  await page.getByTestId('sample-select').selectOption('car')
+  assert.equal(await settled(page), 'error')
+  assert.match(await shownError(page), /^car\/target\.glb: /)
+  assert.deepEqual(await again(), before)
+  await drop(page, [glb('target.glb', Buffer.from('glTF')), glb('cage.glb', writeGlb(tetrahedron(4)))])
+  assert.equal(await settled(page), 'error')
+  assert.deepEqual(await again(), before)
+
+  // What a link says of a sample that does not come is not said of the next one.
+  await page.evaluate(() => (location.hash = 'sample=human&deform=bend,1'))
+  await page.getByTestId('error').filter({ hasText: 'human/cage.glb' }).waitFor()
+  await page.unroute(/(car\/target|human\/cage)\.glb$/)
+  await page.getByTestId('sample-select').selectOption('human')
+  assert.equal(await settled(page), 'ready', await shownError(page))
+  const straight = await shownCounts(page)
+  await page.getByTestId('sample-select').selectOption('lizard')
+  assert.equal(await settled(page), 'ready')
+  await page.getByTestId('sample-select').selectOption('human')
+  assert.equal(await settled(page), 'ready')
+  assert.deepEqual(await shownCounts(page), straight)
+})
+
+test('what is said of files stays while borders are cut', async () => {
+  const { page } = await site.visit()
+  await page.getByTestId('exact-borders').check({ force: true })
+  assert.equal(await settled(page), 'ready')
+  await drop(page, [glb('a.glb', writeGlb(tetrahedron(1))), glb('b.glb', writeGlb(tetrahedron(2))), glb('cage.glb', writeGlb(tetrahedron(4)))])
+  assert.equal(await settled(page), 'ready')
+  await page.waitForTimeout(1500)
+  assert.equal(await settled(page), 'ready')
+  assert.match(await shownError(page), / is left out: /)
+})

@@ -143,6 +143,55 @@ test('a drag is one step, and so is a key held down', async () => {
   assert.deepEqual(await names(page), order)
 })
 
+test('nothing is undone while a hand is at it, and nothing of what it does is lost', async () => {
+  const { page, complaints } = visit
+  const area = await modelArea(page)
+  const before = [await undoTitle(), await state()]
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true })
+  await page.mouse.move(area.x + 0.45 * area.width, area.y + 0.4 * area.height)
+  await page.mouse.down()
+  await page.mouse.move(area.x + 0.5 * area.width, area.y + 0.45 * area.height, { steps: 3 })
+  await page.keyboard.press('Control+z')
+  await page.mouse.move(area.x + 0.5 * area.width, area.y + 0.5 * area.height, { steps: 3 })
+  // What comes meanwhile is undone with it.
+  await page.getByTestId('add-painting').evaluate((button: HTMLButtonElement) => button.click())
+  await page.mouse.up()
+  assert.match(await undoTitle(), /: stroke$/)
+  const painted = await state()
+  assert.notDeepEqual(painted, before[1])
+  await page.keyboard.press('Control+z')
+  assert.deepEqual([await undoTitle(), await state()], before)
+  await page.keyboard.press('Control+y')
+  assert.deepEqual(await state(), painted)
+  await page.keyboard.press('Control+z')
+
+  // A layer on its way to another place.
+  const grip = (await control('button', 'Reorder blue.png').boundingBox())!
+  await page.mouse.move(grip.x + grip.width / 2, grip.y + grip.height / 2)
+  await page.mouse.down()
+  await page.mouse.move(grip.x + grip.width / 2, grip.y + 90, { steps: 5 })
+  for (let time = 0; time < 3; time++) await page.keyboard.press('Control+z')
+  await page.mouse.move(grip.x + grip.width / 2, grip.y + 300, { steps: 5 })
+  await page.mouse.up()
+  assert.match(await undoTitle(), /: move of blue.png$/)
+  await page.keyboard.press('Control+z')
+  assert.deepEqual([await undoTitle(), await state()], before)
+
+  // An opacity, of a layer that is removed by a key meanwhile.
+  await rows(page).filter({ hasText: 'red.png' }).locator('.choose').click()
+  const slider = (await control('slider', 'Opacity of red.png').boundingBox())!
+  await page.mouse.move(slider.x + 0.9 * slider.width, slider.y + slider.height / 2)
+  await page.mouse.down()
+  await page.mouse.move(slider.x + 0.3 * slider.width, slider.y + slider.height / 2, { steps: 3 })
+  await page.keyboard.press('Control+z')
+  await control('button', 'Remove red.png').evaluate((button: HTMLButtonElement) => button.click())
+  await page.mouse.up()
+  assert.ok(!(await names(page)).includes('red.png'))
+  await page.keyboard.press('Control+z')
+  assert.deepEqual([await undoTitle(), await state()], before)
+  assert.deepEqual(complaints, [])
+})
+
 test('undoing leaves alone what came of another model since', async () => {
   const { page } = visit
   await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true })

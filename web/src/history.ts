@@ -17,6 +17,9 @@ export class History extends Emitter<{ change: void }> {
   #done: Deed[] = []
   #undone: Deed[] = []
 
+  /** Whether something is being done that will be added: until then nothing is undone or done again. */
+  held = false
+
   /** What `undo` would take back. */
   get last(): Deed | undefined {
     return this.#done.at(-1)
@@ -43,10 +46,10 @@ export class History extends Emitter<{ change: void }> {
     this.emit('change', undefined)
   }
 
-  /** @returns What was taken back. */
+  /** @returns What was taken back, if anything was. */
   undo(): Deed | undefined {
     const deed = this.#done.at(-1)
-    if (!deed) return
+    if (!deed || this.held) return
     // First: what cannot be undone stays done.
     deed.undo()
     this.#undone.push(this.#done.pop()!)
@@ -54,10 +57,10 @@ export class History extends Emitter<{ change: void }> {
     return deed
   }
 
-  /** @returns What was done again. */
+  /** @returns What was done again, if anything was. */
   redo(): Deed | undefined {
     const deed = this.#undone.at(-1)
-    if (!deed) return
+    if (!deed || this.held) return
     deed.redo()
     this.#done.push(this.#undone.pop()!)
     this.emit('change', undefined)

@@ -7,7 +7,7 @@ import { element, showError } from './page'
 import { loadPaint, titleOf, type Paint } from './paint'
 import { offerPaints, type Choice } from './paints'
 import { fetchFile, kChecker, paintName, type Sample } from './samples'
-import type { Locks, Session, Shown, Wanted } from './session'
+import { kReading, type Locks, type Session, type Shown, type Wanted } from './session'
 
 const kOwn = 'own'
 
@@ -66,7 +66,7 @@ export class Opener {
     const { target, cage, paints } = sample
     const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0])
     const model = async (address: string): Promise<Model> => ({ ...(await loadModel(await fetchFile(address), this.#renderer)), sample })
-    this.#session.want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, chosen) }, locks)
+    this.#session.want({ target: model(target), cage: model(cage), paint: this.#fetchPaint(sample, chosen) }, locks, true)
   }
 
   /** Reads a paint of any sample. @param name By `paintName`. @returns Nothing if there is none of that name. */
@@ -110,8 +110,10 @@ export class Opener {
   }
 
   #describe({ target, cage, paint }: Shown): void {
-    // Of what comes with the page another may have been chosen since.
-    const texture = (paint.sample || paint === this.#session.checker ? (this.#stack.base?.sheet as Paint | undefined) : undefined) ?? paint
+    // Another may have been chosen since, or all been removed.
+    const { layers, base } = this.#stack
+    const isOwn = !paint.sample && paint !== this.#session.checker && layers.some(({ sheet }) => sheet === paint)
+    const texture = isOwn ? paint : ((base?.sheet as Paint | undefined) ?? { name: 'none' })
     for (const [slot, { name }] of Object.entries({ target, cage, texture })) {
       const label = element(`${slot}-name`, HTMLElement)
       label.textContent = label.title = name
@@ -142,7 +144,7 @@ export class Opener {
   /** Puts another paint under everything, as a step that can be undone. */
   async #choose(loaded: Promise<Paint>): Promise<void> {
     let wanted = true
-    const done = this.#session.work('Reading', 0, () => (wanted = false))
+    const done = this.#session.work(kReading, 0, () => (wanted = false))
     try {
       const paint = await loaded
       if (!wanted) return

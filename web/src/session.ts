@@ -37,6 +37,9 @@ export type Locks = Record<number, Lock>
 /** Ends work under way, because the visitor said so, or something else was wanted. */
 type GiveUp = (why: 'cancelled' | 'superseded') => void
 
+/** The stage in which files are read. */
+export const kReading = 'Reading'
+
 /** What became of the latest wish. */
 export type Progress =
   /** `share` of the work is done, 0..1, and `stage` is under way. */
@@ -72,6 +75,8 @@ export class Session extends Emitter<SessionEvents> {
   readonly checker = makeChecker()
   readonly #client = new TransferClient()
   #wanted: Wanted = {}
+  /** What of it is of use only together. */
+  #together: Wanted = {}
   #shown: Shown | undefined
   /** What the worker answered last. */
   #projected: Placed | undefined
@@ -133,10 +138,13 @@ export class Session extends Emitter<SessionEvents> {
 
   /**
    * Asks for other input; whatever was under way and is replaced by it no longer counts. Without a paint the checker is taken.
-   * @param locks What is already said about segments of another target; of those that it does not have nothing.
+   * @param locks    What is already said about segments of another target; of those that it does not have nothing.
+   * @param together Whether all of it is given up where one cannot be had. Else the others wait for another in its place.
    */
-  want(change: Wanted, locks: Locks = {}): void {
+  want(change: Wanted, locks: Locks = {}, together = false): void {
     if (change.target) this.#wantedLocks = locks
+    if (!change.target && !change.cage) this.#giveUpRest()
+    if (together) this.#together = change
     for (const slot of Object.values(change)) slot.catch(() => {}) // told when it is waited for
     this.#wanted = { paint: Promise.resolve(this.checker), ...this.#wanted, ...change }
     void this.#run()
@@ -155,6 +163,7 @@ export class Session extends Emitter<SessionEvents> {
     this.emit('rules', this.#rules)
     if (this.#rules.preset !== before.preset) {
       // Before anything was asked for there is nothing to do again.
+      this.#giveUpRest()
       if (this.begun) void this.#run()
     } else if (this.#shown) this.#classify()
   }
@@ -231,7 +240,7 @@ export class Session extends Emitter<SessionEvents> {
     const run = ++this.#runs
     const superseded = (): boolean => run !== this.#runs
     this.#endWork('superseded')
-    this.#tell('Reading', 0)
+    this.#tell(kReading, 0)
     this.#client.cancel()
     try {
       const scene = await this.#read(superseded)
@@ -285,15 +294,18 @@ export class Session extends Emitter<SessionEvents> {
     }
   }
 
-  /** Waits for the wanted files. One that cannot be read gives way to the one shown before it. */
+  /** Waits for the wanted files. One that cannot be read gives way to the one shown before it, and so do those that came together with it. */
   async #read(superseded: () => boolean): Promise<Scene | undefined> {
     const { target, cage, paint } = this.#wanted
     const results = await Promise.allSettled([target, cage, paint])
     const failed = results.find((result) => result.status === 'rejected')
     if (failed && !superseded()) {
-      ;(['target', 'cage', 'paint'] as const).forEach((slot, index) => {
-        if (results[index]!.status === 'rejected') this.#giveUp(slot)
-      })
+      const wanted = this.#wanted
+      const isTogether = (slot: keyof Scene): boolean => wanted[slot] !== undefined && wanted[slot] === this.#together[slot]
+      const slots = ['target', 'cage', 'paint'] as const
+      const [lost, found] = [slots.filter((_, index) => results[index]!.status === 'rejected'), slots.filter((_, index) => results[index]!.status !== 'rejected')]
+      for (const slot of lost) this.#giveUp(slot)
+      if (this.#shown && lost.some(isTogether)) for (const slot of found.filter(isTogether)) this.#giveUp(slot)
       throw failed.reason
     }
     const [t, c, p] = results.map((result) => (result.status === 'fulfilled' ? result.value : undefined)) as [Model?, Model?, Paint?]
@@ -322,6 +334,11 @@ export class Session extends Emitter<SessionEvents> {
     const { [slot]: _, ...rest } = this.#wanted
     this.#wanted = rest
     if (this.#shown) this.#wanted = { ...rest, [slot]: Promise.resolve(this.#shown[slot]) }
+  }
+
+  /** Goes back to what is shown, where what was wanted still waits for something that could not be had. */
+  #giveUpRest(): void {
+    if (this.#shown && !this.#working) for (const slot of ['target', 'cage', 'paint'] as const) this.#giveUp(slot)
   }
 
   /** Goes back to the preset of what is shown. */

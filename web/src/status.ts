@@ -1,6 +1,6 @@
 import type { Model } from './load'
 import { clearError, element, showError, showNotice } from './page'
-import type { Progress, Session } from './session'
+import { kReading, type Progress, type Session } from './session'
 
 const kBlind =
   'This browser draws no 3D here: WebGL 2 is missing or switched off. The transfer works all the same, its numbers are in the panel.'
@@ -30,7 +30,8 @@ export function showStatus(session: Session, blind: boolean): void {
     bar.show(progress)
     switch (progress.state) {
       case 'working':
-        clearError()
+        // What was said of files stays while what follows from them is worked on.
+        if (progress.stage === kReading || status.dataset.state === 'error') clearError()
         return show('working')
       case 'ready':
         showNotice('stage-notice', blind ? kBlind : '')

@@ -88,13 +88,18 @@ export class Painter {
       return false
     }
     this.#edits.begin()
-    const layer = painted ?? this.addLayer()
-    this.#layer = layer
+    try {
+      const layer = painted ?? this.addLayer()
+      this.#stack.select(layer)
+      if (!layer.visible) this.#stack.restyle(layer, { visible: true })
+      wet.begin(layer.sheet as PaintedSheet, style)
+      this.#layer = layer
+    } catch (error) {
+      this.#edits.cancel() // or it would be under way for ever
+      throw error
+    }
     this.#name = name
     this.#wet = wet
-    this.#stack.select(layer)
-    if (!layer.visible) this.#stack.restyle(layer, { visible: true })
-    wet.begin(layer.sheet as PaintedSheet, style)
     return true
   }
 
@@ -116,8 +121,13 @@ export class Painter {
     this.#layer = undefined
     const { renderer } = this.#viewer
     const sheet = layer.sheet as PaintedSheet
-    const parts = this.#wet!.settle(renderer)
-    if (parts.length === 0) return this.#edits.cancel()
+    let parts: ReturnType<WetPaint['settle']> = []
+    try {
+      parts = this.#wet!.settle(renderer)
+    } finally {
+      if (parts.length === 0) this.#edits.cancel()
+    }
+    if (parts.length === 0) return
     const put = (which: 'before' | 'after'): void => {
       for (const part of parts) sheet.put(renderer, part.rect, part[which])
       this.#changed(sheet, parts.map(({ rect }) => rect))

@@ -16,9 +16,10 @@ export class Edits {
     this.#history = history
   }
 
-  /** Begins a step, unless one is under way: all that is done until `end` is undone together. */
+  /** Begins a step, unless one is under way: all that is done until `end` is undone together, and nothing is undone before it. */
   begin(): void {
     this.#before ??= this.#stack.layers
+    this.#history.held = true
   }
 
   /**
@@ -26,8 +27,7 @@ export class Edits {
    * @param name What undoing it is called. @param beside What was done in it beside changes of the stack.
    */
   end(name: string, beside?: Beside): void {
-    const [before, after] = [this.#before, this.#stack.layers]
-    this.#before = undefined
+    const [before, after] = [this.#close(), this.#stack.layers]
     if (!before || (!beside && areSame(before, after))) return
     const [last, at] = [this.#last, performance.now()]
     if (!beside && last && last.step === this.#history.last && last.step.name === name && at - last.at < kOneGo) {
@@ -42,8 +42,7 @@ export class Edits {
 
   /** Takes back what was done since `begin`. */
   cancel(): void {
-    const before = this.#before
-    this.#before = undefined
+    const before = this.#close()
     if (before) this.#stack.change(this.#stack.layers, before)
   }
 
@@ -57,8 +56,16 @@ export class Edits {
     this.#history.forget(() => true)
   }
 
-  /** Does something to the layers as a step. @param name What undoing it is called. */
+  #close(): readonly Layer[] | undefined {
+    const before = this.#before
+    this.#before = undefined
+    this.#history.held = false
+    return before
+  }
+
+  /** Does something to the layers as a step; as a part of the one that is under way, if one is. @param name What undoing it is called. */
   do<Result>(name: string, run: () => Result): Result {
+    if (this.#before) return run()
     this.begin()
     try {
       return run()

@@ -30,6 +30,8 @@ export class LayerList {
   readonly #list = element('layer-list', HTMLOListElement)
   readonly #rows = new Map<number, Row>()
   #dragged: Layer | undefined
+  /** The layer that is being laid in another way. */
+  #restyled: number | undefined
 
   constructor(stack: LayerStack, edits: Edits) {
     this.#stack = stack
@@ -49,6 +51,9 @@ export class LayerList {
       if (layers.some((layer) => layer.id === id)) continue
       item.remove()
       this.#rows.delete(id)
+      // Its controls do not tell any more that it is over.
+      if (this.#dragged?.id === id) this.#drop()
+      if (this.#restyled === id) this.#restyledAs('style')
     }
     const focused = document.activeElement
     const items = layers.toReversed().map((layer) => {
@@ -64,6 +69,13 @@ export class LayerList {
     this.#list.hidden = items.length === 0
     element('layer-count', HTMLElement).textContent = `${layers.length} of ${kMostLayers}`
     for (const name of ['add-image', 'add-painting']) element(name, HTMLButtonElement).disabled = this.#stack.full
+  }
+
+  /** Ends a step in which a layer was laid in another way. */
+  #restyledAs(what: string): void {
+    const { name } = this.#stack.layers.find(({ id }) => id === this.#restyled) ?? { name: 'a layer' }
+    this.#restyled = undefined
+    this.#edits.end(`${what} of ${name}`)
   }
 
   #layerOf(id: number): Layer {
@@ -82,23 +94,22 @@ export class LayerList {
     for (const name of kBlends) blend.add(new Option(kBlendTitles[name], name))
     /** A drag says the same many times, and then that it is over. */
     const restyle = (style: Partial<Style>): void => {
+      if (!this.#rows.has(id)) return
+      this.#restyled = id
       this.#edits.begin()
       this.#stack.restyle(this.#layerOf(id), style)
     }
-    const done = (what: string) => (): void => this.#edits.end(`${what} of ${this.#layerOf(id).name}`)
 
     choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)))
     visible.addEventListener('change', () => {
       restyle({ visible: visible.checked })
-      done(visible.checked ? 'showing' : 'hiding')()
+      this.#restyledAs(visible.checked ? 'showing' : 'hiding')
       announce(`${this.#layerOf(id).name} is ${visible.checked ? 'shown' : 'hidden'}.`)
     })
     opacity.addEventListener('input', () => restyle({ opacity: Number(opacity.value) / 100 }))
     tint.addEventListener('input', () => restyle({ tint: tint.value }))
     blend.addEventListener('input', () => restyle({ blend: blend.value as Blend }))
-    opacity.addEventListener('change', done('opacity'))
-    tint.addEventListener('change', done('tint'))
-    blend.addEventListener('change', done('blending'))
+    for (const [control, what] of [[opacity, 'opacity'], [tint, 'tint'], [blend, 'blending']] as const) control.addEventListener('change', () => this.#restyledAs(what))
     remove.addEventListener('click', () => this.#remove(id))
     grip.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return

@@ -59,7 +59,7 @@ export class LayerStack extends Emitter<StackEvents> {
 
   /** Takes a layer away. */
   remove(id: number): void {
-    const place = this.#layers.findIndex((layer) => layer.id === id)
+    const place = this.#placeOf({ id })
     this.#set(this.#layers.toSpliced(place, 1))
     if (this.#selected === id) this.select(this.#layers[Math.min(place, this.#layers.length - 1)])
   }
@@ -118,8 +118,10 @@ export class LayerStack extends Emitter<StackEvents> {
     return layer
   }
 
-  #placeOf({ id }: Layer): number {
-    return this.#layers.findIndex((layer) => layer.id === id)
+  #placeOf({ id }: Pick<Layer, 'id'>): number {
+    const place = this.#layers.findIndex((layer) => layer.id === id)
+    if (place < 0) throw new Error('That layer was removed.')
+    return place
   }
 
   #replace(layer: Layer): void {

@@ -56,12 +56,17 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
     session.setView(state.view)
     opener.openSample(state.sample, state.layers?.[0]?.paint, state.locks)
     if (state.layers) layers.restore(state.layers)
-    const end = session.on('transfer', ({ target }) => {
-      end()
-      if (target.sample?.name !== state.sample) return
-      if (angle) viewer?.lookFrom(angle)
-      if (shape) live.move(shape)
-    })
+    const ends = [
+      session.on('transfer', ({ target }) => {
+        end()
+        if (target.sample?.name !== state.sample) return
+        if (angle) viewer?.lookFrom(angle)
+        if (shape) live.move(shape)
+      }),
+      // It came to nothing: what is opened next has nothing to do with it.
+      session.on('progress', ({ state }) => state !== 'working' && end()),
+    ]
+    const end = (): void => ends.forEach((off) => off())
     return true
   }
   addEventListener('hashchange', restore)
