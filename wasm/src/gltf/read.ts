@@ -117,11 +117,11 @@ async function readBuffers(json: GLTF.IGLTF, binary: Uint8Array | undefined, fol
  */
 export async function readUri(name: string, uri: string, folder: string): Promise<Uint8Array> {
   if (/^data:/i.test(uri)) {
-    try {
-      return new Uint8Array(await (await fetch(uri)).arrayBuffer());
-    } catch (cause) {
-      throw new InputError(`${name} is ${show(uri)}, no data URI that can be read`, { cause });
-    }
+    const [head, kind] = /^data:([^,]*),/i.exec(uri) ?? [];
+    if (head === undefined) throw new InputError(`${name} is ${show(uri)}, no data URI`);
+    // `fetch` would do it too, in 7 seconds for 60 MB instead of one tenth.
+    const bytes = uri.slice(head.length).replace(/%([0-9a-f]{2})/gi, (_, byte: string) => String.fromCharCode(Number.parseInt(byte, 16)));
+    return Buffer.from(bytes, /;\s*base64\s*$/i.test(kind!) ? 'base64' : 'latin1');
   }
   if (/^[a-z][a-z0-9+.-]+:/i.test(uri)) throw new InputError(`${name} is at ${uri.slice(0, 60)}; only files are read`);
   try {
