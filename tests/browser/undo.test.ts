@@ -177,9 +177,25 @@ test('nothing is undone while a hand is at it, and nothing of what it does is lo
   await page.keyboard.press('Control+z')
   assert.deepEqual([await undoTitle(), await state()], before)
 
-  // An opacity, of a layer that is removed by a key meanwhile.
+  // An opacity that ends where it began.
   await rows(page).filter({ hasText: 'red.png' }).locator('.choose').click()
   const slider = (await control('slider', 'Opacity of red.png').boundingBox())!
+  const opacity = Number(await control('slider', 'Opacity of red.png').inputValue())
+  const x = slider.x + 8 + (opacity / 100) * (slider.width - 16)
+  await page.mouse.move(x, slider.y + slider.height / 2)
+  await page.mouse.down()
+  await page.mouse.move(slider.x + 0.3 * slider.width, slider.y + slider.height / 2, { steps: 3 })
+  await page.mouse.move(x, slider.y + slider.height / 2, { steps: 3 })
+  await page.mouse.up()
+  await pause()
+  const title = await undoTitle()
+  await page.keyboard.press('Control+z')
+  assert.notEqual(await undoTitle(), title)
+  await page.keyboard.press('Control+y')
+  while ((await undoTitle()) !== before[0]) await page.keyboard.press('Control+z')
+  assert.deepEqual(await state(), before[1])
+
+  // One of a layer that is removed by a key meanwhile.
   await page.mouse.move(slider.x + 0.9 * slider.width, slider.y + slider.height / 2)
   await page.mouse.down()
   await page.mouse.move(slider.x + 0.3 * slider.width, slider.y + slider.height / 2, { steps: 3 })

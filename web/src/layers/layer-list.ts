@@ -109,7 +109,10 @@ export class LayerList {
     opacity.addEventListener('input', () => restyle({ opacity: Number(opacity.value) / 100 }))
     tint.addEventListener('input', () => restyle({ tint: tint.value }))
     blend.addEventListener('input', () => restyle({ blend: blend.value as Blend }))
-    for (const [control, what] of [[opacity, 'opacity'], [tint, 'tint'], [blend, 'blending']] as const) control.addEventListener('change', () => this.#restyledAs(what))
+    for (const [control, what] of [[opacity, 'opacity'], [tint, 'tint'], [blend, 'blending']] as const) {
+      // Where it is in the end as it was, nothing changes for a browser: there is no `change` then.
+      for (const end of ['change', 'pointerup', 'pointercancel', 'blur'] as const) control.addEventListener(end, () => this.#restyled === id && this.#restyledAs(what))
+    }
     remove.addEventListener('click', () => this.#remove(id))
     grip.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return
