@@ -154,7 +154,7 @@ const contrastFaults = `() => {
 }`
 
 test('what is said on the picture is not covered by what is pressed there', async () => {
-  const { page } = visit
+  const { page } = (visit = await site.visit({ hasTouch: true }))
   const covered: string[] = []
   for (const [width, height] of [[667, 375], [844, 390], [900, 700], [1024, 768], [1440, 900], [390, 844], [568, 320]] as const) {
     await page.setViewportSize({ width, height })
