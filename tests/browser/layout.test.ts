@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict'
 import { after, before, test } from 'node:test'
+import { PNG } from 'pngjs'
 import { difference, look, modelArea } from './picture'
 import { Site, type Visit } from './site'
 
@@ -182,9 +183,14 @@ test('what is said on the picture is not covered by what is pressed there', asyn
 test('where a system has colours of its own, what is chosen still looks chosen', async () => {
   const { page } = visit
   await page.emulateMedia({ forcedColors: 'active' })
-  const grounds = await page.evaluate(() =>
-    ['.rail', '.segmented'].map((group) => ['', ':not(:checked)'].map((not) => getComputedStyle(document.querySelector(`${group} ${not || ':checked'} + span`)!).backgroundColor)),
-  )
+  // As it is drawn: what a style is computed to be knows nothing of those colours.
+  const groundOf = async (selector: string): Promise<string> => {
+    const { x, y, height } = (await page.locator(selector).first().boundingBox())!
+    const { data } = PNG.sync.read(await page.screenshot({ clip: { x: x + 6, y: y + height / 2 - 2, width: 4, height: 4 } }))
+    return data.subarray(0, 3).join()
+  }
+  const grounds: [string, string][] = []
+  for (const group of ['.rail', '.segmented']) grounds.push([await groundOf(`${group} :checked + span`), await groundOf(`${group} :not(:checked) + span`)])
   await page.emulateMedia({ forcedColors: null })
   for (const [chosen, other] of grounds) assert.notEqual(chosen, other)
 })

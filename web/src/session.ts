@@ -162,8 +162,8 @@ export class Session extends Emitter<SessionEvents> {
     this.#rules = { ...before, ...change }
     this.emit('rules', this.#rules)
     if (this.#rules.preset !== before.preset) {
-      // Before anything was asked for there is nothing to do again.
       this.#giveUpRest()
+      // Before anything was asked for there is nothing to do again.
       if (this.begun) void this.#run()
     } else if (this.#shown) this.#classify()
   }
@@ -300,12 +300,11 @@ export class Session extends Emitter<SessionEvents> {
     const results = await Promise.allSettled([target, cage, paint])
     const failed = results.find((result) => result.status === 'rejected')
     if (failed && !superseded()) {
-      const wanted = this.#wanted
-      const isTogether = (slot: keyof Scene): boolean => wanted[slot] !== undefined && wanted[slot] === this.#together[slot]
       const slots = ['target', 'cage', 'paint'] as const
-      const [lost, found] = [slots.filter((_, index) => results[index]!.status === 'rejected'), slots.filter((_, index) => results[index]!.status !== 'rejected')]
-      for (const slot of lost) this.#giveUp(slot)
-      if (this.#shown && lost.some(isTogether)) for (const slot of found.filter(isTogether)) this.#giveUp(slot)
+      const lost = slots.filter((_, index) => results[index]!.status === 'rejected')
+      const together = slots.filter((slot) => this.#wanted[slot] === this.#together[slot])
+      const isTorn = this.#shown !== undefined && lost.some((slot) => together.includes(slot))
+      for (const slot of slots) if (lost.includes(slot) || (isTorn && together.includes(slot))) this.#giveUp(slot)
       throw failed.reason
     }
     const [t, c, p] = results.map((result) => (result.status === 'fulfilled' ? result.value : undefined)) as [Model?, Model?, Paint?]

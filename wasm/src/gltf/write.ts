@@ -134,11 +134,12 @@ function separateMeshes(json: GLTF.IGLTF, parts: Part[]): Map<number, number> {
     const number = json.meshes!.push(structuredClone(json.meshes![mesh]!)) - 1;
     for (const { channels } of json.animations ?? []) {
       for (const channel of [...(channels ?? [])]) {
+        const pointerOf = ({ target }: GLTF.IAnimationChannel) => target?.extensions?.['KHR_animation_pointer'] as { pointer?: unknown } | undefined;
+        const pointer = pointerOf(channel)?.pointer;
+        const place = `/meshes/${mesh}/`;
+        if (typeof pointer !== 'string' || !pointer.startsWith(place)) continue;
         const twin = structuredClone(channel);
-        const extension = twin.target?.extensions?.['KHR_animation_pointer'] as { pointer?: unknown } | undefined;
-        const [, rest] = typeof extension?.pointer === 'string' ? extension.pointer.split(`/meshes/${mesh}/`) : [];
-        if (rest === undefined) continue;
-        extension!.pointer = `/meshes/${number}/${rest}`;
+        pointerOf(twin)!.pointer = `/meshes/${number}/${pointer.slice(place.length)}`;
         channels.push(twin);
       }
     }

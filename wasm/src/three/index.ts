@@ -109,19 +109,15 @@ function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays
   const { result } = options;
   const [vertices, triangles] = [mesh.positions.length / 3, mesh.indices.length / 3];
   const hint = '; extract it before vertices are split';
-  checkDecision('options.result', result, vertices, triangles, result?.segmentStats?.length, hint);
-  checkLengths('options.result', result, { uvs: 2 * vertices, segments: vertices, ...(result.cornerUvs?.length !== 0 && { cornerUvs: 6 * triangles }) }, hint);
+  const cornerUvs = result?.cornerUvs?.length === 0 ? 0 : 6 * triangles;
+  checkLengths('options.result', result, { zones: vertices, cosmeticTriangles: triangles, uvs: 2 * vertices, cornerUvs, segments: vertices, segmentStats: result?.segmentStats?.length ?? 1 }, hint);
   return result;
 }
 
-/** Checks that a decision is one, and of this target. */
-function checkDecision(name: string, decision: Classification, vertices: number, triangles: number, segments: number | undefined, hint = ''): void {
-  checkLengths(name, decision, { zones: vertices, cosmeticTriangles: triangles, segmentStats: segments ?? 0 }, hint);
-}
-
-function checkLengths(name: string, of: object, lengths: Record<string, number>, hint: string): void {
+/** Checks that what is given is of this target: by how long its lists are. */
+function checkLengths(name: string, given: object, lengths: Record<string, number>, hint = ''): void {
   for (const [field, length] of Object.entries(lengths)) {
-    const found = (of as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
+    const found = (given as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
     if (found !== length) throw new CagecastError('badArgument', `cagecast/three: ${name}.${field} ${found === undefined ? 'is no list' : `has ${found} entries`}, the target needs ${length}${hint}`);
   }
 }
@@ -191,7 +187,7 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     parts,
     overlays,
     update(classification) {
-      checkDecision('classification', classification, result.zones.length, result.cosmeticTriangles.length, culled.length);
+      checkLengths('classification', classification, { zones: result.zones.length, cosmeticTriangles: result.cosmeticTriangles.length, segmentStats: culled.length });
       show(classification);
     },
     dispose() {
