@@ -112,7 +112,7 @@ function dress(target: Object3D, cage: Object3D, paint: Texture, look: Look): vo
   if (look === 'cage') return;
   if (look === 'naive') {
     const { update, result } = applyTransfer(target, cage, { texture: paint, preset: 'paper' });
-    update({ zones: new Uint8Array(result.zones.length), cosmeticTriangles: new Uint8Array(result.cosmeticTriangles.length).fill(1) });
+    update({ zones: new Uint8Array(result.zones.length), cosmeticTriangles: new Uint8Array(result.cosmeticTriangles.length).fill(1), segmentStats: result.segmentStats });
     return;
   }
   const texture = look === 'removed' ? faded(paint) : paint;

@@ -2,7 +2,14 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { test } from 'node:test';
 
-test('the package, the command and these tests type-check, strictly', () => {
-  const { status, stdout } = spawnSync(process.execPath, ['node_modules/typescript/bin/tsc', '-p', 'wasm/tsconfig.json'], { encoding: 'utf8' });
-  assert.equal(status, 0, stdout);
-});
+const kProjects = {
+  'the package, the command and these tests': 'wasm',
+  'the measurements': 'bench',
+  'what makes the samples': 'examples/assets',
+};
+for (const [what, project] of Object.entries(kProjects)) {
+  test(`${what}: all types are right`, () => {
+    const { status, stdout } = spawnSync(process.execPath, ['node_modules/typescript/bin/tsc', '-p', project], { encoding: 'utf8' });
+    assert.equal(status, 0, stdout);
+  });
+}
