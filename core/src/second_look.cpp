@@ -172,12 +172,12 @@ class NormalSums {
 
 /// Finds the outlooks of the points of those segments that `isWanted`.
 /// @param asks          1 per point: whether it is going to look.
-/// @param toBothSides   Where all triangles have copies in reverse winding, a point that asks looks along the sum of the normals,
-///                      each turned to the side of the largest triangle, and against it.
+/// With `bothSides`, where all triangles have copies in reverse winding, a point that asks looks along the sum of the normals, each
+/// turned to the side of the largest triangle, and against it.
 /// @param[out] outlooks  Taken from `scratch`.
 /// @return false if memory ran out.
 bool findOutlooks(const Points& points, const Cage& cage, const Units& units, const PointResults& results, const PointAreas& areas,
-                  std::uint32_t segmentCount, const bool* isWanted, const bool* asks, bool toBothSides, Scratch& scratch, Outlooks& outlooks) noexcept {
+                  std::uint32_t segmentCount, const bool* isWanted, const bool* asks, const ProjectOptions& options, Scratch& scratch, Outlooks& outlooks) noexcept {
   Vec3* normals = outlooks.normals = scratch.take<Vec3>(points.count);
   outlooks.isTwoSided = scratch.take<bool>(points.count);
   outlooks.isTurned = scratch.take<bool>(segmentCount);
@@ -209,11 +209,13 @@ bool findOutlooks(const Points& points, const Cage& cage, const Units& units, co
     sums.normalize(p);
     anyCancelled = anyCancelled | (asks[p] & isZero(normals[p]));
     const double agrees = dot(normals[p], cage.triangles[results.triangles[p]].normal.exact);
-    agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas.all[p]) * agrees);
+    // Of a closed part inside and outside cancel out, but what is inside of it is occluded.
+    const bool counts = !(options.exposedSide & asks[p]);
+    agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas.all[p]) * agrees) * counts;
   }
   for (std::uint32_t s = 0; s < segmentCount; ++s) outlooks.isTurned[s] = agreement[s] < 0;
 
-  if (anyCancelled && toBothSides) {
+  if (anyCancelled && options.bothSides) {
     auto* largest = scratch.take<std::uint32_t>(points.count);
     if (scratch.failed()) return false;
     std::fill(largest, largest + points.count, UINT32_MAX);
@@ -322,14 +324,9 @@ class Lookout {
     const Vec3 across = cross(normal, std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
     const Vec3 t1 = 1 / length(across) * across;
     const Vec3 t2 = cross(normal, t1);
-    const Vec3 origin = points_.exactly(look.point) + lift_ * normal;
-    const double at[3] = {origin.x, origin.y, origin.z};
-    float position[4] = {};
+    float position[Points::kStride];
     float rest[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      position[axis] = static_cast<float>(at[axis]);
-      rest[axis] = static_cast<float>(at[axis] - static_cast<double>(position[axis]));
-    }
+    Points::split(points_.exactly(look.point) + lift_ * normal, position, rest);
     for (std::uint32_t r = first; r < first + more; ++r) {
       const double(&d)[3] = kDirections[look.asked++];
       // In place: a direction that is copied right after it was written stalls.
@@ -357,7 +354,7 @@ class Lookout {
 }  // namespace
 
 bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
-               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, bool toBothSides,
+               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, const ProjectOptions& options,
                Scratch& scratch, std::uint32_t* restores) noexcept {
   const auto segmentCount = static_cast<std::uint32_t>(stats.size());
   const Scratch::Mark mark = scratch.mark();
@@ -370,7 +367,7 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
     std::fill(isWanted, isWanted + segmentCount, false);
     for (std::uint32_t i = 0; i < end; ++i) isWanted[results.segments[queue[i]]] = true;
     Outlooks outlooks;
-    if (!findOutlooks(points, cage, units, results, areas, segmentCount, isWanted, occluded.asks(), toBothSides, scratch, outlooks)) return false;
+    if (!findOutlooks(points, cage, units, results, areas, segmentCount, isWanted, occluded.asks(), options, scratch, outlooks)) return false;
     Lookout lookout(points, outlooks, targetTree, cageTree.rays, units.diagonal, scratch);
     if (scratch.failed()) return false;
     // What is seen does not depend on who asks, so neither does what is restored in the end on the order of the queue.

@@ -73,7 +73,7 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
 
 /// Step 4′: finds the triangles that vote from within, and the places inside them, not yet judged.
 bool findVoters(const Points& points, const Rims& rims, const Units& units, const PointResults& results,
-                const Array<SegmentStats>& stats, Scratch& scratch, Voters& out) noexcept;
+                const Array<SegmentStats>& stats, const ProjectOptions& options, Scratch& scratch, Voters& out) noexcept;
 
 /// Areas of the points, as whole numbers of an `AreaUnit`.
 struct PointAreas {
@@ -96,7 +96,7 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
 /// at a threshold of 0 without a floor alone, or by a lock, and are taken as they are.
 /// @param[out] restores  1 per point: set to `Restores::always` for those.
 bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree, const Units& units,
-               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, bool toBothSides,
+               const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, const ProjectOptions& options,
                Scratch& scratch, std::uint32_t* restores) noexcept;
 
 /// Step 7: finds what brings each uncovered point back, and what the segments have at each hole.

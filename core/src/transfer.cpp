@@ -95,8 +95,7 @@ bool findRestores(const Points& points, const Scene& scene, const ProjectOptions
   if (scratch.failed() || !out.restores.reset(vertexCount)) return false;
   std::fill(restores, restores + points.count, Restores::never);
   if (options.secondLook &&
-      !lookAgain(points, cage, cageTree, targetTree, units, results, areas, out.segmentStats, options.bothSides,
-                 scratch, restores)) {
+      !lookAgain(points, cage, cageTree, targetTree, units, results, areas, out.segmentStats, options, scratch, restores)) {
     return false;
   }
   out.timings.secondLook = watch.lap();
@@ -147,7 +146,7 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   if (!findSegments(points, vertexCount, targetMesh.groups, scratch, results, out.segmentStats)) return kOutOfMemory;
   Voters voters;
   if (isFiltered && options.votes) {
-    if (!findVoters(points, scene.rims, units, results, out.segmentStats, scratch, voters) ||
+    if (!findVoters(points, scene.rims, units, results, out.segmentStats, options, scratch, voters) ||
         !takeResults(voters.points.count, options, voters.results)) {
       return kOutOfMemory;
     }

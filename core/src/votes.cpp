@@ -15,20 +15,10 @@ bool meets(const Rims::Box& box, const Rims::Box& rim, double margin) {
   return true;
 }
 
-/// Splits a position into floats and what is left.
-void put(Vec3 p, float* position, float* rest) {
-  const double at[3] = {p.x, p.y, p.z};
-  for (int k = 0; k < 3; ++k) {
-    position[k] = static_cast<float>(at[k]);
-    rest[k] = static_cast<float>(at[k] - static_cast<double>(position[k]));
-  }
-  position[3] = 0;
-}
-
 }  // namespace
 
 bool findVoters(const Points& points, const Rims& rims, const Units& units, const PointResults& results,
-                const Array<SegmentStats>& stats, Scratch& scratch, Voters& out) noexcept {
+                const Array<SegmentStats>& stats, const ProjectOptions& options, Scratch& scratch, Voters& out) noexcept {
   const auto isSmall = [](const SegmentStats& segment) { return segment.points < kFewPoints; };
   if (rims.count == 0 || std::none_of(stats.begin(), stats.end(), isSmall)) return true;
   const double margin = kNearHole * units.diagonal;
@@ -42,7 +32,10 @@ bool findVoters(const Points& points, const Rims& rims, const Units& units, cons
   std::fill(boxes, boxes + stats.size(), Rims::Box{});
   for (std::uint32_t i = 0; i < points.count; ++i) {
     const std::uint32_t s = results.segments[i];
-    if (isSmall(stats[s])) boxes[s].grow(Vec3::from(points.at(i)));
+    if (!isSmall(stats[s])) continue;
+    // All that is as near to the point as the cage is: with that, what lies over the point.
+    const double around = options.farRims ? static_cast<double>(results.distances[i]) : 0;
+    for (const double side : {-around, around}) boxes[s].grow(Vec3::from(points.at(i)) + Vec3{side, side, side});
   }
   // Small segments mostly have no room for a big edge, and then nobody has to look for one.
   bool anyMayVote = false;
@@ -77,7 +70,7 @@ bool findVoters(const Points& points, const Rims& rims, const Units& units, cons
     const Vec3 c = Vec3::from(points.at(corner[2]));
     const Vec3 sum = a + b + c;
     const Vec3 centroids[4] = {1.0 / 6 * (sum + 3 * a), 1.0 / 6 * (sum + 3 * b), 1.0 / 6 * (sum + 3 * c), 1.0 / 3 * sum};
-    for (std::size_t k = 0; k < 4; ++k) put(centroids[k], positions + (4 * i + k) * Points::kStride, rests + (4 * i + k) * 3);
+    for (std::size_t k = 0; k < 4; ++k) Points::split(centroids[k], positions + (4 * i + k) * Points::kStride, rests + (4 * i + k) * 3);
   }
   out.count = count;
   out.triangles = triangles;

@@ -164,6 +164,17 @@ std::uint32_t weldTriangles(std::span<const std::uint32_t> indices, const std::u
 
 }  // namespace
 
+void Points::split(Vec3 p, float* position, float* rest) noexcept {
+  const auto part = [](double x, float& rounded, float& left) {
+    rounded = static_cast<float>(x);
+    left = static_cast<float>(x - static_cast<double>(rounded));
+  };
+  part(p.x, position[0], rest[0]);
+  part(p.y, position[1], rest[1]);
+  part(p.z, position[2], rest[2]);
+  position[3] = 0;
+}
+
 bool weld(const MeshView& target, const Units& units, float tolerance, Scratch& scratch, Points& out) noexcept {
   const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
   const auto allTriangles = static_cast<std::uint32_t>(target.indices.size() / 3);

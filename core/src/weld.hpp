@@ -22,6 +22,9 @@ struct Points {
   const double* doubleAreas = nullptr;       ///< Twice the area of each of them, scaled.
   const float* rests = nullptr;              ///< 3 per point, or none: what the exact position has beyond `positions`.
 
+  /// Splits a position into that of a point and what it has beyond that.
+  static void split(Vec3 p, float* position, float* rest) noexcept;
+
   [[nodiscard]] const float* at(std::uint32_t point) const { return positions + kStride * point; }
   [[nodiscard]] Vec3 exactly(std::uint32_t point) const {
     const Vec3 p = Vec3::from(at(point));

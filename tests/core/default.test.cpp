@@ -30,11 +30,13 @@ constexpr Step kSteps[] = {
     {"an end for the self ray", [](TransferOptions& o) { o.occlusionReach = preset().occlusionReach; }},
     {"poke-through", [](TransferOptions& o) { o.pokeThrough = preset().pokeThrough; }},
     {"votes", [](TransferOptions& o) { o.votes = true; }},
+    {"votes under far rims", [](TransferOptions& o) { o.votes = o.farRims = true; }},
     {"the floor of area", [](TransferOptions& o) { o.floor = Floor::area; }},
     {"the floor of depth", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = true; }},
     {"copies", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = o.copies = true; }},
     {"the second look", [](TransferOptions& o) { o.secondLook = true; }},
     {"the second look to both sides", [](TransferOptions& o) { o.secondLook = o.bothSides = true; }},
+    {"the second look by what is exposed", [](TransferOptions& o) { o.secondLook = o.exposedSide = true; }},
     {"holes", [](TransferOptions& o) { o.holes = true; }},
     {"partial triangles", [](TransferOptions& o) { o.partialTriangles = true; }},
 };
@@ -97,6 +99,7 @@ TEST_CASE("any choice of the preset's steps and constants is the reference's on 
     if (flip()) options.occlusionReach = random.between(0, 0.1f);
     if (flip()) options.pokeThrough = random.between(0, 0.02f);
     options.votes = flip();
+    options.farRims = flip();
     options.floor = std::array{Floor::none, Floor::area, Floor::depth}[random.below(3)];
     options.depths = options.floor == Floor::depth;
     options.minCovered = random.between(0, 1);
@@ -105,6 +108,7 @@ TEST_CASE("any choice of the preset's steps and constants is the reference's on 
     options.copies = options.floor == Floor::depth && flip();
     options.secondLook = flip();
     options.bothSides = flip();
+    options.exposedSide = flip();
     options.holes = flip();
     options.partialTriangles = flip();
     const int triangles = 10 + static_cast<int>(random.below(50));

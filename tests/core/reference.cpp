@@ -147,13 +147,15 @@ struct Voter {
 };
 
 /// Step 4': whether the triangles of each segment may vote from within: if it is small, and near a hole.
-std::vector<bool> mayVoteFromWithin(const Scene& scene, const State& state) {
+std::vector<bool> mayVoteFromWithin(const Scene& scene, const Options& options, const State& state) {
   constexpr std::uint32_t kFewPoints = 32;
   constexpr double kNear = 0.01;
   std::vector<Box> boxes(state.segmentCount);
   std::vector<std::uint32_t> points(state.segmentCount, 0);
   for (std::size_t p = 0; p < state.segments.size(); ++p) {
-    boxes[state.segments[p]].add(scene.points.positions[p]);
+    // Holes may be as far off as the cage is.
+    const double around = options.farRims ? state.places[p].nearest.distance : 0;
+    for (const double side : {-around, around}) boxes[state.segments[p]].add(scene.points.positions[p] + Vec{side, side, side});
     ++points[state.segments[p]];
   }
   std::vector<bool> result;
@@ -172,7 +174,7 @@ std::vector<Voter> findVoters(const Scene& scene, const Options& options, const 
   for (std::size_t p = 0; p < state.segments.size(); ++p)
     voters.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
   std::vector<bool> within(state.segmentCount, false);
-  if (options.votes) within = mayVoteFromWithin(scene, state);
+  if (options.votes) within = mayVoteFromWithin(scene, options, state);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
     const Triangle& triangle = scene.target.triangles()[t];
     const auto& [a, b, c] = triangle.corners;
@@ -409,14 +411,20 @@ std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const 
       turned[p] = turned[p] + triangles[t].normal * (triangles[t].area * side);
     }
   std::vector<Outlook> result(scene.points.count());
-  std::vector<double> agreement(state.segmentCount, 0.0), most(state.segmentCount, 0.0);
+  std::vector<double> agreement(state.segmentCount, 0.0), most(state.segmentCount, 0.0), unsure(state.segmentCount, 0.0);
   for (std::size_t p = 0; p < result.size(); ++p) {
     if (length(sums[p]) > kCancelled * weights[p]) result[p].normal = unit(sums[p]);
-    agreement[state.segments[p]] += state.areas[p] * dot(result[p].normal, state.places[p].triangle->normal);
-    if (dot(result[p].normal, result[p].normal) > 0) most[state.segments[p]] += state.areas[p];
+    const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
+    const unsigned occluded = bit(Zone::occluded), nearby = state.findings[p].nearby;
+    if (cancelled || (options.exposedSide && nearby == occluded)) continue;
+    const std::uint32_t s = state.segments[p];
+    const double agrees = state.areas[p] * dot(result[p].normal, state.places[p].triangle->normal);
+    most[s] += state.areas[p];
+    if (!options.exposedSide || state.findings[p].zone != Zone::occluded) agreement[s] += agrees;
+    if (options.exposedSide && (nearby & occluded) != 0) unsure[s] += std::abs(agrees);
   }
   for (std::uint32_t s = 0; s < state.segmentCount; ++s)
-    firm.push_back(most[s] == 0 || std::abs(agreement[s]) > kSumNoise * most[s]);
+    firm.push_back(most[s] == 0 || std::abs(agreement[s]) > unsure[s] + kSumNoise * most[s]);
   for (std::size_t p = 0; p < result.size(); ++p) {
     const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
     if (!cancelled && agreement[state.segments[p]] < 0) result[p].normal = result[p].normal * -1;
@@ -607,9 +615,9 @@ Options Options::paper() { return {}; }
 
 Options Options::standard() {
   Options options;
-  options.endOfSelfRay = options.pokes = options.votes = true;
+  options.endOfSelfRay = options.pokes = options.votes = options.farRims = true;
   options.floor = Floor::depth;
-  options.copies = options.secondLook = options.bothSides = true;
+  options.copies = options.secondLook = options.bothSides = options.exposedSide = true;
   options.holes = options.partialTriangles = options.seams = true;
   return options;
 }
@@ -617,7 +625,7 @@ Options Options::standard() {
 Options Options::earlier() {
   Options options = standard();
   options.floor = Floor::area;
-  options.copies = options.bothSides = false;
+  options.copies = options.bothSides = options.farRims = options.exposedSide = false;
   return options;
 }
 
@@ -713,6 +721,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.pokes = library.pokeThrough > 0;
   options.pokeThrough = static_cast<double>(library.pokeThrough);
   options.votes = library.votes;
+  options.farRims = library.farRims;
   options.floor = library.floor;
   options.minCovered = static_cast<double>(library.minCovered);
   options.minOfAll = static_cast<double>(library.minOfAll);
@@ -720,6 +729,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.copies = library.copies;
   options.secondLook = library.secondLook;
   options.bothSides = library.bothSides;
+  options.exposedSide = library.exposedSide;
   options.holes = library.holes;
   options.partialTriangles = library.partialTriangles;
   options.seams = library.seams == Seams::corner;

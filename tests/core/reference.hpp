@@ -21,6 +21,7 @@ struct Options {
   bool pokes = false;               ///< Step 3': a point without a cage hit, up to `pokeThrough` outside, is covered.
   double pokeThrough = 0.0025;
   bool votes = false;               ///< Step 4': big triangles of small segments at a hole vote from within.
+  bool farRims = false;             ///< Step 4': a rim is near a segment up to where the cage is; else within 0.01.
   Floor floor = Floor::none;        ///< Step 5': what a segment needs besides its coverage, and C > 0.
   double minCovered = 0.2;
   double minOfAll = 0.005;
@@ -28,6 +29,7 @@ struct Options {
   bool copies = false;              ///< Step 5': copies of one part that are in doubt are judged together.
   bool secondLook = false;          ///< Step 6: occluded points that are seen from elsewhere are restored.
   bool bothSides = false;           ///< Step 6: where normals cancel out, look to both sides; else such points stay.
+  bool exposedSide = false;         ///< Step 6: the side a segment looks to is that of its points that are not occluded.
   bool holes = false;               ///< Step 7: uncovered points whose hole is not meant for them are restored.
   bool partialTriangles = false;    ///< Step 8: triangles with some corners occluded are painted.
   bool seams = false;               ///< Step 9: UVs per corner, where a triangle lies across a seam.
@@ -35,7 +37,7 @@ struct Options {
 
   static Options paper();     ///< The literal method: none of the steps that can be switched.
   static Options standard();  ///< The preset `default`: all of them.
-  static Options earlier();   ///< The same with the floor and the second look as they were first written down.
+  static Options earlier();   ///< The same with step 4', the floor and the second look as they were first written down.
 };
 
 /// What step 5' asks of a segment, besides what is in its `SegmentStats`.

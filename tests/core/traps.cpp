@@ -198,6 +198,60 @@ Trap domed() {
   return trap;
 }
 
+Trap glazed() {
+  Trap trap;
+  trap.scene.name = "glazed";
+  constexpr Point kBody{0.8f, 0.6f, 1.92f};
+  constexpr float kAway = 0.13f;  // 3 % of the diagonal.
+  // On either side a window in front and one behind, of so much of the side.
+  constexpr float kLow = 0.1f, kHigh = 0.4f, kBack = 0.16f, kFront = 1.12f;
+  const auto beside = [](float x, float from, float to) { return std::max({from - x, x - to, 0.0f}); };
+  const auto fromWindow = [&](Point p) {
+    const float above = beside(p[1], kLow, kHigh), along = beside(std::abs(p[2]), kBack, kFront);
+    return std::abs(p[0]) < 0.7f ? 1 : std::sqrt(above * above + along * along);
+  };
+  trap.scene.cage = without(box({}, {kBody[0] + kAway, kBody[1] + kAway, kBody[2] + kAway}, 30), [&](Point p) {
+    return std::abs(p[0]) > kBody[0] && p[1] > kLow + 0.03f && p[1] < kHigh - 0.03f && std::abs(p[2]) > kBack + 0.05f && std::abs(p[2]) < kFront - 0.05f;
+  });
+  addBy(trap, without(box({}, kBody, 24), [&](Point p) { return fromWindow(p) == 0; }),
+        [&](Point p) { return fromWindow(p) < 0.15f ? Wanted::either : Wanted::painted; });
+  for (const float side : {-1.0f, 1.0f}) {
+    for (const float end : {-1.0f, 1.0f}) {
+      Mesh pane;
+      for (const float y : {kLow, kHigh})
+        for (const float z : {kBack, kFront}) pane.addVertex({side * kBody[0], y, end * z});
+      pane.addTriangle(0, 1, 3);
+      pane.addTriangle(0, 3, 2);
+      add(trap, pane, Wanted::bare);
+    }
+  }
+  return trap;
+}
+
+Trap hatted() {
+  Trap trap;
+  trap.scene.name = "hatted";
+  constexpr float kCrown = 0.5f, kThick = 0.015f, kAway = 0.05f;
+  const auto fromAxis = [](Point p) { return std::min(1.0f, std::sqrt(p[0] * p[0] + p[2] * p[2])); };
+  const auto round = [](float x) { return std::sqrt(std::max(0.0f, 1 - x * x)); };
+  const auto crown = [&](float r) { return 0.45f * round(r / kCrown); };
+  // A hat of one closed shell, of a unit sphere whose upper half becomes its outside: a crown and a flat brim.
+  addBy(trap, mapped(ellipsoid({}, {1, 1, 1}, 32), [&](Point p) {
+    const float r = fromAxis(p);
+    return Point{p[0], crown(r) + (p[1] < 0 ? -kThick : kThick) * round(r), p[2]};
+  }), [&](Point p) { return fromAxis(p) < kCrown + 0.1f && p[1] < crown(fromAxis(p)) ? Wanted::either : Wanted::painted; });
+  // The head under it.
+  addBy(trap, ellipsoid({0, -0.4f, 0}, {0.42f, 0.75f, 0.42f}, 20), [](Point p) { return p[1] > -0.2f ? Wanted::either : Wanted::painted; });
+  // Too high by 1 % of the diagonal, so that its upper side is nearer to the brim's lower one too.
+  constexpr float kUp = 0.033f;
+  trap.scene.cage = mapped(ellipsoid({}, {1, 1, 1}, 24), [&](Point p) {
+    const float r = fromAxis(p), out = 1 + kAway;
+    if (p[1] >= 0) return Point{p[0] * out, 0.5f * round(r * out / (kCrown + kAway)) + kAway + kUp, p[2] * out};
+    return Point{p[0] * out, kUp - kAway - 1.15f * round(r * out / kCrown), p[2] * out};
+  });
+  return trap;
+}
+
 std::vector<Trap> traps() {
   std::vector<Trap> all;
   all.push_back(clothed(false));
@@ -208,6 +262,8 @@ std::vector<Trap> traps() {
   all.push_back(doubled(true));
   all.push_back(wrapped());
   all.push_back(domed());
+  all.push_back(glazed());
+  all.push_back(hatted());
   return all;
 }
 

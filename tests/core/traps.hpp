@@ -41,6 +41,12 @@ Trap wrapped();
 /// A figure under a closed dome that is part of the target: whatever leaves the figure's cage meets it.
 Trap domed();
 
+/// A van whose windows are panes of two triangles, in a cage 3 % of the diagonal away, with holes smaller than they are.
+Trap glazed();
+
+/// A hat of one closed shell, whose brim is to be painted from below as well, on a head; the cage is too high.
+Trap hatted();
+
 /// All of them.
 std::vector<Trap> traps();
 

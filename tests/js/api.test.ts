@@ -313,8 +313,8 @@ describe('options', () => {
     assert.deepEqual(presetOptions(), presetOptions('default'));
     const paper = presetOptions('paper');
     assert.deepEqual(
-      [paper.seams, paper.occlusionReach, paper.floor, paper.votes, paper.depths, paper.secondLook, paper.bothSides, paper.holes, paper.copies, paper.partialTriangles],
-      ['vertex', Infinity, 'none', false, false, false, false, false, false, false],
+      [paper.seams, paper.occlusionReach, paper.floor, paper.votes, paper.farRims, paper.depths, paper.secondLook, paper.bothSides, paper.exposedSide, paper.holes, paper.copies, paper.partialTriangles],
+      ['vertex', Infinity, 'none', false, false, false, false, false, false, false, false, false],
     );
     for (const { cage, target } of [head(1), soup(3)]) {
       for (const preset of presets) {

@@ -87,7 +87,7 @@ describe('errors', () => {
     fails(untyped(cage, target, { locks: { groups: new Map([[0, 'exclude']]) } }), 'badOption', 'transfer: options.locks.groups is of type Map, not an object of numbers and locks');
     fails(untyped(cage, target, { locks: { segments: { '': 'keep' } } }), 'badOption', 'transfer: options.locks.segments has the entry "", which is no number');
     fails(untyped(cage, target, 0.5), 'badOption', 'transfer: options is 0.5, not an object');
-    fails(untyped(cage, target, { treshold: 0.5 }), 'badOption', 'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, seams, occlusionReach, pokeThrough, votes, depths, secondLook, bothSides, holes, threshold, floor, minCovered, minOfAll, maxUncovered, copies, partialTriangles, locks, into');
+    fails(untyped(cage, target, { treshold: 0.5 }), 'badOption', 'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, seams, occlusionReach, pokeThrough, votes, farRims, depths, secondLook, bothSides, exposedSide, holes, threshold, floor, minCovered, minOfAll, maxUncovered, copies, partialTriangles, locks, into');
     fails(untyped(cage, target, { preset: 'deflaut' }), 'badOption', /^transfer: options\.preset = "deflaut" is unknown/);
     fails(untyped(cage, target, { projection: 'nearest' }), 'badOption', /^transfer: options\.projection = "nearest" is unknown; there are: "nearestPoint", "nearestVertex"$/);
     fails(untyped(cage, target, { threshold: '0.5' }), 'badThreshold', 'transfer: options.threshold = "0.5" is not a number within 0..1');

@@ -41,12 +41,16 @@ export interface ProjectOptions {
   pokeThrough?: number | undefined;
   /** Step 4′: in small segments near a hole, big triangles vote with what is found inside them. Not in `paper`. */
   votes?: boolean | undefined;
+  /** Step 4′: a hole is near a segment if it is no farther than the cage itself; else only within 0.01. Not in `paper`. */
+  farRims?: boolean | undefined;
   /** Step 5′: measures how deep under the cage lies what is covered of each segment, and which are copies of others. Not in `paper`. */
   depths?: boolean | undefined;
   /** Step 6: occluded points that are seen from the cage in another direction are restored. Not in `paper`. */
   secondLook?: boolean | undefined;
   /** Step 6: points whose triangles all have copies in reverse winding look to both sides. Not in `paper`. */
   bothSides?: boolean | undefined;
+  /** Step 6: to which side a segment's points look is decided by those that are not occluded, not by all. Not in `paper`. */
+  exposedSide?: boolean | undefined;
   /** Step 7: uncovered points are restored unless the hole over them is meant for them. Not in `paper`. */
   holes?: boolean | undefined;
 }
@@ -106,9 +110,11 @@ const projectKinds = {
   occlusionReach: 'number',
   pokeThrough: 'number',
   votes: 'boolean',
+  farRims: 'boolean',
   depths: 'boolean',
   secondLook: 'boolean',
   bothSides: 'boolean',
+  exposedSide: 'boolean',
   holes: 'boolean',
 } as const satisfies Partial<Record<keyof PresetOptions, Kind>>;
 const classifyKinds = {

@@ -48,6 +48,8 @@ struct ProjectOptions {
   float pokeThrough = 0.0f;
   /// Step 4′: in small segments near a hole, big triangles vote with what is found inside them, not at their corners.
   bool votes = false;
+  /// Step 4′: a hole is near a segment if it is no farther than the cage itself; else only within 0.01.
+  bool farRims = false;
   /// Step 5′: measures how deep under the cage lies what is covered of each segment, and which segments are copies of others.
   bool depths = false;
   /// Step 6: occluded points that are seen from the cage in another direction are restored, if their segment passes and
@@ -55,6 +57,8 @@ struct ProjectOptions {
   bool secondLook = false;
   /// Step 6: points whose triangles all have copies in reverse winding look to both sides; else such points stay as they are.
   bool bothSides = false;
+  /// Step 6: to which side a segment's points look is decided by those that are not occluded; else by all.
+  bool exposedSide = false;
   /// Step 7: uncovered points are restored unless the hole over them is meant for them.
   bool holes = false;
 
@@ -66,7 +70,8 @@ struct ProjectOptions {
     options.seams = Seams::corner;
     options.occlusionReach = 0.03f;
     options.pokeThrough = 0.0025f;
-    options.votes = options.depths = options.secondLook = options.bothSides = options.holes = true;
+    options.votes = options.farRims = options.depths = true;
+    options.secondLook = options.bothSides = options.exposedSide = options.holes = true;
     return options;
   }
 };
