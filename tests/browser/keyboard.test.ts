@@ -27,6 +27,8 @@ async function tabTo(page: Page, id: string): Promise<void> {
   assert.fail(`the Tab key does not reach #${id}`)
 }
 
+const focused = (page: Page): Promise<string> => page.evaluate(() => document.activeElement!.id)
+
 /** Chooses a file by the field that has the keyboard. */
 async function chooseFile(page: Page, file: string): Promise<void> {
   const chooser = page.waitForEvent('filechooser')
@@ -68,5 +70,17 @@ test('by keyboard alone: files are loaded, transferred by other rules, and the m
   // Seams add copies of vertices, in the preset `paper` they do not.
   assert.equal(zones.filter((zone) => zone === 0).length, counts.cosmetic)
   assert.equal(zones.length, counts.cosmetic + counts.occluded + counts.uncovered + counts.culled)
+  await page.locator('#export-glb:not([aria-busy])').waitFor()
+  assert.equal(await focused(page), 'export-glb', 'the keyboard stays where it was')
   assert.deepEqual(complaints, [])
+})
+
+test('by keyboard alone: what is undone to the end is done again, and the other way round', async () => {
+  const { page } = await site.visit()
+  await page.getByTestId('add-painting').click()
+  await page.getByTestId('undo').focus()
+  for (const [key, next] of [['Enter', 'redo'], ['Enter', 'undo'], ['Enter', 'redo']] as const) {
+    await page.keyboard.press(key)
+    assert.equal(await focused(page), next)
+  }
 })

@@ -20,6 +20,8 @@ const kSizes = [
   { name: 'desk at 400 %', width: 320, height: 256 },
   { name: 'tablet', width: 768, height: 1024 },
   { name: 'desk', width: 1440, height: 900 },
+  { name: 'phone, large text', width: 390, height: 844, text: 24 },
+  { name: 'desk, large text', width: 1440, height: 900, text: 24 },
 ]
 
 /** Everything that is pressed or moved; for a box hidden behind its label, the label. */
@@ -30,11 +32,14 @@ async function openAll({ page }: Visit, open = true): Promise<void> {
   await page.locator('details').evaluateAll((all, open) => all.forEach((details) => details.toggleAttribute('open', open)), open)
 }
 
-for (const { name, ...viewport } of kSizes) {
+for (const { name, text, ...viewport } of kSizes) {
   test(`${name}: nothing sticks out sideways, and every control can be reached and hit`, async () => {
     const { page, complaints } = visit
+    const devTools = await page.context().newCDPSession(page)
+    await devTools.send('Page.setFontSizes', { fontSizes: { standard: text ?? 16 } })
     await page.setViewportSize(viewport)
     await openAll(visit)
+    assert.equal(await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize)), (text ?? 16) * 15 / 16)
     assert.equal(await page.evaluate(() => innerWidth), viewport.width)
     const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)
     assert.equal(wide, 0, 'no horizontal scroll')
@@ -55,6 +60,8 @@ for (const { name, ...viewport } of kSizes) {
     }, kControls)
     assert.deepEqual(faults, [])
     assert.deepEqual(complaints, [])
+    await devTools.send('Page.setFontSizes', { fontSizes: { standard: 16 } })
+    await devTools.detach()
   })
 }
 

@@ -107,6 +107,7 @@ test('it is seen morphed, paint and all, and goes back to the pixel', async () =
   await page.locator('#morphs-reset').click()
   await moved(page)
   assert.deepEqual([await slider(page, 'grow').inputValue(), await slider(page, 'drop').inputValue()], ['0', '0'])
+  assert.ok(await slider(page, 'grow').evaluate((one) => one === document.activeElement), 'the keyboard stays with the morphs')
   assert.equal(difference(rest, await look(page, area)), 0)
   assert.deepEqual(complaints, [])
 })

@@ -26,10 +26,14 @@ export function setUpUndo(history: History): void {
   })
 
   const show = (): void => {
+    const focused = document.activeElement
     for (const [button, word, deed] of [[undo, 'Undo', history.last], [redo, 'Redo', history.next]] as const) {
       button.disabled = deed === undefined
       button.title = deed ? `${word}: ${deed.name}` : word
     }
+    // The keyboard goes from what is at its end to what takes that back, not to nothing.
+    if (focused === undo && undo.disabled) redo.focus({ preventScroll: true })
+    if (focused === redo && redo.disabled) undo.focus({ preventScroll: true })
   }
   history.on('change', show)
   show()

@@ -27,6 +27,8 @@ export class Morphs {
     this.#onMove = onMove
     this.#reset.addEventListener('click', () => {
       this.reset()
+      // Nothing is left for the button to do, but the keyboard is to stay with the morphs.
+      this.#list.querySelector('input')?.focus({ preventScroll: true })
       onMove()
     })
   }

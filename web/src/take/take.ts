@@ -82,7 +82,8 @@ export class Take {
 
   async #exportGlb(): Promise<void> {
     const button = element('export-glb', HTMLButtonElement)
-    button.disabled = true
+    // Not disabled: that would take the keyboard from it.
+    if (button.ariaBusy) return
     button.ariaBusy = 'true'
     showNotice('export-note', '')
     try {
@@ -96,7 +97,6 @@ export class Take {
     } catch (error) {
       showError(error instanceof Error ? error.message : String(error))
     } finally {
-      button.disabled = false
       button.ariaBusy = null
     }
   }
