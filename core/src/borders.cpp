@@ -20,8 +20,10 @@ constexpr double kFound = 1e-7;
 constexpr double kSnap = 1e-5;
 /// A polygon no wider than this is not divided around its middle: its parts would be ever thinner, and never simpler.
 constexpr double kThin = 1e-4;
-/// How often a triangle is divided because something lies inside it, at most.
-constexpr int kMostDivisions = 256;
+/// How often a triangle is divided because something lies inside it, at most,
+constexpr int kMostDivisions = 2048;
+/// and how often one part inside another.
+constexpr int kDeepest = 128;
 constexpr std::uint32_t kNone = UINT32_MAX;
 
 /// A place on the triangle that is being cut.
@@ -147,7 +149,6 @@ class Cutter {
     const Spot& to;
     double length;
     List<Stop>& stops;
-    std::size_t enough;  ///< So many stops, and it need not be searched on.
     double lastBorder = -1;
     [[nodiscard]] Vec3 at(double t) const { return between(from.p, to.p, t); }
   };
@@ -155,7 +156,6 @@ class Cutter {
   /// Finds the borders between two places on an edge.
   /// @param nearby  To some more of the edge; none if it is the whole.
   void search(Edge& edge, Nearby nearby, double t0, const Look& look0, double t1, const Look& look1) noexcept {
-    if (edge.stops.size() > edge.enough) return;
     const double apart = (t1 - t0) * edge.length;
     const bool isBetween = looker_.isBetween(look0, look1);
     if (!isBetween && apart <= feature_) return;
@@ -196,9 +196,8 @@ class Cutter {
   }
 
   /// Finds all borders on an edge.
-  /// @param most  If there are more stops, not all are found.
-  void searchAll(const Spot& from, const Spot& to, List<Stop>& stops, std::size_t most = SIZE_MAX / 2) noexcept {
-    Edge edge{from, to, length(to.p - from.p), stops, stops.size() + most};
+  void searchAll(const Spot& from, const Spot& to, List<Stop>& stops) noexcept {
+    Edge edge{from, to, length(to.p - from.p), stops};
     search(edge, {}, 0, from.look, 1, to.look);
     looker_.rewind(near_.first + near_.count);
   }
@@ -259,18 +258,16 @@ class Cutter {
     }
   }
 
-  /// Makes vertices of the stops between two spots inside the triangle, at the end of `inner_`.
-  Range makeStops(const Spot& from, const Spot& to) noexcept {
-    const auto begin = static_cast<std::uint32_t>(inner_.size());
-    searchAll(from, to, inner_);
-    for (std::uint32_t i = begin; i < inner_.size() && !failed(); ++i) {
+  /// Makes vertices of the stops between two spots inside the triangle, which are the last of `inner_`.
+  Range makeVertices(std::size_t begin, const Spot& from, const Spot& to) noexcept {
+    for (std::size_t i = begin; i < inner_.size() && !failed(); ++i) {
       makeVertex(inner_[i], from, to, [&](const Stop& stop) {
         Spot spot = between(from, to, stop.t);
         addVertex(spot, stop.isBorder);
         return spot.vertex;
       });
     }
-    return {begin, static_cast<std::uint32_t>(inner_.size()) - begin};
+    return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(inner_.size() - begin)};
   }
 
   // ---- Triangles.
@@ -325,38 +322,34 @@ class Cutter {
     looker_.rewind(before.first + before.count);
   }
 
-  /// Divides a polygon of more than three corners along a line between two of them, the shortest of those with fewest borders.
+  /// Divides a polygon of more than three corners along the shortest line between two of them with half of the others on either side.
   void divideAcross(std::size_t first, std::size_t count) noexcept {
-    const std::size_t begin = inner_.size();
-    constexpr std::size_t kMany = SIZE_MAX / 2;
-    std::size_t from = first, to = first, fewest = kMany;
+    const std::size_t half = count / 2;
+    std::size_t from = first + count;
     double shortest = 0;
-    for (std::size_t i = first; i < first + count; ++i) {
-      for (std::size_t j = i + 2; j < first + count && j - i < count - 1; ++j) {
-        if (!dividesArea(first, count, i, j)) continue;
-        const double apart = length(nodes_[j].spot.p - nodes_[i].spot.p);
-        if (fewest == 1 && apart >= shortest) continue;
-        searchAll(nodes_[i].spot, nodes_[j].spot, inner_, fewest);
-        const std::size_t most = std::max<std::size_t>(inner_.size() - begin, 1);
-        inner_.cut(begin);
-        if (most > fewest || (most == fewest && apart >= shortest)) continue;
-        fewest = most;
-        shortest = apart;
-        from = i;
-        to = j;
+    for (std::size_t i = first; i + half < first + count; ++i) {
+      const double apart = length(nodes_[i + half].spot.p - nodes_[i].spot.p);
+      if ((from < first + count && apart >= shortest) || !dividesArea(first, count, i, i + half)) continue;
+      shortest = apart;
+      from = i;
+    }
+    if (from == first + count) return emitPolygon(first, count);  // All corners are on one line.
+    const std::size_t to = from + half;
+    const Spot start = nodes_[from].spot, end = nodes_[to].spot;
+    const std::size_t begin = inner_.size();
+    searchAll(start, end, inner_);
+    // The places between borders become corners of both parts: there must be fewer than the other part takes away.
+    if (inner_.size() - begin > 2 * half - 3) {
+      inner_.cut(begin);
+      if (mayDivide() && !isThin(first, count)) {
+        // What is between the corners and the middle is smaller.
+        Spot middle = nodes_[first].spot;
+        for (std::size_t i = 1; i < count; ++i) middle = between(middle, nodes_[first + i].spot, 1.0 / static_cast<double>(i + 1));
+        middle.look = looker_.at(nearTriangle(), middle.p);
+        return divideAround(first, count, middle);
       }
     }
-    if (fewest == kMany) return emitPolygon(first, count);  // All corners are on one line.
-    const Spot start = nodes_[from].spot, end = nodes_[to].spot;
-    if (fewest > 1 && divisions_ > 0 && !isThin(first, count)) {
-      // Every line crosses several borders: what is between the corners and the middle is smaller.
-      Spot middle = nodes_[first].spot;
-      for (std::size_t i = 1; i < count; ++i) middle = between(middle, nodes_[first + i].spot, 1.0 / static_cast<double>(i + 1));
-      middle.look = looker_.at(nearTriangle(), middle.p);
-      return divideAround(first, count, middle);
-    }
-    Range range;
-    if (fewest == 1) range = makeStops(start, end);
+    const Range range = makeVertices(begin, start, end);
     const std::size_t near = nodes_.size();
     for (std::size_t i = from; i < to; ++i) nodes_.add(Node(nodes_[i]));
     addSide(end, start, inner_, range, false);
@@ -394,18 +387,26 @@ class Cutter {
     const std::size_t vertices = out_.onBorder.size(), triangles = out_.origins.size();
     const Node corners[3] = {nodes_[first], nodes_[first + 1], nodes_[first + 2]};
     Spot hidden;
-    if (cutSimple(corners, hidden) || divisions_ == 0) return;
+    if (cutSimple(corners, hidden) || !mayDivide()) return;
     // Something else lies inside: once more, around it.
     forget(vertices, triangles);
     divideAround(first, 3, hidden);
   }
 
+  [[nodiscard]] bool mayDivide() const noexcept { return divisions_ > 0 && depth_ < kDeepest; }
+
   /// Divides a polygon along the lines between its corners and a place inside.
   void divideAround(std::size_t first, std::size_t count, Spot centre) noexcept {
     --divisions_;
+    ++depth_;
     addVertex(centre, false);
     const std::size_t begin = inner_.size(), firstSpoke = spokes_.size();
-    for (std::size_t i = 0; i < count; ++i) spokes_.add(makeStops(Spot(nodes_[first + i].spot), centre));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Spot corner = nodes_[first + i].spot;
+      const std::size_t start = inner_.size();
+      searchAll(corner, centre, inner_);
+      spokes_.add(makeVertices(start, corner, centre));
+    }
     for (std::size_t i = 0; i < count && !failed(); ++i) {
       const std::size_t next = (i + 1) % count;
       const std::size_t part = nodes_.size();
@@ -416,6 +417,7 @@ class Cutter {
     }
     spokes_.cut(firstSpoke);
     inner_.cut(begin);
+    --depth_;
   }
 
   void forget(std::size_t vertices, std::size_t triangles) noexcept {
@@ -800,6 +802,7 @@ class Cutter {
   List<Range> spokes_;         ///< In `inner_`.
   List<Node> nodes_;           ///< Polygons of the triangle that is being cut, those that are divided first at the end.
   int divisions_ = 0;          ///< How often it may still be divided.
+  int depth_ = 0;              ///< How many divided parts the one at hand lies in.
   List<Spot> line_;
   List<Spot> polygon_;
   List<Piece> pieces_;

@@ -369,6 +369,41 @@ TEST_CASE("a cage of thousands of islands, each a triangle, cuts a target at all
   CHECK(torn == 0);
 }
 
+TEST_CASE("a triangle that spans hundreds of islands is cut at all of them", "[borders]") {
+  // Each quad of a lumpy box is an island.
+  const scenes::Mesh whole = scenes::mapped(scenes::box({}, {1, 1, 1}, 12), [](scenes::Point p) {
+    const float out = 1.1f + 0.1f * p[0] * p[1] * p[2] - 0.06f * (p[0] + p[1] * p[2]);
+    return scenes::Point{out * p[0], out * p[1], out * p[2]};
+  });
+  constexpr std::uint32_t kRow = 32;
+  scenes::Mesh cage;
+  for (std::uint32_t i = 0; i < whole.indices.size(); i += 6) {
+    const auto u = static_cast<float>(i / 6 % kRow), w = static_cast<float>(i / 6 / kRow);
+    const auto add = [&](std::uint32_t corner, float du, float dw) { return cage.addVertex(whole.vertex(whole.indices[i + corner]), (u + du) / kRow, (w + dw) / kRow); };
+    const std::uint32_t a = add(0, 0.1f, 0.1f), b = add(1, 0.9f, 0.1f), c = add(2, 0.9f, 0.9f), d = add(5, 0.1f, 0.9f);
+    cage.addTriangle(a, b, c);
+    cage.addTriangle(a, c, d);
+  }
+  const scenes::Mesh target = scenes::box({}, {1, 1, 1}, 1);
+  const CutTarget cut = cutOf(cage.view(), target.view(), cutting());
+  const scenes::Mesh mesh = meshOf(target.view(), cut);
+  const reference::Scene scene = reference::makeScene(cage.view(), target.view(), reference::Options::paper());
+  double all = 0, elsewhere = 0;
+  for (std::size_t t = 0; t < cut.origins.size(); ++t) {
+    const auto corner = [&](std::size_t k) { return reference::vertex(mesh.view(), mesh.indices[3 * t + k]); };
+    const double area = length(areaOf(mesh.view(), t));
+    const double longest = std::max({length(corner(1) - corner(0)), length(corner(2) - corner(1)), length(corner(0) - corner(2))});
+    all += area;
+    if (area < kTolerance * scene.diag * longest) continue;  // It may lie wholly within what a border may be off.
+    const auto island = project(scene, (corner(0) + corner(1) + corner(2)) * (1.0 / 3)).triangle->index / 2;
+    const float* uv = cut.cornerUvs.data() + 6 * t;
+    const auto cell = [&](int k) { return static_cast<std::uint32_t>((uv[k] + uv[k + 2] + uv[k + 4]) / 3 * kRow); };
+    if (cell(0) + kRow * cell(1) != island) elsewhere += area;
+  }
+  CHECK(cut.origins.size() > cage.triangleCount());
+  CHECK(elsewhere < 1e-3 * all);
+}
+
 TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut", "[borders]") {
   scenes::Scene scene = scenes::head(8);
   scenes::Mesh& target = scene.target;
