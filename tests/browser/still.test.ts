@@ -118,7 +118,13 @@ test('until the still is on the screen the page computes for less than a second,
     await page.reload()
     await settled(page)
     // The page may be through before the browser has told what was the first to be seen.
-    await page.evaluate(() => new Promise<void>((done) => new PerformanceObserver(() => done()).observe({ type: 'largest-contentful-paint', buffered: true })))
+    await page.evaluate(
+      () =>
+        new Promise<void>((done) => {
+          new PerformanceObserver(() => done()).observe({ type: 'largest-contentful-paint', buffered: true })
+          setTimeout(done, 10_000)
+        }),
+    )
   }
   const { total } = await mainThreadWork(page, reload, 'largestContentfulPaint::Candidate')
   const same = await mainThreadWork(page, () => compute(page))

@@ -7,8 +7,8 @@
 ///
 /// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
 /// votes, far-rims, floor, copies, second-look, both-sides, exposed-side, holes, triangles, seams. --preset earlier is `default`
-/// with step 4', the floor and the second look as they were first written down. --unchecked does not ask which vertices are stable. --product asks
-/// the library instead, which knows nothing of --without. The second form writes the scenes of the golden hashes, in their order,
+/// with step 4', the floor and the second look as they were first written down. --unchecked does not ask which vertices are
+/// stable. --product asks the library instead, which knows nothing of --without. The second form writes the scenes of the golden hashes, in their order,
 /// as FOLDER/0.scene and so on, and those that are cut as FOLDER/borders-0.scene and so on; the third the models made to be difficult as FOLDER/NAME.scene, each with
 /// the truth about its vertices in FOLDER/NAME.truth: u8 per target vertex, 0 to be painted, 1 not to be, 2 either.
 ///
