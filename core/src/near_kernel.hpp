@@ -63,7 +63,7 @@ Floats squaredDistances(const NearLeaf& leaf, Floats x, Floats y, Floats z, Get 
                           side(leaf.leftY, leaf.rightY), side(leaf.leftLength, leaf.rightLength));
 }
 
-/// A triangle of a leaf by itself, to look at four points at once. Here x counts from the foot of C.
+/// A triangle of a leaf by itself, to look at many points at once. Here x counts from the foot of C.
 struct alignas(16) NearTriangle {
   float axes[3][4];  ///< `NearLeaf::axes`.
   float edges[4];    ///< Of the upper edges: the right one's x and y, the left one's y and x.
@@ -91,16 +91,16 @@ struct alignas(16) NearTriangle {
   }
 };
 
-/// Squared distances of four points to a triangle.
+/// Squared distances of as many points as there are lanes to a triangle.
 /// @param x,y,z  From the middle of the cage.
-inline simd::f32x4 squaredDistances(const NearTriangle& triangle, simd::f32x4 x, simd::f32x4 y, simd::f32x4 z) {
+inline simd::wide squaredDistances(const NearTriangle& triangle, simd::wide x, simd::wide y, simd::wide z) {
   const auto coordinate = [&](const float (&axis)[4]) {
-    const simd::f32x4 ofX = simd::multiplyAdd(x, simd::splat(axis[1]), simd::splat(axis[0]));
-    return simd::multiplyAdd(z, simd::splat(axis[3]), simd::multiplyAdd(y, simd::splat(axis[2]), ofX));
+    const simd::wide ofX = simd::multiplyAdd(x, simd::splatWideAt<1>(axis), simd::splatWideAt<0>(axis));
+    return simd::multiplyAdd(z, simd::splatWideAt<3>(axis), simd::multiplyAdd(y, simd::splatWideAt<2>(axis), ofX));
   };
-  const simd::f32x4 across = coordinate(triangle.axes[0]);
-  const simd::mask4 isLeft = across < simd::splat(0);
-  const simd::f32x4 fromCorner = simd::inner(isLeft, triangle.ends) - simd::abs(across);
+  const simd::wide across = coordinate(triangle.axes[0]);
+  const simd::wideMask isLeft = across < simd::splatWide(0);
+  const simd::wide fromCorner = simd::inner(isLeft, triangle.ends) - simd::abs(across);
   return squaredDistances(fromCorner, coordinate(triangle.axes[1]), coordinate(triangle.axes[2]), simd::outer(isLeft, triangle.edges),
                           simd::inner(isLeft, triangle.edges), simd::outer(isLeft, triangle.ends));
 }

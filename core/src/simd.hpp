@@ -720,17 +720,18 @@ inline constexpr int kWide = sizeof(wide) / sizeof(float);
 inline constexpr int kParts = kWide / kWidth;
 
 /// Of a table of four floats, the last where it is true, else the first; the last two are as `toChoose` has them.
-inline f32x4 outer(mask4 m, const float* table) {
+inline wide outer(wideMask m, const float* table) {
 #if defined(CAGECAST_SSE) && defined(__AVX__)
-  return {_mm_permutevar_ps(load(table).v, _mm_castps_si128(m.v))};  // By the lowest two bits.
+  return {_mm256_permutevar_ps(repeat(load(table)).v, _mm256_castps_si256(m.v))};  // By the lowest two bits.
 #else
   return choose(m, splat(table[3]), splat(table[0]));
 #endif
 }
 /// The third, else the second.
-inline f32x4 inner(mask4 m, const float* table) {
+inline wide inner(wideMask m, const float* table) {
 #if defined(CAGECAST_SSE) && defined(__AVX__)
-  return {_mm_permutevar_ps(load(table).v, _mm_xor_si128(_mm_castps_si128(m.v), _mm_set1_epi32(1)))};
+  const __m256 one = _mm256_castsi256_ps(_mm256_set1_epi32(1));
+  return {_mm256_permutevar_ps(repeat(load(table)).v, _mm256_castps_si256(_mm256_xor_ps(m.v, one)))};
 #else
   return choose(m, splat(table[2]), splat(table[1]));
 #endif

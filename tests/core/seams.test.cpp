@@ -235,6 +235,15 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
     for (int copy = 0; copy < 3; ++copy) stacked.indices.insert(stacked.indices.end(), strewn.cage.indices.begin(), strewn.cage.indices.end());
     compareCorners("stacked", stacked.view(), ball.view());
   }
+  SECTION("so many of its triangles equally near that those of a few corners are all that can be listed at once") {
+    const scenes::Mesh once = tube(1.5f, 4, 2);
+    scenes::Mesh stacked = once;
+    for (int copy = 1; copy < 200; ++copy) stacked.indices.insert(stacked.indices.end(), once.indices.begin(), once.indices.end());
+    const scenes::Mesh fine = scenes::ellipsoid({0.02f, -0.03f, 0.01f}, {1, 1.5f, 0.9f}, 40);
+    CHECK(compareCorners("once", once.view(), fine.view()).mended > 100);
+    CHECK(copied(withCorners(stacked.view(), fine.view()).projection.cornerUvs) ==
+          copied(withCorners(once.view(), fine.view()).projection.cornerUvs));
+  }
   SECTION("edges of many triangles, of which some are one in the texture") {
     // Of two to four copies of each triangle two have UVs that meet, the others their own. Which is first, and so the nearest, changes.
     const scenes::Mesh shell = scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 5);

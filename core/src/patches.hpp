@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "atlas.hpp"
+#include "cage.hpp"
+#include "kd_tree.hpp"
+#include "near_kernel.hpp"
+#include "place.hpp"
+#include "scratch.hpp"
+#include "simd.hpp"
+
+namespace cagecast {
+
+/// Finds the place of a point on a triangle of the cage.
+void setPlace(const Cage& cage, const Vec3& p, std::uint32_t t, Candidate& out) noexcept;
+
+/// A corner of a target triangle, and its place on the cage.
+struct Corner {
+  std::uint32_t point;
+  std::uint32_t group;     ///< Of patches around its place, if `Patches` has one.
+  const float* position;   ///< x, y, z.
+  Vec3 p;                  ///< The same.
+  Candidate at;
+  Uv uv;                   ///< Of that place.
+  static constexpr std::uint32_t kMostKnown = 3;
+  std::uint32_t knownCount;
+  Candidate known[kMostKnown];  ///< Places on other triangles that were decided already: patches have most of them in common.
+};
+
+/// A triangle of the cage that might be the nearest of a patch to some points.
+struct NearPoints {
+  std::uint32_t triangle;
+  std::uint32_t points;  ///< Bit i is point i.
+};
+
+/// docs/method.md, step 9: what hangs together in the texture with the triangle under a corner, within reach of the corner's place.
+struct Patch {
+  /// Points whose distances are found at once: the place, the corner itself, and corners that share a triangle with it.
+  static constexpr std::uint32_t kPoints = 8;
+
+  double reach;
+  simd::f32x4 limits;       ///< Squared distances: up to lane 0 surely within reach, up to the others perhaps.
+  float least[kPoints];     ///< Squared distances of the points, in float.
+  Patch* wider;             ///< The next one around that place.
+  const NearPoints* near;   ///< What of it might be the nearest to any point; null until it has grown.
+  std::uint32_t nearCount;
+  std::uint32_t size;       ///< Triangles.
+};
+
+/// Finds patches of a cage, many at a time.
+///
+/// Those around one place are a group: each begins as the narrower one, and a look at a triangle tells how far it is from all that
+/// they are asked for. Near a seam two or three triangles of the target share a corner, on average.
+class Patches {
+ public:
+  /// So many at a time.
+  static constexpr std::uint32_t kMost = 3 * 256;
+
+  /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
+  Patches(const Cage& cage, const CageTree& tree, const Atlas& atlas, double diagonal, Scratch& scratch) noexcept;
+
+  /// Forgets all of them.
+  void clear() noexcept { patchCount_ = groupCount_ = nearCount_ = 0; }
+
+  /// Notes the patch around the place of corner k of a triangle.
+  /// @param[out] points  Which of its points the corners are.
+  Patch& add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&points)[3]) noexcept;
+
+  /// Grows what was noted, in that order, until there is no more room for what is near. There is for any three.
+  void grow() noexcept;
+
+ private:
+  static constexpr std::uint32_t kPlace = 0;
+  static constexpr std::uint32_t kOwn = 1;
+  static constexpr std::uint32_t kOthers = 2;
+  /// How many vectors hold one number of each point.
+  static constexpr std::uint32_t kParts = Patch::kPoints / simd::kWide;
+  /// Room for what is near, besides three times the whole cage.
+  static constexpr std::uint32_t kRoom = 8 * kMost;
+  /// Beyond lane 0 of `Patch::limits`, within the others.
+  static constexpr unsigned kUnsure = 0b1110;
+  static constexpr std::uint32_t kWalks = 2;
+
+  /// The patches around one place.
+  struct Group {
+    float positions[3][Patch::kPoints];    ///< By axis, from the middle of the cage.
+    std::uint32_t points[Patch::kPoints];  ///< Which of the target these are.
+    std::uint32_t count;                   ///< Of points.
+    std::uint32_t first;                   ///< The triangle that the place is on.
+    Vec3 place;
+    Patch* narrowest;
+  };
+  /// Grows the patches of one group after the other, ring by ring.
+  struct Walk {
+    const Group* group;
+    const Patch* narrower;       ///< The one before; null at first.
+    Patch* patch;                ///< Null at the end of the walk.
+    std::uint32_t size;          ///< Triangles so far,
+    std::uint32_t kept;          ///< with what was kept of those next to the last ring,
+    std::uint32_t end;           ///< and, before they are looked at, with all of those.
+    std::uint32_t* triangles;    ///< 1 per triangle of the cage.
+    float* squares;              ///< Squared distances: `kPoints` per triangle.
+    simd::wide least[kParts];
+    std::uint32_t beyondCount;
+    std::uint32_t* beyond;       ///< What was looked at and not kept,
+    float* beyondSquares;        ///< and how far from the place it is.
+    std::uint32_t mark = 0;
+    std::uint32_t* seen;         ///< 1 per triangle: the last mark with which it was met.
+    std::uint32_t* sideSeen;     ///< 1 per side: the last one with which a round about its edge was made.
+  };
+
+  Group& groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&points)[3]) noexcept;
+  Group& addGroup(Corner& own) noexcept;
+  void setPoint(Group& group, std::uint32_t at, const Corner& corner) const noexcept;
+  void begin(Walk& walk, std::uint32_t group) noexcept;
+  void look(Walk& walk) noexcept;
+  void meet(Walk& walk) noexcept;
+  void finish(Walk& walk) noexcept;
+  bool findNear(const Walk& walk) noexcept;
+  [[nodiscard]] bool isWithinReach(const Walk& walk, std::uint32_t t) const noexcept;
+
+  const Cage& cage_;
+  const CageTree& tree_;
+  const Atlas& atlas_;
+  float fixedSlack_;
+  NearTriangle* rows_;           ///< 1 per triangle: all that a look needs in two cache lines, where a leaf has it in six.
+  Patch* patches_;
+  Group* groups_;
+  std::uint32_t patchCount_ = 0, groupCount_ = 0;
+  NearPoints* near_;             ///< Of one patch after the other,
+  std::uint32_t room_;           ///< so many at most,
+  std::uint32_t nearCount_ = 0;  ///< and so far.
+  Walk walks_[kWalks];
+};
+
+}  // namespace cagecast
