@@ -19,8 +19,8 @@ Patches::Patches(const Cage& cage, const CageTree& tree, const Atlas& atlas, dou
       atlas_(atlas),
       fixedSlack_(fixedSlack(slackOf(tree, diagonal), kRelativeSlack)),
       rows_(scratch.take<NearTriangle>(cage.count)),
-      patches_(scratch.take<Patch>(kMost)),
-      groups_(scratch.take<Group>(kMost)),
+      patches_(scratch.take<Patch>(kMostPatches)),
+      groups_(scratch.take<Group>(kMostGroups)),
       near_(scratch.take<NearPoints>(kRoom + std::size_t{3} * cage.count)),
       room_(kRoom + 3 * cage.count) {
   const std::size_t count = cage.count;

@@ -24,9 +24,6 @@ struct Corner {
   Vec3 p;                  ///< The same.
   Candidate at;
   Uv uv;                   ///< Of that place.
-  static constexpr std::uint32_t kMostKnown = 3;
-  std::uint32_t knownCount;
-  Candidate known[kMostKnown];  ///< Places on other triangles that were decided already: patches have most of them in common.
 };
 
 /// A triangle of the cage that might be the nearest of a patch to some points.
@@ -55,20 +52,20 @@ struct Patch {
 /// they are asked for. Near a seam two or three triangles of the target share a corner, on average.
 class Patches {
  public:
-  /// So many at a time.
-  static constexpr std::uint32_t kMost = 3 * 256;
-
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
   Patches(const Cage& cage, const CageTree& tree, const Atlas& atlas, double diagonal, Scratch& scratch) noexcept;
 
   /// Forgets all of them.
   void clear() noexcept { patchCount_ = groupCount_ = nearCount_ = 0; }
 
+  /// Whether those of another triangle can be added.
+  [[nodiscard]] bool hasRoom() const noexcept { return patchCount_ + 3 <= kMostPatches && groupCount_ + 3 <= kMostGroups; }
+
   /// Notes the patch around the place of corner k of a triangle.
   /// @param[out] points  Which of its points the corners are.
   Patch& add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&points)[3]) noexcept;
 
-  /// Grows what was noted, in that order, until there is no more room for what is near. There is for any three.
+  /// Grows what was noted, in that order, until there is no more room for what is near: there is for any three.
   void grow() noexcept;
 
  private:
@@ -77,8 +74,11 @@ class Patches {
   static constexpr std::uint32_t kOthers = 2;
   /// How many vectors hold one number of each point.
   static constexpr std::uint32_t kParts = Patch::kPoints / simd::kWide;
+  /// What 256 triangles of the target ask for, on most models.
+  static constexpr std::uint32_t kMostPatches = 704;
+  static constexpr std::uint32_t kMostGroups = 352;
   /// Room for what is near, besides three times the whole cage.
-  static constexpr std::uint32_t kRoom = 8 * kMost;
+  static constexpr std::uint32_t kRoom = 4096;
   /// Beyond lane 0 of `Patch::limits`, within the others.
   static constexpr unsigned kUnsure = 0b1110;
   static constexpr std::uint32_t kWalks = 2;

@@ -48,6 +48,7 @@ class Mender {
         patches_(cage, tree, atlas, diagonal, scratch),
         candidates_(scratch.take<Candidate>(cage.count)),
         corners_(scratch.take<Corner>(kMostCorners)),
+        knowns_(scratch.take<Known>(kMostCorners)),
         recent_(scratch.take<std::uint32_t>(kRecent)),
         torn_(scratch.take<Torn>(kMostTorn)) {
     for (auto& near : near_) near = scratch.take<std::uint32_t>(std::size_t{cage.count} + 1);
@@ -75,22 +76,26 @@ class Mender {
   /// Mends all that were added.
   void mend() noexcept {
     Torn* const end = torn_ + tornCount_;
-    for (Torn *torn = torn_, *next = end; torn < end;) {
+    bool isAlone = false;
+    for (Torn* torn = torn_; torn < end;) {
       patches_.clear();
-      for (Torn* each = torn; each < next; ++each) addPatches(*each);
-      patches_.grow();
       Torn* const first = torn;
+      Torn* next = torn;
+      do addPatches(*next++);
+      while (next < end && patches_.hasRoom() && !isAlone);
+      patches_.grow();
       while (torn < next && hasGrown(*torn)) choose(*torn++);
       // Where there was not even room for the first, it has to be alone.
-      next = torn == first ? torn + 1 : end;
+      isAlone = torn == first;
     }
     tornCount_ = cornerCount_ = 0;
   }
 
  private:
-  static constexpr std::uint32_t kMostTorn = Patches::kMost / 3;
+  /// So many at a time: they share places, and their arrays fit into the blocks of memory that earlier steps have left.
+  static constexpr std::uint32_t kMostTorn = 256;
   /// Triangles often share corners; some turn out not to be torn, and leave theirs.
-  static constexpr std::uint32_t kMostCorners = 3 * kMostTorn;
+  static constexpr std::uint32_t kMostCorners = 2 * kMostTorn;
   static constexpr std::uint32_t kRecent = 4096;
 
   /// A triangle across a seam.
@@ -99,6 +104,12 @@ class Mender {
     float* uvs;
     Patch* patches[3];         ///< Around each corner's place; null where an earlier one is on the same triangle.
     std::uint8_t lanes[3][3];  ///< For each patch: which of its points the corners are.
+  };
+  /// Places of a corner that were decided already: patches have most of them in common.
+  struct Known {
+    static constexpr std::uint32_t kMost = 2;
+    std::uint32_t count;
+    Candidate places[kMost];
   };
   /// The corners' places on one patch.
   struct Choice {
@@ -114,7 +125,7 @@ class Mender {
     corner.p = Vec3::from(position);
     setPlace(cage_, corner.p, t, corner.at);
     corner.uv = uvOf(corner.at);
-    corner.knownCount = 0;
+    knowns_[&corner - corners_].count = 0;
   }
 
   /// Whether the texture is torn or smeared over a triangle, in double.
@@ -206,12 +217,13 @@ class Mender {
   [[nodiscard]] Uv uvOf(const Candidate& at) const noexcept { return uvAt(cage_.triangles[at.slot], at.place); }
 
   /// @param spare  Where to put the place if too many are known.
-  [[nodiscard]] const Candidate& placeOf(Corner& corner, std::uint32_t t, Candidate& spare) const noexcept {
+  [[nodiscard]] const Candidate& placeOf(const Corner& corner, std::uint32_t t, Candidate& spare) const noexcept {
     if (corner.at.slot == t) return corner.at;
-    for (std::uint32_t i = 0; i < corner.knownCount; ++i) {
-      if (corner.known[i].slot == t) return corner.known[i];
+    Known& known = knowns_[&corner - corners_];
+    for (std::uint32_t i = 0; i < known.count; ++i) {
+      if (known.places[i].slot == t) return known.places[i];
     }
-    Candidate& place = corner.knownCount < Corner::kMostKnown ? corner.known[corner.knownCount++] : spare;
+    Candidate& place = known.count < Known::kMost ? known.places[known.count++] : spare;
     setPlace(cage_, corner.p, t, place);
     return place;
   }
@@ -224,6 +236,7 @@ class Mender {
   Candidate* candidates_;        ///< Places on what might be nearest to one corner.
   std::uint32_t* near_[3];       ///< What of a patch might be nearest to each corner.
   Corner* corners_;
+  Known* knowns_;                ///< Of each corner.
   std::uint32_t* recent_;        ///< By the last bits of a point's number: which corner may be of that point.
   Torn* torn_;
   std::uint32_t cornerCount_ = 0, tornCount_ = 0;
