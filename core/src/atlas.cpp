@@ -50,7 +50,6 @@ bool findAtlas(const Cage& cage, const CageEdges& edges, Scratch& scratch, Atlas
     out.stretch[t] = std::sqrt(stretch);
     for (const float x : triangle.uvs) out.mostUv = std::max(out.mostUv, std::abs(x));
   }
-  UnionFind sets(out.islands, cage.count);
   const std::uint32_t* starts = edges.starts;
   const auto isSame = [starts, uvs](std::uint32_t side, std::uint32_t other) {
     const std::uint32_t end = CageEdges::after(side);
@@ -70,17 +69,20 @@ bool findAtlas(const Cage& cage, const CageEdges& edges, Scratch& scratch, Atlas
       if (!isSame(side, other)) other = side;
       out.nextSide[side] = other;
     }
-    sets.join(side / 3, other / 3, other / 3);
   }
+  UnionFind sets(out.islands, cage.count);
   for (std::uint32_t t = 0, side = 0; t < cage.count; ++t) {
     Beside& beside = out.beside[t];
     beside.isOnFan = 0;
+    std::uint32_t next[3];
     for (std::uint32_t k = 0; k < 3; ++k, ++side) {
       const std::uint32_t other = out.nextSide[side];
       const bool isOnFan = out.nextSide[other] != side;
-      beside.triangles[k] = isOnFan ? t : other / 3;
+      next[k] = other / 3;
+      beside.triangles[k] = isOnFan ? t : next[k];
       beside.isOnFan |= unsigned{isOnFan};
     }
+    sets.join({t, next[0], next[1], next[2]});
   }
   sets.flatten(cage.count);
   scratch.rewind(mark);

@@ -42,8 +42,8 @@ Patches::Patches(const Cage& cage, const CageTree& tree, const Atlas& atlas, dou
   }
 }
 
-Patch& Patches::add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&points)[3]) noexcept {
-  Group& group = groupWith(corners, k, points);
+Patch& Patches::add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept {
+  Group& group = groupWith(corners, k, inGroup);
   Patch** at = &group.narrowest;
   while (*at != nullptr && (*at)->reach < reach) at = &(*at)->wider;
   if (*at != nullptr && (*at)->reach == reach) return **at;
@@ -62,25 +62,27 @@ Patch& Patches::add(Corner* const (&corners)[3], int k, double reach, std::uint8
 }
 
 /// A group around the place of corner k that has the other two among its points.
-Patches::Group& Patches::groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&points)[3]) noexcept {
+Patches::Group& Patches::groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&inGroup)[3]) noexcept {
   Corner& own = *corners[k];
   const bool isThere = own.group < groupCount_ && groups_[own.group].points[kOwn] == own.point;
   Group* group = isThere ? groups_ + own.group : &addGroup(own);
-  points[k] = kOwn;
+  inGroup[k] = kOwn;
   for (;;) {
-    bool fits = true;
+    std::uint32_t count = group->count;
     for (int c = 0; c < 3; ++c) {
       if (c == k) continue;
-      const Corner& corner = *corners[c];
-      std::uint32_t at = group->count;
-      for (std::uint32_t i = kOthers; i < Patch::kPoints; ++i) at = group->points[i] == corner.point ? i : at;
-      fits = at < Patch::kPoints;
-      if (!fits) break;
-      points[c] = static_cast<std::uint8_t>(at);
-      group->count = std::max(group->count, at + 1);
-      setPoint(*group, at, corner);
+      std::uint32_t at = count;
+      for (std::uint32_t i = kOwn + 1; i < Patch::kPoints; ++i) at = group->points[i] == corners[c]->point ? i : at;
+      inGroup[c] = static_cast<std::uint8_t>(at);
+      count = std::max(count, at + 1);
     }
-    if (fits) return *group;
+    if (count <= Patch::kPoints) {
+      for (int c = 0; c < 3; ++c) {
+        if (c != k) setPoint(*group, inGroup[c], *corners[c]);
+      }
+      group->count = count;
+      return *group;
+    }
     group = &addGroup(own);
   }
 }
@@ -94,11 +96,11 @@ Patches::Group& Patches::addGroup(Corner& own) noexcept {
   // What is not a point yet is where the place is.
   for (int axis = 0; axis < 3; ++axis) {
     const simd::wide ofPlace = simd::splatWide(static_cast<float>(place[axis]) - tree_.middle[axis]);
-    for (std::size_t part = 0; part < kParts; ++part) simd::store(group.positions[axis] + simd::kWide * part, ofPlace);
+    for (std::size_t v = 0; v < kVectors; ++v) simd::store(group.positions[axis] + simd::kWide * v, ofPlace);
   }
-  for (std::uint32_t i = 0; i < Patch::kPoints; i += 4) simd::store(group.points + i, simd::splatCount(UINT32_MAX));
+  for (std::uint32_t i = 0; i < Patch::kPoints; i += simd::kWidth) simd::store(group.points + i, simd::splatCount(UINT32_MAX));
   setPoint(group, kOwn, own);
-  group.count = kOthers;
+  group.count = kOwn + 1;
   group.narrowest = nullptr;
   return group;
 }
@@ -108,17 +110,17 @@ void Patches::setPoint(Group& group, std::uint32_t at, const Corner& corner) con
   for (int axis = 0; axis < 3; ++axis) group.positions[axis][at] = corner.position[axis] - tree_.middle[axis];
 }
 
-/// Begins a group, if there is one.
-void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
+/// Begins the next group, if there is one.
+void Patches::begin(Walk& walk) noexcept {
   walk.size = walk.end = 0;
   walk.patch = nullptr;
-  if (group >= groupCount_) return;
-  walk.group = groups_ + group;
+  if (nextGroup_ == groupCount_) return;
+  walk.group = groups_ + nextGroup_++;
   walk.narrower = nullptr;
   walk.patch = walk.group->narrowest;
   walk.beyondCount = 0;
   for (simd::wide& least : walk.least) least = simd::splatWide(std::numeric_limits<float>::max());
-  // With what is next to the first: one ring less.
+  // The first is always near enough: what is next to it is looked at with it, but for fans, one ring less.
   ++walk.mark;
   const auto add = [&](std::uint32_t t) {
     walk.triangles[walk.end] = t;
@@ -129,12 +131,11 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
   for (const std::uint32_t t : atlas_.beside[walk.group->first].triangles) add(t);
 }
 
+// What follows is called from one place each, all the time.
+
 /// Looks at the triangles next to the last ring, and keeps those near enough.
 [[gnu::always_inline]] inline void Patches::look(Walk& walk) noexcept {
-  const std::uint32_t end = walk.end;
-  std::uint32_t size = walk.size;
-  walk.kept = size;
-  if (size == end) return;
+  if (walk.patch == nullptr) return;
   // In registers, as stores might change the walk for all the compiler knows.
   std::uint32_t* const triangles = walk.triangles;
   float* const squares = walk.squares;
@@ -143,18 +144,20 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
   const NearTriangle* const rows = rows_;
   const simd::f32x4 limits = walk.patch->limits;
   const Group& group = *walk.group;
-  simd::wide x[kParts], y[kParts], z[kParts];
-  for (std::size_t part = 0; part < kParts; ++part) {
-    x[part] = simd::loadWide(group.positions[0] + simd::kWide * part);
-    y[part] = simd::loadWide(group.positions[1] + simd::kWide * part);
-    z[part] = simd::loadWide(group.positions[2] + simd::kWide * part);
+  simd::wide x[kVectors], y[kVectors], z[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    x[v] = simd::loadWide(group.positions[0] + simd::kWide * v);
+    y[v] = simd::loadWide(group.positions[1] + simd::kWide * v);
+    z[v] = simd::loadWide(group.positions[2] + simd::kWide * v);
   }
+  const std::uint32_t end = walk.end;
+  std::uint32_t size = walk.size;
   std::uint32_t beyondCount = walk.beyondCount;
   for (std::uint32_t i = size; i < end; ++i) {
     const std::uint32_t t = triangles[i];
     float* const row = squares + std::size_t{Patch::kPoints} * size;
-    for (std::size_t part = 0; part < kParts; ++part) {
-      simd::store(row + simd::kWide * part, squaredDistances(rows[t], x[part], y[part], z[part]));
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      simd::store(row + simd::kWide * v, squaredDistances(rows[t], x[v], y[v], z[v]));
     }
     // No branch that is a coin toss: what is not kept is written over by the next.
     const unsigned isWithin = simd::bits(simd::splat(row[kPlace]) <= limits);
@@ -170,15 +173,17 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
   walk.beyondCount = beyondCount;
 }
 
-/// In double.
+/// In double, where floats do not tell.
 [[gnu::noinline, gnu::cold]] bool Patches::isWithinReach(const Walk& walk, std::uint32_t t) const noexcept {
+  if (t == walk.group->first) return true;
   Candidate at;
   setPlace(cage_, walk.group->place, t, at);
-  return t == walk.group->first || at.place.distance <= walk.patch->reach;
+  return at.place.distance <= walk.patch->reach;
 }
 
 /// Adds the triangles that were kept, and finds what is next to them.
 [[gnu::always_inline]] inline void Patches::meet(Walk& walk) noexcept {
+  if (walk.patch == nullptr) return;
   // In registers, as above.
   std::uint32_t* const triangles = walk.triangles;
   std::uint32_t* const seen = walk.seen;
@@ -186,8 +191,8 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
   const Beside* const besides = atlas_.beside;
   const std::uint32_t mark = walk.mark;
   const std::uint32_t kept = walk.kept;
-  simd::wide least[kParts];
-  std::copy(walk.least, walk.least + kParts, least);
+  simd::wide least[kVectors];
+  std::copy(walk.least, walk.least + kVectors, least);
   std::uint32_t end = kept;
   const auto add = [&](std::uint32_t t) {
     triangles[end] = t;
@@ -196,7 +201,7 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
   };
   for (std::uint32_t i = walk.size; i < kept; ++i) {
     const float* const row = squares + std::size_t{Patch::kPoints} * i;
-    for (std::size_t part = 0; part < kParts; ++part) least[part] = simd::min(least[part], simd::loadWide(row + simd::kWide * part));
+    for (std::size_t v = 0; v < kVectors; ++v) least[v] = simd::min(least[v], simd::loadWide(row + simd::kWide * v));
     const Beside& beside = besides[triangles[i]];
     for (const std::uint32_t t : beside.triangles) add(t);
     if (beside.isOnFan == 0) continue;
@@ -210,7 +215,7 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
       }
     }
   }
-  std::copy(least, least + kParts, walk.least);
+  std::copy(least, least + kVectors, walk.least);
   walk.size = kept;
   walk.end = end;
 }
@@ -224,18 +229,18 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
   const std::uint32_t* const triangles = walk.triangles;
   const float* const squares = walk.squares;
   const std::uint32_t size = walk.size;
-  simd::wide limits[kParts];
-  for (std::size_t part = 0; part < kParts; ++part) {
-    simd::store(walk.patch->least + simd::kWide * part, walk.least[part]);
-    limits[part] = walk.least[part] * simd::splatWide(1 + static_cast<float>(kRelativeSlack)) + simd::splatWide(fixedSlack_);
+  simd::wide limits[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    simd::store(walk.patch->least + simd::kWide * v, walk.least[v]);
+    limits[v] = walk.least[v] * simd::splatWide(1 + static_cast<float>(kRelativeSlack)) + simd::splatWide(fixedSlack_);
   }
   const unsigned corners = (1u << walk.group->count) - (1u << kOwn);
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < size; ++i) {
     const float* const row = squares + std::size_t{Patch::kPoints} * i;
     unsigned points = 0;
-    for (std::size_t part = 0; part < kParts; ++part) {
-      points |= simd::bits(simd::loadWide(row + simd::kWide * part) <= limits[part]) << simd::kWide * part;
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      points |= simd::bits(simd::loadWide(row + simd::kWide * v) <= limits[v]) << simd::kWide * v;
     }
     near[count] = {triangles[i], points};
     count += (points & corners) != 0;
@@ -260,7 +265,7 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
     walk.patch = nullptr;
     return;
   }
-  if (wider == nullptr) return begin(walk, static_cast<std::uint32_t>(walk.group - groups_) + kWalks);
+  if (wider == nullptr) return begin(walk);
   walk.narrower = &patch;
   walk.patch = wider;
   // What was too far, and may not be any more.
@@ -282,8 +287,9 @@ void Patches::begin(Walk& walk, std::uint32_t group) noexcept {
 }
 
 void Patches::grow() noexcept {
-  for (std::uint32_t k = 0; k < kWalks; ++k) begin(walks_[k], k);
+  for (Walk& walk : walks_) begin(walk);
   // In turn: how many triangles a ring leaves is known only when its looks are through; until then there are those of the other.
+  static_assert(kWalks == 2);
   while (walks_[0].patch != nullptr || walks_[1].patch != nullptr) {
     for (Walk& walk : walks_) look(walk);
     for (Walk& walk : walks_) {

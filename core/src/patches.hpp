@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 
 #include "atlas.hpp"
@@ -19,7 +18,7 @@ void setPlace(const Cage& cage, const Vec3& p, std::uint32_t t, Candidate& out) 
 /// A corner of a target triangle, and its place on the cage.
 struct Corner {
   std::uint32_t point;
-  std::uint32_t group;     ///< Of patches around its place, if `Patches` has one.
+  std::uint32_t group;     ///< The last one of patches around its place, if `Patches` has any.
   const float* position;   ///< x, y, z.
   Vec3 p;                  ///< The same.
   Candidate at;
@@ -29,7 +28,7 @@ struct Corner {
 /// A triangle of the cage that might be the nearest of a patch to some points.
 struct NearPoints {
   std::uint32_t triangle;
-  std::uint32_t points;  ///< Bit i is point i.
+  std::uint32_t points;  ///< Bit i is point i of the patch's group.
 };
 
 /// docs/method.md, step 9: what hangs together in the texture with the triangle under a corner, within reach of the corner's place.
@@ -40,7 +39,7 @@ struct Patch {
   double reach;
   simd::f32x4 limits;       ///< Squared distances: up to lane 0 surely within reach, up to the others perhaps.
   float least[kPoints];     ///< Squared distances of the points, in float.
-  Patch* wider;             ///< The next one around that place.
+  Patch* wider;             ///< The next one of its group.
   const NearPoints* near;   ///< What of it might be the nearest to any point; null until it has grown.
   std::uint32_t nearCount;
   std::uint32_t size;       ///< Triangles.
@@ -48,33 +47,35 @@ struct Patch {
 
 /// Finds patches of a cage, many at a time.
 ///
-/// Those around one place are a group: each begins as the narrower one, and a look at a triangle tells how far it is from all that
-/// they are asked for. Near a seam two or three triangles of the target share a corner, on average.
+/// Those around one place, of triangles with few enough other corners, are a group: each begins as the narrower one, and a look at a
+/// triangle of the cage tells how far it is from all that they are asked for.
 class Patches {
  public:
+  /// Of so many triangles at a time: most of them share places.
+  static constexpr std::uint32_t kMostTriangles = 256;
+
   /// Takes what it needs from `scratch`; `scratch.failed()` tells if that was there.
   Patches(const Cage& cage, const CageTree& tree, const Atlas& atlas, double diagonal, Scratch& scratch) noexcept;
 
   /// Forgets all of them.
-  void clear() noexcept { patchCount_ = groupCount_ = nearCount_ = 0; }
+  void clear() noexcept { patchCount_ = groupCount_ = nextGroup_ = nearCount_ = 0; }
 
   /// Whether those of another triangle can be added.
   [[nodiscard]] bool hasRoom() const noexcept { return patchCount_ + 3 <= kMostPatches && groupCount_ + 3 <= kMostGroups; }
 
   /// Notes the patch around the place of corner k of a triangle.
-  /// @param[out] points  Which of its points the corners are.
-  Patch& add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&points)[3]) noexcept;
+  /// @param[out] inGroup  Which of its group's points the corners are.
+  Patch& add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept;
 
-  /// Grows what was noted, in that order, until there is no more room for what is near: there is for any three.
+  /// Grows what was noted, until there is no more room for what is near. For three patches there always is.
   void grow() noexcept;
 
  private:
   static constexpr std::uint32_t kPlace = 0;
   static constexpr std::uint32_t kOwn = 1;
-  static constexpr std::uint32_t kOthers = 2;
-  /// How many vectors hold one number of each point.
-  static constexpr std::uint32_t kParts = Patch::kPoints / simd::kWide;
-  /// What 256 triangles of the target ask for, on most models.
+  /// So many hold one number of each point.
+  static constexpr std::uint32_t kVectors = Patch::kPoints / simd::kWide;
+  /// What `kMostTriangles` ask for, on most models.
   static constexpr std::uint32_t kMostPatches = 704;
   static constexpr std::uint32_t kMostGroups = 352;
   /// Room for what is near, besides three times the whole cage.
@@ -83,7 +84,6 @@ class Patches {
   static constexpr unsigned kUnsure = 0b1110;
   static constexpr std::uint32_t kWalks = 2;
 
-  /// The patches around one place.
   struct Group {
     float positions[3][Patch::kPoints];    ///< By axis, from the middle of the cage.
     std::uint32_t points[Patch::kPoints];  ///< Which of the target these are.
@@ -102,7 +102,7 @@ class Patches {
     std::uint32_t end;           ///< and, before they are looked at, with all of those.
     std::uint32_t* triangles;    ///< 1 per triangle of the cage.
     float* squares;              ///< Squared distances: `kPoints` per triangle.
-    simd::wide least[kParts];
+    simd::wide least[kVectors];
     std::uint32_t beyondCount;
     std::uint32_t* beyond;       ///< What was looked at and not kept,
     float* beyondSquares;        ///< and how far from the place it is.
@@ -111,10 +111,10 @@ class Patches {
     std::uint32_t* sideSeen;     ///< 1 per side: the last one with which a round about its edge was made.
   };
 
-  Group& groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&points)[3]) noexcept;
+  Group& groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&inGroup)[3]) noexcept;
   Group& addGroup(Corner& own) noexcept;
   void setPoint(Group& group, std::uint32_t at, const Corner& corner) const noexcept;
-  void begin(Walk& walk, std::uint32_t group) noexcept;
+  void begin(Walk& walk) noexcept;
   void look(Walk& walk) noexcept;
   void meet(Walk& walk) noexcept;
   void finish(Walk& walk) noexcept;
@@ -129,6 +129,7 @@ class Patches {
   Patch* patches_;
   Group* groups_;
   std::uint32_t patchCount_ = 0, groupCount_ = 0;
+  std::uint32_t nextGroup_ = 0;  ///< To grow.
   NearPoints* near_;             ///< Of one patch after the other,
   std::uint32_t room_;           ///< so many at most,
   std::uint32_t nearCount_ = 0;  ///< and so far.

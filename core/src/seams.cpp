@@ -9,7 +9,6 @@
 #include "near_kernel.hpp"
 #include "patches.hpp"
 #include "place.hpp"
-#include "rims.hpp"
 
 namespace cagecast {
 namespace {
@@ -27,11 +26,15 @@ constexpr float kMostUv = 256;
 constexpr double kFirstLook = 0.99 * kSmear * kSmear;
 constexpr double kFirstSlack = 0.9 * kSmearSlack * kSmearSlack;
 
-/// What the first look knows of the place of a point of the target.
+/// What the first look knows of a triangle of the cage,
+struct OfTriangle {
+  float explains;  ///< Squared UV length per squared length.
+  float island;    ///< The number.
+};
+/// and of the place of a point of the target.
 struct alignas(16) FirstLook {
   float u, v;
-  float explains;  ///< Squared UV length per squared length, on the triangle of the cage under the point.
-  float island;    ///< Of that triangle: the number.
+  OfTriangle on;
 };
 /// Numbers up to here are exact as floats.
 constexpr std::uint32_t kMostIslands = 1u << 24;
@@ -76,24 +79,24 @@ class Mender {
   /// Mends all that were added.
   void mend() noexcept {
     Torn* const end = torn_ + tornCount_;
-    bool isAlone = false;
+    std::ptrdiff_t most = kMostTorn;
     for (Torn* torn = torn_; torn < end;) {
       patches_.clear();
       Torn* const first = torn;
       Torn* next = torn;
-      do addPatches(*next++);
-      while (next < end && patches_.hasRoom() && !isAlone);
+      do {
+        addPatches(*next++);
+      } while (next < end && next - first < most && patches_.hasRoom());
       patches_.grow();
       while (torn < next && hasGrown(*torn)) choose(*torn++);
-      // Where there was not even room for the first, it has to be alone.
-      isAlone = torn == first;
+      // There is always room for one. Where there was not for all, there will hardly be for more than there was.
+      if (torn < next) most = std::max<std::ptrdiff_t>(torn - first, 1);
     }
     tornCount_ = cornerCount_ = 0;
   }
 
  private:
-  /// So many at a time: they share places, and their arrays fit into the blocks of memory that earlier steps have left.
-  static constexpr std::uint32_t kMostTorn = 256;
+  static constexpr std::uint32_t kMostTorn = Patches::kMostTriangles;
   /// Triangles often share corners; some turn out not to be torn, and leave theirs.
   static constexpr std::uint32_t kMostCorners = 2 * kMostTorn;
   static constexpr std::uint32_t kRecent = 4096;
@@ -103,7 +106,7 @@ class Mender {
     Corner* corners[3];
     float* uvs;
     Patch* patches[3];         ///< Around each corner's place; null where an earlier one is on the same triangle.
-    std::uint8_t lanes[3][3];  ///< For each patch: which of its points the corners are.
+    std::uint8_t inGroup[3][3];  ///< For each patch: which of its points the corners are.
   };
   /// Places of a corner that were decided already: patches have most of them in common.
   struct Known {
@@ -150,7 +153,7 @@ class Mender {
     const double reach = kPatchEdges * std::sqrt(longest) + kPatchSlack * diagonal_;
     for (int k = 0; k < 3; ++k) {
       const bool isKnown = std::any_of(corners, corners + k, [&](const Corner* c) { return c->at.slot == corners[k]->at.slot; });
-      torn.patches[k] = isKnown ? nullptr : &patches_.add(corners, k, reach, torn.lanes[k]);
+      torn.patches[k] = isKnown ? nullptr : &patches_.add(corners, k, reach, torn.inGroup[k]);
     }
   }
 
@@ -164,7 +167,7 @@ class Mender {
     double sums[3];
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
-      sums[k] = sumOf(torn.patches[k], torn.lanes[k]);
+      sums[k] = sumOf(torn.patches[k], torn.inGroup[k]);
       least = std::min(least, sums[k]);
     }
     const double unsure = kTieSum * diagonal_ + 6 * (kTieDistance * diagonal_ + kRounding * (tree_.extent + least));
@@ -174,7 +177,7 @@ class Mender {
     least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
       if (sums[k] > limit) continue;
-      project(torn.corners, *torn.patches[k], torn.lanes[k], choices[count]);
+      project(torn.corners, *torn.patches[k], torn.inGroup[k], choices[count]);
       least = std::min(least, choices[count++].sum);
     }
     int chosen = 0;
@@ -183,20 +186,20 @@ class Mender {
   }
 
   /// Of the corners' distances to a patch, in float.
-  static double sumOf(const Patch* patch, const std::uint8_t (&lanes)[3]) noexcept {
+  static double sumOf(const Patch* patch, const std::uint8_t (&inGroup)[3]) noexcept {
     if (patch == nullptr) return std::numeric_limits<double>::infinity();
     double all = 0;
-    for (const std::uint32_t lane : lanes) all += std::sqrt(static_cast<double>(patch->least[lane]));
+    for (const std::uint32_t i : inGroup) all += std::sqrt(static_cast<double>(patch->least[i]));
     return all;
   }
 
   /// Projects the corners onto a patch: step 1 once more, with the patch for a cage.
-  void project(Corner* const (&corners)[3], const Patch& patch, const std::uint8_t (&lanes)[3], Choice& out) noexcept {
+  void project(const Corner* const (&corners)[3], const Patch& patch, const std::uint8_t (&inGroup)[3], Choice& out) noexcept {
     std::uint32_t counts[3] = {};
     for (std::uint32_t i = 0; i < patch.nearCount; ++i) {
       for (int c = 0; c < 3; ++c) {
         near_[c][counts[c]] = patch.near[i].triangle;
-        counts[c] += patch.near[i].points >> lanes[c] & 1;
+        counts[c] += patch.near[i].points >> inGroup[c] & 1;
       }
     }
     out.sum = 0;
@@ -250,17 +253,19 @@ bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage&
   Atlas atlas;
   if (!findAtlas(cage, edges, scratch, atlas)) return false;
   Mender mender(cage, tree, atlas, units.diagonal, scratch);
+  auto* ofTriangle = scratch.take<OfTriangle>(cage.count);
   auto* looks = scratch.take<FirstLook>(points.count);
   if (scratch.failed()) return false;
 
   // A first look in float: most triangles are clearly whole in the texture.
   const bool looksTell = atlas.mostUv <= kMostUv && cage.count <= kMostIslands;
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    const std::uint32_t slot = results.triangles[i];
+  for (std::uint32_t t = 0; t < cage.count; ++t) {
     // Below infinity, so that a product with it stays a number.
-    const double explained = std::min(kFirstLook * atlas.stretch[slot] * atlas.stretch[slot], 1e30);
-    looks[i] = {results.uvs[2 * i], results.uvs[2 * i + 1], looksTell ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity(),
-                static_cast<float>(atlas.islands[slot])};
+    const double explained = std::min(kFirstLook * atlas.stretch[t] * atlas.stretch[t], 1e30);
+    ofTriangle[t] = {looksTell ? static_cast<float>(explained) : -std::numeric_limits<float>::infinity(), static_cast<float>(atlas.islands[t])};
+  }
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    looks[i] = {results.uvs[2 * i], results.uvs[2 * i + 1], ofTriangle[results.triangles[i]]};
   }
   // Of each triangle four bits, all of them set if it is whole; two triangles at a time where there are eight lanes.
   const float* const positions = points.positions;

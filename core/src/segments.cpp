@@ -24,7 +24,7 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
   if (scratch.failed()) return false;
   UnionFind sets(parents, points.count);
   const std::uint32_t* corner = points.triangles;
-  for (std::uint32_t t = 0, end = points.triangleCount; t < end; ++t, corner += 3) sets.join(corner[0], corner[1], corner[2]);
+  for (std::uint32_t t = 0, end = points.triangleCount; t < end; ++t, corner += 3) sets.join({corner[0], corner[1], corner[2]});
   sets.flatten(points.count);
 
   // Number the components in the order in which the vertices meet them.

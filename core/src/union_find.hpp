@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 namespace cagecast {
@@ -29,14 +30,16 @@ class UnionFind {
     b = find(b);
     parents_[std::max(a, b)] = std::min(a, b);
   }
-  /// Joins three at once. No branch on whether they are joined already: that is a coin toss.
-  void join(std::uint32_t a, std::uint32_t b, std::uint32_t c) noexcept {
-    std::uint32_t roots[3] = {parents_[a], parents_[b], parents_[c]};
-    for (std::uint32_t& root : roots) {
-      if (parents_[root] != root) [[unlikely]] root = find(root);
+  /// Joins several at once. No branch on whether they are joined already: that is a coin toss.
+  template <std::size_t n>
+  void join(const std::uint32_t (&members)[n]) noexcept {
+    std::uint32_t roots[n];
+    for (std::size_t i = 0; i < n; ++i) {
+      roots[i] = parents_[members[i]];
+      if (parents_[roots[i]] != roots[i]) [[unlikely]] roots[i] = find(roots[i]);
     }
-    const std::uint32_t root = std::min({roots[0], roots[1], roots[2]});
-    for (const std::uint32_t i : {roots[0], roots[1], roots[2], a, b, c}) parents_[i] = root;
+    const std::uint32_t root = *std::min_element(roots, roots + n);
+    for (std::size_t i = 0; i < n; ++i) parents_[roots[i]] = parents_[members[i]] = root;
   }
   /// Makes every parent a root, once all is joined.
   void flatten(std::uint32_t count) noexcept {
