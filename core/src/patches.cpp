@@ -131,7 +131,7 @@ void Patches::begin(Walk& walk) noexcept {
   for (const std::uint32_t t : atlas_.beside[walk.group->first].triangles) add(t);
 }
 
-// What follows is called from one place each, all the time.
+// What is always inlined is called from one place, for every ring.
 
 /// Looks at the triangles next to the last ring, and keeps those near enough.
 [[gnu::always_inline]] inline void Patches::look(Walk& walk) noexcept {
