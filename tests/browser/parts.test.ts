@@ -181,6 +181,8 @@ test('of a model in very many parts the largest fifty are listed; what was said 
 
 test('on a phone a row that is touched stays lit until something else is', async () => {
   const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true })
+  // What is said of the cage's fit comes later, and moves what is below it out from under a finger.
+  await page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '')
   await page.locator('#parts summary').tap()
   const area = await modelArea(page)
   const row = page.getByTestId('segment-table').getByRole('rowheader', { name: 'skin' }).first()
