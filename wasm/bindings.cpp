@@ -15,7 +15,7 @@ void eachField(SegmentStats& s, const Visit& visit) {
 
 template <typename Visit>
 void eachField(HoleShare& s, const Visit& visit) {
-  visit(s.hole), visit(s.segment), visit(s.exposedArea), visit(s.uncoveredArea);
+  visit(s.hole), visit(s.segment), visit(s.exposedArea), visit(s.uncoveredArea), visit(s.hiddenArea);
 }
 
 template <typename Visit>

@@ -22,7 +22,7 @@ template <typename Visit>
 constexpr void eachField(TransferOptions& o, const Visit& visit) {
   visit(o.projection), visit(o.weldTolerance), visit(o.seams), visit(o.occlusionReach), visit(o.pokeThrough);
   visit(o.votes), visit(o.farRims), visit(o.depths), visit(o.secondLook), visit(o.bothSides), visit(o.exposedSide), visit(o.holes);
-  visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.maxUncovered), visit(o.copies), visit(o.partialTriangles);
+  visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.maxUncovered), visit(o.copies), visit(o.baredParts), visit(o.partialTriangles);
 }
 
 }  // namespace cagecast

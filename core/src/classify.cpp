@@ -9,8 +9,19 @@ namespace {
 /// docs/method.md, step 7: a hole is explained if what fails there is so large a share of what is uncovered there.
 constexpr double kExplaining = 0.02;
 
+/// docs/method.md, step 5″: a part that a hole is meant for has less than so large a share of all that is covered,
+constexpr double kSmallPart = 0.02;
+/// and under a hole that nothing explains it bares at least so much, as a share of what is exposed of it and of what is bare there,
+constexpr double kBare = 0.15;
+constexpr double kMuchOfHole = 0.25;
+/// or under any hole it hides so much, as a share of what is exposed of it with that.
+constexpr double kHidden = 0.25;
+
 /// docs/method.md, step 5′: copies within this factor of what is asked of them are judged together.
 constexpr double kDoubt = 2;
+
+/// How many times what it needs something has.
+double times(double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); }
 
 /// The areas of a segment, or of several that are judged together.
 struct Tally {
@@ -34,6 +45,9 @@ class Verdicts {
     for (const SegmentStats& s : stats) allCovered_ += s.coveredArea;
   }
 
+  /// The covered area of all segments.
+  [[nodiscard]] double allCovered() const noexcept { return allCovered_; }
+
   /// @param[out] margins  1 per segment: it passes from 1 on.
   /// @return false if memory ran out.
   bool decide(Array<double>& margins) const noexcept {
@@ -50,7 +64,6 @@ class Verdicts {
 
   /// How many times what is asked of it a tally reaches: it passes from 1 on.
   [[nodiscard]] double marginOf(const Tally& tally) const {
-    const auto times = [](double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); };
     const double coverage = times(tally.covered, static_cast<double>(options_.threshold) * tally.exposed);
     if (options_.floor == Floor::none) return coverage;
     if (!(tally.covered > 0)) return 0;
@@ -84,18 +97,28 @@ class Verdicts {
   double allCovered_ = 0;
 };
 
-/// Step 7: which holes are meant for what fails behind them.
-void explainHoles(std::span<const HoleShare> shares, Zones& out) {
+/// Step 7: finds which holes are meant for what fails behind them. Step 5″ before that, with `small` parts: lowers the margins of those
+/// that pass and that a hole is meant for.
+/// @param small  A part is small if less than this area of it is covered; 0: none is.
+void explainHoles(std::span<const HoleShare> shares, std::span<const SegmentStats> stats, double small, Zones& out) {
   std::fill(out.explainedHoles.begin(), out.explainedHoles.end(), std::uint8_t{0});
-  for (std::size_t i = 0; i < shares.size();) {
-    const std::uint32_t hole = shares[i].hole;
+  for (std::size_t i = 0, end = 0; i < shares.size(); i = end) {
     double failing = 0;
     double uncovered = 0;
-    for (; i < shares.size() && shares[i].hole == hole; ++i) {
-      (out.culledSegments[shares[i].segment] ? failing : uncovered) +=
-          out.culledSegments[shares[i].segment] ? shares[i].exposedArea : shares[i].uncoveredArea;
+    for (; end < shares.size() && shares[end].hole == shares[i].hole; ++end) {
+      (out.culledSegments[shares[end].segment] ? failing : uncovered) +=
+          out.culledSegments[shares[end].segment] ? shares[end].exposedArea : shares[end].uncoveredArea;
     }
-    out.explainedHoles[hole] = failing > 0 && failing >= kExplaining * uncovered;
+    const bool isExplained = failing > 0 && failing >= kExplaining * uncovered;
+    out.explainedHoles[shares[i].hole] = isExplained;
+    for (const HoleShare& share : shares.subspan(i, end - i)) {
+      const SegmentStats& part = stats[share.segment];
+      if (out.culledSegments[share.segment] || part.coveredArea >= small) continue;
+      double& margin = out.margins[share.segment];
+      margin = std::min(margin, times(kHidden * (part.exposedArea + share.hiddenArea), share.hiddenArea));
+      if (isExplained || share.uncoveredArea < kMuchOfHole * uncovered) continue;
+      margin = std::min(margin, times(kBare * part.exposedArea, share.uncoveredArea));
+    }
   }
 }
 
@@ -129,16 +152,21 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
     return {Code::outOfMemory};
   }
 
-  if (!Verdicts(stats, options).decide(out.margins)) return {Code::outOfMemory};
-  for (std::size_t s = 0; s < stats.size(); ++s) out.culledSegments[s] = out.margins[s] < 1;
-  for (std::size_t s = 0; s < options.locks.size(); ++s) {
-    if (options.locks[s] != Lock::automatic) out.culledSegments[s] = options.locks[s] == Lock::exclude;
+  const Verdicts verdicts(stats, options);
+  if (!verdicts.decide(out.margins)) return {Code::outOfMemory};
+  const auto isLocked = [&](std::size_t s) { return !options.locks.empty() && options.locks[s] != Lock::automatic; };
+  for (std::size_t s = 0; s < stats.size(); ++s) out.culledSegments[s] = isLocked(s) ? options.locks[s] == Lock::exclude : out.margins[s] < 1;
+  if (options.baredParts) {
+    explainHoles(shares, stats, kSmallPart * verdicts.allCovered(), out);
+    for (std::size_t s = 0; s < stats.size(); ++s) {
+      if (!out.culledSegments[s] && out.margins[s] < 1 && !isLocked(s)) out.culledSegments[s] = Zones::kBared;
+    }
   }
-  explainHoles(shares, out);
+  explainHoles(shares, stats, 0, out);
   for (std::size_t v = 0; v < zones.size(); ++v) {
     // As numbers, without a branch: cosmetic is 0, less than the 1 of a segment that is culled.
     const auto zone = static_cast<unsigned>(zones[v]);
-    const unsigned becomes = out.culledSegments[segments[v]] > zone ? static_cast<unsigned>(Zone::culled) : 0;
+    const unsigned becomes = unsigned{out.culledSegments[segments[v]] != 0} > zone ? static_cast<unsigned>(Zone::culled) : 0;
     out.zones[v] = static_cast<Zone>(zone | becomes);
   }
   for (std::size_t v = 0; v < restores.size(); ++v) {

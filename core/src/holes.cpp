@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include "areas.hpp"
@@ -14,7 +15,7 @@ constexpr double kExplainedOverhang = 0.03;
 
 struct Share {
   std::uint32_t rim, segment;
-  std::int64_t exposed, uncovered;
+  std::int64_t exposed, uncovered, hidden;
 };
 
 }  // namespace
@@ -29,14 +30,15 @@ bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, co
   auto* shareOf = scratch.take<std::uint32_t>(segmentCount);
   if (scratch.failed()) return false;
 
-  // Where the points that are not occluded lie, and what brings those back that are uncovered.
+  // Where the points lie that are not occluded, or not under the cage either, and what brings those back that are uncovered.
   std::fill(starts, starts + rims.count + 1, 0u);
   for (std::uint32_t i = 0; i < points.count; ++i) {
     rimOf[i] = Rims::kNone;
     const std::uint32_t slot = results.triangles[i];
     const bool isUncovered = results.zones[i] == Zone::uncovered;
     if (isUncovered) restores[i] = Restores::always;
-    if (results.zones[i] == Zone::occluded || !rims.touches(slot)) continue;
+    const bool isUnderCage = results.cageDistances == nullptr || std::isfinite(results.cageDistances[i]);
+    if ((results.zones[i] == Zone::occluded && isUnderCage) || !rims.touches(slot)) continue;
     const CageTriangle& t = cage.triangles[slot];
     const Vec3 p = points.exactly(i);
     const Place place = placeOn(t, p);
@@ -70,18 +72,20 @@ bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, co
       // A share found at an earlier rim, or never, is not this one's.
       if (shareOf[s] < first || shareOf[s] >= count || found[shareOf[s]].segment != s) {
         shareOf[s] = count;
-        found[count++] = {rim, s, 0, 0};
+        found[count++] = {rim, s, 0, 0, 0};
       }
-      found[shareOf[s]].exposed += areas.all[p];
-      if (results.zones[p] == Zone::uncovered) found[shareOf[s]].uncovered += areas.all[p];
+      Share& share = found[shareOf[s]];
+      (results.zones[p] == Zone::occluded ? share.hidden : share.exposed) += areas.all[p];
+      if (results.zones[p] == Zone::uncovered) share.uncovered += areas.all[p];
     }
   }
   if (!shares.reset(count)) return false;
   const AreaUnit unit(points.triangleCount, units.diagonal);
   const double toInput = 1.0 / units.scale / units.scale;
   for (std::uint32_t i = 0; i < count; ++i) {
-    shares[i] = {found[i].rim, found[i].segment, unit.summableArea(found[i].exposed) * toInput,
-                 unit.summableArea(found[i].uncovered) * toInput};
+    const auto& [rim, segment, exposed, uncovered, hidden] = found[i];
+    shares[i] = {rim, segment, unit.summableArea(exposed) * toInput, unit.summableArea(uncovered) * toInput,
+                 unit.summableArea(hidden) * toInput};
   }
   scratch.rewind(mark);
   return true;

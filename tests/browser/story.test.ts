@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict'
 import path from 'node:path'
 import { before, test } from 'node:test'
-import { classify, init, project, type Mesh } from 'cagecast'
+import { classify, init, project, type ClassifyOptions, type Mesh } from 'cagecast'
 import type { Shown } from '../../web/src/session'
 import { Rims } from '../../web/src/why/rims'
 import { tell } from '../../web/src/why/story'
-import { modelFolders, readPlain } from '../js/scenes'
+import { modelFolders, readPlain, smallHole } from '../js/scenes'
 
 before(() => init())
 
@@ -43,12 +43,27 @@ for (const folder of modelFolders()) {
           assert.match(steps.at(-1)!.sentence, culled ? /culled as a whole|do not pass|exposed: it is culled/ : /passes\.|they pass|is exposed\./, where)
           assert.equal(part.passes, !culled)
           // Whatever is culled although it is covered well enough is told apart from what is not.
-          if (culled && coverage >= threshold && part.exposed > 0) assert.match(steps.at(-1)!.sentence, /little of it|copies/, where)
+          if (culled && coverage >= threshold && part.exposed > 0) assert.match(steps.at(-1)!.sentence, /little of it|copies|meant for it/, where)
         }
       }
     }
   })
 }
+
+test('of a part that a hole is meant for that is told, and by the other rules it is painted', () => {
+  const { cage, target } = smallHole()
+  const projection = project(cage, target)
+  const shown = { target: { mesh: withParts(target) }, cage: { mesh: cage }, projection } as unknown as Shown
+  const isEyes = (triangle: number): boolean => projection.segments[target.indices[3 * triangle]!] === 1
+  const covered = Array.from({ length: target.indices.length / 3 }, (_, triangle) => triangle).find((triangle) => isEyes(triangle) && projection.zones[target.indices[3 * triangle]!] === 0)!
+  const told = (options: ClassifyOptions): string => {
+    const facts = { shown, classification: classify(projection, options), rules: { preset: 'default', threshold: 0.5 } as const, locks: {}, rims: new Rims(cage) }
+    const { verdict, because, steps } = tell(facts, covered, [1, 0, 0])
+    return `${verdict}: ${because}. ${steps.at(-1)!.sentence}`
+  }
+  assert.match(told({}), /^Not painted: culled: a hole of the cage seems to be meant for “part 1”\. .* covers 69 %, enough; but a hole .* meant for it: it is small, /)
+  assert.match(told({ baredParts: false }), /^Painted: .* covers 69 %, at least the threshold of 50 %: it passes\.$/)
+})
 
 test('of a part that is locked only that is told', async () => {
   const folder = modelFolders()[0]!

@@ -34,6 +34,7 @@ constexpr Step kSteps[] = {
     {"the floor of area", [](TransferOptions& o) { o.floor = Floor::area; }},
     {"the floor of depth", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = true; }},
     {"copies", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = o.copies = true; }},
+    {"bared parts", [](TransferOptions& o) { o.holes = o.baredParts = true; }},
     {"the second look", [](TransferOptions& o) { o.secondLook = true; }},
     {"the second look to both sides", [](TransferOptions& o) { o.secondLook = o.bothSides = true; }},
     {"the second look by what is exposed", [](TransferOptions& o) { o.secondLook = o.exposedSide = true; }},
@@ -88,7 +89,7 @@ TEST_CASE("the preset is the reference's on strewn triangles, as a whole and ste
 }
 
 TEST_CASE("any choice of the preset's steps and constants is the reference's on random scenes", "[default]") {
-  std::size_t vertices = 0, unstable = 0;
+  std::size_t vertices = 0, unstable = 0, bared = 0;
   for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 400; ++seed) {
     scenes::Random random(seed);
     const auto flip = [&] { return random.below(2) == 0; };
@@ -110,6 +111,7 @@ TEST_CASE("any choice of the preset's steps and constants is the reference's on 
     options.bothSides = flip();
     options.exposedSide = flip();
     options.holes = flip();
+    options.baredParts = flip();
     options.partialTriangles = flip();
     const int triangles = 10 + static_cast<int>(random.below(50));
     scenes::Scene scene = flip() ? scenes::strewn(seed, triangles) : scenes::gridded(seed, triangles);
@@ -124,9 +126,12 @@ TEST_CASE("any choice of the preset's steps and constants is the reference's on 
     const auto found = requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
     vertices += found.vertices;
     unstable += found.unstable;
+    const TransferResult result = transferred(scene.cage.view(), scene.target.view(), options);
+    bared += static_cast<std::size_t>(std::count(result.zones.culledSegments.begin(), result.zones.culledSegments.end(), Zones::kBared));
   }
   INFO(unstable << " of " << vertices << " vertices are unstable");
   CHECK(unstable * 10 <= vertices);
+  CHECK(bared > 0);
 }
 
 TEST_CASE("the preset is the reference's at any threshold, every triangle a segment of its own", "[default]") {
@@ -259,7 +264,7 @@ TEST_CASE("a lock is the last word about its segment", "[default]") {
     const Zones kept = decided(s, Lock::keep), excluded = decided(s, Lock::exclude);
     CHECK(kept.culledSegments[s] == 0);
     CHECK(excluded.culledSegments[s] == 1);
-    CHECK((result.zones.margins[s] < 1) == (result.zones.culledSegments[s] == 1));
+    CHECK((result.zones.margins[s] < 1) == (result.zones.culledSegments[s] != 0));
     CHECK(copied(kept.margins) == copied(result.zones.margins));
     for (std::size_t v = 0; v < scene.target.vertexCount(); ++v) {
       if (result.projection.segments[v] != s) continue;
@@ -280,6 +285,35 @@ TEST_CASE("a lock is the last word about its segment", "[default]") {
     CHECK(status.code == Code::badLocks);
     CHECK(status.at == 2);
   }
+}
+
+TEST_CASE("a small part that a hole bares fails, unless it is kept or something else explains the hole", "[default]") {
+  const scenes::Trap trap = scenes::aside();
+  const TransferResult result = transferred(trap.scene.cage.view(), trap.scene.target.view(), preset());
+  REQUIRE(result.projection.segmentStats.size() == 3);
+  const auto decided = [&](const TransferOptions& options) {
+    Zones zones;
+    REQUIRE(classify(result.projection.view(), trap.scene.target.indices, options, zones).ok());
+    return zones;
+  };
+  for (std::size_t eye = 1; eye < 3; ++eye) {
+    CHECK(result.projection.segmentStats[eye].coverage() > 0.6);
+    CHECK(result.zones.culledSegments[eye] == Zones::kBared);
+    CHECK(result.zones.margins[eye] < 1);
+    CHECK(result.zones.explainedHoles[result.projection.holeShares[0].hole] == 1);
+  }
+  CHECK(result.zones.culledSegments[0] == 0);
+
+  TransferOptions options = preset();
+  options.baredParts = false;
+  CHECK(copied(decided(options).culledSegments) == std::vector<std::uint8_t>{0, 0, 0});
+  options.baredParts = true;
+  const Lock kept[] = {Lock::automatic, Lock::keep, Lock::automatic};
+  options.locks = kept;
+  CHECK(copied(decided(options).culledSegments) == std::vector<std::uint8_t>{0, 0, Zones::kBared});
+  const Lock excluded[] = {Lock::exclude, Lock::automatic, Lock::automatic};
+  options.locks = excluded;  // The skin beside the eyes lies nearest to the rims, too.
+  CHECK(copied(decided(options).culledSegments) == std::vector<std::uint8_t>{1, 0, Zones::kBared});
 }
 
 TEST_CASE("an excluded segment explains the hole it lies under, a kept one does not", "[default]") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -64,16 +65,22 @@ double cageDistance(const Scene& scene, const Sight& sight, const Ray& ray, cons
   return least == kInfinity ? least : std::max(0.0, least);
 }
 
+/// What one ray tells.
+struct Outcome {
+  Zone zone;
+  bool isHidden = false;  // The target occludes the point, and the cage is not over it either; with step 2'.
+};
+
 /// Steps 2 and 3 for one ray.
-Zone zoneOf(const Scene& scene, const Options& options, const Sight& sight, const Ray& ray, const Place& place) {
+Outcome outcomeOf(const Scene& scene, const Options& options, const Sight& sight, const Ray& ray, const Place& place) {
   const double cage = cageDistance(scene, sight, ray, place);
   const double end = options.endOfSelfRay ? cage + options.occlusionReach * scene.diag : kInfinity;
   const bool occluded = std::any_of(sight.target.begin(), sight.target.end(), [&](const Triangle* triangle) {
     const double t = hit(ray, *triangle);
     return t > kSelfHitStart * scene.diag && t <= end;
   });
-  if (occluded) return Zone::occluded;
-  return cage < kInfinity || sight.pokesThrough ? Zone::cosmetic : Zone::uncovered;
+  if (occluded) return {Zone::occluded, options.endOfSelfRay && cage == kInfinity};
+  return {cage < kInfinity || sight.pokesThrough ? Zone::cosmetic : Zone::uncovered};
 }
 
 unsigned bit(Zone zone) { return 1u << static_cast<unsigned>(zone); }
@@ -96,14 +103,22 @@ std::vector<Ray> nudged(const Ray& ray) {
 struct Finding {
   Zone zone = Zone::cosmetic;
   unsigned nearby = bit(Zone::cosmetic);
+  Verdict hidden;
 };
 
 Finding judge(const Scene& scene, const Options& options, const Sight& sight, const Place& place) {
   Finding finding;
-  finding.zone = zoneOf(scene, options, sight, sight.ray, place);
-  finding.nearby = bit(finding.zone);
+  const Outcome is = outcomeOf(scene, options, sight, sight.ray, place);
+  finding.zone = is.zone;
+  finding.nearby = bit(is.zone);
+  finding.hidden = {is.isHidden, is.isHidden, is.isHidden};
   if (options.stability)
-    for (const Ray& ray : nudged(sight.ray)) finding.nearby |= bit(zoneOf(scene, options, sight, ray, place));
+    for (const Ray& ray : nudged(sight.ray)) {
+      const Outcome beside = outcomeOf(scene, options, sight, ray, place);
+      finding.nearby |= bit(beside.zone);
+      finding.hidden.might = finding.hidden.might || beside.isHidden;
+      finding.hidden.must = finding.hidden.must && beside.isHidden;
+    }
   return finding;
 }
 
@@ -523,13 +538,16 @@ std::vector<Verdict> secondLook(const Scene& scene, const Options& options, cons
 
 // ------------------------------------------------------------------------------------------------------------- 7 Holes
 
-/// Step 7: the uncovered points whose hole is not meant for them: those that lie under the cage, hardly beside it, or
-/// beside a hole that something else explains.
-std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
-  constexpr double kOverhang = 0.005, kOverhangOfLoop = 0.05, kExplainedOverhang = 0.03, kExplaining = 0.02;
-  constexpr double kUnsure = 1e-7;  // An overhang this near to its limit may as well be on its other side.
-  const std::size_t loopCount = scene.rims.loops.size();
-  std::vector<Range> failing(loopCount), uncovered(loopCount);
+/// What is known of a hole of the cage, an open loop.
+struct Hole {
+  Range uncovered;    // Area of passing segments there that the cage does not cover.
+  Verdict explained;  // It is meant for what fails there.
+};
+
+std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
+  constexpr double kExplaining = 0.02;
+  std::vector<Hole> holes(scene.rims.loops.size());
+  std::vector<Range> failing(holes.size());
   for (std::size_t p = 0; p < state.loops.size(); ++p) {
     if (state.loops[p] < 0) continue;
     const auto loop = static_cast<std::size_t>(state.loops[p]);
@@ -539,17 +557,83 @@ std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
     if (!pass.is && finding.zone != Zone::occluded) failing[loop].is += area;
     if (!pass.might && (finding.nearby & bit(Zone::occluded)) == 0) failing[loop].least += area;
     if (!pass.must && (finding.nearby & ~bit(Zone::occluded)) != 0) failing[loop].most += area;
-    if (pass.is && finding.zone == Zone::uncovered) uncovered[loop].is += area;
-    if (pass.must && finding.nearby == bit(Zone::uncovered)) uncovered[loop].least += area;
-    if (pass.might && (finding.nearby & bit(Zone::uncovered)) != 0) uncovered[loop].most += area;
+    Range& uncovered = holes[loop].uncovered;
+    if (pass.is && finding.zone == Zone::uncovered) uncovered.is += area;
+    if (pass.must && finding.nearby == bit(Zone::uncovered)) uncovered.least += area;
+    if (pass.might && (finding.nearby & bit(Zone::uncovered)) != 0) uncovered.most += area;
   }
-  std::vector<Verdict> explained;
-  for (std::size_t l = 0; l < loopCount; ++l) {
+  for (std::size_t l = 0; l < holes.size(); ++l) {
     const auto explains = [](double some, double all) { return some > 0 && some >= kExplaining * all; };
-    explained.push_back({explains(failing[l].is, uncovered[l].is),
-                         explains(failing[l].most, uncovered[l].least * (1 - kSumNoise)),
-                         explains(failing[l].least, uncovered[l].most * (1 + kSumNoise))});
+    const Range& uncovered = holes[l].uncovered;
+    holes[l].explained = {explains(failing[l].is, uncovered.is), explains(failing[l].most, uncovered.least * (1 - kSumNoise)),
+                          explains(failing[l].least, uncovered.most * (1 + kSumNoise))};
   }
+  return holes;
+}
+
+/// Step 5": a hole may be meant for small parts: they do not pass if nothing else explains the hole, and it bares much of them, or if
+/// much of them lies hidden under it.
+void failBaredParts(const Scene& scene, const std::vector<Voter>& voters, State& state, Result& result) {
+  constexpr double kBare = 0.15, kMuchOfHole = 0.25, kHidden = 0.25, kSmall = 0.02;
+  std::vector<Range> exposed(state.segmentCount), covered(state.segmentCount);
+  Range all;  // The covered area of all segments.
+  for (const Voter& voter : voters) {
+    const auto add = [&](Range& sum, unsigned zones) {
+      if ((bit(voter.finding.zone) & zones) != 0) sum.is += voter.area;
+      if ((voter.finding.nearby & ~zones) == 0) sum.least += voter.area;
+      if ((voter.finding.nearby & zones) != 0) sum.most += voter.area;
+    };
+    add(exposed[voter.segment], bit(Zone::cosmetic) | bit(Zone::uncovered));
+    add(covered[voter.segment], bit(Zone::cosmetic));
+    add(all, bit(Zone::cosmetic));
+  }
+  // What of each segment is uncovered at each hole, and what is hidden.
+  struct Share {
+    Range bare, hidden;
+  };
+  std::map<std::pair<std::size_t, std::uint32_t>, Share> shares;
+  for (std::size_t p = 0; p < state.loops.size(); ++p) {
+    if (state.loops[p] < 0) continue;
+    auto& [bare, hidden] = shares[{static_cast<std::size_t>(state.loops[p]), state.segments[p]}];
+    const Finding& finding = state.findings[p];
+    if (finding.zone == Zone::uncovered) bare.is += state.areas[p];
+    if (finding.nearby == bit(Zone::uncovered)) bare.least += state.areas[p];
+    if ((finding.nearby & bit(Zone::uncovered)) != 0) bare.most += state.areas[p];
+    if (finding.hidden.is) hidden.is += state.areas[p];
+    if (finding.hidden.must) hidden.least += state.areas[p];
+    if (finding.hidden.might) hidden.most += state.areas[p];
+  }
+  const std::vector<Hole> holes = judgeHoles(scene, state);
+  std::vector<Verdict> fails(state.segmentCount);
+  const double more = 1 + kSumNoise, less = 1 - kSumNoise;
+  for (const auto& [where, share] : shares) {
+    const auto& [loop, s] = where;
+    const auto& [uncovered, explained] = holes[loop];
+    const auto isMeant = [](double bare, double hidden, double itsExposed, double itsCovered, bool isExplained, double allBare, double allCovered) {
+      return itsCovered < kSmall * allCovered && (hidden > kHidden * (itsExposed + hidden) ||
+                                                  (!isExplained && bare > kBare * itsExposed && bare >= kMuchOfHole * allBare));
+    };
+    Verdict& fail = fails[s];
+    fail.is = fail.is || isMeant(share.bare.is, share.hidden.is, exposed[s].is, covered[s].is, explained.is, uncovered.is, all.is);
+    fail.might = fail.might || isMeant(share.bare.most * more, share.hidden.most * more, exposed[s].least * less, covered[s].least * less,
+                                       explained.must, uncovered.least * less, all.most * more);
+    fail.must = fail.must || isMeant(share.bare.least * less, share.hidden.least * less, exposed[s].most * more, covered[s].most * more,
+                                     explained.might, uncovered.most * more, all.least * less);
+  }
+  for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
+    Verdict& pass = state.passes[s];
+    if (fails[s].might != fails[s].must && pass.might) result.firmAreas[s] = 0;
+    pass = {pass.is && !fails[s].is, pass.might && !fails[s].must, pass.must && !fails[s].might};
+    result.segmentStats[s].culled = !pass.is;
+  }
+}
+
+/// Step 7: the uncovered points whose hole is not meant for them: those that lie under the cage, hardly beside it, or
+/// beside a hole that something else explains.
+std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
+  constexpr double kOverhang = 0.005, kOverhangOfLoop = 0.05, kExplainedOverhang = 0.03;
+  constexpr double kUnsure = 1e-7;  // An overhang this near to its limit may as well be on its other side.
+  const std::vector<Hole> holes = judgeHoles(scene, state);
   std::vector<Verdict> result;
   for (std::size_t p = 0; p < state.loops.size(); ++p) {
     if (state.loops[p] < 0) {
@@ -564,8 +648,8 @@ std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
       return h <= little || (isExplained && h <= kExplainedOverhang * scene.diag);
     };
     const double unsure = kUnsure * scene.diag;
-    result.push_back({allowed(overhang, explained[loop].is), allowed(overhang - unsure, explained[loop].might),
-                      allowed(overhang + unsure, explained[loop].must)});
+    result.push_back({allowed(overhang, holes[loop].explained.is), allowed(overhang - unsure, holes[loop].explained.might),
+                      allowed(overhang + unsure, holes[loop].explained.must)});
   }
   return result;
 }
@@ -617,7 +701,7 @@ Options Options::standard() {
   Options options;
   options.endOfSelfRay = options.pokes = options.votes = options.farRims = true;
   options.floor = Floor::depth;
-  options.copies = options.secondLook = options.bothSides = options.exposedSide = true;
+  options.copies = options.baredParts = options.secondLook = options.bothSides = options.exposedSide = true;
   options.holes = options.partialTriangles = options.seams = true;
   return options;
 }
@@ -625,7 +709,7 @@ Options Options::standard() {
 Options Options::earlier() {
   Options options = standard();
   options.floor = Floor::area;
-  options.copies = options.bothSides = options.farRims = options.exposedSide = false;
+  options.copies = options.baredParts = options.bothSides = options.farRims = options.exposedSide = false;
   return options;
 }
 
@@ -664,6 +748,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     for (const Voter& voter : voters)
       if (!single(voter.finding.nearby)) result.firmAreas[voter.segment] = 0;
     decide(scene, options, voters, state, result.segmentStats, result.measures);
+    if (options.holes && options.baredParts) failBaredParts(scene, voters, state, result);
   } else {
     state.passes.assign(state.segmentCount, {true, true, true});
     for (SegmentStats& stats : result.segmentStats) stats.exposedArea = stats.coveredArea = stats.area;
@@ -727,6 +812,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.minOfAll = static_cast<double>(library.minOfAll);
   options.maxUncovered = static_cast<double>(library.maxUncovered);
   options.copies = library.copies;
+  options.baredParts = library.baredParts;
   options.secondLook = library.secondLook;
   options.bothSides = library.bothSides;
   options.exposedSide = library.exposedSide;

@@ -27,6 +27,7 @@ struct Options {
   double minOfAll = 0.005;
   double maxUncovered = 0.25;
   bool copies = false;              ///< Step 5': copies of one part that are in doubt are judged together.
+  bool baredParts = false;          ///< Step 5": small parts that a hole bares which nothing explains fail; with `holes`.
   bool secondLook = false;          ///< Step 6: occluded points that are seen from elsewhere are restored.
   bool bothSides = false;           ///< Step 6: where normals cancel out, look to both sides; else such points stay.
   bool exposedSide = false;         ///< Step 6: the side a segment looks to is that of its points that are not occluded.

@@ -210,7 +210,7 @@ TEST_CASE("the models made to be difficult are: the rule as it was first written
   }
 }
 
-TEST_CASE("panes under far rims need votes there, a brim that is nearest to the cage above it the side of what is exposed", "[reference]") {
+TEST_CASE("panes under far rims need votes there, a brim nearest to the cage above it the side of what is exposed, small eyes aside or behind glasses the holes over them", "[reference]") {
   const auto scoreWithout = [](const scenes::Trap& trap, bool Options::*step) {
     Options options = Options::standard();
     options.stability = false;
@@ -219,6 +219,8 @@ TEST_CASE("panes under far rims need votes there, a brim that is nearest to the 
   };
   CHECK(scoreWithout(scenes::glazed(), &Options::farRims).suppressed == 0);
   CHECK(scoreWithout(scenes::hatted(), &Options::exposedSide).kept < 0.8);
+  CHECK(scoreWithout(scenes::aside(), &Options::baredParts).suppressed < 0.6);
+  CHECK(scoreWithout(scenes::bespectacled(), &Options::baredParts).suppressed < 0.6);
 }
 
 TEST_CASE("a cage of the skin's own vertices needs the poke-through, a dome over all the end of the self ray", "[reference]") {

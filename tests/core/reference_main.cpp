@@ -6,7 +6,7 @@
 ///     cagecast_reference --traps FOLDER
 ///
 /// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
-/// votes, far-rims, floor, copies, second-look, both-sides, exposed-side, holes, triangles, seams. --preset earlier is `default`
+/// votes, far-rims, floor, copies, bared-parts, second-look, both-sides, exposed-side, holes, triangles, seams. --preset earlier is `default`
 /// with step 4', the floor and the second look as they were first written down. --unchecked does not ask which vertices are
 /// stable. --product asks the library instead, which knows nothing of --without. The second form writes the scenes of the golden hashes, in their order,
 /// as FOLDER/0.scene and so on, and those that are cut as FOLDER/borders-0.scene and so on; the third the models made to be difficult as FOLDER/NAME.scene, each with
@@ -145,6 +145,7 @@ constexpr std::pair<std::string_view, bool reference::Options::*> kSteps[] = {
     {"votes", &reference::Options::votes},
     {"far-rims", &reference::Options::farRims},
     {"copies", &reference::Options::copies},
+    {"bared-parts", &reference::Options::baredParts},
     {"second-look", &reference::Options::secondLook},
     {"both-sides", &reference::Options::bothSides},
     {"exposed-side", &reference::Options::exposedSide},
@@ -181,7 +182,7 @@ int main(int argc, char** argv) {
       } else if (preset == "earlier") {
         options = TransferOptions::standard();
         options.floor = Floor::area;
-        options.copies = options.bothSides = options.depths = options.farRims = options.exposedSide = false;
+        options.copies = options.baredParts = options.bothSides = options.depths = options.farRims = options.exposedSide = false;
         plain = reference::Options::earlier();
       } else {
         return fail("--preset " + std::string(preset) + ": there are paper, default and earlier");

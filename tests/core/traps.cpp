@@ -252,6 +252,54 @@ Trap hatted() {
   return trap;
 }
 
+namespace {
+
+/// A figure with eyes no larger than 1 % of the diagonal, of 2.4.
+struct SmallEyed {
+  static constexpr Point kRadii{0.5f, 1, 0.45f};
+  static constexpr Point kEyes[] = {{0.11f, 0.3f, 0.418f}, {-0.11f, 0.3f, 0.418f}};
+  static constexpr float kEye = 0.034f;
+
+  static float fromEye(Point p) { return std::min(distance(p, kEyes[0]), distance(p, kEyes[1])); }
+  /// Finer in front, where the eyes are.
+  static Mesh body(float away) {
+    return mapped(ellipsoid({}, {1, 1, 1}, 40), [&](Point p) {
+      const Point q{p[0], p[1], p[2] + 0.85f};
+      const float size = distance(q, {});
+      return Point{q[0] / size * (kRadii[0] + away), q[1] / size * (kRadii[1] + away), q[2] / size * (kRadii[2] + away)};
+    });
+  }
+  static Mesh cage(float away, float hole) {
+    return without(body(away), [&](Point p) { return fromEye({p[0], p[1], p[2] - away}) < hole; });
+  }
+  static void addTo(Trap& trap) {
+    addBy(trap, without(body(0), [](Point p) { return fromEye(p) < 0.03f; }),
+          [](Point p) { return fromEye(p) < 0.09f ? Wanted::either : Wanted::painted; });
+    for (const Point& eye : kEyes) add(trap, ellipsoid(eye, {kEye, kEye, kEye}, 6), Wanted::bare);
+  }
+};
+
+}  // namespace
+
+Trap aside() {
+  Trap trap;
+  trap.scene.name = "aside";
+  constexpr float kUp = 0.024f;  // 1 % of the diagonal.
+  trap.scene.cage = mapped(SmallEyed::cage(0.036f, 0.022f), [](Point p) { return Point{p[0], p[1] + kUp, p[2]}; });
+  SmallEyed::addTo(trap);
+  return trap;
+}
+
+Trap bespectacled() {
+  Trap trap;
+  trap.scene.name = "bespectacled";
+  trap.scene.cage = SmallEyed::cage(0.06f, 0.03f);
+  SmallEyed::addTo(trap);
+  for (const Point& eye : SmallEyed::kEyes)
+    add(trap, ellipsoid({eye[0], eye[1], eye[2] + 0.045f}, {0.028f, 0.028f, 0.004f}, 4), Wanted::either);
+  return trap;
+}
+
 std::vector<Trap> traps() {
   std::vector<Trap> all;
   all.push_back(clothed(false));
@@ -264,6 +312,8 @@ std::vector<Trap> traps() {
   all.push_back(domed());
   all.push_back(glazed());
   all.push_back(hatted());
+  all.push_back(aside());
+  all.push_back(bespectacled());
   return all;
 }
 

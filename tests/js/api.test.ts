@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { CagecastError, classify, init, presetOptions, project, splitVertices, transfer, Zone, type Lock, type Locks, type Mesh, type Preset, type TransferResult } from 'cagecast';
-import { head, smallest, soup } from './scenes.js';
+import { head, smallHole, smallest, soup } from './scenes.js';
 
 const arrays = ['uvs', 'zones', 'triangles', 'distances', 'segments', 'cosmeticTriangles', 'cornerUvs'] as const;
 const presets: Preset[] = ['paper', 'default'];
@@ -285,8 +285,8 @@ describe('project and classify', () => {
     const { cage, target } = head(8);
     const projection = project(cage, target);
     assert.deepEqual(classify(projection), classify(projection, { preset: 'default' }));
-    const { floor, copies, partialTriangles } = presetOptions('paper');
-    assert.deepEqual(classify(projection, { preset: 'paper' }), classify(projection, { floor, copies, partialTriangles }));
+    const { floor, copies, baredParts, partialTriangles } = presetOptions('paper');
+    assert.deepEqual(classify(projection, { preset: 'paper' }), classify(projection, { floor, copies, baredParts, partialTriangles }));
     assert.notDeepEqual(classify(projection, { preset: 'paper' }).cosmeticTriangles, classify(projection).cosmeticTriangles);
   });
 
@@ -313,8 +313,8 @@ describe('options', () => {
     assert.deepEqual(presetOptions(), presetOptions('default'));
     const paper = presetOptions('paper');
     assert.deepEqual(
-      [paper.seams, paper.occlusionReach, paper.floor, paper.votes, paper.farRims, paper.depths, paper.secondLook, paper.bothSides, paper.exposedSide, paper.holes, paper.copies, paper.partialTriangles],
-      ['vertex', Infinity, 'none', false, false, false, false, false, false, false, false, false],
+      [paper.seams, paper.occlusionReach, paper.floor, paper.votes, paper.farRims, paper.depths, paper.secondLook, paper.bothSides, paper.exposedSide, paper.holes, paper.copies, paper.baredParts, paper.partialTriangles],
+      ['vertex', Infinity, 'none', false, false, false, false, false, false, false, false, false, false],
     );
     for (const { cage, target } of [head(1), soup(3)]) {
       for (const preset of presets) {
@@ -332,6 +332,10 @@ describe('options', () => {
     const painted = (options: object) => transfer(cage, target, { preset: 'paper', ...options }).cosmeticTriangles.filter((one) => one === 1).length;
     assert.ok(painted({ partialTriangles: true }) >= painted({}));
     assert.ok(painted({ holes: true }) > painted({}));
+    const bared = (options: object) => transfer(smallHole().cage, smallHole().target, options).segmentStats.map((stats) => [stats.culled, stats.bared]);
+    assert.deepEqual(bared({}), [[false, false], [true, true]]);
+    assert.deepEqual(bared({ baredParts: false }), [[false, false], [false, false]]);
+    assert.deepEqual(bared({ locks: { segments: { 1: 'exclude' } } }), [[false, false], [true, false]]);
     assert.ok(painted({ floor: 'area', minCovered: 1 }) < painted({}));
     assert.ok(painted({ threshold: 0, floor: 'depth', depths: true, minCovered: 1, minOfAll: 1 }) < painted({}));
     assert.ok(transfer(cage, target, { preset: 'paper', occlusionReach: 0 }).zones.filter((zone) => zone === Zone.Occluded).length <= plain.zones.filter((zone) => zone === Zone.Occluded).length);

@@ -87,7 +87,7 @@ describe('errors', () => {
     fails(untyped(cage, target, { locks: { groups: new Map([[0, 'exclude']]) } }), 'badOption', 'transfer: options.locks.groups is of type Map, not an object of numbers and locks');
     fails(untyped(cage, target, { locks: { segments: { '': 'keep' } } }), 'badOption', 'transfer: options.locks.segments has the entry "", which is no number');
     fails(untyped(cage, target, 0.5), 'badOption', 'transfer: options is 0.5, not an object');
-    fails(untyped(cage, target, { treshold: 0.5 }), 'badOption', 'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, seams, occlusionReach, pokeThrough, votes, farRims, depths, secondLook, bothSides, exposedSide, holes, threshold, floor, minCovered, minOfAll, maxUncovered, copies, partialTriangles, locks, into');
+    fails(untyped(cage, target, { treshold: 0.5 }), 'badOption', 'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, seams, occlusionReach, pokeThrough, votes, farRims, depths, secondLook, bothSides, exposedSide, holes, threshold, floor, minCovered, minOfAll, maxUncovered, copies, baredParts, partialTriangles, locks, into');
     fails(untyped(cage, target, { preset: 'deflaut' }), 'badOption', /^transfer: options\.preset = "deflaut" is unknown/);
     fails(untyped(cage, target, { projection: 'nearest' }), 'badOption', /^transfer: options\.projection = "nearest" is unknown; there are: "nearestPoint", "nearestVertex"$/);
     fails(untyped(cage, target, { threshold: '0.5' }), 'badThreshold', 'transfer: options.threshold = "0.5" is not a number within 0..1');
@@ -123,7 +123,7 @@ describe('errors', () => {
     fails(call({ indices: new Uint32Array([0, 1, 3]) }), 'badArgument', /projection\.indices\[2\] = 3 is out of range/, 2);
     fails(call({ restores: new Uint32Array([0, 5, 0]) }), 'badArgument', /projection\.restores\[1\] = 5 is out of range \(\d+ holes\)/, 1);
     fails(call({ restores: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 restores/);
-    fails(call({ holeShares: [{ hole: 0, segment: 4, exposedArea: 0, uncoveredArea: 0 }] }), 'badArgument', /projection\.holeShares\[0\]/);
+    fails(call({ holeShares: [{ hole: 0, segment: 4, exposedArea: 0, uncoveredArea: 0, hiddenArea: 0 }] }), 'badArgument', /projection\.holeShares\[0\]/);
     fails(call({ preset: 'none' }), 'badOption', /options\.preset = "none" is unknown/);
     fails(call({ segmentStats: [{ ...projection.segmentStats[0], copyOf: 9 }] }), 'badArgument', /projection\.segmentStats\[0\]/);
     fails(call({ segmentStats: [null] }), 'badArgument', /projection\.segmentStats\[0\]/);

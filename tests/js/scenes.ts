@@ -78,6 +78,19 @@ export function head(seed: number, detail = 20): Scene {
   return { name: `head, seed ${seed}`, cage: { ...cage, indices: new Uint32Array(open) }, target: join3d(skin, eye, tongue) };
 }
 
+/** A ball of skin with an eye on it, under a cage whose hole leaves a part of the eye bare: too little to fail by the threshold. */
+export function smallHole(opening = 0.1): Scene {
+  const [phi, theta] = [1, 1.5];
+  const eye = ball([0.98 * Math.cos(phi) * Math.sin(theta), 0.98 * Math.sin(phi) * Math.sin(theta), 0.98 * Math.cos(theta)], () => 0.15, 12, 16);
+  const cage = ball([0, 0, 0], () => 1.2, 48, 96);
+  const open: number[] = [];
+  for (let t = 0; t < cage.indices.length; t += 3) {
+    const corner = cage.indices[t]!;
+    if (Math.hypot(2 * Math.PI * cage.uvs![2 * corner]! - phi, Math.PI * cage.uvs![2 * corner + 1]! - theta) > opening) open.push(...cage.indices.subarray(t, t + 3));
+  }
+  return { name: 'small hole', cage: { ...cage, indices: new Uint32Array(open) }, target: join3d(ball([0, 0, 0], () => 1, 24, 48), eye) };
+}
+
 /** Triangles thrown at random: nothing about it is a well-behaved surface. */
 export function soup(seed: number, triangles = 150): Scene {
   const next = random(seed);

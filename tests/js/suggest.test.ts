@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { init, transfer, type Mesh, type TransferOptions } from 'cagecast';
 import { inspect, suggest, type Finding } from 'cagecast/inspect';
-import { ball, head, join3d, readPlain } from './scenes.js';
+import { ball, head, join3d, readPlain, smallHole } from './scenes.js';
 
 before(init);
 
@@ -82,7 +82,7 @@ describe('suggest', () => {
   test('near the threshold on either side: what it is held against, and the lock that turns it', () => {
     const [, eye] = transfer(cage, target).segmentStats;
     for (const [threshold, words] of [[eye!.coverage - 0.02, /is painted, but barely: .* against the threshold/], [eye!.coverage + 0.02, /is not painted, but nearly: .* less than the threshold/]] as const) {
-      const options = { threshold, floor: 'none' } as const;
+      const options = { threshold, floor: 'none', baredParts: false } as const;
       const { sentence, advice, places, locks } = find(suggest(cage, target, options), 'segmentInDoubt');
       assert.match(sentence, words);
       assert.deepEqual(places, [{ segment: 1, group: 1, part: 'group 1' }]);
@@ -90,6 +90,14 @@ describe('suggest', () => {
       assert.ok(advice.includes(`--${isCulled ? 'keep' : 'exclude'} "group 1"`), advice);
       assert.equal(culled({ ...options, locks })[1], !isCulled);
     }
+  });
+
+  test('a hole that seems to be meant for a part: it says so, and has the lock that paints it', () => {
+    const { cage, target } = smallHole(0.08);
+    const { sentence, places, locks } = find(suggest(cage, target), 'segmentInDoubt');
+    assert.match(sentence, /^"group 1" is not painted, but nearly: F = 0\.82, but a hole of the cage seems to be meant for it/);
+    assert.deepEqual(places!.map(({ segment }) => segment), [1]);
+    assert.deepEqual(transfer(cage, target, { locks }).segmentStats.map(({ culled }) => culled), [false, false]);
   });
 
   test('near the floor: it says so', () => {

@@ -74,6 +74,11 @@ export interface ClassifyOptions {
   maxUncovered?: number | undefined;
   /** With a floor: copies of one part that are in doubt are judged together. Not in `paper`. */
   copies?: boolean | undefined;
+  /**
+   * Step 5″: a small part is culled if a hole of the cage seems to be meant for it, because nothing else explains the hole, or much of
+   * the part lies hidden under it. Needs `holes`. Not in `paper`.
+   */
+  baredParts?: boolean | undefined;
   /** Step 8: a triangle is cosmetic if one corner is and the others are that or occluded; in `paper` if all three are. */
   partialTriangles?: boolean | undefined;
   /** Segments and groups to be painted, or not, whatever their areas. */
@@ -124,6 +129,7 @@ const classifyKinds = {
   minOfAll: 'number',
   maxUncovered: 'number',
   copies: 'boolean',
+  baredParts: 'boolean',
   partialTriangles: 'boolean',
 } as const satisfies Partial<Record<keyof PresetOptions, Kind>>;
 const allKinds: Record<keyof PresetOptions, Kind> = { ...projectKinds, ...classifyKinds };

@@ -52,6 +52,8 @@ export interface SegmentStats {
   copyOf: number;
   /** Too little of it is covered: none of it may be painted. `false` until decided. */
   culled: boolean;
+  /** It is culled, although enough of it is covered, because a hole of the cage seems to be meant for it; option `baredParts`. */
+  bared: boolean;
   /**
    * How many times what is asked of it, or of it and its copies, it reaches: by its areas it is culled below 1. Infinity where
    * nothing is asked, and until decided.
@@ -93,6 +95,8 @@ export interface HoleShare {
   exposedArea: number;
   /** Of those of them that the cage does not cover. */
   uncoveredArea: number;
+  /** Of points that the target occludes, and over which the cage is not either; 0 without an end of the self ray, `occlusionReach`. */
+  hiddenArea: number;
 }
 
 /** The part of the answer that does not depend on the threshold; plain data that can be kept, sent or stored. */
@@ -125,7 +129,7 @@ export interface TransferResult extends Projected, Classification {}
 
 /** Numbers per segment, and per share of a hole, on the way to and from the core. */
 const statsStride = 7;
-const shareStride = 4;
+const shareStride = 5;
 
 /**
  * Carries the cage's UVs to the target and finds its Non-Cosmetic Zones, the vertices that must not be painted.
@@ -194,6 +198,9 @@ export function classify(projection: Projection, options?: ClassifyOptions & Int
   return handOver({ zones, cosmeticTriangles, segmentStats: segmentStats(whole.segmentStats, answer) }, into);
 }
 
+/** What stands in `culledSegments` for a segment that a hole bares. */
+const kBared = 2;
+
 /** What step 5 decided of each segment. */
 type Decided = Pick<ClassifyAnswer, 'culledSegments' | 'margins'>;
 
@@ -221,7 +228,8 @@ function segmentStats(numbers: Float64Array, decided?: Decided): SegmentStats[] 
       sunkArea: numbers[i + 4]!,
       group: numbers[i + 5]!,
       copyOf: numbers[i + 6]!,
-      culled: decided?.culledSegments[s] === 1,
+      culled: (decided?.culledSegments[s] ?? 0) !== 0,
+      bared: decided?.culledSegments[s] === kBared,
       margin: decided?.margins[s] ?? Infinity,
     });
   }
@@ -231,7 +239,7 @@ function segmentStats(numbers: Float64Array, decided?: Decided): SegmentStats[] 
 function holeShares(numbers: Float64Array): HoleShare[] {
   const shares: HoleShare[] = [];
   for (let i = 0; i < numbers.length; i += shareStride) {
-    shares.push({ hole: numbers[i]!, segment: numbers[i + 1]!, exposedArea: numbers[i + 2]!, uncoveredArea: numbers[i + 3]! });
+    shares.push({ hole: numbers[i]!, segment: numbers[i + 1]!, exposedArea: numbers[i + 2]!, uncoveredArea: numbers[i + 3]!, hiddenArea: numbers[i + 4]! });
   }
   return shares;
 }
@@ -265,13 +273,14 @@ function checkProjection(projection: Projection): CoreProjection {
   const shares = new Float64Array(holeShares.length * shareStride);
   let holes = 0;
   holeShares.forEach((share, i) => {
-    const { hole, segment, exposedArea, uncoveredArea } = share ?? {};
+    const { hole, segment, exposedArea, uncoveredArea, hiddenArea } = share ?? {};
+    const areas = [exposedArea, uncoveredArea, hiddenArea];
     // Holes are numbered and in order; more than there are vertices would only ask for memory.
-    if (!Number.isInteger(hole) || hole < holes - 1 || hole > 2 ** 28 || !isSegment(segment) || !Number.isFinite(exposedArea) || !Number.isFinite(uncoveredArea)) {
-      throw wrong(`.holeShares[${i}] is not { hole, segment, exposedArea, uncoveredArea } in the order of holes`, i);
+    if (!Number.isInteger(hole) || hole < holes - 1 || hole > 2 ** 28 || !isSegment(segment) || !areas.every(Number.isFinite)) {
+      throw wrong(`.holeShares[${i}] is not { hole, segment, exposedArea, uncoveredArea, hiddenArea } in the order of holes`, i);
     }
     holes = hole + 1;
-    shares.set([hole, segment, exposedArea, uncoveredArea], i * shareStride);
+    shares.set([hole, segment, ...areas], i * shareStride);
   });
 
   const outOfRange = (name: string, array: Uint32Array, limit: number, what: string) => {

@@ -100,6 +100,9 @@ struct ClassifyOptions {
   float maxUncovered = 0.25f;  ///< What `minOfAll` lets pass is uncovered in at most this share of its exposed area; 0..1.
   /// Step 5′: copies of one part that are within a factor of two of the limit are judged together. Needs a floor.
   bool copies = false;
+  /// Step 5″: a small part does not pass if a hole is meant for it, because nothing else explains the hole, or much of the part lies
+  /// hidden under it. Needs `holes`.
+  bool baredParts = false;
   /// Step 8: a triangle is cosmetic if one corner is and the others are that or occluded; else if all three are.
   bool partialTriangles = false;
   std::span<const Lock> locks = {};  ///< 1 per segment, or none: the last word about it.
@@ -110,7 +113,7 @@ struct ClassifyOptions {
   static constexpr ClassifyOptions standard() noexcept {
     ClassifyOptions options;
     options.floor = Floor::depth;
-    options.copies = options.partialTriangles = true;
+    options.copies = options.baredParts = options.partialTriangles = true;
     return options;
   }
 };
@@ -167,6 +170,7 @@ struct HoleShare {
   std::uint32_t segment = 0;
   double exposedArea = 0;     ///< Of points that the target does not occlude.
   double uncoveredArea = 0;   ///< Of those of them that the cage does not cover.
+  double hiddenArea = 0;      ///< Of points that the target occludes, and over which the cage is not either; with an `occlusionReach`.
 };
 
 /// What `classify` needs to know, seen but not owned.
@@ -200,7 +204,9 @@ struct Projection {
 struct Zones {
   Array<Zone> zones;                    ///< 1 per target vertex.
   Array<std::uint8_t> cosmeticTriangles;  ///< 1 per target triangle: 1 if it may be painted; see `partialTriangles`.
-  Array<std::uint8_t> culledSegments;   ///< 1 per segment: 1 if it does not pass.
+  /// 1 per segment: 0 if it passes; else 1, or `kBared` if by its areas it does, but a hole is meant for it.
+  Array<std::uint8_t> culledSegments;
+  static constexpr std::uint8_t kBared = 2;
   /// 1 per segment: how many times what is asked of it, or of it and its copies, it reaches. It passes from 1 on, but for
   /// locks; infinity: nothing is asked.
   Array<double> margins;

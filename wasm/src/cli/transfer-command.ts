@@ -125,7 +125,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
     triangles: trianglesOf(result.cosmeticTriangles),
     cut: cut ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) } : null,
-    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled }, s) => ({
+    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled, bared }, s) => ({
       part: parts[segmentPart[s]!]!.name,
       vertices: segmentVertices[s]!,
       points,
@@ -136,6 +136,7 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
       sunkArea,
       margin: Number.isFinite(margin) ? margin : null, // nothing is asked of it
       culled,
+      bared,
     })),
     parts: parts.map((part, p) => ({
       name: part.name,

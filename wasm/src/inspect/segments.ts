@@ -26,6 +26,8 @@ export interface Segment {
   /** How many times what is asked of it it reaches; `null` where nothing is asked. */
   margin: number | null;
   culled: boolean;
+  /** It is culled, although enough of it is covered, because a hole of the cage seems to be meant for it. */
+  bared: boolean;
 }
 
 /** The segments in the order of their numbers, with the parts they belong to. */
@@ -33,7 +35,7 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
   const partOf = partsOf(parts, result.segments.length);
   const partOfSegment = new Uint32Array(result.segmentStats.length);
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;
-  return result.segmentStats.map(({ points, group, area, exposedArea, coveredArea, coverage, margin, culled }, s) => ({
+  return result.segmentStats.map(({ points, group, area, exposedArea, coveredArea, coverage, margin, culled, bared }, s) => ({
     part: parts[partOfSegment[s]!]?.name ?? '',
     group,
     points,
@@ -43,6 +45,7 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
     coverage,
     margin: Number.isFinite(margin) ? margin : null,
     culled,
+    bared,
   }));
 }
 
@@ -151,7 +154,8 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
 }
 
 /** What the areas of a segment are held against, and how near they come. */
-function reason({ coverage, culled, margin }: Segment, threshold: number): string {
+function reason({ coverage, culled, bared, margin }: Segment, threshold: number): string {
+  if (bared) return 'but a hole of the cage seems to be meant for it';
   const byThreshold = culled ? coverage < threshold : margin !== null && Math.abs(margin * threshold - coverage) <= 1e-6;
   if (byThreshold) return `${culled ? 'less than' : 'against'} the threshold of ${threshold}`;
   return `and it reaches ${margin === null ? 'more than' : `${margin.toPrecision(2)} times`} what the floor asks`;

@@ -145,7 +145,7 @@ function tellAgain({ shown: { projection }, classification }: Facts, vertex: num
 
 function tellPart({ classification, locks }: Facts, part: PartFacts, options: PresetOptions): string {
   const { name, segment, coverage, threshold, passes } = part
-  const { area, exposedArea, coveredArea, sunkArea } = classification.segmentStats[segment]!
+  const { area, exposedArea, coveredArea, sunkArea, bared } = classification.segmentStats[segment]!
   const lock: Lock = locks[segment] ?? 'auto'
   const whole = `It belongs to ${name}.`
   if (lock !== 'auto') return `${whole} You said to ${lock} it, whatever its areas: ${passes ? 'it passes' : 'it is culled'}.`
@@ -155,6 +155,7 @@ function tellPart({ classification, locks }: Facts, part: PartFacts, options: Pr
   if (enough && passes) return `${share}, at least the threshold of ${percent(threshold)}: it passes.`
   if (!enough && !passes) return `${share}, less than the threshold of ${percent(threshold)}: it is culled as a whole.`
   if (passes) return `${share}, less than the threshold of ${percent(threshold)}; but it is judged together with parts that are copies of it, and they pass.`
+  if (bared) return `${share}, enough; but a hole of the cage seems to be meant for it: it is small, and much of it lies bare there, or hidden. It is culled as a whole.`
   const counted = options.floor === 'depth' ? sunkArea * coverage : coveredArea
   const floor = options.minCovered * area
   if (counted >= floor) return `${share}, enough; but it is judged together with parts that are copies of it, and they do not pass.`
@@ -162,7 +163,7 @@ function tellPart({ classification, locks }: Facts, part: PartFacts, options: Pr
   return `${share}, enough; but that is little of it${deep}: it counts for ${percent(counted / area)} of its area where ${percent(options.minCovered)} are asked. It is culled as a whole.`
 }
 
-function brief({ shown, locks }: Facts, zone: number, vertex: number, { outcome, model, outside }: Path, part: PartFacts): string {
+function brief({ shown, classification, locks }: Facts, zone: number, vertex: number, { outcome, model, outside }: Path, part: PartFacts): string {
   switch (zone) {
     case Zone.Cosmetic:
       if (shown.projection.zones[vertex] !== Zone.Cosmetic) return 'it seemed not to be, but a closer look gave it back'
@@ -173,6 +174,7 @@ function brief({ shown, locks }: Facts, zone: number, vertex: number, { outcome,
       return outside > 0 ? 'it lies outside the cage' : 'the cage has a hole over it'
     default:
       if (locks[part.segment] === 'exclude') return `you excluded ${part.name}`
+      if (classification.segmentStats[part.segment]!.bared) return `a hole of the cage seems to be meant for ${part.name}`
       return part.coverage < part.threshold ? `of ${part.name} the cage covers ${percent(part.coverage)} where ${percent(part.threshold)} are asked` : `too little of ${part.name} is covered`
   }
 }
