@@ -263,7 +263,7 @@ struct SmallEyed {
   static float fromEye(Point p) { return std::min(distance(p, kEyes[0]), distance(p, kEyes[1])); }
   /// Finer in front, where the eyes are.
   static Mesh body(float away) {
-    return mapped(ellipsoid({}, {1, 1, 1}, 40), [&](Point p) {
+    return mapped(ellipsoid({}, {1, 1, 1}, 30), [&](Point p) {
       const Point q{p[0], p[1], p[2] + 0.85f};
       const float size = distance(q, {});
       return Point{q[0] / size * (kRadii[0] + away), q[1] / size * (kRadii[1] + away), q[2] / size * (kRadii[2] + away)};
