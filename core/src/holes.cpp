@@ -1,4 +1,4 @@
-#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "areas.hpp"
@@ -21,7 +21,9 @@ struct Share {
 }  // namespace
 
 bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, const Units& units, const PointResults& results,
-                    const PointAreas& areas, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept {
+                    const PointAreas& areas, const Array<SegmentStats>& stats, Scratch& scratch, std::uint32_t* restores,
+                    Array<HoleShare>& shares) noexcept {
+  const auto segmentCount = static_cast<std::uint32_t>(stats.size());
   const Scratch::Mark mark = scratch.mark();
   auto* rimOf = scratch.take<std::uint32_t>(points.count);
   auto* atRims = scratch.take<std::uint32_t>(points.count);
@@ -37,8 +39,11 @@ bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, co
     const std::uint32_t slot = results.triangles[i];
     const bool isUncovered = results.zones[i] == Zone::uncovered;
     if (isUncovered) restores[i] = Restores::always;
-    const bool isUnderCage = results.cageDistances == nullptr || std::isfinite(results.cageDistances[i]);
-    if ((results.zones[i] == Zone::occluded && isUnderCage) || !rims.touches(slot)) continue;
+    if (results.zones[i] == Zone::occluded) {
+      const bool isUnderCage = results.cageDistances == nullptr || results.cageDistances[i] < std::numeric_limits<double>::infinity();
+      if (isUnderCage || !(stats[results.segments[i]].coveredArea > 0)) continue;
+    }
+    if (!rims.touches(slot)) continue;
     const CageTriangle& t = cage.triangles[slot];
     const Vec3 p = points.exactly(i);
     const Place place = placeOn(t, p);

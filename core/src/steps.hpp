@@ -102,7 +102,8 @@ bool lookAgain(const Points& points, const Cage& cage, const CageTree& cageTree,
 /// Step 7: finds what brings each uncovered point back, and what the segments have at each hole.
 /// @param[out] restores  1 per point: set for those.
 bool lookUnderHoles(const Points& points, const Cage& cage, const Rims& rims, const Units& units, const PointResults& results,
-                    const PointAreas& areas, std::uint32_t segmentCount, Scratch& scratch, std::uint32_t* restores, Array<HoleShare>& shares) noexcept;
+                    const PointAreas& areas, const Array<SegmentStats>& stats, Scratch& scratch, std::uint32_t* restores,
+                    Array<HoleShare>& shares) noexcept;
 
 /// Step 8: marks the triangles that may be painted.
 /// @param[out] cosmetic  1 per triangle.

@@ -90,7 +90,6 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
 bool findRestores(const Points& points, const Scene& scene, const ProjectOptions& options, const PointResults& results,
                   const PointAreas& areas, std::uint32_t vertexCount, Projection& out, StopWatch& watch) {
   const auto& [units, cage, cageTree, targetTree, cageEdges, rims] = scene;
-  const auto segmentCount = static_cast<std::uint32_t>(out.segmentStats.size());
   auto* restores = scratch.take<std::uint32_t>(points.count);
   if (scratch.failed() || !out.restores.reset(vertexCount)) return false;
   std::fill(restores, restores + points.count, Restores::never);
@@ -99,7 +98,7 @@ bool findRestores(const Points& points, const Scene& scene, const ProjectOptions
     return false;
   }
   out.timings.secondLook = watch.lap();
-  if (options.holes && !lookUnderHoles(points, cage, rims, units, results, areas, segmentCount, scratch, restores, out.holeShares)) {
+  if (options.holes && !lookUnderHoles(points, cage, rims, units, results, areas, out.segmentStats, scratch, restores, out.holeShares)) {
     return false;
   }
   for (std::uint32_t v = 0; v < vertexCount; ++v) out.restores[v] = restores[points.ofVertex[v]];

@@ -613,11 +613,14 @@ void failBaredParts(const Scene& scene, const std::vector<Voter>& voters, State&
       return itsCovered < kSmall * allCovered && (hidden > kHidden * (itsExposed + hidden) ||
                                                   (!isExplained && bare > kBare * itsExposed && bare >= kMuchOfHole * allBare));
     };
+    // Where nothing of it is covered, nothing of it counts as hidden.
+    const auto& [bare, found] = share;
+    const Range hidden{covered[s].is > 0 ? found.is : 0, covered[s].least > 0 ? found.least : 0, covered[s].most > 0 ? found.most : 0};
     Verdict& fail = fails[s];
-    fail.is = fail.is || isMeant(share.bare.is, share.hidden.is, exposed[s].is, covered[s].is, explained.is, uncovered.is, all.is);
-    fail.might = fail.might || isMeant(share.bare.most * more, share.hidden.most * more, exposed[s].least * less, covered[s].least * less,
+    fail.is = fail.is || isMeant(bare.is, hidden.is, exposed[s].is, covered[s].is, explained.is, uncovered.is, all.is);
+    fail.might = fail.might || isMeant(bare.most * more, hidden.most * more, exposed[s].least * less, covered[s].least * less,
                                        explained.must, uncovered.least * less, all.most * more);
-    fail.must = fail.must || isMeant(share.bare.least * less, share.hidden.least * less, exposed[s].most * more, covered[s].most * more,
+    fail.must = fail.must || isMeant(bare.least * less, hidden.least * less, exposed[s].most * more, covered[s].most * more,
                                      explained.might, uncovered.most * more, all.least * less);
   }
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {

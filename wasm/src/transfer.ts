@@ -95,7 +95,10 @@ export interface HoleShare {
   exposedArea: number;
   /** Of those of them that the cage does not cover. */
   uncoveredArea: number;
-  /** Of points that the target occludes, and over which the cage is not either; 0 without an end of the self ray, `occlusionReach`. */
+  /**
+   * Of points that the target occludes, and over which the cage is not either; 0 without an end of the self ray, `occlusionReach`,
+   * and where nothing of the segment is covered.
+   */
   hiddenArea: number;
 }
 

@@ -170,7 +170,9 @@ struct HoleShare {
   std::uint32_t segment = 0;
   double exposedArea = 0;     ///< Of points that the target does not occlude.
   double uncoveredArea = 0;   ///< Of those of them that the cage does not cover.
-  double hiddenArea = 0;      ///< Of points that the target occludes, and over which the cage is not either; with an `occlusionReach`.
+  /// Of points that the target occludes, and over which the cage is not either; with an `occlusionReach`, and of segments of which
+  /// anything is covered.
+  double hiddenArea = 0;
 };
 
 /// What `classify` needs to know, seen but not owned.
