@@ -100,7 +100,7 @@ class Verdicts {
 /// Step 7: finds which holes are meant for what fails behind them. Step 5″ before that, with `small` parts: lowers the margins of those
 /// that pass and that a hole is meant for.
 /// @param small  A part is small if less than this area of it is covered; 0: none is.
-void explainHoles(std::span<const HoleShare> shares, std::span<const SegmentStats> stats, double small, Zones& out) {
+void judgeHoles(std::span<const HoleShare> shares, std::span<const SegmentStats> stats, double small, Zones& out) {
   std::fill(out.explainedHoles.begin(), out.explainedHoles.end(), std::uint8_t{0});
   for (std::size_t i = 0, end = 0; i < shares.size(); i = end) {
     double failing = 0;
@@ -157,12 +157,12 @@ Status classify(const ProjectionView& projection, std::span<const std::uint32_t>
   const auto isLocked = [&](std::size_t s) { return !options.locks.empty() && options.locks[s] != Lock::automatic; };
   for (std::size_t s = 0; s < stats.size(); ++s) out.culledSegments[s] = isLocked(s) ? options.locks[s] == Lock::exclude : out.margins[s] < 1;
   if (options.baredParts) {
-    explainHoles(shares, stats, kSmallPart * verdicts.allCovered(), out);
+    judgeHoles(shares, stats, kSmallPart * verdicts.allCovered(), out);
     for (std::size_t s = 0; s < stats.size(); ++s) {
       if (!out.culledSegments[s] && out.margins[s] < 1 && !isLocked(s)) out.culledSegments[s] = Zones::kBared;
     }
   }
-  explainHoles(shares, stats, 0, out);
+  judgeHoles(shares, stats, 0, out);
   for (std::size_t v = 0; v < zones.size(); ++v) {
     // As numbers, without a branch: cosmetic is 0, less than the 1 of a segment that is culled.
     const auto zone = static_cast<unsigned>(zones[v]);

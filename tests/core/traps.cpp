@@ -254,7 +254,7 @@ Trap hatted() {
 
 namespace {
 
-/// A figure with eyes no larger than 1 % of the diagonal, of 2.4.
+/// A figure with eyes of 1.4 % of the diagonal, which is 2.4.
 struct SmallEyed {
   static constexpr Point kRadii{0.5f, 1, 0.45f};
   static constexpr Point kEyes[] = {{0.11f, 0.3f, 0.418f}, {-0.11f, 0.3f, 0.418f}};

@@ -47,7 +47,7 @@ Trap glazed();
 /// A hat of one closed shell, whose brim is to be painted from below as well, on a head; the cage is too high.
 Trap hatted();
 
-/// A figure with eyes no larger than 1 % of the diagonal, whose cage is as far aside.
+/// A figure with eyes of 1.4 % of the diagonal, whose cage is 1 % aside.
 Trap aside();
 
 /// The same figure behind glasses, which hide the middle of its eyes; the cage is in place.

@@ -124,6 +124,7 @@ describe('errors', () => {
     fails(call({ restores: new Uint32Array([0, 5, 0]) }), 'badArgument', /projection\.restores\[1\] = 5 is out of range \(\d+ holes\)/, 1);
     fails(call({ restores: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 restores/);
     fails(call({ holeShares: [{ hole: 0, segment: 4, exposedArea: 0, uncoveredArea: 0, hiddenArea: 0 }] }), 'badArgument', /projection\.holeShares\[0\]/);
+    fails(call({ holeShares: [{ hole: 0, segment: 0, exposedArea: 0, uncoveredArea: 0 }] }), 'badArgument', /projection\.holeShares\[0\] is not .* hiddenArea/);
     fails(call({ preset: 'none' }), 'badOption', /options\.preset = "none" is unknown/);
     fails(call({ segmentStats: [{ ...projection.segmentStats[0], copyOf: 9 }] }), 'badArgument', /projection\.segmentStats\[0\]/);
     fails(call({ segmentStats: [null] }), 'badArgument', /projection\.segmentStats\[0\]/);

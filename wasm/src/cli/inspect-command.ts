@@ -7,7 +7,7 @@ import { effectiveOptions, type EffectiveOptions, type Rules } from './options.j
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { run, type Run } from './run.js';
-import { cut, integer, marginText, percent, short, table } from './table.js';
+import { cut, fateText, integer, marginText, percent, short, table } from './table.js';
 import { perZone, type PerZone } from './zones.js';
 
 /** What `cagecast inspect` was asked for. */
@@ -118,7 +118,7 @@ function describe(report: InspectionReport, html: string | undefined): string {
     `segments: ${integer(segments.length)}${more(segments.length)}`,
     table([
       ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
-      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, margin, culled }) => [cut(part, 40), String(s), integer(points), short(exposedArea), short(coveredArea), f.toFixed(3), marginText(margin), culled ? 'culled' : '']),
+      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, margin, culled, bared }) => [cut(part, 40), String(s), integer(points), short(exposedArea), short(coveredArea), f.toFixed(3), marginText(margin), fateText({ culled, bared })]),
     ]),
     '',
     conclusions[verdict],

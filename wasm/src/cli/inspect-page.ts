@@ -6,7 +6,7 @@ import { sceneOf, type Scene } from '../inspect/scene.js';
 import type { InspectionReport } from './inspect-command.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
-import { integer, marginText, percent, short } from './table.js';
+import { fateText, integer, marginText, percent, short } from './table.js';
 
 /** Pixels along each side of a picture. */
 const size = 420;
@@ -73,7 +73,7 @@ ${holes.length > 0 ? rows(['beneath', 'kind', 'size', 'cut off'], holes.map(({ b
 <h2>Segments</h2>
 ${rows(
   ['part', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
-  [...segments].sort((a, b) => b.exposedArea - a.exposedArea).slice(0, mostSegments).map(({ part, points, exposedArea, coveredArea, coverage, margin, culled }) => [part, integer(points), short(exposedArea), short(coveredArea), coverage.toFixed(3), marginText(margin), culled ? 'culled' : '']),
+  [...segments].sort((a, b) => b.exposedArea - a.exposedArea).slice(0, mostSegments).map(({ part, points, exposedArea, coveredArea, coverage, margin, culled, bared }) => [part, integer(points), short(exposedArea), short(coveredArea), coverage.toFixed(3), marginText(margin), fateText({ culled, bared })]),
 )}
 </html>
 `;

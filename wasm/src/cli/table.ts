@@ -27,3 +27,9 @@ export function cut(text: string, length: number): string {
 export function marginText(margin: number | null): string {
   return margin === null ? '∞' : Number(margin.toPrecision(2)).toString();
 }
+
+/** Why a segment is not painted, if it is not: by its areas, or because a hole seems to be meant for it. */
+export function fateText({ culled, bared }: { culled: boolean; bared: boolean }): string {
+  if (bared) return 'culled: a hole';
+  return culled ? 'culled' : '';
+}
