@@ -50,7 +50,7 @@ export interface SegmentStats {
   group: number;
   /** The first of the segments that it is a copy of, maybe itself; itself without the option `depths`. */
   copyOf: number;
-  /** Too little of it is covered: none of it may be painted. `false` until decided. */
+  /** Too little of it is covered, or a hole is meant for it: none of it may be painted. `false` until decided. */
   culled: boolean;
   /** It is culled, although enough of it is covered, because a hole of the cage seems to be meant for it; option `baredParts`. */
   bared: boolean;

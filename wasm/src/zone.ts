@@ -6,7 +6,7 @@ export const Zone = {
   Occluded: 1,
   /** The cage has a hole over it, or it lies outside the cage. */
   Uncovered: 2,
-  /** Too little of its segment is covered. */
+  /** Too little of its segment is covered, or a hole of the cage is meant for it. */
   Culled: 3,
 } as const;
 

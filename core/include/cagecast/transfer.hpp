@@ -21,7 +21,7 @@ enum class Zone : std::uint8_t {
   cosmetic = 0,   ///< May be painted.
   occluded = 1,   ///< NCZ: the target itself lies over it.
   uncovered = 2,  ///< NCZ: the cage has a hole over it, or it lies outside the cage.
-  culled = 3,     ///< NCZ: too little of its segment is covered.
+  culled = 3,     ///< NCZ: too little of its segment is covered, or a hole of the cage is meant for it.
 };
 
 /// How a target vertex finds its place on the cage.
@@ -143,7 +143,7 @@ struct Timings {
 /// What is known of one connected component of the target. Areas are in squared units of the input.
 struct SegmentStats {
   std::uint32_t points = 0;  ///< Welded points.
-  bool culled = false;       ///< Too little of it is covered: none of it may be painted.
+  bool culled = false;       ///< Too little of it is covered, or a hole is meant for it: none of it may be painted.
   double area = 0;           ///< A: its whole area.
   double exposedArea = 0;    ///< E: area of the points that the target does not occlude.
   double coveredArea = 0;    ///< C: area of the points that the cage covers as well.
