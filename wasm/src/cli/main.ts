@@ -86,9 +86,9 @@ common(program.command('transfer'))
     'after',
     `
 _NCZ is 0 for a vertex that may be painted, else the reason why not: 1 the target lies over it, 2 the cage has a hole
-over it, 3 too little of its segment is covered. Where triangles that share a vertex have different UVs there, copies of the
-vertex are added after those that there are, with all that belongs to it; --seams vertex does not. --borders cut adds vertices
-in the same way, each a blend of those around it.
+over it, 3 too little of its segment is covered, or a hole is meant for it. Where triangles that share a vertex have different
+UVs there, copies of the vertex are added after those that there are, with all that belongs to it; --seams vertex does not.
+--borders cut adds vertices in the same way, each a blend of those around it.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
