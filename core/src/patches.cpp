@@ -64,15 +64,15 @@ Patch& Patches::add(Corner* const (&corners)[3], int k, double reach, std::uint8
 /// A group around the place of corner k that has the other two among its points.
 Patches::Group& Patches::groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&inGroup)[3]) noexcept {
   Corner& own = *corners[k];
-  const bool isThere = own.group < groupCount_ && groups_[own.group].points[kOwn] == own.point;
+  const bool isThere = own.group < groupCount_ && groups_[own.group].points[kPlace] == own.point;
   Group* group = isThere ? groups_ + own.group : &addGroup(own);
-  inGroup[k] = kOwn;
+  inGroup[k] = kPlace;
   for (;;) {
     std::uint32_t count = group->count;
     for (int c = 0; c < 3; ++c) {
       if (c == k) continue;
       std::uint32_t at = count;
-      for (std::uint32_t i = kOwn + 1; i < Patch::kPoints; ++i) at = group->points[i] == corners[c]->point ? i : at;
+      for (std::uint32_t i = kPlace + 1; i < Patch::kPoints; ++i) at = group->points[i] == corners[c]->point ? i : at;
       inGroup[c] = static_cast<std::uint8_t>(at);
       count = std::max(count, at + 1);
     }
@@ -99,8 +99,8 @@ Patches::Group& Patches::addGroup(Corner& own) noexcept {
     for (std::size_t v = 0; v < kVectors; ++v) simd::store(group.positions[axis] + simd::kWide * v, ofPlace);
   }
   for (std::uint32_t i = 0; i < Patch::kPoints; i += simd::kWidth) simd::store(group.points + i, simd::splatCount(UINT32_MAX));
-  setPoint(group, kOwn, own);
-  group.count = kOwn + 1;
+  group.points[kPlace] = own.point;
+  group.count = kPlace + 1;
   group.narrowest = nullptr;
   return group;
 }
@@ -234,7 +234,7 @@ void Patches::begin(Walk& walk) noexcept {
     simd::store(walk.patch->least + simd::kWide * v, walk.least[v]);
     limits[v] = walk.least[v] * simd::splatWide(1 + static_cast<float>(kRelativeSlack)) + simd::splatWide(fixedSlack_);
   }
-  const unsigned corners = (1u << walk.group->count) - (1u << kOwn);
+  const unsigned corners = (1u << walk.group->count) - (2u << kPlace);
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < size; ++i) {
     const float* const row = squares + std::size_t{Patch::kPoints} * i;

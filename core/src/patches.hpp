@@ -33,7 +33,7 @@ struct NearPoints {
 
 /// docs/method.md, step 9: what hangs together in the texture with the triangle under a corner, within reach of the corner's place.
 struct Patch {
-  /// Points whose distances are found at once: the place, the corner itself, and corners that share a triangle with it.
+  /// Points whose distances are found at once: the place, and corners that share a triangle with the one whose place it is.
   static constexpr std::uint32_t kPoints = 8;
 
   double reach;
@@ -64,7 +64,7 @@ class Patches {
   [[nodiscard]] bool hasRoom() const noexcept { return patchCount_ + 3 <= kMostPatches && groupCount_ + 3 <= kMostGroups; }
 
   /// Notes the patch around the place of corner k of a triangle.
-  /// @param[out] inGroup  Which of its group's points the corners are.
+  /// @param[out] inGroup  Which of its group's points the other two are; of k the place.
   Patch& add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept;
 
   /// Grows what was noted, until there is no more room for what is near. For three patches there always is.
@@ -72,7 +72,6 @@ class Patches {
 
  private:
   static constexpr std::uint32_t kPlace = 0;
-  static constexpr std::uint32_t kOwn = 1;
   /// So many hold one number of each point.
   static constexpr std::uint32_t kVectors = Patch::kPoints / simd::kWide;
   /// What `kMostTriangles` ask for, on most models.
@@ -86,7 +85,7 @@ class Patches {
 
   struct Group {
     float positions[3][Patch::kPoints];    ///< By axis, from the middle of the cage.
-    std::uint32_t points[Patch::kPoints];  ///< Which of the target these are.
+    std::uint32_t points[Patch::kPoints];  ///< Which of the target these are; first the one whose place it is.
     std::uint32_t count;                   ///< Of points.
     std::uint32_t first;                   ///< The triangle that the place is on.
     Vec3 place;

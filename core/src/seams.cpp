@@ -61,7 +61,7 @@ class Mender {
 
   /// Mends a triangle if the texture is torn or smeared over it; at the latest when `mend` is called.
   /// @param[out] uvs  6 floats.
-  void add(const Points& points, const PointResults& results, const std::uint32_t (&point)[3], float* uvs) noexcept {
+  void add(const Points& points, const PointResults& results, const std::uint32_t* point, float* uvs) noexcept {
     if (cornerCount_ + 3 > kMostCorners || tornCount_ == kMostTorn) mend();
     Torn& torn = torn_[tornCount_];
     for (int c = 0; c < 3; ++c) {
@@ -106,7 +106,7 @@ class Mender {
     Corner* corners[3];
     float* uvs;
     Patch* patches[3];         ///< Around each corner's place; null where an earlier one is on the same triangle.
-    std::uint8_t inGroup[3][3];  ///< For each patch: which of its points the corners are.
+    std::uint8_t inGroup[3][3];  ///< For each patch: which of its group's points the corners are.
   };
   /// Places of a corner that were decided already: patches have most of them in common.
   struct Known {
@@ -167,7 +167,7 @@ class Mender {
     double sums[3];
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
-      sums[k] = sumOf(torn.patches[k], torn.inGroup[k]);
+      sums[k] = sumOf(torn, k);
       least = std::min(least, sums[k]);
     }
     const double unsure = kTieSum * diagonal_ + 6 * (kTieDistance * diagonal_ + kRounding * (tree_.extent + least));
@@ -177,7 +177,7 @@ class Mender {
     least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
       if (sums[k] > limit) continue;
-      project(torn.corners, *torn.patches[k], torn.inGroup[k], choices[count]);
+      project(torn, k, choices[count]);
       least = std::min(least, choices[count++].sum);
     }
     int chosen = 0;
@@ -186,42 +186,51 @@ class Mender {
   }
 
   /// Of the corners' distances to a patch, in float.
-  static double sumOf(const Patch* patch, const std::uint8_t (&inGroup)[3]) noexcept {
+  static double sumOf(const Torn& torn, int k) noexcept {
+    const Patch* const patch = torn.patches[k];
     if (patch == nullptr) return std::numeric_limits<double>::infinity();
-    double all = 0;
-    for (const std::uint32_t i : inGroup) all += std::sqrt(static_cast<double>(patch->least[i]));
-    return all;
+    const auto distance = [&](int c) { return std::sqrt(static_cast<double>(patch->least[torn.inGroup[k][c]])); };
+    return torn.corners[k]->at.place.distance + distance((k + 1) % 3) + distance((k + 2) % 3);
   }
 
-  /// Projects the corners onto a patch: step 1 once more, with the patch for a cage.
-  void project(const Corner* const (&corners)[3], const Patch& patch, const std::uint8_t (&inGroup)[3], Choice& out) noexcept {
+  /// Projects the corners onto the patch around corner k: step 1 once more, with the patch for a cage. Those whose triangle it has
+  /// stay where they are.
+  void project(const Torn& torn, int k, Choice& out) noexcept {
+    const Patch& patch = *torn.patches[k];
     std::uint32_t counts[3] = {};
+    unsigned keeps[3] = {1, 0, 0};
     for (std::uint32_t i = 0; i < patch.nearCount; ++i) {
-      for (int c = 0; c < 3; ++c) {
-        near_[c][counts[c]] = patch.near[i].triangle;
-        counts[c] += patch.near[i].points >> inGroup[c] & 1;
+      const auto [triangle, points] = patch.near[i];
+      for (int c = 1; c < 3; ++c) {
+        near_[c - 1][counts[c]] = triangle;
+        counts[c] += points >> torn.inGroup[k][(k + c) % 3] & 1;
+        keeps[c] |= unsigned{triangle == torn.corners[(k + c) % 3]->at.slot};
       }
     }
     out.sum = 0;
     for (int c = 0; c < 3; ++c) {
-      const auto candidate = [&](std::uint32_t i) -> const Candidate& { return placeOf(*corners[c], near_[c][i], candidates_[i]); };
-      // Copied only if there are several.
-      const Candidate* nearest = &candidate(0);
-      if (counts[c] > 1) {
-        candidates_[0] = *nearest;
-        for (std::uint32_t i = 1; i < counts[c]; ++i) candidates_[i] = candidate(i);
-        nearest = &nearestOf(candidates_, counts[c], diagonal_);
-      }
-      out.sum += nearest->place.distance;
-      simd::storeRounded(out.uvs + 2 * c, blendUvs(cage_.triangles[nearest->slot], nearest->place));
+      const Corner& corner = *torn.corners[(k + c) % 3];
+      const Candidate& at = keeps[c] != 0 ? corner.at : nearestTo(corner, near_[c - 1], counts[c]);
+      out.sum += at.place.distance;
+      simd::storeRounded(out.uvs + 2 * ((k + c) % 3), blendUvs(cage_.triangles[at.slot], at.place));
     }
+  }
+
+  /// Projects a corner onto a patch.
+  /// @param near  What of it might be the nearest.
+  [[nodiscard]] const Candidate& nearestTo(const Corner& corner, const std::uint32_t* near, std::uint32_t count) const noexcept {
+    const Candidate& only = placeOf(corner, near[0], candidates_[0]);
+    if (count == 1) return only;
+    // Copied only if there are several.
+    candidates_[0] = only;
+    for (std::uint32_t i = 1; i < count; ++i) candidates_[i] = placeOf(corner, near[i], candidates_[i]);
+    return nearestOf(candidates_, count, diagonal_);
   }
 
   [[nodiscard]] Uv uvOf(const Candidate& at) const noexcept { return uvAt(cage_.triangles[at.slot], at.place); }
 
   /// @param spare  Where to put the place if too many are known.
   [[nodiscard]] const Candidate& placeOf(const Corner& corner, std::uint32_t t, Candidate& spare) const noexcept {
-    if (corner.at.slot == t) return corner.at;
     Known& known = knowns_[&corner - corners_];
     for (std::uint32_t i = 0; i < known.count; ++i) {
       if (known.places[i].slot == t) return known.places[i];
@@ -237,7 +246,7 @@ class Mender {
   double diagonal_;
   Patches patches_;
   Candidate* candidates_;        ///< Places on what might be nearest to one corner.
-  std::uint32_t* near_[3];       ///< What of a patch might be nearest to each corner.
+  std::uint32_t* near_[2];       ///< What of a patch might be nearest to each of two corners.
   Corner* corners_;
   Known* knowns_;                ///< Of each corner.
   std::uint32_t* recent_;        ///< By the last bits of a point's number: which corner may be of that point.
@@ -256,6 +265,16 @@ bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage&
   auto* ofTriangle = scratch.take<OfTriangle>(cage.count);
   auto* looks = scratch.take<FirstLook>(points.count);
   if (scratch.failed()) return false;
+
+  const std::size_t allTriangles = targetMesh.indices.size() / 3;
+  // Of all, also those without an area.
+  const std::uint32_t* corners = points.triangles;
+  if (points.triangleCount < allTriangles) {
+    auto* ofAll = scratch.take<std::uint32_t>(targetMesh.indices.size());
+    if (scratch.failed()) return false;
+    for (std::size_t i = 0; i < targetMesh.indices.size(); ++i) ofAll[i] = points.ofVertex[targetMesh.indices[i]];
+    corners = ofAll;
+  }
 
   // A first look in float: most triangles are clearly whole in the texture.
   const bool looksTell = atlas.mostUv <= kMostUv && cage.count <= kMostIslands;
@@ -291,21 +310,12 @@ bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage&
     const simd::wide squaredInUv = simd::multiplyAdd(v, v, u * u);
     return simd::bits((squaredInUv <= limit) & (islands * islands <= zero));
   };
-  const std::size_t allTriangles = targetMesh.indices.size() / 3;
-  const bool allHaveArea = points.triangleCount == allTriangles;
-  const auto hasArea = [&](const std::uint32_t (&point)[3]) {
-    const Vec3 normal = areaNormal(points.at(point[0]), points.at(point[1]), points.at(point[2]));
-    return dot(normal, normal) > 0;
-  };
-  // Locals, as what is written might be these for all the compiler knows.
-  const std::uint32_t* const indices = targetMesh.indices.data();
-  const std::uint32_t* const ofVertex = points.ofVertex;
   for (std::size_t first = 0; first < allTriangles; first += simd::kParts) {
     std::uint32_t point[simd::kParts][3];
     for (std::size_t part = 0; part < simd::kParts; ++part) {
       const std::size_t corner = 3 * std::min(first + part, allTriangles - 1);
       for (std::size_t c = 0; c < 3; ++c) {
-        point[part][c] = ofVertex[indices[corner + c]];
+        point[part][c] = corners[corner + c];
         std::memcpy(cornerUvs + 2 * (corner + c), looks + point[part][c], 2 * sizeof(float));
       }
     }
@@ -313,9 +323,9 @@ bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage&
     if (whole == (1u << simd::kWide) - 1) continue;
     for (std::size_t part = 0; part < simd::kParts && first + part < allTriangles; ++part) {
       if ((whole >> 4 * part & 0xF) == 0xF) continue;
-      const std::uint32_t* const corners = indices + 3 * (first + part);
-      const std::uint32_t torn[3] = {ofVertex[corners[0]], ofVertex[corners[1]], ofVertex[corners[2]]};
-      if (allHaveArea || hasArea(torn)) mender.add(points, results, torn, cornerUvs + 6 * (first + part));
+      const std::uint32_t* const torn = corners + 3 * (first + part);
+      const Vec3 normal = areaNormal(points.at(torn[0]), points.at(torn[1]), points.at(torn[2]));
+      if (dot(normal, normal) > 0) mender.add(points, results, torn, cornerUvs + 6 * (first + part));
     }
   }
   mender.mend();

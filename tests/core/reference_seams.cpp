@@ -120,6 +120,9 @@ std::vector<float> cornerUvs(const MeshView& cage, const MeshView& target, const
       Choice choice{0, {}};
       for (std::size_t c = 0; c < 3; ++c) {
         choice.places[c] = project(triangles, triangle.corners[c], scene.diag);
+        // Where a chain of places ties, leaving one out may make another the nearest.
+        const bool hasOwn = std::binary_search(patch.begin(), patch.end(), number(own[c]));
+        if (hasOwn && choice.places[c].triangle != own[c].triangle) stable[triangle.index] = 0;
         choice.sum += choice.places[c].nearest.distance;
       }
       choices.push_back(choice);
