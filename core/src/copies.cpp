@@ -25,6 +25,7 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
   auto* shares = scratch.take<double>(count);   // Of a point in their mean.
   auto* runs = scratch.take<std::uint32_t>(count);  // By their first.
   auto* isAlone = scratch.take<bool>(count);        // With so many points: it has no copy, and needs no extent.
+  auto* list = scratch.take<std::uint32_t>(points.count);  // Points of the others.
   if (scratch.failed()) return false;
   for (std::uint32_t s = 0; s < count; ++s) order[s] = s;
   sortSeldom(order, order + count, [&](std::uint64_t s, std::uint64_t t) {
@@ -38,13 +39,19 @@ bool findCopies(const Points& points, const PointResults& results, Scratch& scra
     isAlone[at(i)] = !isAsMany(i - 1) && !isAsMany(i + 1);
   }
 
-  for (std::uint32_t s = 0; s < count; ++s) shares[s] = 1.0 / stats[s].points;
-  std::fill(centres, centres + count, Vec3{0, 0, 0});
-  std::fill(extents, extents + count, 0.0);
+  for (std::uint32_t s = 0; s < count; ++s) {
+    shares[s] = 1.0 / stats[s].points;
+    centres[s] = {0, 0, 0};
+    extents[s] = 0;
+  }
+  // Listed first: where they begin and end nobody can guess.
+  std::uint32_t listed = 0;
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    list[listed] = i;
+    listed += !isAlone[results.segments[i]];
+  }
   const auto eachPoint = [&](auto call) {
-    for (std::uint32_t i = 0; i < points.count; ++i) {
-      if (!isAlone[results.segments[i]]) call(results.segments[i], Vec3::from(points.at(i)));
-    }
+    for (std::uint32_t i = 0; i < listed; ++i) call(results.segments[list[i]], Vec3::from(points.at(list[i])));
   };
   eachPoint([&](std::uint32_t s, Vec3 p) { centres[s] = centres[s] + shares[s] * p; });
   eachPoint([&](std::uint32_t s, Vec3 p) { extents[s] += dot(p - centres[s], p - centres[s]); });

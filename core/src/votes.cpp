@@ -53,7 +53,7 @@ bool findVoters(const Points& points, const Rims& rims, const Units& units, cons
     const Vec3 b = Vec3::from(points.at(corner[1]));
     const Vec3 c = Vec3::from(points.at(corner[2]));
     triangles[count] = t;
-    count += std::max({length(b - a), length(c - b), length(a - c)}) >= bigEdge;
+    count += std::sqrt(std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)})) >= bigEdge;
   }
   if (count == 0) {
     scratch.rewind(mark);
