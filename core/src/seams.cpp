@@ -267,7 +267,7 @@ bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage&
   if (scratch.failed()) return false;
 
   const std::size_t allTriangles = targetMesh.indices.size() / 3;
-  // Of all, also those without an area.
+  // The points of all triangles, also of those without an area.
   const std::uint32_t* corners = points.triangles;
   if (points.triangleCount < allTriangles) {
     auto* ofAll = scratch.take<std::uint32_t>(targetMesh.indices.size());

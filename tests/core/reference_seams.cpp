@@ -119,10 +119,9 @@ std::vector<float> cornerUvs(const MeshView& cage, const MeshView& target, const
       for (const std::uint32_t t : patch) triangles.push_back(first + t);
       Choice choice{0, {}};
       for (std::size_t c = 0; c < 3; ++c) {
-        choice.places[c] = project(triangles, triangle.corners[c], scene.diag);
-        // Where a chain of places ties, leaving one out may make another the nearest.
-        const bool hasOwn = std::binary_search(patch.begin(), patch.end(), number(own[c]));
-        if (hasOwn && choice.places[c].triangle != own[c].triangle) stable[triangle.index] = 0;
+        // Projecting again finds what is nearest of the whole cage, but where a chain of places ties.
+        const bool isOwn = std::binary_search(patch.begin(), patch.end(), number(own[c]));
+        choice.places[c] = isOwn ? own[c] : project(triangles, triangle.corners[c], scene.diag);
         choice.sum += choice.places[c].nearest.distance;
       }
       choices.push_back(choice);

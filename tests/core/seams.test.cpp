@@ -6,6 +6,7 @@
 
 #include "cagecast/seams.hpp"
 #include "checks.hpp"
+#include "cuts.hpp"
 #ifdef CAGECAST_GLTF
 #include "assets.hpp"
 #endif
@@ -199,6 +200,14 @@ TEST_CASE("corners get the reference's UVs on a head, and on all fixed scenes", 
     CHECK(found.unstable * 100 <= found.triangles);
   }
   for (const scenes::Scene& scene : scenes::golden()) compareCorners(scene.name, scene.cage.view(), scene.target.view());
+}
+
+TEST_CASE("corners get the reference's UVs where places tie, as on cuts", "[seams]") {
+  for (const scenes::Scene& scene : scenes::goldenBorders()) {
+    scenes::Mesh pieces = meshOf(scene.target.view(), cutOf(scene.cage.view(), scene.target.view(), cutting()));
+    pieces.uvs.clear();  // The target's own are none of ours.
+    CHECK(compareCorners(scene.name + ", cut", scene.cage.view(), pieces.view()).mended > 10);
+  }
 }
 
 TEST_CASE("corners get the reference's UVs where an island meets itself along its cut", "[seams]") {
