@@ -28,7 +28,9 @@ export async function readBudget(): Promise<Budget> {
 export async function sampleFingerprint(): Promise<string> {
   await buildNative();
   await makeScenes([sampleScene], () => {});
-  return createHash('sha256').update(await readFile(sampleScene.path)).digest('hex');
+  return createHash('sha256')
+    .update(await readFile(sampleScene.path))
+    .digest('hex');
 }
 
 /** Records the counts of now as those that later ones are held against. The limits of sizes stay. */
@@ -65,7 +67,9 @@ export async function checkInstructions(processor: Processor, preset: Preset): P
   if (now.perRun <= recorded.perRun * (1 + tolerance)) return '';
   const more = ((100 * now.perRun) / recorded.perRun - 100).toFixed(1);
   const compiler =
-    now.compiler === recorded.compiler ? '' : ` But it was recorded with compiler ${recorded.compiler}, and this is ${now.compiler}: on the recorded one the count may be within it.`;
+    now.compiler === recorded.compiler
+      ? ''
+      : ` But it was recorded with compiler ${recorded.compiler}, and this is ${now.compiler}: on the recorded one the count may be within it.`;
   return `a transfer of the sample with the preset \`${preset}\` takes ${now.perRun} ${processor} instructions, ${more} % more than the ${recorded.perRun} recorded; at most ${100 * tolerance} % are allowed.${compiler}`;
 }
 

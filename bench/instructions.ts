@@ -39,7 +39,16 @@ async function compilerOf(program: string, args: readonly string[], scene: strin
 export async function countX86(scene: string, preset: Preset = 'paper'): Promise<InstructionCount> {
   const program = `${root}build/release/bench/cagecast_bench`;
   const count = async (n: number): Promise<number> => {
-    const { stderr } = await output('valgrind', ['--tool=callgrind', '--callgrind-out-file=/dev/null', program, scene, '--preset', preset, '--runs', String(n)]);
+    const { stderr } = await output('valgrind', [
+      '--tool=callgrind',
+      '--callgrind-out-file=/dev/null',
+      program,
+      scene,
+      '--preset',
+      preset,
+      '--runs',
+      String(n),
+    ]);
     return numberIn(stderr, /Collected : (\d+)/);
   };
   return { perRun: await perRun(count), compiler: await compilerOf(program, [], scene) };
@@ -51,7 +60,16 @@ export async function countAarch64(scene: string, preset: Preset = 'paper'): Pro
   await output('cmake', ['--build', '--preset', 'aarch64', '--target', 'cagecast_bench']);
   const program = `${root}build/aarch64/bench/cagecast_bench`;
   const count = async (n: number): Promise<number> => {
-    const { stderr } = await output('qemu-aarch64', ['-plugin', plugin, program, scene, '--preset', preset, '--runs', String(n)]);
+    const { stderr } = await output('qemu-aarch64', [
+      '-plugin',
+      plugin,
+      program,
+      scene,
+      '--preset',
+      preset,
+      '--runs',
+      String(n),
+    ]);
     return numberIn(stderr, /^instructions (\d+)/m);
   };
   return { perRun: await perRun(count), compiler: await compilerOf('qemu-aarch64', [program], scene) };
@@ -60,16 +78,37 @@ export async function countAarch64(scene: string, preset: Preset = 'paper'): Pro
 /** Counts the package in this Node, by QEMU for the processor that it runs on. `bundle` is that of bench/web/count.ts. */
 export async function countWasm(bundle: string, scene: string, preset: Preset): Promise<WasmCount> {
   const qemu = process.arch === 'arm64' ? 'qemu-aarch64' : 'qemu-x86_64';
-  const counted = (...engine: string[]) => async (n: number): Promise<number> => {
-    const { stderr } = await output(qemu, ['-cpu', 'max', '-plugin', plugin, process.execPath, '--single-threaded', '--predictable', ...engine, bundle, scene, preset, String(n)]);
-    return numberIn(stderr, /^instructions (\d+)/m);
-  };
+  const counted =
+    (...engine: string[]) =>
+    async (n: number): Promise<number> => {
+      const { stderr } = await output(qemu, [
+        '-cpu',
+        'max',
+        '-plugin',
+        plugin,
+        process.execPath,
+        '--single-threaded',
+        '--predictable',
+        ...engine,
+        bundle,
+        scene,
+        preset,
+        String(n),
+      ]);
+      return numberIn(stderr, /^instructions (\d+)/m);
+    };
   const unoptimised = counted('--wasm-lazy-compilation', '--no-wasm-tier-up', '--no-wasm-dynamic-tiering');
   return { optimised: await perRun(counted('--no-liftoff')), first: (await unoptimised(1)) - (await unoptimised(0)) };
 }
 
 /** The result's hash, as computed on 64-bit ARM. */
 export async function hashOnAarch64(scene: string): Promise<string> {
-  const { stdout } = await output('qemu-aarch64', [`${root}build/aarch64/bench/cagecast_bench`, scene, '--runs', '1', '--json']);
+  const { stdout } = await output('qemu-aarch64', [
+    `${root}build/aarch64/bench/cagecast_bench`,
+    scene,
+    '--runs',
+    '1',
+    '--json',
+  ]);
   return (JSON.parse(stdout) as { hash: string }).hash;
 }

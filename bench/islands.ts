@@ -5,7 +5,8 @@ type Mesh = Required<Pick<SceneMesh, 'positions' | 'indices' | 'uvs'>>;
 /** How many pieces the texture of a mesh is in: components over edges with equal position and UV at both ends. */
 export function islandCount(mesh: SceneMesh): number {
   const { positions, indices, uvs } = withUvs(mesh);
-  const site = (v: number): string => [...positions.subarray(3 * v, 3 * v + 3), ...uvs.subarray(2 * v, 2 * v + 2)].join();
+  const site = (v: number): string =>
+    [...positions.subarray(3 * v, 3 * v + 3), ...uvs.subarray(2 * v, 2 * v + 2)].join();
   const sites = Array.from({ length: positions.length / 3 }, (_, v) => site(v));
   const count = indices.length / 3;
   const parents = Array.from({ length: count }, (_, t) => t);
@@ -31,8 +32,12 @@ export function islandCount(mesh: SceneMesh): number {
 export function unfolded(mesh: SceneMesh): SceneMesh {
   const { positions } = mesh;
   const corner = (v: number): number[] => [...positions.subarray(3 * v, 3 * v + 3)];
-  const low = [0, 1, 2].map((k) => positions.reduce((least, x, i) => (i % 3 === k ? Math.min(least, x) : least), Infinity));
-  const high = [0, 1, 2].map((k) => positions.reduce((most, x, i) => (i % 3 === k ? Math.max(most, x) : most), -Infinity));
+  const low = [0, 1, 2].map((k) =>
+    positions.reduce((least, x, i) => (i % 3 === k ? Math.min(least, x) : least), Infinity),
+  );
+  const high = [0, 1, 2].map((k) =>
+    positions.reduce((most, x, i) => (i % 3 === k ? Math.max(most, x) : most), -Infinity),
+  );
   const size = Math.max(...high.map((x, k) => x - low[k]!));
   const vertices = new Map<string, number>();
   const out = { positions: [] as number[], indices: [] as number[], uvs: [] as number[] };
@@ -54,7 +59,11 @@ export function unfolded(mesh: SceneMesh): SceneMesh {
       out.indices.push(vertices.get(key)!);
     }
   }
-  return { positions: Float32Array.from(out.positions), indices: Uint32Array.from(out.indices), uvs: Float32Array.from(out.uvs) };
+  return {
+    positions: Float32Array.from(out.positions),
+    indices: Uint32Array.from(out.indices),
+    uvs: Float32Array.from(out.uvs),
+  };
 }
 
 function withUvs({ positions, indices, uvs }: SceneMesh): Mesh {

@@ -6,9 +6,17 @@ export const root = fileURLToPath(new URL('..', import.meta.url));
 const program = `${root}build/release/bench/cagecast_bench`;
 
 /** Runs a program and returns what it printed. */
-export function output(command: string, args: readonly string[], env: Record<string, string> = {}): Promise<{ stdout: string; stderr: string }> {
+export function output(
+  command: string,
+  args: readonly string[],
+  env: Record<string, string> = {},
+): Promise<{ stdout: string; stderr: string }> {
   return new Promise((resolve, reject) => {
-    const child = spawn(command, args, { cwd: root, env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'pipe'] });
+    const child = spawn(command, args, {
+      cwd: root,
+      env: { ...process.env, ...env },
+      stdio: ['ignore', 'pipe', 'pipe'],
+    });
     let stdout = '';
     let stderr = '';
     child.stdout.on('data', (data) => (stdout += data));
@@ -45,18 +53,45 @@ export interface NativeResult {
   peakBytes: number;
   hash: string;
   cagecast: Record<Stage | StageOfDefault, Spread>;
-  peers: Record<string, { times: Record<Stage | StageOfDefault, Spread>; ratios: Partial<Record<Stage, number>>; otherZones: number; otherTriangles: number }>;
+  peers: Record<
+    string,
+    {
+      times: Record<Stage | StageOfDefault, Spread>;
+      ratios: Partial<Record<Stage, number>>;
+      otherZones: number;
+      otherTriangles: number;
+    }
+  >;
 }
 
 /** Builds the native benchmark. */
 export async function buildNative(): Promise<void> {
   await output('cmake', ['--preset', 'release', '-Wno-dev', '--log-level=WARNING']);
-  await output('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_bench', 'cagecast_count_instructions']);
+  await output('cmake', [
+    '--build',
+    '--preset',
+    'release',
+    '--target',
+    'cagecast_bench',
+    'cagecast_count_instructions',
+  ]);
 }
 
 /** Measures one scene file natively. */
-export async function measureNative(scene: string, runs: number, peers: readonly string[], options: readonly string[] = []): Promise<NativeResult> {
-  const { stdout } = await output(program, [scene, '--json', '--runs', String(runs), ...options, ...(peers.length > 0 ? ['--peers', peers.join(',')] : [])]);
+export async function measureNative(
+  scene: string,
+  runs: number,
+  peers: readonly string[],
+  options: readonly string[] = [],
+): Promise<NativeResult> {
+  const { stdout } = await output(program, [
+    scene,
+    '--json',
+    '--runs',
+    String(runs),
+    ...options,
+    ...(peers.length > 0 ? ['--peers', peers.join(',')] : []),
+  ]);
   return JSON.parse(stdout) as NativeResult;
 }
 

@@ -11,15 +11,16 @@
 import { cpus } from 'node:os';
 import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
+import { root } from './native.js';
 import { missedGoals } from './quality/goals.js';
 import { measure, measureLargeTimes, measureTimes } from './quality/measure.js';
-import { root } from './native.js';
-import { loadModels, NoSuchModel, type Model } from './quality/models.js';
-import { qualityReport, writeQuality, type QualityResults } from './quality/report.js';
+import { loadModels, type Model, NoSuchModel } from './quality/models.js';
+import { type QualityResults, qualityReport, writeQuality } from './quality/report.js';
 import { drawSheet } from './quality/sheet.js';
 
 const began = performance.now();
-const say = (line: string): void => console.error(`[${((performance.now() - began) / 1000).toFixed(0).padStart(3)} s] ${line}`);
+const say = (line: string): void =>
+  console.error(`[${((performance.now() - began) / 1000).toFixed(0).padStart(3)} s] ${line}`);
 
 /** How often each way is timed. */
 const runs = 31;
@@ -56,7 +57,8 @@ async function main(): Promise<void> {
     const are = (kind: Model['kind']): Model[] => models.filter((model) => model.kind === kind);
     await drawSheet(are('sample'), ['cage', 'naive', 'removed', 'default'], `${root}docs/pictures/quality.jpg`);
     await drawSheet(are('spoiled'), ['cage', 'naive', 'paper', 'default'], `${root}docs/pictures/failures.jpg`);
-    if (are('asset').length > 0) await drawSheet(are('asset'), ['cage', 'naive', 'paper', 'default'], `${root}build/bench/quality.jpg`);
+    if (are('asset').length > 0)
+      await drawSheet(are('asset'), ['cage', 'naive', 'paper', 'default'], `${root}build/bench/quality.jpg`);
   }
   say('done');
   if (options.check && missedGoals(results.models).length > 0) process.exitCode = 1;

@@ -29,7 +29,9 @@ export interface Realm {
   /** Of the process whose main thread runs them. */
   pid: number;
   run(who: Who, runs: number): Promise<Block> | Block;
-  differences(): Promise<{ otherZones: number; otherTriangles: number }> | { otherZones: number; otherTriangles: number };
+  differences():
+    | Promise<{ otherZones: number; otherTriangles: number }>
+    | { otherZones: number; otherTriangles: number };
 }
 
 /**
@@ -72,7 +74,8 @@ export async function race(realm: Realm, options: RaceOptions): Promise<RaceResu
     }
     pairs.push(pair);
   }
-  const medians = (of: Record<string, number>[]): Record<string, number> => Object.fromEntries(Object.keys(of[0]!).map((stage) => [stage, median(of.map((s) => s[stage]!))]));
+  const medians = (of: Record<string, number>[]): Record<string, number> =>
+    Object.fromEntries(Object.keys(of[0]!).map((stage) => [stage, median(of.map((s) => s[stage]!))]));
   return {
     turns: options.turns,
     cagecast: spread(pairs.map(({ cagecast }) => cagecast)),

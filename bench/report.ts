@@ -1,14 +1,22 @@
 import { writeFile } from 'node:fs/promises';
-import { embreeWhereSet, goalsOf, isReached, phone, type Goal } from './goals.js';
+import { embreeWhereSet, type Goal, goalsOf, isReached, phone } from './goals.js';
 import type { Preset, WasmCount } from './instructions.js';
 import { stages, stagesOfDefault } from './native.js';
 import { scalingPlot, stagesPlot, totalsPlot } from './plots.js';
-import { resultsFolder, type Results } from './results.js';
+import { type Results, resultsFolder } from './results.js';
 import { table } from './table.js';
 import type { FirstUse } from './web/first-page.js';
 
-const ms = (value: number | undefined): string => (value === undefined ? '–' : value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toFixed(value < 0.1 ? 3 : 2));
-const times = (value: number | undefined): string => (value === undefined ? '–' : `${value >= 10 ? value.toFixed(1) : value.toFixed(2)}×`);
+const ms = (value: number | undefined): string =>
+  value === undefined
+    ? '–'
+    : value >= 100
+      ? value.toFixed(0)
+      : value >= 10
+        ? value.toFixed(1)
+        : value.toFixed(value < 0.1 ? 3 : 2);
+const times = (value: number | undefined): string =>
+  value === undefined ? '–' : `${value >= 10 ? value.toFixed(1) : value.toFixed(2)}×`;
 
 function inWasm({ paper, default: preset }: Record<Preset, WasmCount>, node: string): string {
   const million = (count: number): string => `${(count / 1e6).toFixed(1)} M`;
@@ -26,8 +34,16 @@ export async function writeReport(results: Results): Promise<void> {
 
 /** What the goals in milliseconds come to on the processor that they were set on, if all goes as Embree does. */
 function inProportion(goals: readonly Goal[]): string[] {
-  const each = goals.flatMap(({ what, value, limit, embree }) => (value === undefined || embree === undefined ? [] : [`${what}: ${ms((value * embreeWhereSet) / embree)} (${limit}; Embree ${ms(embree)})`]));
-  return each.length === 0 ? [] : [`Goals in milliseconds were set where Embree takes ${ms(embreeWhereSet)} ms at 4.8k. In proportion to what it took here, in the same run: ${each.join('; ')}.`];
+  const each = goals.flatMap(({ what, value, limit, embree }) =>
+    value === undefined || embree === undefined
+      ? []
+      : [`${what}: ${ms((value * embreeWhereSet) / embree)} (${limit}; Embree ${ms(embree)})`],
+  );
+  return each.length === 0
+    ? []
+    : [
+        `Goals in milliseconds were set where Embree takes ${ms(embreeWhereSet)} ms at 4.8k. In proportion to what it took here, in the same run: ${each.join('; ')}.`,
+      ];
 }
 
 /** Where Embree's answer differs, scene by scene. */
@@ -57,7 +73,12 @@ function markdown(results: Results): string {
       goals.map((goal) => {
         const reached = isReached(goal);
         const unit = goal.unit === '×' ? '×' : goal.unit && ` ${goal.unit}`;
-        return [goal.what, goal.value === undefined ? 'not measured' : `${ms(goal.value)}${unit}`, `${goal.kind} ${goal.limit}${unit}`, reached === undefined ? '' : reached ? 'yes' : 'no'];
+        return [
+          goal.what,
+          goal.value === undefined ? 'not measured' : `${ms(goal.value)}${unit}`,
+          `${goal.kind} ${goal.limit}${unit}`,
+          reached === undefined ? '' : reached ? 'yes' : 'no',
+        ];
       }),
     ),
     ...inProportion(goals),
@@ -66,7 +87,18 @@ function markdown(results: Results): string {
     parts.push(
       '## Native',
       table(
-        ['scene', 'triangles', 'cage', 'Cagecast', 'Embree', 'ratio', 'nanoflann', 'ratio', 'MB above inputs', 'B/triangle'],
+        [
+          'scene',
+          'triangles',
+          'cage',
+          'Cagecast',
+          'Embree',
+          'ratio',
+          'nanoflann',
+          'ratio',
+          'MB above inputs',
+          'B/triangle',
+        ],
         Object.entries(native).map(([scene, r]) => [
           scene,
           String(r.triangles),
@@ -90,7 +122,13 @@ function markdown(results: Results): string {
           ['4.8k, step by step', 'Cagecast', 'min–max', 'Embree', 'ratio'],
           stages.map((stage) => {
             const [ours, theirs] = [sample.cagecast[stage], embree?.times[stage]];
-            return [stage, ms(ours.median), `${ms(ours.min)}–${ms(ours.max)}`, theirs && theirs.median > 0 ? ms(theirs.median) : '–', times(embree?.ratios[stage])];
+            return [
+              stage,
+              ms(ours.median),
+              `${ms(ours.min)}–${ms(ours.max)}`,
+              theirs && theirs.median > 0 ? ms(theirs.median) : '–',
+              times(embree?.ratios[stage]),
+            ];
           }),
         ),
       );
@@ -101,10 +139,26 @@ function markdown(results: Results): string {
     parts.push(
       '## In JavaScript',
       table(
-        ['scene', 'Cagecast, Chromium', 'three-mesh-bvh, Chromium', 'ratio', 'Cagecast, Node', 'three-mesh-bvh, Node', 'ratio'],
+        [
+          'scene',
+          'Cagecast, Chromium',
+          'three-mesh-bvh, Chromium',
+          'ratio',
+          'Cagecast, Node',
+          'three-mesh-bvh, Node',
+          'ratio',
+        ],
         scenes.map((scene) => {
           const [page, node] = [web.chromium[scene], web.node[scene]];
-          return [scene, ms(page?.cagecast.median), ms(page?.peer?.total.median), times(page?.peer?.ratio), ms(node?.cagecast.median), ms(node?.peer?.total.median), times(node?.peer?.ratio)];
+          return [
+            scene,
+            ms(page?.cagecast.median),
+            ms(page?.peer?.total.median),
+            times(page?.peer?.ratio),
+            ms(node?.cagecast.median),
+            ms(node?.peer?.total.median),
+            times(node?.peer?.ratio),
+          ];
         }),
       ),
       `three-mesh-bvh in the form in which it is fastest at this (bench/web/bvh-peer.ts says what was tried), in the same page. Both write over the arrays of the answer before. Native Embree on the same core, in turn with Chromium, takes ${times(web.againstNativeEmbree.ratio)} the package’s time at 4.8k (${ms(web.againstNativeEmbree.embree)} and ${ms(web.againstNativeEmbree.cagecast)} ms).`,
@@ -114,7 +168,20 @@ function markdown(results: Results): string {
     parts.push(
       '## What the preset `default` costs',
       table(
-        ['scene', 'triangles', 'cage', 'its islands', '`paper`', '`default` without UVs per corner', 'ratio', 'with them', 'more', 'second look', 'holes', 'seams'],
+        [
+          'scene',
+          'triangles',
+          'cage',
+          'its islands',
+          '`paper`',
+          '`default` without UVs per corner',
+          'ratio',
+          'with them',
+          'more',
+          'second look',
+          'holes',
+          'seams',
+        ],
         Object.entries(presets).map(([scene, cost]) => [
           scene,
           String(cost.triangles),
@@ -137,9 +204,26 @@ function markdown(results: Results): string {
       '## Phones',
       `64-bit ARM (NEON) under QEMU: ${(mobile.aarch64.perRun / 1e6).toFixed(2)} M instructions a transfer at 4.8k${mobile.aarch64.sameAnswer ? ', with bit-identical results' : ', BUT WITH ANOTHER RESULT'}. That is ${ms(estimate)} ms on a ${phone.name}, assuming one instruction per cycle. x86-64: ${(mobile.x86_64.perRun / 1e6).toFixed(2)} M.${mobile.wasm ? ` ${inWasm(mobile.wasm, results.machine.node)}` : ''}`,
       table(
-        ['Chromium, 4.8k', 'warm', 'first use, at rest', '= import', '+ init', '+ transfer', 'the same with `paper`', 'first use, at once', '= import', '+ init', '+ transfer'],
+        [
+          'Chromium, 4.8k',
+          'warm',
+          'first use, at rest',
+          '= import',
+          '+ init',
+          '+ transfer',
+          'the same with `paper`',
+          'first use, at once',
+          '= import',
+          '+ init',
+          '+ transfer',
+        ],
         Object.keys(mobile.firstUse).map((rate) => {
-          const parts = (use: FirstUse | undefined): string[] => [ms(use?.total), ms(use?.import), ms(use?.init), ms(use?.transfer)];
+          const parts = (use: FirstUse | undefined): string[] => [
+            ms(use?.total),
+            ms(use?.import),
+            ms(use?.init),
+            ms(use?.transfer),
+          ];
           return [
             rate === '1' ? 'as it is' : `slowed ${rate}×`,
             ms(mobile.warm[rate]?.median),
@@ -153,7 +237,16 @@ function markdown(results: Results): string {
     );
   }
   if (results.size) {
-    parts.push('## Size', table(['file', 'bytes', 'gzipped'], Object.entries(results.size).map(([name, { raw, gz }]) => [name, String(raw), String(gz)])));
+    parts.push(
+      '## Size',
+      table(
+        ['file', 'bytes', 'gzipped'],
+        Object.entries(results.size).map(([name, { raw, gz }]) => [name, String(raw), String(gz)]),
+      ),
+    );
   }
-  return `${parts.join('\n\n').replace(/\n{3,}/g, '\n\n').trim()}\n`;
+  return `${parts
+    .join('\n\n')
+    .replace(/\n{3,}/g, '\n\n')
+    .trim()}\n`;
 }

@@ -36,7 +36,8 @@ function compacted(mesh: SceneMesh): SceneMesh {
 function gathered(mesh: SceneMesh, sources: ArrayLike<number>): Omit<SceneMesh, 'indices'> {
   const pick = <A extends Float32Array | Uint32Array>(array: A, width: number): A => {
     const out = new (array.constructor as new (length: number) => A)(width * sources.length);
-    for (let i = 0; i < sources.length; ++i) for (let k = 0; k < width; ++k) out[width * i + k] = array[width * sources[i]! + k]!;
+    for (let i = 0; i < sources.length; ++i)
+      for (let k = 0; k < width; ++k) out[width * i + k] = array[width * sources[i]! + k]!;
     return out;
   };
   return {

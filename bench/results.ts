@@ -1,8 +1,8 @@
 import { mkdir, readFile, writeFile } from 'node:fs/promises';
-import { root, type NativeResult, type Spread, type StageOfDefault } from './native.js';
 import type { InstructionCount, Preset, WasmCount } from './instructions.js';
-import type { Size } from './size.js';
+import { type NativeResult, root, type Spread, type StageOfDefault } from './native.js';
 import type { RaceResult } from './race.js';
+import type { Size } from './size.js';
 import type { FirstUse } from './web/first-page.js';
 
 /** Everything that one run of the benchmark found out. Parts that were not run are missing. */
@@ -68,6 +68,11 @@ export async function readResults(date: string): Promise<Results | undefined> {
 export async function writeResults(results: Results): Promise<void> {
   await mkdir(resultsFolder, { recursive: true });
   // Six digits are more than any of these times is good for.
-  const text = JSON.stringify(results, (_, value: unknown) => (typeof value === 'number' && !Number.isInteger(value) ? Number(value.toPrecision(6)) : value), 1);
+  const text = JSON.stringify(
+    results,
+    (_, value: unknown) =>
+      typeof value === 'number' && !Number.isInteger(value) ? Number(value.toPrecision(6)) : value,
+    1,
+  );
   await writeFile(`${resultsFolder}/${results.date}.json`, `${text}\n`);
 }

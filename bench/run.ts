@@ -9,27 +9,28 @@
 // With CAGECAST_ASSETS naming a folder of models (each a folder with target.glb and cage.glb) those are measured too.
 
 import { existsSync, readdirSync } from 'node:fs';
+import { readFile, writeFile } from 'node:fs/promises';
 import { cpus } from 'node:os';
 import { parseArgs } from 'node:util';
-import { readFile, writeFile } from 'node:fs/promises';
 import { checkInstructions, checkSizes, recordBudget } from './budget.js';
 import { goalsOf, isReached } from './goals.js';
 import { countAarch64, countWasm, countX86, hashOnAarch64 } from './instructions.js';
 import { islandCount, unfolded } from './islands.js';
 import { buildNative, measureNative, root, saveScene } from './native.js';
 import { writeReport } from './report.js';
-import { readResults, resultsFolder, writeResults, type PresetCost, type Results } from './results.js';
+import { type PresetCost, type Results, readResults, resultsFolder, writeResults } from './results.js';
 import { readScene, writeScene } from './scene-file.js';
-import { makeScenes, sampleScene, scenes, type BenchScene } from './scenes.js';
+import { type BenchScene, makeScenes, sampleScene, scenes } from './scenes.js';
 import { measureSizes } from './size.js';
 import { median } from './statistics.js';
-import { buildWeb, countBundle, raceInNode, WebBench } from './web.js';
 import type { FirstUse } from './web/first-page.js';
+import { buildWeb, countBundle, raceInNode, WebBench } from './web.js';
 
 const parts = ['native', 'presets', 'web', 'mobile', 'size'] as const;
 
 const began = Date.now();
-const say = (line: string): void => console.error(`[${((Date.now() - began) / 1000).toFixed(0).padStart(4)} s] ${line}`);
+const say = (line: string): void =>
+  console.error(`[${((Date.now() - began) / 1000).toFixed(0).padStart(4)} s] ${line}`);
 
 function fail(message: string): never {
   console.error(message);
@@ -39,7 +40,12 @@ function fail(message: string): never {
 function options(): { only: readonly string[]; quick: boolean; record: boolean; check: boolean } {
   try {
     const { values } = parseArgs({
-      options: { only: { type: 'string' }, quick: { type: 'boolean' }, record: { type: 'boolean' }, check: { type: 'boolean' } },
+      options: {
+        only: { type: 'string' },
+        quick: { type: 'boolean' },
+        record: { type: 'boolean' },
+        check: { type: 'boolean' },
+      },
     });
     const only = values.only?.split(',') ?? parts;
     const unknown = only.find((part) => !(parts as readonly string[]).includes(part));
@@ -78,7 +84,8 @@ async function main(): Promise<void> {
   if (record) {
     const { instructions } = await recordBudget();
     for (const [preset, counts] of Object.entries(instructions)) {
-      for (const [processor, { perRun, compiler }] of Object.entries(counts)) say(`${preset}, ${processor}: ${perRun} instructions a transfer, compiler ${compiler}: recorded`);
+      for (const [processor, { perRun, compiler }] of Object.entries(counts))
+        say(`${preset}, ${processor}: ${perRun} instructions a transfer, compiler ${compiler}: recorded`);
     }
     return;
   }
@@ -101,7 +108,12 @@ async function main(): Promise<void> {
   const results: Results = {
     ...(await readResults(date)),
     date,
-    machine: { ...(await readResults(date))?.machine, processor: processor!.model, cores: cpus().length, node: process.versions.node },
+    machine: {
+      ...(await readResults(date))?.machine,
+      processor: processor!.model,
+      cores: cpus().length,
+      node: process.versions.node,
+    },
   };
 
   if (only.includes('native')) {
@@ -112,9 +124,13 @@ async function main(): Promise<void> {
       const result = await measureNative(scene.path, runsFor(scene.triangles, quick), ['embree', 'nanoflann']);
       results.native[scene.name] = result;
       results.machine.compiler = result.compiler;
-      say(`  ${result.cagecast.total.median.toFixed(3)} ms, ${result.peers['embree']!.ratios.total!.toFixed(3)} of Embree's`);
+      say(
+        `  ${result.cagecast.total.median.toFixed(3)} ms, ${result.peers['embree']!.ratios.total!.toFixed(3)} of Embree's`,
+      );
     }
-    const [ordered, shuffled] = ['500k', '500k-shuffled'].map((name) => wanted.find((scene) => scene.name === name)?.path);
+    const [ordered, shuffled] = ['500k', '500k-shuffled'].map(
+      (name) => wanted.find((scene) => scene.name === name)?.path,
+    );
     if (ordered !== undefined && shuffled !== undefined) {
       say('native: 500k shuffled and not, in turn');
       const total = async (path: string): Promise<number> => (await measureNative(path, 5, [])).cagecast.total.median;
@@ -132,7 +148,9 @@ async function main(): Promise<void> {
       say(`presets: ${scene.name}`);
       results.presets[scene.name] = await measurePresets(scene, runsFor(scene.triangles, quick));
       const { ratio, default: both } = results.presets[scene.name]!;
-      say(`  default ${ratio.toFixed(2)} of paper's time, UVs per corner ${(both.corner - both.vertex).toFixed(3)} ms more`);
+      say(
+        `  default ${ratio.toFixed(2)} of paper's time, UVs per corner ${(both.corner - both.vertex).toFixed(3)} ms more`,
+      );
     }
   }
   if (only.includes('size')) results.size = await measureSizes();
@@ -143,7 +161,12 @@ async function main(): Promise<void> {
     const bench = await WebBench.start();
     try {
       results.machine.chromium = bench.version;
-      if (only.includes('web')) results.web = await measureWeb(bench, [...wanted.filter(({ cage, shuffled }) => cage === 'grown' && !shuffled), ...models], quick);
+      if (only.includes('web'))
+        results.web = await measureWeb(
+          bench,
+          [...wanted.filter(({ cage, shuffled }) => cage === 'grown' && !shuffled), ...models],
+          quick,
+        );
       await writeResults(results);
       if (only.includes('mobile')) results.mobile = await measureMobile(bench, quick);
     } finally {
@@ -156,14 +179,20 @@ async function main(): Promise<void> {
   for (const goal of goalsOf(results)) {
     const reached = isReached(goal);
     if (reached === undefined) continue;
-    console.log(`${reached ? 'yes' : 'NO '}  ${goal.what}: ${goal.value!.toPrecision(4)} ${goal.unit} (${goal.kind} ${goal.limit})`);
+    console.log(
+      `${reached ? 'yes' : 'NO '}  ${goal.what}: ${goal.value!.toPrecision(4)} ${goal.unit} (${goal.kind} ${goal.limit})`,
+    );
   }
   say(`written to ${resultsFolder.slice(root.length)}`);
 }
 
 /** The sample, its cage with a texture of many islands. */
 async function manyIslands(): Promise<BenchScene> {
-  const scene = { ...sampleScene, name: `${sampleScene.name}-many-islands`, path: `${root}build/bench/scenes/${sampleScene.name}-many-islands.scene` };
+  const scene = {
+    ...sampleScene,
+    name: `${sampleScene.name}-many-islands`,
+    path: `${root}build/bench/scenes/${sampleScene.name}-many-islands.scene`,
+  };
   const { cage, target } = readScene((await readFile(sampleScene.path)).buffer);
   await writeFile(scene.path, writeScene({ cage: unfolded(cage), target }));
   return scene;
@@ -171,7 +200,12 @@ async function manyIslands(): Promise<BenchScene> {
 
 async function measurePresets(scene: BenchScene, runs: number): Promise<PresetCost> {
   const { cage } = readScene((await readFile(scene.path)).buffer);
-  const { triangles, cageTriangles, cagecast, peers } = await measureNative(scene.path, runs, ['paper', 'embree', 'default'], ['--preset', 'default', '--seams', 'vertex']);
+  const { triangles, cageTriangles, cagecast, peers } = await measureNative(
+    scene.path,
+    runs,
+    ['paper', 'embree', 'default'],
+    ['--preset', 'default', '--seams', 'vertex'],
+  );
   const [paper, corner] = [peers['paper']!, peers['default']!];
   return {
     triangles,
@@ -180,23 +214,42 @@ async function measurePresets(scene: BenchScene, runs: number): Promise<PresetCo
     paper: paper.times.total.median,
     default: { vertex: cagecast.total.median, corner: corner.times.total.median },
     ratio: paper.ratios.total!,
-    stages: { secondLook: corner.times.secondLook.median, holes: corner.times.holes.median, seams: corner.times.seams.median },
+    stages: {
+      secondLook: corner.times.secondLook.median,
+      holes: corner.times.holes.median,
+      seams: corner.times.seams.median,
+    },
     embree: peers['embree']!.times.total.median,
   };
 }
 
-async function measureWeb(bench: WebBench, wanted: readonly BenchScene[], quick: boolean): Promise<NonNullable<Results['web']>> {
-  const web: NonNullable<Results['web']> = { node: {}, chromium: {}, againstNativeEmbree: { ratio: 0, cagecast: 0, embree: 0 } };
+async function measureWeb(
+  bench: WebBench,
+  wanted: readonly BenchScene[],
+  quick: boolean,
+): Promise<NonNullable<Results['web']>> {
+  const web: NonNullable<Results['web']> = {
+    node: {},
+    chromium: {},
+    againstNativeEmbree: { ratio: 0, cagecast: 0, embree: 0 },
+  };
   for (const scene of wanted) {
     // At 2M triangles a run of three-mesh-bvh takes most of a minute.
     const withPeer = scene.triangles <= 500_000;
     const isLarge = scene.triangles > 50_000;
-    const race = { turns: quick || isLarge ? 3 : 11, turnMs: 150, warmUp: isLarge ? 2 : scene.triangles > 10_000 ? 6 : 80, withPeer };
+    const race = {
+      turns: quick || isLarge ? 3 : 11,
+      turnMs: 150,
+      warmUp: isLarge ? 2 : scene.triangles > 10_000 ? 6 : 80,
+      withPeer,
+    };
     say(`Chromium and Node: ${scene.name}`);
     web.chromium[scene.name] = await bench.race(scene, race);
     web.node[scene.name] = await raceInNode(scene, race);
     const { cagecast, peer } = web.chromium[scene.name]!;
-    say(`  ${cagecast.median.toFixed(3)} ms in Chromium${peer ? `, three-mesh-bvh ${peer.ratio.toFixed(1)} times that` : ''}`);
+    say(
+      `  ${cagecast.median.toFixed(3)} ms in Chromium${peer ? `, three-mesh-bvh ${peer.ratio.toFixed(1)} times that` : ''}`,
+    );
   }
   say('Chromium against native Embree');
   web.againstNativeEmbree = await bench.againstNativeEmbree(sampleScene, quick ? 3 : 11);
@@ -215,7 +268,10 @@ async function measureMobile(bench: WebBench, quick: boolean): Promise<NonNullab
   const mobile: NonNullable<Results['mobile']> = {
     aarch64: { ...aarch64, sameAnswer: (await hashOnAarch64(sampleScene.path)) === native.hash },
     x86_64: x86,
-    wasm: { paper: await countWasm(countBundle, sampleScene.path, 'paper'), default: await countWasm(countBundle, sampleScene.path, 'default') },
+    wasm: {
+      paper: await countWasm(countBundle, sampleScene.path, 'paper'),
+      default: await countWasm(countBundle, sampleScene.path, 'default'),
+    },
     warm: {},
     firstUse: {},
     firstUseAtRest,

@@ -4,7 +4,7 @@ import { mkdir, readFile, rename, rm, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { saveScene } from './native.js';
 import { bent, resized, shuffled } from './resize.js';
-import { readScene, writeScene, type Scene } from './scene-file.js';
+import { readScene, type Scene, writeScene } from './scene-file.js';
 
 /** One input of the benchmark. */
 export interface BenchScene {
@@ -21,7 +21,9 @@ export interface BenchScene {
 const root = fileURLToPath(new URL('..', import.meta.url));
 const folder = `${root}build/bench/scenes`;
 const model = `${root}build/assets/lizard`;
-const sources = ['resize.ts', 'scenes.ts', 'scene-file.ts'].map((name) => fileURLToPath(new URL(name, import.meta.url)));
+const sources = ['resize.ts', 'scenes.ts', 'scene-file.ts'].map((name) =>
+  fileURLToPath(new URL(name, import.meta.url)),
+);
 
 /** The triangles of the sample model, of which all others are made. */
 export const sampleTriangles = 4782;
@@ -70,7 +72,10 @@ export async function makeScenes(wanted: readonly BenchScene[], say: (line: stri
 
 async function make(sample: Scene, { triangles, cage, shuffled: isShuffled }: BenchScene): Promise<Scene> {
   const cageTriangles = sample.cage.indices.length / 3;
-  const resizedCage = cage === 'fixed' ? sample.cage : await resized(sample.cage, Math.round((triangles / sampleTriangles) * cageTriangles));
+  const resizedCage =
+    cage === 'fixed'
+      ? sample.cage
+      : await resized(sample.cage, Math.round((triangles / sampleTriangles) * cageTriangles));
   const scene = bent({ cage: resizedCage, target: await resized(sample.target, triangles) }, 0.002);
   return isShuffled ? { ...scene, target: shuffled(scene.target, 1) } : scene;
 }

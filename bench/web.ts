@@ -7,7 +7,7 @@ import { build } from 'esbuild';
 import type { Browser, CDPSession, Page } from 'playwright-core';
 import { launchChromium } from '../tests/chromium.js';
 import { measureNative, output, root, type Spread } from './native.js';
-import { cpuTime, race, turn, warmUp, type Realm, type RaceOptions, type RaceResult } from './race.js';
+import { cpuTime, type RaceOptions, type RaceResult, type Realm, race, turn, warmUp } from './race.js';
 import type { BenchScene } from './scenes.js';
 import { median, spread } from './statistics.js';
 import type { FirstUse } from './web/first-page.js';
@@ -20,13 +20,25 @@ export const countBundle = `${bundles}/count.mjs`;
 /** Bundles the pages and the script for Node. The package stays outside of them: it is measured as it is shipped. */
 export async function buildWeb(): Promise<void> {
   await mkdir(bundles, { recursive: true });
-  const common = { bundle: true, format: 'esm', minify: true, target: 'es2022', absWorkingDir: root, logLevel: 'error' } as const;
+  const common = {
+    bundle: true,
+    format: 'esm',
+    minify: true,
+    target: 'es2022',
+    absWorkingDir: root,
+    logLevel: 'error',
+  } as const;
   const packageAt = (path: string) => ({
     name: 'package',
     setup: (b: { onResolve(filter: { filter: RegExp }, f: () => { path: string; external: true }): void }) =>
       b.onResolve({ filter: /^cagecast$/ }, () => ({ path, external: true })),
   });
-  await build({ ...common, entryPoints: ['bench/web/page.ts', 'bench/web/first-page.ts'], outdir: bundles, plugins: [packageAt('/dist/index.js')] });
+  await build({
+    ...common,
+    entryPoints: ['bench/web/page.ts', 'bench/web/first-page.ts'],
+    outdir: bundles,
+    plugins: [packageAt('/dist/index.js')],
+  });
   const inNode = { ...common, platform: 'node' as const, plugins: [packageAt(`${root}dist/index.js`)] };
   await build({ ...inNode, entryPoints: ['bench/web/node-race.ts'], outfile: `${bundles}/node-race.mjs` });
   await build({ ...inNode, entryPoints: ['bench/web/count.ts'], outfile: countBundle });
@@ -34,14 +46,22 @@ export async function buildWeb(): Promise<void> {
 
 /** Races in Node, on one core. */
 export async function raceInNode(scene: BenchScene, options: RaceOptions): Promise<RaceResult> {
-  const { stdout } = await output('taskset', ['-c', '0', process.execPath, `${bundles}/node-race.mjs`, scene.path, JSON.stringify(options)]);
+  const { stdout } = await output('taskset', [
+    '-c',
+    '0',
+    process.execPath,
+    `${bundles}/node-race.mjs`,
+    scene.path,
+    JSON.stringify(options),
+  ]);
   return JSON.parse(stdout) as RaceResult;
 }
 
 /** Serves the checkout, isolated from other origins: a page then has a clock of 5 µs instead of 100. */
 async function serve(): Promise<Server> {
   const types: Record<string, string> = { js: 'text/javascript', html: 'text/html' };
-  const page = (script: string): string => `<!doctype html><meta charset="utf-8"><title>bench</title><script type="module" src="/build/bench/web/${script}.js"></script>`;
+  const page = (script: string): string =>
+    `<!doctype html><meta charset="utf-8"><title>bench</title><script type="module" src="/build/bench/web/${script}.js"></script>`;
   const server = createServer((request, response) => {
     const path = new URL(request.url!, 'http://localhost').pathname;
     response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
@@ -49,7 +69,13 @@ async function serve(): Promise<Server> {
     response.setHeader('Content-Type', types[path.split('.').at(-1)!] ?? 'application/octet-stream');
     try {
       // At once, and not by a thread that would have to be woken: the page's first use of the package waits for it.
-      response.end(path.endsWith('.html') ? page(path.slice(1, -5)) : path === '/favicon.ico' ? '' : readFileSync(root + path.slice(1)));
+      response.end(
+        path.endsWith('.html')
+          ? page(path.slice(1, -5))
+          : path === '/favicon.ico'
+            ? ''
+            : readFileSync(root + path.slice(1)),
+      );
     } catch {
       response.writeHead(404).end();
     }
@@ -90,7 +116,11 @@ async function rendererOf(browser: Browser, page: Page): Promise<number> {
 /** Waits until a browser has nothing of its own left to do: all its processes together take less than a tenth of a second's time. */
 async function comeToRest(browser: Browser): Promise<void> {
   const session = await browser.newBrowserCDPSession();
-  const used = async (): Promise<number> => (await session.send('SystemInfo.getProcessInfo')).processInfo.reduce((sum, { cpuTime: seconds }) => sum + seconds, 0);
+  const used = async (): Promise<number> =>
+    (await session.send('SystemInfo.getProcessInfo')).processInfo.reduce(
+      (sum, { cpuTime: seconds }) => sum + seconds,
+      0,
+    );
   let before = await used();
   for (let second = 0; second < 30; ++second) {
     await new Promise((resolve) => setTimeout(resolve, 1000));
@@ -132,10 +162,14 @@ export class WebBench {
       const page = await browser.newPage();
       await page.goto(`${this.origin}/page.html`);
       await page.waitForFunction(() => 'start' in window);
-      await page.evaluate((url) => (window as unknown as { start(url: string): Promise<void> }).start(url), this.urlOf(scene));
+      await page.evaluate(
+        (url) => (window as unknown as { start(url: string): Promise<void> }).start(url),
+        this.urlOf(scene),
+      );
       const realm: Realm = {
         pid: await rendererOf(browser, page),
-        run: (who, runs): Promise<Block> => page.evaluate(([w, n]) => (window as unknown as { runner: Runner }).runner.run(w, n), [who, runs] as const),
+        run: (who, runs): Promise<Block> =>
+          page.evaluate(([w, n]) => (window as unknown as { runner: Runner }).runner.run(w, n), [who, runs] as const),
         differences: () => page.evaluate(() => (window as unknown as { runner: Runner }).runner.differences()),
       };
       return await body(realm, page);
@@ -170,13 +204,18 @@ export class WebBench {
    * The package in a page against Embree natively, both on the same core and in CPU time, in turns.
    * @return The median over turns of Embree's time ÷ the package's, and the medians of both in ms.
    */
-  async againstNativeEmbree(scene: BenchScene, turns: number): Promise<{ ratio: number; cagecast: number; embree: number }> {
-    const native = (): Promise<number> => measureNative(scene.path, 21, ['embree']).then(({ peers }) => peers['embree']!.times.total.median);
+  async againstNativeEmbree(
+    scene: BenchScene,
+    turns: number,
+  ): Promise<{ ratio: number; cagecast: number; embree: number }> {
+    const native = (): Promise<number> =>
+      measureNative(scene.path, 21, ['embree']).then(({ peers }) => peers['embree']!.times.total.median);
     return this.withRealm(scene, async (realm) => {
       await output('taskset', ['-a', '-c', '-p', '0', String(realm.pid)]);
       const runs = await warmUp(realm, 'cagecast', 100, 50);
       const pairs: { cagecast: number; embree: number }[] = [];
-      for (let i = 0; i < turns; ++i) pairs.push({ cagecast: (await turn(realm, 'cagecast', runs)).cpu, embree: await native() });
+      for (let i = 0; i < turns; ++i)
+        pairs.push({ cagecast: (await turn(realm, 'cagecast', runs)).cpu, embree: await native() });
       return {
         ratio: median(pairs.map(({ cagecast, embree }) => embree / cagecast)),
         cagecast: median(pairs.map(({ cagecast }) => cagecast)),
@@ -189,7 +228,13 @@ export class WebBench {
    * The first use of the package in a browser that never loaded it, several times; the medians.
    * @param when While the browser itself still starts, or after.
    */
-  async firstUse(scene: BenchScene, rate: number, launches: number, preset: Preset, when: 'at once' | 'at rest'): Promise<FirstUse> {
+  async firstUse(
+    scene: BenchScene,
+    rate: number,
+    launches: number,
+    preset: Preset,
+    when: 'at once' | 'at rest',
+  ): Promise<FirstUse> {
     const all: FirstUse[] = [];
     for (let i = 0; i < launches; ++i) {
       const browser = await launchChromium({ drawing: false });
@@ -201,7 +246,8 @@ export class WebBench {
         await throttle(page, rate);
         all.push(
           await page.evaluate(
-            ([url, script, preset]) => (window as unknown as { firstUse(...of: string[]): Promise<FirstUse> }).firstUse(url, script, preset),
+            ([url, script, preset]) =>
+              (window as unknown as { firstUse(...of: string[]): Promise<FirstUse> }).firstUse(url, script, preset),
             [this.urlOf(scene), `${this.origin}/dist/index.js`, preset] as const,
           ),
         );
@@ -210,6 +256,13 @@ export class WebBench {
       }
     }
     const of = (field: keyof FirstUse): number => median(all.map((use) => use[field]));
-    return { import: of('import'), init: of('init'), transfer: of('transfer'), total: of('total'), heap: of('heap'), heapLater: of('heapLater') };
+    return {
+      import: of('import'),
+      init: of('init'),
+      transfer: of('transfer'),
+      total: of('total'),
+      heap: of('heap'),
+      heapLater: of('heapLater'),
+    };
   }
 }

@@ -1,8 +1,15 @@
 import { execFileSync } from 'node:child_process';
-import { chromium, type Browser } from 'playwright-core';
+import { type Browser, chromium } from 'playwright-core';
 
 /** Nothing asked of other hosts, nothing that differs from one start to the next. */
-const kQuiet = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const kQuiet = [
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
 /** What draws 3D where no graphics card does. */
 const kDrawing = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'];
 
@@ -12,7 +19,10 @@ const kDrawing = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--i
  * @throws Error that says what to install, if there is none.
  */
 export function launchChromium({ drawing }: { drawing: boolean }): Promise<Browser> {
-  return chromium.launch({ executablePath: process.env['CHROMIUM'] ?? installed(), args: [...kQuiet, ...(drawing ? kDrawing : ['--disable-gpu'])] });
+  return chromium.launch({
+    executablePath: process.env['CHROMIUM'] ?? installed(),
+    args: [...kQuiet, ...(drawing ? kDrawing : ['--disable-gpu'])],
+  });
 }
 
 function installed(): string {

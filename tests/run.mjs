@@ -12,7 +12,11 @@ const root = fileURLToPath(new URL('..', import.meta.url));
 function run(program, args, env = {}) {
   console.log(`\n$ ${[program, ...args].join(' ')}`);
   return new Promise((resolve, reject) => {
-    const child = spawn(program, args, { cwd: root, env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'inherit'] });
+    const child = spawn(program, args, {
+      cwd: root,
+      env: { ...process.env, ...env },
+      stdio: ['ignore', 'pipe', 'inherit'],
+    });
     let output = '';
     child.stdout.on('data', (data) => {
       output += data;
@@ -38,18 +42,34 @@ async function ctest(preset) {
 
 async function nodeTests(folder, { atOnce = 1, env } = {}) {
   const files = readdirSync(new URL(folder, import.meta.url)).filter((name) => name.endsWith('.test.ts'));
-  const { status, output } = await run(process.execPath, [
-    '--import', 'tsx', '--test', '--test-reporter=spec', `--test-concurrency=${atOnce}`, ...files.map((name) => `tests/${folder}/${name}`),
-  ], env);
+  const { status, output } = await run(
+    process.execPath,
+    [
+      '--import',
+      'tsx',
+      '--test',
+      '--test-reporter=spec',
+      `--test-concurrency=${atOnce}`,
+      ...files.map((name) => `tests/${folder}/${name}`),
+    ],
+    env,
+  );
   const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
-  return { passed: count('pass'), failed: (count('fail') + count('cancelled')) || Number(status !== 0), skipped: count('skipped') };
+  return {
+    passed: count('pass'),
+    failed: count('fail') + count('cancelled') || Number(status !== 0),
+    skipped: count('skipped'),
+  };
 }
 
 /** Each suite builds what it needs. In the order in which a mistake is cheapest to find. */
 const kSuites = {
   core: async () => {
     const lanes = [await ctest('release'), await ctest('scalar'), await ctest('dev')];
-    return { passed: lanes.reduce((sum, lane) => sum + lane.passed, 0), failed: lanes.reduce((sum, lane) => sum + lane.failed, 0) };
+    return {
+      passed: lanes.reduce((sum, lane) => sum + lane.passed, 0),
+      failed: lanes.reduce((sum, lane) => sum + lane.failed, 0),
+    };
   },
   package: async () => {
     await mustRun('npm', ['run', '--silent', 'assets']);
@@ -58,22 +78,36 @@ const kSuites = {
     await mustRun(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar']);
     await mustRun('cmake', ['--preset', 'release', '-Wno-dev', '--log-level=WARNING']);
     await mustRun('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference']);
-    const env = { CAGECAST_SCALAR: 'build/wasm-scalar/package', CAGECAST_REFERENCE: 'build/release/tests/core/cagecast_reference' };
+    const env = {
+      CAGECAST_SCALAR: 'build/wasm-scalar/package',
+      CAGECAST_REFERENCE: 'build/release/tests/core/cagecast_reference',
+    };
     const js = await nodeTests('js', { atOnce: 2, env });
     const packed = await nodeTests('package');
-    return { passed: js.passed + packed.passed, failed: js.failed + packed.failed, skipped: js.skipped + packed.skipped };
+    return {
+      passed: js.passed + packed.passed,
+      failed: js.failed + packed.failed,
+      skipped: js.skipped + packed.skipped,
+    };
   },
   browser: async () => {
     await mustRun('npm', ['run', '--silent', 'assets']);
     await mustRun('npm', ['run', '--silent', 'build']);
     const { build, preview } = await import('vite');
     const page = fileURLToPath(new URL('../build/web', import.meta.url));
-    const options = { configFile: fileURLToPath(new URL('../web/vite.config.ts', import.meta.url)), logLevel: 'error', build: { outDir: page } };
+    const options = {
+      configFile: fileURLToPath(new URL('../web/vite.config.ts', import.meta.url)),
+      logLevel: 'error',
+      build: { outDir: page },
+    };
     await build(options);
     const server = await preview({ ...options, preview: { host: '127.0.0.1', port: 0 } });
     try {
       // On two cores two browsers that draw by the processor take 0.77 of the time of one after the other.
-      return await nodeTests('browser', { atOnce: 2, env: { CAGECAST_SITE: server.resolvedUrls.local[0], CAGECAST_PAGE: page } });
+      return await nodeTests('browser', {
+        atOnce: 2,
+        env: { CAGECAST_SITE: server.resolvedUrls.local[0], CAGECAST_PAGE: page },
+      });
     } finally {
       await server.close();
     }
@@ -98,7 +132,8 @@ for (const name of chosen) {
 console.log('');
 // A suite that ran nothing has not passed.
 for (const row of rows) if (row.passed === 0 && row.failed === 0) row.failed = 1;
-for (const { name, passed, failed, skipped } of rows) console.log(`${name.padEnd(8)} ${passed} passed, ${failed} failed, ${skipped} skipped`);
+for (const { name, passed, failed, skipped } of rows)
+  console.log(`${name.padEnd(8)} ${passed} passed, ${failed} failed, ${skipped} skipped`);
 const sum = (field) => rows.reduce((total, row) => total + row[field], 0);
 console.log(`\nall: ${sum('passed')} passed, ${sum('failed')} failed, ${sum('skipped')} skipped`);
 process.exit(sum('failed') === 0 ? 0 : 1);

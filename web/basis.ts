@@ -1,8 +1,8 @@
-import { readFile } from 'node:fs/promises'
-import { transform } from 'esbuild'
-import type { Plugin } from 'vite'
+import { readFile } from 'node:fs/promises';
+import { transform } from 'esbuild';
+import type { Plugin } from 'vite';
 
-const kFile = /\/basis_transcoder(-[\w-]+)?\.js$/
+const kFile = /\/basis_transcoder(-[\w-]+)?\.js$/;
 
 // Called from C++ and into it, by types that are known when the module starts.
 const kCallIn = `var invokerFn=function(...given){
@@ -12,30 +12,31 @@ const kCallIn = `var invokerFn=function(...given){
   var wired=types.map((type,i)=>type.toWireType(destructors,values[i]));
   var result=cppInvokerFunc(cppTargetFunc,...wired);
   if(destructors)runDestructors(destructors);else types.forEach((type,i)=>type.destructorFunction?.(wired[i]));
-  if(returns)return argTypes[0].fromWireType(result)};`
+  if(returns)return argTypes[0].fromWireType(result)};`;
 const kCallOut = `var invokerFunction=(obj,func,destructorsRef,at)=>{
   var given=types.map(type=>{var value=type.readValueFromPointer(at);at+=type.argPackAdvance;return value});
   var result=kind===1?new func(...given):func.call(obj,...given);
-  return retType.isVoid?undefined:emval_returnValue(retType,destructorsRef,result)};`
+  return retType.isVoid?undefined:emval_returnValue(retType,destructorsRef,result)};`;
 
 /** The places where the transcoder makes a function out of text: how each begins, what follows it, and what does the same. */
 const kPlaces = [
   ['let[args,invokerFnBody]=', 'return createNamedFunction(humanName,', kCallIn],
   ['var functionBody=', 'var functionName=', kCallOut],
-] as const
+] as const;
 
 /** The transcoder without functions made out of text. @throws Error if it is another one than this knows. */
 function withoutEval(code: string): string {
   for (const [first, next, instead] of kPlaces) {
-    const [from, to] = [code.indexOf(first), code.indexOf(next, code.indexOf(first))]
-    if (from < 0 || to < 0) throw new Error(`basis_transcoder.js: there is no “${first} … ${next}”: see how it calls C++ now`)
-    code = code.slice(0, from) + instead + code.slice(to)
+    const [from, to] = [code.indexOf(first), code.indexOf(next, code.indexOf(first))];
+    if (from < 0 || to < 0)
+      throw new Error(`basis_transcoder.js: there is no “${first} … ${next}”: see how it calls C++ now`);
+    code = code.slice(0, from) + instead + code.slice(to);
   }
-  if (code.includes('newFunc(Function')) throw new Error('basis_transcoder.js: it makes more functions out of text')
-  return code
+  if (code.includes('newFunc(Function')) throw new Error('basis_transcoder.js: it makes more functions out of text');
+  return code;
 }
 
-const kNoZstd = '\0no-zstd'
+const kNoZstd = '\0no-zstd';
 
 /** Lets Basis' transcoder, which decodes KTX2 textures, run under the page's security policy, which forbids `new Function`. */
 export function basis(): Plugin {
@@ -44,20 +45,25 @@ export function basis(): Plugin {
     enforce: 'pre',
     configureServer(server) {
       server.middlewares.use(async (request, response, next) => {
-        const { pathname, searchParams } = new URL(request.url ?? '/', 'http://localhost')
+        const { pathname, searchParams } = new URL(request.url ?? '/', 'http://localhost');
         // A module that asks for the address alone gets that from Vite.
-        if (!kFile.test(pathname) || searchParams.has('url')) return next()
-        response.setHeader('Content-Type', 'text/javascript')
-        response.end(withoutEval(await readFile(new URL(import.meta.resolve('three/addons/libs/basis/basis_transcoder.js')), 'utf8')))
-      })
+        if (!kFile.test(pathname) || searchParams.has('url')) return next();
+        response.setHeader('Content-Type', 'text/javascript');
+        response.end(
+          withoutEval(
+            await readFile(new URL(import.meta.resolve('three/addons/libs/basis/basis_transcoder.js')), 'utf8'),
+          ),
+        );
+      });
     },
     // Basis unpacks by itself; what the loader brings along is for textures that glTF does not have: 17 KB gzipped.
     resolveId: (source) => (source.endsWith('/zstddec.module.js') ? kNoZstd : undefined),
     load: (id) => (id === kNoZstd ? 'export class ZSTDDecoder {}' : undefined),
     async generateBundle(_, bundle) {
       for (const file of Object.values(bundle)) {
-        if (file.type === 'asset' && kFile.test(`/${file.fileName}`)) file.source = (await transform(withoutEval(file.source.toString()), { minify: true })).code
+        if (file.type === 'asset' && kFile.test(`/${file.fileName}`))
+          file.source = (await transform(withoutEval(file.source.toString()), { minify: true })).code;
       }
     },
-  }
+  };
 }

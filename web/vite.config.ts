@@ -1,65 +1,71 @@
-import { cp, readFile } from 'node:fs/promises'
-import path from 'node:path'
-import { fileURLToPath } from 'node:url'
-import { defineConfig, type Plugin } from 'vite'
-import { basis } from './basis'
-import { precache } from './precache'
+import { cp, readFile } from 'node:fs/promises';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { defineConfig, type Plugin } from 'vite';
+import { basis } from './basis';
+import { precache } from './precache';
 
-const kRepository = fileURLToPath(new URL('..', import.meta.url))
-const kSamples = path.join(kRepository, 'build/assets')
+const kRepository = fileURLToPath(new URL('..', import.meta.url));
+const kSamples = path.join(kRepository, 'build/assets');
 
 /** Makes the sample models, which code generates, part of the page: under samples/, in development and in the build. */
 function samples(): Plugin {
-  let outDir: string
+  let outDir: string;
   return {
     name: 'cagecast-samples',
     configResolved: (config) => void (outDir = path.resolve(config.root, config.build.outDir)),
     configureServer(server) {
       server.middlewares.use('/samples', async (request, response, next) => {
-        const name = decodeURIComponent(new URL(request.url ?? '/', 'http://localhost').pathname)
-        const file = path.join(kSamples, path.normalize(name))
+        const name = decodeURIComponent(new URL(request.url ?? '/', 'http://localhost').pathname);
+        const file = path.join(kSamples, path.normalize(name));
         try {
-          response.end(await readFile(file))
+          response.end(await readFile(file));
         } catch {
-          next()
+          next();
         }
-      })
+      });
     },
     async writeBundle() {
-      for (const name of ['index.json', ...(await sampleFiles())]) await cp(path.join(kSamples, name), path.join(outDir, 'samples', name))
+      for (const name of ['index.json', ...(await sampleFiles())])
+        await cp(path.join(kSamples, name), path.join(outDir, 'samples', name));
     },
-  }
+  };
 }
 
 /** The files that the list of samples names, relative to it. */
 async function sampleFiles(): Promise<string[]> {
   const text = await readFile(path.join(kSamples, 'index.json'), 'utf8').catch(() => {
-    throw new Error('build/assets/index.json is missing: make the sample models first (npm run assets)')
-  })
-  const samples: { target: string; cage: string; paints: { file: string }[] }[] = JSON.parse(text)
-  return samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)])
+    throw new Error('build/assets/index.json is missing: make the sample models first (npm run assets)');
+  });
+  const samples: { target: string; cage: string; paints: { file: string }[] }[] = JSON.parse(text);
+  return samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)]);
 }
 
 /** Takes the package with its WebAssembly in files of their own: page and worker share them, and they compile while they load. */
 function slim(): Plugin {
-  const slimOf = new Map([['index.js', 'slim.js'], ['borders.js', 'slim-borders.js']].map((names) => names.map((name) => path.join(kRepository, 'dist', name)) as [string, string]))
+  const slimOf = new Map(
+    [
+      ['index.js', 'slim.js'],
+      ['borders.js', 'slim-borders.js'],
+    ].map((names) => names.map((name) => path.join(kRepository, 'dist', name)) as [string, string]),
+  );
   return {
     name: 'cagecast-slim',
     enforce: 'pre',
     async resolveId(source, importer, options) {
-      const found = await this.resolve(source, importer, { ...options, skipSelf: true })
-      return found && (slimOf.get(found.id) ?? found)
+      const found = await this.resolve(source, importer, { ...options, skipSelf: true });
+      return found && (slimOf.get(found.id) ?? found);
     },
-  }
+  };
 }
 
 /** Leaves out Draco's decoders for other files than glTF, which the loader names but the page never asks for: a megabyte. */
 function onlyGltfDraco(): Plugin {
-  const spare = /new URL\( '\.\.\/libs\/draco\/draco_[^']+', import\.meta\.url \)\.toString\(\)/g
+  const spare = /new URL\( '\.\.\/libs\/draco\/draco_[^']+', import\.meta\.url \)\.toString\(\)/g;
   return {
     name: 'cagecast-only-gltf-draco',
     transform: (code, id) => (/\/DRACOLoader\.js$/.test(id) ? code.replaceAll(spare, "''") : undefined),
-  }
+  };
 }
 
 export default defineConfig({
@@ -67,7 +73,13 @@ export default defineConfig({
   // Relative, so that the built page can lie in any folder of any host.
   base: './',
   plugins: [slim(), samples(), onlyGltfDraco(), basis(), precache()],
-  build: { outDir: path.join(kRepository, 'build/web'), emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 900 },
+  build: {
+    outDir: path.join(kRepository, 'build/web'),
+    emptyOutDir: true,
+    target: 'es2022',
+    assetsInlineLimit: 0,
+    chunkSizeWarningLimit: 900,
+  },
   worker: { format: 'es', plugins: () => [slim(), basis()] },
   preview: { headers: { 'X-Content-Type-Options': 'nosniff' } },
-})
+});

@@ -1,4 +1,4 @@
-import { shift, type Quality } from './measure.js';
+import { type Quality, shift } from './measure.js';
 import type { Score } from './score.js';
 
 /** What the product is held to; shares of area and of pixels, see `Score`. */

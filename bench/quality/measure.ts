@@ -1,8 +1,16 @@
 import { presetOptions, project, transfer } from 'cagecast';
 import { bent, resized } from '../resize.js';
-import { atThresholds, decide, latencies, methodNames, withoutEachStep, type Decision, type MethodName } from './methods.js';
+import {
+  atThresholds,
+  type Decision,
+  decide,
+  latencies,
+  type MethodName,
+  methodNames,
+  withoutEachStep,
+} from './methods.js';
 import type { Model } from './models.js';
-import { measureSegments, score, shifted, smear, type Score, type SegmentMeasure, type Smear } from './score.js';
+import { measureSegments, type Score, type SegmentMeasure, type Smear, score, shifted, smear } from './score.js';
 import { visiblePixels } from './visible.js';
 
 /** What is found out about one model. */
@@ -35,7 +43,8 @@ export async function measure(model: Model): Promise<Quality> {
   const { cage, target } = scene;
   const pixels = visiblePixels(target);
   const scoreOf = (decision: Decision): Score => score(model, pixels, decision);
-  const scores = (some: [string, Decision][]): Record<string, Score> => Object.fromEntries(some.map(([name, decision]) => [name, scoreOf(decision)]));
+  const scores = (some: [string, Decision][]): Record<string, Score> =>
+    Object.fromEntries(some.map(([name, decision]) => [name, scoreOf(decision)]));
   const decisions = decide(scene);
   const moved = [0, 1, 2].flatMap((axis) =>
     [1, -1].map((sign): [string, Decision] => {
@@ -44,7 +53,10 @@ export async function measure(model: Model): Promise<Quality> {
     }),
   );
   const result = transfer(cage, target);
-  const methods = methodNames.map((name) => [name, { ...scoreOf(decisions[name]), vertices: countZones(decisions[name]) }]);
+  const methods = methodNames.map((name) => [
+    name,
+    { ...scoreOf(decisions[name]), vertices: countZones(decisions[name]) },
+  ]);
   return {
     kind: model.kind,
     triangles: target.indices.length / 3,

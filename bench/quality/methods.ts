@@ -1,7 +1,7 @@
-import { classify, presetOptions, project, transfer, Zone } from 'cagecast';
 import type { PresetOptions, Projection, Timings, TransferOptions } from 'cagecast';
-import { median } from '../statistics.js';
+import { classify, presetOptions, project, transfer, Zone } from 'cagecast';
 import type { Scene } from '../scene-file.js';
+import { median } from '../statistics.js';
 
 /** What a way to transfer paints. */
 export interface Decision {
@@ -22,7 +22,10 @@ export type MethodName = (typeof methodNames)[number];
 export function decide({ cage, target }: Scene): Record<MethodName, Decision> {
   const { zones } = project(cage, target, { preset: 'paper' });
   const only = (...ncz: number[]): Decision =>
-    wholeTriangles(zones.map((zone) => (ncz.includes(zone) ? zone : Zone.Cosmetic)), target.indices);
+    wholeTriangles(
+      zones.map((zone) => (ncz.includes(zone) ? zone : Zone.Cosmetic)),
+      target.indices,
+    );
   return {
     naive: only(),
     'step 2': only(Zone.Occluded),
@@ -55,7 +58,10 @@ export function withoutEachStep({ cage, target }: Scene): [step: string, Decisio
   return [
     ['groups', transfer(cage, whole)],
     ['depth', transfer(cage, target, { floor: 'area' })],
-    ...names.map((name): [string, Decision] => [name, transfer(cage, target, { [name]: paper[name] } as TransferOptions)]),
+    ...names.map((name): [string, Decision] => [
+      name,
+      transfer(cage, target, { [name]: paper[name] } as TransferOptions),
+    ]),
   ];
 }
 
@@ -80,9 +86,17 @@ export function latencies({ cage, target }: Scene, runs: number): Record<MethodN
   }
   const paper = median(times.paper);
   // By step, because a short one is seldom interrupted.
-  const wall = (...steps: (keyof Timings)[]): number => steps.reduce((sum, step) => sum + median(timings.map((one) => one[step])), 0);
+  const wall = (...steps: (keyof Timings)[]): number =>
+    steps.reduce((sum, step) => sum + median(timings.map((one) => one[step])), 0);
   const until = [['weld', 'build', 'project'], ['occluded'], ['covered'], ['segments', 'classify']] as const;
   const spent = until.map((steps) => wall(...steps));
-  const share = (count: number): number => spent.slice(0, count).reduce((sum, ms) => sum + ms, 0) / spent.reduce((sum, ms) => sum + ms, 0);
-  return { naive: paper * share(1), 'step 2': paper * share(2), 'step 3': paper * share(3), paper, default: median(times.default) };
+  const share = (count: number): number =>
+    spent.slice(0, count).reduce((sum, ms) => sum + ms, 0) / spent.reduce((sum, ms) => sum + ms, 0);
+  return {
+    naive: paper * share(1),
+    'step 2': paper * share(2),
+    'step 3': paper * share(3),
+    paper,
+    default: median(times.default),
+  };
 }

@@ -1,10 +1,17 @@
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
-import { NodeIO, type Document } from '@gltf-transform/core';
+import { type Document, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
-import { decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from '../../wasm/src/gltf/pieces.js';
+import {
+  decodeFloats,
+  decodePositions,
+  decodeTriangles,
+  hasTriangles,
+  joinPieces,
+  type Piece,
+} from '../../wasm/src/gltf/pieces.js';
 import { output, root } from '../native.js';
 import { readScene, type Scene, type SceneMesh } from '../scene-file.js';
 
@@ -36,10 +43,12 @@ export type ModelFiles = Pick<Model, 'name' | 'kind'> & { folder: string };
 
 /** The project's samples, and the models of the folder that CAGECAST_ASSETS names: folders with target.glb, cage.glb and truth.json. */
 export function listFiles(): ModelFiles[] {
-  const samples = (JSON.parse(readFileSync(`${samplesFolder}/index.json`, 'utf8')) as { name: string }[]).map(({ name }): ModelFiles => {
-    // Named after the model they were spoiled from.
-    return { name, kind: name.includes('-') ? 'spoiled' : 'sample', folder: `${samplesFolder}/${name}` };
-  });
+  const samples = (JSON.parse(readFileSync(`${samplesFolder}/index.json`, 'utf8')) as { name: string }[]).map(
+    ({ name }): ModelFiles => {
+      // Named after the model they were spoiled from.
+      return { name, kind: name.includes('-') ? 'spoiled' : 'sample', folder: `${samplesFolder}/${name}` };
+    },
+  );
   const assets = process.env['CAGECAST_ASSETS'];
   const given = (assets === undefined ? [] : readdirSync(assets).sort())
     .filter((name) => existsSync(`${assets}/${name}/truth.json`))
@@ -74,7 +83,8 @@ export async function loadFiles({ name, kind, folder }: ModelFiles): Promise<Mod
   const [target, cage] = await Promise.all(['target', 'cage'].map((file) => readMesh(`${folder}/${file}.glb`)));
   const truth = JSON.parse(await readFile(`${folder}/truth.json`, 'utf8')) as Truth;
   const found = target!.positions.length / 3;
-  if (found !== truth.ncz.length) throw new Error(`${folder}: the target has ${found} vertices, its truth.json speaks of ${truth.ncz.length}`);
+  if (found !== truth.ncz.length)
+    throw new Error(`${folder}: the target has ${found} vertices, its truth.json speaks of ${truth.ncz.length}`);
   return { name, kind, truth, folder, scene: { cage: cage!, target: target! } };
 }
 
@@ -95,9 +105,17 @@ async function loadTraps(): Promise<Model[]> {
       const bytes = await readFile(`${folder}/${name}.scene`);
       const scene = readScene(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) as ArrayBuffer);
       // Per vertex 0: to be painted, 1: not to be, 2: either; padded to whole words.
-      const labels = new Uint8Array(await readFile(`${folder}/${name}.truth`)).subarray(0, scene.target.positions.length / 3);
+      const labels = new Uint8Array(await readFile(`${folder}/${name}.truth`)).subarray(
+        0,
+        scene.target.positions.length / 3,
+      );
       const where = (wanted: number): Uint8Array => labels.map((label) => +(label === wanted));
-      return { name, kind: 'trap', scene, truth: { ncz: where(1), ignore: where(2), offCage: new Uint8Array(labels.length) } };
+      return {
+        name,
+        kind: 'trap',
+        scene,
+        truth: { ncz: where(1), ignore: where(2), offCage: new Uint8Array(labels.length) },
+      };
     }),
   );
 }
@@ -123,7 +141,12 @@ function piecesOf(document: Document): (Piece & { set: Float32Array | undefined 
       if (position === null || !hasTriangles(primitive.getMode())) continue;
       const name = node.getName();
       const localPositions = decodePositions(name, position);
-      const localIndices = decodeTriangles(name, primitive.getIndices()?.getArray() ?? null, primitive.getMode(), localPositions.length / 3);
+      const localIndices = decodeTriangles(
+        name,
+        primitive.getIndices()?.getArray() ?? null,
+        primitive.getMode(),
+        localPositions.length / 3,
+      );
       const uv = primitive.getAttribute('TEXCOORD_0');
       const last = pieces.at(-1);
       pieces.push({

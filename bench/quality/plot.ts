@@ -1,5 +1,5 @@
 import { colours, picture, text, width } from '../plots.js';
-import { thresholds, type Quality } from './measure.js';
+import { type Quality, thresholds } from './measure.js';
 import type { Score } from './score.js';
 
 const presets = ['paper', 'default'] as const;
@@ -18,7 +18,11 @@ export function thresholdPlot(results: Readonly<Record<string, Quality>>): strin
   const models = Object.values(results).filter(({ kind }) => kind === 'sample' || kind === 'asset');
   const valuesOf = ({ thresholds: by }: Quality, preset: Preset, measure: keyof Score): number[] =>
     thresholds.map((threshold) => by[preset][threshold.toFixed(1)]![measure]);
-  const least = Math.min(...models.flatMap((model) => presets.flatMap((preset) => panels.flatMap(([measure]) => valuesOf(model, preset, measure)))));
+  const least = Math.min(
+    ...models.flatMap((model) =>
+      presets.flatMap((preset) => panels.flatMap(([measure]) => valuesOf(model, preset, measure))),
+    ),
+  );
   const bottom = Math.floor(least * 20 - 1e-9) / 20;
   const [top, height, gap, left] = [76, 200, 60, 56];
   const panelWidth = (width - left - gap - 16) / 2;
@@ -33,7 +37,8 @@ export function thresholdPlot(results: Readonly<Record<string, Quality>>): strin
       body.push(`<line x1="${x0}" x2="${x0 + panelWidth}" y1="${y}" y2="${y}" class="grid"/>`);
       body.push(text(x0 - 8, py(value) + 4, value.toFixed(2), 'text-anchor="end"'));
     }
-    for (const threshold of thresholds) body.push(text(px(threshold), top + height + 18, threshold.toFixed(1), 'text-anchor="middle"'));
+    for (const threshold of thresholds)
+      body.push(text(px(threshold), top + height + 18, threshold.toFixed(1), 'text-anchor="middle"'));
     for (const preset of presets) {
       const line = (values: readonly number[], look: string): string => {
         const points = values.map((value, i) => `${px(thresholds[i]!).toFixed(1)},${py(value).toFixed(1)}`);
@@ -41,14 +46,19 @@ export function thresholdPlot(results: Readonly<Record<string, Quality>>): strin
       };
       const all = models.map((model) => valuesOf(model, preset, measure));
       const worst = thresholds.map((_, i) => Math.min(...all.map((values) => values[i]!)));
-      body.push(...all.map((values) => line(values, 'stroke-opacity="0.45"')), line(worst, 'stroke-width="3" stroke-linejoin="round"'));
+      body.push(
+        ...all.map((values) => line(values, 'stroke-opacity="0.45"')),
+        line(worst, 'stroke-width="3" stroke-linejoin="round"'),
+      );
     }
   });
   const legendY = top + height + 50;
   body.push(text(width - 16, legendY, 'threshold', 'text-anchor="end"'));
   presets.forEach((preset, i) => {
     const x = left + 290 * i;
-    body.push(`<line x1="${x}" x2="${x + 22}" y1="${legendY - 4}" y2="${legendY - 4}" stroke="${looks[preset]}" stroke-width="3"/>`);
+    body.push(
+      `<line x1="${x}" x2="${x + 22}" y1="${legendY - 4}" y2="${legendY - 4}" stroke="${looks[preset]}" stroke-width="3"/>`,
+    );
     body.push(text(x + 30, legendY, `${preset}: the worst of ${models.length} models, and each`));
   });
   return picture(legendY + 16, 'Suppressed and kept at every threshold', body);

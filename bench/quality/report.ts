@@ -2,8 +2,8 @@ import { writeFile } from 'node:fs/promises';
 import { resultsFolder } from '../results.js';
 import { table } from '../table.js';
 import { missedGoals } from './goals.js';
-import { largeTriangles, shift, thresholds, type Quality, type ZoneCounts } from './measure.js';
-import { methodNames, type MethodName } from './methods.js';
+import { largeTriangles, type Quality, shift, thresholds, type ZoneCounts } from './measure.js';
+import { type MethodName, methodNames } from './methods.js';
 import { thresholdPlot } from './plot.js';
 import type { Score } from './score.js';
 
@@ -22,8 +22,15 @@ export interface QualityResults {
 /** Writes JSON, tables and plot, over those of earlier runs. */
 export async function writeQuality(results: QualityResults): Promise<void> {
   // Six digits are more than a model is good for. What has no parts of its own is kept on one line.
-  const json = JSON.stringify(results, (_, value: unknown) => (typeof value === 'number' ? Number(value.toPrecision(6)) : value), 1);
-  await writeFile(`${resultsFolder}/quality.json`, `${json.replace(/\{[^{}[\]]*\}/g, (leaf) => leaf.replace(/\s+/g, ' '))}\n`);
+  const json = JSON.stringify(
+    results,
+    (_, value: unknown) => (typeof value === 'number' ? Number(value.toPrecision(6)) : value),
+    1,
+  );
+  await writeFile(
+    `${resultsFolder}/quality.json`,
+    `${json.replace(/\{[^{}[\]]*\}/g, (leaf) => leaf.replace(/\s+/g, ' '))}\n`,
+  );
   await writeFile(`${resultsFolder}/quality.md`, qualityReport(results));
   await writeFile(`${resultsFolder}/quality-thresholds.svg`, thresholdPlot(results.models));
 }
@@ -38,7 +45,9 @@ const byArea = ({ suppressed, kept }: Score): string => `${percent(suppressed)} 
 const byPixel = ({ forbidden, bare }: Score): string => `${percent(forbidden)} · ${percent(bare)}`;
 const worst = (scores: Iterable<Score>): Score => {
   const all = [...scores];
-  const [least, most] = [Math.min, Math.max].map((pick) => (measure: keyof Score) => pick(...all.map((one) => one[measure])));
+  const [least, most] = [Math.min, Math.max].map(
+    (pick) => (measure: keyof Score) => pick(...all.map((one) => one[measure])),
+  );
   return { suppressed: least!('suppressed'), kept: least!('kept'), forbidden: most!('forbidden'), bare: most!('bare') };
 };
 
@@ -61,7 +70,16 @@ function posterTable({ models, times, largeTimes }: QualityResults): string {
   const names = samples.map(([name]) => name).join(' / ');
   const shares = ['suppressed', 'kept', 'forbidden', 'bare'] as const;
   return table(
-    ['method', 'type', `latency: ${names}`, 'suppressed', 'kept', 'pixels painted where forbidden', 'pixels bare', `${largeTriangles / 1000}k triangles`],
+    [
+      'method',
+      'type',
+      `latency: ${names}`,
+      'suppressed',
+      'kept',
+      'pixels painted where forbidden',
+      'pixels bare',
+      `${largeTriangles / 1000}k triangles`,
+    ],
     [
       ['manual authoring', 'artist-driven', '*60–120 min*', '*gold standard*', '', '', '', '*low*'],
       ...methodNames.map((name) => [
@@ -76,15 +94,26 @@ function posterTable({ models, times, largeTimes }: QualityResults): string {
 }
 
 /** A row per model. */
-const byModel = (models: Readonly<Record<string, Quality>>, head: readonly string[], cells: (quality: Quality, name: string) => string[]): string =>
-  table(['', ...head], Object.entries(models).map(([name, quality]) => [name, ...cells(quality, name)]));
+const byModel = (
+  models: Readonly<Record<string, Quality>>,
+  head: readonly string[],
+  cells: (quality: Quality, name: string) => string[],
+): string =>
+  table(
+    ['', ...head],
+    Object.entries(models).map(([name, quality]) => [name, ...cells(quality, name)]),
+  );
 
 const worstOfThresholds = `\`default\`, worst of thresholds ${thresholds[0]}–${thresholds.at(-1)}`;
 const worstOfShifts = `worst of the cage ${percent(shift)} of the diagonal aside`;
 
 /** Each method's score, and the worst that `default` can be brought to. */
 function methodScores({ methods, thresholds: by, shifted }: Quality, show: (score: Score) => string): string[] {
-  return [...methodNames.map((method) => methods[method]), worst(Object.values(by.default)), worst(Object.values(shifted))].map(show);
+  return [
+    ...methodNames.map((method) => methods[method]),
+    worst(Object.values(by.default)),
+    worst(Object.values(shifted)),
+  ].map(show);
 }
 
 /** `default` without each of its steps, where that is not the same; steps that make no difference to any model are named below. */
@@ -102,7 +131,19 @@ No difference to any of these models: ${idle.length > 0 ? idle.join(', ') : 'non
 
 /** Why vertices are left out, and what a transfer takes. */
 function costTable({ models, times }: QualityResults): string {
-  const head = ['vertices', '`paper`', '`default`', 'naive, ms', '`paper`, ms', '`default`, ms', '`paper`, MB', '`default`, MB', 'smeared: vertex', 'corner', 'cut'];
+  const head = [
+    'vertices',
+    '`paper`',
+    '`default`',
+    'naive, ms',
+    '`paper`, ms',
+    '`default`, ms',
+    '`paper`, MB',
+    '`default`, MB',
+    'smeared: vertex',
+    'corner',
+    'cut',
+  ];
   return byModel(models, head, ({ methods, peakBytes, smear }, name) => {
     const zones = ({ occluded, uncovered, culled }: ZoneCounts): string => `${occluded} / ${uncovered} / ${culled}`;
     const vertices = Object.values(methods.naive.vertices).reduce((sum, count) => sum + count, 0);
@@ -124,7 +165,9 @@ function floorTable(models: Readonly<Record<string, Quality>>): string {
     .flatMap(([name, quality]) => quality.segments.map((segment) => ({ name, ...segment })))
     .filter(({ coverage }) => coverage >= 0.3) // whoever fails the lowest threshold needs no floor
     .sort((a, b) => Math.abs(Math.log(a.reach)) - Math.abs(Math.log(b.reach)));
-  const nearest = (['bare', 'painted', 'either'] as const).flatMap((wanted) => segments.filter((segment) => segment.wanted === wanted).slice(0, 5));
+  const nearest = (['bare', 'painted', 'either'] as const).flatMap((wanted) =>
+    segments.filter((segment) => segment.wanted === wanted).slice(0, 5),
+  );
   return table(
     ['', 'first vertex', 'wanted', 'F', 'C / A', 'reach', ''],
     nearest.map(({ name, firstVertex, wanted, coverage, coveredShare, reach, culled }) => [
@@ -158,7 +201,11 @@ export function qualityReport(results: QualityResults): string {
     '![Suppressed and kept by threshold](quality-thresholds.svg)',
     '## Every model',
     'Suppressed · kept. *Trap*: made to be difficult; *spoiled*: made to fail, as on the poster, and not held to any goal.',
-    byModel(models, ['', 'triangles', ...scoresHead], (quality) => [quality.kind, quality.triangles.toLocaleString('en'), ...methodScores(quality, byArea)]),
+    byModel(models, ['', 'triangles', ...scoresHead], (quality) => [
+      quality.kind,
+      quality.triangles.toLocaleString('en'),
+      ...methodScores(quality, byArea),
+    ]),
     'In the picture: painted where forbidden · bare.',
     byModel(models, scoresHead, (quality) => methodScores(quality, byPixel)),
     '## Where it fails',

@@ -22,8 +22,18 @@ export interface Score {
 export function score({ scene, truth }: Model, pixels: Uint32Array, { zones, cosmeticTriangles }: Decision): Score {
   const { indices } = scene.target;
   const areas = triangleAreas(scene.target);
-  const byArea = tally(truth, indices, (corner) => areas[Math.floor(corner / 3)]!, (corner) => zones[indices[corner]!] === 0);
-  const byPixel = tally(truth, indices, (corner) => pixels[corner]!, (corner) => cosmeticTriangles[Math.floor(corner / 3)] === 1);
+  const byArea = tally(
+    truth,
+    indices,
+    (corner) => areas[Math.floor(corner / 3)]!,
+    (corner) => zones[indices[corner]!] === 0,
+  );
+  const byPixel = tally(
+    truth,
+    indices,
+    (corner) => pixels[corner]!,
+    (corner) => cosmeticTriangles[Math.floor(corner / 3)] === 1,
+  );
   const seen = pixels.reduce((sum, count) => sum + count, 0);
   return {
     suppressed: byArea.ncz > 0 ? 1 - byArea.nczPainted / byArea.ncz : 1,
@@ -73,7 +83,11 @@ export interface SegmentMeasure {
 export type FloorLimits = Record<'minCovered' | 'minOfAll' | 'maxUncovered', number>;
 
 /** Measures every segment that covers anything. */
-export function measureSegments({ scene, truth }: Model, { segments, segmentStats }: TransferResult, limits: FloorLimits): SegmentMeasure[] {
+export function measureSegments(
+  { scene, truth }: Model,
+  { segments, segmentStats }: TransferResult,
+  limits: FloorLimits,
+): SegmentMeasure[] {
   const { indices } = scene.target;
   const areas = triangleAreas(scene.target);
   const wishes = segmentStats.map(() => ({ painted: 0, bare: 0 }));
@@ -81,14 +95,18 @@ export function measureSegments({ scene, truth }: Model, { segments, segmentStat
   indices.forEach((v, corner) => {
     const segment = segments[v]!;
     first[segment] = Math.min(first[segment]!, v);
-    if (truth.ignore[v] !== 1) wishes[segment]![truth.ncz[v] === 1 ? 'bare' : 'painted'] += areas[Math.floor(corner / 3)]!;
+    if (truth.ignore[v] !== 1)
+      wishes[segment]![truth.ncz[v] === 1 ? 'bare' : 'painted'] += areas[Math.floor(corner / 3)]!;
   });
   const allCovered = segmentStats.reduce((sum, { coveredArea }) => sum + coveredArea, 0);
   return segmentStats.flatMap(({ area, exposedArea, coveredArea, coverage, sunkArea, culled }, s) => {
     if (!(coveredArea > 0)) return [];
     const { painted, bare } = wishes[s]!;
     const counted = sunkArea * coverage;
-    const ofAll = Math.min(counted / (limits.minOfAll * allCovered), (limits.maxUncovered * exposedArea) / (exposedArea - coveredArea));
+    const ofAll = Math.min(
+      counted / (limits.minOfAll * allCovered),
+      (limits.maxUncovered * exposedArea) / (exposedArea - coveredArea),
+    );
     return [
       {
         firstVertex: first[s]!,
@@ -160,7 +178,11 @@ function stretchesOf({ indices, positions, uvs }: SceneMesh): Float64Array {
     const t = Math.floor(i / 3);
     const [v, w] = [indices[i]!, indices[3 * t + ((i + 1) % 3)]!];
     const edge = distance(positions, v, w);
-    if (edge > 0) stretches[t] = Math.max(stretches[t]!, Math.hypot(uvs[2 * v]! - uvs[2 * w]!, uvs[2 * v + 1]! - uvs[2 * w + 1]!) / edge);
+    if (edge > 0)
+      stretches[t] = Math.max(
+        stretches[t]!,
+        Math.hypot(uvs[2 * v]! - uvs[2 * w]!, uvs[2 * v + 1]! - uvs[2 * w + 1]!) / edge,
+      );
   }
   return stretches;
 }
@@ -178,5 +200,8 @@ type Corner = ReturnType<typeof pointAt>;
 /** The same scene with its cage moved along an axis. @param by  Share of the target's diagonal. */
 export function shifted(scene: Scene, axis: number, by: number): Scene {
   const { diagonal } = boxOf(scene.target.positions);
-  return { ...scene, cage: { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === axis ? x + by * diagonal : x)) } };
+  return {
+    ...scene,
+    cage: { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === axis ? x + by * diagonal : x)) },
+  };
 }

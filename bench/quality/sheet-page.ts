@@ -15,6 +15,7 @@ import {
   MeshStandardMaterial,
   NearestFilter,
   NeutralToneMapping,
+  type Object3D,
   PCFShadowMap,
   PerspectiveCamera,
   PlaneGeometry,
@@ -22,11 +23,10 @@ import {
   Scene,
   ShadowMaterial,
   SRGBColorSpace,
+  type Texture,
   TextureLoader,
   Vector3,
   WebGLRenderer,
-  type Object3D,
-  type Texture,
 } from 'three';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
@@ -71,9 +71,17 @@ globalThis.drawRow = async (row, looks, size) => {
   }
 };
 
-async function draw(canvas: HTMLCanvasElement, row: Row, look: Look, { width, height }: { width: number; height: number }): Promise<void> {
+async function draw(
+  canvas: HTMLCanvasElement,
+  row: Row,
+  look: Look,
+  { width, height }: { width: number; height: number },
+): Promise<void> {
   const loader = new GLTFLoader();
-  const [{ scene: target }, { scene: cage }] = await Promise.all([loader.loadAsync(row.target), loader.loadAsync(row.cage)]);
+  const [{ scene: target }, { scene: cage }] = await Promise.all([
+    loader.loadAsync(row.target),
+    loader.loadAsync(row.cage),
+  ]);
   const paint = row.paint === undefined ? checker() : await new TextureLoader().loadAsync(row.paint);
   paint.flipY = false; // as all textures of glTF
   paint.colorSpace = SRGBColorSpace;
@@ -101,7 +109,11 @@ async function draw(canvas: HTMLCanvasElement, row: Row, look: Look, { width, he
   cage.applyMatrix4(model.matrixWorld);
   renderer.render(scene, cameraFor(row, cage, width / height));
   // Made smaller in one step, with all pixels taken into account.
-  const image = await createImageBitmap(renderer.domElement, { resizeWidth: width, resizeHeight: height, resizeQuality: 'high' });
+  const image = await createImageBitmap(renderer.domElement, {
+    resizeWidth: width,
+    resizeHeight: height,
+    resizeQuality: 'high',
+  });
   canvas.width = width;
   canvas.height = height;
   canvas.getContext('2d')!.drawImage(image, 0, 0);
@@ -112,7 +124,11 @@ function dress(target: Object3D, cage: Object3D, paint: Texture, look: Look): vo
   if (look === 'cage') return;
   if (look === 'naive') {
     const { update, result } = applyTransfer(target, cage, { texture: paint, preset: 'paper' });
-    update({ zones: new Uint8Array(result.zones.length), cosmeticTriangles: new Uint8Array(result.cosmeticTriangles.length).fill(1), segmentStats: result.segmentStats });
+    update({
+      zones: new Uint8Array(result.zones.length),
+      cosmeticTriangles: new Uint8Array(result.cosmeticTriangles.length).fill(1),
+      segmentStats: result.segmentStats,
+    });
     return;
   }
   const texture = look === 'removed' ? faded(paint) : paint;
@@ -138,10 +154,12 @@ function faded(paint: Texture): Texture {
 function removedOf({ geometry, firstTriangle, triangleCount }: Part, { cosmeticTriangles }: TransferResult): Mesh {
   const corners: number[] = [];
   for (let i = 0; i < 3 * triangleCount; ++i) {
-    if (cosmeticTriangles[firstTriangle + Math.floor(i / 3)] === 0) corners.push(geometry.index ? geometry.index.getX(i) : i);
+    if (cosmeticTriangles[firstTriangle + Math.floor(i / 3)] === 0)
+      corners.push(geometry.index ? geometry.index.getX(i) : i);
   }
   const removed = new BufferGeometry();
-  for (const name of ['position', 'normal']) if (geometry.hasAttribute(name)) removed.setAttribute(name, geometry.getAttribute(name));
+  for (const name of ['position', 'normal'])
+    if (geometry.hasAttribute(name)) removed.setAttribute(name, geometry.getAttribute(name));
   removed.setIndex(new BufferAttribute(Uint32Array.from(corners), 1));
   const red = { color: '#e01020', emissive: '#700008', roughness: 0.6 };
   return new Mesh(removed, new MeshStandardMaterial({ ...red, ...offset(-1) }));
@@ -204,7 +222,14 @@ function cameraFor({ turn, rise }: Row, object: Object3D, aspect: number): Persp
   // The part of the picture that it takes becomes the whole of it.
   const [middle, size] = [seen.getCenter(new Vector3()), seen.getSize(new Vector3())];
   const share = (Math.max(size.x, size.y) / 2) * (1 + 2 * margin);
-  camera.setViewOffset(aspect, 1, ((1 + middle.x - share) / 2) * aspect, (1 - middle.y - share) / 2, share * aspect, share);
+  camera.setViewOffset(
+    aspect,
+    1,
+    ((1 + middle.x - share) / 2) * aspect,
+    (1 - middle.y - share) / 2,
+    share * aspect,
+    share,
+  );
   return camera;
 }
 

@@ -35,7 +35,15 @@ const heads: Record<Look, string> = {
  */
 export async function drawSheet(models: readonly Model[], looks: readonly Look[], path: string): Promise<void> {
   const entryPoints = [`${root}bench/quality/sheet-page.ts`];
-  const script = await build({ entryPoints, bundle: true, format: 'iife', target: 'es2022', write: false, absWorkingDir: root, logLevel: 'error' });
+  const script = await build({
+    entryPoints,
+    bundle: true,
+    format: 'iife',
+    target: 'es2022',
+    write: false,
+    absWorkingDir: root,
+    logLevel: 'error',
+  });
   const browser = await launchChromium({ drawing: true });
   try {
     // Its files are those of the models, and nothing else is there.
@@ -51,7 +59,9 @@ export async function drawSheet(models: readonly Model[], looks: readonly Look[]
       const [target, cage] = [serve(`${folder}/target.glb`), serve(`${folder}/cage.glb`)];
       return [{ target, cage, paint: paint === undefined ? undefined : serve(`${folder}/${paint}`), ...view }];
     });
-    const page = await browser.newPage({ viewport: { width: looks.length * cell.width, height: rows.length * cell.height + 48 } });
+    const page = await browser.newPage({
+      viewport: { width: looks.length * cell.width, height: rows.length * cell.height + 48 },
+    });
     page.setDefaultTimeout(120_000);
     await page.route('**/*', async (route) => {
       const file = files.get(new URL(route.request().url()).pathname);
@@ -60,7 +70,8 @@ export async function drawSheet(models: readonly Model[], looks: readonly Look[]
     });
     await page.goto('http://sheet.test/sheet');
     await page.addScriptTag({ content: script.outputFiles[0]!.text });
-    for (const row of rows) await page.evaluate(([model, columns, size]) => drawRow(model, columns, size), [row, looks, cell] as const);
+    for (const row of rows)
+      await page.evaluate(([model, columns, size]) => drawRow(model, columns, size), [row, looks, cell] as const);
     await mkdir(dirname(path), { recursive: true });
     await page.screenshot({ path, fullPage: true, ...(path.endsWith('.jpg') && { type: 'jpeg', quality: 82 }) });
   } finally {

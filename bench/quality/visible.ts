@@ -50,8 +50,14 @@ function frontCorners(indices: Uint32Array, xs: Float64Array, ys: Float64Array, 
     const [ax, ay, bx, by, cx, cy] = [xs[a]!, ys[a]!, xs[b]!, ys[b]!, xs[c]!, ys[c]!];
     const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
     if (area === 0) continue;
-    const [left, last] = [Math.max(0, Math.ceil(Math.min(ax, bx, cx))), Math.min(size - 1, Math.floor(Math.max(ax, bx, cx)))];
-    const [top, bottom] = [Math.max(0, Math.ceil(Math.min(ay, by, cy))), Math.min(size - 1, Math.floor(Math.max(ay, by, cy)))];
+    const [left, last] = [
+      Math.max(0, Math.ceil(Math.min(ax, bx, cx))),
+      Math.min(size - 1, Math.floor(Math.max(ax, bx, cx))),
+    ];
+    const [top, bottom] = [
+      Math.max(0, Math.ceil(Math.min(ay, by, cy))),
+      Math.min(size - 1, Math.floor(Math.max(ay, by, cy))),
+    ];
     for (let y = top; y <= bottom; ++y) {
       for (let x = left; x <= last; ++x) {
         // 1 ÷ depth is linear in the picture, and so are the corners' shares of the place multiplied by it.

@@ -1,8 +1,8 @@
-import { BufferAttribute, BufferGeometry, DoubleSide, Ray, Vector3, type Box3 } from 'three';
+import { type Box3, BufferAttribute, BufferGeometry, DoubleSide, Ray, Vector3 } from 'three';
 import { CENTER, MeshBVH } from 'three-mesh-bvh';
 import type { Scene, SceneMesh } from '../scene-file.js';
 import type { Kept } from './kept.js';
-import { alongCurve, weld, type Welded } from './weld.js';
+import { alongCurve, type Welded, weld } from './weld.js';
 
 // The form in which three-mesh-bvh 0.9 is fastest at this, found by trying on the sample (ms in Node, in CPU time, each form in
 // a process of its own):
@@ -61,7 +61,18 @@ export function transferByBvh({ cage, target }: Scene, kept: Kept): PeerResult {
   const { normals } = patches;
   for (const i of order) {
     const n = 3 * points.triangles[i]!;
-    if (meetsTarget(positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!, normals[n]!, normals[n + 1]!, normals[n + 2]!, start)) zones[i] = occluded;
+    if (
+      meetsTarget(
+        positions[3 * i]!,
+        positions[3 * i + 1]!,
+        positions[3 * i + 2]!,
+        normals[n]!,
+        normals[n + 1]!,
+        normals[n + 2]!,
+        start,
+      )
+    )
+      zones[i] = occluded;
   }
   lap();
   for (const i of order) {
@@ -69,14 +80,40 @@ export function transferByBvh({ cage, target }: Scene, kept: Kept): PeerResult {
     const n = 3 * points.triangles[i]!;
     const [nx, ny, nz] = [normals[n]!, normals[n + 1]!, normals[n + 2]!];
     const back = -start;
-    if (!meetsCage(positions[3 * i]! + back * nx, positions[3 * i + 1]! + back * ny, positions[3 * i + 2]! + back * nz, nx, ny, nz, 0)) zones[i] = uncovered;
+    if (
+      !meetsCage(
+        positions[3 * i]! + back * nx,
+        positions[3 * i + 1]! + back * ny,
+        positions[3 * i + 2]! + back * nz,
+        nx,
+        ny,
+        nz,
+        0,
+      )
+    )
+      zones[i] = uncovered;
   }
   lap();
   const decided = decide(target, welded, zones, points, kept);
   lap();
-  const [weldTime, build, nearest, selfRays, cageRays, segments] = laps.slice(1).map((time, i) => time - laps[i]!) as [number, number, number, number, number, number];
+  const [weldTime, build, nearest, selfRays, cageRays, segments] = laps.slice(1).map((time, i) => time - laps[i]!) as [
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+  ];
   return {
-    timings: { weld: weldTime, build, project: nearest, occluded: selfRays, covered: cageRays, segments, total: laps.at(-1)! - laps[0]! },
+    timings: {
+      weld: weldTime,
+      build,
+      project: nearest,
+      occluded: selfRays,
+      covered: cageRays,
+      segments,
+      total: laps.at(-1)! - laps[0]!,
+    },
     ...decided,
   };
 }
@@ -118,7 +155,11 @@ function prepare({ indices, positions, uvs }: SceneMesh, kept: Kept): Patches {
   const frames = kept.take('frames', Float64Array, stride * count);
   const normals = kept.take('normals', Float64Array, 3 * count).fill(0);
   for (let t = 0; t < count; ++t) {
-    const corner = [0, 1, 2].map((k) => new Vector3().fromArray(positions, 3 * indices[3 * t + k]!)) as [Vector3, Vector3, Vector3];
+    const corner = [0, 1, 2].map((k) => new Vector3().fromArray(positions, 3 * indices[3 * t + k]!)) as [
+      Vector3,
+      Vector3,
+      Vector3,
+    ];
     const normal = corner[1].clone().sub(corner[0]).cross(corner[2].clone().sub(corner[0]));
     if (normal.lengthSq() === 0) {
       frames.fill(NaN, stride * t, stride * (t + 1));
@@ -136,7 +177,27 @@ function prepare({ indices, positions, uvs }: SceneMesh, kept: Kept): Patches {
     const [cx, cy] = [ac.dot(x), ac.dot(y)];
     const [lengthC, lengthB] = [Math.hypot(cx, cy), Math.hypot(cx - base, cy)];
     frames.set(
-      [a.x, a.y, a.z, x.x, x.y, x.z, y.x, y.y, y.z, normal.x, normal.y, normal.z, base, cx / lengthC, cy / lengthC, lengthC, (cx - base) / lengthB, cy / lengthB, lengthB],
+      [
+        a.x,
+        a.y,
+        a.z,
+        x.x,
+        x.y,
+        x.z,
+        y.x,
+        y.y,
+        y.z,
+        normal.x,
+        normal.y,
+        normal.z,
+        base,
+        cx / lengthC,
+        cy / lengthC,
+        lengthC,
+        (cx - base) / lengthB,
+        cy / lengthB,
+        lengthB,
+      ],
       stride * t,
     );
   }
@@ -181,7 +242,17 @@ interface PointResults {
 }
 
 /** Blends the UVs at the point of triangle t nearest to p (Ericson, "Real-Time Collision Detection", 2005, §5.1.5). */
-function place(i: number, t: number, px: number, py: number, pz: number, start: number, { indices, positions }: Tree, { uvs, normals }: Patches, out: PointResults): void {
+function place(
+  i: number,
+  t: number,
+  px: number,
+  py: number,
+  pz: number,
+  start: number,
+  { indices, positions }: Tree,
+  { uvs, normals }: Patches,
+  out: PointResults,
+): void {
   const a = indices[3 * t]!;
   const b = indices[3 * t + 1]!;
   const c = indices[3 * t + 2]!;
@@ -298,7 +369,9 @@ function project(welded: Welded, order: Uint32Array, patches: Patches, tree: Tre
   const planeDistance = (t: number): number => {
     const a = 3 * tree.indices[3 * t]!;
     return Math.abs(
-      (px - tree.positions[a]!) * normals[3 * t]! + (py - tree.positions[a + 1]!) * normals[3 * t + 1]! + (pz - tree.positions[a + 2]!) * normals[3 * t + 2]!,
+      (px - tree.positions[a]!) * normals[3 * t]! +
+        (py - tree.positions[a + 1]!) * normals[3 * t + 1]! +
+        (pz - tree.positions[a + 2]!) * normals[3 * t + 2]!,
     );
   };
   let t = 0;
@@ -340,7 +413,13 @@ function caster({ bvh }: Tree): Caster {
 }
 
 /** Segments, the threshold, and the results of the points handed out to the vertices. */
-function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, points: PointResults, kept: Kept): Omit<PeerResult, 'timings'> {
+function decide(
+  target: SceneMesh,
+  welded: Welded,
+  pointZones: Uint8Array,
+  points: PointResults,
+  kept: Kept,
+): Omit<PeerResult, 'timings'> {
   const { ofVertex, positions } = welded;
   const parents = kept.take('parents', Uint32Array, welded.count);
   for (let i = 0; i < parents.length; ++i) parents[i] = i;
@@ -384,7 +463,8 @@ function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, point
     const i = ofVertex[v]!;
     const segment = root(i);
     segments[v] = segment;
-    zones[v] = pointZones[i] === cosmetic && coveredArea[segment]! < 0.5 * exposedArea[segment]! ? culled : pointZones[i]!;
+    zones[v] =
+      pointZones[i] === cosmetic && coveredArea[segment]! < 0.5 * exposedArea[segment]! ? culled : pointZones[i]!;
     uvs[2 * v] = points.uvs[2 * i]!;
     uvs[2 * v + 1] = points.uvs[2 * i + 1]!;
     triangles[v] = points.triangles[i]!;
@@ -392,7 +472,11 @@ function decide(target: SceneMesh, welded: Welded, pointZones: Uint8Array, point
   }
   const cosmeticTriangles = kept.take('cosmeticTriangles', Uint8Array, indices.length / 3);
   for (let t = 0; t < cosmeticTriangles.length; ++t) {
-    cosmeticTriangles[t] = Number(zones[indices[3 * t]!] === cosmetic && zones[indices[3 * t + 1]!] === cosmetic && zones[indices[3 * t + 2]!] === cosmetic);
+    cosmeticTriangles[t] = Number(
+      zones[indices[3 * t]!] === cosmetic &&
+        zones[indices[3 * t + 1]!] === cosmetic &&
+        zones[indices[3 * t + 2]!] === cosmetic,
+    );
   }
   return { uvs, zones, triangles, distances, segments, cosmeticTriangles };
 }

@@ -1,6 +1,6 @@
 // node count.mjs FILE.scene PRESET RUNS: so many transfers in this process, whose instructions somebody counts.
 import { readFileSync } from 'node:fs';
-import { init, transfer, type Preset, type TransferResult } from 'cagecast';
+import { init, type Preset, type TransferResult, transfer } from 'cagecast';
 import { readScene } from '../scene-file.js';
 
 const [file, preset, runs] = process.argv.slice(2) as [string, Preset, string];

@@ -36,7 +36,14 @@ async function firstUse(url: string, script: string, preset: Preset): Promise<Fi
   const [start, imported, started, done] = laps as [number, number, number, number];
   const heapFirst = heap();
   for (let i = 0; i < 20; ++i) transfer(cage, target, { preset });
-  return { import: imported - start, init: started - imported, transfer: done - started, total: done - start, heap: heapFirst, heapLater: heap() };
+  return {
+    import: imported - start,
+    init: started - imported,
+    transfer: done - started,
+    total: done - start,
+    heap: heapFirst,
+    heapLater: heap(),
+  };
 }
 
 Object.assign(window, { firstUse });

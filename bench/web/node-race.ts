@@ -1,6 +1,6 @@
 // node node-race.mjs FILE.scene '{"turns":…}': races in this process and prints the result as JSON.
 import { readFileSync } from 'node:fs';
-import { race, type RaceOptions } from '../race.js';
+import { type RaceOptions, race } from '../race.js';
 import { readScene } from '../scene-file.js';
 import { Runner } from './runner.js';
 

@@ -1,7 +1,7 @@
-import { init, transfer, type TransferResult } from 'cagecast';
+import { init, type TransferResult, transfer } from 'cagecast';
 import type { Scene } from '../scene-file.js';
 import { median } from '../statistics.js';
-import { transferByBvh, type PeerResult } from './bvh-peer.js';
+import { type PeerResult, transferByBvh } from './bvh-peer.js';
 import { Kept } from './kept.js';
 
 /** The package, or the same pipeline on three-mesh-bvh. */
@@ -40,13 +40,18 @@ export class Runner {
       times.push(performance.now() - start);
       for (const [stage, time] of Object.entries(timings)) (stages[stage] ??= []).push(time);
     }
-    return { runs, times, stages: Object.fromEntries(Object.entries(stages).map(([stage, all]) => [stage, median(all)])) };
+    return {
+      runs,
+      times,
+      stages: Object.fromEntries(Object.entries(stages).map(([stage, all]) => [stage, median(all)])),
+    };
   }
 
   /** At how many vertices the two answers differ. */
   differences(): { otherZones: number; otherTriangles: number } {
     const [ours, theirs] = [this.transferBy('cagecast'), this.transferBy('peer')];
-    const count = (a: ArrayLike<number>, b: ArrayLike<number>): number => Array.from(a).filter((value, v) => value !== b[v]).length;
+    const count = (a: ArrayLike<number>, b: ArrayLike<number>): number =>
+      Array.from(a).filter((value, v) => value !== b[v]).length;
     return { otherZones: count(ours.zones, theirs.zones), otherTriangles: count(ours.triangles, theirs.triangles) };
   }
 

@@ -30,13 +30,21 @@ export function weld({ positions, groups }: SceneMesh, kept: Kept): Welded {
     const y = positions[3 * v + 1]! + 0;
     const z = positions[3 * v + 2]! + 0;
     const group = groups === undefined ? 0 : groups[v]!;
-    let hash = Math.imul((x === 0 ? 0 : bits[3 * v]!) ^ Math.imul(y === 0 ? 0 : bits[3 * v + 1]!, 0x85ebca6b), 0x9e3779b1);
+    let hash = Math.imul(
+      (x === 0 ? 0 : bits[3 * v]!) ^ Math.imul(y === 0 ? 0 : bits[3 * v + 1]!, 0x85ebca6b),
+      0x9e3779b1,
+    );
     hash = Math.imul(hash ^ (hash >>> 15) ^ (z === 0 ? 0 : bits[3 * v + 2]!) ^ (group << 20), 0x9e3779b1);
     let slot = ((hash ^ (hash >>> 16)) >>> 0) & (slots - 1);
     let point = table[slot]!;
     while (
       point !== -1 &&
-      !(points[3 * point] === x && points[3 * point + 1] === y && points[3 * point + 2] === z && (groups === undefined || groups[firstVertex[point]!] === group))
+      !(
+        points[3 * point] === x &&
+        points[3 * point + 1] === y &&
+        points[3 * point + 2] === z &&
+        (groups === undefined || groups[firstVertex[point]!] === group)
+      )
     ) {
       slot = (slot + 1) & (slots - 1);
       point = table[slot]!;
@@ -58,7 +66,14 @@ export function weld({ positions, groups }: SceneMesh, kept: Kept): Welded {
     ofVertex[v] = point;
   }
   const [dx, dy, dz] = [hx - lx, hy - ly, hz - lz];
-  return { count, positions: points, ofVertex, diagonal: Math.sqrt(dx * dx + dy * dy + dz * dz), low: [lx, ly, lz], side: Math.max(dx, dy, dz) };
+  return {
+    count,
+    positions: points,
+    ofVertex,
+    diagonal: Math.sqrt(dx * dx + dy * dy + dz * dz),
+    low: [lx, ly, lz],
+    side: Math.max(dx, dy, dz),
+  };
 }
 
 /** The points in the order of a Morton curve, so that neighbours come one after the other. */
@@ -72,7 +87,9 @@ export function alongCurve({ count, positions, low, side }: Welded, kept: Kept):
   for (let i = 0; i < count; ++i) {
     order[i] = i;
     keys[i] =
-      spread((positions[3 * i]! - low[0]) * scale) | (spread((positions[3 * i + 1]! - low[1]) * scale) << 1) | (spread((positions[3 * i + 2]! - low[2]) * scale) << 2);
+      spread((positions[3 * i]! - low[0]) * scale) |
+      (spread((positions[3 * i + 1]! - low[1]) * scale) << 1) |
+      (spread((positions[3 * i + 2]! - low[2]) * scale) << 2);
   }
   const starts = kept.take('starts', Uint32Array, 2 ** digitBits);
   for (let shift = 0; shift < (few ? 21 : 30); shift += digitBits) {

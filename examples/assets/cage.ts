@@ -1,97 +1,117 @@
-import { type Bounds, type Mesh, clip, corners, largestPart, mirror, point, simplify, surface, vertexCount, withMeshNormals } from './mesh.ts'
-import { type Sdf } from './sdf.ts'
-import { borderLoops, fill, perimeter } from './unwrap.ts'
-import { onOpenEdge, spaceOf } from './space.ts'
-import { type Vec3, length, sub } from './vec.ts'
+import {
+  type Bounds,
+  clip,
+  corners,
+  largestPart,
+  type Mesh,
+  mirror,
+  point,
+  simplify,
+  surface,
+  vertexCount,
+  withMeshNormals,
+} from './mesh.ts';
+import type { Sdf } from './sdf.ts';
+import { onOpenEdge, spaceOf } from './space.ts';
+import { borderLoops, fill, perimeter } from './unwrap.ts';
+import { length, sub, type Vec3 } from './vec.ts';
 
 export interface CagePlan {
-  solid: Sdf // the model's outer skin, symmetric in x, with everything bridged over that the cage shall bridge
-  bounds: Bounds // of the solid and the distance around it
-  edge: number // edge length of the fine surface the cage is made from
-  distance: number // from the skin
-  keep: (p: Vec3) => number // negative where the cage has a hole or ends
-  triangles: number // at most this many
-  focus?: (p: Vec3) => Vec3 // enlarges the regions that deserve more of them
-  wrap: Mesh // the outside of this must lie within
-  seen: (vertex: number) => boolean // which vertices of `wrap` are outside
+  solid: Sdf; // the model's outer skin, symmetric in x, with everything bridged over that the cage shall bridge
+  bounds: Bounds; // of the solid and the distance around it
+  edge: number; // edge length of the fine surface the cage is made from
+  distance: number; // from the skin
+  keep: (p: Vec3) => number; // negative where the cage has a hole or ends
+  triangles: number; // at most this many
+  focus?: (p: Vec3) => Vec3; // enlarges the regions that deserve more of them
+  wrap: Mesh; // the outside of this must lie within
+  seen: (vertex: number) => boolean; // which vertices of `wrap` are outside
 }
 
 /** Makes a cage: the offset of the outer skin, holes cut, one half simplified and mirrored, then pushed out where it dips into the skin. */
 export const makeCage = (plan: CagePlan): Mesh => {
-  const skin = surface(plan.solid, plan.bounds, plan.edge)
-  const space = spaceOf(skin)
+  const skin = surface(plan.solid, plan.bounds, plan.edge);
+  const space = spaceOf(skin);
   // The solid's own field is only nearly a distance; the distance to its surface is.
   const grown: Sdf = (x, y, z) => {
-    const rough = plan.solid(x, y, z)
-    if (Math.abs(rough) > 4 * plan.distance) return rough - plan.distance // far from the surface it need not be exact
-    const distance = space.nearest([x, y, z]).distance
-    return (rough < 0 ? -distance : distance) - plan.distance
-  }
-  const fine = surface(grown, plan.bounds, plan.edge)
-  const clipped = largestPart(clip(clip(fine, (p) => p[0]), plan.keep))
+    const rough = plan.solid(x, y, z);
+    if (Math.abs(rough) > 4 * plan.distance) return rough - plan.distance; // far from the surface it need not be exact
+    const distance = space.nearest([x, y, z]).distance;
+    return (rough < 0 ? -distance : distance) - plan.distance;
+  };
+  const fine = surface(grown, plan.bounds, plan.edge);
+  const clipped = largestPart(
+    clip(
+      clip(fine, (p) => p[0]),
+      plan.keep,
+    ),
+  );
   // Where the skin bulges, a point above it may lie over the very edge of an opening that is elsewhere.
-  const half = fill(clipped, borderLoops(clipped).filter((loop) => perimeter(clipped, loop) < kLeastHole * plan.distance))
-  const cage = mirror(simplify(half, Math.floor(plan.triangles / 2), rimKeeper(half), plan.focus))
-  return pushOut(cage, plan)
-}
+  const half = fill(
+    clipped,
+    borderLoops(clipped).filter((loop) => perimeter(clipped, loop) < kLeastHole * plan.distance),
+  );
+  const cage = mirror(simplify(half, Math.floor(plan.triangles / 2), rimKeeper(half), plan.focus));
+  return pushOut(cage, plan);
+};
 
-const kLeastHole = 2 // perimeter of a hole that is meant, in distances
-const kRimCorners = 12 // of a whole hole
+const kLeastHole = 2; // perimeter of a hole that is meant, in distances
+const kRimCorners = 12; // of a whole hole
 
 /** Holds on to some vertices all along each border of one half: small holes would lose their shape, or close. */
 const rimKeeper = (half: Mesh): ((p: Vec3) => boolean) => {
-  const kept = new Set<string>()
-  const onPlane = (v: number): boolean => Math.abs(point(half, v)[0]) < 1e-6
+  const kept = new Set<string>();
+  const onPlane = (v: number): boolean => Math.abs(point(half, v)[0]) < 1e-6;
   for (const loop of borderLoops(half)) {
-    const start = loop.findIndex(onPlane)
-    const whole = start < 0
-    const turned = whole ? loop : [...loop.slice(start), ...loop.slice(0, start)]
-    const runs: number[][] = [[]]
+    const start = loop.findIndex(onPlane);
+    const whole = start < 0;
+    const turned = whole ? loop : [...loop.slice(start), ...loop.slice(0, start)];
+    const runs: number[][] = [[]];
     for (const v of turned) {
-      if (!onPlane(v)) runs.at(-1)!.push(v)
-      else if (runs.at(-1)!.length > 0) runs.push([])
+      if (!onPlane(v)) runs.at(-1)!.push(v);
+      else if (runs.at(-1)!.length > 0) runs.push([]);
     }
     for (const run of runs) {
-      const steps = run.map((v, i) => (i === 0 ? 0 : length(sub(point(half, v), point(half, run[i - 1]!)))))
-      const spacing = steps.reduce((a, b) => a + b, 0) / (whole ? kRimCorners : kRimCorners / 2)
-      let walked = spacing / 2
+      const steps = run.map((v, i) => (i === 0 ? 0 : length(sub(point(half, v), point(half, run[i - 1]!)))));
+      const spacing = steps.reduce((a, b) => a + b, 0) / (whole ? kRimCorners : kRimCorners / 2);
+      let walked = spacing / 2;
       run.forEach((v, i) => {
-        walked += steps[i]!
-        if (walked < spacing) return
-        kept.add(point(half, v).join())
-        walked = 0
-      })
+        walked += steps[i]!;
+        if (walked < spacing) return;
+        kept.add(point(half, v).join());
+        walked = 0;
+      });
     }
   }
-  return (p) => kept.has(p.join())
-}
+  return (p) => kept.has(p.join());
+};
 
-const kRounds = 60
+const kRounds = 60;
 
 /** Moves corners of the cage along their normals until every seen vertex of the skin lies at least a fifth of the distance beneath it. */
 const pushOut = (cage: Mesh, plan: CagePlan): Mesh => {
-  const least = plan.distance * 0.2
-  let current = cage
+  const least = plan.distance * 0.2;
+  let current = cage;
   for (let round = 0; round < kRounds; round++) {
-    const space = spaceOf(current)
-    const onBorder = onOpenEdge(current)
-    const { normals } = withMeshNormals(current)
-    const push = new Float64Array(vertexCount(current))
+    const space = spaceOf(current);
+    const onBorder = onOpenEdge(current);
+    const { normals } = withMeshNormals(current);
+    const push = new Float64Array(vertexCount(current));
     for (let v = 0; v < vertexCount(plan.wrap); v++) {
-      if (!plan.seen(v)) continue
-      const p = point(plan.wrap, v)
-      const near = space.nearest(p)
-      const missing = near.side > 0 ? near.distance + least : least - near.distance
-      if (missing <= 0 || onBorder(near.point)) continue // beyond a border there is no beneath
-      for (const c of corners(current, near.triangle)) push[c] = Math.max(push[c]!, missing)
+      if (!plan.seen(v)) continue;
+      const p = point(plan.wrap, v);
+      const near = space.nearest(p);
+      const missing = near.side > 0 ? near.distance + least : least - near.distance;
+      if (missing <= 0 || onBorder(near.point)) continue; // beyond a border there is no beneath
+      for (const c of corners(current, near.triangle)) push[c] = Math.max(push[c]!, missing);
     }
-    if (push.every((d) => d === 0)) return current
+    if (push.every((d) => d === 0)) return current;
     const positions = current.positions.map((x, i) => {
-      const v = Math.floor(i / 3)
-      const moved = x + push[v]! * normals![i]!
-      return i % 3 === 0 && Math.abs(x) < 1e-6 ? 0 : moved
-    })
-    current = { positions, indices: current.indices }
+      const v = Math.floor(i / 3);
+      const moved = x + push[v]! * normals![i]!;
+      return i % 3 === 0 && Math.abs(x) < 1e-6 ? 0 : moved;
+    });
+    current = { positions, indices: current.indices };
   }
-  return current
-}
+  return current;
+};

@@ -4,25 +4,25 @@
  * Nothing is made twice: a model is skipped while the sources it comes from are unchanged, unless --force is given. Models of
  * different sources are made at once, each in a process of its own.
  */
-import { fork } from 'node:child_process'
-import { createHash } from 'node:crypto'
-import { existsSync, mkdirSync, readFileSync, readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs'
-import { dirname, join } from 'node:path'
-import { fileURLToPath } from 'node:url'
-import { faultsOf } from './check.ts'
-import { writeGlb } from './glb.ts'
-import { drawTexture } from './image.ts'
-import { triangleCount, withMeshNormals } from './mesh.ts'
-import type { Model } from './model.ts'
-import { car } from './models/car.ts'
-import { human, humanFused, humanMisaligned } from './models/human.ts'
-import { lizard } from './models/lizard.ts'
-import { truthOf } from './truth.ts'
+import { fork } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { faultsOf } from './check.ts';
+import { writeGlb } from './glb.ts';
+import { drawTexture } from './image.ts';
+import { triangleCount, withMeshNormals } from './mesh.ts';
+import type { Model } from './model.ts';
+import { car } from './models/car.ts';
+import { human, humanFused, humanMisaligned } from './models/human.ts';
+import { lizard } from './models/lizard.ts';
+import { truthOf } from './truth.ts';
 
-const here = dirname(fileURLToPath(import.meta.url))
-const root = join(here, '../..')
-const out = join(root, 'build/assets')
-const kPaintSize = 1024
+const here = dirname(fileURLToPath(import.meta.url));
+const root = join(here, '../..');
+const out = join(root, 'build/assets');
+const kPaintSize = 1024;
 
 /** Each sample's maker, and the file in models/ that it comes from. A sample that borrows paints comes after their owner. */
 const models: Record<string, { make: () => Model; source: string }> = {
@@ -31,106 +31,127 @@ const models: Record<string, { make: () => Model; source: string }> = {
   'human-fused': { make: humanFused, source: 'human.ts' },
   'human-misaligned': { make: humanMisaligned, source: 'human.ts' },
   car: { make: car, source: 'car.ts' },
-}
+};
 
 /** One entry of build/assets/index.json; paths are relative to build/assets. */
 interface Entry {
-  name: string
-  title: string
-  target: string
-  cage: string
-  truth: string
-  paints: { name: string; title: string; file: string }[]
+  name: string;
+  title: string;
+  target: string;
+  cage: string;
+  truth: string;
+  paints: { name: string; title: string; file: string }[];
 }
 
 /** A number of everything a model's bytes depend on: its sources, and the versions of the libraries they call. */
 const fingerprint = (source: string): string => {
-  const hash = createHash('sha256')
-  const shared = readdirSync(here).filter((f) => f.endsWith('.ts')).sort()
-  for (const file of [...shared, join('models', source)]) hash.update(file).update(readFileSync(join(here, file)))
+  const hash = createHash('sha256');
+  const shared = readdirSync(here)
+    .filter((f) => f.endsWith('.ts'))
+    .sort();
+  for (const file of [...shared, join('models', source)]) hash.update(file).update(readFileSync(join(here, file)));
   for (const name of ['manifold-3d', 'meshoptimizer', '@gltf-transform/core', 'pngjs', 'three', 'three-mesh-bvh'])
-    hash.update(JSON.parse(readFileSync(join(root, 'node_modules', name, 'package.json'), 'utf8')).version)
-  return hash.digest('hex')
-}
+    hash.update(JSON.parse(readFileSync(join(root, 'node_modules', name, 'package.json'), 'utf8')).version);
+  return hash.digest('hex');
+};
 
 const write = async (model: Model, folder: string, lent: (name: string) => Entry['paints']): Promise<Entry> => {
-  const target = await writeGlb(model.title, model.parts)
-  const cage = { name: 'cage', mesh: withMeshNormals(model.cage), colour: [0.8, 0.8, 0.8, 1] as const, roughness: 0.9, ncz: false }
-  const cageGlb = await writeGlb(`${model.title}: cage`, [cage])
-  const truth = truthOf(model.parts, model.cage, model.inside)
-  const faults = await faultsOf(model, truth, { target, cage: cageGlb })
-  if (faults.length > 0) throw new Error(`assets: ${model.name} is not as it should be:\n  ${faults.join('\n  ')}`)
-  writeFileSync(join(folder, 'target.glb'), target)
-  writeFileSync(join(folder, 'cage.glb'), cageGlb)
-  writeFileSync(join(folder, 'truth.json'), JSON.stringify(truth))
-  const own = 'of' in model.paints ? [] : model.paints
+  const target = await writeGlb(model.title, model.parts);
+  const cage = {
+    name: 'cage',
+    mesh: withMeshNormals(model.cage),
+    colour: [0.8, 0.8, 0.8, 1] as const,
+    roughness: 0.9,
+    ncz: false,
+  };
+  const cageGlb = await writeGlb(`${model.title}: cage`, [cage]);
+  const truth = truthOf(model.parts, model.cage, model.inside);
+  const faults = await faultsOf(model, truth, { target, cage: cageGlb });
+  if (faults.length > 0) throw new Error(`assets: ${model.name} is not as it should be:\n  ${faults.join('\n  ')}`);
+  writeFileSync(join(folder, 'target.glb'), target);
+  writeFileSync(join(folder, 'cage.glb'), cageGlb);
+  writeFileSync(join(folder, 'truth.json'), JSON.stringify(truth));
+  const own = 'of' in model.paints ? [] : model.paints;
   for (const paint of own)
-    writeFileSync(join(folder, `paint-${paint.name}.png`), drawTexture(cage.mesh, kPaintSize, paint.shade, paint.far, 2))
+    writeFileSync(
+      join(folder, `paint-${paint.name}.png`),
+      drawTexture(cage.mesh, kPaintSize, paint.shade, paint.far, 2),
+    );
   return {
     name: model.name,
     title: model.title,
     target: `${model.name}/target.glb`,
     cage: `${model.name}/cage.glb`,
     truth: `${model.name}/truth.json`,
-    paints: 'of' in model.paints ? lent(model.paints.of) : own.map(({ name, title }) => ({ name, title, file: `${model.name}/paint-${name}.png` })),
-  }
-}
+    paints:
+      'of' in model.paints
+        ? lent(model.paints.of)
+        : own.map(({ name, title }) => ({ name, title, file: `${model.name}/paint-${name}.png` })),
+  };
+};
 
-const wanted = process.argv.slice(2).filter((a) => a !== '--force')
-const force = process.argv.includes('--force')
-const unknown = wanted.find((name) => !(name in models))
+const wanted = process.argv.slice(2).filter((a) => a !== '--force');
+const force = process.argv.includes('--force');
+const unknown = wanted.find((name) => !(name in models));
 if (unknown !== undefined) {
-  console.error(`assets: no model is called "${unknown}"; there are ${Object.keys(models).join(', ')}`)
-  process.exit(2)
+  console.error(`assets: no model is called "${unknown}"; there are ${Object.keys(models).join(', ')}`);
+  process.exit(2);
 }
 
 interface Made {
-  print: string
-  entry: Entry
+  print: string;
+  entry: Entry;
 }
 
-const stampOf = (name: string): string => join(out, name, 'made.json')
+const stampOf = (name: string): string => join(out, name, 'made.json');
 
 /** What was made of a model, if it was. */
-const madeOf = (name: string): Made | undefined => (existsSync(stampOf(name)) ? JSON.parse(readFileSync(stampOf(name), 'utf8')) : undefined)
+const madeOf = (name: string): Made | undefined =>
+  existsSync(stampOf(name)) ? JSON.parse(readFileSync(stampOf(name), 'utf8')) : undefined;
 
 /** Makes a model aside and moves it into place whole, so that nobody finds half of one. */
 const makeHere = async (name: string): Promise<void> => {
-  const { make, source } = models[name]!
-  const started = performance.now()
-  const folder = join(out, name)
-  const aside = join(out, `.${name}-${process.pid}`)
+  const { make, source } = models[name]!;
+  const started = performance.now();
+  const folder = join(out, name);
+  const aside = join(out, `.${name}-${process.pid}`);
   try {
-    mkdirSync(aside, { recursive: true })
-    const model = make()
-    const entry = await write(model, aside, (other) => madeOf(other)?.entry.paints ?? [])
-    const made: Made = { print: fingerprint(source), entry }
-    writeFileSync(join(aside, 'made.json'), JSON.stringify(made))
-    rmSync(folder, { recursive: true, force: true })
-    renameSync(aside, folder)
-    const triangles = model.parts.reduce((n, p) => n + triangleCount(p.mesh), 0)
-    console.log(`${name}: ${triangles} triangles, cage ${triangleCount(model.cage)}, ${((performance.now() - started) / 1000).toFixed(1)} s`)
+    mkdirSync(aside, { recursive: true });
+    const model = make();
+    const entry = await write(model, aside, (other) => madeOf(other)?.entry.paints ?? []);
+    const made: Made = { print: fingerprint(source), entry };
+    writeFileSync(join(aside, 'made.json'), JSON.stringify(made));
+    rmSync(folder, { recursive: true, force: true });
+    renameSync(aside, folder);
+    const triangles = model.parts.reduce((n, p) => n + triangleCount(p.mesh), 0);
+    console.log(
+      `${name}: ${triangles} triangles, cage ${triangleCount(model.cage)}, ${((performance.now() - started) / 1000).toFixed(1)} s`,
+    );
   } finally {
-    rmSync(aside, { recursive: true, force: true })
+    rmSync(aside, { recursive: true, force: true });
   }
-}
+};
 
 /** Makes models in a process of their own. @returns Whether that went well; else it has said why not. */
 const makeAside = (names: string[]): Promise<boolean> =>
-  new Promise((done) => fork(fileURLToPath(import.meta.url), ['--force', ...names]).on('close', (code) => done(code === 0)))
+  new Promise((done) =>
+    fork(fileURLToPath(import.meta.url), ['--force', ...names]).on('close', (code) => done(code === 0)),
+  );
 
-mkdirSync(out, { recursive: true })
+mkdirSync(out, { recursive: true });
 const stale = Object.keys(models).filter((name) => {
-  if (wanted.length > 0 && !wanted.includes(name)) return false
-  return force || madeOf(name)?.print !== fingerprint(models[name]!.source)
-})
-const sources = [...new Set(stale.map((name) => models[name]!.source))]
+  if (wanted.length > 0 && !wanted.includes(name)) return false;
+  return force || madeOf(name)?.print !== fingerprint(models[name]!.source);
+});
+const sources = [...new Set(stale.map((name) => models[name]!.source))];
 if (sources.length > 1) {
-  const went = await Promise.all(sources.map((source) => makeAside(stale.filter((name) => models[name]!.source === source))))
-  if (!went.every(Boolean)) process.exit(1)
-} else for (const name of stale) await makeHere(name)
+  const went = await Promise.all(
+    sources.map((source) => makeAside(stale.filter((name) => models[name]!.source === source))),
+  );
+  if (!went.every(Boolean)) process.exit(1);
+} else for (const name of stale) await makeHere(name);
 
-const list = join(out, `.index-${process.pid}.json`)
-const index = Object.keys(models).flatMap((name) => madeOf(name)?.entry ?? [])
-writeFileSync(list, JSON.stringify(index, null, 2) + '\n')
-renameSync(list, join(out, 'index.json'))
+const list = join(out, `.index-${process.pid}.json`);
+const index = Object.keys(models).flatMap((name) => madeOf(name)?.entry ?? []);
+writeFileSync(list, JSON.stringify(index, null, 2) + '\n');
+renameSync(list, join(out, 'index.json'));

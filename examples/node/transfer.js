@@ -8,6 +8,10 @@ const [target, cage, paint, output] = process.argv.slice(2);
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
 const document = await io.read(target);
 await document.transform(
-  cagecast({ cage: await io.read(cage), texture: await readFile(paint), onResult: ({ timings }) => console.log(`${timings.total.toFixed(1)} ms`) }),
+  cagecast({
+    cage: await io.read(cage),
+    texture: await readFile(paint),
+    onResult: ({ timings }) => console.log(`${timings.total.toFixed(1)} ms`),
+  }),
 );
 await io.write(output, document);

@@ -1,10 +1,24 @@
-import { AmbientLight, Box3, DirectionalLight, PerspectiveCamera, Scene, SRGBColorSpace, TextureLoader, WebGLRenderer } from 'three';
-import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { init } from 'cagecast';
 import { applyTransfer } from 'cagecast/three';
+import {
+  AmbientLight,
+  Box3,
+  DirectionalLight,
+  PerspectiveCamera,
+  Scene,
+  SRGBColorSpace,
+  TextureLoader,
+  WebGLRenderer,
+} from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
 const load = (file) => new GLTFLoader().loadAsync(file);
-const [head, cage, paint] = await Promise.all([load('target.glb'), load('cage.glb'), new TextureLoader().loadAsync('paint.png'), init()]);
+const [head, cage, paint] = await Promise.all([
+  load('target.glb'),
+  load('cage.glb'),
+  new TextureLoader().loadAsync('paint.png'),
+  init(),
+]);
 paint.flipY = false; // textures of glTF begin at the top
 paint.colorSpace = SRGBColorSpace;
 const { overlays } = applyTransfer(head.scene, cage.scene, { texture: paint });

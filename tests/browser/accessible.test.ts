@@ -1,87 +1,97 @@
-import assert from 'node:assert/strict'
-import { readFileSync } from 'node:fs'
-import { after, before, test } from 'node:test'
-import type { AxeResults } from 'axe-core'
-import type { Page } from 'playwright-core'
-import { glb } from './glb'
-import { islandCage, morphingBalls } from './models'
-import { saved } from './saved'
-import { drop, inRepository, settled, shownError, Site } from './site'
-import { image } from './texture'
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import type { AxeResults } from 'axe-core';
+import type { Page } from 'playwright-core';
+import { glb } from './glb';
+import { islandCage, morphingBalls } from './models';
+import { saved } from './saved';
+import { drop, inRepository, Site, settled, shownError } from './site';
+import { image } from './texture';
 
-const kAxe = readFileSync(inRepository('node_modules/axe-core/axe.min.js'), 'utf8')
+const kAxe = readFileSync(inRepository('node_modules/axe-core/axe.min.js'), 'utf8');
 
-let site: Site
-before(async () => void (site = await Site.open()))
-after(() => site?.close())
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
 
 /** What axe-core finds wrong with the page as it is, in any of its rules; the place and the reason of each. */
 async function faults(page: Page): Promise<string[]> {
   // The policy of the page forbids foreign scripts, but not the test's own evaluation.
-  await page.evaluate(kAxe)
-  const { violations, passes } = await page.evaluate('axe.run()') as AxeResults
-  assert.ok(passes.length > 20, 'it has looked')
-  return violations.flatMap(({ id, impact, nodes }) => nodes.map(({ html, failureSummary }) => `${impact} ${id}: ${html.slice(0, 120)}: ${failureSummary}`))
+  await page.evaluate(kAxe);
+  const { violations, passes } = (await page.evaluate('axe.run()')) as AxeResults;
+  assert.ok(passes.length > 20, 'it has looked');
+  return violations.flatMap(({ id, impact, nodes }) =>
+    nodes.map(({ html, failureSummary }) => `${impact} ${id}: ${html.slice(0, 120)}: ${failureSummary}`),
+  );
 }
 
 const kVisits = [
   { name: 'desk, light', viewport: { width: 1440, height: 900 } },
   { name: 'desk, dark', viewport: { width: 1440, height: 900 }, colorScheme: 'dark' },
   { name: 'phone', viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
-] as const
+] as const;
 
 for (const { name, ...options } of kVisits) {
   test(`${name}: axe finds nothing wrong with the page in any of its states`, async () => {
-    const { page } = await site.visit(options)
-    assert.deepEqual(await faults(page), [], 'as it opens')
+    const { page } = await site.visit(options);
+    assert.deepEqual(await faults(page), [], 'as it opens');
 
-    await page.locator('details').evaluateAll((all) => all.forEach((details) => details.setAttribute('open', '')))
-    await page.locator('#view-mode input[value=distance]').check({ force: true })
-    await page.getByRole('button', { name: 'Ask the middle' }).click()
-    await page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '')
-    assert.deepEqual(await faults(page), [], 'with all cards open, a legend, a story, and a verdict on the cage')
+    await page.locator('details').evaluateAll((all) => all.forEach((details) => details.setAttribute('open', '')));
+    await page.locator('#view-mode input[value=distance]').check({ force: true });
+    await page.getByRole('button', { name: 'Ask the middle' }).click();
+    await page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '');
+    assert.deepEqual(await faults(page), [], 'with all cards open, a legend, a story, and a verdict on the cage');
 
-    await page.locator('#view-mode input[value=zones]').check({ force: true })
-    await page.getByTestId('target-input').setInputFiles(glb('poem.glb', Buffer.from('no model')))
-    assert.equal(await settled(page), 'error')
-    assert.deepEqual(await faults(page), [], 'with an error')
-  })
+    await page.locator('#view-mode input[value=zones]').check({ force: true });
+    await page.getByTestId('target-input').setInputFiles(glb('poem.glb', Buffer.from('no model')));
+    assert.equal(await settled(page), 'error');
+    assert.deepEqual(await faults(page), [], 'with an error');
+  });
 }
 
 test('nor with any of the tools chosen', async () => {
-  const { page } = await site.visit({ viewport: { width: 700, height: 480 } })
+  const { page } = await site.visit({ viewport: { width: 700, height: 480 } });
   for (const tool of await page.locator('#tools input').all()) {
-    await tool.check({ force: true })
-    assert.deepEqual(await faults(page), [], `with the tool ${await tool.getAttribute('data-key')}`)
+    await tool.check({ force: true });
+    assert.deepEqual(await faults(page), [], `with the tool ${await tool.getAttribute('data-key')}`);
   }
-})
+});
 
 test('nor with files of one’s own: with morphs, an animation, layers of all kinds, a note on what was saved, and work under way', async () => {
-  const { page } = await site.visit({ viewport: { width: 700, height: 480 }, colorScheme: 'dark' })
-  await drop(page, [await islandCage(1.1), await morphingBalls({ animated: true }), image('paint.png', 8, () => [200, 60, 30, 255])])
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  await page.getByTestId('add-painting').click()
-  await page.locator('#parts summary').click()
-  await page.getByTestId('segment-table').locator('tbody select').first().selectOption('exclude')
-  await page.getByTestId('amount').fill('0.5')
-  await page.locator('#live[aria-busy=false]').waitFor()
-  await saved(page, 'export-glb')
-  for (const id of ['morphs', 'animation', 'swap', 'pose-note']) assert.equal(await page.locator(`#${id}`).isVisible(), true, id)
-  assert.deepEqual(await faults(page), [])
+  const { page } = await site.visit({ viewport: { width: 700, height: 480 }, colorScheme: 'dark' });
+  await drop(page, [
+    await islandCage(1.1),
+    await morphingBalls({ animated: true }),
+    image('paint.png', 8, () => [200, 60, 30, 255]),
+  ]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.getByTestId('add-painting').click();
+  await page.locator('#parts summary').click();
+  await page.getByTestId('segment-table').locator('tbody select').first().selectOption('exclude');
+  await page.getByTestId('amount').fill('0.5');
+  await page.locator('#live[aria-busy=false]').waitFor();
+  await saved(page, 'export-glb');
+  for (const id of ['morphs', 'animation', 'swap', 'pose-note'])
+    assert.equal(await page.locator(`#${id}`).isVisible(), true, id);
+  assert.deepEqual(await faults(page), []);
 
-  let letGo = (): void => {}
-  const gate = new Promise<void>((done) => (letGo = done))
-  await page.route(/\/samples\/.*\.glb$/, (route) => gate.then(() => route.continue()))
-  await page.getByTestId('sample-select').selectOption('human')
-  await page.getByTestId('progress').waitFor()
-  assert.deepEqual(await faults(page), [], 'while it works')
-  letGo()
-  assert.equal(await settled(page), 'ready', await shownError(page))
-})
+  let letGo = (): void => {};
+  const gate = new Promise<void>((done) => (letGo = done));
+  await page.route(/\/samples\/.*\.glb$/, (route) => gate.then(() => route.continue()));
+  await page.getByTestId('sample-select').selectOption('human');
+  await page.getByTestId('progress').waitFor();
+  assert.deepEqual(await faults(page), [], 'while it works');
+  letGo();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+});
 
 test('nor without WebGL', async () => {
-  const { page } = await site.visit({ viewport: { width: 390, height: 844 } }, `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+  const { page } = await site.visit(
+    { viewport: { width: 390, height: 844 } },
+    `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
     apply: (original, canvas, args) => (String(args[0]).startsWith('webgl') ? null : Reflect.apply(original, canvas, args)),
-  })`)
-  assert.deepEqual(await faults(page), [])
-})
+  })`,
+  );
+  assert.deepEqual(await faults(page), []);
+});

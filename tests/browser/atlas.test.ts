@@ -1,148 +1,176 @@
-import assert from 'node:assert/strict'
-import { test } from 'node:test'
-import { BoxGeometry, SphereGeometry, Vector3, type BufferGeometry } from 'three'
-import { CageAtlas, kFacing, type CageMesh, type Place } from '../../web/src/brush/atlas'
-import { Stroke } from '../../web/src/brush/stroke'
-import { History } from '../../web/src/history'
-import { apart, type Rect } from '../../web/src/layers/rect'
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { BoxGeometry, type BufferGeometry, SphereGeometry, Vector3 } from 'three';
+import { CageAtlas, type CageMesh, kFacing, type Place } from '../../web/src/brush/atlas';
+import { Stroke } from '../../web/src/brush/stroke';
+import { History } from '../../web/src/history';
+import { apart, type Rect } from '../../web/src/layers/rect';
 
-const kSize = 128
+const kSize = 128;
 
 function cageOf(geometry: BufferGeometry, moveUvs = 0): CageMesh {
-  const array = (name: string): Float32Array => geometry.getAttribute(name).array as Float32Array
-  return { positions: array('position'), indices: Uint32Array.from(geometry.index!.array), uvs: array('uv').map((value) => value + moveUvs) }
+  const array = (name: string): Float32Array => geometry.getAttribute(name).array as Float32Array;
+  return {
+    positions: array('position'),
+    indices: Uint32Array.from(geometry.index!.array),
+    uvs: array('uv').map((value) => value + moveUvs),
+  };
 }
 
 /** A box whose six sides are islands of their own, three in a row. */
 function box(): BufferGeometry {
-  const geometry = new BoxGeometry(2, 2, 2)
-  const uv = geometry.getAttribute('uv')
+  const geometry = new BoxGeometry(2, 2, 2);
+  const uv = geometry.getAttribute('uv');
   for (let vertex = 0; vertex < uv.count; vertex++) {
-    const side = Math.floor(vertex / 4)
-    uv.setXY(vertex, ((side % 3) + 0.2 + 0.6 * uv.getX(vertex)) / 3, (Math.floor(side / 3) + 0.2 + 0.6 * uv.getY(vertex)) / 2)
+    const side = Math.floor(vertex / 4);
+    uv.setXY(
+      vertex,
+      ((side % 3) + 0.2 + 0.6 * uv.getX(vertex)) / 3,
+      (Math.floor(side / 3) + 0.2 + 0.6 * uv.getY(vertex)) / 2,
+    );
   }
-  return geometry
+  return geometry;
 }
 
 /** Numbers from 0 to 1, the same in every run. */
 function random(seed: number): () => number {
   return () => {
-    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0
-    return seed / 2 ** 32
-  }
+    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+    return seed / 2 ** 32;
+  };
 }
 
 test('each texel of an island knows its place on the cage, and those just around it a place on the border', () => {
-  const atlas = new CageAtlas(cageOf(box()), kSize)
+  const atlas = new CageAtlas(cageOf(box()), kSize);
   // The middle of the fifth side, which faces +z.
-  const { point, normal } = atlas.at(1.5 / 3, 1.5 / 2)!
-  assert.ok(point.distanceTo(new Vector3(0, 0, 1)) < 1e-6 && normal.distanceTo(new Vector3(0, 0, 1)) < 1e-6)
-  const left = (1 + 0.2) / 3
-  const border = atlas.at(left - 2.5 / kSize, 1.5 / 2)!
-  const { x, y, z } = border.point
-  const texel = 2 / (0.2 * kSize)
-  assert.ok(x === -1 && z === 1 && Math.abs(y) < 1.5 * texel, `${x}, ${y}, ${z}`)
-  assert.equal(atlas.at(left - 6 / kSize, 1.5 / 2), undefined, 'nothing is there')
-})
+  const { point, normal } = atlas.at(1.5 / 3, 1.5 / 2)!;
+  assert.ok(point.distanceTo(new Vector3(0, 0, 1)) < 1e-6 && normal.distanceTo(new Vector3(0, 0, 1)) < 1e-6);
+  const left = (1 + 0.2) / 3;
+  const border = atlas.at(left - 2.5 / kSize, 1.5 / 2)!;
+  const { x, y, z } = border.point;
+  const texel = 2 / (0.2 * kSize);
+  assert.ok(x === -1 && z === 1 && Math.abs(y) < 1.5 * texel, `${x}, ${y}, ${z}`);
+  assert.equal(atlas.at(left - 6 / kSize, 1.5 / 2), undefined, 'nothing is there');
+});
 
 test('UVs outside 0..1 are repeated, as the texture is', () => {
-  const [inside, outside] = [0, 2.5].map((move) => new CageAtlas(cageOf(new SphereGeometry(1, 24, 16), move), kSize))
+  const [inside, outside] = [0, 2.5].map((move) => new CageAtlas(cageOf(new SphereGeometry(1, 24, 16), move), kSize));
   for (let i = 0; i < 50; i++) {
-    const [u, v] = [(i * 0.379) % 1, 0.2 + ((i * 0.713) % 0.6)]
-    const [a, b] = [inside!.at(u, v), outside!.at(u + 2.5, v + 2.5)]
-    assert.ok(a && b && a.point.distanceTo(b.point) < 1e-3, `${u}, ${v}`)
+    const [u, v] = [(i * 0.379) % 1, 0.2 + ((i * 0.713) % 0.6)];
+    const [a, b] = [inside!.at(u, v), outside!.at(u + 2.5, v + 2.5)];
+    assert.ok(a && b && a.point.distanceTo(b.point) < 1e-3, `${u}, ${v}`);
   }
-})
+});
 
 test('what a brush is said to touch holds every texel whose place is near its way, and faces it; what it is said to enclose none else', () => {
-  const next = random(7)
-  let enclosed = 0
+  const next = random(7);
+  let enclosed = 0;
   for (const geometry of [box(), new SphereGeometry(1, 24, 16)]) {
-    const atlas = new CageAtlas(cageOf(geometry), kSize)
-    const places: [u: number, v: number, place: Place][] = []
+    const atlas = new CageAtlas(cageOf(geometry), kSize);
+    const places: [u: number, v: number, place: Place][] = [];
     for (let row = 0; row < kSize; row++) {
       for (let column = 0; column < kSize; column++) {
-        const [u, v] = [(column + 0.5) / kSize, (row + 0.5) / kSize]
-        const place = atlas.at(u, v)
-        if (place) places.push([u, v, place])
+        const [u, v] = [(column + 0.5) / kSize, (row + 0.5) / kSize];
+        const place = atlas.at(u, v);
+        if (place) places.push([u, v, place]);
       }
     }
     for (let i = 0; i < 30; i++) {
-      const radius = 0.02 + 0.3 * next()
-      const from = places[Math.floor(next() * places.length)]![2]
-      const to = places.find(([, , { point }]) => point !== from.point && point.distanceTo(from.point) < 0.3)?.[2] ?? from
-      const rects = atlas.touched({ from, to, radius }, new Set())
-      const way = new Vector3().subVectors(to.point, from.point)
-      const patches = new Set(atlas.enclosed({ from, to, radius }))
-      enclosed += patches.size
-      assert.equal(atlas.touched({ from, to, radius }, patches).length, rects.length - patches.size)
+      const radius = 0.02 + 0.3 * next();
+      const from = places[Math.floor(next() * places.length)]![2];
+      const to =
+        places.find(([, , { point }]) => point !== from.point && point.distanceTo(from.point) < 0.3)?.[2] ?? from;
+      const rects = atlas.touched({ from, to, radius }, new Set());
+      const way = new Vector3().subVectors(to.point, from.point);
+      const patches = new Set(atlas.enclosed({ from, to, radius }));
+      enclosed += patches.size;
+      assert.equal(atlas.touched({ from, to, radius }, patches).length, rects.length - patches.size);
       for (const [u, v, { point, normal }] of places) {
-        const isEnclosed = patches.has(atlas.owners[Math.floor(v * kSize) * kSize + Math.floor(u * kSize)]!)
-        const facing = [normal.dot(from.normal), normal.dot(to.normal)]
-        if (isEnclosed) assert.ok(Math.min(...facing) >= kFacing, 'all along')
-        if (Math.max(...facing) < kFacing) continue
-        const share = Math.min(1, Math.max(0, new Vector3().subVectors(point, from.point).dot(way) / Math.max(way.lengthSq(), 1e-30)))
-        const distance = point.distanceTo(from.point.clone().addScaledVector(way, share))
-        if (isEnclosed) assert.ok(distance < radius + 1e-6, `${distance} from the way of a brush of ${radius}`)
-        if (distance > radius) continue
-        assert.ok(rects.some(({ left, right, top, bottom }) => left <= u && u <= right && top <= v && v <= bottom), `${u}, ${v} of ${JSON.stringify(rects)}`)
+        const isEnclosed = patches.has(atlas.owners[Math.floor(v * kSize) * kSize + Math.floor(u * kSize)]!);
+        const facing = [normal.dot(from.normal), normal.dot(to.normal)];
+        if (isEnclosed) assert.ok(Math.min(...facing) >= kFacing, 'all along');
+        if (Math.max(...facing) < kFacing) continue;
+        const share = Math.min(
+          1,
+          Math.max(0, new Vector3().subVectors(point, from.point).dot(way) / Math.max(way.lengthSq(), 1e-30)),
+        );
+        const distance = point.distanceTo(from.point.clone().addScaledVector(way, share));
+        if (isEnclosed) assert.ok(distance < radius + 1e-6, `${distance} from the way of a brush of ${radius}`);
+        if (distance > radius) continue;
+        assert.ok(
+          rects.some(({ left, right, top, bottom }) => left <= u && u <= right && top <= v && v <= bottom),
+          `${u}, ${v} of ${JSON.stringify(rects)}`,
+        );
       }
     }
   }
-  assert.ok(enclosed > 100, `${enclosed} triangles were enclosed`)
-})
+  assert.ok(enclosed > 100, `${enclosed} triangles were enclosed`);
+});
 
 test('parts of a texture are joined until none overlap, and cover what they did', () => {
-  const next = random(3)
+  const next = random(3);
   const rects: Rect[] = Array.from({ length: 40 }, () => {
-    const [left, top] = [Math.floor(100 * next()), Math.floor(100 * next())]
-    return { left, top, right: left + Math.ceil(12 * next()), bottom: top + Math.ceil(12 * next()) }
-  })
+    const [left, top] = [Math.floor(100 * next()), Math.floor(100 * next())];
+    return { left, top, right: left + Math.ceil(12 * next()), bottom: top + Math.ceil(12 * next()) };
+  });
   for (const most of [100, 3]) {
-    const found = apart(rects, most)
-    assert.ok(found.length <= most)
-    const within = (x: number, y: number, list: Rect[]): number => list.filter(({ left, top, right, bottom }) => x >= left && x < right && y >= top && y < bottom).length
+    const found = apart(rects, most);
+    assert.ok(found.length <= most);
+    const within = (x: number, y: number, list: Rect[]): number =>
+      list.filter(({ left, top, right, bottom }) => x >= left && x < right && y >= top && y < bottom).length;
     for (let y = 0; y < 112; y++) {
       for (let x = 0; x < 112; x++) {
-        assert.ok(within(x, y, found) <= 1, 'no overlap')
-        if (within(x, y, rects) > 0) assert.equal(within(x, y, found), 1)
+        assert.ok(within(x, y, found) <= 1, 'no overlap');
+        if (within(x, y, rects) > 0) assert.equal(within(x, y, found), 1);
       }
     }
   }
-})
+});
 
 test('the history forgets the oldest deeds where memory ends, and what was undone once something else is done', () => {
-  const history = new History()
-  const log: string[] = []
-  const deed = (name: string, megabytes = 0) => ({ name, bytes: megabytes * 2 ** 20, undo: () => log.push(`-${name}`), redo: () => log.push(`+${name}`) })
-  history.add(deed('a', 60))
-  history.add(deed('b', 60))
-  history.add(deed('c', 60))
+  const history = new History();
+  const log: string[] = [];
+  const deed = (name: string, megabytes = 0) => ({
+    name,
+    bytes: megabytes * 2 ** 20,
+    undo: () => log.push(`-${name}`),
+    redo: () => log.push(`+${name}`),
+  });
+  history.add(deed('a', 60));
+  history.add(deed('b', 60));
+  history.add(deed('c', 60));
   while (history.undo()) {}
-  assert.deepEqual(log, ['-c', '-b'])
-  history.redo()
-  history.add(deed('d'))
-  assert.equal(history.redo(), undefined)
-  assert.deepEqual(log, ['-c', '-b', '+b'])
-  assert.equal(history.last!.name, 'd')
-  const failing = { name: 'e', bytes: 0, undo: () => { throw new Error('full') }, redo: () => {} }
-  history.add(failing)
-  assert.throws(() => history.undo(), /full/)
-  assert.equal(history.last, failing, 'what cannot be undone stays done')
-})
+  assert.deepEqual(log, ['-c', '-b']);
+  history.redo();
+  history.add(deed('d'));
+  assert.equal(history.redo(), undefined);
+  assert.deepEqual(log, ['-c', '-b', '+b']);
+  assert.equal(history.last!.name, 'd');
+  const failing = {
+    name: 'e',
+    bytes: 0,
+    undo: () => {
+      throw new Error('full');
+    },
+    redo: () => {},
+  };
+  history.add(failing);
+  assert.throws(() => history.undo(), /full/);
+  assert.equal(history.last, failing, 'what cannot be undone stays done');
+});
 
 test('between two places around an edge of the cage a stroke keeps to the cage, and leaps over no air', () => {
-  const atlas = new CageAtlas(cageOf(box()), kSize)
-  const [front, right] = [atlas.at((1 + 0.2 + 0.6 * 0.9) / 3, 1.5 / 2)!, atlas.at((0.2 + 0.6 * 0.1) / 3, 0.5 / 2)!]
-  assert.ok(Math.abs(front.point.z - 1) < 1e-6 && Math.abs(right.point.x - 1) < 1e-6, 'on two sides of one edge')
-  const stroke = new Stroke(atlas, { radius: 0.05, mirror: false })
-  stroke.to(front)
-  const capsules = stroke.to(right, 0.3)
-  assert.ok(capsules.length >= 4)
+  const atlas = new CageAtlas(cageOf(box()), kSize);
+  const [front, right] = [atlas.at((1 + 0.2 + 0.6 * 0.9) / 3, 1.5 / 2)!, atlas.at((0.2 + 0.6 * 0.1) / 3, 0.5 / 2)!];
+  assert.ok(Math.abs(front.point.z - 1) < 1e-6 && Math.abs(right.point.x - 1) < 1e-6, 'on two sides of one edge');
+  const stroke = new Stroke(atlas, { radius: 0.05, mirror: false });
+  stroke.to(front);
+  const capsules = stroke.to(right, 0.3);
+  assert.ok(capsules.length >= 4);
   for (const { from, to } of capsules) {
-    for (const { point } of [from, to]) assert.ok(Math.abs(Math.max(point.x, point.z) - 1) < 1e-6, 'on the cage')
+    for (const { point } of [from, to]) assert.ok(Math.abs(Math.max(point.x, point.z) - 1) < 1e-6, 'on the cage');
   }
-  capsules.slice(1).forEach(({ from }, index) => assert.equal(from, capsules[index]!.to, 'one after the other'))
-  stroke.to(front)
-  assert.equal(stroke.to(right, 0.01).length, 1, 'too far for one step: the brush was lifted')
-})
+  capsules.slice(1).forEach(({ from }, index) => assert.equal(from, capsules[index]!.to, 'one after the other'));
+  stroke.to(front);
+  assert.equal(stroke.to(right, 0.01).length, 1, 'too far for one step: the brush was lifted');
+});

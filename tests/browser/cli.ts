@@ -1,50 +1,64 @@
-import { execFile } from 'node:child_process'
-import { mkdtemp, readFile, rm } from 'node:fs/promises'
-import { tmpdir } from 'node:os'
-import path from 'node:path'
-import { promisify } from 'node:util'
-import { inRepository, type Counts } from './site'
+import { execFile } from 'node:child_process';
+import { mkdtemp, readFile, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { promisify } from 'node:util';
+import { type Counts, inRepository } from './site';
 
 /** Flags of `cagecast transfer`. */
 export interface Flags {
-  threshold?: number
-  preset?: 'default' | 'paper'
-  keep?: string
-  exclude?: string
+  threshold?: number;
+  preset?: 'default' | 'paper';
+  keep?: string;
+  exclude?: string;
 }
 
 /** What of a report the page shows as well. */
 export interface Report {
-  counts: Counts
-  segments: { part: string; points: number; area: number; exposedArea: number; coveredArea: number; culled: boolean }[]
+  counts: Counts;
+  segments: { part: string; points: number; area: number; exposedArea: number; coveredArea: number; culled: boolean }[];
 }
 
 /** What `cagecast transfer` reports for two files. */
 export async function report(target: string, cage: string, flags: Flags = {}): Promise<Report> {
-  const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-report-'))
+  const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-report-'));
   try {
-    const file = path.join(folder, 'report.json')
-    const words = Object.entries(flags).flatMap(([name, value]) => [`--${name}`, String(value)])
-    await promisify(execFile)(process.execPath, [inRepository('dist/cli.js'), 'transfer', target, '--cage', cage, ...words, '--report', file])
-    return JSON.parse(await readFile(file, 'utf8'))
+    const file = path.join(folder, 'report.json');
+    const words = Object.entries(flags).flatMap(([name, value]) => [`--${name}`, String(value)]);
+    await promisify(execFile)(process.execPath, [
+      inRepository('dist/cli.js'),
+      'transfer',
+      target,
+      '--cage',
+      cage,
+      ...words,
+      '--report',
+      file,
+    ]);
+    return JSON.parse(await readFile(file, 'utf8'));
   } finally {
-    await rm(folder, { recursive: true, force: true })
+    await rm(folder, { recursive: true, force: true });
   }
 }
 
 /** The counts that `cagecast transfer` reports for two files. */
 export async function reportedCounts(target: string, cage: string, flags: Flags = {}): Promise<Counts> {
-  const { cosmetic, occluded, uncovered, culled } = (await report(target, cage, flags)).counts
-  return { cosmetic, occluded, uncovered, culled }
+  const { cosmetic, occluded, uncovered, culled } = (await report(target, cage, flags)).counts;
+  return { cosmetic, occluded, uncovered, culled };
 }
 
 /** What `cagecast inspect` says of two files. */
-export async function inspection(target: string, cage: string): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {
-  const words = [inRepository('dist/cli.js'), 'inspect', target, '--cage', cage, '--json']
+export async function inspection(
+  target: string,
+  cage: string,
+): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {
+  const words = [inRepository('dist/cli.js'), 'inspect', target, '--cage', cage, '--json'];
   // It ends with 3 where the cage is unfit.
-  const { stdout } = await promisify(execFile)(process.execPath, words).catch((error: { code: number; stdout: string }) => {
-    if (error.code === 3) return error
-    throw error
-  })
-  return JSON.parse(stdout)
+  const { stdout } = await promisify(execFile)(process.execPath, words).catch(
+    (error: { code: number; stdout: string }) => {
+      if (error.code === 3) return error;
+      throw error;
+    },
+  );
+  return JSON.parse(stdout);
 }

@@ -1,188 +1,216 @@
-import assert from 'node:assert/strict'
-import { execFile } from 'node:child_process'
-import { mkdtemp, readFile, rm } from 'node:fs/promises'
-import { tmpdir } from 'node:os'
-import path from 'node:path'
-import { after, before, test } from 'node:test'
-import { promisify } from 'node:util'
-import type { Page } from 'playwright-core'
-import { giveUpOnceShown, kSlowWorker } from './give-up'
-import { ball, islandCage, islandPaint } from './models'
-import { difference, look, modelArea, shareOfHue } from './picture'
-import { primitivesOf, saved, validModel } from './saved'
-import { drop, inRepository, settled, setThreshold, shownCounts, shownError, Site, type Visit } from './site'
+import assert from 'node:assert/strict';
+import { execFile } from 'node:child_process';
+import { mkdtemp, readFile, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { promisify } from 'node:util';
+import type { Page } from 'playwright-core';
+import { giveUpOnceShown, kSlowWorker } from './give-up';
+import { ball, islandCage, islandPaint } from './models';
+import { difference, look, modelArea, shareOfHue } from './picture';
+import { primitivesOf, saved, validModel } from './saved';
+import { drop, inRepository, Site, setThreshold, settled, shownCounts, shownError, type Visit } from './site';
 
-const lizard = (name: string): string => inRepository('build/assets/lizard', name)
+const lizard = (name: string): string => inRepository('build/assets/lizard', name);
 
-let site: Site
-let visit: Visit
-let folder: string
+let site: Site;
+let visit: Visit;
+let folder: string;
 /** What the page fetched since it was opened. */
-const fetched: string[] = []
+const fetched: string[] = [];
 before(async () => {
-  site = await Site.open()
-  folder = await mkdtemp(path.join(tmpdir(), 'cagecast-exact-'))
-  visit = await site.visit({}, async (page) => void page.on('request', (request) => fetched.push(request.url())))
-})
+  site = await Site.open();
+  folder = await mkdtemp(path.join(tmpdir(), 'cagecast-exact-'));
+  visit = await site.visit({}, async (page) => void page.on('request', (request) => fetched.push(request.url())));
+});
 after(async () => {
-  await site?.close()
-  await rm(folder, { recursive: true, force: true })
-})
+  await site?.close();
+  await rm(folder, { recursive: true, force: true });
+});
 
-const isCut = /^[\d,]+ triangles more\.$/
-const note = (page: Page): Promise<string | null> => page.getByTestId('borders-note').textContent()
-const chooseMode = (page: Page, value: string): Promise<void> => page.locator(`input[value=${value}]`).check({ force: true })
+const isCut = /^[\d,]+ triangles more\.$/;
+const note = (page: Page): Promise<string | null> => page.getByTestId('borders-note').textContent();
+const chooseMode = (page: Page, value: string): Promise<void> =>
+  page.locator(`input[value=${value}]`).check({ force: true });
 
 /** Waits until the model is shown as it was cut. */
 async function cut(page: Page): Promise<void> {
-  await page.waitForFunction(() => /triangles more/.test(document.querySelector('[data-testid=borders-note]')!.textContent!))
-  assert.equal(await settled(page), 'ready', await shownError(page))
+  await page.waitForFunction(() =>
+    /triangles more/.test(document.querySelector('[data-testid=borders-note]')!.textContent!),
+  );
+  assert.equal(await settled(page), 'ready', await shownError(page));
 }
 
 test('exact borders are off at first, load what cuts when they are asked for, change the picture, and leave numbers alone', async () => {
-  const { page, complaints } = visit
-  const box = page.getByTestId('exact-borders')
-  assert.equal(await box.isChecked(), false)
-  const ofBorders = (): number => fetched.filter((url) => /borders/.test(url)).length
-  assert.equal(ofBorders(), 0)
-  await page.getByTestId('preset').selectOption('paper')
-  assert.equal(await settled(page), 'ready')
-  await chooseMode(page, 'result')
-  const area = await modelArea(page)
-  const [plain, counts] = [await look(page, area), await shownCounts(page)]
-  await box.check()
-  await cut(page)
-  assert.match((await note(page))!, isCut)
-  assert.ok(ofBorders() > 0)
-  assert.deepEqual(await shownCounts(page), counts)
+  const { page, complaints } = visit;
+  const box = page.getByTestId('exact-borders');
+  assert.equal(await box.isChecked(), false);
+  const ofBorders = (): number => fetched.filter((url) => /borders/.test(url)).length;
+  assert.equal(ofBorders(), 0);
+  await page.getByTestId('preset').selectOption('paper');
+  assert.equal(await settled(page), 'ready');
+  await chooseMode(page, 'result');
+  const area = await modelArea(page);
+  const [plain, counts] = [await look(page, area), await shownCounts(page)];
+  await box.check();
+  await cut(page);
+  assert.match((await note(page))!, isCut);
+  assert.ok(ofBorders() > 0);
+  assert.deepEqual(await shownCounts(page), counts);
   // The rim of a jagged border comes back.
-  assert.ok(difference(plain, await look(page, area)) > 0.002)
-  await box.uncheck()
-  assert.equal(await note(page), '')
-  assert.ok(difference(plain, await look(page, area)) < 0.0005, 'off again, it is as it was')
-  assert.deepEqual(complaints, [])
-})
+  assert.ok(difference(plain, await look(page, area)) > 0.002);
+  await box.uncheck();
+  assert.equal(await note(page), '');
+  assert.ok(difference(plain, await look(page, area)) < 0.0005, 'off again, it is as it was');
+  assert.deepEqual(complaints, []);
+});
 
 /** Notes what is said of borders, from now on. */
 async function watchNote(page: Page): Promise<() => Promise<string[]>> {
   await page.evaluate(() => {
-    const seen: string[] = []
-    Object.assign(globalThis, { seen })
-    new MutationObserver(() => seen.push(document.querySelector('[data-testid=borders-note]')!.textContent!)).observe(document.querySelector('[data-testid=borders-note]')!, { childList: true })
-  })
-  return () => page.evaluate(() => (globalThis as unknown as { seen: string[] }).seen)
+    const seen: string[] = [];
+    Object.assign(globalThis, { seen });
+    new MutationObserver(() => seen.push(document.querySelector('[data-testid=borders-note]')!.textContent!)).observe(
+      document.querySelector('[data-testid=borders-note]')!,
+      { childList: true },
+    );
+  });
+  return () => page.evaluate(() => (globalThis as unknown as { seen: string[] }).seen);
 }
 
 test('another threshold, lock or paint is shown at once, and cut again where it decides otherwise', async () => {
-  const { page, complaints } = visit
-  await page.getByTestId('exact-borders').check()
-  await cut(page)
-  const area = await modelArea(page)
-  const before = await look(page, area)
-  const seen = await watchNote(page)
-  await setThreshold(page, 0.49)
-  assert.deepEqual(await seen(), [], 'nothing is decided otherwise: it stays')
-  await setThreshold(page, 1)
-  await page.waitForFunction(() => (globalThis as unknown as { seen: string[] }).seen.length >= 2)
-  assert.equal((await seen())[0], '', 'its own triangles first')
-  await cut(page)
-  assert.ok(difference(before, await look(page, area)) > 0.05)
-  await setThreshold(page, 0.5)
-  await page.waitForFunction(() => (globalThis as unknown as { seen: string[] }).seen.length >= 4)
-  await cut(page)
-  assert.ok(difference(before, await look(page, area)) < 0.0005)
-  await page.getByTestId('texture-input').setInputFiles(islandPaint())
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  assert.match((await note(page))!, isCut)
-  assert.deepEqual(complaints, [])
-})
+  const { page, complaints } = visit;
+  await page.getByTestId('exact-borders').check();
+  await cut(page);
+  const area = await modelArea(page);
+  const before = await look(page, area);
+  const seen = await watchNote(page);
+  await setThreshold(page, 0.49);
+  assert.deepEqual(await seen(), [], 'nothing is decided otherwise: it stays');
+  await setThreshold(page, 1);
+  await page.waitForFunction(() => (globalThis as unknown as { seen: string[] }).seen.length >= 2);
+  assert.equal((await seen())[0], '', 'its own triangles first');
+  await cut(page);
+  assert.ok(difference(before, await look(page, area)) > 0.05);
+  await setThreshold(page, 0.5);
+  await page.waitForFunction(() => (globalThis as unknown as { seen: string[] }).seen.length >= 4);
+  await cut(page);
+  assert.ok(difference(before, await look(page, area)) < 0.0005);
+  await page.getByTestId('texture-input').setInputFiles(islandPaint());
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.match((await note(page))!, isCut);
+  assert.deepEqual(complaints, []);
+});
 
 test('the model is saved as the command line says and makes it, and a link restores the switch', async () => {
-  const { page } = await site.visit()
-  await page.getByTestId('exact-borders').check()
-  await cut(page)
-  const words = { three: /await applyTransfer\(target\.scene, cage\.scene, \{ texture, borders: 'cut' \}\)/, command: / --borders cut -o painted\.glb$/ }
+  const { page } = await site.visit();
+  await page.getByTestId('exact-borders').check();
+  await cut(page);
+  const words = {
+    three: /await applyTransfer\(target\.scene, cage\.scene, \{ texture, borders: 'cut' \}\)/,
+    command: / --borders cut -o painted\.glb$/,
+  };
   for (const [kind, expected] of Object.entries(words)) {
-    await page.locator(`#take input[value=${kind}]`).check({ force: true })
-    assert.match((await page.getByTestId('code').textContent())!, expected)
+    await page.locator(`#take input[value=${kind}]`).check({ force: true });
+    assert.match((await page.getByTestId('code').textContent())!, expected);
   }
-  const { bytes } = await saved(page, 'export-glb')
-  const out = path.join(folder, 'painted.glb')
-  await promisify(execFile)(process.execPath, [inRepository('dist/cli.js'), 'transfer', lizard('target.glb'), '--cage', lizard('cage.glb'), '--texture', lizard('paint-tiger.png'), '--borders', 'cut', '-o', out])
-  const [found, wanted] = [primitivesOf(await validModel(bytes)), primitivesOf(await validModel(await readFile(out)))]
-  assert.equal(found.length, wanted.length)
+  const { bytes } = await saved(page, 'export-glb');
+  const out = path.join(folder, 'painted.glb');
+  await promisify(execFile)(process.execPath, [
+    inRepository('dist/cli.js'),
+    'transfer',
+    lizard('target.glb'),
+    '--cage',
+    lizard('cage.glb'),
+    '--texture',
+    lizard('paint-tiger.png'),
+    '--borders',
+    'cut',
+    '-o',
+    out,
+  ]);
+  const [found, wanted] = [primitivesOf(await validModel(bytes)), primitivesOf(await validModel(await readFile(out)))];
+  assert.equal(found.length, wanted.length);
   found.forEach((primitive, p) => {
-    for (const semantic of primitive.listSemantics()) assert.deepEqual(primitive.getAttribute(semantic)!.getArray(), wanted[p]!.getAttribute(semantic)!.getArray(), `${p} ${semantic}`)
-    assert.deepEqual([...primitive.getIndices()!.getArray()!], [...wanted[p]!.getIndices()!.getArray()!])
-  })
-  const link = new URL((await page.getByTestId('share-link').getAttribute('href'))!, page.url())
-  assert.match(link.hash, /borders=cut/)
-  const again = await site.visit({}, undefined, link.hash)
-  assert.equal(await again.page.getByTestId('exact-borders').isChecked(), true)
-  await cut(again.page)
-  assert.deepEqual(again.complaints, [])
-})
+    for (const semantic of primitive.listSemantics())
+      assert.deepEqual(
+        primitive.getAttribute(semantic)!.getArray(),
+        wanted[p]!.getAttribute(semantic)!.getArray(),
+        `${p} ${semantic}`,
+      );
+    assert.deepEqual([...primitive.getIndices()!.getArray()!], [...wanted[p]!.getIndices()!.getArray()!]);
+  });
+  const link = new URL((await page.getByTestId('share-link').getAttribute('href'))!, page.url());
+  assert.match(link.hash, /borders=cut/);
+  const again = await site.visit({}, undefined, link.hash);
+  assert.equal(await again.page.getByTestId('exact-borders').isChecked(), true);
+  await cut(again.page);
+  assert.deepEqual(again.complaints, []);
+});
 
 test('cutting can be given up: the switch goes off, and what was on show stays', async () => {
-  const { page, complaints } = await site.visit({}, kSlowWorker)
-  await chooseMode(page, 'result')
-  const area = await modelArea(page)
-  const before = await look(page, area)
-  const givenUp = giveUpOnceShown(page, 'Escape')
-  await page.getByTestId('exact-borders').check()
-  await givenUp
-  assert.equal(await page.getByTestId('status').textContent(), 'ready')
-  assert.equal(await page.getByTestId('exact-borders').isChecked(), false)
-  await page.waitForTimeout(2000)
-  assert.deepEqual([await page.getByTestId('status').textContent(), await note(page)], ['ready', ''])
-  assert.ok(difference(before, await look(page, area)) < 0.0005)
-  assert.deepEqual(complaints, [])
-})
+  const { page, complaints } = await site.visit({}, kSlowWorker);
+  await chooseMode(page, 'result');
+  const area = await modelArea(page);
+  const before = await look(page, area);
+  const givenUp = giveUpOnceShown(page, 'Escape');
+  await page.getByTestId('exact-borders').check();
+  await givenUp;
+  assert.equal(await page.getByTestId('status').textContent(), 'ready');
+  assert.equal(await page.getByTestId('exact-borders').isChecked(), false);
+  await page.waitForTimeout(2000);
+  assert.deepEqual([await page.getByTestId('status').textContent(), await note(page)], ['ready', '']);
+  assert.ok(difference(before, await look(page, area)) < 0.0005);
+  assert.deepEqual(complaints, []);
+});
 
 test('what is decided otherwise while borders are cut is cut in its place, once', async () => {
-  const { page, complaints } = await site.visit({}, kSlowWorker)
-  const seen = await watchNote(page)
+  const { page, complaints } = await site.visit({}, kSlowWorker);
+  const seen = await watchNote(page);
   // Within the page: from outside it may come when all is done.
   const statuses = page.evaluate(
     () =>
       new Promise<string[]>((done) => {
-        const [status, threshold] = ['status', 'threshold'].map((id) => document.querySelector<HTMLInputElement>(`[data-testid=${id}]`)!)
-        const said: string[] = []
+        const [status, threshold] = ['status', 'threshold'].map(
+          (id) => document.querySelector<HTMLInputElement>(`[data-testid=${id}]`)!,
+        );
+        const said: string[] = [];
         new MutationObserver(() => {
-          said.push(status!.textContent!)
+          said.push(status!.textContent!);
           if (said.length === 1) {
-            threshold!.value = '1'
-            threshold!.dispatchEvent(new Event('input', { bubbles: true }))
-          } else if (said.filter((text) => text === 'ready').length === 2) done(said)
-        }).observe(status!, { childList: true })
+            threshold!.value = '1';
+            threshold!.dispatchEvent(new Event('input', { bubbles: true }));
+          } else if (said.filter((text) => text === 'ready').length === 2) done(said);
+        }).observe(status!, { childList: true });
       }),
-  )
-  await page.getByTestId('exact-borders').check()
-  assert.deepEqual(await statuses, ['working', 'ready', 'working', 'ready'])
-  await page.waitForTimeout(1500)
-  assert.equal((await seen()).filter((text) => text !== '').length, 1)
-  assert.match((await note(page))!, isCut)
-  assert.deepEqual(complaints, [])
-})
+  );
+  await page.getByTestId('exact-borders').check();
+  assert.deepEqual(await statuses, ['working', 'ready', 'working', 'ready']);
+  await page.waitForTimeout(1500);
+  assert.equal((await seen()).filter((text) => text !== '').length, 1);
+  assert.match((await note(page))!, isCut);
+  assert.deepEqual(complaints, []);
+});
 
 for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
   test(`the paint lies on a model that is cut as it does on a whole one: ${name}`, async () => {
-    const { page, complaints } = await site.visit()
-    await drop(page, [await ball(options), await islandCage(1), islandPaint()])
-    assert.equal(await settled(page), 'ready', await shownError(page))
-    await chooseMode(page, 'result')
-    const area = await modelArea(page)
+    const { page, complaints } = await site.visit();
+    await drop(page, [await ball(options), await islandCage(1), islandPaint()]);
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    await chooseMode(page, 'result');
+    const area = await modelArea(page);
     const hues = async (): Promise<number[]> => {
-      const picture = await look(page, area)
-      return [295, 237, 140].map((hue) => shareOfHue(picture, hue))
-    }
-    const [, , whole] = await hues()
-    await page.getByTestId('exact-borders').check()
-    await cut(page)
-    const [violet, blue, green] = await hues() as [number, number, number]
-    assert.ok(violet < 0.0005, `${violet} of the picture is smeared`)
-    assert.ok(blue < 0.001, `${blue} of the picture shows through`)
-    assert.ok(Math.abs(green - whole!) < 0.01, `${green} of the picture is painted, ${whole} before`)
-    assert.deepEqual(complaints, [])
-  })
+      const picture = await look(page, area);
+      return [295, 237, 140].map((hue) => shareOfHue(picture, hue));
+    };
+    const [, , whole] = await hues();
+    await page.getByTestId('exact-borders').check();
+    await cut(page);
+    const [violet, blue, green] = (await hues()) as [number, number, number];
+    assert.ok(violet < 0.0005, `${violet} of the picture is smeared`);
+    assert.ok(blue < 0.001, `${blue} of the picture shows through`);
+    assert.ok(Math.abs(green - whole!) < 0.01, `${green} of the picture is painted, ${whole} before`);
+    assert.deepEqual(complaints, []);
+  });
 }

@@ -1,74 +1,105 @@
-import assert from 'node:assert/strict'
-import { readFileSync } from 'node:fs'
-import { after, before, test } from 'node:test'
-import { inspection, reportedCounts } from './cli'
-import { glb, tetrahedron, writeGlb } from './glb'
-import { difference, look, modelArea } from './picture'
-import { drop, inRepository, setThreshold, settled, shownCounts, shownError, shownParts, Site, type Visit } from './site'
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { inspection, reportedCounts } from './cli';
+import { glb, tetrahedron, writeGlb } from './glb';
+import { difference, look, modelArea } from './picture';
+import {
+  drop,
+  inRepository,
+  Site,
+  setThreshold,
+  settled,
+  shownCounts,
+  shownError,
+  shownParts,
+  type Visit,
+} from './site';
 
-let site: Site
-let visit: Visit
+let site: Site;
+let visit: Visit;
 before(async () => {
-  site = await Site.open()
-  visit = await site.visit({ viewport: { width: 700, height: 500 } })
-})
-after(() => site?.close())
+  site = await Site.open();
+  visit = await site.visit({ viewport: { width: 700, height: 500 } });
+});
+after(() => site?.close());
 
-const asset = (...names: string[]): string => inRepository('build/assets', ...names)
+const asset = (...names: string[]): string => inRepository('build/assets', ...names);
 
 /** What the page finds, once it has looked. */
 async function found(): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {
-  const panel = visit.page.getByTestId('inspect-panel')
-  await visit.page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '')
-  const items = await panel.locator('li').evaluateAll((all) => all.map((item) => [...item.querySelectorAll('p')].map(({ textContent }) => textContent!)))
-  return { verdict: (await panel.locator('#fit-verdict').textContent())!, findings: items.map(([sentence, advice]) => ({ sentence: sentence!.replace(/\.$/, ''), advice: advice! })) }
+  const panel = visit.page.getByTestId('inspect-panel');
+  await visit.page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '');
+  const items = await panel
+    .locator('li')
+    .evaluateAll((all) => all.map((item) => [...item.querySelectorAll('p')].map(({ textContent }) => textContent!)));
+  return {
+    verdict: (await panel.locator('#fit-verdict').textContent())!,
+    findings: items.map(([sentence, advice]) => ({ sentence: sentence!.replace(/\.$/, ''), advice: advice! })),
+  };
 }
 
 for (const name of ['car', 'human-misaligned', 'lizard']) {
   test(`${name}: the page finds of its cage what the command finds`, async () => {
-    const { page, complaints } = visit
-    await drop(page, [glb('target.glb', readFileSync(asset(name, 'target.glb'))), glb('cage.glb', readFileSync(asset(name, 'cage.glb')))])
-    assert.equal(await settled(page), 'ready', await shownError(page))
-    const { verdict, findings } = await inspection(asset(name, 'target.glb'), asset(name, 'cage.glb'))
-    assert.deepEqual(await found(), { verdict, findings: findings.map(({ sentence, advice }) => ({ sentence, advice })) })
-    assert.deepEqual(complaints, [])
-  })
+    const { page, complaints } = visit;
+    await drop(page, [
+      glb('target.glb', readFileSync(asset(name, 'target.glb'))),
+      glb('cage.glb', readFileSync(asset(name, 'cage.glb'))),
+    ]);
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    const { verdict, findings } = await inspection(asset(name, 'target.glb'), asset(name, 'cage.glb'));
+    assert.deepEqual(await found(), {
+      verdict,
+      findings: findings.map(({ sentence, advice }) => ({ sentence, advice })),
+    });
+    assert.deepEqual(complaints, []);
+  });
 }
 
 test('a part in doubt lights up with its finding, and is locked as that proposes', async () => {
-  const { page } = visit
-  await page.getByTestId('sample-select').selectOption({ index: 0 })
-  await page.getByTestId('preset').selectOption('paper')
-  await setThreshold(page, 0.36)
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  const eye = page.getByTestId('inspect-panel').locator('li').filter({ hasText: /"l-eye" is not painted, but nearly/ })
-  await eye.waitFor()
-  const area = await modelArea(page)
-  await page.mouse.move(5, 5)
-  const before = await look(page, area)
-  await eye.hover()
-  assert.ok(difference(before, await look(page, area)) > 0.002, 'it lights up')
-  await page.mouse.move(5, 5)
-  assert.ok(difference(before, await look(page, area)) < 0.0005)
+  const { page } = visit;
+  await page.getByTestId('sample-select').selectOption({ index: 0 });
+  await page.getByTestId('preset').selectOption('paper');
+  await setThreshold(page, 0.36);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  const eye = page
+    .getByTestId('inspect-panel')
+    .locator('li')
+    .filter({ hasText: /"l-eye" is not painted, but nearly/ });
+  await eye.waitFor();
+  const area = await modelArea(page);
+  await page.mouse.move(5, 5);
+  const before = await look(page, area);
+  await eye.hover();
+  assert.ok(difference(before, await look(page, area)) > 0.002, 'it lights up');
+  await page.mouse.move(5, 5);
+  assert.ok(difference(before, await look(page, area)) < 0.0005);
 
-  await eye.getByRole('button', { name: 'Keep it' }).click()
-  assert.deepEqual(await shownCounts(page), await reportedCounts(asset('lizard', 'target.glb'), asset('lizard', 'cage.glb'), { preset: 'paper', threshold: 0.36, keep: 'l-eye' }))
-  assert.equal((await shownParts(page)).find(({ name }) => name === 'l-eye')!.lock, 'keep')
-  await eye.waitFor({ state: 'detached' })
-  await page.getByTestId('preset').selectOption('default')
-  await setThreshold(page, 0.5)
-  assert.equal(await settled(page), 'ready')
-})
+  await eye.getByRole('button', { name: 'Keep it' }).click();
+  assert.deepEqual(
+    await shownCounts(page),
+    await reportedCounts(asset('lizard', 'target.glb'), asset('lizard', 'cage.glb'), {
+      preset: 'paper',
+      threshold: 0.36,
+      keep: 'l-eye',
+    }),
+  );
+  assert.equal((await shownParts(page)).find(({ name }) => name === 'l-eye')!.lock, 'keep');
+  await eye.waitFor({ state: 'detached' });
+  await page.getByTestId('preset').selectOption('default');
+  await setThreshold(page, 0.5);
+  assert.equal(await settled(page), 'ready');
+});
 
 test('a large model is inspected when that is asked for', async () => {
-  const { page } = visit
-  const small = tetrahedron()
+  const { page } = visit;
+  const small = tetrahedron();
   // Most of them without area, which cost no time to draw.
-  const indices = Uint16Array.from({ length: 3 * 70_000 }, (_, i) => small.indices[i] ?? 0)
-  await drop(page, [glb('target.glb', writeGlb({ ...small, indices })), glb('cage.glb', writeGlb(tetrahedron(2)))])
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  await page.waitForTimeout(1500)
-  assert.equal(await page.locator('#fit-verdict').textContent(), '')
-  await page.getByRole('button', { name: 'Inspect it' }).click()
-  assert.match((await found()).verdict, /^(good|usable|unfit)$/)
-})
+  const indices = Uint16Array.from({ length: 3 * 70_000 }, (_, i) => small.indices[i] ?? 0);
+  await drop(page, [glb('target.glb', writeGlb({ ...small, indices })), glb('cage.glb', writeGlb(tetrahedron(2)))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.waitForTimeout(1500);
+  assert.equal(await page.locator('#fit-verdict').textContent(), '');
+  await page.getByRole('button', { name: 'Inspect it' }).click();
+  assert.match((await found()).verdict, /^(good|usable|unfit)$/);
+});

@@ -1,46 +1,54 @@
-import assert from 'node:assert/strict'
-import { after, before, test } from 'node:test'
-import { NodeIO } from '@gltf-transform/core'
-import { KHRTextureBasisu } from '@gltf-transform/extensions'
-import { PNG } from 'pngjs'
-import { glb } from './glb'
-import { islandCage, lumpyBall } from './models'
-import { look, modelArea, shareOfHue } from './picture'
-import { saved, validModel } from './saved'
-import { inRepository, settled, shownCounts, shownError, Site, type Upload } from './site'
-import { texel } from './texture'
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { NodeIO } from '@gltf-transform/core';
+import { KHRTextureBasisu } from '@gltf-transform/extensions';
+import { PNG } from 'pngjs';
+import { glb } from './glb';
+import { islandCage, lumpyBall } from './models';
+import { look, modelArea, shareOfHue } from './picture';
+import { saved, validModel } from './saved';
+import { inRepository, Site, settled, shownCounts, shownError, type Upload } from './site';
+import { texel } from './texture';
 
-let site: Site
-before(async () => void (site = await Site.open()))
-after(() => site?.close())
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
 
-const kIdentifier = [0xab, 0x4b, 0x54, 0x58, 0x20, 0x32, 0x30, 0xbb, 0x0d, 0x0a, 0x1a, 0x0a]
+const kIdentifier = [0xab, 0x4b, 0x54, 0x58, 0x20, 0x32, 0x30, 0xbb, 0x0d, 0x0a, 0x1a, 0x0a];
 
 /** A KTX2 texture of one Basis Universal block, 4 × 4 texels of one colour. */
 function ktx2Of(red: number, green: number, blue: number): Uint8Array<ArrayBuffer> {
   // Mode 8 of UASTC, from the lowest bit on: its code in 5 bits, then the colour.
-  const block = Buffer.alloc(16)
-  block.writeBigUInt64LE(0x17n | (BigInt(red) << 5n) | (BigInt(green) << 13n) | (BigInt(blue) << 21n) | (255n << 29n))
-  const [header, levels, format] = [Buffer.alloc(80), Buffer.alloc(24), Buffer.alloc(44)]
-  header.set(kIdentifier)
+  const block = Buffer.alloc(16);
+  block.writeBigUInt64LE(0x17n | (BigInt(red) << 5n) | (BigInt(green) << 13n) | (BigInt(blue) << 21n) | (255n << 29n));
+  const [header, levels, format] = [Buffer.alloc(80), Buffer.alloc(24), Buffer.alloc(44)];
+  header.set(kIdentifier);
   // Format (none: Basis), size of a type, width, height, depth, layers, faces, levels, compression; then where the format is described.
-  ;[0, 1, 4, 4, 0, 0, 1, 1, 0, 104, 44].forEach((word, at) => header.writeUInt32LE(word, 12 + 4 * at))
-  ;[148, 16, 16].forEach((word, at) => levels.writeBigUInt64LE(BigInt(word), 8 * at))
-  format.writeUInt32LE(44, 0)
-  format.writeUInt32LE(2 | (40 << 16), 8)
-  format.set([166, 1, 2, 0, 3, 3, 0, 0, 16], 12) // UASTC, BT.709, sRGB; blocks of 4 × 4 texels, 16 bytes each
-  format.set([0, 0, 127, 0], 28)
-  format.writeUInt32LE(0xffffffff, 40)
-  return new Uint8Array(Buffer.concat([header, levels, format, block]))
+  [0, 1, 4, 4, 0, 0, 1, 1, 0, 104, 44].forEach((word, at) => header.writeUInt32LE(word, 12 + 4 * at));
+  [148, 16, 16].forEach((word, at) => levels.writeBigUInt64LE(BigInt(word), 8 * at));
+  format.writeUInt32LE(44, 0);
+  format.writeUInt32LE(2 | (40 << 16), 8);
+  format.set([166, 1, 2, 0, 3, 3, 0, 0, 16], 12); // UASTC, BT.709, sRGB; blocks of 4 × 4 texels, 16 bytes each
+  format.set([0, 0, 127, 0], 28);
+  format.writeUInt32LE(0xffffffff, 40);
+  return new Uint8Array(Buffer.concat([header, levels, format, block]));
 }
 
 async function ballWith(image: Uint8Array<ArrayBuffer>): Promise<Upload> {
-  const document = await new NodeIO().readBinary(new Uint8Array((await lumpyBall(24)).buffer))
-  document.createExtension(KHRTextureBasisu).setRequired(true)
-  const texture = document.createTexture('colour').setMimeType('image/ktx2').setImage(image)
-  const material = document.createMaterial('coloured').setBaseColorTexture(texture).setMetallicFactor(0).setRoughnessFactor(1)
-  for (const mesh of document.getRoot().listMeshes()) for (const primitive of mesh.listPrimitives()) primitive.setMaterial(material)
-  return glb('target.glb', Buffer.from(await new NodeIO().registerExtensions([KHRTextureBasisu]).writeBinary(document)))
+  const document = await new NodeIO().readBinary(new Uint8Array((await lumpyBall(24)).buffer));
+  document.createExtension(KHRTextureBasisu).setRequired(true);
+  const texture = document.createTexture('colour').setMimeType('image/ktx2').setImage(image);
+  const material = document
+    .createMaterial('coloured')
+    .setBaseColorTexture(texture)
+    .setMetallicFactor(0)
+    .setRoughnessFactor(1);
+  for (const mesh of document.getRoot().listMeshes())
+    for (const primitive of mesh.listPrimitives()) primitive.setMaterial(material);
+  return glb(
+    'target.glb',
+    Buffer.from(await new NodeIO().registerExtensions([KHRTextureBasisu]).writeBinary(document)),
+  );
 }
 
 // 8 × 8 texels of the same colour as Basis Universal’s encoder 2.5 writes them: one cannot be put down by hand.
@@ -48,83 +56,116 @@ const kEtc1s =
   'q0tUWCAyMLsNChoKAAAAAAEAAAAIAAAACAAAAAAAAAAAAAAAAQAAAAEAAAABAAAAaAAAACwAAACUAAAAJAAAALgAAAAAAAAAggAAAAAAAAA6AQAAAAAAAAEA' +
   'AAAAAAAAAAAAAAAAAAAsAAAAAAAAAAIAKACjAQIAAwMAAAgAAAAAAAAAAAA/AAAAAAAAAAAA/////x8AAABLVFh3cml0ZXIAQmFzaXMgVW5pdmVyc2FsIDIu' +
   'NTAAAAEAAQAqAAAABQAAACsAAAAAAAAAAAAAAAAAAAABAAAAAAAAAAAAAAABwAQAAAAAAAAiApgCIAAAAACCfjQMACYAAAAAAAAQBMAMAAAAAAAAEsisqqqq' +
-  'AhTARAAAAAAAABIhAJgAAAAAAABACAETAQAAAAAASBsBYAJAAAAAAAARCAAA'
+  'AhTARAAAAAAAABIhAJgAAAAAAABACAETAQAAAAAASBsBYAJAAAAAAAARCAAA';
 const kUastcZstd =
   'q0tUWCAyMLsNChoKAAAAAAEAAAAIAAAACAAAAAAAAAAAAAAAAQAAAAEAAAACAAAAaAAAACwAAACUAAAAJAAAAAAAAAAAAAAAAAAAAAAAAAC4AAAAAAAAABoA' +
   'AAAAAAAAQAAAAAAAAAAsAAAAAAAAAAIAKACmAQIAAwMAABAAAAAAAAAAAAB/AAAAAAAAAAAA/////x8AAABLVFh3cml0ZXIAQmFzaXMgVW5pdmVyc2FsIDIu' +
-  'NTAAACi1L/0gQI0AAEgXGYD7/9KAAwACAM2MIANH'
-const kColor = [200, 0, 220] as const
-const kHue = 295
+  'NTAAACi1L/0gQI0AAEgXGYD7/9KAAwACAM2MIANH';
+const kColor = [200, 0, 220] as const;
+const kHue = 295;
 
 const kImages = {
   UASTC: ktx2Of(...kColor),
   'UASTC packed by Zstandard': new Uint8Array(Buffer.from(kUastcZstd, 'base64')),
   ETC1S: new Uint8Array(Buffer.from(kEtc1s, 'base64')),
-}
+};
 
 /** How each is painted into: one is enough of what is the same once it is decoded. */
-const kPaints: Record<string, readonly boolean[]> = { UASTC: [false], 'UASTC packed by Zstandard': [], ETC1S: [false, true] }
+const kPaints: Record<string, readonly boolean[]> = {
+  UASTC: [false],
+  'UASTC packed by Zstandard': [],
+  ETC1S: [false, true],
+};
 
 test('KTX2 textures are shown under the page’s own security policy, saved as they came, and painted into', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
-  await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
-  await settled(page)
+  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } });
+  await page.getByTestId('cage-input').setInputFiles(await islandCage(1));
+  await settled(page);
   for (const [kind, image] of Object.entries(kImages)) {
-    await page.getByTestId('target-input').setInputFiles(await ballWith(image))
-    assert.equal(await settled(page), 'ready', await shownError(page))
-    assert.ok((await shownCounts(page)).cosmetic > 0)
-    await page.locator('#show-paint').uncheck({ force: true })
-    const shown = shareOfHue(await look(page, await modelArea(page)), kHue)
-    assert.ok(shown > 0.1, `${shown} of the picture has the colour of ${kind}`)
+    await page.getByTestId('target-input').setInputFiles(await ballWith(image));
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    assert.ok((await shownCounts(page)).cosmetic > 0);
+    await page.locator('#show-paint').uncheck({ force: true });
+    const shown = shareOfHue(await look(page, await modelArea(page)), kHue);
+    assert.ok(shown > 0.1, `${shown} of the picture has the colour of ${kind}`);
 
-    await page.locator('#paint-into [value=overlay]').check({ force: true })
-    const laid = await validModel((await saved(page, 'export-glb')).bytes)
-    const kept = laid.getRoot().listTextures().find((texture) => texture.getMimeType() === 'image/ktx2')
-    assert.deepEqual(kept?.getImage(), image)
+    await page.locator('#paint-into [value=overlay]').check({ force: true });
+    const laid = await validModel((await saved(page, 'export-glb')).bytes);
+    const kept = laid
+      .getRoot()
+      .listTextures()
+      .find((texture) => texture.getMimeType() === 'image/ktx2');
+    assert.deepEqual(kept?.getImage(), image);
 
     // Into the texture itself: a PNG, as nothing here writes KTX2.
-    await page.locator('#paint-into [value=texture]').check({ force: true })
+    await page.locator('#paint-into [value=texture]').check({ force: true });
     for (const painted of kPaints[kind]!) {
-      await page.getByTestId('layer-list').getByRole('checkbox', { name: 'Show UV checker' }).setChecked(painted, { force: true })
-      const document = await validModel((await saved(page, 'export-glb')).bytes)
-      assert.equal(await page.getByTestId('export-note').textContent(), 'The paint is in one texture of the model’s own.')
-      assert.ok(document.getRoot().listExtensionsUsed().every(({ extensionName }) => extensionName !== 'KHR_texture_basisu'))
-      const [texture, ...others] = document.getRoot().listTextures()
-      assert.deepEqual([texture!.getMimeType(), others.length], ['image/png', 0])
-      const png = PNG.sync.read(Buffer.from(texture!.getImage()!))
-      assert.deepEqual([png.width, png.height], [1024, 1024])
-      const color = texel(png, 700, 512)
-      const apart = Math.max(...kColor.map((value, channel) => Math.abs(value - color[channel]!)))
-      assert.ok(painted ? apart > 30 : apart <= 3, `${color}, ${painted ? 'the checker’s' : 'the own'} colour of ${kind}`)
+      await page
+        .getByTestId('layer-list')
+        .getByRole('checkbox', { name: 'Show UV checker' })
+        .setChecked(painted, { force: true });
+      const document = await validModel((await saved(page, 'export-glb')).bytes);
+      assert.equal(
+        await page.getByTestId('export-note').textContent(),
+        'The paint is in one texture of the model’s own.',
+      );
+      assert.ok(
+        document
+          .getRoot()
+          .listExtensionsUsed()
+          .every(({ extensionName }) => extensionName !== 'KHR_texture_basisu'),
+      );
+      const [texture, ...others] = document.getRoot().listTextures();
+      assert.deepEqual([texture!.getMimeType(), others.length], ['image/png', 0]);
+      const png = PNG.sync.read(Buffer.from(texture!.getImage()!));
+      assert.deepEqual([png.width, png.height], [1024, 1024]);
+      const color = texel(png, 700, 512);
+      const apart = Math.max(...kColor.map((value, channel) => Math.abs(value - color[channel]!)));
+      assert.ok(
+        painted ? apart > 30 : apart <= 3,
+        `${color}, ${painted ? 'the checker’s' : 'the own'} colour of ${kind}`,
+      );
     }
   }
-  assert.deepEqual(complaints, [])
-})
+  assert.deepEqual(complaints, []);
+});
 
 test('a damaged KTX2 texture leaves its model white, and the page says so', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } })
-  await page.getByTestId('cage-input').setInputFiles(await islandCage(1))
-  await settled(page)
-  await page.getByTestId('target-input').setInputFiles(await ballWith(ktx2Of(...kColor).slice(0, 150)))
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  assert.equal(await shownError(page), 'target.glb: image “colour” cannot be shown: its KTX2 is cut short, after 150 bytes. What it belongs to stays white.')
-  assert.ok((await shownCounts(page)).cosmetic > 0)
-  await page.locator('#show-paint').uncheck({ force: true })
-  assert.ok(shareOfHue(await look(page, await modelArea(page)), kHue) < 0.001)
-  assert.ok(complaints.every((complaint) => !/Content Security Policy|EvalError/.test(complaint)), complaints.join())
-})
+  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } });
+  await page.getByTestId('cage-input').setInputFiles(await islandCage(1));
+  await settled(page);
+  await page.getByTestId('target-input').setInputFiles(await ballWith(ktx2Of(...kColor).slice(0, 150)));
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(
+    await shownError(page),
+    'target.glb: image “colour” cannot be shown: its KTX2 is cut short, after 150 bytes. What it belongs to stays white.',
+  );
+  assert.ok((await shownCounts(page)).cosmetic > 0);
+  await page.locator('#show-paint').uncheck({ force: true });
+  assert.ok(shareOfHue(await look(page, await modelArea(page)), kHue) < 0.001);
+  assert.ok(
+    complaints.every((complaint) => !/Content Security Policy|EvalError/.test(complaint)),
+    complaints.join(),
+  );
+});
 
 test('in development the transcoder is served as it is in the built page, and its address to modules that ask for that', async () => {
-  const { createServer } = await import('vite')
-  const server = await createServer({ configFile: inRepository('web/vite.config.ts'), logLevel: 'error', server: { host: '127.0.0.1', port: 0 } })
+  const { createServer } = await import('vite');
+  const server = await createServer({
+    configFile: inRepository('web/vite.config.ts'),
+    logLevel: 'error',
+    server: { host: '127.0.0.1', port: 0 },
+  });
   try {
-    await server.listen()
-    const address = `${server.resolvedUrls!.local[0]}@fs${inRepository('node_modules/three/examples/jsm/libs/basis/basis_transcoder.js')}`
-    const [script, module] = await Promise.all([address, `${address}?url`].map(async (url) => (await fetch(url)).text()))
-    assert.match(script!, /var BASIS/)
-    assert.doesNotMatch(script!, /newFunc\(Function/)
-    assert.match(module!, /^export default ".*basis_transcoder\.js"/)
+    await server.listen();
+    const address = `${server.resolvedUrls!.local[0]}@fs${inRepository('node_modules/three/examples/jsm/libs/basis/basis_transcoder.js')}`;
+    const [script, module] = await Promise.all(
+      [address, `${address}?url`].map(async (url) => (await fetch(url)).text()),
+    );
+    assert.match(script!, /var BASIS/);
+    assert.doesNotMatch(script!, /newFunc\(Function/);
+    assert.match(module!, /^export default ".*basis_transcoder\.js"/);
   } finally {
-    await server.close()
+    await server.close();
   }
-})
+});

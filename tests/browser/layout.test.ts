@@ -1,16 +1,16 @@
-import assert from 'node:assert/strict'
-import { after, before, test } from 'node:test'
-import { PNG } from 'pngjs'
-import { difference, look, modelArea } from './picture'
-import { Site, type Visit } from './site'
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { PNG } from 'pngjs';
+import { difference, look, modelArea } from './picture';
+import { Site, type Visit } from './site';
 
-let site: Site
-let visit: Visit
+let site: Site;
+let visit: Visit;
 before(async () => {
-  site = await Site.open()
-  visit = await site.visit({ hasTouch: true })
-})
-after(() => site?.close())
+  site = await Site.open();
+  visit = await site.visit({ hasTouch: true });
+});
+after(() => site?.close());
 
 const kSizes = [
   { name: 'phone', width: 390, height: 844 },
@@ -22,111 +22,156 @@ const kSizes = [
   { name: 'desk', width: 1440, height: 900 },
   { name: 'phone, large text', width: 390, height: 844, text: 24 },
   { name: 'desk, large text', width: 1440, height: 900, text: 24 },
-]
+];
 
 /** Everything that is pressed or moved; for a box hidden behind its label, the label. */
-const kControls = 'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, .jump a, .rail label, .layer button, .paints button, .eye, .icon, #threshold, .knob, summary, #view'
+const kControls =
+  'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, .jump a, .rail label, .layer button, .paints button, .eye, .icon, #threshold, .knob, summary, #view';
 
 /** Opens the cards that are closed at first. */
 async function openAll({ page }: Visit, open = true): Promise<void> {
-  await page.locator('details').evaluateAll((all, open) => all.forEach((details) => details.toggleAttribute('open', open)), open)
+  await page
+    .locator('details')
+    .evaluateAll((all, open) => all.forEach((details) => details.toggleAttribute('open', open)), open);
 }
 
 for (const { name, text, ...viewport } of kSizes) {
   test(`${name}: nothing sticks out sideways, and every control can be reached and hit`, async () => {
-    const { page, complaints } = visit
-    const devTools = await page.context().newCDPSession(page)
-    await devTools.send('Page.setFontSizes', { fontSizes: { standard: text ?? 16 } })
-    await page.setViewportSize(viewport)
-    await openAll(visit)
-    assert.equal(await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize)), (text ?? 16) * 15 / 16)
-    assert.equal(await page.evaluate(() => innerWidth), viewport.width)
-    const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth)
-    assert.equal(wide, 0, 'no horizontal scroll')
+    const { page, complaints } = visit;
+    const devTools = await page.context().newCDPSession(page);
+    await devTools.send('Page.setFontSizes', { fontSizes: { standard: text ?? 16 } });
+    await page.setViewportSize(viewport);
+    await openAll(visit);
+    assert.equal(
+      await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize)),
+      ((text ?? 16) * 15) / 16,
+    );
+    assert.equal(await page.evaluate(() => innerWidth), viewport.width);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    assert.equal(wide, 0, 'no horizontal scroll');
     const faults = await page.evaluate((controls) => {
-      const faults: string[] = []
+      const faults: string[] = [];
       for (const control of document.querySelectorAll<HTMLElement>(controls)) {
-        if (!control.checkVisibility()) continue
-        control.scrollIntoView({ block: 'center', behavior: 'instant' })
-        const { left, right, top, bottom, width, height } = control.getBoundingClientRect()
-        const label = control.id || control.textContent!.trim() || control.className
-        if (left < -0.5 || right > innerWidth + 0.5) faults.push(`${label} sticks out: ${left}..${right}`)
-        if (Math.min(width, height) < 24) faults.push(`${label} is small: ${width} × ${height}`)
-        const hit = document.elementFromPoint((left + right) / 2, (Math.max(0, top) + Math.min(innerHeight, bottom)) / 2)
+        if (!control.checkVisibility()) continue;
+        control.scrollIntoView({ block: 'center', behavior: 'instant' });
+        const { left, right, top, bottom, width, height } = control.getBoundingClientRect();
+        const label = control.id || control.textContent!.trim() || control.className;
+        if (left < -0.5 || right > innerWidth + 0.5) faults.push(`${label} sticks out: ${left}..${right}`);
+        if (Math.min(width, height) < 24) faults.push(`${label} is small: ${width} × ${height}`);
+        const hit = document.elementFromPoint(
+          (left + right) / 2,
+          (Math.max(0, top) + Math.min(innerHeight, bottom)) / 2,
+        );
         // The line lies over the middle of the picture, on purpose.
-        if (control.id !== 'view' && !control.contains(hit)) faults.push(`${label} is covered by ${hit?.outerHTML.slice(0, 60)}`)
+        if (control.id !== 'view' && !control.contains(hit))
+          faults.push(`${label} is covered by ${hit?.outerHTML.slice(0, 60)}`);
       }
-      return faults
-    }, kControls)
-    assert.deepEqual(faults, [])
-    assert.deepEqual(complaints, [])
-    await devTools.send('Page.setFontSizes', { fontSizes: { standard: 16 } })
-    await devTools.detach()
-  })
+      return faults;
+    }, kControls);
+    assert.deepEqual(faults, []);
+    assert.deepEqual(complaints, []);
+    await devTools.send('Page.setFontSizes', { fontSizes: { standard: 16 } });
+    await devTools.detach();
+  });
 }
 
 test('the Tab key reaches every control, and each says what it is', async () => {
-  const { page } = visit
-  await page.setViewportSize({ width: 1440, height: 900 })
-  await openAll(visit, false)
-  await page.evaluate(() => document.body.focus())
-  const reached: string[] = []
+  const { page } = visit;
+  await page.setViewportSize({ width: 1440, height: 900 });
+  await openAll(visit, false);
+  await page.evaluate(() => document.body.focus());
+  const reached: string[] = [];
   for (let presses = 0; presses < 80; presses++) {
-    await page.keyboard.press('Tab')
-    const id = await page.evaluate(() => document.activeElement!.id || (document.activeElement as HTMLInputElement).name || document.activeElement!.tagName.toLowerCase())
-    if (id === 'body') break
-    reached.push(id)
+    await page.keyboard.press('Tab');
+    const id = await page.evaluate(
+      () =>
+        document.activeElement!.id ||
+        (document.activeElement as HTMLInputElement).name ||
+        document.activeElement!.tagName.toLowerCase(),
+    );
+    if (id === 'body') break;
+    reached.push(id);
   }
-  const expected = ['view', 'divider', 'view-mode', 'show-paint', 'show-cage', 'sample-select', 'target-input', 'cage-input', 'texture-input', 'paint', 'preset', 'threshold', 'summary', 'summary']
-  assert.deepEqual(reached.filter((id) => expected.includes(id)), expected)
-  for (const [role, name] of [['slider', /Compare/], ['slider', /Threshold/], ['combobox', /Sample/], ['combobox', /Rules/], ['radio', /Result/], ['radio', /Zones/], ['checkbox', /Cage/], ['radiogroup', /shown/]] as const) {
-    assert.equal(await page.getByRole(role, { name }).count(), 1, `${role} ${name}`)
+  const expected = [
+    'view',
+    'divider',
+    'view-mode',
+    'show-paint',
+    'show-cage',
+    'sample-select',
+    'target-input',
+    'cage-input',
+    'texture-input',
+    'paint',
+    'preset',
+    'threshold',
+    'summary',
+    'summary',
+  ];
+  assert.deepEqual(
+    reached.filter((id) => expected.includes(id)),
+    expected,
+  );
+  for (const [role, name] of [
+    ['slider', /Compare/],
+    ['slider', /Threshold/],
+    ['combobox', /Sample/],
+    ['combobox', /Rules/],
+    ['radio', /Result/],
+    ['radio', /Zones/],
+    ['checkbox', /Cage/],
+    ['radiogroup', /shown/],
+  ] as const) {
+    assert.equal(await page.getByRole(role, { name }).count(), 1, `${role} ${name}`);
   }
   for (const label of [/Target/, /Cage/, /Paint/]) {
-    assert.ok((await page.getByLabel(label).and(page.locator('input[type=file]')).count()) === 1, String(label))
+    assert.ok((await page.getByLabel(label).and(page.locator('input[type=file]')).count()) === 1, String(label));
   }
-})
+});
 
 for (const colorScheme of ['light', 'dark'] as const) {
   test(`${colorScheme}: text stands out from its ground by 4.5 to 1 or more`, async () => {
-    const { page } = visit
-    await page.emulateMedia({ colorScheme })
-    await openAll(visit)
-    const faint = await page.evaluate(`(${contrastFaults})()`)
-    assert.deepEqual(faint, [])
-  })
+    const { page } = visit;
+    await page.emulateMedia({ colorScheme });
+    await openAll(visit);
+    const faint = await page.evaluate(`(${contrastFaults})()`);
+    assert.deepEqual(faint, []);
+  });
 }
 
 test('on a phone the picture stays in sight while the panel scrolls', async () => {
-  const { page } = visit
-  await page.setViewportSize({ width: 390, height: 844 })
-  await page.getByTestId('threshold').scrollIntoViewIfNeeded()
-  const stage = (await page.locator('#stage').boundingBox())!
-  assert.ok(stage.y >= 0 && stage.y + stage.height < 844, `the stage is at ${stage.y}`)
-  const slider = (await page.getByTestId('threshold').boundingBox())!
-  assert.ok(slider.y >= stage.y + stage.height, 'the slider is below it, not behind')
-})
+  const { page } = visit;
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.getByTestId('threshold').scrollIntoViewIfNeeded();
+  const stage = (await page.locator('#stage').boundingBox())!;
+  assert.ok(stage.y >= 0 && stage.y + stage.height < 844, `the stage is at ${stage.y}`);
+  const slider = (await page.getByTestId('threshold').boundingBox())!;
+  assert.ok(slider.y >= stage.y + stage.height, 'the slider is below it, not behind');
+});
 
 test('a finger turns the model and moves the line', async () => {
-  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true })
-  const area = await modelArea(page)
-  const session = await page.context().newCDPSession(page)
+  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const area = await modelArea(page);
+  const session = await page.context().newCDPSession(page);
   const swipe = async (x: number, y: number, by: number): Promise<void> => {
     const touch = (type: string, at?: number): Promise<unknown> =>
-      session.send('Input.dispatchTouchEvent' as never, { type, touchPoints: at === undefined ? [] : [{ x: at, y }] } as never)
-    await touch('touchStart', x)
-    for (let step = 1; step <= 4; step++) await touch('touchMove', x + (by * step) / 4)
-    await touch('touchEnd')
-  }
-  const before = await look(page, area)
-  await swipe(area.x + 40, area.y + area.height / 3, 90)
-  assert.ok(difference(before, await look(page, area)) > 0.02, 'the model turned')
+      session.send(
+        'Input.dispatchTouchEvent' as never,
+        { type, touchPoints: at === undefined ? [] : [{ x: at, y }] } as never,
+      );
+    await touch('touchStart', x);
+    for (let step = 1; step <= 4; step++) await touch('touchMove', x + (by * step) / 4);
+    await touch('touchEnd');
+  };
+  const before = await look(page, area);
+  await swipe(area.x + 40, area.y + area.height / 3, 90);
+  assert.ok(difference(before, await look(page, area)) > 0.02, 'the model turned');
 
-  const knob = (await page.locator('.knob').boundingBox())!
-  await swipe(knob.x + knob.width / 2, knob.y + knob.height / 2, 100)
-  const value = Number(await page.getByTestId('compare-slider').getAttribute('aria-valuenow'))
-  assert.ok(Math.abs(value - 100 * (295 / 390)) < 3, `the line is at ${value} %`)
-})
+  const knob = (await page.locator('.knob').boundingBox())!;
+  await swipe(knob.x + knob.width / 2, knob.y + knob.height / 2, 100);
+  const value = Number(await page.getByTestId('compare-slider').getAttribute('aria-valuenow'));
+  assert.ok(Math.abs(value - 100 * (295 / 390)) < 3, `the line is at ${value} %`);
+});
 
 // A text, as a function of its own would reach the page with the test compiler's helpers in it.
 const contrastFaults = `() => {
@@ -159,45 +204,62 @@ const contrastFaults = `() => {
     if (ratio < 4.5) faults.push(text.data.trim().slice(0, 40) + ': ' + ratio.toFixed(2))
   }
   return faults
-}`
+}`;
 
 test('what is said on the picture is not covered by what is pressed there', async () => {
-  const { page } = (visit = await site.visit({ hasTouch: true }))
-  const covered: string[] = []
-  for (const [width, height] of [[667, 375], [844, 390], [900, 700], [1024, 768], [1440, 900], [390, 844], [568, 320]] as const) {
-    await page.setViewportSize({ width, height })
+  const { page } = (visit = await site.visit({ hasTouch: true }));
+  const covered: string[] = [];
+  for (const [width, height] of [
+    [667, 375],
+    [844, 390],
+    [900, 700],
+    [1024, 768],
+    [1440, 900],
+    [390, 844],
+    [568, 320],
+  ] as const) {
+    await page.setViewportSize({ width, height });
     for (const mode of ['Compare', 'Zones']) {
-      await page.getByRole('radio', { name: mode, exact: true }).check({ force: true })
-      const boxes = (selector: string): Promise<{ name: string; left: number; right: number; top: number; bottom: number }[]> =>
+      await page.getByRole('radio', { name: mode, exact: true }).check({ force: true });
+      const boxes = (
+        selector: string,
+      ): Promise<{ name: string; left: number; right: number; top: number; bottom: number }[]> =>
         page.locator(selector).evaluateAll((all) =>
-          all.filter((one) => one.checkVisibility()).map((one) => {
-            const { left, right, top, bottom } = one.getBoundingClientRect()
-            return { name: one.id || one.className.toString(), left, right, top, bottom }
-          }),
-        )
-      const pressed = await boxes('.toolbar > *, .rail')
+          all
+            .filter((one) => one.checkVisibility())
+            .map((one) => {
+              const { left, right, top, bottom } = one.getBoundingClientRect();
+              return { name: one.id || one.className.toString(), left, right, top, bottom };
+            }),
+        );
+      const pressed = await boxes('.toolbar > *, .rail');
       const pairs = (await boxes('.side, .legend')).flatMap((a) =>
-        pressed.filter((b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1).map((b) => `${a.name} by ${b.name}`),
-      )
-      covered.push(...pairs.map((pair) => `${width} × ${height}, ${mode}: ${pair}`))
+        pressed
+          .filter((b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)
+          .map((b) => `${a.name} by ${b.name}`),
+      );
+      covered.push(...pairs.map((pair) => `${width} × ${height}, ${mode}: ${pair}`));
     }
   }
-  await page.getByRole('radio', { name: 'Compare' }).check({ force: true })
-  await page.setViewportSize({ width: 1440, height: 900 })
-  assert.deepEqual(covered, [])
-})
+  await page.getByRole('radio', { name: 'Compare' }).check({ force: true });
+  await page.setViewportSize({ width: 1440, height: 900 });
+  assert.deepEqual(covered, []);
+});
 
 test('where a system has colours of its own, what is chosen still looks chosen', async () => {
-  const { page } = visit
-  await page.emulateMedia({ forcedColors: 'active' })
+  const { page } = visit;
+  await page.emulateMedia({ forcedColors: 'active' });
   // As it is drawn: what a style is computed to be knows nothing of those colours.
   const groundOf = async (selector: string): Promise<string> => {
-    const { x, y, height } = (await page.locator(selector).first().boundingBox())!
-    const { data } = PNG.sync.read(await page.screenshot({ clip: { x: x + 6, y: y + height / 2 - 2, width: 4, height: 4 } }))
-    return data.subarray(0, 3).join()
-  }
-  const grounds: [string, string][] = []
-  for (const group of ['.rail', '.segmented']) grounds.push([await groundOf(`${group} :checked + span`), await groundOf(`${group} :not(:checked) + span`)])
-  await page.emulateMedia({ forcedColors: null })
-  for (const [chosen, other] of grounds) assert.notEqual(chosen, other)
-})
+    const { x, y, height } = (await page.locator(selector).first().boundingBox())!;
+    const { data } = PNG.sync.read(
+      await page.screenshot({ clip: { x: x + 6, y: y + height / 2 - 2, width: 4, height: 4 } }),
+    );
+    return data.subarray(0, 3).join();
+  };
+  const grounds: [string, string][] = [];
+  for (const group of ['.rail', '.segmented'])
+    grounds.push([await groundOf(`${group} :checked + span`), await groundOf(`${group} :not(:checked) + span`)]);
+  await page.emulateMedia({ forcedColors: null });
+  for (const [chosen, other] of grounds) assert.notEqual(chosen, other);
+});

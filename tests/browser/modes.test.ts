@@ -1,134 +1,153 @@
-import assert from 'node:assert/strict'
-import { after, before, test } from 'node:test'
-import type { Page } from 'playwright-core'
-import type { PNG } from 'pngjs'
-import { ball, islandCage } from './models'
-import { difference, look, modelArea, shareOfHue } from './picture'
-import { drop, settled, setThreshold, shownCounts, shownError, Site, type Upload, type Visit } from './site'
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import type { PNG } from 'pngjs';
+import { ball, islandCage } from './models';
+import { difference, look, modelArea, shareOfHue } from './picture';
+import { drop, Site, setThreshold, settled, shownCounts, shownError, type Upload, type Visit } from './site';
 
-const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const
+const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 
-let site: Site
-let visit: Visit
+let site: Site;
+let visit: Visit;
 before(async () => {
-  site = await Site.open()
-  visit = await site.visit({ viewport: { width: 700, height: 480 } })
-})
-after(() => site?.close())
+  site = await Site.open();
+  visit = await site.visit({ viewport: { width: 700, height: 480 } });
+});
+after(() => site?.close());
 
-const choose = (page: Page, mode: (typeof kModes)[number]): Promise<void> => page.locator(`#view-mode input[value=${mode}]`).check({ force: true })
-const ticks = (page: Page): Promise<string[]> => page.locator('#legend .ticks span').allTextContents()
+const choose = (page: Page, mode: (typeof kModes)[number]): Promise<void> =>
+  page.locator(`#view-mode input[value=${mode}]`).check({ force: true });
+const ticks = (page: Page): Promise<string[]> => page.locator('#legend .ticks span').allTextContents();
 
 async function open(...files: Upload[]): Promise<Page> {
-  const { page } = visit
-  await drop(page, files)
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  return page
+  const { page } = visit;
+  await drop(page, files);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  return page;
 }
 
 /** The hues, in steps of 10°, that fill some of a picture with strong colours. */
 function hues(picture: PNG): number[] {
-  return Array.from({ length: 36 }, (_, step) => 10 * step).filter((hue) => shareOfHue(picture, hue) > 0.0003)
+  return Array.from({ length: 36 }, (_, step) => 10 * step).filter((hue) => shareOfHue(picture, hue) > 0.0003);
 }
 
 /** The colour in the middle of a picture. */
 function middle({ data, width, height }: PNG): number[] {
-  const at = 4 * (Math.floor(height / 2) * width + Math.floor(width / 2))
-  return [...data.subarray(at, at + 3)]
+  const at = 4 * (Math.floor(height / 2) * width + Math.floor(width / 2));
+  return [...data.subarray(at, at + 3)];
 }
 
 test('each mode shows another picture, comes back as it was, and says what its colours mean', async () => {
-  const { page, complaints } = visit
-  assert.deepEqual(await page.getByTestId('view-mode').locator('input').evaluateAll((all) => all.map((input) => (input as HTMLInputElement).value)), [...kModes])
-  const area = await modelArea(page)
-  const pictures: PNG[] = []
+  const { page, complaints } = visit;
+  assert.deepEqual(
+    await page
+      .getByTestId('view-mode')
+      .locator('input')
+      .evaluateAll((all) => all.map((input) => (input as HTMLInputElement).value)),
+    [...kModes],
+  );
+  const area = await modelArea(page);
+  const pictures: PNG[] = [];
   for (const mode of kModes) {
-    await choose(page, mode)
-    pictures.push(await look(page, area))
-    assert.equal(await page.locator('#legend').isVisible(), ['zones', 'distance', 'stretch'].includes(mode), `${mode}: legend`)
-    assert.equal(await page.locator('#show-paint').isEnabled(), ['compare', 'result', 'naive'].includes(mode), `${mode}: switch of the paint`)
+    await choose(page, mode);
+    pictures.push(await look(page, area));
+    assert.equal(
+      await page.locator('#legend').isVisible(),
+      ['zones', 'distance', 'stretch'].includes(mode),
+      `${mode}: legend`,
+    );
+    assert.equal(
+      await page.locator('#show-paint').isEnabled(),
+      ['compare', 'result', 'naive'].includes(mode),
+      `${mode}: switch of the paint`,
+    );
   }
   for (const [i, picture] of pictures.entries()) {
-    for (const other of pictures.slice(i + 1)) assert.ok(difference(picture, other) > 0.01)
-    await choose(page, kModes[i]!)
-    assert.ok(difference(picture, await look(page, area)) < 0.0005, `${kModes[i]} comes back`)
+    for (const other of pictures.slice(i + 1)) assert.ok(difference(picture, other) > 0.01);
+    await choose(page, kModes[i]!);
+    assert.ok(difference(picture, await look(page, area)) < 0.0005, `${kModes[i]} comes back`);
   }
-  await choose(page, 'compare')
-  assert.deepEqual(complaints, [])
-})
+  await choose(page, 'compare');
+  assert.deepEqual(complaints, []);
+});
 
 test('the keyboard goes through the modes', async () => {
-  const { page } = visit
-  await page.locator('#view-mode input[value=compare]').focus()
+  const { page } = visit;
+  await page.locator('#view-mode input[value=compare]').focus();
   for (const mode of kModes.slice(1)) {
-    await page.keyboard.press('ArrowRight')
-    assert.equal(await page.locator('#view-mode input:checked').inputValue(), mode)
+    await page.keyboard.press('ArrowRight');
+    assert.equal(await page.locator('#view-mode input:checked').inputValue(), mode);
   }
-  await choose(page, 'compare')
-})
+  await choose(page, 'compare');
+});
 
 test('the checker covers all of the model, whatever may be painted', async () => {
-  const { page } = visit
-  const area = await modelArea(page)
-  await choose(page, 'checker')
-  const before = await look(page, area)
-  const counts = await shownCounts(page)
-  await setThreshold(page, 1)
-  assert.notDeepEqual(await shownCounts(page), counts)
-  assert.ok(difference(before, await look(page, area)) < 0.0005)
-  await setThreshold(page, 0.5)
-})
+  const { page } = visit;
+  const area = await modelArea(page);
+  await choose(page, 'checker');
+  const before = await look(page, area);
+  const counts = await shownCounts(page);
+  await setThreshold(page, 1);
+  assert.notDeepEqual(await shownCounts(page), counts);
+  assert.ok(difference(before, await look(page, area)) < 0.0005);
+  await setThreshold(page, 0.5);
+});
 
 test('parts have colours of their own, far apart', async () => {
-  const { page } = visit
-  await choose(page, 'segments')
-  const picture = await look(page, await modelArea(page))
-  const found = hues(picture)
-  await choose(page, 'result')
-  const painted = hues(await look(page, await modelArea(page)))
-  assert.ok(found.length > 2 * painted.length, `${found.join()} against ${painted.join()}`)
-  assert.ok(shareOfHue(picture, 198) > 0.1, 'the skin is of one')
-})
+  const { page } = visit;
+  await choose(page, 'segments');
+  const picture = await look(page, await modelArea(page));
+  const found = hues(picture);
+  await choose(page, 'result');
+  const painted = hues(await look(page, await modelArea(page)));
+  assert.ok(found.length > 2 * painted.length, `${found.join()} against ${painted.join()}`);
+  assert.ok(shareOfHue(picture, 198) > 0.1, 'the skin is of one');
+});
 
 test('the distance to the cage is coloured by a scale in shares of the model’s diagonal', async () => {
-  const page = await open(await ball(), await islandCage(1))
-  const area = await modelArea(page)
-  await choose(page, 'distance')
+  const page = await open(await ball(), await islandCage(1));
+  const area = await modelArea(page);
+  await choose(page, 'distance');
   // From 0.1 in front of a side to 0.48 under a corner, of a diagonal of 3.1.
-  assert.deepEqual(await ticks(page), ['0', '5', '10', '15', '≥ 20'])
-  const [r, g, b] = middle(await look(page, area)) as [number, number, number]
-  assert.ok(b > 1.4 * g && b > 2 * r, `near a side it is blue: ${[r, g, b]}`)
-  assert.ok(shareOfHue(await look(page, area), 150) > 0.002, 'under a corner it is green')
+  assert.deepEqual(await ticks(page), ['0', '5', '10', '15', '≥ 20']);
+  const [r, g, b] = middle(await look(page, area)) as [number, number, number];
+  assert.ok(b > 1.4 * g && b > 2 * r, `near a side it is blue: ${[r, g, b]}`);
+  assert.ok(shareOfHue(await look(page, area), 150) > 0.002, 'under a corner it is green');
 
-  await open(await islandCage(2))
-  assert.deepEqual(await ticks(page), ['0', '15', '30', '45', '≥ 60'])
-  const far = middle(await look(page, area)) as [number, number, number]
-  assert.ok(far[1] > far[0] && far[1] > far[2], `35 % of the diagonal away it is green: ${far}`)
-})
+  await open(await islandCage(2));
+  assert.deepEqual(await ticks(page), ['0', '15', '30', '45', '≥ 60']);
+  const far = middle(await look(page, area)) as [number, number, number];
+  assert.ok(far[1] > far[0] && far[1] > far[2], `35 % of the diagonal away it is green: ${far}`);
+});
 
 test('stretch is judged where there is paint, and tells where a triangle is drawn over half of the atlas', async () => {
-  const page = await open(await ball(), await islandCage(1))
-  const area = await modelArea(page)
-  await choose(page, 'stretch')
-  assert.deepEqual(await ticks(page), ['≤ ¼×', '½×', '1×', '2×', '≥ 4×'])
-  const [red, blue] = [15, 211]
-  const even = await look(page, area)
-  assert.ok(shareOfHue(even, blue) < 0.0005, 'nothing is crammed')
-  assert.ok(shareOfHue(even, red) < 0.05, 'nor drawn out')
+  const page = await open(await ball(), await islandCage(1));
+  const area = await modelArea(page);
+  await choose(page, 'stretch');
+  assert.deepEqual(await ticks(page), ['≤ ¼×', '½×', '1×', '2×', '≥ 4×']);
+  const [red, blue] = [15, 211];
+  const even = await look(page, area);
+  assert.ok(shareOfHue(even, blue) < 0.0005, 'nothing is crammed');
+  assert.ok(shareOfHue(even, red) < 0.05, 'nor drawn out');
 
   // Per vertex, a triangle over an edge of the cage takes in all that lies between two islands.
-  await page.getByTestId('preset').selectOption('paper')
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  const smeared = shareOfHue(await look(page, area), blue)
-  assert.ok(smeared > 0.005, `${smeared} of the picture is crammed`)
-  await page.getByTestId('preset').selectOption('default')
-  assert.equal(await settled(page), 'ready')
-  assert.ok(difference(even, await look(page, area)) < 0.0005)
+  await page.getByTestId('preset').selectOption('paper');
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  const smeared = shareOfHue(await look(page, area), blue);
+  assert.ok(smeared > 0.005, `${smeared} of the picture is crammed`);
+  await page.getByTestId('preset').selectOption('default');
+  assert.equal(await settled(page), 'ready');
+  assert.ok(difference(even, await look(page, area)) < 0.0005);
 
-  await page.getByTestId('segment-table').locator('select').first().evaluate((select: HTMLSelectElement) => {
-    select.value = 'exclude'
-    select.dispatchEvent(new Event('change'))
-  })
-  const clay = middle(await look(page, area))
-  assert.ok(Math.max(...clay) - Math.min(...clay) < 40, `what is not painted is grey: ${clay}`)
-})
+  await page
+    .getByTestId('segment-table')
+    .locator('select')
+    .first()
+    .evaluate((select: HTMLSelectElement) => {
+      select.value = 'exclude';
+      select.dispatchEvent(new Event('change'));
+    });
+  const clay = middle(await look(page, area));
+  assert.ok(Math.max(...clay) - Math.min(...clay) < 40, `what is not painted is grey: ${clay}`);
+});

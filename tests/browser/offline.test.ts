@@ -1,49 +1,60 @@
-import assert from 'node:assert/strict'
-import { readdirSync } from 'node:fs'
-import { after, before, test } from 'node:test'
-import { settled, shownCounts, shownError, Site } from './site'
+import assert from 'node:assert/strict';
+import { readdirSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { Site, settled, shownCounts, shownError } from './site';
 
-let site: Site
-before(async () => void (site = await Site.open()))
-after(() => site?.close())
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
 
 test('after one visit the page opens without a network, with every sample and every decoder', async () => {
-  const { page, complaints, foreign } = await site.visit({ serviceWorkers: 'allow' })
-  const online = await shownCounts(page)
-  await page.evaluate(() => navigator.serviceWorker.ready)
-  await page.context().setOffline(true)
-  await page.goto(`${site.url}?from=a-friend#later`)
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  assert.deepEqual(await shownCounts(page), online)
+  const { page, complaints, foreign } = await site.visit({ serviceWorkers: 'allow' });
+  const online = await shownCounts(page);
+  await page.evaluate(() => navigator.serviceWorker.ready);
+  await page.context().setOffline(true);
+  await page.goto(`${site.url}?from=a-friend#later`);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual(await shownCounts(page), online);
 
-  const names = await page.getByTestId('sample-select').locator('option').evaluateAll((options) => options.map((option) => (option as HTMLOptionElement).value))
-  assert.ok(names.length >= 3)
+  const names = await page
+    .getByTestId('sample-select')
+    .locator('option')
+    .evaluateAll((options) => options.map((option) => (option as HTMLOptionElement).value));
+  assert.ok(names.length >= 3);
   for (const name of names) {
-    await page.getByTestId('sample-select').selectOption(name)
-    assert.equal(await settled(page), 'ready', `${name}: ${await shownError(page)}`)
+    await page.getByTestId('sample-select').selectOption(name);
+    assert.equal(await settled(page), 'ready', `${name}: ${await shownError(page)}`);
   }
   // What the page asks for only when a file needs it: nothing of it is left on the network.
-  const files = readdirSync(site.folder, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile() && entry.name !== 'service-worker.js')
+  const files = readdirSync(site.folder, { recursive: true, withFileTypes: true }).filter(
+    (entry) => entry.isFile() && entry.name !== 'service-worker.js',
+  );
   const kept = await page.evaluate(async () => {
-    const [name] = await caches.keys()
-    return (await (await caches.open(name!)).keys()).map(({ url }) => new URL(url).pathname.split('/').at(-1)!)
-  })
-  assert.deepEqual(files.map(({ name }) => name).toSorted(), kept.toSorted())
-  assert.deepEqual(complaints, [])
-  assert.deepEqual(foreign, [])
-})
+    const [name] = await caches.keys();
+    return (await (await caches.open(name!)).keys()).map(({ url }) => new URL(url).pathname.split('/').at(-1)!);
+  });
+  assert.deepEqual(files.map(({ name }) => name).toSorted(), kept.toSorted());
+  assert.deepEqual(complaints, []);
+  assert.deepEqual(foreign, []);
+});
 
 test('what is not of the page is not kept, and asks the network', async () => {
-  const { page } = await site.visit({ serviceWorkers: 'allow' })
-  await page.evaluate(() => navigator.serviceWorker.ready)
-  const ask = (): Promise<string> => page.evaluate(() => fetch('something-else.txt').then(() => 'answered', () => 'failed'))
-  assert.equal(await ask(), 'answered')
-  await page.context().setOffline(true)
-  assert.equal(await ask(), 'failed')
-})
+  const { page } = await site.visit({ serviceWorkers: 'allow' });
+  await page.evaluate(() => navigator.serviceWorker.ready);
+  const ask = (): Promise<string> =>
+    page.evaluate(() =>
+      fetch('something-else.txt').then(
+        () => 'answered',
+        () => 'failed',
+      ),
+    );
+  assert.equal(await ask(), 'answered');
+  await page.context().setOffline(true);
+  assert.equal(await ask(), 'failed');
+});
 
 test('so it does where the server sends from index.html to the folder, beside another copy of the page', async () => {
-  const { preview } = await import('vite')
+  const { preview } = await import('vite');
   const server = await preview({
     configFile: false,
     logLevel: 'error',
@@ -54,31 +65,35 @@ test('so it does where the server sends from index.html to the folder, beside an
         name: 'folders',
         configurePreviewServer: ({ middlewares }) => {
           middlewares.use((request, response, next) => {
-            const [, copy, rest] = /^(\/(?:one|other)\/)(.*)$/.exec(request.url ?? '') ?? []
-            if (rest === 'index.html') return void response.writeHead(308, { location: copy! }).end()
-            if (copy) request.url = `/${rest}`
-            next()
-          })
+            const [, copy, rest] = /^(\/(?:one|other)\/)(.*)$/.exec(request.url ?? '') ?? [];
+            if (rest === 'index.html') return void response.writeHead(308, { location: copy! }).end();
+            if (copy) request.url = `/${rest}`;
+            next();
+          });
         },
       },
     ],
-  })
-  const context = await site.browser.newContext({ viewport: { width: 700, height: 500 }, reducedMotion: 'reduce', serviceWorkers: 'allow' })
+  });
+  const context = await site.browser.newContext({
+    viewport: { width: 700, height: 500 },
+    reducedMotion: 'reduce',
+    serviceWorkers: 'allow',
+  });
   try {
-    const page = await context.newPage()
-    const copies = ['one/', 'other/'].map((name) => server.resolvedUrls!.local[0] + name)
+    const page = await context.newPage();
+    const copies = ['one/', 'other/'].map((name) => server.resolvedUrls!.local[0] + name);
     for (const copy of copies) {
-      await page.goto(copy)
-      assert.equal(await settled(page), 'ready', await shownError(page))
-      await page.evaluate(() => navigator.serviceWorker.ready)
+      await page.goto(copy);
+      assert.equal(await settled(page), 'ready', await shownError(page));
+      await page.evaluate(() => navigator.serviceWorker.ready);
     }
-    await context.setOffline(true)
+    await context.setOffline(true);
     for (const copy of copies) {
-      await page.goto(copy)
-      assert.equal(await settled(page), 'ready', await shownError(page))
+      await page.goto(copy);
+      assert.equal(await settled(page), 'ready', await shownError(page));
     }
   } finally {
-    await context.close()
-    await server.close()
+    await context.close();
+    await server.close();
   }
-})
+});

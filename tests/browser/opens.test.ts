@@ -1,189 +1,207 @@
-import assert from 'node:assert/strict'
-import { after, before, test } from 'node:test'
-import { columns, difference, frames, look, modelArea, shareOfHue, watch } from './picture'
-import { setThreshold, shownCounts, shownError, Site, type Visit } from './site'
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { columns, difference, frames, look, modelArea, shareOfHue, watch } from './picture';
+import { Site, setThreshold, shownCounts, shownError, type Visit } from './site';
 
-const kFrames = 30 // in which whatever moves does
+const kFrames = 30; // in which whatever moves does
 
-let site: Site
-let visit: Visit
+let site: Site;
+let visit: Visit;
 before(async () => {
-  site = await Site.open()
-  visit = await site.visit()
-})
-after(() => site?.close())
+  site = await Site.open();
+  visit = await site.visit();
+});
+after(() => site?.close());
 
 test('the page opens with the first sample transferred, silently and without asking other hosts', async () => {
-  const { page, complaints, foreign } = visit
-  assert.equal(await page.getByTestId('status').textContent(), 'ready')
-  assert.equal(await shownError(page), '')
-  const { cosmetic, occluded, uncovered, culled } = await shownCounts(page)
-  assert.ok(cosmetic > 0 && occluded > 0 && uncovered > 0, 'the sample has paint, insides and holes')
-  const total = Number((await page.locator('#count-total').textContent())!.replaceAll(',', ''))
-  assert.equal(cosmetic + occluded + uncovered + culled, total)
-  assert.ok(Number(await page.getByTestId('time-total').textContent()) > 0)
-  assert.ok((await page.getByTestId('sample-select').locator('option').count()) > 0)
-  assert.deepEqual(complaints, [])
-  assert.deepEqual(foreign, [])
-})
+  const { page, complaints, foreign } = visit;
+  assert.equal(await page.getByTestId('status').textContent(), 'ready');
+  assert.equal(await shownError(page), '');
+  const { cosmetic, occluded, uncovered, culled } = await shownCounts(page);
+  assert.ok(cosmetic > 0 && occluded > 0 && uncovered > 0, 'the sample has paint, insides and holes');
+  const total = Number((await page.locator('#count-total').textContent())!.replaceAll(',', ''));
+  assert.equal(cosmetic + occluded + uncovered + culled, total);
+  assert.ok(Number(await page.getByTestId('time-total').textContent()) > 0);
+  assert.ok((await page.getByTestId('sample-select').locator('option').count()) > 0);
+  assert.deepEqual(complaints, []);
+  assert.deepEqual(foreign, []);
+});
 
 test('after a while the page tells how long a transfer takes once the browser has compiled it, and what the first one took', async () => {
-  const { page } = visit
-  const first = page.locator('#time-first')
-  await first.waitFor({ state: 'visible' })
-  const shown = async (): Promise<number> => Number(await page.getByTestId('time-total').textContent())
-  const [, before] = /^([\d.]+) ms the first time/.exec((await first.textContent())!)!
-  assert.ok((await shown()) < Number(before))
-  const steps = (await page.locator('#timings dd').allTextContents()).map(Number)
-  assert.ok(steps.reduce((sum, step) => sum + step) <= 1.01 * (await shown()), 'the steps are of the same run')
-  await setThreshold(page, 0.6)
-  await setThreshold(page, 0.5)
-  assert.ok((await shown()) < Number(before), 'another threshold does not bring the first time back')
-})
+  const { page } = visit;
+  const first = page.locator('#time-first');
+  await first.waitFor({ state: 'visible' });
+  const shown = async (): Promise<number> => Number(await page.getByTestId('time-total').textContent());
+  const [, before] = /^([\d.]+) ms the first time/.exec((await first.textContent())!)!;
+  assert.ok((await shown()) < Number(before));
+  const steps = (await page.locator('#timings dd').allTextContents()).map(Number);
+  assert.ok(steps.reduce((sum, step) => sum + step) <= 1.01 * (await shown()), 'the steps are of the same run');
+  await setThreshold(page, 0.6);
+  await setThreshold(page, 0.5);
+  assert.ok((await shown()) < Number(before), 'another threshold does not bring the first time back');
+});
 
 test('paint, zones and cage are really drawn, and the line shows naive and filtered side by side', async () => {
-  const { page, complaints } = visit
-  const area = await modelArea(page)
-  const mode = (value: string): Promise<void> => page.locator(`input[value=${value}]`).check({ force: true })
-  const layer = (name: string, on: boolean): Promise<void> => page.locator(`#show-${name}`).setChecked(on, { force: true })
+  const { page, complaints } = visit;
+  const area = await modelArea(page);
+  const mode = (value: string): Promise<void> => page.locator(`input[value=${value}]`).check({ force: true });
+  const layer = (name: string, on: boolean): Promise<void> =>
+    page.locator(`#show-${name}`).setChecked(on, { force: true });
 
-  const compared = await look(page, area)
-  await mode('result')
-  const result = await look(page, area)
-  await mode('naive')
-  const naive = await look(page, area)
-  assert.ok(difference(result, naive) > 0.01, 'the filter changes the picture')
+  const compared = await look(page, area);
+  await mode('result');
+  const result = await look(page, area);
+  await mode('naive');
+  const naive = await look(page, area);
+  assert.ok(difference(result, naive) > 0.01, 'the filter changes the picture');
   // Clear of the line itself, which is 2 pixels wide, and of its knob.
-  assert.ok(difference(columns(compared, 0, 0.45), columns(naive, 0, 0.45)) < 0.002, 'naive on the left')
-  assert.ok(difference(columns(compared, 0.55, 1), columns(result, 0.55, 1)) < 0.002, 'filtered on the right')
+  assert.ok(difference(columns(compared, 0, 0.45), columns(naive, 0, 0.45)) < 0.002, 'naive on the left');
+  assert.ok(difference(columns(compared, 0.55, 1), columns(result, 0.55, 1)) < 0.002, 'filtered on the right');
 
-  await mode('result')
-  await layer('paint', false)
-  const bare = await look(page, area)
-  assert.ok(difference(result, bare) > 0.05, 'paint covers the model')
-  await mode('zones')
-  const zones = await look(page, area)
-  const [blue, orange] = [shareOfHue(zones, 202), shareOfHue(zones, 41)]
-  assert.ok(blue > 0.005 && orange > 0.005, `occluded in blue (${blue}), uncovered in orange (${orange})`)
-  await mode('result')
-  assert.ok(difference(bare, await look(page, area)) < 0.002, 'zones leave no trace when switched off')
-  await layer('cage', true)
-  assert.ok(difference(bare, await look(page, area)) > 0.02, 'the cage is drawn')
-  await layer('cage', false)
-  await layer('paint', true)
-  await mode('compare')
-  assert.deepEqual(complaints, [])
-})
+  await mode('result');
+  await layer('paint', false);
+  const bare = await look(page, area);
+  assert.ok(difference(result, bare) > 0.05, 'paint covers the model');
+  await mode('zones');
+  const zones = await look(page, area);
+  const [blue, orange] = [shareOfHue(zones, 202), shareOfHue(zones, 41)];
+  assert.ok(blue > 0.005 && orange > 0.005, `occluded in blue (${blue}), uncovered in orange (${orange})`);
+  await mode('result');
+  assert.ok(difference(bare, await look(page, area)) < 0.002, 'zones leave no trace when switched off');
+  await layer('cage', true);
+  assert.ok(difference(bare, await look(page, area)) > 0.02, 'the cage is drawn');
+  await layer('cage', false);
+  await layer('paint', true);
+  await mode('compare');
+  assert.deepEqual(complaints, []);
+});
 
 test('the line moves with the pointer and with the keys of a slider', async () => {
-  const { page } = visit
-  const divider = page.getByTestId('compare-slider')
-  const value = async (): Promise<number> => Number(await divider.getAttribute('aria-valuenow'))
-  assert.equal(await value(), 50)
-  await divider.focus()
-  await page.keyboard.press('ArrowLeft')
-  assert.equal(await value(), 45)
-  await page.keyboard.press('End')
-  assert.equal(await value(), 100)
+  const { page } = visit;
+  const divider = page.getByTestId('compare-slider');
+  const value = async (): Promise<number> => Number(await divider.getAttribute('aria-valuenow'));
+  assert.equal(await value(), 50);
+  await divider.focus();
+  await page.keyboard.press('ArrowLeft');
+  assert.equal(await value(), 45);
+  await page.keyboard.press('End');
+  assert.equal(await value(), 100);
 
-  const knob = (await page.locator('.knob').boundingBox())!
-  const stage = (await page.locator('#stage').boundingBox())!
-  await page.keyboard.press('Home')
-  await page.keyboard.press('PageUp')
-  assert.equal(await value(), 20)
-  const from = { x: stage.x + 0.2 * stage.width, y: knob.y + knob.height / 2 }
-  await page.mouse.move(from.x, from.y)
-  await page.mouse.down()
-  await page.mouse.move(stage.x + 0.7 * stage.width, from.y, { steps: 4 })
-  await page.mouse.up()
-  assert.ok(Math.abs((await value()) - 70) <= 1, `dragged to ${await value()}`)
-})
+  const knob = (await page.locator('.knob').boundingBox())!;
+  const stage = (await page.locator('#stage').boundingBox())!;
+  await page.keyboard.press('Home');
+  await page.keyboard.press('PageUp');
+  assert.equal(await value(), 20);
+  const from = { x: stage.x + 0.2 * stage.width, y: knob.y + knob.height / 2 };
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(stage.x + 0.7 * stage.width, from.y, { steps: 4 });
+  await page.mouse.up();
+  assert.ok(Math.abs((await value()) - 70) <= 1, `dragged to ${await value()}`);
+});
 
 test('the model turns by mouse and by keys, and comes back home', async () => {
-  const { page } = visit
-  await page.locator('input[value=result]').check({ force: true })
-  const area = await modelArea(page)
-  const home = await look(page, area)
-  await page.locator('#view').focus()
-  await page.keyboard.press('ArrowRight')
-  assert.ok(difference(home, await look(page, area)) > 0.02, 'an arrow key turns it')
-  await page.keyboard.press('Home')
-  assert.ok(difference(home, await look(page, area)) < 0.01, 'Home brings it back')
+  const { page } = visit;
+  await page.locator('input[value=result]').check({ force: true });
+  const area = await modelArea(page);
+  const home = await look(page, area);
+  await page.locator('#view').focus();
+  await page.keyboard.press('ArrowRight');
+  assert.ok(difference(home, await look(page, area)) > 0.02, 'an arrow key turns it');
+  await page.keyboard.press('Home');
+  assert.ok(difference(home, await look(page, area)) < 0.01, 'Home brings it back');
 
-  await page.mouse.move(area.x + area.width / 2, area.y + area.height / 2)
-  await page.mouse.down()
-  await page.mouse.move(area.x + area.width / 2 + 120, area.y + area.height / 2, { steps: 4 })
-  await page.mouse.up()
-  assert.ok(difference(home, await look(page, area)) > 0.02, 'a drag turns it')
-})
+  await page.mouse.move(area.x + area.width / 2, area.y + area.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(area.x + area.width / 2 + 120, area.y + area.height / 2, { steps: 4 });
+  await page.mouse.up();
+  assert.ok(difference(home, await look(page, area)) > 0.02, 'a drag turns it');
+});
 
 test('what the visitor looks at stays when the picture gets higher or lower, as when a phone hides its address bar', async () => {
-  const { page } = visit
+  const { page } = visit;
   const angle = async (): Promise<string[]> => {
-    await page.locator('#share-link').focus()
-    return /angle=[^&]*/.exec((await page.locator('#share-link').getAttribute('href'))!)![0].match(/-?[\d.]+/g)!
-  }
-  const size = page.viewportSize()!
-  await page.locator('#view').focus()
-  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', '+']) await page.keyboard.press(key)
-  await frames(page, 3)
-  const before = await angle()
+    await page.locator('#share-link').focus();
+    return /angle=[^&]*/.exec((await page.locator('#share-link').getAttribute('href'))!)![0].match(/-?[\d.]+/g)!;
+  };
+  const size = page.viewportSize()!;
+  await page.locator('#view').focus();
+  for (const key of ['ArrowLeft', 'ArrowLeft', 'ArrowUp', '+', '+']) await page.keyboard.press(key);
+  await frames(page, 3);
+  const before = await angle();
   for (const height of [size.height - 60, size.height]) {
-    await page.setViewportSize({ ...size, height })
-    await frames(page, 3)
-    const now = await angle()
-    now.forEach((number, i) => assert.ok(Math.abs(Number(number) - Number(before[i])) <= 0.02 * Math.max(1, Math.abs(Number(before[i]))), `${now} instead of ${before}`))
+    await page.setViewportSize({ ...size, height });
+    await frames(page, 3);
+    const now = await angle();
+    now.forEach((number, i) =>
+      assert.ok(
+        Math.abs(Number(number) - Number(before[i])) <= 0.02 * Math.max(1, Math.abs(Number(before[i]))),
+        `${now} instead of ${before}`,
+      ),
+    );
   }
-  await page.locator('#view').focus()
-  await page.keyboard.press('Home')
-})
+  await page.locator('#view').focus();
+  await page.keyboard.press('Home');
+});
 
 test('the content security policy forbids other hosts, inline scripts and eval', async () => {
-  const { page } = visit
+  const { page } = visit;
   const outcome = await page.evaluate(async () => {
-    const breaches: string[] = []
-    document.addEventListener('securitypolicyviolation', ({ effectiveDirective }) => breaches.push(effectiveDirective))
-    const refused = await fetch('https://example.org/').then(() => false, () => true)
-    const script = document.createElement('script')
-    script.textContent = 'globalThis.inlineRan = true'
-    document.head.append(script)
+    const breaches: string[] = [];
+    document.addEventListener('securitypolicyviolation', ({ effectiveDirective }) => breaches.push(effectiveDirective));
+    const refused = await fetch('https://example.org/').then(
+      () => false,
+      () => true,
+    );
+    const script = document.createElement('script');
+    script.textContent = 'globalThis.inlineRan = true';
+    document.head.append(script);
     // It is told of both a little later.
-    for (const end = performance.now() + 10_000; breaches.length < 2 && performance.now() < end; ) await new Promise((done) => setTimeout(done))
-    return { refused, breaches, ran: 'inlineRan' in globalThis }
-  })
-  assert.equal(outcome.refused, true)
-  assert.equal(outcome.ran, false)
-  assert.ok(outcome.breaches.includes('connect-src') && outcome.breaches.includes('script-src-elem'), outcome.breaches.join())
-  const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content')
-  assert.match(policy!, /script-src 'self' 'wasm-unsafe-eval';/)
-})
+    for (const end = performance.now() + 10_000; breaches.length < 2 && performance.now() < end; )
+      await new Promise((done) => setTimeout(done));
+    return { refused, breaches, ran: 'inlineRan' in globalThis };
+  });
+  assert.equal(outcome.refused, true);
+  assert.equal(outcome.ran, false);
+  assert.ok(
+    outcome.breaches.includes('connect-src') && outcome.breaches.includes('script-src-elem'),
+    outcome.breaches.join(),
+  );
+  const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content');
+  assert.match(policy!, /script-src 'self' 'wasm-unsafe-eval';/);
+});
 
 test('the model turns by itself until it is touched, and not for those who want no motion', async () => {
-  const moving = await site.visit({ reducedMotion: 'no-preference', viewport: { width: 800, height: 700 } })
-  const area = await modelArea(moving.page)
-  const first = await look(moving.page, area)
-  await watch(moving.page, area, (picture) => difference(first, picture) > 0.01)
-  await moving.page.locator('#view').focus()
-  await moving.page.keyboard.press('ArrowUp')
-  const touched = await look(moving.page, area)
-  await frames(moving.page, kFrames)
-  assert.ok(difference(touched, await look(moving.page, area)) < 0.002, 'it stands still once touched')
+  const moving = await site.visit({ reducedMotion: 'no-preference', viewport: { width: 800, height: 700 } });
+  const area = await modelArea(moving.page);
+  const first = await look(moving.page, area);
+  await watch(moving.page, area, (picture) => difference(first, picture) > 0.01);
+  await moving.page.locator('#view').focus();
+  await moving.page.keyboard.press('ArrowUp');
+  const touched = await look(moving.page, area);
+  await frames(moving.page, kFrames);
+  assert.ok(difference(touched, await look(moving.page, area)) < 0.002, 'it stands still once touched');
 
-  const still = await site.visit({ viewport: { width: 800, height: 700 } })
-  const before = await look(still.page, area)
-  await frames(still.page, kFrames)
-  assert.equal(difference(before, await look(still.page, area)), 0)
-})
+  const still = await site.visit({ viewport: { width: 800, height: 700 } });
+  const before = await look(still.page, area);
+  await frames(still.page, kFrames);
+  assert.equal(difference(before, await look(still.page, area)), 0);
+});
 
 test('without WebGL the page says so, and still counts', async () => {
-  const { page } = await site.visit({}, `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+  const { page } = await site.visit(
+    {},
+    `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
     apply: (original, canvas, args) => (String(args[0]).startsWith('webgl') ? null : Reflect.apply(original, canvas, args)),
-  })`)
-  assert.equal(await page.getByTestId('status').textContent(), 'ready')
-  assert.match((await page.locator('#stage-notice').textContent())!, /WebGL/)
-  assert.equal(await page.locator('#stage-notice').isVisible(), true)
-  assert.ok((await shownCounts(page)).cosmetic > 0)
+  })`,
+  );
+  assert.equal(await page.getByTestId('status').textContent(), 'ready');
+  assert.match((await page.locator('#stage-notice').textContent())!, /WebGL/);
+  assert.equal(await page.locator('#stage-notice').isVisible(), true);
+  assert.ok((await shownCounts(page)).cosmetic > 0);
   // A picture taken elsewhere, and what it shows in words.
-  const still = page.getByAltText(/lizard/)
-  assert.ok(await still.evaluate(async (image: HTMLImageElement) => image.decode().then(() => image.naturalWidth > 100)))
-})
+  const still = page.getByAltText(/lizard/);
+  assert.ok(
+    await still.evaluate(async (image: HTMLImageElement) => image.decode().then(() => image.naturalWidth > 100)),
+  );
+});

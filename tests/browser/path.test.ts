@@ -1,31 +1,36 @@
-import assert from 'node:assert/strict'
-import path from 'node:path'
-import { before, test } from 'node:test'
-import { init, presetOptions, project } from 'cagecast'
-import { diagonalOf } from '../../web/src/surface'
-import { pathOf, type Path } from '../../web/src/why/path'
-import { Rims } from '../../web/src/why/rims'
-import { modelFolders, readPlain } from '../js/scenes'
+import assert from 'node:assert/strict';
+import path from 'node:path';
+import { before, test } from 'node:test';
+import { init, presetOptions, project } from 'cagecast';
+import { diagonalOf } from '../../web/src/surface';
+import { type Path, pathOf } from '../../web/src/why/path';
+import { Rims } from '../../web/src/why/rims';
+import { modelFolders, readPlain } from '../js/scenes';
 
 /** The zone that each outcome is. */
-const kZones: Record<Path['outcome'], number> = { covered: 0, pokesOut: 0, hidden: 1, lost: 2 }
-const kAsked = 600 // vertices of each model
+const kZones: Record<Path['outcome'], number> = { covered: 0, pokesOut: 0, hidden: 1, lost: 2 };
+const kAsked = 600; // vertices of each model
 
-before(() => init())
+before(() => init());
 
 for (const folder of modelFolders()) {
   test(`${path.basename(folder)}: the way that the page shows of a vertex leads to the zone that the transfer found`, async () => {
-    const [target, cage] = await Promise.all(['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))))
-    const rims = new Rims(cage!)
-    const diagonal = diagonalOf(target!)
+    const [target, cage] = await Promise.all(
+      ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
+    );
+    const rims = new Rims(cage!);
+    const diagonal = diagonalOf(target!);
     for (const preset of ['default', 'paper'] as const) {
-      const { zones, triangles, distances } = project(cage!, target!, { preset })
-      const every = Math.max(1, Math.floor(zones.length / kAsked))
+      const { zones, triangles, distances } = project(cage!, target!, { preset });
+      const every = Math.max(1, Math.floor(zones.length / kAsked));
       for (let vertex = 0; vertex < zones.length; vertex += every) {
-        const way = pathOf(target!, cage!, rims, vertex, triangles[vertex]!, diagonal, presetOptions(preset))
-        assert.equal(kZones[way.outcome], zones[vertex], `${preset}: vertex ${vertex} is ${way.outcome}`)
-        assert.ok(Math.abs(way.start.distanceTo(way.place) - distances[vertex]!) < 1e-6 * diagonal, `${preset}: vertex ${vertex} is as far away`)
+        const way = pathOf(target!, cage!, rims, vertex, triangles[vertex]!, diagonal, presetOptions(preset));
+        assert.equal(kZones[way.outcome], zones[vertex], `${preset}: vertex ${vertex} is ${way.outcome}`);
+        assert.ok(
+          Math.abs(way.start.distanceTo(way.place) - distances[vertex]!) < 1e-6 * diagonal,
+          `${preset}: vertex ${vertex} is as far away`,
+        );
       }
     }
-  })
+  });
 }

@@ -1,144 +1,180 @@
 // Takes the README's pictures of the page: npm run pictures [-- name …]
 
-import { mkdir, writeFile } from 'node:fs/promises'
-import type { Page } from 'playwright-core'
-import { inRepository, settled, Site } from './site.js'
+import { mkdir, writeFile } from 'node:fs/promises';
+import type { Page } from 'playwright-core';
+import { inRepository, Site, settled } from './site.js';
 
-const kFolder = inRepository('docs/pictures')
-const kModels = ['Lizard head', 'Human bust', 'Saloon car']
+const kFolder = inRepository('docs/pictures');
+const kModels = ['Lizard head', 'Human bust', 'Saloon car'];
 
 /** The model alone, naive beside filtered. */
 async function compare(site: Site): Promise<void> {
-  const { page } = await site.visit({ viewport: { width: 1480, height: 720 }, deviceScaleFactor: 1 })
-  await hideControls(page)
-  await rest(page)
-  const box = (await page.locator('#stage').boundingBox())!
-  const clip = { x: box.x + box.width / 2 - 270, y: box.y + box.height * 0.16, width: 540, height: box.height * 0.62 }
-  await page.screenshot({ path: `${kFolder}/compare.jpg`, type: 'jpeg', quality: 88, clip })
+  const { page } = await site.visit({ viewport: { width: 1480, height: 720 }, deviceScaleFactor: 1 });
+  await hideControls(page);
+  await rest(page);
+  const box = (await page.locator('#stage').boundingBox())!;
+  const clip = { x: box.x + box.width / 2 - 270, y: box.y + box.height * 0.16, width: 540, height: box.height * 0.62 };
+  await page.screenshot({ path: `${kFolder}/compare.jpg`, type: 'jpeg', quality: 88, clip });
 }
 
 /** What the page shows until it has drawn the first picture itself: that one, in a square 1.3 times what is sure to be seen. */
 async function first(site: Site): Promise<void> {
-  const { page } = await site.visit({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 2 })
-  await page.addStyleTag({ content: '* { background: none !important; box-shadow: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }' })
-  await rest(page)
-  const clip = (await page.locator('#view').boundingBox())!
-  const shot = dataUri(await page.screenshot({ type: 'png', omitBackground: true, clip }))
+  const { page } = await site.visit({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 2 });
+  await page.addStyleTag({
+    content:
+      '* { background: none !important; box-shadow: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }',
+  });
+  await rest(page);
+  const clip = (await page.locator('#view').boundingBox())!;
+  const shot = dataUri(await page.screenshot({ type: 'png', omitBackground: true, clip }));
   const webp = await page.evaluate(
     async ({ shot, width, height, pixels }) => {
-      const image = new Image()
-      image.src = shot
-      await image.decode()
-      const free = height - 96 // what the toolbar leaves
-      const side = 1.3 * Math.min(free, width)
-      const canvas = document.createElement('canvas')
-      canvas.width = canvas.height = pixels
-      const context = canvas.getContext('2d')!
-      context.imageSmoothingQuality = 'high'
-      context.scale(pixels / side, pixels / side)
-      context.drawImage(image, (side - width) / 2, (side - free) / 2, width, height)
-      return canvas.toDataURL('image/webp', 0.82)
+      const image = new Image();
+      image.src = shot;
+      await image.decode();
+      const free = height - 96; // what the toolbar leaves
+      const side = 1.3 * Math.min(free, width);
+      const canvas = document.createElement('canvas');
+      canvas.width = canvas.height = pixels;
+      const context = canvas.getContext('2d')!;
+      context.imageSmoothingQuality = 'high';
+      context.scale(pixels / side, pixels / side);
+      context.drawImage(image, (side - width) / 2, (side - free) / 2, width, height);
+      return canvas.toDataURL('image/webp', 0.82);
     },
     { shot, ...clip, pixels: 1200 },
-  )
-  await writeFile(`${kFolder}/first.webp`, Buffer.from(webp.split(',')[1]!, 'base64'))
+  );
+  await writeFile(`${kFolder}/first.webp`, Buffer.from(webp.split(',')[1]!, 'base64'));
 }
 
 /** The whole page on two screens. */
 async function desktopAndPhone(site: Site): Promise<void> {
-  const shots: string[] = []
-  for (const [width, height, colorScheme] of [[1440, 900, 'light'], [390, 900, 'dark']] as const) {
-    const { page } = await site.visit({ viewport: { width, height }, deviceScaleFactor: 1, colorScheme })
-    if (width < 600) await choose(page, 'Human bust')
-    await rest(page)
-    shots.push(dataUri(await page.screenshot({ type: 'png' })))
+  const shots: string[] = [];
+  for (const [width, height, colorScheme] of [
+    [1440, 900, 'light'],
+    [390, 900, 'dark'],
+  ] as const) {
+    const { page } = await site.visit({ viewport: { width, height }, deviceScaleFactor: 1, colorScheme });
+    if (width < 600) await choose(page, 'Human bust');
+    await rest(page);
+    shots.push(dataUri(await page.screenshot({ type: 'png' })));
   }
-  await compose(site, 'page', `<div style="display:flex;gap:24px">${shots.map((shot) => `<img src="${shot}" style="height:640px;border-radius:10px">`).join('')}</div>`)
+  await compose(
+    site,
+    'page',
+    `<div style="display:flex;gap:24px">${shots.map((shot) => `<img src="${shot}" style="height:640px;border-radius:10px">`).join('')}</div>`,
+  );
 }
 
 /** Each model in the modes that are not about paint. */
 async function modes(site: Site): Promise<void> {
-  const shown = { zones: 'zones', segments: 'parts', checker: 'UV checker', distance: 'distance to the cage', stretch: 'stretch' }
-  const rows: string[] = []
-  const { page } = await site.visit({ viewport: { width: 900, height: 520 }, deviceScaleFactor: 1 })
-  await hideControls(page)
+  const shown = {
+    zones: 'zones',
+    segments: 'parts',
+    checker: 'UV checker',
+    distance: 'distance to the cage',
+    stretch: 'stretch',
+  };
+  const rows: string[] = [];
+  const { page } = await site.visit({ viewport: { width: 900, height: 520 }, deviceScaleFactor: 1 });
+  await hideControls(page);
   for (const model of kModels) {
-    await choose(page, model)
-    const row: string[] = []
+    await choose(page, model);
+    const row: string[] = [];
     for (const mode of Object.keys(shown)) {
-      await page.locator(`#view-mode input[value=${mode}]`).check({ force: true })
-      await rest(page)
-      row.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })))
+      await page.locator(`#view-mode input[value=${mode}]`).check({ force: true });
+      await rest(page);
+      row.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })));
     }
-    rows.push(row.map((shot) => `<img src="${shot}" style="width:264px;height:214px;object-fit:cover;object-view-box:inset(6% 25% 17% 25%)">`).join(''))
+    rows.push(
+      row
+        .map(
+          (shot) =>
+            `<img src="${shot}" style="width:264px;height:214px;object-fit:cover;object-view-box:inset(6% 25% 17% 25%)">`,
+        )
+        .join(''),
+    );
   }
-  const heads = Object.values(shown).map((head) => `<b style="width:264px;text-align:center">${head}</b>`).join('')
-  await compose(site, 'modes', [heads, ...rows].map((row) => `<div style="display:flex">${row}</div>`).join(''))
+  const heads = Object.values(shown)
+    .map((head) => `<b style="width:264px;text-align:center">${head}</b>`)
+    .join('');
+  await compose(site, 'modes', [heads, ...rows].map((row) => `<div style="display:flex">${row}</div>`).join(''));
 }
 
 /** The stories of an eye, and of a spot that the model hides. */
 async function why(site: Site): Promise<void> {
-  const shots: string[] = []
-  const { page } = await site.visit({ viewport: { width: 1200, height: 760 }, deviceScaleFactor: 1 })
-  await page.locator('#view-mode input[value=result]').check({ force: true })
-  await page.getByRole('radio', { name: 'Why?' }).check({ force: true })
-  const stage = (await page.locator('#stage').boundingBox())!
-  for (const [x, y] of [[0.6, 0.35], [0.42, 0.58]] as const) {
-    await page.mouse.click(stage.x + x * stage.width, stage.y + y * stage.height)
-    await page.locator('#why').evaluate((section) => section.scrollIntoView({ block: 'center' }))
-    await rest(page)
-    shots.push(dataUri(await page.screenshot({ type: 'png' })))
+  const shots: string[] = [];
+  const { page } = await site.visit({ viewport: { width: 1200, height: 760 }, deviceScaleFactor: 1 });
+  await page.locator('#view-mode input[value=result]').check({ force: true });
+  await page.getByRole('radio', { name: 'Why?' }).check({ force: true });
+  const stage = (await page.locator('#stage').boundingBox())!;
+  for (const [x, y] of [
+    [0.6, 0.35],
+    [0.42, 0.58],
+  ] as const) {
+    await page.mouse.click(stage.x + x * stage.width, stage.y + y * stage.height);
+    await page.locator('#why').evaluate((section) => section.scrollIntoView({ block: 'center' }));
+    await rest(page);
+    shots.push(dataUri(await page.screenshot({ type: 'png' })));
   }
-  await compose(site, 'why', `<div style="display:flex;gap:16px">${shots.map((shot) => `<img src="${shot}" style="width:720px;border-radius:10px">`).join('')}</div>`)
+  await compose(
+    site,
+    'why',
+    `<div style="display:flex;gap:16px">${shots.map((shot) => `<img src="${shot}" style="width:720px;border-radius:10px">`).join('')}</div>`,
+  );
 }
 
 /** A mouth and an eye by the method as published, whose borders follow the triangles; and cut. */
 async function borders(site: Site): Promise<void> {
-  const { page } = await site.visit({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 2 })
-  await hideControls(page)
-  await page.locator('#view-mode input[value=result]').check({ force: true })
-  await page.getByTestId('preset').selectOption('paper')
-  await settled(page)
-  await page.locator('#view').hover()
-  for (let step = 0; step < 8; step++) await page.mouse.wheel(0, -240)
-  const shots: string[] = []
+  const { page } = await site.visit({ viewport: { width: 1440, height: 900 }, deviceScaleFactor: 2 });
+  await hideControls(page);
+  await page.locator('#view-mode input[value=result]').check({ force: true });
+  await page.getByTestId('preset').selectOption('paper');
+  await settled(page);
+  await page.locator('#view').hover();
+  for (let step = 0; step < 8; step++) await page.mouse.wheel(0, -240);
+  const shots: string[] = [];
   for (const cut of [false, true]) {
-    await page.getByTestId('exact-borders').setChecked(cut)
-    if (cut) await page.waitForFunction(() => document.querySelector('[data-testid=borders-note]')!.textContent !== '')
-    await rest(page)
-    shots.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })))
+    await page.getByTestId('exact-borders').setChecked(cut);
+    if (cut) await page.waitForFunction(() => document.querySelector('[data-testid=borders-note]')!.textContent !== '');
+    await rest(page);
+    shots.push(dataUri(await page.locator('#stage').screenshot({ type: 'png' })));
   }
-  const half = (shot: string): string => `<img src="${shot}" style="width:560px;height:500px;object-fit:cover;object-view-box:inset(16% 15% 42% 52%)">`
-  await compose(site, 'borders', `<div style="display:flex;gap:12px">${shots.map(half).join('')}</div>`)
+  const half = (shot: string): string =>
+    `<img src="${shot}" style="width:560px;height:500px;object-fit:cover;object-view-box:inset(16% 15% 42% 52%)">`;
+  await compose(site, 'borders', `<div style="display:flex;gap:12px">${shots.map(half).join('')}</div>`);
 }
 
 async function choose(page: Page, model: string): Promise<void> {
-  await page.locator('#sample-select').selectOption({ label: model })
-  await page.waitForTimeout(300)
-  await settled(page)
+  await page.locator('#sample-select').selectOption({ label: model });
+  await page.waitForTimeout(300);
+  await settled(page);
 }
 
 async function hideControls(page: Page): Promise<void> {
-  await page.addStyleTag({ content: '.panel, .toolbar, .rail, .legend, header { opacity: 0 }' })
+  await page.addStyleTag({ content: '.panel, .toolbar, .rail, .legend, header { opacity: 0 }' });
 }
 
 /** Waits until the picture has been drawn with all its textures. */
-const rest = (page: Page): Promise<void> => page.waitForTimeout(2500)
+const rest = (page: Page): Promise<void> => page.waitForTimeout(2500);
 
-const dataUri = (png: Buffer): string => `data:image/png;base64,${png.toString('base64')}`
+const dataUri = (png: Buffer): string => `data:image/png;base64,${png.toString('base64')}`;
 
 async function compose(site: Site, name: string, html: string): Promise<void> {
-  const { page } = await site.visit({ viewport: { width: 1400, height: 700 }, deviceScaleFactor: 1 })
-  await page.setContent(`<body style="margin:0;font:600 18px system-ui;color:#445"><div id="all" style="display:inline-block;padding:12px;background:#fff">${html}</div></body>`)
-  await page.waitForTimeout(500)
-  await page.locator('#all').screenshot({ path: `${kFolder}/${name}.jpg`, type: 'jpeg', quality: 85 })
+  const { page } = await site.visit({ viewport: { width: 1400, height: 700 }, deviceScaleFactor: 1 });
+  await page.setContent(
+    `<body style="margin:0;font:600 18px system-ui;color:#445"><div id="all" style="display:inline-block;padding:12px;background:#fff">${html}</div></body>`,
+  );
+  await page.waitForTimeout(500);
+  await page.locator('#all').screenshot({ path: `${kFolder}/${name}.jpg`, type: 'jpeg', quality: 85 });
 }
 
-const wanted = process.argv.slice(2)
-const site = await Site.open()
+const wanted = process.argv.slice(2);
+const site = await Site.open();
 try {
-  await mkdir(kFolder, { recursive: true })
-  for (const take of [first, compare, desktopAndPhone, modes, why, borders]) if (wanted.length === 0 || wanted.includes(take.name)) await take(site)
+  await mkdir(kFolder, { recursive: true });
+  for (const take of [first, compare, desktopAndPhone, modes, why, borders])
+    if (wanted.length === 0 || wanted.includes(take.name)) await take(site);
 } finally {
-  await site.close()
+  await site.close();
 }

@@ -1,28 +1,32 @@
-import assert from 'node:assert/strict'
-import { readFile } from 'node:fs/promises'
-import { createRequire } from 'node:module'
-import { NodeIO, type Document, type Primitive } from '@gltf-transform/core'
-import { ALL_EXTENSIONS } from '@gltf-transform/extensions'
-import type { Page } from 'playwright-core'
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { createRequire } from 'node:module';
+import { type Document, NodeIO, type Primitive } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import type { Page } from 'playwright-core';
 
 /** As far as it is used here; the package brings no types. */
 const { validateBytes } = createRequire(import.meta.url)('gltf-validator') as {
-  validateBytes(bytes: Uint8Array): Promise<{ issues: { numErrors: number; messages: unknown[] } }>
-}
+  validateBytes(bytes: Uint8Array): Promise<{ issues: { numErrors: number; messages: unknown[] } }>;
+};
 
 /** What a button of the page saves. */
 export async function saved(page: Page, button: string): Promise<{ name: string; bytes: Buffer }> {
-  const coming = page.waitForEvent('download')
-  await page.getByTestId(button).click()
-  const file = await coming
-  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) }
+  const coming = page.waitForEvent('download');
+  await page.getByTestId(button).click();
+  const file = await coming;
+  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
 }
 
 /** Reads a model, after the validator found no fault with it. */
 export async function validModel(bytes: Uint8Array): Promise<Document> {
-  const { issues } = await validateBytes(new Uint8Array(bytes))
-  assert.equal(issues.numErrors, 0, JSON.stringify(issues.messages.slice(0, 3)))
-  return new NodeIO().registerExtensions(ALL_EXTENSIONS).readBinary(new Uint8Array(bytes))
+  const { issues } = await validateBytes(new Uint8Array(bytes));
+  assert.equal(issues.numErrors, 0, JSON.stringify(issues.messages.slice(0, 3)));
+  return new NodeIO().registerExtensions(ALL_EXTENSIONS).readBinary(new Uint8Array(bytes));
 }
 
-export const primitivesOf = (document: Document): Primitive[] => document.getRoot().listMeshes().flatMap((mesh) => mesh.listPrimitives())
+export const primitivesOf = (document: Document): Primitive[] =>
+  document
+    .getRoot()
+    .listMeshes()
+    .flatMap((mesh) => mesh.listPrimitives());

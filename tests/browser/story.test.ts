@@ -1,80 +1,116 @@
-import assert from 'node:assert/strict'
-import path from 'node:path'
-import { before, test } from 'node:test'
-import { classify, init, project, type ClassifyOptions, type Mesh } from 'cagecast'
-import type { Shown } from '../../web/src/session'
-import { Rims } from '../../web/src/why/rims'
-import { tell } from '../../web/src/why/story'
-import { modelFolders, readPlain, smallHole } from '../js/scenes'
+import assert from 'node:assert/strict';
+import path from 'node:path';
+import { before, test } from 'node:test';
+import { type ClassifyOptions, classify, init, type Mesh, project } from 'cagecast';
+import type { Shown } from '../../web/src/session';
+import { Rims } from '../../web/src/why/rims';
+import { tell } from '../../web/src/why/story';
+import { modelFolders, readPlain, smallHole } from '../js/scenes';
 
-before(() => init())
+before(() => init());
 
 /** A mesh with its groups as parts, as the page has them. */
 function withParts(mesh: Mesh) {
-  const { groups, indices } = mesh
-  const count = Math.max(...groups!) + 1
+  const { groups, indices } = mesh;
+  const count = Math.max(...groups!) + 1;
   const firstTriangle = (group: number): number => {
-    for (let triangle = 0; 3 * triangle < indices.length; triangle++) if (groups![indices[3 * triangle]!]! >= group) return triangle
-    return indices.length / 3
-  }
-  return { ...mesh, parts: Array.from({ length: count }, (_, group) => ({ name: `part ${group}`, firstTriangle: firstTriangle(group) })) }
+    for (let triangle = 0; 3 * triangle < indices.length; triangle++)
+      if (groups![indices[3 * triangle]!]! >= group) return triangle;
+    return indices.length / 3;
+  };
+  return {
+    ...mesh,
+    parts: Array.from({ length: count }, (_, group) => ({
+      name: `part ${group}`,
+      firstTriangle: firstTriangle(group),
+    })),
+  };
 }
 
 for (const folder of modelFolders()) {
   test(`${path.basename(folder)}: what is told of a triangle is whether it is painted, and why its part passes or does not`, async () => {
-    const [target, cage] = await Promise.all(['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))))
-    const rims = new Rims(cage!)
+    const [target, cage] = await Promise.all(
+      ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
+    );
+    const rims = new Rims(cage!);
     for (const preset of ['default', 'paper'] as const) {
-      const projection = project(cage!, target!, { preset })
+      const projection = project(cage!, target!, { preset });
       // Of the models only their meshes are asked for.
-      const shown = { target: { mesh: withParts(target!) }, cage: { mesh: cage }, projection } as unknown as Shown
-      const segmentOf = (triangle: number): number => projection.segments[target!.indices[3 * triangle]!]!
+      const shown = { target: { mesh: withParts(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+      const segmentOf = (triangle: number): number => projection.segments[target!.indices[3 * triangle]!]!;
       // One triangle of each segment.
-      const triangles = new Map(Array.from({ length: target!.indices.length / 3 }, (_, triangle) => [segmentOf(triangle), triangle]))
+      const triangles = new Map(
+        Array.from({ length: target!.indices.length / 3 }, (_, triangle) => [segmentOf(triangle), triangle]),
+      );
       for (const threshold of [0.3, 0.5, 0.8]) {
-        const classification = classify(projection, { threshold })
+        const classification = classify(projection, { threshold });
         for (const [segment, triangle] of triangles) {
-          const facts = { shown, classification, rules: { preset, threshold }, locks: {}, rims }
-          const { verdict, steps, part, zone } = tell(facts, triangle, [1, 0, 0])
-          const { culled, coverage } = classification.segmentStats[segment]!
-          const where = `${preset}, ${threshold}, segment ${segment}: ${steps.at(-1)!.sentence}`
-          assert.equal(verdict === 'Painted', classification.cosmeticTriangles[triangle] === 1, where)
-          assert.equal(zone === 0, verdict === 'Painted')
-          assert.match(steps.at(-1)!.sentence, culled ? /culled as a whole|do not pass|exposed: it is culled/ : /passes\.|they pass|is exposed\./, where)
-          assert.equal(part.passes, !culled)
+          const facts = { shown, classification, rules: { preset, threshold }, locks: {}, rims };
+          const { verdict, steps, part, zone } = tell(facts, triangle, [1, 0, 0]);
+          const { culled, coverage } = classification.segmentStats[segment]!;
+          const where = `${preset}, ${threshold}, segment ${segment}: ${steps.at(-1)!.sentence}`;
+          assert.equal(verdict === 'Painted', classification.cosmeticTriangles[triangle] === 1, where);
+          assert.equal(zone === 0, verdict === 'Painted');
+          assert.match(
+            steps.at(-1)!.sentence,
+            culled ? /culled as a whole|do not pass|exposed: it is culled/ : /passes\.|they pass|is exposed\./,
+            where,
+          );
+          assert.equal(part.passes, !culled);
           // Whatever is culled although it is covered well enough is told apart from what is not.
-          if (culled && coverage >= threshold && part.exposed > 0) assert.match(steps.at(-1)!.sentence, /little of it|copies|meant for it/, where)
+          if (culled && coverage >= threshold && part.exposed > 0)
+            assert.match(steps.at(-1)!.sentence, /little of it|copies|meant for it/, where);
         }
       }
     }
-  })
+  });
 }
 
 test('of a part that a hole is meant for that is told, and by the other rules it is painted', () => {
-  const { cage, target } = smallHole()
-  const projection = project(cage, target)
-  const shown = { target: { mesh: withParts(target) }, cage: { mesh: cage }, projection } as unknown as Shown
-  const isEyes = (triangle: number): boolean => projection.segments[target.indices[3 * triangle]!] === 1
-  const covered = Array.from({ length: target.indices.length / 3 }, (_, triangle) => triangle).find((triangle) => isEyes(triangle) && projection.zones[target.indices[3 * triangle]!] === 0)!
+  const { cage, target } = smallHole();
+  const projection = project(cage, target);
+  const shown = { target: { mesh: withParts(target) }, cage: { mesh: cage }, projection } as unknown as Shown;
+  const isEyes = (triangle: number): boolean => projection.segments[target.indices[3 * triangle]!] === 1;
+  const covered = Array.from({ length: target.indices.length / 3 }, (_, triangle) => triangle).find(
+    (triangle) => isEyes(triangle) && projection.zones[target.indices[3 * triangle]!] === 0,
+  )!;
   const told = (options: ClassifyOptions): string => {
-    const facts = { shown, classification: classify(projection, options), rules: { preset: 'default', threshold: 0.5 } as const, locks: {}, rims: new Rims(cage) }
-    const { verdict, because, steps } = tell(facts, covered, [1, 0, 0])
-    return `${verdict}: ${because}. ${steps.at(-1)!.sentence}`
-  }
-  assert.match(told({}), /^Not painted: culled: a hole of the cage seems to be meant for “part 1”\. .* covers 69 %, enough; but a hole .* meant for it: it is small, /)
-  assert.match(told({ baredParts: false }), /^Painted: .* covers 69 %, at least the threshold of 50 %: it passes\.$/)
-})
+    const facts = {
+      shown,
+      classification: classify(projection, options),
+      rules: { preset: 'default', threshold: 0.5 } as const,
+      locks: {},
+      rims: new Rims(cage),
+    };
+    const { verdict, because, steps } = tell(facts, covered, [1, 0, 0]);
+    return `${verdict}: ${because}. ${steps.at(-1)!.sentence}`;
+  };
+  assert.match(
+    told({}),
+    /^Not painted: culled: a hole of the cage seems to be meant for “part 1”\. .* covers 69 %, enough; but a hole .* meant for it: it is small, /,
+  );
+  assert.match(told({ baredParts: false }), /^Painted: .* covers 69 %, at least the threshold of 50 %: it passes\.$/);
+});
 
 test('of a part that is locked only that is told', async () => {
-  const folder = modelFolders()[0]!
-  const [target, cage] = await Promise.all(['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))))
-  const projection = project(cage!, target!)
-  const segment = projection.segments[target!.indices[0]!]!
+  const folder = modelFolders()[0]!;
+  const [target, cage] = await Promise.all(
+    ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
+  );
+  const projection = project(cage!, target!);
+  const segment = projection.segments[target!.indices[0]!]!;
   for (const lock of ['keep', 'exclude'] as const) {
-    const locks = { [segment]: lock }
-    const classification = classify(projection, { locks: { segments: locks } })
-    const shown = { target: { mesh: withParts(target!) }, cage: { mesh: cage }, projection } as unknown as Shown
-    const { steps } = tell({ shown, classification, rules: { preset: 'default', threshold: 0.5 }, locks, rims: new Rims(cage!) }, 0, [1, 0, 0])
-    assert.match(steps.at(-1)!.sentence, new RegExp(`You said to ${lock} it.*${lock === 'keep' ? 'it passes' : 'it is culled'}`))
+    const locks = { [segment]: lock };
+    const classification = classify(projection, { locks: { segments: locks } });
+    const shown = { target: { mesh: withParts(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+    const { steps } = tell(
+      { shown, classification, rules: { preset: 'default', threshold: 0.5 }, locks, rims: new Rims(cage!) },
+      0,
+      [1, 0, 0],
+    );
+    assert.match(
+      steps.at(-1)!.sentence,
+      new RegExp(`You said to ${lock} it.*${lock === 'keep' ? 'it passes' : 'it is culled'}`),
+    );
   }
-})
+});

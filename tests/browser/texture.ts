@@ -1,39 +1,42 @@
-import { readFile } from 'node:fs/promises'
-import type { Locator, Page } from 'playwright-core'
-import { PNG } from 'pngjs'
-import type { Upload } from './site'
+import { readFile } from 'node:fs/promises';
+import type { Locator, Page } from 'playwright-core';
+import { PNG } from 'pngjs';
+import type { Upload } from './site';
 
 /** A picture to lie in a layer. @param colorAt 0..255 each: red, green, blue, alpha. */
 export function image(name: string, size: number, colorAt: (x: number, y: number) => readonly number[]): Upload {
-  const png = new PNG({ width: size, height: size })
-  for (let y = 0; y < size; y++) for (let x = 0; x < size; x++) png.data.set(colorAt(x, y), 4 * (y * size + x))
-  return { name, mimeType: 'image/png', buffer: PNG.sync.write(png) }
+  const png = new PNG({ width: size, height: size });
+  for (let y = 0; y < size; y++) for (let x = 0; x < size; x++) png.data.set(colorAt(x, y), 4 * (y * size + x));
+  return { name, mimeType: 'image/png', buffer: PNG.sync.write(png) };
 }
 
 /** What the layers look like together, as the page saves it: by a key, as the mouse may be in use. */
 export async function savedTexture(page: Page): Promise<PNG> {
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-texture').press('Enter')])
-  return PNG.sync.read(await readFile(await download.path()))
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByTestId('save-texture').press('Enter'),
+  ]);
+  return PNG.sync.read(await readFile(await download.path()));
 }
 
 /** A texel's red, green, blue and alpha, 0..255. */
 export function texel({ data, width }: PNG, x: number, y: number): number[] {
-  return [...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 4)]
+  return [...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 4)];
 }
 
 /** The number of texels of which there is anything. */
 export function filled({ data }: PNG): number {
-  let count = 0
-  for (let at = 3; at < data.length; at += 4) if (data[at]! > 0) count++
-  return count
+  let count = 0;
+  for (let at = 3; at < data.length; at += 4) if (data[at]! > 0) count++;
+  return count;
 }
 
 /** The rows of the list of layers, the uppermost first. */
 export function rows(page: Page): Locator {
-  return page.getByTestId('layer-list').locator('li')
+  return page.getByTestId('layer-list').locator('li');
 }
 
 /** The names in the list of layers, the uppermost first. */
 export function names(page: Page): Promise<string[]> {
-  return rows(page).locator('.name').allTextContents()
+  return rows(page).locator('.name').allTextContents();
 }

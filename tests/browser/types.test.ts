@@ -1,12 +1,14 @@
-import { execFile } from 'node:child_process'
-import { test } from 'node:test'
-import { promisify } from 'node:util'
-import { inRepository } from './site'
+import { execFile } from 'node:child_process';
+import { test } from 'node:test';
+import { promisify } from 'node:util';
+import { inRepository } from './site';
 
 for (const project of ['web', 'web/service-worker', 'tests/browser']) {
   test(`${project}: the types are right, also those of the package it uses`, async () => {
-    await promisify(execFile)(inRepository('node_modules/.bin/tsc'), ['-p', inRepository(project)]).catch(({ stdout }) => {
-      throw new Error(stdout)
-    })
-  })
+    await promisify(execFile)(inRepository('node_modules/.bin/tsc'), ['-p', inRepository(project)]).catch(
+      ({ stdout }) => {
+        throw new Error(stdout);
+      },
+    );
+  });
 }

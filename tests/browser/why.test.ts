@@ -1,197 +1,215 @@
-import assert from 'node:assert/strict'
-import { after, before, test } from 'node:test'
-import type { Page } from 'playwright-core'
-import { PNG } from 'pngjs'
-import { report, type Report } from './cli'
-import { glb, tetrahedron, writeGlb } from './glb'
-import { ball, islandCage } from './models'
-import { difference, frames, look, modelArea, shareOfHue, type Area } from './picture'
-import { drop, inRepository, settled, setThreshold, shownError, Site, type Upload, type Visit } from './site'
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { PNG } from 'pngjs';
+import { type Report, report } from './cli';
+import { glb, tetrahedron, writeGlb } from './glb';
+import { ball, islandCage } from './models';
+import { type Area, difference, frames, look, modelArea, shareOfHue } from './picture';
+import { drop, inRepository, Site, setThreshold, settled, shownError, type Upload, type Visit } from './site';
 
-let site: Site
-let visit: Visit
+let site: Site;
+let visit: Visit;
 before(async () => {
-  site = await Site.open()
-  visit = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 })
-})
-after(() => site?.close())
+  site = await Site.open();
+  visit = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 });
+});
+after(() => site?.close());
 
-const kLizard = (file: string): string => inRepository('build/assets/lizard', `${file}.glb`)
-const bubble = (page: Page): Promise<string> => page.getByTestId('why-bubble').innerText()
-const story = (page: Page): Promise<string> => page.getByTestId('why-story').innerText()
-const choose = (page: Page, title: string): Promise<void> => page.getByRole('radio', { name: title, exact: true }).check({ force: true })
-const mode = (page: Page, value: string): Promise<void> => page.locator(`#view-mode input[value=${value}]`).check({ force: true })
+const kLizard = (file: string): string => inRepository('build/assets/lizard', `${file}.glb`);
+const bubble = (page: Page): Promise<string> => page.getByTestId('why-bubble').innerText();
+const story = (page: Page): Promise<string> => page.getByTestId('why-story').innerText();
+const choose = (page: Page, title: string): Promise<void> =>
+  page.getByRole('radio', { name: title, exact: true }).check({ force: true });
+const mode = (page: Page, value: string): Promise<void> =>
+  page.locator(`#view-mode input[value=${value}]`).check({ force: true });
 
 /** Asks about a spot, and returns what the bubble says; nothing beside the model. */
 async function ask(page: Page, x: number, y: number): Promise<string> {
-  await page.mouse.click(x, y)
-  return (await page.getByTestId('why-bubble').isVisible()) ? bubble(page) : ''
+  await page.mouse.click(x, y);
+  return (await page.getByTestId('why-bubble').isVisible()) ? bubble(page) : '';
 }
 
 test('what is told of a spot is what the picture shows there', async () => {
-  const { page, complaints } = visit
-  const area = await modelArea(page)
-  const violet = new PNG({ width: 8, height: 8 })
-  for (let at = 0; at < violet.data.length; at += 4) violet.data.set([200, 0, 220, 255], at)
-  await page.getByTestId('texture-input').setInputFiles({ name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(violet) })
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  await mode(page, 'zones')
-  const zones = await look(page, area)
-  await mode(page, 'result')
-  const result = await look(page, area)
+  const { page, complaints } = visit;
+  const area = await modelArea(page);
+  const violet = new PNG({ width: 8, height: 8 });
+  for (let at = 0; at < violet.data.length; at += 4) violet.data.set([200, 0, 220, 255], at);
+  await page
+    .getByTestId('texture-input')
+    .setInputFiles({ name: 'violet.png', mimeType: 'image/png', buffer: PNG.sync.write(violet) });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await mode(page, 'zones');
+  const zones = await look(page, area);
+  await mode(page, 'result');
+  const result = await look(page, area);
 
-  await choose(page, 'Why?')
-  const seen = new Set<string>()
+  await choose(page, 'Why?');
+  const seen = new Set<string>();
   for (let row = 1; row < 9; row += 2) {
     for (let column = 3; column < 9; column++) {
-      const [x, y] = [Math.round((area.width * column) / 10), Math.round((area.height * row) / 10)]
-      const told = await ask(page, area.x + x, area.y + y)
-      const verdict = /^(Painted|Not painted: (\w+))/.exec(told)?.[0] ?? 'nothing'
-      seen.add(verdict)
-      const at = (picture: PNG): number[] => [...picture.data.subarray(4 * (y * picture.width + x)).subarray(0, 3)]
-      const [red, green, blue] = at(result) as [number, number, number]
-      const where = `${told} at ${x}, ${y}: ${at(result)}`
-      assert.equal(verdict === 'Painted', red > green + 60 && blue > green + 60, where)
-      const [r, , b] = at(zones) as [number, number, number]
-      if (verdict === 'Not painted: occluded') assert.ok(b > r + 80, `blue: ${where}`)
-      if (verdict === 'Not painted: uncovered') assert.ok(r > b + 80, `orange: ${where}`)
+      const [x, y] = [Math.round((area.width * column) / 10), Math.round((area.height * row) / 10)];
+      const told = await ask(page, area.x + x, area.y + y);
+      const verdict = /^(Painted|Not painted: (\w+))/.exec(told)?.[0] ?? 'nothing';
+      seen.add(verdict);
+      const at = (picture: PNG): number[] => [...picture.data.subarray(4 * (y * picture.width + x)).subarray(0, 3)];
+      const [red, green, blue] = at(result) as [number, number, number];
+      const where = `${told} at ${x}, ${y}: ${at(result)}`;
+      assert.equal(verdict === 'Painted', red > green + 60 && blue > green + 60, where);
+      const [r, , b] = at(zones) as [number, number, number];
+      if (verdict === 'Not painted: occluded') assert.ok(b > r + 80, `blue: ${where}`);
+      if (verdict === 'Not painted: uncovered') assert.ok(r > b + 80, `orange: ${where}`);
     }
   }
-  for (const verdict of ['Not painted: occluded', 'Painted', 'nothing']) assert.ok(seen.has(verdict), [...seen].join())
-  assert.deepEqual(complaints, [])
-})
+  for (const verdict of ['Not painted: occluded', 'Painted', 'nothing']) assert.ok(seen.has(verdict), [...seen].join());
+  assert.deepEqual(complaints, []);
+});
 
 test('the story follows the mouse, stays with a click, follows the threshold, and ends with Escape as if it had not been', async () => {
-  const { page } = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 })
-  visit.page = page
-  await mode(page, 'result')
-  const area = await modelArea(page)
-  const before = await look(page, area)
-  await choose(page, 'Why?')
-  const eye = await findEye(page, area)
-  assert.match(await story(page), /Part\s+It belongs to “l-eye”/)
-  assert.ok(shareOfHue(await look(page, area), 41) > 0.002, 'its ray is orange')
-  assert.ok(difference(before, await look(page, area)) > 0.005, 'the story is drawn')
+  const { page } = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 });
+  visit.page = page;
+  await mode(page, 'result');
+  const area = await modelArea(page);
+  const before = await look(page, area);
+  await choose(page, 'Why?');
+  const eye = await findEye(page, area);
+  assert.match(await story(page), /Part\s+It belongs to “l-eye”/);
+  assert.ok(shareOfHue(await look(page, area), 41) > 0.002, 'its ray is orange');
+  assert.ok(difference(before, await look(page, area)) > 0.005, 'the story is drawn');
 
-  const told = await bubble(page)
-  await page.mouse.move(eye.x - 60, eye.y + 40)
-  await frames(page, 5)
-  assert.equal(await bubble(page), told, 'another spot under the mouse changes nothing')
+  const told = await bubble(page);
+  await page.mouse.move(eye.x - 60, eye.y + 40);
+  await frames(page, 5);
+  assert.equal(await bubble(page), told, 'another spot under the mouse changes nothing');
 
-  const { segments } = await report(kLizard('target'), kLizard('cage'))
-  const facts = segments.find(({ part }: Report['segments'][number]) => part === 'l-eye')!
-  const coverage = Math.round((100 * facts.coveredArea) / facts.exposedArea)
-  assert.match(await story(page), new RegExp(`F = C / E\\s+${coverage} %, culled`))
-  await setThreshold(page, (coverage - 5) / 100)
-  assert.match(await story(page), new RegExp(`Threshold\\s+${coverage - 5} %`))
-  await setThreshold(page, 0.5)
+  const { segments } = await report(kLizard('target'), kLizard('cage'));
+  const facts = segments.find(({ part }: Report['segments'][number]) => part === 'l-eye')!;
+  const coverage = Math.round((100 * facts.coveredArea) / facts.exposedArea);
+  assert.match(await story(page), new RegExp(`F = C / E\\s+${coverage} %, culled`));
+  await setThreshold(page, (coverage - 5) / 100);
+  assert.match(await story(page), new RegExp(`Threshold\\s+${coverage - 5} %`));
+  await setThreshold(page, 0.5);
 
-  await page.locator('#view').focus()
-  await page.keyboard.press('Escape')
-  assert.equal(await page.getByTestId('why-bubble').isVisible(), false)
-  assert.equal(await page.getByRole('radio', { name: 'Turn' }).isChecked(), true)
-  assert.ok(difference(before, await look(page, area)) < 0.0005, 'no trace is left')
-})
+  await page.locator('#view').focus();
+  await page.keyboard.press('Escape');
+  assert.equal(await page.getByTestId('why-bubble').isVisible(), false);
+  assert.equal(await page.getByRole('radio', { name: 'Turn' }).isChecked(), true);
+  assert.ok(difference(before, await look(page, area)) < 0.0005, 'no trace is left');
+});
 
 /** Asks about the eye: its row in the table lights it up, and tells where it is. */
 async function findEye(page: Page, area: Area): Promise<{ x: number; y: number }> {
-  await page.locator('#parts summary').click()
-  const row = page.getByTestId('segment-table').getByRole('combobox', { name: 'Say about l-eye', exact: true })
-  await row.focus()
-  const lit = await look(page, area)
-  await row.blur()
-  const dark = await look(page, area)
+  await page.locator('#parts summary').click();
+  const row = page.getByTestId('segment-table').getByRole('combobox', { name: 'Say about l-eye', exact: true });
+  await row.focus();
+  const lit = await look(page, area);
+  await row.blur();
+  const dark = await look(page, area);
   // Some of it shines through the lids.
-  const pixels = [...Array(lit.width * lit.height).keys()].filter((i) => Math.abs(lit.data[4 * i]! - dark.data[4 * i]!) > 40)
+  const pixels = [...Array(lit.width * lit.height).keys()].filter(
+    (i) => Math.abs(lit.data[4 * i]! - dark.data[4 * i]!) > 40,
+  );
   for (let i = 0; i < pixels.length; i += Math.ceil(pixels.length / 20)) {
-    const at = { x: area.x + (pixels[i]! % lit.width), y: area.y + Math.floor(pixels[i]! / lit.width) }
-    await ask(page, at.x, at.y)
-    if (/“l-eye”/.test(await story(page))) return at
+    const at = { x: area.x + (pixels[i]! % lit.width), y: area.y + Math.floor(pixels[i]! / lit.width) };
+    await ask(page, at.x, at.y);
+    if (/“l-eye”/.test(await story(page))) return at;
   }
-  throw new Error(`none of ${pixels.length} pixels is on the eye`)
+  throw new Error(`none of ${pixels.length} pixels is on the eye`);
 }
 
 test('by keyboard: W asks, Enter tells of the middle, and a screen reader is told the whole of it', async () => {
-  const { page } = visit
-  await drop(page, [await ball(), await islandCage(1)])
-  assert.equal(await settled(page), 'ready', await shownError(page))
-  await page.locator('#view').focus()
-  await page.keyboard.press('w')
-  assert.equal(await page.getByRole('radio', { name: 'Why?' }).isChecked(), true)
-  assert.equal(await page.locator('.crosshair').isVisible(), true)
-  await page.keyboard.press('Enter')
-  assert.match(await bubble(page), /^Painted/)
-  assert.match(await story(page), /meets the cage after \d.* %, and nothing of the model before it/)
-  await page.waitForFunction(() => /^Painted: .*meets the cage/.test(document.querySelector('#summary')!.textContent!))
-  await page.keyboard.press('ArrowRight')
-  await page.keyboard.press('Enter')
-  assert.match(await bubble(page), /^Painted/)
-})
+  const { page } = visit;
+  await drop(page, [await ball(), await islandCage(1)]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.locator('#view').focus();
+  await page.keyboard.press('w');
+  assert.equal(await page.getByRole('radio', { name: 'Why?' }).isChecked(), true);
+  assert.equal(await page.locator('.crosshair').isVisible(), true);
+  await page.keyboard.press('Enter');
+  assert.match(await bubble(page), /^Painted/);
+  assert.match(await story(page), /meets the cage after \d.* %, and nothing of the model before it/);
+  await page.waitForFunction(() => /^Painted: .*meets the cage/.test(document.querySelector('#summary')!.textContent!));
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Enter');
+  assert.match(await bubble(page), /^Painted/);
+});
 
 test('a story that is kept follows the model as it moves', async () => {
-  const { page } = visit
-  await page.getByRole('button', { name: 'Ask the middle' }).click()
-  const still = await story(page)
+  const { page } = visit;
+  await page.getByRole('button', { name: 'Ask the middle' }).click();
+  const still = await story(page);
   const inflate = async (amount: string): Promise<void> => {
-    await page.locator('#deform').selectOption('inflate')
-    await page.getByTestId('amount').fill(amount)
-    await page.waitForFunction((amount) => document.querySelector<HTMLOutputElement>('#amount-value')!.value === amount && document.querySelector('#live')!.ariaBusy === 'false', Number(amount).toFixed(2))
-  }
-  await inflate('-0.8')
-  const away = (told: string): number => Number.parseFloat(/nearest, (\S+) %/.exec(told)![1]!)
-  assert.ok(away(await story(page)) > away(still) + 1, `${away(still)} % away, then ${away(await story(page))} %`)
-  await inflate('0')
-  assert.equal(await story(page), still)
-})
+    await page.locator('#deform').selectOption('inflate');
+    await page.getByTestId('amount').fill(amount);
+    await page.waitForFunction(
+      (amount) =>
+        document.querySelector<HTMLOutputElement>('#amount-value')!.value === amount &&
+        document.querySelector('#live')!.ariaBusy === 'false',
+      Number(amount).toFixed(2),
+    );
+  };
+  await inflate('-0.8');
+  const away = (told: string): number => Number.parseFloat(/nearest, (\S+) %/.exec(told)![1]!);
+  assert.ok(away(await story(page)) > away(still) + 1, `${away(still)} % away, then ${away(await story(page))} %`);
+  await inflate('0');
+  assert.equal(await story(page), still);
+});
 
 for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
   test(`${name}: what is asked about is what is seen, not what lies behind`, async () => {
-    const { page } = visit
+    const { page } = visit;
     const nearest = async (target: Upload): Promise<string> => {
-      await drop(page, [target, await islandCage(1)])
-      assert.equal(await settled(page), 'ready', await shownError(page))
-      await page.getByRole('button', { name: 'Ask the middle' }).click()
-      return /Triangle \d+ of the cage/.exec(await story(page))![0]
-    }
+      await drop(page, [target, await islandCage(1)]);
+      assert.equal(await settled(page), 'ready', await shownError(page));
+      await page.getByRole('button', { name: 'Ask the middle' }).click();
+      return /Triangle \d+ of the cage/.exec(await story(page))![0];
+    };
     // The side of the cage that faces the viewer is the fifth; each side is of two triangles.
-    assert.match(await nearest(await ball(options)), /Triangle (8|9) /)
-  })
+    assert.match(await nearest(await ball(options)), /Triangle (8|9) /);
+  });
 }
 
 test('each way to be left out, and each to be let in, has words of its own', async () => {
-  const { page } = visit
+  const { page } = visit;
   const open = async (size: number): Promise<string> => {
-    await drop(page, [glb('thing.glb', writeGlb(tetrahedron(size))), glb('cage.glb', writeGlb(tetrahedron(2)))])
-    assert.equal(await settled(page), 'ready', await shownError(page))
-    await page.getByRole('button', { name: 'Ask the middle' }).click()
-    return `${await bubble(page)} ${await story(page)}`
-  }
-  assert.match(await open(1), /Painted.*the cage is over it and nothing of the model between/s)
-  assert.match(await open(4), /Not painted: uncovered.*it lies outside the cage/s)
-  assert.match(await open(2.002), /Painted.*pokes out of the cage a little/s)
+    await drop(page, [glb('thing.glb', writeGlb(tetrahedron(size))), glb('cage.glb', writeGlb(tetrahedron(2)))]);
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    await page.getByRole('button', { name: 'Ask the middle' }).click();
+    return `${await bubble(page)} ${await story(page)}`;
+  };
+  assert.match(await open(1), /Painted.*the cage is over it and nothing of the model between/s);
+  assert.match(await open(4), /Not painted: uncovered.*it lies outside the cage/s);
+  assert.match(await open(2.002), /Painted.*pokes out of the cage a little/s);
 
-  await open(1)
-  await page.getByTestId('segment-table').locator('select').first().evaluate((select: HTMLSelectElement) => {
-    select.value = 'exclude'
-    select.dispatchEvent(new Event('change'))
-  })
-  assert.match(await bubble(page), /Not painted: culled\s+you excluded “thing”/)
-})
+  await open(1);
+  await page
+    .getByTestId('segment-table')
+    .locator('select')
+    .first()
+    .evaluate((select: HTMLSelectElement) => {
+      select.value = 'exclude';
+      select.dispatchEvent(new Event('change'));
+    });
+  assert.match(await bubble(page), /Not painted: culled\s+you excluded “thing”/);
+});
 
 test('on a phone a tap asks, and a swipe still turns the model', async () => {
-  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true })
-  await choose(page, 'Why?')
-  const area = await modelArea(page)
-  await page.touchscreen.tap(area.x + area.width / 2, area.y + area.height / 2)
-  assert.match(await bubble(page), /painted/i)
-  const told = await bubble(page)
-  const before = await look(page, area)
-  const session = await page.context().newCDPSession(page)
+  const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  await choose(page, 'Why?');
+  const area = await modelArea(page);
+  await page.touchscreen.tap(area.x + area.width / 2, area.y + area.height / 2);
+  assert.match(await bubble(page), /painted/i);
+  const told = await bubble(page);
+  const before = await look(page, area);
+  const session = await page.context().newCDPSession(page);
   const touch = (type: string, x?: number): Promise<unknown> =>
-    session.send('Input.dispatchTouchEvent' as never, { type, touchPoints: x === undefined ? [] : [{ x, y: area.y + 60 }] } as never)
-  await touch('touchStart', 120)
-  for (const x of [150, 180, 210]) await touch('touchMove', x)
-  await touch('touchEnd')
-  assert.ok(difference(before, await look(page, area)) > 0.02, 'it turned')
-  assert.equal(await bubble(page), told)
-})
+    session.send(
+      'Input.dispatchTouchEvent' as never,
+      { type, touchPoints: x === undefined ? [] : [{ x, y: area.y + 60 }] } as never,
+    );
+  await touch('touchStart', 120);
+  for (const x of [150, 180, 210]) await touch('touchMove', x);
+  await touch('touchEnd');
+  assert.ok(difference(before, await look(page, area)) > 0.02, 'it turned');
+  assert.equal(await bubble(page), told);
+});

@@ -5,8 +5,22 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { CagecastError, classify, init, presetOptions, project, splitVertices, transfer, Zone, type Lock, type Locks, type Mesh, type Preset, type TransferResult } from 'cagecast';
-import { head, smallHole, smallest, soup } from './scenes.js';
+import {
+  CagecastError,
+  classify,
+  init,
+  type Lock,
+  type Locks,
+  type Mesh,
+  type Preset,
+  presetOptions,
+  project,
+  splitVertices,
+  type TransferResult,
+  transfer,
+  Zone,
+} from 'cagecast';
+import { head, smallest, smallHole, soup } from './scenes.js';
 
 const arrays = ['uvs', 'zones', 'triangles', 'distances', 'segments', 'cosmeticTriangles', 'cornerUvs'] as const;
 const presets: Preset[] = ['paper', 'default'];
@@ -33,7 +47,10 @@ describe('init', () => {
       await Promise.all([init(), init(), init()]);
       await init();
       console.log(before, compiled);`;
-    assert.equal(execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim(), '0 1');
+    assert.equal(
+      execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim(),
+      '0 1',
+    );
   });
 
   test('a failed start may be tried again', () => {
@@ -46,7 +63,10 @@ describe('init', () => {
       WebAssembly.compile = compile;
       await init();
       console.log(typeof transfer);`;
-    assert.equal(execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim(), 'unsupported unsupported\nfunction');
+    assert.equal(
+      execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim(),
+      'unsupported unsupported\nfunction',
+    );
   });
 
   for (const host of ['reads hexadecimal digits by itself', 'does not']) {
@@ -105,7 +125,10 @@ describe('a file of WebAssembly that is not as it was shipped', () => {
   const folder = mkdtempSync(join(tmpdir(), 'cagecast-file-'));
   after(() => rmSync(folder, { recursive: true, force: true }));
   const start = (file: Buffer) => {
-    writeFileSync(join(folder, 'package.json'), JSON.stringify({ type: 'module', imports: { '#read-wasm': './read-wasm-node.js' } }));
+    writeFileSync(
+      join(folder, 'package.json'),
+      JSON.stringify({ type: 'module', imports: { '#read-wasm': './read-wasm-node.js' } }),
+    );
     for (const name of ['slim.js', 'read-wasm-node.js']) copyFileSync(join('dist', name), join(folder, name));
     writeFileSync(join(folder, 'cagecast.wasm'), file);
     const script = `
@@ -121,7 +144,10 @@ describe('a file of WebAssembly that is not as it was shipped', () => {
   });
 
   test('is called what it is, where it is something else', () => {
-    assert.match(start(Buffer.from('<!doctype html><title>Not found</title>')), /cannot run the WebAssembly module .*magic/);
+    assert.match(
+      start(Buffer.from('<!doctype html><title>Not found</title>')),
+      /cannot run the WebAssembly module .*magic/,
+    );
   });
 });
 
@@ -134,21 +160,47 @@ describe('transfer', () => {
       const result = transfer(cage, target, { preset });
       const vertices = target.positions.length / 3;
       assert.ok(result.uvs instanceof Float32Array && result.uvs.length === 2 * vertices);
-      assert.ok(result.cornerUvs instanceof Float32Array && result.cornerUvs.length === (preset === 'paper' ? 0 : 2 * target.indices.length));
+      assert.ok(
+        result.cornerUvs instanceof Float32Array &&
+          result.cornerUvs.length === (preset === 'paper' ? 0 : 2 * target.indices.length),
+      );
       assert.ok(result.zones instanceof Uint8Array && result.zones.length === vertices);
       assert.ok(result.triangles instanceof Uint32Array && result.triangles.length === vertices);
       assert.ok(result.distances instanceof Float32Array && result.distances.length === vertices);
       assert.ok(result.segments instanceof Uint32Array && result.segments.length === vertices);
-      assert.ok(result.cosmeticTriangles instanceof Uint8Array && result.cosmeticTriangles.length === target.indices.length / 3);
+      assert.ok(
+        result.cosmeticTriangles instanceof Uint8Array && result.cosmeticTriangles.length === target.indices.length / 3,
+      );
       assert.equal(result.segmentStats.length, 1 + Math.max(...result.segments));
-      for (const [s, { points, area, exposedArea, coveredArea, coverage, sunkArea, group, copyOf, culled }] of result.segmentStats.entries()) {
-        assert.ok(points > 0 && area > 0 && exposedArea <= area * (1 + 1e-9) && coveredArea <= exposedArea * (1 + 1e-9) && sunkArea <= coveredArea * (1 + 1e-9));
+      for (const [
+        s,
+        { points, area, exposedArea, coveredArea, coverage, sunkArea, group, copyOf, culled },
+      ] of result.segmentStats.entries()) {
+        assert.ok(
+          points > 0 &&
+            area > 0 &&
+            exposedArea <= area * (1 + 1e-9) &&
+            coveredArea <= exposedArea * (1 + 1e-9) &&
+            sunkArea <= coveredArea * (1 + 1e-9),
+        );
         assert.equal(coverage, exposedArea > 0 ? coveredArea / exposedArea : 0);
         if (preset === 'paper') assert.equal(culled, coveredArea < 0.5 * exposedArea);
         assert.equal(group, target.groups![result.segments.indexOf(s)]);
         assert.ok(copyOf <= s);
       }
-      assert.deepEqual(Object.keys(result.timings), ['weld', 'build', 'project', 'occluded', 'covered', 'segments', 'secondLook', 'holes', 'seams', 'classify', 'total']);
+      assert.deepEqual(Object.keys(result.timings), [
+        'weld',
+        'build',
+        'project',
+        'occluded',
+        'covered',
+        'segments',
+        'secondLook',
+        'holes',
+        'seams',
+        'classify',
+        'total',
+      ]);
       for (const time of Object.values(result.timings)) assert.ok(time >= 0 && Number.isFinite(time));
       assert.ok(result.peakBytes > 0);
     });
@@ -165,8 +217,12 @@ describe('transfer', () => {
       assert.equal(share(2, Zone.Occluded), 1);
       for (let t = 0; t < cosmeticTriangles.length; ++t) {
         const corners = [...target.indices.subarray(3 * t, 3 * t + 3)].map((v) => zones[v]);
-        const some = corners.includes(Zone.Cosmetic) && corners.every((zone) => zone === Zone.Cosmetic || zone === Zone.Occluded);
-        assert.equal(cosmeticTriangles[t], (preset === 'paper' ? corners.every((zone) => zone === Zone.Cosmetic) : some) ? 1 : 0);
+        const some =
+          corners.includes(Zone.Cosmetic) && corners.every((zone) => zone === Zone.Cosmetic || zone === Zone.Occluded);
+        assert.equal(
+          cosmeticTriangles[t],
+          (preset === 'paper' ? corners.every((zone) => zone === Zone.Cosmetic) : some) ? 1 : 0,
+        );
       }
     });
   }
@@ -176,7 +232,10 @@ describe('transfer', () => {
       assert.deepEqual(bytes(transfer(cage, target)), bytes(transfer(cage, target, { preset: 'default' })));
     }
     const { cage, target } = head(1);
-    assert.notDeepEqual(transfer(cage, target).cosmeticTriangles, transfer(cage, target, { preset: 'paper' }).cosmeticTriangles);
+    assert.notDeepEqual(
+      transfer(cage, target).cosmeticTriangles,
+      transfer(cage, target, { preset: 'paper' }).cosmeticTriangles,
+    );
   });
 
   test('gives the same bits every time', () => {
@@ -188,7 +247,10 @@ describe('transfer', () => {
 
   test('areas near the largest float there is are what they are', () => {
     const sides = [-1, 1, 1, 1, -1, -1, -1, -1, 1]; // a triangle across a box
-    const at = (size: number, times: number): Mesh => ({ positions: Float32Array.from({ length: 9 * times }, (_, i) => size * sides[i % 9]!), indices: Uint32Array.from({ length: 3 * times }, (_, i) => i) });
+    const at = (size: number, times: number): Mesh => ({
+      positions: Float32Array.from({ length: 9 * times }, (_, i) => size * sides[i % 9]!),
+      indices: Uint32Array.from({ length: 3 * times }, (_, i) => i),
+    });
     const areaOf = (size: number) => {
       const cage = { ...at(size, 1), uvs: new Float32Array(6) };
       return transfer(cage, at(size, 7), { preset: 'paper' }).segmentStats[0]!.area / size / size;
@@ -204,7 +266,8 @@ describe('transfer', () => {
     transfer(large.cage, large.target);
     project(large.cage, large.target);
     assert.deepEqual(bytes(result), copy);
-    for (const name of arrays) assert.ok(result[name].byteOffset === 0 && result[name].byteLength === result[name].buffer.byteLength, name);
+    for (const name of arrays)
+      assert.ok(result[name].byteOffset === 0 && result[name].byteLength === result[name].buffer.byteLength, name);
     assert.equal(new Set(arrays.map((name) => result[name].buffer)).size, arrays.length);
     assert.ok(result.cornerUvs.length > 0);
   });
@@ -253,8 +316,14 @@ describe('transfer', () => {
         const distance = Math.hypot(...[0, 1, 2].map((k) => target.positions[3 * v + k]! - cage.positions[3 * c + k]!));
         if (distance < least - 1e-9) [best, least] = [c, distance];
       }
-      const ties = [...used].filter((c) => Math.hypot(...[0, 1, 2].map((k) => target.positions[3 * v + k]! - cage.positions[3 * c + k]!)) < least + 1e-6);
-      assert.ok(best >= 0 && ties.some((c) => cage.uvs![2 * c] === uvs[2 * v] && cage.uvs![2 * c + 1] === uvs[2 * v + 1]), `vertex ${v}`);
+      const ties = [...used].filter(
+        (c) =>
+          Math.hypot(...[0, 1, 2].map((k) => target.positions[3 * v + k]! - cage.positions[3 * c + k]!)) < least + 1e-6,
+      );
+      assert.ok(
+        best >= 0 && ties.some((c) => cage.uvs![2 * c] === uvs[2 * v] && cage.uvs![2 * c + 1] === uvs[2 * v + 1]),
+        `vertex ${v}`,
+      );
     }
   });
 });
@@ -286,14 +355,23 @@ describe('project and classify', () => {
     const projection = project(cage, target);
     assert.deepEqual(classify(projection), classify(projection, { preset: 'default' }));
     const { floor, copies, baredParts, partialTriangles } = presetOptions('paper');
-    assert.deepEqual(classify(projection, { preset: 'paper' }), classify(projection, { floor, copies, baredParts, partialTriangles }));
-    assert.notDeepEqual(classify(projection, { preset: 'paper' }).cosmeticTriangles, classify(projection).cosmeticTriangles);
+    assert.deepEqual(
+      classify(projection, { preset: 'paper' }),
+      classify(projection, { floor, copies, baredParts, partialTriangles }),
+    );
+    assert.notDeepEqual(
+      classify(projection, { preset: 'paper' }).cosmeticTriangles,
+      classify(projection).cosmeticTriangles,
+    );
   });
 
   test('a projection is plain data: it can be cloned and sent', () => {
     const { cage, target } = head(10, 8);
     const projection = project(cage, target);
-    assert.deepEqual(classify(structuredClone(projection), { threshold: 0.2 }), classify(projection, { threshold: 0.2 }));
+    assert.deepEqual(
+      classify(structuredClone(projection), { threshold: 0.2 }),
+      classify(projection, { threshold: 0.2 }),
+    );
   });
 
   test('classify leaves the projection as it was', () => {
@@ -313,13 +391,31 @@ describe('options', () => {
     assert.deepEqual(presetOptions(), presetOptions('default'));
     const paper = presetOptions('paper');
     assert.deepEqual(
-      [paper.seams, paper.occlusionReach, paper.floor, paper.votes, paper.farRims, paper.depths, paper.secondLook, paper.bothSides, paper.exposedSide, paper.holes, paper.copies, paper.baredParts, paper.partialTriangles],
+      [
+        paper.seams,
+        paper.occlusionReach,
+        paper.floor,
+        paper.votes,
+        paper.farRims,
+        paper.depths,
+        paper.secondLook,
+        paper.bothSides,
+        paper.exposedSide,
+        paper.holes,
+        paper.copies,
+        paper.baredParts,
+        paper.partialTriangles,
+      ],
       ['vertex', Infinity, 'none', false, false, false, false, false, false, false, false, false, false],
     );
     for (const { cage, target } of [head(1), soup(3)]) {
       for (const preset of presets) {
         const other = presets.find((one) => one !== preset)!;
-        assert.deepEqual(bytes(transfer(cage, target, { preset: other, ...presetOptions(preset) })), bytes(transfer(cage, target, { preset })), preset);
+        assert.deepEqual(
+          bytes(transfer(cage, target, { preset: other, ...presetOptions(preset) })),
+          bytes(transfer(cage, target, { preset })),
+          preset,
+        );
       }
     }
   });
@@ -327,25 +423,43 @@ describe('options', () => {
   test('each single option reaches the core', () => {
     const { cage, target } = head(4);
     const plain = transfer(cage, target, { preset: 'paper' });
-    assert.equal(transfer(cage, target, { preset: 'paper', seams: 'corner' }).cornerUvs.length, 2 * target.indices.length);
+    assert.equal(
+      transfer(cage, target, { preset: 'paper', seams: 'corner' }).cornerUvs.length,
+      2 * target.indices.length,
+    );
     assert.equal(transfer(cage, target, { seams: 'vertex' }).cornerUvs.length, 0);
-    const painted = (options: object) => transfer(cage, target, { preset: 'paper', ...options }).cosmeticTriangles.filter((one) => one === 1).length;
+    const painted = (options: object) =>
+      transfer(cage, target, { preset: 'paper', ...options }).cosmeticTriangles.filter((one) => one === 1).length;
     assert.ok(painted({ partialTriangles: true }) >= painted({}));
     assert.ok(painted({ holes: true }) > painted({}));
-    const bared = (options: object) => transfer(smallHole().cage, smallHole().target, options).segmentStats.map((stats) => [stats.culled, stats.bared]);
-    assert.deepEqual(bared({}), [[false, false], [true, true]]);
-    assert.deepEqual(bared({ baredParts: false }), [[false, false], [false, false]]);
-    assert.deepEqual(bared({ locks: { segments: { 1: 'exclude' } } }), [[false, false], [true, false]]);
+    const bared = (options: object) =>
+      transfer(smallHole().cage, smallHole().target, options).segmentStats.map((stats) => [stats.culled, stats.bared]);
+    assert.deepEqual(bared({}), [
+      [false, false],
+      [true, true],
+    ]);
+    assert.deepEqual(bared({ baredParts: false }), [
+      [false, false],
+      [false, false],
+    ]);
+    assert.deepEqual(bared({ locks: { segments: { 1: 'exclude' } } }), [
+      [false, false],
+      [true, false],
+    ]);
     assert.ok(painted({ floor: 'area', minCovered: 1 }) < painted({}));
     assert.ok(painted({ threshold: 0, floor: 'depth', depths: true, minCovered: 1, minOfAll: 1 }) < painted({}));
-    assert.ok(transfer(cage, target, { preset: 'paper', occlusionReach: 0 }).zones.filter((zone) => zone === Zone.Occluded).length <= plain.zones.filter((zone) => zone === Zone.Occluded).length);
+    assert.ok(
+      transfer(cage, target, { preset: 'paper', occlusionReach: 0 }).zones.filter((zone) => zone === Zone.Occluded)
+        .length <= plain.zones.filter((zone) => zone === Zone.Occluded).length,
+    );
   });
 });
 
 describe('locks', () => {
   before(init);
   const { cage, target } = head(5);
-  const vertices = (result: { zones: Uint8Array }, group: number) => [...result.zones].filter((_, v) => target.groups![v] === group);
+  const vertices = (result: { zones: Uint8Array }, group: number) =>
+    [...result.zones].filter((_, v) => target.groups![v] === group);
   /** The same locks in transfer and in classify. */
   const locked = (locks: Locks) => {
     const result = transfer(cage, target, { locks });
@@ -378,13 +492,22 @@ describe('locks', () => {
 
   test('what is not there cannot be locked', () => {
     const fails = (locks: unknown, message: RegExp) => {
-      for (const call of [() => transfer(cage, target, { locks: locks as Locks }), () => classify(project(cage, target), { locks: locks as Locks })]) {
-        assert.throws(call, (error) => error instanceof CagecastError && error.code === 'badOption' && message.test(error.message));
+      for (const call of [
+        () => transfer(cage, target, { locks: locks as Locks }),
+        () => classify(project(cage, target), { locks: locks as Locks }),
+      ]) {
+        assert.throws(
+          call,
+          (error) => error instanceof CagecastError && error.code === 'badOption' && message.test(error.message),
+        );
       }
     };
     fails({ groups: { 7: 'keep' } }, /options\.locks\.groups\[7\] = "keep", but no segment is of that group$/);
     fails({ segments: { 99: 'exclude' } }, /options\.locks\.segments\[99\] = "exclude", but there are \d+ segments$/);
-    fails({ segments: { 0: 'maybe' } }, /options\.locks\.segments\[0\] = "maybe" is unknown; there are: "auto", "keep", "exclude"$/);
+    fails(
+      { segments: { 0: 'maybe' } },
+      /options\.locks\.segments\[0\] = "maybe" is unknown; there are: "auto", "keep", "exclude"$/,
+    );
     fails({ segment: {} }, /options\.locks\.segment is unknown; there are: segments, groups$/);
     fails('keep', /options\.locks is "keep", not an object$/);
     fails({ groups: 1 }, /options\.locks\.groups is 1, not an object/);
@@ -403,7 +526,11 @@ describe('splitVertices', () => {
       const kinds = new Set<string>();
       indices.forEach((vertex, corner) => {
         assert.equal(sources[vertex], target.indices[corner], name);
-        assert.deepEqual([uvs[2 * vertex]! + 0, uvs[2 * vertex + 1]! + 0], [cornerUvs[2 * corner]! + 0, cornerUvs[2 * corner + 1]! + 0], name);
+        assert.deepEqual(
+          [uvs[2 * vertex]! + 0, uvs[2 * vertex + 1]! + 0],
+          [cornerUvs[2 * corner]! + 0, cornerUvs[2 * corner + 1]! + 0],
+          name,
+        );
         kinds.add(`${sources[vertex]} ${cornerUvs[2 * corner]! + 0} ${cornerUvs[2 * corner + 1]! + 0}`);
       });
       assert.equal(sources.length, kinds.size);
@@ -414,9 +541,24 @@ describe('splitVertices', () => {
   test('what cannot be split is said', () => {
     const { target } = smallest();
     const fails = (call: () => unknown, code: string, message: RegExp) =>
-      assert.throws(call, (error) => error instanceof CagecastError && error.code === code && message.test(error.message));
-    fails(() => splitVertices(target, new Float32Array(4)), 'cornerUvCountMismatch', /^splitVertices: cornerUvs has 4 numbers, not 2 for each of 3 corners$/);
-    fails(() => splitVertices(target, [] as unknown as Float32Array), 'badArgument', /^splitVertices: cornerUvs is of type Array, not a Float32Array$/);
-    fails(() => splitVertices({ ...target, indices: new Uint32Array([0, 1, 9]) }, new Float32Array(6)), 'indexOutOfRange', /^splitVertices: target\.indices\[2\] = 9 is out of range \(3 vertices\)$/);
+      assert.throws(
+        call,
+        (error) => error instanceof CagecastError && error.code === code && message.test(error.message),
+      );
+    fails(
+      () => splitVertices(target, new Float32Array(4)),
+      'cornerUvCountMismatch',
+      /^splitVertices: cornerUvs has 4 numbers, not 2 for each of 3 corners$/,
+    );
+    fails(
+      () => splitVertices(target, [] as unknown as Float32Array),
+      'badArgument',
+      /^splitVertices: cornerUvs is of type Array, not a Float32Array$/,
+    );
+    fails(
+      () => splitVertices({ ...target, indices: new Uint32Array([0, 1, 9]) }, new Float32Array(6)),
+      'indexOutOfRange',
+      /^splitVertices: target\.indices\[2\] = 9 is out of range \(3 vertices\)$/,
+    );
   });
 });

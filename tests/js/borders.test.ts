@@ -6,11 +6,32 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { CagecastError, classify, init, project, transfer, Zone, type Classification, type Mesh, type TransferOptions, type TransferResult } from 'cagecast';
-import { cutBorders, type CutTarget } from 'cagecast/borders';
+import {
+  CagecastError,
+  type Classification,
+  classify,
+  init,
+  type Mesh,
+  project,
+  type TransferOptions,
+  type TransferResult,
+  transfer,
+  Zone,
+} from 'cagecast';
+import { type CutTarget, cutBorders } from 'cagecast/borders';
 import { cagecast as cagecastTransform } from 'cagecast/gltf';
 import { applyTransfer } from 'cagecast/three';
-import { BufferAttribute, BufferGeometry, DataUtils, Float16BufferAttribute, Mesh as ThreeMesh, MeshStandardMaterial, Texture, Triangle, Vector3 } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DataUtils,
+  Float16BufferAttribute,
+  MeshStandardMaterial,
+  Texture,
+  Mesh as ThreeMesh,
+  Triangle,
+  Vector3,
+} from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { cagecast, GlbMaker, glbOf, validate } from './glb.js';
 import { head, modelFolders, random, readPlain } from './scenes.js';
@@ -23,13 +44,18 @@ function meshOf(target: Mesh, { sources, weights, indices }: CutTarget): Mesh {
   const positions = new Float32Array(own + sources.length);
   positions.set(target.positions);
   for (let i = 0; i < sources.length; i += 3) {
-    for (let k = 0; k < 3; ++k) positions[own + i + k] = [0, 1, 2].reduce((sum, j) => sum + weights[i + j]! * target.positions[3 * sources[i + j]! + k]!, 0);
+    for (let k = 0; k < 3; ++k)
+      positions[own + i + k] = [0, 1, 2].reduce(
+        (sum, j) => sum + weights[i + j]! * target.positions[3 * sources[i + j]! + k]!,
+        0,
+      );
   }
   return { positions, indices };
 }
 
 const vertex = ({ positions }: Mesh, v: number) => new Vector3(...positions.subarray(3 * v, 3 * v + 3));
-const corners = (mesh: Mesh, t: number) => new Triangle(...([0, 1, 2].map((k) => vertex(mesh, mesh.indices[3 * t + k]!)) as [Vector3, Vector3, Vector3]));
+const corners = (mesh: Mesh, t: number) =>
+  new Triangle(...([0, 1, 2].map((k) => vertex(mesh, mesh.indices[3 * t + k]!)) as [Vector3, Vector3, Vector3]));
 const cross = (a: Vector3, b: Vector3) => new Vector3().crossVectors(a, b);
 
 /** Tells of places whether they are beyond the rims of a cage: nearest to an open edge of it. */
@@ -42,7 +68,10 @@ function beyond(cage: Mesh, places: Vector3[], diagonal: number): boolean[] {
     const edge = key(...ends(Math.floor(i / 3), i % 3));
     uses.set(edge, (uses.get(edge) ?? 0) + 1);
   }
-  const probes = { positions: Float32Array.from(places.flatMap(({ x, y, z }) => [x, y, z])), indices: Uint32Array.from({ length: 3 * Math.ceil(places.length / 3) }, (_, i) => Math.min(i, places.length - 1)) };
+  const probes = {
+    positions: Float32Array.from(places.flatMap(({ x, y, z }) => [x, y, z])),
+    indices: Uint32Array.from({ length: 3 * Math.ceil(places.length / 3) }, (_, i) => Math.min(i, places.length - 1)),
+  };
   const { triangles } = project(cage, probes, { preset: 'paper' });
   return places.map((place, i) => {
     const nearest = corners(cage, triangles[i]!).closestPointToPoint(place, new Vector3());
@@ -63,7 +92,9 @@ function beyond(cage: Mesh, places: Vector3[], diagonal: number): boolean[] {
 function straightness(cage: Mesh, mesh: Mesh, painted: Uint8Array, diagonal: number): { share: number; count: number } {
   const edges = new Map<string, number[]>();
   for (let i = 0; i < mesh.indices.length; ++i) {
-    const ends = [i, i - (i % 3) + ((i + 1) % 3)].map((c) => mesh.positions.subarray(3 * mesh.indices[c]!, 3 * mesh.indices[c]! + 3).join());
+    const ends = [i, i - (i % 3) + ((i + 1) % 3)].map((c) =>
+      mesh.positions.subarray(3 * mesh.indices[c]!, 3 * mesh.indices[c]! + 3).join(),
+    );
     const list = edges.get(ends.sort().join(';')) ?? [];
     edges.set(ends.join(';'), [...list, i]);
   }
@@ -80,14 +111,22 @@ function straightness(cage: Mesh, mesh: Mesh, painted: Uint8Array, diagonal: num
     const along = b!.clone().sub(a!).normalize();
     const around = both.flatMap((i) => {
       const across = cross(corners(mesh, Math.floor(i / 3)).getNormal(new Vector3()), along).normalize();
-      const at = (r: number, angle: number) => middle.clone().addScaledVector(along, r * diagonal * Math.cos(angle)).addScaledVector(across, r * diagonal * Math.sin(angle));
-      return [1.25e-4, 2.5e-4, 5e-4, 1e-3].flatMap((r) => Array.from({ length: 8 }, (_, n) => at(r, (n * Math.PI) / 4)));
+      const at = (r: number, angle: number) =>
+        middle
+          .clone()
+          .addScaledVector(along, r * diagonal * Math.cos(angle))
+          .addScaledVector(across, r * diagonal * Math.sin(angle));
+      return [1.25e-4, 2.5e-4, 5e-4, 1e-3].flatMap((r) =>
+        Array.from({ length: 8 }, (_, n) => at(r, (n * Math.PI) / 4)),
+      );
     });
     return [middle, ...around];
   });
   const sides = beyond(cage, places, diagonal);
   const each = places.length / atHoles.length;
-  const near = atHoles.filter((_, i) => sides.slice(each * i + 1, each * (i + 1)).some((side) => side !== sides[each * i]));
+  const near = atHoles.filter((_, i) =>
+    sides.slice(each * i + 1, each * (i + 1)).some((side) => side !== sides[each * i]),
+  );
   return { share: near.length / atHoles.length, count: atHoles.length };
 }
 
@@ -108,25 +147,41 @@ describe('cutBorders', () => {
       const vertices = target.positions.length / 3 + cut.sources.length / 3;
       const triangles = cut.indices.length / 3;
       assert.ok(triangles > target.indices.length / 3);
-      const lengths = { sources: cut.weights.length, weights: cut.sources.length, indices: 3 * triangles, triangles, uvs: 2 * vertices, cornerUvs: seams === 'corner' ? 6 * triangles : 0, zones: vertices, cosmeticTriangles: triangles };
+      const lengths = {
+        sources: cut.weights.length,
+        weights: cut.sources.length,
+        indices: 3 * triangles,
+        triangles,
+        uvs: 2 * vertices,
+        cornerUvs: seams === 'corner' ? 6 * triangles : 0,
+        zones: vertices,
+        cosmeticTriangles: triangles,
+      };
       assert.deepEqual(Object.fromEntries(Object.entries(cut).map(([name, { length }]) => [name, length])), lengths);
       for (const name of ['sources', 'indices', 'triangles'] as const) assert.ok(cut[name] instanceof Uint32Array);
       for (const name of ['weights', 'uvs', 'cornerUvs'] as const) assert.ok(cut[name] instanceof Float32Array);
       assert.ok(cut.indices.every((v) => v < vertices) && cut.sources.every((v) => v < target.positions.length / 3));
-      for (let i = 0; i < cut.weights.length; i += 3) assert.equal(cut.weights[i]! + cut.weights[i + 1]! + cut.weights[i + 2]!, 1);
-      assert.ok(cut.triangles.every((t, i) => t < target.indices.length / 3 && (i === 0 || t >= cut.triangles[i - 1]!)));
+      for (let i = 0; i < cut.weights.length; i += 3)
+        assert.equal(cut.weights[i]! + cut.weights[i + 1]! + cut.weights[i + 2]!, 1);
+      assert.ok(
+        cut.triangles.every((t, i) => t < target.indices.length / 3 && (i === 0 || t >= cut.triangles[i - 1]!)),
+      );
       assert.ok(cut.zones.every((zone) => zone <= Zone.Culled) && cut.cosmeticTriangles.some((one) => one === 1));
     });
   }
 
   test('paint on the lizard ends where the rims of the cage are projected to, within 0.1 % of the diagonal', async (context) => {
-    const [lizardCage, lizard] = await Promise.all(['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`))) as [Mesh, Mesh];
+    const [lizardCage, lizard] = (await Promise.all(
+      ['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)),
+    )) as [Mesh, Mesh];
     const result = transfer(lizardCage, lizard);
     const cut = await cutBorders(lizardCage, lizard, result);
     const diagonal = diagonalOf(lizard);
     const before = straightness(lizardCage, lizard, result.cosmeticTriangles, diagonal);
     const after = straightness(lizardCage, meshOf(lizard, cut), cut.cosmeticTriangles, diagonal);
-    context.diagnostic(`of ${after.count} places ${after.share}; of ${before.count} uncut ${before.share}; ${cut.indices.length / 3 - lizard.indices.length / 3} triangles more`);
+    context.diagnostic(
+      `of ${after.count} places ${after.share}; of ${before.count} uncut ${before.share}; ${cut.indices.length / 3 - lizard.indices.length / 3} triangles more`,
+    );
     assert.ok(after.count > 100);
     assert.equal(after.share, 1);
     assert.ok(before.share < 0.5);
@@ -144,14 +199,35 @@ describe('cutBorders', () => {
   test('a result of another target, or none, is refused in words', async () => {
     const result = transfer(cage, target);
     const code = async (given: unknown, expected: string, message: RegExp) =>
-      assert.rejects(cutBorders(cage, target, given as TransferResult), (error: unknown) => error instanceof CagecastError && error.code === expected && message.test(error.message));
+      assert.rejects(
+        cutBorders(cage, target, given as TransferResult),
+        (error: unknown) => error instanceof CagecastError && error.code === expected && message.test(error.message),
+      );
     await code(undefined, 'badArgument', /^cutBorders: result is undefined; pass what transfer\(\) returned$/);
     await code({ ...result, zones: [] }, 'badArgument', /result\.zones is of type Array, not a Uint8Array/);
-    await code({ ...result, zones: result.zones.slice(1) }, 'resultMismatch', /result\.zones has \d+ entries, not 1 for each of \d+ vertices of target/);
-    await code({ ...result, zones: result.zones.map((zone, v) => (v === 7 ? 200 : zone)) }, 'resultMismatch', /result\.zones\[7\] = 200 is not a zone \(0\.\.3\)/);
-    await code({ ...result, segmentStats: [] }, 'resultMismatch', /result\.segments\[0\] = 0 is out of range \(0 segments\)/);
-    await assert.rejects(cutBorders({ ...cage, positions: cage.positions.map((x, i) => (i === 0 ? NaN : x)) }, target, result), /cutBorders: cage\.positions\[0\] = NaN is not a finite number/);
-    await assert.rejects(cutBorders(cage, target, result, { threshold: 2 }), /cutBorders: options\.threshold = 2 is not within 0\.\.1/);
+    await code(
+      { ...result, zones: result.zones.slice(1) },
+      'resultMismatch',
+      /result\.zones has \d+ entries, not 1 for each of \d+ vertices of target/,
+    );
+    await code(
+      { ...result, zones: result.zones.map((zone, v) => (v === 7 ? 200 : zone)) },
+      'resultMismatch',
+      /result\.zones\[7\] = 200 is not a zone \(0\.\.3\)/,
+    );
+    await code(
+      { ...result, segmentStats: [] },
+      'resultMismatch',
+      /result\.segments\[0\] = 0 is out of range \(0 segments\)/,
+    );
+    await assert.rejects(
+      cutBorders({ ...cage, positions: cage.positions.map((x, i) => (i === 0 ? NaN : x)) }, target, result),
+      /cutBorders: cage\.positions\[0\] = NaN is not a finite number/,
+    );
+    await assert.rejects(
+      cutBorders(cage, target, result, { threshold: 2 }),
+      /cutBorders: options\.threshold = 2 is not within 0\.\.1/,
+    );
     // @ts-expect-error no such option
     await assert.rejects(cutBorders(cage, target, result, { treshold: 1 }), { code: 'badOption' });
   });
@@ -179,15 +255,36 @@ describe('with borders: cut', () => {
       units.set(normal.toArray(), 3 * v);
       tangents.set([normal.y, normal.z, normal.x, -1], 4 * v);
       const all = Array.from({ length: 4 }, next);
-      weights.set(all.map((x) => x / all.reduce((a, b) => a + b)), 4 * v);
+      weights.set(
+        all.map((x) => x / all.reduce((a, b) => a + b)),
+        4 * v,
+      );
     }
     primitive.attributes['NORMAL'] = maker.accessor(units, 'VEC3');
     primitive.attributes['TANGENT'] = maker.accessor(tangents, 'VEC4');
-    primitive.attributes['COLOR_0'] = maker.accessor(Uint8Array.from({ length: 4 * vertices }, () => 256 * next()), 'VEC4', { normalized: true });
-    primitive.attributes['JOINTS_0'] = maker.accessor(Uint8Array.from({ length: 4 * vertices }, (_, i) => 4 * (Math.floor(i / 4) % 3) + (i % 4)), 'VEC4');
+    primitive.attributes['COLOR_0'] = maker.accessor(
+      Uint8Array.from({ length: 4 * vertices }, () => 256 * next()),
+      'VEC4',
+      { normalized: true },
+    );
+    primitive.attributes['JOINTS_0'] = maker.accessor(
+      Uint8Array.from({ length: 4 * vertices }, (_, i) => 4 * (Math.floor(i / 4) % 3) + (i % 4)),
+      'VEC4',
+    );
     primitive.attributes['WEIGHTS_0'] = maker.accessor(weights, 'VEC4');
     primitive.attributes['_HEAT'] = maker.accessor(Float32Array.from({ length: vertices }, next), 'SCALAR');
-    primitive.targets = [{ POSITION: maker.accessor(Float32Array.from({ length: 3 * vertices }, () => next() - 0.5), 'VEC3'), NORMAL: maker.accessor(Float32Array.from({ length: 3 * vertices }, () => next() - 0.5), 'VEC3') }];
+    primitive.targets = [
+      {
+        POSITION: maker.accessor(
+          Float32Array.from({ length: 3 * vertices }, () => next() - 0.5),
+          'VEC3',
+        ),
+        NORMAL: maker.accessor(
+          Float32Array.from({ length: 3 * vertices }, () => next() - 0.5),
+          'VEC3',
+        ),
+      },
+    ];
     const joints = Array.from({ length: 12 }, (_, j) => maker.node({ name: `joint ${j}` }, false));
     maker.node({ name: 'joints', children: joints });
     const node = { mesh, name: 'head', scale };
@@ -202,27 +299,69 @@ describe('with borders: cut', () => {
     return maker.finish();
   }
 
-  for (const [name, scale] of Object.entries({ 'skinned and morphing': [1, 1, 1], mirrored: [-1, 1, 1] } as Record<string, [number, number, number]>)) {
+  for (const [name, scale] of Object.entries({ 'skinned and morphing': [1, 1, 1], mirrored: [-1, 1, 1] } as Record<
+    string,
+    [number, number, number]
+  >)) {
     test(`the command gives new vertices all attributes of those around them, in proportion: ${name}`, async () => {
       writeFileSync(at('rich.glb'), rich(scale));
       writeFileSync(at('cage.glb'), glbOf(cage));
       writeFileSync(at('paint.png'), readFileSync('build/assets/lizard/paint-tiger.png'));
-      const { status, stdout, stderr } = cagecast('transfer', at('rich.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '--borders', 'cut', '-o', at('out.glb'), '--report', at('report.json'));
+      const { status, stdout, stderr } = cagecast(
+        'transfer',
+        at('rich.glb'),
+        '--cage',
+        at('cage.glb'),
+        '--texture',
+        at('paint.png'),
+        '--borders',
+        'cut',
+        '-o',
+        at('out.glb'),
+        '--report',
+        at('report.json'),
+      );
       assert.equal(status, 0, stderr);
       assert.deepEqual(await validate(at('out.glb')), []);
 
-      const read = async (file: string) => (await new NodeIO().read(at(file))).getRoot().listMeshes()[0]!.listPrimitives();
+      const read = async (file: string) =>
+        (await new NodeIO().read(at(file))).getRoot().listMeshes()[0]!.listPrimitives();
       const [[was], [is, overlay]] = await Promise.all([read('rich.glb'), read('out.glb')]);
-      const plain = { positions: target.positions, indices: scale[0] < 0 ? target.indices.map((_, i) => target.indices[i % 3 === 0 ? i : i % 3 === 1 ? i + 1 : i - 1]!) : target.indices };
+      const plain = {
+        positions: target.positions,
+        indices:
+          scale[0] < 0
+            ? target.indices.map((_, i) => target.indices[i % 3 === 0 ? i : i % 3 === 1 ? i + 1 : i - 1]!)
+            : target.indices,
+      };
       const result = transfer(cage, plain);
       const cut = await cutBorders(cage, plain, result);
       const [triangles, added] = [cut.indices.length / 3, cut.sources.length / 3];
       assert.ok(added > 20);
-      const painted = (cosmetic: Uint8Array) => ({ total: cosmetic.length, cosmetic: cosmetic.filter((one) => one === 1).length });
-      const counts = (zones: Uint8Array) => Object.fromEntries(['cosmetic', 'occluded', 'uncovered', 'culled'].map((name, zone) => [name, zones.filter((one) => one === zone).length]));
-      const report = JSON.parse(readFileSync(at('report.json'), 'utf8')) as { target: object; counts: object; triangles: object; cut: object; parts: { cutTriangles: number }[] };
+      const painted = (cosmetic: Uint8Array) => ({
+        total: cosmetic.length,
+        cosmetic: cosmetic.filter((one) => one === 1).length,
+      });
+      const counts = (zones: Uint8Array) =>
+        Object.fromEntries(
+          ['cosmetic', 'occluded', 'uncovered', 'culled'].map((name, zone) => [
+            name,
+            zones.filter((one) => one === zone).length,
+          ]),
+        );
+      const report = JSON.parse(readFileSync(at('report.json'), 'utf8')) as {
+        target: object;
+        counts: object;
+        triangles: object;
+        cut: object;
+        parts: { cutTriangles: number }[];
+      };
       assert.deepEqual([report.counts, report.triangles], [counts(result.zones), painted(result.cosmeticTriangles)]);
-      assert.deepEqual(report.cut, { vertices: vertices + added, counts: counts(cut.zones), triangles: painted(cut.cosmeticTriangles) });
+      assert.deepEqual(report.cut, {
+        vertices: vertices + added,
+        counts: counts(cut.zones),
+        triangles: painted(cut.cosmeticTriangles),
+      });
       assert.equal(report.parts[0]!.cutTriangles, triangles - target.indices.length / 3);
       assert.match(stdout, /triangles may be painted; cut along borders, [\d,]+ of [\d,]+;/);
       assert.equal(overlay!.getIndices()!.getCount(), 3 * cut.cosmeticTriangles.reduce((sum, one) => sum + one, 0));
@@ -237,23 +376,44 @@ describe('with borders: cut', () => {
         const known = vertexOf.get(vertex) ?? cut.indices[from]!;
         assert.equal(known, cut.indices[from]);
         vertexOf.set(vertex, known);
-        assert.deepEqual([...uvs.subarray(2 * vertex, 2 * vertex + 2)].map((x) => x + 0), [...cut.cornerUvs.subarray(2 * from, 2 * from + 2)].map((x) => x + 0));
+        assert.deepEqual(
+          [...uvs.subarray(2 * vertex, 2 * vertex + 2)].map((x) => x + 0),
+          [...cut.cornerUvs.subarray(2 * from, 2 * from + 2)].map((x) => x + 0),
+        );
       });
       const zones = is!.getAttribute('_NCZ')!.getArray()!;
       for (const [vertex, v] of vertexOf) assert.equal(zones[vertex], cut.zones[v]);
 
-      const sourcesOf = (v: number) => (v < vertices ? [[v, 1] as const] : [0, 1, 2].map((j) => [cut.sources[3 * (v - vertices) + j]!, cut.weights[3 * (v - vertices) + j]!] as const));
-      const mean = (values: ArrayLike<number>, size: number, v: number) => Array.from({ length: size }, (_, k) => sourcesOf(v).reduce((sum, [u, weight]) => sum + weight * values[size * u + k]!, 0));
-      const near = (a: readonly number[], b: readonly number[], most: number, what: string) => assert.ok(a.every((x, k) => Math.abs(x - b[k]!) <= most), `${what}: ${a.join()} is not ${b.join()}`);
+      const sourcesOf = (v: number) =>
+        v < vertices
+          ? [[v, 1] as const]
+          : [0, 1, 2].map((j) => [cut.sources[3 * (v - vertices) + j]!, cut.weights[3 * (v - vertices) + j]!] as const);
+      const mean = (values: ArrayLike<number>, size: number, v: number) =>
+        Array.from({ length: size }, (_, k) =>
+          sourcesOf(v).reduce((sum, [u, weight]) => sum + weight * values[size * u + k]!, 0),
+        );
+      const near = (a: readonly number[], b: readonly number[], most: number, what: string) =>
+        assert.ok(
+          a.every((x, k) => Math.abs(x - b[k]!) <= most),
+          `${what}: ${a.join()} is not ${b.join()}`,
+        );
       const values = (primitive: typeof was, semantic: string) => primitive!.getAttribute(semantic)!.getArray()!;
-      const row = (list: ArrayLike<number>, size: number, v: number) => Array.from({ length: size }, (_, k) => list[size * v + k]!);
+      const row = (list: ArrayLike<number>, size: number, v: number) =>
+        Array.from({ length: size }, (_, k) => list[size * v + k]!);
       for (const [vertex, v] of vertexOf) {
-        for (const [semantic, size, most] of [['POSITION', 3, 1e-6], ['COLOR_0', 4, 0.51], ['TEXCOORD_0', 2, 1e-6], ['_HEAT', 1, 1e-6]] as const) {
+        for (const [semantic, size, most] of [
+          ['POSITION', 3, 1e-6],
+          ['COLOR_0', 4, 0.51],
+          ['TEXCOORD_0', 2, 1e-6],
+          ['_HEAT', 1, 1e-6],
+        ] as const) {
           near(row(values(is, semantic), size, vertex), mean(values(was, semantic), size, v), most, semantic);
         }
         const direction = new Vector3(...mean(values(was, 'NORMAL'), 3, v)).normalize();
         near(row(values(is, 'NORMAL'), 3, vertex), direction.toArray(), 1e-6, 'NORMAL');
-        const tangent = new Vector3(...mean(values(was, 'TANGENT'), 4, v).slice(0, 3) as [number, number, number]).normalize();
+        const tangent = new Vector3(
+          ...(mean(values(was, 'TANGENT'), 4, v).slice(0, 3) as [number, number, number]),
+        ).normalize();
         near(row(values(is, 'TANGENT'), 4, vertex), [...tangent.toArray(), -1], 1e-6, 'TANGENT');
         for (const semantic of ['POSITION', 'NORMAL']) {
           const deltas = (primitive: typeof was) => primitive!.listTargets()[0]!.getAttribute(semantic)!.getArray()!;
@@ -262,79 +422,152 @@ describe('with borders: cut', () => {
         if (scale[0] < 0) continue;
         const pulls = (primitive: typeof was, u: number) => {
           const all = new Array<number>(12).fill(0);
-          for (let k = 0; k < 4; ++k) all[values(primitive, 'JOINTS_0')[4 * u + k]!]! += values(primitive, 'WEIGHTS_0')[4 * u + k]!;
+          for (let k = 0; k < 4; ++k)
+            all[values(primitive, 'JOINTS_0')[4 * u + k]!]! += values(primitive, 'WEIGHTS_0')[4 * u + k]!;
           return all;
         };
-        const blended = sourcesOf(v).map(([u, weight]) => pulls(was, u).map((pull) => weight * pull)).reduce((a, b) => a.map((pull, k) => pull + b[k]!));
+        const blended = sourcesOf(v)
+          .map(([u, weight]) => pulls(was, u).map((pull) => weight * pull))
+          .reduce((a, b) => a.map((pull, k) => pull + b[k]!));
         const least = [...blended].sort((a, b) => b - a)[3]!;
         const kept = blended.map((pull) => (pull >= least ? pull : 0));
         const sum = kept.reduce((a, b) => a + b);
-        near(pulls(is, vertex), kept.map((pull) => pull / sum), 1e-6, 'skin');
+        near(
+          pulls(is, vertex),
+          kept.map((pull) => pull / sum),
+          1e-6,
+          'skin',
+        );
       }
     });
   }
 
   const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
-  const primitivesOf = async (path: string): Promise<Primitive[]> => (await io.read(path)).getRoot().listMeshes().flatMap((mesh) => mesh.listPrimitives());
-  const richScales: [number, number, number][] = [[1, 1, 1], [-1, 1, 1]];
+  const primitivesOf = async (path: string): Promise<Primitive[]> =>
+    (await io.read(path))
+      .getRoot()
+      .listMeshes()
+      .flatMap((mesh) => mesh.listPrimitives());
+  const richScales: [number, number, number][] = [
+    [1, 1, 1],
+    [-1, 1, 1],
+  ];
 
   /** What the command makes of two files. @returns its file. */
   function commanded(targetFile: string, cageFile: string): string {
     writeFileSync(at('paint.png'), readFileSync('build/assets/lizard/paint-tiger.png'));
-    const { status, stderr } = cagecast('transfer', targetFile, '--cage', cageFile, '--texture', at('paint.png'), '--borders', 'cut', '-o', at('command.glb'));
+    const { status, stderr } = cagecast(
+      'transfer',
+      targetFile,
+      '--cage',
+      cageFile,
+      '--texture',
+      at('paint.png'),
+      '--borders',
+      'cut',
+      '-o',
+      at('command.glb'),
+    );
     assert.equal(status, 0, stderr);
     return at('command.glb');
   }
 
-  const richFiles = richScales.map((scale, i) => ({ name: i === 0 ? 'skinned and morphing' : 'mirrored', target: () => (writeFileSync(at('rich.glb'), rich(scale)), at('rich.glb')), cage: () => (writeFileSync(at('cage.glb'), glbOf(cage)), at('cage.glb')) }));
-  const modelFiles = modelFolders().map((model) => ({ name: model, target: () => join(model, 'target.glb'), cage: () => join(model, 'cage.glb') }));
+  const richFiles = richScales.map((scale, i) => ({
+    name: i === 0 ? 'skinned and morphing' : 'mirrored',
+    target: () => (writeFileSync(at('rich.glb'), rich(scale)), at('rich.glb')),
+    cage: () => (writeFileSync(at('cage.glb'), glbOf(cage)), at('cage.glb')),
+  }));
+  const modelFiles = modelFolders().map((model) => ({
+    name: model,
+    target: () => join(model, 'target.glb'),
+    cage: () => join(model, 'cage.glb'),
+  }));
 
   for (const files of [...richFiles, ...modelFiles]) {
     test(`the glTF function makes what the command does, and it is valid: ${files.name}`, async () => {
       const [targetFile, cageFile] = [files.target(), files.cage()];
       const theirs = await primitivesOf(commanded(targetFile, cageFile));
       const document = await io.read(targetFile);
-      await document.transform(cagecastTransform({ cage: await io.read(cageFile), texture: readFileSync(at('paint.png')), borders: 'cut' }));
+      await document.transform(
+        cagecastTransform({ cage: await io.read(cageFile), texture: readFileSync(at('paint.png')), borders: 'cut' }),
+      );
       await io.write(at('function.glb'), document);
       assert.deepEqual(await validate(at('function.glb')), []);
       const ours = await primitivesOf(at('function.glb'));
       assert.equal(ours.length, theirs.length);
       ours.forEach((primitive, p) => {
         assert.deepEqual(primitive.listSemantics().sort(), theirs[p]!.listSemantics().sort());
-        for (const semantic of primitive.listSemantics()) assert.deepEqual(primitive.getAttribute(semantic)!.getArray(), theirs[p]!.getAttribute(semantic)!.getArray(), semantic);
+        for (const semantic of primitive.listSemantics())
+          assert.deepEqual(
+            primitive.getAttribute(semantic)!.getArray(),
+            theirs[p]!.getAttribute(semantic)!.getArray(),
+            semantic,
+          );
         assert.deepEqual([...primitive.getIndices()!.getArray()!], [...theirs[p]!.getIndices()!.getArray()!]);
         primitive.listTargets().forEach((morph, m) => {
-          for (const semantic of morph.listSemantics()) assert.deepEqual(morph.getAttribute(semantic)!.getArray(), theirs[p]!.listTargets()[m]!.getAttribute(semantic)!.getArray(), `delta of ${semantic}`);
+          for (const semantic of morph.listSemantics())
+            assert.deepEqual(
+              morph.getAttribute(semantic)!.getArray(),
+              theirs[p]!.listTargets()[m]!.getAttribute(semantic)!.getArray(),
+              `delta of ${semantic}`,
+            );
         });
       });
     });
   }
 
   /** glTF's attributes by three's names. */
-  const threeNames = { position: 'POSITION', normal: 'NORMAL', tangent: 'TANGENT', color: 'COLOR_0', uv: 'TEXCOORD_0', uv1: 'TEXCOORD_1', skinIndex: 'JOINTS_0', skinWeight: 'WEIGHTS_0', _heat: '_HEAT', _ncz: '_NCZ' };
+  const threeNames = {
+    position: 'POSITION',
+    normal: 'NORMAL',
+    tangent: 'TANGENT',
+    color: 'COLOR_0',
+    uv: 'TEXCOORD_0',
+    uv1: 'TEXCOORD_1',
+    skinIndex: 'JOINTS_0',
+    skinWeight: 'WEIGHTS_0',
+    _heat: '_HEAT',
+    _ncz: '_NCZ',
+  };
   const close = (a: ArrayLike<number>, b: ArrayLike<number>, what: string) => {
     assert.equal(a.length, b.length, what);
-    for (let i = 0; i < a.length; ++i) assert.ok(Math.abs(a[i]! - b[i]!) <= 1e-6, `${what}[${i}]: ${a[i]} is not ${b[i]}`);
+    for (let i = 0; i < a.length; ++i)
+      assert.ok(Math.abs(a[i]! - b[i]!) <= 1e-6, `${what}[${i}]: ${a[i]} is not ${b[i]}`);
   };
 
   for (const files of richFiles) {
     test(`a scene of three.js becomes what the command makes of its file: ${files.name}`, async () => {
-      const [was, cageScene] = await Promise.all([files.target(), files.cage()].map(async (path) => (await new GLTFLoader().parseAsync(Uint8Array.from(readFileSync(path)).buffer, '')).scene));
+      const [was, cageScene] = await Promise.all(
+        [files.target(), files.cage()].map(
+          async (path) => (await new GLTFLoader().parseAsync(Uint8Array.from(readFileSync(path)).buffer, '')).scene,
+        ),
+      );
       const [base, theirOverlay] = await primitivesOf(commanded(at('rich.glb'), at('cage.glb')));
-      const { overlays, parts, cutTriangles } = await applyTransfer(was!, cageScene!, { texture: new Texture(), borders: 'cut' });
+      const { overlays, parts, cutTriangles } = await applyTransfer(was!, cageScene!, {
+        texture: new Texture(),
+        borders: 'cut',
+      });
       const { geometry } = parts[0]!;
       assert.ok(cutTriangles > 20);
       assert.equal(geometry.index!.count, 3 * (target.indices.length / 3 + cutTriangles));
       assert.deepEqual([...geometry.index!.array], [...base!.getIndices()!.getArray()!]);
-      for (const [name, attribute] of Object.entries(geometry.attributes)) close(attribute.array, base!.getAttribute(threeNames[name as keyof typeof threeNames])!.getArray()!, name);
-      for (const name of ['position', 'normal'] as const) close(geometry.morphAttributes[name]![0]!.array, base!.listTargets()[0]!.getAttribute(threeNames[name])!.getArray()!, `delta of ${name}`);
+      for (const [name, attribute] of Object.entries(geometry.attributes))
+        close(attribute.array, base!.getAttribute(threeNames[name as keyof typeof threeNames])!.getArray()!, name);
+      for (const name of ['position', 'normal'] as const)
+        close(
+          geometry.morphAttributes[name]![0]!.array,
+          base!.listTargets()[0]!.getAttribute(threeNames[name])!.getArray()!,
+          `delta of ${name}`,
+        );
       assert.deepEqual([...overlays[0]!.geometry.index!.array], [...theirOverlay!.getIndices()!.getArray()!]);
       assert.equal(overlays[0]!.geometry.getAttribute('position'), geometry.getAttribute('position'));
     });
   }
 
   const plainGeometry = ({ positions, indices, uvs }: Mesh) => {
-    const geometry = new BufferGeometry().setIndex(new BufferAttribute(Uint32Array.from(indices), 1)).setAttribute('position', new BufferAttribute(positions.slice(), 3));
+    const geometry = new BufferGeometry()
+      .setIndex(new BufferAttribute(Uint32Array.from(indices), 1))
+      .setAttribute('position', new BufferAttribute(positions.slice(), 3));
     return uvs ? geometry.setAttribute('uv', new BufferAttribute(uvs.slice(), 2)) : geometry;
   };
 
@@ -343,10 +576,18 @@ describe('with borders: cut', () => {
     const geometry = plainGeometry(target);
     const heat = Float32Array.from({ length: vertices }, (_, v) => v / vertices);
     geometry.setAttribute('heat', new Float16BufferAttribute(Uint16Array.from(heat, DataUtils.toHalfFloat), 1));
-    const normals = Float32Array.from(target.positions, (x, i) => x / Math.hypot(...target.positions.subarray(i - (i % 3), i - (i % 3) + 3)));
+    const normals = Float32Array.from(
+      target.positions,
+      (x, i) => x / Math.hypot(...target.positions.subarray(i - (i % 3), i - (i % 3) + 3)),
+    );
     geometry.setAttribute('normal', new BufferAttribute(normals.slice(), 3));
     geometry.morphAttributes['normal'] = [new BufferAttribute(normals.slice(), 3)];
-    geometry.morphAttributes['position'] = [new BufferAttribute(target.positions.map((x) => 2 * x), 3)];
+    geometry.morphAttributes['position'] = [
+      new BufferAttribute(
+        target.positions.map((x) => 2 * x),
+        3,
+      ),
+    ];
     geometry.morphTargetsRelative = false;
     const middle = 3 * Math.floor(count / 6);
     geometry.addGroup(0, middle, 0);
@@ -356,7 +597,10 @@ describe('with borders: cut', () => {
     const cut = await cutBorders(cage, { ...target, groups: undefined }, result);
     assert.equal(cutTriangles, cut.triangles.length - count / 3);
     const pieces = cut.triangles.findIndex((t) => t >= middle / 3);
-    assert.deepEqual(geometry.groups, [{ start: 0, count: 3 * pieces, materialIndex: 0 }, { start: 3 * pieces, count: cut.indices.length - 3 * pieces, materialIndex: 1 }]);
+    assert.deepEqual(geometry.groups, [
+      { start: 0, count: 3 * pieces, materialIndex: 0 },
+      { start: 3 * pieces, count: cut.indices.length - 3 * pieces, materialIndex: 1 },
+    ]);
     assert.deepEqual(geometry.drawRange, { start: 3 * pieces, count: cut.indices.length - 3 * pieces });
     const of = (name: string) => geometry.getAttribute(name);
     for (let n = 0; n < cut.sources.length / 3; ++n) {
@@ -364,7 +608,9 @@ describe('with borders: cut', () => {
       assert.ok(Math.abs(of('heat').getX(vertices + n) - expected) < 1e-3);
       const normal = new Vector3().fromBufferAttribute(geometry.morphAttributes['normal']![0]!, vertices + n);
       assert.ok(Math.abs(normal.length() - 1) < 1e-6);
-      const [at, twice] = [of('position'), geometry.morphAttributes['position']![0]!].map((attribute) => new Vector3().fromBufferAttribute(attribute!, vertices + n));
+      const [at, twice] = [of('position'), geometry.morphAttributes['position']![0]!].map((attribute) =>
+        new Vector3().fromBufferAttribute(attribute!, vertices + n),
+      );
       assert.ok(at!.multiplyScalar(2).distanceTo(twice!) < 1e-6);
     }
   });
@@ -373,7 +619,10 @@ describe('with borders: cut', () => {
     const mesh = new ThreeMesh(plainGeometry(target), new MeshStandardMaterial());
     const plain = { ...target, groups: undefined };
     const projection = project(cage, plain);
-    const { result, overlays, update } = await applyTransfer(mesh, plainGeometry(cage), { texture: new Texture(), borders: 'cut' });
+    const { result, overlays, update } = await applyTransfer(mesh, plainGeometry(cage), {
+      texture: new Texture(),
+      borders: 'cut',
+    });
     const cut = await cutBorders(cage, plain, result);
     const shown = () => overlays[0]!.geometry.index!.count / 3;
     const painted = cut.cosmeticTriangles.reduce((sum, one) => sum + one, 0);
@@ -385,53 +634,102 @@ describe('with borders: cut', () => {
     assert.ok(!mesh.geometry.getAttribute('_ncz').array.subarray(0, 1).includes(Zone.Cosmetic));
     update(classify(projection));
     assert.equal(shown(), painted);
-    const kept = classify(projection, { locks: { segments: Object.fromEntries(result.segmentStats.map((_, s) => [s, 'keep'])) } });
+    const kept = classify(projection, {
+      locks: { segments: Object.fromEntries(result.segmentStats.map((_, s) => [s, 'keep'])) },
+    });
     update(kept);
-    const more = kept.cosmeticTriangles.filter((one, t) => one === 1 && result.segmentStats[result.segments[target.indices[3 * t]!]!]!.culled).length;
+    const more = kept.cosmeticTriangles.filter(
+      (one, t) => one === 1 && result.segmentStats[result.segments[target.indices[3 * t]!]!]!.culled,
+    ).length;
     assert.ok(more > 0);
     assert.equal(shown(), painted + more);
   });
 
   test('of what is excluded later no piece stays painted, and of what is kept later none stays bare', async () => {
     // Points that are hidden or uncovered never change to or from "culled".
-    const [cage, mesh] = (await Promise.all(['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)))) as [Mesh, Mesh];
+    const [cage, mesh] = (await Promise.all(
+      ['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)),
+    )) as [Mesh, Mesh];
     const plain = { ...mesh, groups: undefined };
     const projection = project(cage, plain);
     const [bare, free] = [classify(projection, { locks: { groups: { 0: 'exclude' } } }), classify(projection)];
     const shownAfter = async (locks: TransferOptions['locks'], now: Classification) => {
       const mesh = new ThreeMesh(plainGeometry(plain), new MeshStandardMaterial());
-      const { overlays, update } = await applyTransfer(mesh, plainGeometry(cage), { texture: new Texture(), borders: 'cut', locks });
+      const { overlays, update } = await applyTransfer(mesh, plainGeometry(cage), {
+        texture: new Texture(),
+        borders: 'cut',
+        locks,
+      });
       update(now);
       const zones = mesh.geometry.getAttribute('_ncz').array;
-      return { triangles: overlays[0]!.geometry.index!.count / 3, vertices: zones.filter((zone) => zone === Zone.Cosmetic).length };
+      return {
+        triangles: overlays[0]!.geometry.index!.count / 3,
+        vertices: zones.filter((zone) => zone === Zone.Cosmetic).length,
+      };
     };
     assert.deepEqual(await shownAfter({}, bare), { triangles: 0, vertices: 0 });
     const { triangles } = await shownAfter({ groups: { 0: 'exclude' } }, free);
-    assert.equal(triangles, free.cosmeticTriangles.reduce((sum, one) => sum + one, 0));
+    assert.equal(
+      triangles,
+      free.cosmeticTriangles.reduce((sum, one) => sum + one, 0),
+    );
   });
 
   test('unknown borders are refused in words, and nothing is changed', async () => {
     const geometry = plainGeometry(target);
     // @ts-expect-error no such borders
-    assert.throws(() => applyTransfer(geometry, plainGeometry(cage), { borders: 'straight' }), (error) => error instanceof CagecastError && error.code === 'badOption' && /applyTransfer: options\.borders = "straight" is unknown; there are: "triangle", "cut"/.test(error.message));
+    assert.throws(
+      () => applyTransfer(geometry, plainGeometry(cage), { borders: 'straight' }),
+      (error) =>
+        error instanceof CagecastError &&
+        error.code === 'badOption' &&
+        /applyTransfer: options\.borders = "straight" is unknown; there are: "triangle", "cut"/.test(error.message),
+    );
     await assert.rejects(applyTransfer(geometry, new BufferGeometry(), { borders: 'cut' }), { code: 'emptyMesh' });
     assert.deepEqual(Object.keys(geometry.attributes), ['position', 'uv']);
     const document = await io.readBinary(glbOf(target));
     // @ts-expect-error no such borders
-    await assert.rejects(document.transform(cagecastTransform({ cage, borders: 'straight' })), /cagecast: options\.borders = "straight" is unknown/);
-    await assert.rejects(document.transform(cagecastTransform({ cage, borders: 'cut', threshold: 2 })), { code: 'badThreshold' });
+    await assert.rejects(
+      document.transform(cagecastTransform({ cage, borders: 'straight' })),
+      /cagecast: options\.borders = "straight" is unknown/,
+    );
+    await assert.rejects(document.transform(cagecastTransform({ cage, borders: 'cut', threshold: 2 })), {
+      code: 'badThreshold',
+    });
     assert.equal(document.getRoot().listMeshes()[0]!.listPrimitives()[0]!.getAttribute('_NCZ'), null);
   });
 
   test('what fails while borders are cut names the file, and nothing is written', () => {
     // A copy of the command whose module for it runs out of memory.
     cpSync('dist', at('dist'), { recursive: true });
-    writeFileSync(at('dist/borders.js'), `import { CagecastError } from './index.js';
-      export const cutBorders = async () => { throw new CagecastError('outOfMemory', 'cutBorders: not enough memory for this target and cage'); };`);
+    writeFileSync(
+      at('dist/borders.js'),
+      `import { CagecastError } from './index.js';
+      export const cutBorders = async () => { throw new CagecastError('outOfMemory', 'cutBorders: not enough memory for this target and cage'); };`,
+    );
     writeFileSync(at('target.glb'), glbOf(target));
     writeFileSync(at('cage.glb'), glbOf(cage));
-    const { status, stderr } = spawnSync(process.execPath, [at('dist/cli.js'), 'transfer', at('target.glb'), '--cage', at('cage.glb'), '--borders', 'cut', '-o', at('never.glb'), '--report', at('never.json')], { encoding: 'utf8' });
-    assert.deepEqual([status, stderr], [1, `cagecast: ${at('target.glb')}: not enough memory for this target and cage\n`]);
+    const { status, stderr } = spawnSync(
+      process.execPath,
+      [
+        at('dist/cli.js'),
+        'transfer',
+        at('target.glb'),
+        '--cage',
+        at('cage.glb'),
+        '--borders',
+        'cut',
+        '-o',
+        at('never.glb'),
+        '--report',
+        at('never.json'),
+      ],
+      { encoding: 'utf8' },
+    );
+    assert.deepEqual(
+      [status, stderr],
+      [1, `cagecast: ${at('target.glb')}: not enough memory for this target and cage\n`],
+    );
     assert.deepEqual([existsSync(at('never.glb')), existsSync(at('never.json'))], [false, false]);
   });
 

@@ -1,12 +1,25 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { chmodSync, copyFileSync, existsSync, lstatSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, realpathSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  chmodSync,
+  copyFileSync,
+  existsSync,
+  lstatSync,
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  realpathSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { NodeIO, type GLTF } from '@gltf-transform/core';
+import { type GLTF, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { init, presetOptions, transfer, type Mesh } from 'cagecast';
+import { init, type Mesh, presetOptions, transfer } from 'cagecast';
 import { PNG } from 'pngjs';
 import { assertTransferred, cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from './glb.js';
 import { ball, head, join3d, modelFolders, random, readPlain } from './scenes.js';
@@ -37,8 +50,23 @@ before(async () => {
 interface Report {
   counts: Record<'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
   areas: Record<'total' | 'cosmetic' | 'occluded' | 'uncovered' | 'culled', number>;
-  segments: { points: number; vertices: number; exposedArea: number; coveredArea: number; coverage: number; culled: boolean; part: string }[];
-  parts: { name: string; place: string; vertices: number; uvSet: string | null; overlayTriangles: number; splitVertices: number | null }[];
+  segments: {
+    points: number;
+    vertices: number;
+    exposedArea: number;
+    coveredArea: number;
+    coverage: number;
+    culled: boolean;
+    part: string;
+  }[];
+  parts: {
+    name: string;
+    place: string;
+    vertices: number;
+    uvSet: string | null;
+    overlayTriangles: number;
+    splitVertices: number | null;
+  }[];
   target: { vertices: number; triangles: number };
   triangles: { total: number; cosmetic: number };
   options: object;
@@ -58,7 +86,16 @@ function report(target: string, cage = at('cage.glb'), ...more: string[]): Repor
 function answer(path: string): object {
   const { counts, areas, segments } = report(path);
   const round = (x: number) => Number(x.toPrecision(5));
-  return { counts, area: round(areas.total), segments: segments.map(({ points, exposedArea, coveredArea, culled }) => ({ points, e: round(exposedArea), c: round(coveredArea), culled })) };
+  return {
+    counts,
+    area: round(areas.total),
+    segments: segments.map(({ points, exposedArea, coveredArea, culled }) => ({
+      points,
+      e: round(exposedArea),
+      c: round(coveredArea),
+      culled,
+    })),
+  };
 }
 
 describe('usage', () => {
@@ -119,42 +156,239 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     change(glb);
     return packGlb(glb);
   };
-  const positionsAt = ({ json }: ReturnType<typeof unpackGlb>) => json.bufferViews![json.accessors![json.meshes![0]!.primitives[0]!.attributes['POSITION']!]!.bufferView!]!.byteOffset!;
-  const indicesAt = ({ json }: ReturnType<typeof unpackGlb>) => json.bufferViews![json.accessors![json.meshes![0]!.primitives[0]!.indices!]!.bufferView!]!.byteOffset!;
+  const positionsAt = ({ json }: ReturnType<typeof unpackGlb>) =>
+    json.bufferViews![json.accessors![json.meshes![0]!.primitives[0]!.attributes['POSITION']!]!.bufferView!]!
+      .byteOffset!;
+  const indicesAt = ({ json }: ReturnType<typeof unpackGlb>) =>
+    json.bufferViews![json.accessors![json.meshes![0]!.primitives[0]!.indices!]!.bufferView!]!.byteOffset!;
 
   const targets: [string, () => Uint8Array | string, RegExp][] = [
-    ['a NaN position', () => changed((glb) => new DataView(glb.bin.buffer, glb.bin.byteOffset).setFloat32(positionsAt(glb) + 12 * 5 + 4, NaN, true)), /bad\.glb: meshes\[0\]\.primitives\[0\]: POSITION of vertex 5 has NaN, which is not a finite number/],
-    ['an index out of range', () => changed((glb) => new DataView(glb.bin.buffer, glb.bin.byteOffset).setUint32(indicesAt(glb) + 4 * 17, 912345, true)), /bad\.glb: meshes\[0\]\.primitives\[0\]: indices\[17\] = 912345 is out of range \(\d+ vertices\)/],
-    ['an empty mesh', () => { const maker = new GlbMaker(); maker.node({ name: 'empty' }); return maker.finish(); }, /bad\.glb: has no meshes; at least one triangle is needed/],
-    ['a mesh of lines', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.mode = 1; }), /bad\.glb: has no triangles in its scene/],
-    ['a mesh that is not in the scene', () => changed(({ json }) => { json.scenes![0]!.nodes = []; }), /bad\.glb: has no triangles in its scene/],
-    ['a truncated GLB', () => whole().subarray(0, whole().length - 100), /bad\.glb: is truncated: its header says \d+ bytes, there are \d+/],
-    ['a GLB cut within its header', () => whole().subarray(0, 10), /bad\.glb: is truncated: a GLB has at least 20 bytes, this one 10/],
-    ['a GLB of another version', () => Buffer.concat([whole().subarray(0, 4), Buffer.from([1, 0, 0, 0]), whole().subarray(8)]), /bad\.glb: is a GLB of version 1/],
+    [
+      'a NaN position',
+      () =>
+        changed((glb) =>
+          new DataView(glb.bin.buffer, glb.bin.byteOffset).setFloat32(positionsAt(glb) + 12 * 5 + 4, NaN, true),
+        ),
+      /bad\.glb: meshes\[0\]\.primitives\[0\]: POSITION of vertex 5 has NaN, which is not a finite number/,
+    ],
+    [
+      'an index out of range',
+      () =>
+        changed((glb) =>
+          new DataView(glb.bin.buffer, glb.bin.byteOffset).setUint32(indicesAt(glb) + 4 * 17, 912345, true),
+        ),
+      /bad\.glb: meshes\[0\]\.primitives\[0\]: indices\[17\] = 912345 is out of range \(\d+ vertices\)/,
+    ],
+    [
+      'an empty mesh',
+      () => {
+        const maker = new GlbMaker();
+        maker.node({ name: 'empty' });
+        return maker.finish();
+      },
+      /bad\.glb: has no meshes; at least one triangle is needed/,
+    ],
+    [
+      'a mesh of lines',
+      () =>
+        changed(({ json }) => {
+          json.meshes![0]!.primitives[0]!.mode = 1;
+        }),
+      /bad\.glb: has no triangles in its scene/,
+    ],
+    [
+      'a mesh that is not in the scene',
+      () =>
+        changed(({ json }) => {
+          json.scenes![0]!.nodes = [];
+        }),
+      /bad\.glb: has no triangles in its scene/,
+    ],
+    [
+      'a truncated GLB',
+      () => whole().subarray(0, whole().length - 100),
+      /bad\.glb: is truncated: its header says \d+ bytes, there are \d+/,
+    ],
+    [
+      'a GLB cut within its header',
+      () => whole().subarray(0, 10),
+      /bad\.glb: is truncated: a GLB has at least 20 bytes, this one 10/,
+    ],
+    [
+      'a GLB of another version',
+      () => Buffer.concat([whole().subarray(0, 4), Buffer.from([1, 0, 0, 0]), whole().subarray(8)]),
+      /bad\.glb: is a GLB of version 1/,
+    ],
     ['a file that is no GLB', () => 'hello, world\n', /bad\.glb: is neither a GLB nor a glTF file/],
     ['JSON that is no glTF', () => '{"hello": 1}', /bad\.glb: is JSON but no glTF/],
     ['null', () => 'null', /bad\.glb: is JSON but no glTF/],
     ['an empty file', () => '', /bad\.glb: the file is empty/],
     ['glTF 1.0', () => '{"asset": {"version": "1.0"}}', /bad\.glb: is glTF 1\.0; only 2\.x/],
-    ['damaged JSON in a GLB', () => { const bytes = Buffer.from(whole()); bytes[20] = 0x21; return bytes; }, /bad\.glb: its JSON is damaged/],
-    ['an accessor beyond its view', () => changed(({ json }) => { json.accessors![0]!.count = 1e6; }), /bad\.glb: accessors\[0\] ends at byte \d+ of bufferViews\[0\], which has \d+/],
-    ['an accessor of absurd size', () => changed(({ json }) => { json.accessors![0]!.count = 2 ** 40; delete json.accessors![0]!.bufferView; }), /bad\.glb: accessors\[0\]\.count = \d+ is more than/],
-    ['a view beyond its buffer', () => changed(({ json }) => { json.bufferViews![0]!.byteOffset = 1e9; }), /bad\.glb: bufferViews\[0\] ends at byte \d+ of buffers\[0\], which has \d+/],
-    ['a buffer larger than the file', () => changed(({ json }) => { json.buffers![0]!.byteLength = 1e9; }), /bad\.glb: buffers\[0\] is truncated/],
-    ['a buffer in a file that is missing', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'gone.bin', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is in gone\.bin: no such file/],
-    ['a buffer on another host', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'https://example.com/a.bin', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is at https:.* only files are read/],
-    ['a data URI that is none', () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'data:application/octet-stream;base64', byteLength: 4 }] }), /bad\.glb: buffers\[0\] is "data:[^"]*", no data URI\n/],
-    ['an attribute of too few vertices', () => changed(({ json }) => { const short = json.accessors!.push({ componentType: 5126, count: 5, type: 'VEC3' }) - 1; json.meshes![0]!.primitives[0]!.attributes['NORMAL'] = short; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.NORMAL has 5 elements for \d+ vertices/],
-    ['a reference to no accessor', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.attributes['POSITION'] = 99; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.POSITION = 99 is out of range \(\d+ accessors\)/],
-    ['a node that is its own ancestor', () => changed(({ json }) => { json.nodes!.push({ children: [2] }, { children: [1] }); }), /bad\.glb: has no|two parents|nodes/],
-    ['a scene whose root is its own ancestor', () => changed(({ json }) => { json.nodes![0]!.children = [0]; }), /bad\.glb: nodes\[0\] is a root of scenes\[0\] and a child of nodes\[0\]/],
-    ['a node that is twice in the scene', () => changed(({ json }) => { json.scenes![0]!.nodes = [0, 0]; }), /bad\.glb: nodes\[0\] is twice a root of scenes\[0\]/],
-    ['morph targets that are no list', () => changed(({ json }) => { Object.assign(json.meshes![0]!.primitives[0]!, { targets: -1 }); }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets is not a list of objects/],
-    ['a morph target that is nowhere', () => changed(({ json }) => { json.meshes![0]!.primitives[0]!.targets = [{ POSITION: 99 }]; }), /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets\[0\]\.POSITION = 99 is out of range \(\d+ accessors\)/],
-    ['an object for a number', () => changed(({ json }) => { Object.assign(json, { scene: {} }); }), /bad\.glb: scene = of type Object is out of range \(1 scenes\)/],
-    ['corners that are no triangles', () => changed(({ json }) => { json.accessors![json.meshes![0]!.primitives[0]!.indices!]!.count -= 1; }), /bad\.glb: meshes\[0\]\.primitives\[0\] has \d+ corners, not 3 per triangle/],
-    ['damaged Draco data', () => changed(({ json }) => { json.extensionsUsed = json.extensionsRequired = ['KHR_draco_mesh_compression']; json.meshes![0]!.primitives[0]!.extensions = { KHR_draco_mesh_compression: { bufferView: 0, attributes: { POSITION: 0 } } }; }), /bad\.glb: cannot be decoded/],
-    ['damaged meshopt data', () => changed(({ json }) => { json.extensionsUsed = json.extensionsRequired = ['EXT_meshopt_compression']; const view = json.bufferViews![0]!; view.extensions = { EXT_meshopt_compression: { buffer: 0, byteOffset: 0, byteLength: 60, byteStride: 12, count: 5, mode: 'ATTRIBUTES' } }; }), /bad\.glb: cannot be decoded/],
+    [
+      'damaged JSON in a GLB',
+      () => {
+        const bytes = Buffer.from(whole());
+        bytes[20] = 0x21;
+        return bytes;
+      },
+      /bad\.glb: its JSON is damaged/,
+    ],
+    [
+      'an accessor beyond its view',
+      () =>
+        changed(({ json }) => {
+          json.accessors![0]!.count = 1e6;
+        }),
+      /bad\.glb: accessors\[0\] ends at byte \d+ of bufferViews\[0\], which has \d+/,
+    ],
+    [
+      'an accessor of absurd size',
+      () =>
+        changed(({ json }) => {
+          json.accessors![0]!.count = 2 ** 40;
+          delete json.accessors![0]!.bufferView;
+        }),
+      /bad\.glb: accessors\[0\]\.count = \d+ is more than/,
+    ],
+    [
+      'a view beyond its buffer',
+      () =>
+        changed(({ json }) => {
+          json.bufferViews![0]!.byteOffset = 1e9;
+        }),
+      /bad\.glb: bufferViews\[0\] ends at byte \d+ of buffers\[0\], which has \d+/,
+    ],
+    [
+      'a buffer larger than the file',
+      () =>
+        changed(({ json }) => {
+          json.buffers![0]!.byteLength = 1e9;
+        }),
+      /bad\.glb: buffers\[0\] is truncated/,
+    ],
+    [
+      'a buffer in a file that is missing',
+      () => JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'gone.bin', byteLength: 4 }] }),
+      /bad\.glb: buffers\[0\] is in gone\.bin: no such file/,
+    ],
+    [
+      'a buffer on another host',
+      () =>
+        JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'https://example.com/a.bin', byteLength: 4 }] }),
+      /bad\.glb: buffers\[0\] is at https:.* only files are read/,
+    ],
+    [
+      'a data URI that is none',
+      () =>
+        JSON.stringify({
+          asset: { version: '2.0' },
+          buffers: [{ uri: 'data:application/octet-stream;base64', byteLength: 4 }],
+        }),
+      /bad\.glb: buffers\[0\] is "data:[^"]*", no data URI\n/,
+    ],
+    [
+      'an attribute of too few vertices',
+      () =>
+        changed(({ json }) => {
+          const short = json.accessors!.push({ componentType: 5126, count: 5, type: 'VEC3' }) - 1;
+          json.meshes![0]!.primitives[0]!.attributes['NORMAL'] = short;
+        }),
+      /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.NORMAL has 5 elements for \d+ vertices/,
+    ],
+    [
+      'a reference to no accessor',
+      () =>
+        changed(({ json }) => {
+          json.meshes![0]!.primitives[0]!.attributes['POSITION'] = 99;
+        }),
+      /bad\.glb: meshes\[0\]\.primitives\[0\]\.attributes\.POSITION = 99 is out of range \(\d+ accessors\)/,
+    ],
+    [
+      'a node that is its own ancestor',
+      () =>
+        changed(({ json }) => {
+          json.nodes!.push({ children: [2] }, { children: [1] });
+        }),
+      /bad\.glb: has no|two parents|nodes/,
+    ],
+    [
+      'a scene whose root is its own ancestor',
+      () =>
+        changed(({ json }) => {
+          json.nodes![0]!.children = [0];
+        }),
+      /bad\.glb: nodes\[0\] is a root of scenes\[0\] and a child of nodes\[0\]/,
+    ],
+    [
+      'a node that is twice in the scene',
+      () =>
+        changed(({ json }) => {
+          json.scenes![0]!.nodes = [0, 0];
+        }),
+      /bad\.glb: nodes\[0\] is twice a root of scenes\[0\]/,
+    ],
+    [
+      'morph targets that are no list',
+      () =>
+        changed(({ json }) => {
+          Object.assign(json.meshes![0]!.primitives[0]!, { targets: -1 });
+        }),
+      /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets is not a list of objects/,
+    ],
+    [
+      'a morph target that is nowhere',
+      () =>
+        changed(({ json }) => {
+          json.meshes![0]!.primitives[0]!.targets = [{ POSITION: 99 }];
+        }),
+      /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets\[0\]\.POSITION = 99 is out of range \(\d+ accessors\)/,
+    ],
+    [
+      'an object for a number',
+      () =>
+        changed(({ json }) => {
+          Object.assign(json, { scene: {} });
+        }),
+      /bad\.glb: scene = of type Object is out of range \(1 scenes\)/,
+    ],
+    [
+      'corners that are no triangles',
+      () =>
+        changed(({ json }) => {
+          json.accessors![json.meshes![0]!.primitives[0]!.indices!]!.count -= 1;
+        }),
+      /bad\.glb: meshes\[0\]\.primitives\[0\] has \d+ corners, not 3 per triangle/,
+    ],
+    [
+      'damaged Draco data',
+      () =>
+        changed(({ json }) => {
+          json.extensionsUsed = json.extensionsRequired = ['KHR_draco_mesh_compression'];
+          json.meshes![0]!.primitives[0]!.extensions = {
+            KHR_draco_mesh_compression: { bufferView: 0, attributes: { POSITION: 0 } },
+          };
+        }),
+      /bad\.glb: cannot be decoded/,
+    ],
+    [
+      'damaged meshopt data',
+      () =>
+        changed(({ json }) => {
+          json.extensionsUsed = json.extensionsRequired = ['EXT_meshopt_compression'];
+          const view = json.bufferViews![0]!;
+          view.extensions = {
+            EXT_meshopt_compression: {
+              buffer: 0,
+              byteOffset: 0,
+              byteLength: 60,
+              byteStride: 12,
+              count: 5,
+              mode: 'ATTRIBUTES',
+            },
+          };
+        }),
+      /bad\.glb: cannot be decoded/,
+    ],
   ];
 
   const fails = (args: string[], message: RegExp) => {
@@ -176,7 +410,12 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
   }
 
   test('a node that is its own ancestor, out of the scene, does no harm', () => {
-    const path = write('loop.glb', changed(({ json }) => { json.nodes!.push({ children: [2] }, { children: [1] }); }));
+    const path = write(
+      'loop.glb',
+      changed(({ json }) => {
+        json.nodes!.push({ children: [2] }, { children: [1] });
+      }),
+    );
     assert.deepEqual(answer(path), answer(at('target.glb')));
     rmSync(path);
   });
@@ -189,7 +428,10 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
 
   test('a cage without UVs, or without a triangle that has an area', () => {
     const bare = write('bare.glb', glbOf({ positions: scene.cage.positions, indices: scene.cage.indices }));
-    fails(['transfer', at('target.glb'), '--cage', bare], /bare\.glb: meshes\[0\]\.primitives\[0\] \("only"\) has no TEXCOORD_0: the texture is drawn in the cage's UVs/);
+    fails(
+      ['transfer', at('target.glb'), '--cage', bare],
+      /bare\.glb: meshes\[0\]\.primitives\[0\] \("only"\) has no TEXCOORD_0: the texture is drawn in the cage's UVs/,
+    );
     const flat = write('flat.glb', glbOf({ ...scene.cage, positions: scene.cage.positions.map(() => 0) }));
     fails(['transfer', at('target.glb'), '--cage', flat], /flat\.glb: cage has no triangle with an area/);
     rmSync(bare);
@@ -197,30 +439,63 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
   });
 
   test('a cage out of all proportion', () => {
-    const far = write('far-away.glb', glbOf({ ...scene.cage, positions: scene.cage.positions.map((x, i) => (i === 7 ? 1e30 : x)) }));
-    fails(['transfer', at('target.glb'), '--cage', far], /far-away\.glb: cage\.positions\[7\] = .* is out of all proportion .* \(meshes\[0\]\.primitives\[0\], "only"\)/);
+    const far = write(
+      'far-away.glb',
+      glbOf({ ...scene.cage, positions: scene.cage.positions.map((x, i) => (i === 7 ? 1e30 : x)) }),
+    );
+    fails(
+      ['transfer', at('target.glb'), '--cage', far],
+      /far-away\.glb: cage\.positions\[7\] = .* is out of all proportion .* \(meshes\[0\]\.primitives\[0\], "only"\)/,
+    );
     rmSync(far);
   });
 
   test('a texture that is no image, and half of one', () => {
     const text = write('text.png', 'no image');
-    fails(['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', text], /text\.png: is neither a PNG nor a JPEG image/);
+    fails(
+      ['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', text],
+      /text\.png: is neither a PNG nor a JPEG image/,
+    );
     const half = write('half.png', paint().subarray(0, 60));
-    fails(['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', half], /half\.png: is truncated: the PNG image has no end/);
+    fails(
+      ['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', half],
+      /half\.png: is truncated: the PNG image has no end/,
+    );
     rmSync(text);
     rmSync(half);
   });
 
   test('an output that cannot be written leaves the other unwritten, too', () => {
-    const { status, stderr } = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('never.glb'), '--report', at('gone/never.json'));
+    const { status, stderr } = cagecast(
+      'transfer',
+      at('target.glb'),
+      '--cage',
+      at('cage.glb'),
+      '-o',
+      at('never.glb'),
+      '--report',
+      at('gone/never.json'),
+    );
     assert.equal(status, 1);
     assert.match(stderr, /^cagecast: .*gone\/never\.json: cannot be written \(its folder does not exist\)\n$/);
     assert.ok(!existsSync(at('never.glb')));
     // A folder is no file that could be replaced.
     const kept = write('kept.glb', 'before');
     mkdirSync(at('folder'));
-    const second = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', kept, '--report', at('folder'));
-    assert.deepEqual([second.status, second.stderr], [1, `cagecast: ${at('folder')}: cannot be written (is a folder)\n`]);
+    const second = cagecast(
+      'transfer',
+      at('target.glb'),
+      '--cage',
+      at('cage.glb'),
+      '-o',
+      kept,
+      '--report',
+      at('folder'),
+    );
+    assert.deepEqual(
+      [second.status, second.stderr],
+      [1, `cagecast: ${at('folder')}: cannot be written (is a folder)\n`],
+    );
     assert.equal(readFileSync(kept, 'utf8'), 'before');
     rmSync(kept);
     rmSync(at('folder'), { recursive: true });
@@ -234,12 +509,24 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     assert.equal(cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('link.glb')).status, 0);
     assert.ok(lstatSync(at('link.glb')).isSymbolicLink());
     assert.equal(readFileSync(at('folder/later.glb')).toString('latin1', 0, 4), 'glTF');
-    const clash = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('folder/same.glb'), '--report', at('way/same.glb'));
+    const clash = cagecast(
+      'transfer',
+      at('target.glb'),
+      '--cage',
+      at('cage.glb'),
+      '-o',
+      at('folder/same.glb'),
+      '--report',
+      at('way/same.glb'),
+    );
     assert.equal(clash.status, 2);
     assert.match(clash.stderr, /would be written over another file of this command/);
     assert.deepEqual(readdirSync(at('folder')), ['later.glb']);
     chmodSync(at('folder/later.glb'), 0o600);
-    assert.equal(cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('folder/later.glb')).status, 0);
+    assert.equal(
+      cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', at('folder/later.glb')).status,
+      0,
+    );
     assert.equal(lstatSync(at('folder/later.glb')).mode & 0o777, 0o600);
     for (const name of ['link.glb', 'way', 'folder']) rmSync(at(name), { recursive: true });
   });
@@ -251,15 +538,24 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     assert.ok(lstatSync(link).isSymbolicLink());
     assert.equal(readFileSync(file).toString('latin1', 0, 4), 'glTF');
     const { status, stderr } = cagecast('transfer', file, '--cage', at('cage.glb'), '-o', link);
-    assert.deepEqual([status, stderr], [2, `cagecast: ${realpathSync(file)} would be written over another file of this command\n`]);
+    assert.deepEqual(
+      [status, stderr],
+      [2, `cagecast: ${realpathSync(file)} would be written over another file of this command\n`],
+    );
     rmSync(link);
     rmSync(file);
   });
 
-  test('a pipe is written to, not replaced', { skip: process.platform === 'win32' && 'there are no such pipes' }, () => {
+  test('a pipe is written to, not replaced', {
+    skip: process.platform === 'win32' && 'there are no such pipes',
+  }, () => {
     const [pipe, copy] = [at('pipe'), at('copy.json')];
     const script = `mkfifo "$1" && { cat "$1" > "$2" & "$3" dist/cli.js transfer "$4" --cage "$5" --report "$1" && test -p "$1" && wait; }`;
-    const { status, stderr } = spawnSync('sh', ['-c', script, 'sh', pipe, copy, process.execPath, at('target.glb'), at('cage.glb')], { encoding: 'utf8', timeout: 60000 });
+    const { status, stderr } = spawnSync(
+      'sh',
+      ['-c', script, 'sh', pipe, copy, process.execPath, at('target.glb'), at('cage.glb')],
+      { encoding: 'utf8', timeout: 60000 },
+    );
     assert.equal(status, 0, stderr);
     assert.equal((JSON.parse(readFileSync(copy, 'utf8')) as Report).parts.length, 1);
     rmSync(pipe);
@@ -295,7 +591,16 @@ describe('files damaged at random', () => {
       for (let i = 0; i < 3; ++i) glb.bin[Math.floor(next() * glb.bin.length)] = Math.floor(next() * 256);
       const path = write(`damaged-${seed}.glb`, packGlb(glb));
       const out = at(`damaged-${seed}-out.glb`);
-      const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out);
+      const { status, stderr } = cagecast(
+        'transfer',
+        path,
+        '--cage',
+        at('cage.glb'),
+        '--texture',
+        at('paint.png'),
+        '-o',
+        out,
+      );
       if (status === 0) return assert.equal(stderr, '');
       assert.equal(status, 1, stderr);
       assert.match(stderr, /^cagecast: [^\n]+\n$/);
@@ -310,19 +615,31 @@ describe('transfer', () => {
     const { counts, areas, segments, parts, target, options, versions, timings } = report(at('target.glb'));
     // The file holds one primitive, so one group.
     const result = transfer(scene.cage, { ...scene.target, groups: undefined });
-    assert.deepEqual(Object.values(counts), [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length));
+    assert.deepEqual(
+      Object.values(counts),
+      [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length),
+    );
     assert.equal(target.vertices, result.zones.length);
     assert.equal(segments.length, result.segmentStats.length);
     segments.forEach((segment, s) => {
       const { points, exposedArea, coveredArea, coverage, culled } = result.segmentStats[s]!;
-      assert.deepEqual([segment.points, segment.exposedArea, segment.coveredArea, segment.coverage, segment.culled], [points, exposedArea, coveredArea, coverage, culled]);
+      assert.deepEqual(
+        [segment.points, segment.exposedArea, segment.coveredArea, segment.coverage, segment.culled],
+        [points, exposedArea, coveredArea, coverage, culled],
+      );
       assert.equal(segment.vertices, result.segments.filter((one) => one === s).length);
     });
     const sum = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled;
     assert.ok(Math.abs(sum - areas.total) < 1e-9 * areas.total);
-    assert.deepEqual(parts.map(({ name, place, vertices, uvSet }) => [name, place, vertices, uvSet]), [['only', 'meshes[0].primitives[0]', target.vertices, null]]);
+    assert.deepEqual(
+      parts.map(({ name, place, vertices, uvSet }) => [name, place, vertices, uvSet]),
+      [['only', 'meshes[0].primitives[0]', target.vertices, null]],
+    );
     assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [] });
-    assert.deepEqual(parts.map(({ splitVertices }) => splitVertices), [null]);
+    assert.deepEqual(
+      parts.map(({ splitVertices }) => splitVertices),
+      [null],
+    );
     assert.match(versions.cagecast, /^\d+\.\d+\.\d+/);
     assert.ok(timings.total > 0);
   });
@@ -337,19 +654,31 @@ describe('transfer', () => {
 
   test('presets and single options are obeyed', () => {
     const painted = (...flags: string[]) => report(at('target.glb'), at('cage.glb'), ...flags).triangles.cosmetic;
-    const expected = (options: object) => transfer(scene.cage, { ...scene.target, groups: undefined }, options).cosmeticTriangles.filter((one) => one === 1).length;
+    const expected = (options: object) =>
+      transfer(scene.cage, { ...scene.target, groups: undefined }, options).cosmeticTriangles.filter((one) => one === 1)
+        .length;
     assert.equal(painted(), expected({}));
     assert.equal(painted('--preset', 'paper'), expected({ preset: 'paper' }));
     assert.notEqual(expected({}), expected({ preset: 'paper' }));
-    assert.equal(painted('--min-covered', '1', '--poke-through', '0.1', '--occlusion-reach', '0'), expected({ minCovered: 1, pokeThrough: 0.1, occlusionReach: 0 }));
-    assert.equal((report(at('target.glb'), at('cage.glb'), '--preset', 'paper').options as { occlusionReach: null }).occlusionReach, null);
+    assert.equal(
+      painted('--min-covered', '1', '--poke-through', '0.1', '--occlusion-reach', '0'),
+      expected({ minCovered: 1, pokeThrough: 0.1, occlusionReach: 0 }),
+    );
+    assert.equal(
+      (report(at('target.glb'), at('cage.glb'), '--preset', 'paper').options as { occlusionReach: null })
+        .occlusionReach,
+      null,
+    );
   });
 
   test('--keep and --exclude lock parts by the names of nodes and materials', () => {
     const maker = new GlbMaker();
     const part = (group: number, name: string, material: string) => {
       const indices = scene.target.indices.filter((_, i, all) => scene.target.groups![all[i - (i % 3)]!] === group);
-      const number = maker.mesh({ ...scene.target, indices }, { material: (maker.json.materials ??= []).push({ name: material }) - 1 });
+      const number = maker.mesh(
+        { ...scene.target, indices },
+        { material: (maker.json.materials ??= []).push({ name: material }) - 1 },
+      );
       maker.node({ mesh: number, name });
     };
     part(0, 'head', 'skin');
@@ -359,14 +688,19 @@ describe('transfer', () => {
     const culled = (...flags: string[]) => {
       const { segments } = report(path, at('cage.glb'), ...flags);
       // Vertices in no triangle are segments as well.
-      return ['head', 'eye.left', 'tongue'].map((name) => segments.filter((segment) => segment.part === name && segment.points > 1).every((segment) => segment.culled));
+      return ['head', 'eye.left', 'tongue'].map((name) =>
+        segments.filter((segment) => segment.part === name && segment.points > 1).every((segment) => segment.culled),
+      );
     };
     assert.deepEqual(culled().slice(0, 2), [false, true]);
     assert.deepEqual(culled('--exclude', 'skin', '--keep', 'eye*').slice(0, 2), [true, false]);
     assert.deepEqual(culled('--exclude', 'head', '--exclude', 'tongue', '--keep', '*glas*'), [true, false, true]);
     assert.deepEqual((report(path, at('cage.glb'), '--keep', 'eye*').options as { keep: string[] }).keep, ['eye*']);
     for (const [flags, message] of [
-      [['--keep', 'eyes*'], /named\.glb: --keep eyes\*: no node or material is called that; there are: head, skin, eye\.left, glass, tongue, flesh$/],
+      [
+        ['--keep', 'eyes*'],
+        /named\.glb: --keep eyes\*: no node or material is called that; there are: head, skin, eye\.left, glass, tongue, flesh$/,
+      ],
       [['--exclude', 'eye?left'], /--exclude eye\?left: no node/],
       [['--keep', '*', '--exclude', 'skin'], /--keep \* and --exclude skin both mean "head"$/],
     ] as const) {
@@ -374,23 +708,38 @@ describe('transfer', () => {
       assert.equal(status, 1);
       assert.match(stderr.trim(), message);
     }
-    assert.equal(cagecast('inspect', path, '--cage', at('cage.glb'), '--exclude', 'head', '--json').stdout.includes('"exclude": [\n      "head"'), true);
+    assert.equal(
+      cagecast('inspect', path, '--cage', at('cage.glb'), '--exclude', 'head', '--json').stdout.includes(
+        '"exclude": [\n      "head"',
+      ),
+      true,
+    );
   });
 
   test('splits vertices so that no triangle stretches across the texture', async () => {
     const out = at('split.glb');
     const { parts } = report(at('target.glb'), at('cage.glb'), '-o', out);
     assert.deepEqual(await validate(out), []);
-    const [before, written] = await Promise.all([at('target.glb'), out].map(async (path) => (await new NodeIO().read(path)).getRoot().listMeshes()[0]!.listPrimitives()[0]!));
+    const [before, written] = await Promise.all(
+      [at('target.glb'), out].map(
+        async (path) => (await new NodeIO().read(path)).getRoot().listMeshes()[0]!.listPrimitives()[0]!,
+      ),
+    );
     const result = transfer(scene.cage, { ...scene.target, groups: undefined });
     const added = assertTransferred(before!, written!, result);
     assert.ok(added > 0);
-    assert.deepEqual(parts.map(({ splitVertices }) => splitVertices), [added]);
+    assert.deepEqual(
+      parts.map(({ splitVertices }) => splitVertices),
+      [added],
+    );
   });
 
   test('with --seams vertex: writes the UVs and zones of the package; all else stays byte for byte', async () => {
     const out = at('out.glb');
-    assert.equal(cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--seams', 'vertex', '-o', out).status, 0);
+    assert.equal(
+      cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--seams', 'vertex', '-o', out).status,
+      0,
+    );
     assert.deepEqual(await validate(out), []);
     const result = transfer(scene.cage, { ...scene.target, groups: undefined });
     const document = await new NodeIO().read(out);
@@ -411,7 +760,8 @@ describe('transfer', () => {
   });
 
   test('the same input gives the same bytes', () => {
-    for (const name of ['a.glb', 'b.glb']) cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', at(name));
+    for (const name of ['a.glb', 'b.glb'])
+      cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', at(name));
     assert.deepEqual(readFileSync(at('a.glb')), readFileSync(at('b.glb')));
   });
 });
@@ -427,22 +777,52 @@ describe('what a target has is kept', () => {
     const primitive = json.meshes[mesh]!.primitives[0]!;
     const normals = new Float32Array(skin.positions.length).map((_, i) => (i % 3 === 2 ? 1 : 0));
     primitive.attributes['NORMAL'] = maker.accessor(normals, 'VEC3');
-    primitive.attributes['COLOR_0'] = maker.accessor(new Uint8Array(4 * vertices).fill(255), 'VEC4', { normalized: true });
+    primitive.attributes['COLOR_0'] = maker.accessor(new Uint8Array(4 * vertices).fill(255), 'VEC4', {
+      normalized: true,
+    });
     primitive.attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
-    primitive.attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    primitive.attributes['WEIGHTS_0'] = maker.accessor(
+      new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)),
+      'VEC4',
+    );
     primitive.attributes['_TEMPERATURE'] = maker.accessor(new Float32Array(vertices).fill(37), 'SCALAR');
-    primitive.targets = [{ POSITION: maker.accessor(skin.positions.map((x) => 0.1 * x), 'VEC3') }];
+    primitive.targets = [
+      {
+        POSITION: maker.accessor(
+          skin.positions.map((x) => 0.1 * x),
+          'VEC3',
+        ),
+      },
+    ];
     json.meshes[mesh]!.weights = [0.25];
     json.meshes[mesh]!.extras = { targetNames: ['smile'] };
     const identity = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
     json.skins = [{ joints: [1], inverseBindMatrices: maker.accessor(identity, 'MAT4') }];
     maker.node({ mesh, skin: 0, name: 'head', extras: { id: 7 }, extensions: { ACME_avatar: { node: 0, mesh: 0 } } });
     maker.node({ name: 'bone' });
-    json.animations = [{ name: 'nod', samplers: [{ input: maker.accessor(new Float32Array([0, 1]), 'SCALAR', { min: [0], max: [1] }), output: maker.accessor(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1]), 'VEC4') }], channels: [{ sampler: 0, target: { node: 1, path: 'rotation' } }] }];
+    json.animations = [
+      {
+        name: 'nod',
+        samplers: [
+          {
+            input: maker.accessor(new Float32Array([0, 1]), 'SCALAR', { min: [0], max: [1] }),
+            output: maker.accessor(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1]), 'VEC4'),
+          },
+        ],
+        channels: [{ sampler: 0, target: { node: 1, path: 'rotation' } }],
+      },
+    ];
     const png = paint();
     json.images = [{ bufferView: maker.view(png), mimeType: 'image/png', name: 'freckles' }];
     json.textures = [{ source: 0 }];
-    json.materials = [{ name: 'skin', doubleSided: true, pbrMetallicRoughness: { baseColorTexture: { index: 0 }, roughnessFactor: 0.4 }, extensions: { KHR_materials_sheen: { sheenRoughnessFactor: 0.5 }, ACME_secret: { a: [1, 2, { b: null }] } } }];
+    json.materials = [
+      {
+        name: 'skin',
+        doubleSided: true,
+        pbrMetallicRoughness: { baseColorTexture: { index: 0 }, roughnessFactor: 0.4 },
+        extensions: { KHR_materials_sheen: { sheenRoughnessFactor: 0.5 }, ACME_secret: { a: [1, 2, { b: null }] } },
+      },
+    ];
     json.extensionsUsed = ['KHR_materials_sheen', 'ACME_secret', 'ACME_avatar'];
     json.extensions = { ACME_avatar: { meshes: [0], textures: [0] } };
     json.extras = { author: 'someone' };
@@ -461,18 +841,38 @@ describe('what a target has is kept', () => {
   test('split vertices keep skins, morphs, colours and attributes of others; all else is as it was', async () => {
     const path = write('rich.glb', rich());
     const out = at('rich-split.glb');
-    assert.equal(cagecast('transfer', path, '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out).status, 0);
+    assert.equal(
+      cagecast('transfer', path, '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out).status,
+      0,
+    );
     assert.deepEqual(await validate(out), []);
-    const read = async (file: string) => (await new NodeIO().registerExtensions(ALL_EXTENSIONS).read(file)).getRoot().listMeshes()[0]!.listPrimitives();
+    const read = async (file: string) =>
+      (await new NodeIO().registerExtensions(ALL_EXTENSIONS).read(file)).getRoot().listMeshes()[0]!.listPrimitives();
     const [[before], [base, overlay]] = await Promise.all([read(path), read(out)]);
-    assert.deepEqual(before!.listSemantics().sort(), ['COLOR_0', 'JOINTS_0', 'NORMAL', 'POSITION', 'TEXCOORD_0', 'WEIGHTS_0', '_TEMPERATURE']);
+    assert.deepEqual(before!.listSemantics().sort(), [
+      'COLOR_0',
+      'JOINTS_0',
+      'NORMAL',
+      'POSITION',
+      'TEXCOORD_0',
+      'WEIGHTS_0',
+      '_TEMPERATURE',
+    ]);
     assert.equal(before!.listTargets().length, 1);
     assert.ok(assertTransferred(before!, base!, transfer(scene.cage, { ...scene.target, groups: undefined })) > 0);
-    for (const name of ['NORMAL', 'JOINTS_0', 'WEIGHTS_0']) assert.deepEqual(overlay!.getAttribute(name)!.getArray(), base!.getAttribute(name)!.getArray());
-    assert.deepEqual(overlay!.listTargets()[0]!.getAttribute('POSITION')!.getArray(), base!.listTargets()[0]!.getAttribute('POSITION')!.getArray());
+    for (const name of ['NORMAL', 'JOINTS_0', 'WEIGHTS_0'])
+      assert.deepEqual(overlay!.getAttribute(name)!.getArray(), base!.getAttribute(name)!.getArray());
+    assert.deepEqual(
+      overlay!.listTargets()[0]!.getAttribute('POSITION')!.getArray(),
+      base!.listTargets()[0]!.getAttribute('POSITION')!.getArray(),
+    );
     const [old, written] = [unpackGlb(readFileSync(path)).json, unpackGlb(readFileSync(out)).json];
-    for (const field of ['nodes', 'skins', 'animations', 'extensions', 'extras', 'extensionsUsed', 'scenes'] as const) assert.deepEqual(written[field], old[field], field);
-    assert.deepEqual([written.meshes![0]!.weights, written.meshes![0]!.extras], [old.meshes![0]!.weights, old.meshes![0]!.extras]);
+    for (const field of ['nodes', 'skins', 'animations', 'extensions', 'extras', 'extensionsUsed', 'scenes'] as const)
+      assert.deepEqual(written[field], old[field], field);
+    assert.deepEqual(
+      [written.meshes![0]!.weights, written.meshes![0]!.extras],
+      [old.meshes![0]!.weights, old.meshes![0]!.extras],
+    );
     assert.deepEqual(written.meshes![0]!.primitives[0]!.extras, { part: 'skin' });
   });
 
@@ -480,18 +880,42 @@ describe('what a target has is kept', () => {
     const maker = new GlbMaker();
     const vertices = scene.target.positions.length / 3;
     const padded = new Int16Array(4 * vertices);
-    for (let i = 0; i < 3 * vertices; ++i) padded[4 * Math.floor(i / 3) + (i % 3)] = Math.round((scene.target.positions[i]! / 2) * 32767);
+    for (let i = 0; i < 3 * vertices; ++i)
+      padded[4 * Math.floor(i / 3) + (i % 3)] = Math.round((scene.target.positions[i]! / 2) * 32767);
     const bufferView = maker.view(new Uint8Array(padded.buffer), { byteStride: 8 });
-    const bound = (pick: (...values: number[]) => number) => [0, 1, 2].map((k) => padded.filter((_, i) => i % 4 === k).reduce((a, b) => pick(a, b)));
-    const POSITION = maker.json.accessors.push({ bufferView, componentType: 5122, normalized: true, count: vertices, type: 'VEC3', min: bound(Math.min), max: bound(Math.max) } as GLTF.IAccessor) - 1;
-    maker.node({ mesh: maker.json.meshes.push({ primitives: [{ attributes: { POSITION }, indices: maker.accessor(scene.target.indices as Uint32Array, 'SCALAR') }] }) - 1, scale: [2, 2, 2] });
+    const bound = (pick: (...values: number[]) => number) =>
+      [0, 1, 2].map((k) => padded.filter((_, i) => i % 4 === k).reduce((a, b) => pick(a, b)));
+    const POSITION =
+      maker.json.accessors.push({
+        bufferView,
+        componentType: 5122,
+        normalized: true,
+        count: vertices,
+        type: 'VEC3',
+        min: bound(Math.min),
+        max: bound(Math.max),
+      } as GLTF.IAccessor) - 1;
+    maker.node({
+      mesh:
+        maker.json.meshes.push({
+          primitives: [
+            { attributes: { POSITION }, indices: maker.accessor(scene.target.indices as Uint32Array, 'SCALAR') },
+          ],
+        }) - 1,
+      scale: [2, 2, 2],
+    });
     maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
     const path = write('short.glb', maker.finish());
     const out = at('short-split.glb');
     const { parts } = report(path, at('cage.glb'), '-o', out);
     assert.ok(parts[0]!.splitVertices! > 0);
     assert.deepEqual(await validate(out), []);
-    const read = async (file: string) => (await new NodeIO().registerExtensions(ALL_EXTENSIONS).read(file)).getRoot().listMeshes()[0]!.listPrimitives()[0]!.getAttribute('POSITION')!;
+    const read = async (file: string) =>
+      (await new NodeIO().registerExtensions(ALL_EXTENSIONS).read(file))
+        .getRoot()
+        .listMeshes()[0]!
+        .listPrimitives()[0]!
+        .getAttribute('POSITION')!;
     const [before, written] = await Promise.all([read(path), read(out)]);
     assert.ok(written!.getArray() instanceof Int16Array && written!.getNormalized());
     assert.deepEqual(written!.getArray()!.subarray(0, 3 * vertices), before!.getArray());
@@ -499,9 +923,23 @@ describe('what a target has is kept', () => {
 
   test('with --seams vertex: skins, morphs, animations, materials, extras, colours, attributes of others, extensions nobody knows', async () => {
     const path = write('rich.glb', rich());
-    assert.deepEqual((await validate(path)).filter((issue) => !/ACME|UNUSED/.test(issue)), []);
+    assert.deepEqual(
+      (await validate(path)).filter((issue) => !/ACME|UNUSED/.test(issue)),
+      [],
+    );
     const out = at('rich-out.glb');
-    const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '--seams', 'vertex', '--texture', at('paint.png'), '-o', out);
+    const { status, stderr } = cagecast(
+      'transfer',
+      path,
+      '--cage',
+      at('cage.glb'),
+      '--seams',
+      'vertex',
+      '--texture',
+      at('paint.png'),
+      '-o',
+      out,
+    );
     assert.equal(status, 0, stderr);
     assert.deepEqual(await validate(out), []);
     const [before, afterwards] = [unpackGlb(readFileSync(path)), unpackGlb(readFileSync(out))];
@@ -517,7 +955,10 @@ describe('what a target has is kept', () => {
     const material = afterwards.json.materials![overlay.material!]!;
     assert.equal(material.alphaMode, 'BLEND');
     assert.equal(material.doubleSided, true);
-    const image = afterwards.json.images![afterwards.json.textures![material.pbrMetallicRoughness!.baseColorTexture!.index]!.source!]!;
+    const image =
+      afterwards.json.images![
+        afterwards.json.textures![material.pbrMetallicRoughness!.baseColorTexture!.index]!.source!
+      ]!;
     const { byteOffset = 0, byteLength } = afterwards.json.bufferViews![image.bufferView!]!;
     assert.deepEqual(Buffer.from(afterwards.bin.subarray(byteOffset, byteOffset + byteLength)), paint());
   });
@@ -527,13 +968,18 @@ describe('what a target has is kept', () => {
     cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out);
     const [base, overlay] = (await new NodeIO().read(out)).getRoot().listMeshes()[0]!.listPrimitives();
     const { cosmeticTriangles } = transfer(scene.cage, { ...scene.target, groups: undefined });
-    const expected = [...base!.getIndices()!.getArray()!].filter((_, corner) => cosmeticTriangles[Math.floor(corner / 3)]);
+    const expected = [...base!.getIndices()!.getArray()!].filter(
+      (_, corner) => cosmeticTriangles[Math.floor(corner / 3)],
+    );
     assert.deepEqual([...overlay!.getIndices()!.getArray()!], expected);
     const [p, q] = [base!.getAttribute('POSITION')!.getArray()!, overlay!.getAttribute('POSITION')!.getArray()!];
     for (const v of new Set(expected)) {
       const step = Math.hypot(...[0, 1, 2].map((k) => q[3 * v + k]! - p[3 * v + k]!));
       assert.ok(step > 0.0005 && step < 0.005, `vertex ${v} moved by ${step}`);
-      assert.ok(Math.hypot(...q.slice(3 * v, 3 * v + 3)) > Math.hypot(...p.slice(3 * v, 3 * v + 3)) - 1e-4, `vertex ${v} moved inwards`);
+      assert.ok(
+        Math.hypot(...q.slice(3 * v, 3 * v + 3)) > Math.hypot(...p.slice(3 * v, 3 * v + 3)) - 1e-4,
+        `vertex ${v} moved inwards`,
+      );
     }
   });
 
@@ -541,13 +987,19 @@ describe('what a target has is kept', () => {
     const [once, twice] = [at('once.glb'), at('twice.glb')];
     const run = (target: string, to: string) => report(target, at('cage.glb'), '--texture', at('paint.png'), '-o', to);
     const [first, second] = [run(at('target.glb'), once), run(once, twice)];
-    assert.deepEqual([second.triangles, second.parts.length, second.parts[0]!.uvSet], [first.triangles, first.parts.length, 'TEXCOORD_2']);
+    assert.deepEqual(
+      [second.triangles, second.parts.length, second.parts[0]!.uvSet],
+      [first.triangles, first.parts.length, 'TEXCOORD_2'],
+    );
     rmSync(once);
     rmSync(twice);
   });
 
   test('nothing to paint, no overlay', async () => {
-    const far = write('far.glb', glbOf({ ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 50 : x)) }));
+    const far = write(
+      'far.glb',
+      glbOf({ ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 50 : x)) }),
+    );
     const { parts, counts } = report(at('target.glb'), far, '--texture', at('paint.png'), '-o', at('bare-out.glb'));
     assert.equal(counts.cosmetic, 0);
     assert.equal(parts[0]!.overlayTriangles, 0);
@@ -557,7 +1009,10 @@ describe('what a target has is kept', () => {
 
   test('a target without UVs gets its first set', () => {
     const path = write('plain.glb', glbOf({ positions: scene.target.positions, indices: scene.target.indices }));
-    assert.deepEqual(report(path, at('cage.glb'), '-o', at('plain-out.glb')).parts.map(({ uvSet }) => uvSet), ['TEXCOORD_0']);
+    assert.deepEqual(
+      report(path, at('cage.glb'), '-o', at('plain-out.glb')).parts.map(({ uvSet }) => uvSet),
+      ['TEXCOORD_0'],
+    );
   });
 });
 
@@ -570,25 +1025,40 @@ describe('the same mesh in other forms gives the same answer', () => {
   };
 
   test('not indexed', () => {
-    const positions = Float32Array.from([...scene.target.indices].flatMap((v) => [...scene.target.positions.subarray(3 * v, 3 * v + 3)]));
+    const positions = Float32Array.from(
+      [...scene.target.indices].flatMap((v) => [...scene.target.positions.subarray(3 * v, 3 * v + 3)]),
+    );
     const path = made('soup', (maker) => {
       const POSITION = maker.accessor(positions, 'VEC3');
       maker.node({ mesh: maker.json.meshes.push({ primitives: [{ attributes: { POSITION } }] }) - 1 });
     });
     const { segments, areas } = report(path);
     const plain = report(at('target.glb'));
-    assert.deepEqual(segments.map(({ points }) => points), plain.segments.map(({ points }) => points));
+    assert.deepEqual(
+      segments.map(({ points }) => points),
+      plain.segments.map(({ points }) => points),
+    );
     assert.ok(Math.abs(areas.cosmetic - plain.areas.cosmetic) < 1e-6 * areas.total);
   });
 
   test('indices of 16 bits', () => {
-    assert.deepEqual(answer(made('short', (maker) => maker.node({ mesh: maker.mesh({ ...scene.target, indices: new Uint16Array(scene.target.indices) }) }))), expected());
+    assert.deepEqual(
+      answer(
+        made('short', (maker) =>
+          maker.node({ mesh: maker.mesh({ ...scene.target, indices: new Uint16Array(scene.target.indices) }) }),
+        ),
+      ),
+      expected(),
+    );
   });
 
   test('moved and turned by nodes, undone by their parents', () => {
     const path = made('nested', (maker) => {
       const inner = maker.node({ mesh: maker.mesh(scene.target), translation: [1, 2, 3], scale: [2, 2, 2] }, false);
-      const middle = maker.node({ children: [inner], matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, -2, -3, 1] }, false);
+      const middle = maker.node(
+        { children: [inner], matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, -2, -3, 1] },
+        false,
+      );
       maker.node({ children: [middle], scale: [0.5, 0.5, 0.5] });
     });
     assert.deepEqual(answer(path), expected());
@@ -598,9 +1068,17 @@ describe('the same mesh in other forms gives the same answer', () => {
     const positions = scene.target.positions.map((x, i) => (i % 3 === 0 ? -x : x));
     const indices = new Uint32Array(scene.target.indices);
     for (let t = 0; t < indices.length; t += 3) [indices[t + 1], indices[t + 2]] = [indices[t + 2]!, indices[t + 1]!];
-    assert.deepEqual(answer(made('mirrored', (maker) => maker.node({ mesh: maker.mesh({ positions, indices }), scale: [-1, 1, 1] }))), expected());
-    const cage = { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 1 ? -x : x)), indices: new Uint32Array(scene.cage.indices) };
-    for (let t = 0; t < cage.indices.length; t += 3) [cage.indices[t + 1], cage.indices[t + 2]] = [cage.indices[t + 2]!, cage.indices[t + 1]!];
+    assert.deepEqual(
+      answer(made('mirrored', (maker) => maker.node({ mesh: maker.mesh({ positions, indices }), scale: [-1, 1, 1] }))),
+      expected(),
+    );
+    const cage = {
+      ...scene.cage,
+      positions: scene.cage.positions.map((x, i) => (i % 3 === 1 ? -x : x)),
+      indices: new Uint32Array(scene.cage.indices),
+    };
+    for (let t = 0; t < cage.indices.length; t += 3)
+      [cage.indices[t + 1], cage.indices[t + 2]] = [cage.indices[t + 2]!, cage.indices[t + 1]!];
     const mirroredCage = made('mirrored-cage', (maker) => maker.node({ mesh: maker.mesh(cage), scale: [1, -1, 1] }));
     assert.deepEqual(report(at('target.glb'), mirroredCage).counts, report(at('target.glb')).counts);
   });
@@ -611,7 +1089,10 @@ describe('the same mesh in other forms gives the same answer', () => {
       const vertices = scene.target.positions.length / 3;
       const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
       attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
-      attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+      attributes['WEIGHTS_0'] = maker.accessor(
+        new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)),
+        'VEC4',
+      );
       maker.json.skins = [{ joints: [0] }];
       maker.node({ name: 'bone' });
       maker.node({ mesh, skin: 0, translation: [100, 0, 0] });
@@ -626,11 +1107,23 @@ describe('the same mesh in other forms gives the same answer', () => {
     const mesh = maker.mesh({ ...scene.target, positions: scene.target.positions.map((x) => times * x) });
     const vertices = scene.target.positions.length / 3;
     const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
-    attributes['JOINTS_0'] = maker.accessor(Uint8Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? (i / 4) % 2 : 2)), 'VEC4');
-    attributes['WEIGHTS_0'] = maker.accessor(Float32Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    attributes['JOINTS_0'] = maker.accessor(
+      Uint8Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? (i / 4) % 2 : 2)),
+      'VEC4',
+    );
+    attributes['WEIGHTS_0'] = maker.accessor(
+      Float32Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? 1 : 0)),
+      'VEC4',
+    );
     const inverses = [back, back.map((x, i) => (i === 12 ? x - 0.5 : x)), back.map(() => 7)]; // the third holds nothing
-    maker.json.skins = [{ joints: [1, 2, 0], inverseBindMatrices: maker.accessor(Float32Array.from(inverses.flat()), 'MAT4') }];
-    maker.json.nodes.push({ name: 'unused' }, { name: 'rig', matrix: turned, children: [2] }, { name: 'tip', translation: [bent ? 3 : 0.5, 0, 0] });
+    maker.json.skins = [
+      { joints: [1, 2, 0], inverseBindMatrices: maker.accessor(Float32Array.from(inverses.flat()), 'MAT4') },
+    ];
+    maker.json.nodes.push(
+      { name: 'unused' },
+      { name: 'rig', matrix: turned, children: [2] },
+      { name: 'tip', translation: [bent ? 3 : 0.5, 0, 0] },
+    );
     maker.json.scenes![0]!.nodes!.push(0, 1);
     maker.node({ mesh, skin: 0, translation: [100, 0, 0] });
   };
@@ -642,7 +1135,10 @@ describe('the same mesh in other forms gives the same answer', () => {
   test('a mesh that a node shows in many places is told of, and not taken for one', () => {
     const path = made('instanced', (maker) => {
       const translation = maker.accessor(new Float32Array([0, 0, 0, 3, 0, 0]), 'VEC3');
-      maker.node({ mesh: maker.mesh(scene.target), extensions: { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: translation } } } });
+      maker.node({
+        mesh: maker.mesh(scene.target),
+        extensions: { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: translation } } },
+      });
       maker.json.extensionsUsed = ['EXT_mesh_gpu_instancing'];
     });
     const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '-o', at('instanced-out.glb'));
@@ -676,7 +1172,9 @@ describe('the same mesh in other forms gives the same answer', () => {
     const positions = new Float32Array([-0.1, -0.1, 0.9, 0.1, -0.1, 0.9, -0.1, 0.1, 0.9, 0.1, 0.1, 0.9]);
     const form = (indices: number[], mode: number) =>
       made(`mode-${mode}`, (maker) => {
-        const mesh = maker.mesh({ positions, indices: new Uint16Array(indices) }, { mode } as Partial<GLTF.IMeshPrimitive>);
+        const mesh = maker.mesh({ positions, indices: new Uint16Array(indices) }, {
+          mode,
+        } as Partial<GLTF.IMeshPrimitive>);
         maker.node({ mesh });
       });
     const triangles = answer(form([0, 1, 2, 2, 1, 3], 4));
@@ -684,7 +1182,16 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(form([1, 3, 2, 0], 6)), triangles);
     // The winding shows in the overlay's normals: all must point up, as the cage is above.
     for (const mode of [4, 5, 6]) {
-      cagecast('transfer', at(`mode-${mode}.glb`), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', at('wound.glb'));
+      cagecast(
+        'transfer',
+        at(`mode-${mode}.glb`),
+        '--cage',
+        at('cage.glb'),
+        '--texture',
+        at('paint.png'),
+        '-o',
+        at('wound.glb'),
+      );
       const { json } = unpackGlb(readFileSync(at('wound.glb')));
       const overlay = json.meshes![0]!.primitives[1]!;
       assert.ok(json.accessors![overlay.attributes['POSITION']!]!.min![2]! > 0.9, `mode ${mode}`);
@@ -715,10 +1222,25 @@ describe('the same mesh in other forms gives the same answer', () => {
     const path = made('quantised', (maker) => {
       const vertices = rounded.length / 3;
       const padded = new Int16Array(4 * vertices);
-      for (let v = 0; v < vertices; ++v) for (let k = 0; k < 3; ++k) padded[4 * v + k] = Math.round((rounded[3 * v + k]! / 2) * 32767);
+      for (let v = 0; v < vertices; ++v)
+        for (let k = 0; k < 3; ++k) padded[4 * v + k] = Math.round((rounded[3 * v + k]! / 2) * 32767);
       const bufferView = maker.view(new Uint8Array(padded.buffer), { byteStride: 8 });
-      const POSITION = maker.json.accessors.push({ bufferView, componentType: 5122, normalized: true, count: vertices, type: 'VEC3', min: [-32767, -32767, -32767], max: [32767, 32767, 32767] } as GLTF.IAccessor) - 1;
-      const mesh = maker.json.meshes.push({ primitives: [{ attributes: { POSITION }, indices: maker.accessor(scene.target.indices as Uint32Array, 'SCALAR') }] }) - 1;
+      const POSITION =
+        maker.json.accessors.push({
+          bufferView,
+          componentType: 5122,
+          normalized: true,
+          count: vertices,
+          type: 'VEC3',
+          min: [-32767, -32767, -32767],
+          max: [32767, 32767, 32767],
+        } as GLTF.IAccessor) - 1;
+      const mesh =
+        maker.json.meshes.push({
+          primitives: [
+            { attributes: { POSITION }, indices: maker.accessor(scene.target.indices as Uint32Array, 'SCALAR') },
+          ],
+        }) - 1;
       maker.node({ mesh, scale: [2, 2, 2] });
       maker.json.extensionsUsed = maker.json.extensionsRequired = ['KHR_mesh_quantization'];
     });
@@ -773,7 +1295,10 @@ describe('the same mesh in other forms gives the same answer', () => {
       maker.json.buffers![0]!.extensions = { EXT_meshopt_compression: { fallback: true } };
     });
     report(path, at('cage.glb'), '-o', at('stand-in-out.glb'));
-    assert.deepEqual(unpackGlb(readFileSync(at('stand-in-out.glb'))).json.buffers!.map(({ extensions }) => extensions), [undefined]);
+    assert.deepEqual(
+      unpackGlb(readFileSync(at('stand-in-out.glb'))).json.buffers!.map(({ extensions }) => extensions),
+      [undefined],
+    );
   });
 
   test('a file beside it may have a name that is no address', () => {
@@ -797,7 +1322,10 @@ describe('several parts', () => {
   test('every primitive of every node is a group of its own', () => {
     const half = Math.floor(scene.target.indices.length / 6) * 3;
     const maker = new GlbMaker();
-    const [a, b] = [maker.mesh({ ...scene.target, indices: scene.target.indices.subarray(0, half) }), maker.mesh({ ...scene.target, indices: scene.target.indices.subarray(half) })];
+    const [a, b] = [
+      maker.mesh({ ...scene.target, indices: scene.target.indices.subarray(0, half) }),
+      maker.mesh({ ...scene.target, indices: scene.target.indices.subarray(half) }),
+    ];
     maker.json.meshes[a]!.primitives.push(maker.json.meshes[b]!.primitives[0]!);
     maker.node({ mesh: a, name: 'split' });
     const { parts, segments, target } = report(write('parts.glb', maker.finish()));
@@ -815,36 +1343,72 @@ describe('several parts', () => {
     const path = write('twins.glb', maker.finish());
     const out = at('twins-out.glb');
     const { parts } = report(path, at('cage.glb'), '--seams', 'vertex', '--texture', at('paint.png'), '-o', out);
-    assert.deepEqual(parts.map(({ name }) => name), ['left', 'right']);
+    assert.deepEqual(
+      parts.map(({ name }) => name),
+      ['left', 'right'],
+    );
     assert.deepEqual(await validate(out), []);
-    const twins = [-0.6, 0.6].map((x) => ({ ...small, positions: small.positions.map((value, i) => (i % 3 === 0 ? value + x : value)) }));
+    const twins = [-0.6, 0.6].map((x) => ({
+      ...small,
+      positions: small.positions.map((value, i) => (i % 3 === 0 ? value + x : value)),
+    }));
     const { uvs } = transfer(scene.cage, join3d(...twins));
     const document = await new NodeIO().read(out);
-    document.getRoot().listNodes().forEach((node, n) => {
-      const written = node.getMesh()!.listPrimitives()[0]!.getAttribute('TEXCOORD_1')!.getArray()!;
-      const own = uvs.subarray((n * uvs.length) / 2, ((n + 1) * uvs.length) / 2);
-      for (let i = 0; i < own.length; ++i) assert.ok(Math.abs(written[i]! - own[i]!) < 1e-5);
-    });
+    document
+      .getRoot()
+      .listNodes()
+      .forEach((node, n) => {
+        const written = node.getMesh()!.listPrimitives()[0]!.getAttribute('TEXCOORD_1')!.getArray()!;
+        const own = uvs.subarray((n * uvs.length) / 2, ((n + 1) * uvs.length) / 2);
+        for (let i = 0; i < own.length; ++i) assert.ok(Math.abs(written[i]! - own[i]!) < 1e-5);
+      });
     assert.notEqual(document.getRoot().listNodes()[0]!.getMesh(), document.getRoot().listNodes()[1]!.getMesh());
   });
 
   test('what animates a mesh animates its copies; what only another scene shows stays as it is', () => {
     const maker = new GlbMaker();
     const small = ball([0, 0, 0], () => 0.2, 8, 12);
-    const mesh = maker.mesh(small, { targets: [{ POSITION: maker.accessor(new Float32Array(small.positions.length), 'VEC3') }] });
+    const mesh = maker.mesh(small, {
+      targets: [{ POSITION: maker.accessor(new Float32Array(small.positions.length), 'VEC3') }],
+    });
     for (const x of [-0.6, 0.6]) maker.node({ mesh, translation: [x, 0, 0] });
     maker.json.scenes!.push({ nodes: [maker.node({ mesh }, false)] });
     const target = { path: 'pointer', extensions: { KHR_animation_pointer: { pointer: `/meshes/${mesh}/weights` } } };
-    const [input, output] = [maker.accessor(Float32Array.of(0, 1), 'SCALAR', { min: [0], max: [1] }), maker.accessor(Float32Array.of(0, 1), 'SCALAR')];
-    maker.json.animations = [{ samplers: [{ input, output }], channels: [{ sampler: 0, target: target as GLTF.IAnimationChannelTarget }] }];
+    const [input, output] = [
+      maker.accessor(Float32Array.of(0, 1), 'SCALAR', { min: [0], max: [1] }),
+      maker.accessor(Float32Array.of(0, 1), 'SCALAR'),
+    ];
+    maker.json.animations = [
+      { samplers: [{ input, output }], channels: [{ sampler: 0, target: target as GLTF.IAnimationChannelTarget }] },
+    ];
     maker.json.extensionsUsed = ['KHR_animation_pointer'];
-    report(write('moved-twins.glb', maker.finish()), at('cage.glb'), '--texture', at('paint.png'), '-o', at('moved-twins-out.glb'));
+    report(
+      write('moved-twins.glb', maker.finish()),
+      at('cage.glb'),
+      '--texture',
+      at('paint.png'),
+      '-o',
+      at('moved-twins-out.glb'),
+    );
     const { json } = unpackGlb(readFileSync(at('moved-twins-out.glb')));
-    assert.deepEqual(json.nodes!.map((node) => node.mesh), [0, 1, 2]);
-    assert.deepEqual(json.meshes!.map(({ primitives }) => primitives.length), [2, 2, 1]);
+    assert.deepEqual(
+      json.nodes!.map((node) => node.mesh),
+      [0, 1, 2],
+    );
+    assert.deepEqual(
+      json.meshes!.map(({ primitives }) => primitives.length),
+      [2, 2, 1],
+    );
     assert.deepEqual(Object.keys(json.meshes![2]!.primitives[0]!.attributes), ['POSITION', 'TEXCOORD_0']);
-    const pointers = json.animations![0]!.channels.map(({ target }) => (target.extensions as typeof target.extensions & { KHR_animation_pointer: { pointer: string } }).KHR_animation_pointer.pointer);
-    assert.deepEqual(pointers.sort(), [0, 1, 2].map((number) => `/meshes/${number}/weights`));
+    const pointers = json.animations![0]!.channels.map(
+      ({ target }) =>
+        (target.extensions as typeof target.extensions & { KHR_animation_pointer: { pointer: string } })
+          .KHR_animation_pointer.pointer,
+    );
+    assert.deepEqual(
+      pointers.sort(),
+      [0, 1, 2].map((number) => `/meshes/${number}/weights`),
+    );
   });
 });
 
@@ -866,7 +1430,15 @@ describe('inspect', () => {
   test('calls a good cage good, in text and JSON', () => {
     const text = cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'));
     assert.equal(text.status, 0, text.stderr);
-    for (const word of [/cosmetic/, /outside the cage/, /median/, /F = C\/E/, /beneath/, /(GOOD|USABLE): the cage fits/]) assert.match(text.stdout, word);
+    for (const word of [
+      /cosmetic/,
+      /outside the cage/,
+      /median/,
+      /F = C\/E/,
+      /beneath/,
+      /(GOOD|USABLE): the cage fits/,
+    ])
+      assert.match(text.stdout, word);
     const { status, report: inspection } = json(at('cage.glb'));
     assert.equal(status, 0);
     assert.notEqual(inspection.verdict, 'unfit');
@@ -882,8 +1454,16 @@ describe('inspect', () => {
     const cages: [string, Mesh, string][] = [
       ['flipped', { ...scene.cage, indices: scene.cage.indices.slice().reverse() }, 'normalsInward'],
       ['shrunk', { ...scene.cage, positions: scene.cage.positions.map((x) => 0.8 * x) }, 'cageTooSmall'],
-      ['moved', { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 0.3 : x)) }, 'cageMisplaced'],
-      ['away', { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 9 : x)) }, 'cageElsewhere'],
+      [
+        'moved',
+        { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 0.3 : x)) },
+        'cageMisplaced',
+      ],
+      [
+        'away',
+        { ...scene.cage, positions: scene.cage.positions.map((x, i) => (i % 3 === 0 ? x + 9 : x)) },
+        'cageElsewhere',
+      ],
     ];
     for (const [name, cage, code] of cages) {
       const path = write(`${name}.glb`, glbOf(cage));
@@ -904,7 +1484,9 @@ describe('inspect', () => {
     assert.match(stdout, /wrote .*inspection\.html/);
     const html = readFileSync(page, 'utf8');
     assert.doesNotMatch(html, /(?:src|href)="(?!data:)|https?:\/\/|<script/);
-    const pictures = [...html.matchAll(/data:image\/png;base64,([^"]+)"/g)].map(([, data]) => PNG.sync.read(Buffer.from(data!, 'base64')));
+    const pictures = [...html.matchAll(/data:image\/png;base64,([^"]+)"/g)].map(([, data]) =>
+      PNG.sync.read(Buffer.from(data!, 'base64')),
+    );
     assert.equal(pictures.length, 8);
     // Something is to be seen in each, and not everywhere.
     for (const { data } of pictures) {
@@ -913,7 +1495,10 @@ describe('inspect', () => {
     }
     assert.match(html, /<svg[^]*<path/);
     assert.equal(cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--html', at('page.txt')).status, 2);
-    assert.equal(cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--html', at('gone/page.html')).status, 1);
+    assert.equal(
+      cagecast('inspect', at('target.glb'), '--cage', at('cage.glb'), '--html', at('gone/page.html')).status,
+      1,
+    );
   });
 
   test('a reader that leaves early is no failure', () => {
@@ -926,13 +1511,32 @@ describe('inspect', () => {
 describe('models', () => {
   for (const model of modelFolders()) {
     test(`${basename(model)}: the file is valid, its vertices keep what they have, UVs and zones are the package's`, async () => {
-      const [target, cage, out, reportFile] = [join(model, 'target.glb'), join(model, 'cage.glb'), at('model.glb'), at('model.json')];
-      const { status, stderr } = cagecast('transfer', target, '--cage', cage, '--texture', at('paint.png'), '-o', out, '--report', reportFile);
+      const [target, cage, out, reportFile] = [
+        join(model, 'target.glb'),
+        join(model, 'cage.glb'),
+        at('model.glb'),
+        at('model.json'),
+      ];
+      const { status, stderr } = cagecast(
+        'transfer',
+        target,
+        '--cage',
+        cage,
+        '--texture',
+        at('paint.png'),
+        '-o',
+        out,
+        '--report',
+        reportFile,
+      );
       assert.equal(status, 0, stderr);
       assert.deepEqual(await validate(out), []);
       const result = transfer(await readPlain(cage), await readPlain(target));
       const { counts } = JSON.parse(readFileSync(reportFile, 'utf8')) as Report;
-      assert.deepEqual(Object.values(counts), [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length));
+      assert.deepEqual(
+        Object.values(counts),
+        [0, 1, 2, 3].map((zone) => result.zones.filter((one) => one === zone).length),
+      );
 
       const read = async (path: string) => (await new NodeIO().registerExtensions(ALL_EXTENSIONS).read(path)).getRoot();
       const [before, afterwards] = [await read(target), await read(out)];
@@ -956,12 +1560,24 @@ describe('models', () => {
       const out = at('format.glb');
       const path = join(assets!, 'formats', name);
       for (const seams of ['vertex', 'corner']) {
-        const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '--seams', seams, '--texture', at('paint.png'), '-o', out);
+        const { status, stderr } = cagecast(
+          'transfer',
+          path,
+          '--cage',
+          at('cage.glb'),
+          '--seams',
+          seams,
+          '--texture',
+          at('paint.png'),
+          '-o',
+          out,
+        );
         assert.equal(status, 0, stderr);
         assert.deepEqual(await validate(out), []);
         const { json } = unpackGlb(readFileSync(out));
         // Draco knows its vertices by their triangles: it cannot be left on those that were split.
-        if (seams === 'vertex' || /meshopt/.test(name)) assert.ok(json.extensionsRequired!.some((extension) => /draco|meshopt/.test(extension)));
+        if (seams === 'vertex' || /meshopt/.test(name))
+          assert.ok(json.extensionsRequired!.some((extension) => /draco|meshopt/.test(extension)));
         // It opens again.
         assert.equal(cagecast('transfer', out, '--cage', at('cage.glb')).status, 0);
       }
@@ -971,13 +1587,19 @@ describe('models', () => {
   if (assets !== undefined) {
     test('the sedan of the wild, Draco in a data URI, gives the counts of the plain one', () => {
       const cage = join(assets, 'kenney_sedan/cage.glb');
-      assert.deepEqual(report(join(assets, 'formats/kenney_sedan_draco_datauri.gltf'), cage).counts, report(join(assets, 'kenney_sedan/target.glb'), cage).counts);
+      assert.deepEqual(
+        report(join(assets, 'formats/kenney_sedan_draco_datauri.gltf'), cage).counts,
+        report(join(assets, 'kenney_sedan/target.glb'), cage).counts,
+      );
     });
-
   }
 
   test('inspect finds bad cages of models unfit, for the right reason first, and good ones good or usable', () => {
-    const reasons: [RegExp, string][] = [[/shifted|misaligned/, 'cageMisplaced'], [/shrunk/, 'cageTooSmall'], [/flipped/, 'normalsInward']];
+    const reasons: [RegExp, string][] = [
+      [/shifted|misaligned/, 'cageMisplaced'],
+      [/shrunk/, 'cageTooSmall'],
+      [/flipped/, 'normalsInward'],
+    ];
     for (const model of modelFolders()) {
       for (const name of readdirSync(model).filter((file) => /^cage.*\.glb$/.test(file))) {
         const path = join(model, name);

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
-import { CagecastError, classify, init, project, transfer, type Code, type Mesh } from 'cagecast';
+import { CagecastError, type Code, classify, init, type Mesh, project, transfer } from 'cagecast';
 import { coreCodes } from '../../wasm/src/error.js';
 import { head, smallest } from './scenes.js';
 
@@ -21,7 +21,10 @@ function fails(call: () => unknown, code: Code, message: string | RegExp, at = 0
 const { cage, target } = smallest();
 const worksAgain = () => assert.deepEqual([...transfer(cage, target).zones], [0, 0, 0]);
 /** A call with arguments that its types forbid. */
-const untyped = (...args: unknown[]) => () => (transfer as (...args: unknown[]) => unknown)(...args);
+const untyped =
+  (...args: unknown[]) =>
+  () =>
+    (transfer as (...args: unknown[]) => unknown)(...args);
 
 describe('errors', () => {
   before(init);
@@ -36,7 +39,9 @@ describe('errors', () => {
       }`;
     assert.equal(
       execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8' }).trim(),
-      ['transfer', 'project', 'classify'].map((fn) => `notInitialised ${fn}: Cagecast is not ready; await init() once before the first call`).join('\n'),
+      ['transfer', 'project', 'classify']
+        .map((fn) => `notInitialised ${fn}: Cagecast is not ready; await init() once before the first call`)
+        .join('\n'),
     );
   });
 
@@ -50,23 +55,91 @@ describe('errors', () => {
   test('of the meshes: every code, with argument, element, value and limit', () => {
     const floats = (...values: number[]) => new Float32Array(values);
     const corners = (...values: number[]) => new Uint32Array(values);
-    fails(() => transfer(cage, { ...target, positions: floats(), groups: corners() }), 'emptyMesh', 'transfer: target has no vertices; at least one is needed');
-    fails(() => transfer({ ...cage, indices: corners() }, target), 'emptyMesh', 'transfer: cage has no triangles; at least one is needed');
-    fails(() => transfer(cage, { positions: floats(0, 0), indices: corners(0, 0, 0) }), 'positionsNotTriples', 'transfer: target.positions has 2 numbers, not 3 per vertex', 2);
-    fails(() => transfer(cage, { ...target, indices: corners(0, 1) }), 'indicesNotTriples', 'transfer: target.indices has 2 entries, not 3 per triangle', 2);
-    fails(() => transfer({ positions: cage.positions, indices: cage.indices }, target), 'missingUvs', /^transfer: cage\.uvs is missing/);
-    fails(() => transfer({ ...cage, uvs: floats(0, 0) }, target), 'uvCountMismatch', 'transfer: cage.uvs has 2 numbers, not 2 for each of 3 vertices', 2);
-    fails(() => transfer(cage, { ...target, groups: corners(0) }), 'groupCountMismatch', 'transfer: target.groups has 1 entries, not 1 for each of 3 vertices', 1);
-    fails(() => transfer(cage, { ...target, groups: corners() }), 'groupCountMismatch', 'transfer: target.groups has 0 entries, not 1 for each of 3 vertices');
-    fails(() => transfer(cage, { ...target, indices: corners(0, 1, 912) }), 'indexOutOfRange', 'transfer: target.indices[2] = 912 is out of range (3 vertices)', 2);
-    fails(() => project(cage, { ...target, indices: new Uint16Array([0, 3, 1]) }), 'indexOutOfRange', 'project: target.indices[1] = 3 is out of range (3 vertices)', 1);
-    fails(() => transfer(cage, { ...target, positions: floats(0, 0, 0, 1, NaN, 0, 0, 1, 0) }), 'nonFinitePosition', 'transfer: target.positions[4] = NaN is not a finite number', 4);
-    fails(() => transfer({ ...cage, positions: floats(0, 0, 0, 1, 0, 0, 0, -Infinity, 0) }, target), 'nonFinitePosition', 'transfer: cage.positions[7] = -Infinity is not a finite number', 7);
-    fails(() => transfer({ ...cage, uvs: floats(0, 0, 1, 0, 0, Infinity) }, target), 'nonFiniteUv', 'transfer: cage.uvs[5] = Infinity is not a finite number', 5);
-    fails(() => transfer({ ...cage, positions: new Float32Array(9) }, target), 'noUsableCageTriangle', 'transfer: cage has no triangle with an area');
+    fails(
+      () => transfer(cage, { ...target, positions: floats(), groups: corners() }),
+      'emptyMesh',
+      'transfer: target has no vertices; at least one is needed',
+    );
+    fails(
+      () => transfer({ ...cage, indices: corners() }, target),
+      'emptyMesh',
+      'transfer: cage has no triangles; at least one is needed',
+    );
+    fails(
+      () => transfer(cage, { positions: floats(0, 0), indices: corners(0, 0, 0) }),
+      'positionsNotTriples',
+      'transfer: target.positions has 2 numbers, not 3 per vertex',
+      2,
+    );
+    fails(
+      () => transfer(cage, { ...target, indices: corners(0, 1) }),
+      'indicesNotTriples',
+      'transfer: target.indices has 2 entries, not 3 per triangle',
+      2,
+    );
+    fails(
+      () => transfer({ positions: cage.positions, indices: cage.indices }, target),
+      'missingUvs',
+      /^transfer: cage\.uvs is missing/,
+    );
+    fails(
+      () => transfer({ ...cage, uvs: floats(0, 0) }, target),
+      'uvCountMismatch',
+      'transfer: cage.uvs has 2 numbers, not 2 for each of 3 vertices',
+      2,
+    );
+    fails(
+      () => transfer(cage, { ...target, groups: corners(0) }),
+      'groupCountMismatch',
+      'transfer: target.groups has 1 entries, not 1 for each of 3 vertices',
+      1,
+    );
+    fails(
+      () => transfer(cage, { ...target, groups: corners() }),
+      'groupCountMismatch',
+      'transfer: target.groups has 0 entries, not 1 for each of 3 vertices',
+    );
+    fails(
+      () => transfer(cage, { ...target, indices: corners(0, 1, 912) }),
+      'indexOutOfRange',
+      'transfer: target.indices[2] = 912 is out of range (3 vertices)',
+      2,
+    );
+    fails(
+      () => project(cage, { ...target, indices: new Uint16Array([0, 3, 1]) }),
+      'indexOutOfRange',
+      'project: target.indices[1] = 3 is out of range (3 vertices)',
+      1,
+    );
+    fails(
+      () => transfer(cage, { ...target, positions: floats(0, 0, 0, 1, NaN, 0, 0, 1, 0) }),
+      'nonFinitePosition',
+      'transfer: target.positions[4] = NaN is not a finite number',
+      4,
+    );
+    fails(
+      () => transfer({ ...cage, positions: floats(0, 0, 0, 1, 0, 0, 0, -Infinity, 0) }, target),
+      'nonFinitePosition',
+      'transfer: cage.positions[7] = -Infinity is not a finite number',
+      7,
+    );
+    fails(
+      () => transfer({ ...cage, uvs: floats(0, 0, 1, 0, 0, Infinity) }, target),
+      'nonFiniteUv',
+      'transfer: cage.uvs[5] = Infinity is not a finite number',
+      5,
+    );
+    fails(
+      () => transfer({ ...cage, positions: new Float32Array(9) }, target),
+      'noUsableCageTriangle',
+      'transfer: cage has no triangle with an area',
+    );
     assert.throws(
       () => transfer({ ...cage, positions: floats(0, 0, 0, 1, 0, 0, 0, 1e30, 0) }, target),
-      (error: unknown) => error instanceof CagecastError && error.code === 'tooLarge' && /cage\.positions\[7\] = .* out of all proportion/.test(error.message),
+      (error: unknown) =>
+        error instanceof CagecastError &&
+        error.code === 'tooLarge' &&
+        /cage\.positions\[7\] = .* out of all proportion/.test(error.message),
     );
     worksAgain();
   });
@@ -74,40 +147,127 @@ describe('errors', () => {
   test('of arguments that TypeScript would not let through', () => {
     fails(untyped(), 'badArgument', 'transfer: cage is undefined, not a mesh { positions, indices, … }');
     fails(untyped(cage, null), 'badArgument', 'transfer: target is null, not a mesh { positions, indices, … }');
-    fails(untyped(cage, { ...target, positions: [0, 0, 0] }), 'badArgument', 'transfer: target.positions is of type Array, not a Float32Array');
-    fails(untyped(cage, { ...target, positions: new Float64Array(9) }), 'badArgument', 'transfer: target.positions is of type Float64Array, not a Float32Array');
-    fails(untyped(cage, { positions: target.positions }), 'badArgument', 'transfer: target.indices is undefined, not a Uint32Array, Uint16Array or Uint8Array');
+    fails(
+      untyped(cage, { ...target, positions: [0, 0, 0] }),
+      'badArgument',
+      'transfer: target.positions is of type Array, not a Float32Array',
+    );
+    fails(
+      untyped(cage, { ...target, positions: new Float64Array(9) }),
+      'badArgument',
+      'transfer: target.positions is of type Float64Array, not a Float32Array',
+    );
+    fails(
+      untyped(cage, { positions: target.positions }),
+      'badArgument',
+      'transfer: target.indices is undefined, not a Uint32Array, Uint16Array or Uint8Array',
+    );
     fails(untyped(cage, { ...target, indices: new Int32Array(3) }), 'badArgument', /indices is of type Int32Array/);
     fails(untyped({ ...cage, uvs: 'uv' }, target), 'badArgument', 'transfer: cage.uvs is "uv", not a Float32Array');
-    fails(untyped(cage, { ...target, groups: [0, 0, 0] }), 'badArgument', 'transfer: target.groups is of type Array, not a Uint32Array');
+    fails(
+      untyped(cage, { ...target, groups: [0, 0, 0] }),
+      'badArgument',
+      'transfer: target.groups is of type Array, not a Uint32Array',
+    );
     worksAgain();
   });
 
   test('of options', () => {
-    fails(untyped(cage, target, { locks: { groups: new Map([[0, 'exclude']]) } }), 'badOption', 'transfer: options.locks.groups is of type Map, not an object of numbers and locks');
-    fails(untyped(cage, target, { locks: { segments: { '': 'keep' } } }), 'badOption', 'transfer: options.locks.segments has the entry "", which is no number');
+    fails(
+      untyped(cage, target, { locks: { groups: new Map([[0, 'exclude']]) } }),
+      'badOption',
+      'transfer: options.locks.groups is of type Map, not an object of numbers and locks',
+    );
+    fails(
+      untyped(cage, target, { locks: { segments: { '': 'keep' } } }),
+      'badOption',
+      'transfer: options.locks.segments has the entry "", which is no number',
+    );
     fails(untyped(cage, target, 0.5), 'badOption', 'transfer: options is 0.5, not an object');
-    fails(untyped(cage, target, { treshold: 0.5 }), 'badOption', 'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, seams, occlusionReach, pokeThrough, votes, farRims, depths, secondLook, bothSides, exposedSide, holes, threshold, floor, minCovered, minOfAll, maxUncovered, copies, baredParts, partialTriangles, locks, into');
-    fails(untyped(cage, target, { preset: 'deflaut' }), 'badOption', /^transfer: options\.preset = "deflaut" is unknown/);
-    fails(untyped(cage, target, { projection: 'nearest' }), 'badOption', /^transfer: options\.projection = "nearest" is unknown; there are: "nearestPoint", "nearestVertex"$/);
-    fails(untyped(cage, target, { threshold: '0.5' }), 'badThreshold', 'transfer: options.threshold = "0.5" is not a number within 0..1');
-    fails(untyped(cage, target, { weldTolerance: null }), 'badWeldTolerance', 'transfer: options.weldTolerance = null is not a number within 0..0.01');
+    fails(
+      untyped(cage, target, { treshold: 0.5 }),
+      'badOption',
+      'transfer: options.treshold is not an option; there are: preset, projection, weldTolerance, seams, occlusionReach, pokeThrough, votes, farRims, depths, secondLook, bothSides, exposedSide, holes, threshold, floor, minCovered, minOfAll, maxUncovered, copies, baredParts, partialTriangles, locks, into',
+    );
+    fails(
+      untyped(cage, target, { preset: 'deflaut' }),
+      'badOption',
+      /^transfer: options\.preset = "deflaut" is unknown/,
+    );
+    fails(
+      untyped(cage, target, { projection: 'nearest' }),
+      'badOption',
+      /^transfer: options\.projection = "nearest" is unknown; there are: "nearestPoint", "nearestVertex"$/,
+    );
+    fails(
+      untyped(cage, target, { threshold: '0.5' }),
+      'badThreshold',
+      'transfer: options.threshold = "0.5" is not a number within 0..1',
+    );
+    fails(
+      untyped(cage, target, { weldTolerance: null }),
+      'badWeldTolerance',
+      'transfer: options.weldTolerance = null is not a number within 0..0.01',
+    );
     for (const threshold of [-0.1, 2, NaN, Infinity]) {
-      fails(() => transfer(cage, target, { threshold }), 'badThreshold', `transfer: options.threshold = ${threshold} is not within 0..1`);
+      fails(
+        () => transfer(cage, target, { threshold }),
+        'badThreshold',
+        `transfer: options.threshold = ${threshold} is not within 0..1`,
+      );
     }
     for (const weldTolerance of [-1, 0.02, NaN]) {
-      fails(() => transfer(cage, target, { weldTolerance }), 'badWeldTolerance', `transfer: options.weldTolerance = ${weldTolerance} is not within 0..0.01`);
+      fails(
+        () => transfer(cage, target, { weldTolerance }),
+        'badWeldTolerance',
+        `transfer: options.weldTolerance = ${weldTolerance} is not within 0..0.01`,
+      );
     }
-    fails(untyped(cage, target, { seams: 'none' }), 'badOption', 'transfer: options.seams = "none" is unknown; there are: "vertex", "corner"');
-    fails(untyped(cage, target, { floor: 1 }), 'badOption', 'transfer: options.floor = 1 is unknown; there are: "none", "area", "depth"');
+    fails(
+      untyped(cage, target, { seams: 'none' }),
+      'badOption',
+      'transfer: options.seams = "none" is unknown; there are: "vertex", "corner"',
+    );
+    fails(
+      untyped(cage, target, { floor: 1 }),
+      'badOption',
+      'transfer: options.floor = 1 is unknown; there are: "none", "area", "depth"',
+    );
     fails(untyped(cage, target, { votes: 1 }), 'badOption', 'transfer: options.votes = 1 is not true or false');
-    fails(untyped(cage, target, { occlusionReach: '1' }), 'badOcclusionReach', 'transfer: options.occlusionReach = "1" is not a number within 0..Infinity');
-    fails(() => transfer(cage, target, { occlusionReach: -1 }), 'badOcclusionReach', 'transfer: options.occlusionReach = -1 is not within 0..Infinity');
-    fails(() => transfer(cage, target, { pokeThrough: 2 }), 'badPokeThrough', 'transfer: options.pokeThrough = 2 is not within 0..1');
-    fails(() => transfer(cage, target, { minCovered: NaN }), 'badMinCovered', 'transfer: options.minCovered = NaN is not within 0..1');
-    fails(() => transfer(cage, target, { minOfAll: -1 }), 'badMinOfAll', 'transfer: options.minOfAll = -1 is not within 0..1');
-    fails(() => transfer(cage, target, { maxUncovered: 2 }), 'badMaxUncovered', 'transfer: options.maxUncovered = 2 is not within 0..1');
-    assert.throws(() => (project as (...args: unknown[]) => unknown)(cage, target, { threshold: 0.5 }), /project: options\.threshold is not an option/);
+    fails(
+      untyped(cage, target, { occlusionReach: '1' }),
+      'badOcclusionReach',
+      'transfer: options.occlusionReach = "1" is not a number within 0..Infinity',
+    );
+    fails(
+      () => transfer(cage, target, { occlusionReach: -1 }),
+      'badOcclusionReach',
+      'transfer: options.occlusionReach = -1 is not within 0..Infinity',
+    );
+    fails(
+      () => transfer(cage, target, { pokeThrough: 2 }),
+      'badPokeThrough',
+      'transfer: options.pokeThrough = 2 is not within 0..1',
+    );
+    fails(
+      () => transfer(cage, target, { minCovered: NaN }),
+      'badMinCovered',
+      'transfer: options.minCovered = NaN is not within 0..1',
+    );
+    fails(
+      () => transfer(cage, target, { minOfAll: -1 }),
+      'badMinOfAll',
+      'transfer: options.minOfAll = -1 is not within 0..1',
+    );
+    fails(
+      () => transfer(cage, target, { maxUncovered: 2 }),
+      'badMaxUncovered',
+      'transfer: options.maxUncovered = 2 is not within 0..1',
+    );
+    assert.throws(
+      () => (project as (...args: unknown[]) => unknown)(cage, target, { threshold: 0.5 }),
+      /project: options\.threshold is not an option/,
+    );
     transfer(cage, target, { threshold: undefined, preset: undefined });
     worksAgain();
   });
@@ -115,20 +275,55 @@ describe('errors', () => {
   test('of a projection that is not whole', () => {
     const projection = project(cage, target);
     const call = (change: object) => () => classify({ ...projection, ...change });
-    fails(() => (classify as (...args: unknown[]) => unknown)(undefined), 'badArgument', /^classify: projection is undefined/);
+    fails(
+      () => (classify as (...args: unknown[]) => unknown)(undefined),
+      'badArgument',
+      /^classify: projection is undefined/,
+    );
     fails(call({ zones: [0, 0, 0] }), 'badArgument', /projection\.zones is of type Array/);
-    fails(call({ segments: new Uint32Array([0, 0, 7]) }), 'badArgument', /projection\.segments\[2\] = 7 is out of range \(1 segments\)/, 2);
+    fails(
+      call({ segments: new Uint32Array([0, 0, 7]) }),
+      'badArgument',
+      /projection\.segments\[2\] = 7 is out of range \(1 segments\)/,
+      2,
+    );
     fails(call({ segments: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 segments/);
     fails(call({ zones: new Uint8Array([0, 9, 0]) }), 'badArgument', /projection\.zones\[1\] = 9/, 1);
-    fails(call({ indices: new Uint32Array([0, 1, 3]) }), 'badArgument', /projection\.indices\[2\] = 3 is out of range/, 2);
-    fails(call({ restores: new Uint32Array([0, 5, 0]) }), 'badArgument', /projection\.restores\[1\] = 5 is out of range \(\d+ holes\)/, 1);
+    fails(
+      call({ indices: new Uint32Array([0, 1, 3]) }),
+      'badArgument',
+      /projection\.indices\[2\] = 3 is out of range/,
+      2,
+    );
+    fails(
+      call({ restores: new Uint32Array([0, 5, 0]) }),
+      'badArgument',
+      /projection\.restores\[1\] = 5 is out of range \(\d+ holes\)/,
+      1,
+    );
     fails(call({ restores: new Uint32Array(2) }), 'badArgument', /has 3 zones but 2 restores/);
-    fails(call({ holeShares: [{ hole: 0, segment: 4, exposedArea: 0, uncoveredArea: 0, hiddenArea: 0 }] }), 'badArgument', /projection\.holeShares\[0\]/);
-    fails(call({ holeShares: [{ hole: 0, segment: 0, exposedArea: 0, uncoveredArea: 0 }] }), 'badArgument', /projection\.holeShares\[0\] is not .* hiddenArea/);
+    fails(
+      call({ holeShares: [{ hole: 0, segment: 4, exposedArea: 0, uncoveredArea: 0, hiddenArea: 0 }] }),
+      'badArgument',
+      /projection\.holeShares\[0\]/,
+    );
+    fails(
+      call({ holeShares: [{ hole: 0, segment: 0, exposedArea: 0, uncoveredArea: 0 }] }),
+      'badArgument',
+      /projection\.holeShares\[0\] is not .* hiddenArea/,
+    );
     fails(call({ preset: 'none' }), 'badOption', /options\.preset = "none" is unknown/);
-    fails(call({ segmentStats: [{ ...projection.segmentStats[0], copyOf: 9 }] }), 'badArgument', /projection\.segmentStats\[0\]/);
+    fails(
+      call({ segmentStats: [{ ...projection.segmentStats[0], copyOf: 9 }] }),
+      'badArgument',
+      /projection\.segmentStats\[0\]/,
+    );
     fails(call({ segmentStats: [null] }), 'badArgument', /projection\.segmentStats\[0\]/);
-    fails(() => classify(projection, { threshold: 2 }), 'badThreshold', 'classify: options.threshold = 2 is not within 0..1');
+    fails(
+      () => classify(projection, { threshold: 2 }),
+      'badThreshold',
+      'classify: options.threshold = 2 is not within 0..1',
+    );
     worksAgain();
   });
 });
@@ -152,7 +347,11 @@ describe('memory', () => {
     let failures = 0;
     for (let allowed = 0; allowed < 40; ++allowed) {
       // A fresh instance, whose memory may grow so many times and no more.
-      fails(() => transfer(cage, { positions: new Float32Array(6e8), indices: new Uint32Array(3) }), 'outOfMemory', /memory/);
+      fails(
+        () => transfer(cage, { positions: new Float32Array(6e8), indices: new Uint32Array(3) }),
+        'outOfMemory',
+        /memory/,
+      );
       let left = allowed;
       WebAssembly.Memory.prototype.grow = function (pages) {
         if (left-- <= 0) throw new RangeError('no more');
@@ -215,7 +414,8 @@ describe('memory', () => {
     };
     try {
       for (let i = 0; i < 1000; ++i) {
-        if (i % 3 === 2) assert.throws(() => transfer(scene.cage, { ...scene.target, indices: new Uint32Array([0, 1, 1e6]) }));
+        if (i % 3 === 2)
+          assert.throws(() => transfer(scene.cage, { ...scene.target, indices: new Uint32Array([0, 1, 1e6]) }));
         else transfer(scene.cage, scene.target);
       }
     } finally {

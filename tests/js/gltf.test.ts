@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { CagecastError, init, transfer, type Mesh, type TransferResult } from 'cagecast';
+import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
 import { cagecast as cagecastTransform } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { assertTransferred, cagecast, GlbMaker, glbOf, validate } from './glb.js';
@@ -17,7 +17,11 @@ const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
 const scene = head(2, 10);
 const paint = PNG.sync.write(new PNG({ width: 4, height: 4 }));
 const documentOf = (glb: Uint8Array): Promise<Document> => io.readBinary(glb);
-const primitives = (document: Document): Primitive[] => document.getRoot().listMeshes().flatMap((mesh) => mesh.listPrimitives());
+const primitives = (document: Document): Primitive[] =>
+  document
+    .getRoot()
+    .listMeshes()
+    .flatMap((mesh) => mesh.listPrimitives());
 const arrayOf = (primitive: Primitive, semantic: string) => primitive.getAttribute(semantic)!.getArray()!;
 
 before(async () => {
@@ -41,26 +45,41 @@ describe('document.transform(cagecast(…))', () => {
 
   test('options are those of transfer', async () => {
     const document = await documentOf(glbOf(scene.target));
-    await document.transform(cagecastTransform({ cage: await documentOf(glbOf(scene.cage)), threshold: 1, seams: 'vertex' }));
-    assert.deepEqual([...arrayOf(primitives(document)[0]!, '_NCZ')], [...transfer(scene.cage, { ...scene.target, groups: undefined }, { threshold: 1 }).zones]);
+    await document.transform(
+      cagecastTransform({ cage: await documentOf(glbOf(scene.cage)), threshold: 1, seams: 'vertex' }),
+    );
+    assert.deepEqual(
+      [...arrayOf(primitives(document)[0]!, '_NCZ')],
+      [...transfer(scene.cage, { ...scene.target, groups: undefined }, { threshold: 1 }).zones],
+    );
   });
 
   for (const model of modelFolders()) {
     test(`${model}: the same as the command writes, and valid`, async () => {
       const [target, cage] = [join(model, 'target.glb'), join(model, 'cage.glb')];
-      assert.equal(cagecast('transfer', target, '--cage', cage, '--texture', at('paint.png'), '-o', at('command.glb')).status, 0);
+      assert.equal(
+        cagecast('transfer', target, '--cage', cage, '--texture', at('paint.png'), '-o', at('command.glb')).status,
+        0,
+      );
       const document = await io.read(target);
       await document.transform(cagecastTransform({ cage: await io.read(cage), texture: paint }));
       await io.write(at('function.glb'), document);
       assert.deepEqual(await validate(at('function.glb')), []);
-      const [ours, theirs] = [primitives(await io.read(at('function.glb'))), primitives(await io.read(at('command.glb')))];
+      const [ours, theirs] = [
+        primitives(await io.read(at('function.glb'))),
+        primitives(await io.read(at('command.glb'))),
+      ];
       assert.equal(ours.length, theirs.length);
       ours.forEach((primitive, p) => {
         assert.deepEqual(primitive.listSemantics().sort(), theirs[p]!.listSemantics().sort());
-        for (const semantic of primitive.listSemantics()) assert.deepEqual(arrayOf(primitive, semantic), arrayOf(theirs[p]!, semantic), semantic);
+        for (const semantic of primitive.listSemantics())
+          assert.deepEqual(arrayOf(primitive, semantic), arrayOf(theirs[p]!, semantic), semantic);
         assert.deepEqual([...primitive.getIndices()!.getArray()!], [...theirs[p]!.getIndices()!.getArray()!]);
         const [a, b] = [primitive.getMaterial(), theirs[p]!.getMaterial()];
-        assert.deepEqual([a?.getName(), a?.getAlphaMode(), a?.getRoughnessFactor(), a?.getDoubleSided()], [b?.getName(), b?.getAlphaMode(), b?.getRoughnessFactor(), b?.getDoubleSided()]);
+        assert.deepEqual(
+          [a?.getName(), a?.getAlphaMode(), a?.getRoughnessFactor(), a?.getDoubleSided()],
+          [b?.getName(), b?.getAlphaMode(), b?.getRoughnessFactor(), b?.getDoubleSided()],
+        );
       });
     });
   }
@@ -72,12 +91,27 @@ describe('document.transform(cagecast(…))', () => {
     maker.node({ mesh, name: 'right', translation: [0.6, 0, 0], scale: [-1, 1, 1] });
     const document = await documentOf(maker.finish());
     let names: string[] = [];
-    await document.transform(cagecastTransform({ cage: scene.cage, texture: paint, onResult: (_, parts) => (names = parts.map(({ name }) => name)) }));
+    await document.transform(
+      cagecastTransform({
+        cage: scene.cage,
+        texture: paint,
+        onResult: (_, parts) => (names = parts.map(({ name }) => name)),
+      }),
+    );
     assert.deepEqual(names, ['left', 'right']);
-    const [left, right] = document.getRoot().listNodes().map((node) => node.getMesh()!);
+    const [left, right] = document
+      .getRoot()
+      .listNodes()
+      .map((node) => node.getMesh()!);
     assert.notEqual(left, right);
-    assert.deepEqual([left, right].map((one) => one!.listPrimitives().length), [2, 2]);
-    assert.notDeepEqual(arrayOf(left!.listPrimitives()[0]!, 'TEXCOORD_1'), arrayOf(right!.listPrimitives()[0]!, 'TEXCOORD_1'));
+    assert.deepEqual(
+      [left, right].map((one) => one!.listPrimitives().length),
+      [2, 2],
+    );
+    assert.notDeepEqual(
+      arrayOf(left!.listPrimitives()[0]!, 'TEXCOORD_1'),
+      arrayOf(right!.listPrimitives()[0]!, 'TEXCOORD_1'),
+    );
     await io.write(at('twins.glb'), document);
     assert.deepEqual(await validate(at('twins.glb')), []);
   });
@@ -88,9 +122,19 @@ describe('document.transform(cagecast(…))', () => {
       const [left] = document.getRoot().listNodes();
       left!.setTranslation([-0.6, 0, 0]);
       const mesh = left!.getMesh()!;
-      return { document, right: document.createNode('right').setTranslation([0.6, 0, 0]).setMesh(other === 'clone' ? mesh.clone() : mesh) };
+      return {
+        document,
+        right: document
+          .createNode('right')
+          .setTranslation([0.6, 0, 0])
+          .setMesh(other === 'clone' ? mesh.clone() : mesh),
+      };
     };
-    const uvsOf = (document: Document) => document.getRoot().listNodes().map((node) => arrayOf(node.getMesh()!.listPrimitives()[0]!, 'TEXCOORD_1'));
+    const uvsOf = (document: Document) =>
+      document
+        .getRoot()
+        .listNodes()
+        .map((node) => arrayOf(node.getMesh()!.listPrimitives()[0]!, 'TEXCOORD_1'));
     const answers = [];
     for (const isReadAgain of [false, true]) {
       const { document, right } = await ready('clone');
@@ -105,7 +149,13 @@ describe('document.transform(cagecast(…))', () => {
     document.createScene('other').addChild(right);
     document.getRoot().setDefaultScene(document.getRoot().listScenes()[0]!);
     await document.transform(cagecastTransform({ cage: scene.cage, texture: paint }));
-    assert.deepEqual(right.getMesh()!.listPrimitives().map((primitive) => primitive.listSemantics()), [['POSITION', 'TEXCOORD_0']]);
+    assert.deepEqual(
+      right
+        .getMesh()!
+        .listPrimitives()
+        .map((primitive) => primitive.listSemantics()),
+      [['POSITION', 'TEXCOORD_0']],
+    );
     assert.equal(document.getRoot().listNodes()[0]!.getMesh()!.listPrimitives().length, 2);
   });
 
@@ -114,20 +164,55 @@ describe('document.transform(cagecast(…))', () => {
     const [primitive] = primitives(document);
     const count = scene.target.positions.length / 3;
     const buffer = document.getRoot().listBuffers()[0]!;
-    const accessor = (type: 'VEC2' | 'VEC3' | 'VEC4', size: number) => document.createAccessor().setType(type).setArray(new Float32Array(size * count).fill(0.25)).setBuffer(buffer);
-    primitive!.setAttribute('TANGENT', accessor('VEC4', 4).setArray(new Float32Array(4 * count).map((_, i) => Number(i % 4 === 0 || i % 4 === 3))));
-    primitive!.addTarget(document.createPrimitiveTarget().setAttribute('POSITION', accessor('VEC3', 3)).setAttribute('TANGENT', accessor('VEC3', 3)).setAttribute('TEXCOORD_0', accessor('VEC2', 2)));
+    const accessor = (type: 'VEC2' | 'VEC3' | 'VEC4', size: number) =>
+      document
+        .createAccessor()
+        .setType(type)
+        .setArray(new Float32Array(size * count).fill(0.25))
+        .setBuffer(buffer);
+    primitive!.setAttribute(
+      'TANGENT',
+      accessor('VEC4', 4).setArray(new Float32Array(4 * count).map((_, i) => Number(i % 4 === 0 || i % 4 === 3))),
+    );
+    primitive!.addTarget(
+      document
+        .createPrimitiveTarget()
+        .setAttribute('POSITION', accessor('VEC3', 3))
+        .setAttribute('TANGENT', accessor('VEC3', 3))
+        .setAttribute('TEXCOORD_0', accessor('VEC2', 2)),
+    );
     primitive!.addTarget(document.createPrimitiveTarget().setAttribute('TEXCOORD_0', accessor('VEC2', 2)));
     await io.write(at('morphs.glb'), document);
     writeFileSync(at('morph-cage.glb'), glbOf(scene.cage));
-    assert.equal(cagecast('transfer', at('morphs.glb'), '--cage', at('morph-cage.glb'), '--texture', at('paint.png'), '-o', at('morphs-command.glb')).status, 0);
+    assert.equal(
+      cagecast(
+        'transfer',
+        at('morphs.glb'),
+        '--cage',
+        at('morph-cage.glb'),
+        '--texture',
+        at('paint.png'),
+        '-o',
+        at('morphs-command.glb'),
+      ).status,
+      0,
+    );
     await document.transform(cagecastTransform({ cage: scene.cage, texture: paint }));
     await io.write(at('morphs-function.glb'), document);
     for (const name of ['morphs-command.glb', 'morphs-function.glb']) {
       assert.deepEqual(await validate(at(name)), [], name);
       const overlay = primitives(await io.read(at(name)))[1]!;
-      assert.deepEqual(overlay.listTargets().map((target) => target.listSemantics()), [['POSITION'], ['POSITION']]);
-      assert.ok(overlay.listTargets()[1]!.getAttribute('POSITION')!.getArray()!.every((delta: number) => delta === 0));
+      assert.deepEqual(
+        overlay.listTargets().map((target) => target.listSemantics()),
+        [['POSITION'], ['POSITION']],
+      );
+      assert.ok(
+        overlay
+          .listTargets()[1]!
+          .getAttribute('POSITION')!
+          .getArray()!
+          .every((delta: number) => delta === 0),
+      );
     }
   });
 
@@ -137,7 +222,10 @@ describe('document.transform(cagecast(…))', () => {
     const { attributes } = maker.json.meshes[mesh]!.primitives[0]!;
     const vertices = scene.target.positions.length / 3;
     attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
-    attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    attributes['WEIGHTS_0'] = maker.accessor(
+      new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)),
+      'VEC4',
+    );
     const inverse = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -256, 0, 0, 128].map((x) => x / 128);
     maker.json.skins = [{ joints: [1], inverseBindMatrices: maker.accessor(Float32Array.from(inverse), 'MAT4') }];
     maker.node({ mesh, skin: 0, translation: [9, 9, 9] });
@@ -154,9 +242,19 @@ describe('document.transform(cagecast(…))', () => {
     const primitive = maker.json.meshes[mesh]!.primitives[0]!;
     const vertices = scene.target.positions.length / 3;
     primitive.attributes['JOINTS_0'] = maker.accessor(new Uint8Array(4 * vertices), 'VEC4');
-    primitive.attributes['WEIGHTS_0'] = maker.accessor(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 'VEC4');
+    primitive.attributes['WEIGHTS_0'] = maker.accessor(
+      new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)),
+      'VEC4',
+    );
     primitive.attributes['COLOR_0'] = maker.accessor(new Float32Array(3 * vertices).fill(1), 'VEC3');
-    primitive.targets = [{ POSITION: maker.accessor(scene.target.positions.map((x) => 0.1 * x), 'VEC3') }];
+    primitive.targets = [
+      {
+        POSITION: maker.accessor(
+          scene.target.positions.map((x) => 0.1 * x),
+          'VEC3',
+        ),
+      },
+    ];
     maker.json.meshes[mesh]!.weights = [0.5];
     maker.json.skins = [{ joints: [1] }];
     maker.node({ mesh, skin: 0, translation: [9, 9, 9] }); // which a skin ignores
@@ -164,7 +262,8 @@ describe('document.transform(cagecast(…))', () => {
     const document = await documentOf(maker.finish());
     await document.transform(cagecastTransform({ cage: scene.cage, texture: paint }));
     const [base, overlay] = primitives(document) as [Primitive, Primitive];
-    for (const semantic of ['JOINTS_0', 'WEIGHTS_0']) assert.equal(overlay.getAttribute(semantic), base.getAttribute(semantic));
+    for (const semantic of ['JOINTS_0', 'WEIGHTS_0'])
+      assert.equal(overlay.getAttribute(semantic), base.getAttribute(semantic));
     assert.equal(overlay.getAttribute('COLOR_0'), null);
     assert.deepEqual(overlay.listTargets(), base.listTargets());
     assert.ok(overlay.getIndices()!.getCount() > 0);
@@ -179,12 +278,25 @@ describe('document.transform(cagecast(…))', () => {
     const first = primitives(document)[0]!;
     const [zones, vertices] = [first.getAttribute('_NCZ')!.getArray(), first.getAttribute('POSITION')!.getCount()];
     await document.transform(step);
-    assert.deepEqual(primitives(document).map((primitive) => primitive.listSemantics().includes('_NCZ')), [true, false, false]);
-    assert.deepEqual([primitives(document)[0]!.getAttribute('_NCZ')!.getArray(), primitives(document)[0]!.getAttribute('POSITION')!.getCount()], [zones, vertices]);
+    assert.deepEqual(
+      primitives(document).map((primitive) => primitive.listSemantics().includes('_NCZ')),
+      [true, false, false],
+    );
+    assert.deepEqual(
+      [
+        primitives(document)[0]!.getAttribute('_NCZ')!.getArray(),
+        primitives(document)[0]!.getAttribute('POSITION')!.getCount(),
+      ],
+      [zones, vertices],
+    );
   });
 
   test('what cannot be used is said in one error, and the document stays as it was', async () => {
-    const fails = async (make: () => Promise<{ target?: Uint8Array; cage?: Document | Mesh; texture?: Uint8Array; threshold?: number }>, code: string, message: RegExp) => {
+    const fails = async (
+      make: () => Promise<{ target?: Uint8Array; cage?: Document | Mesh; texture?: Uint8Array; threshold?: number }>,
+      code: string,
+      message: RegExp,
+    ) => {
       const { target = glbOf(scene.target), cage = scene.cage, ...more } = await make();
       const document = await documentOf(target);
       const before = await io.writeJSON(document);
@@ -198,24 +310,52 @@ describe('document.transform(cagecast(…))', () => {
     };
     const broken = scene.target.positions.slice();
     broken[16] = NaN;
-    await fails(async () => ({ target: glbOf({ ...scene.target, positions: broken }) }), 'badArgument', /^cagecast: target: meshes\[0\]\.primitives\[0\]: POSITION of vertex 5 has NaN/);
-    await fails(async () => ({ cage: await documentOf(glbOf({ positions: scene.cage.positions, indices: scene.cage.indices })) }), 'missingUvs', /cage\.uvs is missing/);
+    await fails(
+      async () => ({ target: glbOf({ ...scene.target, positions: broken }) }),
+      'badArgument',
+      /^cagecast: target: meshes\[0\]\.primitives\[0\]: POSITION of vertex 5 has NaN/,
+    );
+    await fails(
+      async () => ({ cage: await documentOf(glbOf({ positions: scene.cage.positions, indices: scene.cage.indices })) }),
+      'missingUvs',
+      /cage\.uvs is missing/,
+    );
     await fails(async () => ({ cage: new Document() }), 'emptyMesh', /cage has no vertices/);
-    await fails(async () => ({ texture: new Uint8Array(100) }), 'badArgument', /^cagecast: texture: is neither a PNG nor a JPEG image/);
+    await fails(
+      async () => ({ texture: new Uint8Array(100) }),
+      'badArgument',
+      /^cagecast: texture: is neither a PNG nor a JPEG image/,
+    );
     await fails(async () => ({ texture: paint.subarray(0, 50) }), 'badArgument', /^cagecast: texture: is truncated/);
     await fails(async () => ({ threshold: 2 }), 'badThreshold', /threshold = 2/);
-    await fails(async () => ({ cage: 'cage.glb' as unknown as Mesh }), 'badArgument', /^cagecast: cage is "cage\.glb", not a document or a mesh/);
+    await fails(
+      async () => ({ cage: 'cage.glb' as unknown as Mesh }),
+      'badArgument',
+      /^cagecast: cage is "cage\.glb", not a document or a mesh/,
+    );
     await fails(async () => ({ cage: null as unknown as Mesh }), 'badArgument', /^cagecast: cage is null/);
-    assert.throws(() => (cagecastTransform as unknown as () => void)(), (error) => error instanceof CagecastError && /^cagecast: the argument is undefined, not an object/.test(error.message));
-    await fails(async () => ({ texture: paint.buffer as unknown as Uint8Array }), 'badArgument', /^cagecast: texture is of type ArrayBuffer, not a Uint8Array of a file's bytes/);
+    assert.throws(
+      () => (cagecastTransform as unknown as () => void)(),
+      (error) =>
+        error instanceof CagecastError && /^cagecast: the argument is undefined, not an object/.test(error.message),
+    );
+    await fails(
+      async () => ({ texture: paint.buffer as unknown as Uint8Array }),
+      'badArgument',
+      /^cagecast: texture is of type ArrayBuffer, not a Uint8Array of a file's bytes/,
+    );
   });
 
-  test('compressed files of the wild can be targets', { skip: process.env['CAGECAST_ASSETS'] === undefined && 'CAGECAST_ASSETS is not set' }, async () => {
+  test('compressed files of the wild can be targets', {
+    skip: process.env['CAGECAST_ASSETS'] === undefined && 'CAGECAST_ASSETS is not set',
+  }, async () => {
     const path = join(process.env['CAGECAST_ASSETS']!, 'formats/cat_meshopt_quantized.glb');
     assert.ok(existsSync(path));
     const { MeshoptDecoder, MeshoptEncoder } = await import('meshoptimizer');
     await Promise.all([MeshoptDecoder.ready, MeshoptEncoder.ready]);
-    const reader = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({ 'meshopt.decoder': MeshoptDecoder, 'meshopt.encoder': MeshoptEncoder });
+    const reader = new NodeIO()
+      .registerExtensions(ALL_EXTENSIONS)
+      .registerDependencies({ 'meshopt.decoder': MeshoptDecoder, 'meshopt.encoder': MeshoptEncoder });
     const document = await reader.readBinary(new Uint8Array(readFileSync(path)));
     await document.transform(cagecastTransform({ cage: scene.cage }));
     assert.ok(primitives(document).every((primitive) => primitive.getAttribute('_NCZ') !== null));

@@ -15,7 +15,8 @@ class Hash {
 
   add(...arrays: (Uint8Array | Uint32Array | Float32Array)[]): void {
     for (const array of arrays) {
-      for (const byte of new Uint8Array(array.buffer, array.byteOffset, array.byteLength)) this.#hash = BigInt.asUintN(64, (this.#hash ^ BigInt(byte)) * 0x100000001b3n);
+      for (const byte of new Uint8Array(array.buffer, array.byteOffset, array.byteLength))
+        this.#hash = BigInt.asUintN(64, (this.#hash ^ BigInt(byte)) * 0x100000001b3n);
     }
   }
 
@@ -31,7 +32,9 @@ describe('the answer of the package on fixed scenes has the golden hash', () => 
   const scenes = (prefix: string): Scene[] => {
     const count = readdirSync(folder).filter((name) => new RegExp(`^${prefix}\\d+\\.scene$`).test(name)).length;
     assert.ok(count > 0);
-    return Array.from({ length: count }, (_, i) => readScene(Uint8Array.from(readFileSync(join(folder, `${prefix}${i}.scene`))).buffer));
+    return Array.from({ length: count }, (_, i) =>
+      readScene(Uint8Array.from(readFileSync(join(folder, `${prefix}${i}.scene`))).buffer),
+    );
   };
 
   before(async () => {
@@ -56,7 +59,12 @@ describe('the answer of the package on fixed scenes has the golden hash', () => 
       const hash = new Hash();
       for (const seams of ['vertex', 'corner'] as const) {
         for (const { cage, target } of scenes('borders-')) {
-          const { sources, weights, indices, triangles, uvs, cornerUvs, zones, cosmeticTriangles } = await cutBorders(cage, target, transfer(cage, target, { seams }), { seams });
+          const { sources, weights, indices, triangles, uvs, cornerUvs, zones, cosmeticTriangles } = await cutBorders(
+            cage,
+            target,
+            transfer(cage, target, { seams }),
+            { seams },
+          );
           hash.add(sources, weights, indices, triangles, uvs, cornerUvs, zones, cosmeticTriangles);
         }
       }

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { CagecastError, init, project, transfer, type Mesh, type TransferResult } from 'cagecast';
-import { inspect, type FindingCode, type Inspection } from 'cagecast/inspect';
+import { CagecastError, init, type Mesh, project, type TransferResult, transfer } from 'cagecast';
+import { type FindingCode, type Inspection, inspect } from 'cagecast/inspect';
 import { ball, head, join3d } from './scenes.js';
 
 before(init);
@@ -40,8 +40,14 @@ describe('inspect', () => {
     const [hole, ...others] = inspection.holes;
     assert.equal(others.length, 0);
     assert.equal(hole!.kind, 'hole');
-    assert.ok(hole!.beneath.some(({ part }) => part === 'eye'), JSON.stringify(hole));
-    assert.deepEqual(inspection.segments.map(({ part }) => part), ['skin', 'eye', 'tongue']);
+    assert.ok(
+      hole!.beneath.some(({ part }) => part === 'eye'),
+      JSON.stringify(hole),
+    );
+    assert.deepEqual(
+      inspection.segments.map(({ part }) => part),
+      ['skin', 'eye', 'tongue'],
+    );
     // One chart round a ball, cut along a meridian; its poles are fans.
     assert.equal(inspection.uv.charts, 1);
     assert.ok(inspection.uv.seams.edges > 0);
@@ -54,11 +60,17 @@ describe('inspect', () => {
     const again = inspect(cage, target, { result, parts });
     assert.deepEqual(again, look({}));
     assert.deepEqual(structuredClone(again), again);
-    assert.deepEqual(inspect(cage, target).segments.map(({ part }) => part), ['group 0', 'group 1', 'group 2']);
+    assert.deepEqual(
+      inspect(cage, target).segments.map(({ part }) => part),
+      ['group 0', 'group 1', 'group 2'],
+    );
   });
 
   test('findings come with the heaviest first, a sentence, an advice and numbers', () => {
-    const { findings, verdict } = look({ positions: moved((p) => p.map((x) => 0.9 * x)), uvs: cage.uvs.map((x) => x + 0.5) });
+    const { findings, verdict } = look({
+      positions: moved((p) => p.map((x) => 0.9 * x)),
+      uvs: cage.uvs.map((x) => x + 0.5),
+    });
     assert.equal(verdict, 'unfit');
     assert.ok(findings.length > 1);
     findings.forEach(({ weight, sentence, advice, numbers }, i) => {
@@ -85,7 +97,10 @@ describe('a cage out of place', () => {
 
   test('turned: the correction turns it back', () => {
     // A long head, so that a turn can be seen.
-    const long = (mesh: Whole): Whole => ({ ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 2 * x : x)) });
+    const long = (mesh: Whole): Whole => ({
+      ...mesh,
+      positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 2 * x : x)),
+    });
     const [wide, around] = [long(target), long(cage)];
     const angle = (20 * Math.PI) / 180;
     const turned = around.positions.slice();
@@ -122,13 +137,23 @@ describe('a cage out of place', () => {
 describe('a cage for a part of the target', () => {
   const tube = (x: number, length: number, radius: number): Whole => {
     const mesh = ball([0, 0, 0], () => 1, 24, 24) as Whole;
-    return { ...mesh, positions: mesh.positions.map((value, i) => (i % 3 === 0 ? x + radius * value : i % 3 === 1 ? radius * value : length * value)) };
+    return {
+      ...mesh,
+      positions: mesh.positions.map((value, i) =>
+        i % 3 === 0 ? x + radius * value : i % 3 === 1 ? radius * value : length * value,
+      ),
+    };
   };
 
   test('a sleeve on an arm beside a body: the flank, which is near, does not count as outside', () => {
     const body = join3d(tube(0, 1.4, 0.5), tube(0.75, 0.8, 0.12));
     const around = tube(0.75, 0.8, 0.16);
-    const sleeve = { ...around, indices: Uint32Array.from(around.indices).filter((_, i) => [0, 1, 2].every((k) => Math.abs(around.positions[3 * around.indices[i - (i % 3) + k]! + 2]!) < 0.6)) };
+    const sleeve = {
+      ...around,
+      indices: Uint32Array.from(around.indices).filter((_, i) =>
+        [0, 1, 2].every((k) => Math.abs(around.positions[3 * around.indices[i - (i % 3) + k]! + 2]!) < 0.6),
+      ),
+    };
     const inspection = inspect(sleeve, body);
     assert.ok(inspection.placement.outside.area > 0.1, 'the flank is on the outer side');
     assert.notEqual(inspection.verdict, 'unfit', JSON.stringify(inspection.findings));
@@ -138,11 +163,22 @@ describe('a cage for a part of the target', () => {
   });
 
   test('half a cage: nothing of the segment passes, and why', () => {
-    const cap = { ...cage, indices: Uint32Array.from(cage.indices).filter((_, i) => [0, 1, 2].every((k) => cage.positions[3 * cage.indices[i - (i % 3) + k]! + 2]! > 0.6)) };
+    const cap = {
+      ...cage,
+      indices: Uint32Array.from(cage.indices).filter((_, i) =>
+        [0, 1, 2].every((k) => cage.positions[3 * cage.indices[i - (i % 3) + k]! + 2]! > 0.6),
+      ),
+    };
     const inspection = inspect(cap, target, { parts });
-    assert.match(find(inspection, 'nothingToPaint').sentence, /of "skin" \d+\.\d % is covered, less than the threshold of 0\.5/);
+    assert.match(
+      find(inspection, 'nothingToPaint').sentence,
+      /of "skin" \d+\.\d % is covered, less than the threshold of 0\.5/,
+    );
     // At a lower threshold it is the floor that it misses.
-    assert.match(find(inspect(cap, target, { parts, threshold: 0.05 }), 'nothingToPaint').sentence, /and it reaches 0\.\d+ times what the floor asks/);
+    assert.match(
+      find(inspect(cap, target, { parts, threshold: 0.05 }), 'nothingToPaint').sentence,
+      /and it reaches 0\.\d+ times what the floor asks/,
+    );
     assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, floor: 'none' }).verdict, 'unfit');
     const { locks } = find(inspection, 'nothingToPaint');
     assert.notEqual(inspect(cap, target, { parts, locks }).verdict, 'unfit', 'as the advice says');
@@ -172,8 +208,15 @@ describe('normals', () => {
     const plate = (z: number): Whole => {
       const [positions, uvs, indices]: [number[], number[], number[]] = [[], [], []];
       for (let y = 0; y <= 8; ++y) for (let x = 0; x <= 8; ++x) positions.push(x / 8, y / 8, z), uvs.push(x / 8, y / 8);
-      for (let y = 0; y < 8; ++y) for (let x = 0; x < 8; ++x) indices.push(9 * y + x, 9 * y + x + 1, 9 * y + x + 10, 9 * y + x, 9 * y + x + 10, 9 * y + x + 9);
-      return { positions: new Float32Array(positions), uvs: new Float32Array(uvs), indices: new Uint32Array(indices), groups: new Uint32Array(81) };
+      for (let y = 0; y < 8; ++y)
+        for (let x = 0; x < 8; ++x)
+          indices.push(9 * y + x, 9 * y + x + 1, 9 * y + x + 10, 9 * y + x, 9 * y + x + 10, 9 * y + x + 9);
+      return {
+        positions: new Float32Array(positions),
+        uvs: new Float32Array(uvs),
+        indices: new Uint32Array(indices),
+        groups: new Uint32Array(81),
+      };
     };
     const above = plate(0.05);
     assert.equal(inspect(above, plate(0)).inward.share, 0);
@@ -202,21 +245,34 @@ describe('the surface', () => {
   });
 
   test('a fin is an edge of three triangles', () => {
-    const finned = look({ groups: undefined, positions: Float32Array.from([...cage.positions, 3, 3, 3]), uvs: Float32Array.from([...cage.uvs, 0.5, 0.5]), indices: Uint32Array.from([...cage.indices, 100, 101, cage.positions.length / 3]) });
+    const finned = look({
+      groups: undefined,
+      positions: Float32Array.from([...cage.positions, 3, 3, 3]),
+      uvs: Float32Array.from([...cage.uvs, 0.5, 0.5]),
+      indices: Uint32Array.from([...cage.indices, 100, 101, cage.positions.length / 3]),
+    });
     assert.ok(finned.topology.nonManifoldEdges >= 1);
     assert.ok(codes(finned).includes('nonManifoldEdges'));
   });
 
   test('an edge that is open by itself has nothing beneath it, not a share of nothing', () => {
-    const corners = Array.from({ length: cage.indices.length / 3 }, (_, t) => [...cage.indices.slice(3 * t, 3 * t + 3)] as [number, number, number]);
+    const corners = Array.from(
+      { length: cage.indices.length / 3 },
+      (_, t) => [...cage.indices.slice(3 * t, 3 * t + 3)] as [number, number, number],
+    );
     let lone = 0; // the others meet the hole's border
     for (let t = 100; t < 110; ++t) {
       // Half of two triangles that share an edge, cut the other way: only the cut is new.
       const [a, b, c] = corners[t]!;
       const next = corners.find((other) => !other.includes(a) && other.includes(b) && other.includes(c))!;
-      const { holes, topology } = look({ indices: Uint32Array.from([...cage.indices, a, b, next.find((v) => v !== b && v !== c)!]) });
+      const { holes, topology } = look({
+        indices: Uint32Array.from([...cage.indices, a, b, next.find((v) => v !== b && v !== c)!]),
+      });
       lone += topology.slits;
-      assert.ok(holes.every(({ beneath }) => beneath.every(({ share }) => share > 0 && share <= 1.001)), JSON.stringify(holes));
+      assert.ok(
+        holes.every(({ beneath }) => beneath.every(({ share }) => share > 0 && share <= 1.001)),
+        JSON.stringify(holes),
+      );
     }
     assert.ok(lone > 0);
   });
@@ -263,10 +319,15 @@ describe('UVs', () => {
     const crumbs: Mesh = {
       positions: Float32Array.from(corners.flatMap((v) => [...cage.positions.subarray(3 * v, 3 * v + 3)])),
       indices: Uint32Array.from(corners.keys()),
-      uvs: Float32Array.from(corners.flatMap((_, i) => {
-        const t = Math.floor(i / 3);
-        return [((t % side) + [0.1, 0.9, 0.1][i % 3]!) / side, (Math.floor(t / side) + [0.1, 0.1, 0.9][i % 3]!) / side];
-      })),
+      uvs: Float32Array.from(
+        corners.flatMap((_, i) => {
+          const t = Math.floor(i / 3);
+          return [
+            ((t % side) + [0.1, 0.9, 0.1][i % 3]!) / side,
+            (Math.floor(t / side) + [0.1, 0.1, 0.9][i % 3]!) / side,
+          ];
+        }),
+      ),
     };
     const inspection = inspect(crumbs, target);
     assert.equal(inspection.uv.charts, corners.length / 3);
@@ -279,8 +340,14 @@ describe('UVs', () => {
 describe('holes and segments', () => {
   test('a result of another target is told of', () => {
     const [target, other] = [ball([0, 0, 0], () => 1, 12, 24), ball([0, 0, 0], () => 1, 8, 12)];
-    assert.throws(() => inspect(cage, target, { result: transfer(cage, other) }), { code: 'resultMismatch', message: /result\.zones has \d+ entries, not 1 for each of the \d+ vertices of target/ });
-    assert.throws(() => inspect(cage, target, { result: project(cage, target) as unknown as TransferResult }), { code: 'badArgument', message: /result\.cosmeticTriangles is undefined: nothing was decided yet/ });
+    assert.throws(() => inspect(cage, target, { result: transfer(cage, other) }), {
+      code: 'resultMismatch',
+      message: /result\.zones has \d+ entries, not 1 for each of the \d+ vertices of target/,
+    });
+    assert.throws(() => inspect(cage, target, { result: project(cage, target) as unknown as TransferResult }), {
+      code: 'badArgument',
+      message: /result\.cosmeticTriangles is undefined: nothing was decided yet/,
+    });
     assert.throws(() => inspect(cage, target, { result: 5 as unknown as TransferResult }), { code: 'badArgument' });
   });
 
@@ -295,18 +362,26 @@ describe('holes and segments', () => {
     // The lower half of both is gone.
     const upper = (mesh: Mesh): Mesh => ({
       ...mesh,
-      indices: Uint32Array.from(mesh.indices).filter((_, i) => [0, 1, 2].every((k) => mesh.positions[3 * mesh.indices[i - (i % 3) + k]! + 2]! > -0.05)),
+      indices: Uint32Array.from(mesh.indices).filter((_, i) =>
+        [0, 1, 2].every((k) => mesh.positions[3 * mesh.indices[i - (i % 3) + k]! + 2]! > -0.05),
+      ),
     });
     const shell = ball([0, 0, 0], () => 1.1, 16, 24);
     const { holes } = inspect(upper(shell), upper(ball([0, 0, 0], () => 1, 16, 24)));
-    assert.deepEqual(holes.map(({ kind }) => kind), ['end']);
+    assert.deepEqual(
+      holes.map(({ kind }) => kind),
+      ['end'],
+    );
   });
 
   test('a segment near the threshold is named', () => {
     const { segments } = look({});
     const eye = segments.find(({ part }) => part === 'eye')!;
     const inspection = inspect(cage, target, { parts, threshold: Math.min(1, eye.coverage + 0.02), floor: 'none' });
-    assert.match(find(inspection, 'segmentInDoubt').sentence, /"eye" is not painted, but nearly: F = 0\.\d\d, less than the threshold/);
+    assert.match(
+      find(inspection, 'segmentInDoubt').sentence,
+      /"eye" is not painted, but nearly: F = 0\.\d\d, less than the threshold/,
+    );
   });
 
   test('a cage that is a speck beside its target is unfit, not an error', () => {
@@ -315,11 +390,17 @@ describe('holes and segments', () => {
   });
 
   test('options that are no object are named', () => {
-    assert.throws(() => (inspect as (...args: unknown[]) => unknown)(cage, target, null), (error) => error instanceof CagecastError && error.message === 'inspect: options is null, not an object');
+    assert.throws(
+      () => (inspect as (...args: unknown[]) => unknown)(cage, target, null),
+      (error) => error instanceof CagecastError && error.message === 'inspect: options is null, not an object',
+    );
   });
 
   test('a target of one triangle, and one without area, can be looked at', () => {
-    const tiny: Mesh = { positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]), indices: new Uint32Array([0, 1, 2]) };
+    const tiny: Mesh = {
+      positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]),
+      indices: new Uint32Array([0, 1, 2]),
+    };
     assert.equal(inspect(cage, tiny).segments.length, 1);
     assert.doesNotThrow(() => inspect(cage, { ...tiny, positions: new Float32Array(9) }));
     assert.doesNotThrow(() => inspect(cage, join3d(tiny, target)));

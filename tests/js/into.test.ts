@@ -1,8 +1,19 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { CagecastError, classify, init, project, transfer, type Classification, type Mesh, type Preset, type Projection, type TransferResult } from 'cagecast';
+import {
+  CagecastError,
+  type Classification,
+  classify,
+  init,
+  type Mesh,
+  type Preset,
+  type Projection,
+  project,
+  type TransferResult,
+  transfer,
+} from 'cagecast';
 import * as worker from 'cagecast/worker';
-import { head, random, smallest, soup, type Scene } from './scenes.js';
+import { head, random, type Scene, smallest, soup } from './scenes.js';
 
 type Answer = TransferResult | Projection | Classification;
 
@@ -12,7 +23,8 @@ function lasting<A extends Answer>(answer: A): Partial<A> {
   return rest as Partial<A>;
 }
 
-const arraysOf = (answer: Answer): [string, ArrayBufferView][] => Object.entries(answer).filter((entry): entry is [string, ArrayBufferView] => ArrayBuffer.isView(entry[1]));
+const arraysOf = (answer: Answer): [string, ArrayBufferView][] =>
+  Object.entries(answer).filter((entry): entry is [string, ArrayBufferView] => ArrayBuffer.isView(entry[1]));
 
 /** A call in its three kinds, on one scene. */
 const calls = {
@@ -34,9 +46,13 @@ function rejects(call: () => unknown, message: RegExp): void {
 /** That a call throws, and `into` and all that is in it is as before. */
 function leavesAlone(call: (into: TransferResult) => unknown, into: TransferResult, code: string): void {
   const [shallow, deep] = [{ ...into }, structuredClone(into)];
-  assert.throws(() => call(into), (error) => error instanceof CagecastError && error.code === code);
+  assert.throws(
+    () => call(into),
+    (error) => error instanceof CagecastError && error.code === code,
+  );
   assert.deepEqual(into, deep);
-  for (const [name, array] of arraysOf(shallow as TransferResult)) assert.equal(into[name as keyof TransferResult], array, name);
+  for (const [name, array] of arraysOf(shallow as TransferResult))
+    assert.equal(into[name as keyof TransferResult], array, name);
 }
 
 describe('into', () => {
@@ -52,23 +68,36 @@ describe('into', () => {
       const again = calls[fn](one, { into });
       assert.equal(again, into);
       assert.deepEqual(lasting(again), lasting(calls[fn](one)));
-      for (const [name, array] of arraysOf(arrays)) if (array.byteLength > 0) assert.equal(again[name as keyof Answer], array, name);
+      for (const [name, array] of arraysOf(arrays))
+        if (array.byteLength > 0) assert.equal(again[name as keyof Answer], array, name);
       assert.equal(again.segmentStats === arrays.segmentStats, false);
 
       assert.equal(calls[fn](other, { into }), into);
       assert.deepEqual(lasting(into), lasting(calls[fn](other)));
       for (const [name, array] of arraysOf(arrays)) assert.notEqual(into[name as keyof Answer], array, name);
       const whole = arraysOf(into).map(([, array]) => array);
-      assert.ok(whole.every(({ byteOffset, byteLength, buffer }) => byteOffset === 0 && byteLength === buffer.byteLength));
+      assert.ok(
+        whole.every(({ byteOffset, byteLength, buffer }) => byteOffset === 0 && byteLength === buffer.byteLength),
+      );
       assert.equal(new Set(whole.map(({ buffer }) => buffer)).size, whole.length);
       if (fn === 'classify') return;
-      assert.deepEqual(Object.keys((into as TransferResult).timings), Object.keys(transfer(one.cage, one.target).timings));
+      assert.deepEqual(
+        Object.keys((into as TransferResult).timings),
+        Object.keys(transfer(one.cage, one.target).timings),
+      );
       assert.ok((into as TransferResult).timings.total > 0 && (into as TransferResult).peakBytes > 0);
     });
   }
 
   test('a long sequence of scenes and options gives in one answer what each gives in one of its own', () => {
-    const scenes = [one, other, soup(42), soup(43, 60), { name: 'smallest', ...smallest() }, { name: 'without groups', cage: one.cage, target: { ...one.target, groups: undefined } }];
+    const scenes = [
+      one,
+      other,
+      soup(42),
+      soup(43, 60),
+      { name: 'smallest', ...smallest() },
+      { name: 'without groups', cage: one.cage, target: { ...one.target, groups: undefined } },
+    ];
     for (const seed of [1, 2, 3]) {
       const next = random(seed);
       const pick = <T>(all: readonly T[]): T => all[Math.floor(all.length * next())]!;
@@ -77,11 +106,18 @@ describe('into', () => {
         const { name, cage, target } = pick(scenes);
         const preset = pick<Preset>(['default', 'paper']);
         const seams = pick(['corner', 'vertex'] as const);
-        const decide = { threshold: next(), locks: pick([undefined, { groups: { 0: 'keep' } }, { segments: { 0: 'exclude' } }] as const) };
+        const decide = {
+          threshold: next(),
+          locks: pick([undefined, { groups: { 0: 'keep' } }, { segments: { 0: 'exclude' } }] as const),
+        };
         const message = `seed ${seed}, step ${step}: ${name}, ${preset}, ${seams}, ${JSON.stringify(decide)}`;
         const projection = project(cage, target, { preset, seams });
         kept.transfer = transfer(cage, target, { preset, seams, ...decide, into: kept.transfer });
-        assert.deepEqual(lasting(kept.transfer), lasting(transfer(cage, target, { preset, seams, ...decide })), message);
+        assert.deepEqual(
+          lasting(kept.transfer),
+          lasting(transfer(cage, target, { preset, seams, ...decide })),
+          message,
+        );
         kept.project = project(cage, target, { preset, seams, into: kept.project });
         assert.deepEqual(lasting(kept.project), lasting(projection), message);
         kept.classify = classify(pick([projection, kept.project]), { ...decide, into: kept.classify });
@@ -102,8 +138,14 @@ describe('into', () => {
       into.triangles.set(target.indices);
       into.segments.fill(0);
       into.uvs.set(cage.uvs!);
-      const shared = { target: { ...target, indices: into.triangles, groups: into.segments }, cage: { ...cage, uvs: into.uvs } };
-      const given = fn === 'project' ? project(shared.cage, shared.target, { into: into as Projection }) : transfer(shared.cage, shared.target, { into: into as TransferResult });
+      const shared = {
+        target: { ...target, indices: into.triangles, groups: into.segments },
+        cage: { ...cage, uvs: into.uvs },
+      };
+      const given =
+        fn === 'project'
+          ? project(shared.cage, shared.target, { into: into as Projection })
+          : transfer(shared.cage, shared.target, { into: into as TransferResult });
       assert.deepEqual(lasting(given), expected[fn]);
     }
     const projection = project(one.cage, one.target);
@@ -111,7 +153,10 @@ describe('into', () => {
     assert.deepEqual(lasting(again), lasting(project(one.cage, one.target)));
     // The zones of a projection, written over by what is decided of it.
     const decided = classify(projection, { threshold: 0.9 });
-    const over = classify(projection, { threshold: 0.9, into: { ...structuredClone(decided), zones: projection.zones } });
+    const over = classify(projection, {
+      threshold: 0.9,
+      into: { ...structuredClone(decided), zones: projection.zones },
+    });
     assert.deepEqual(over, decided);
     assert.equal(over.zones, projection.zones);
   });
@@ -130,14 +175,21 @@ describe('into', () => {
   test('a call that throws leaves it as it was', () => {
     const into = transfer(one.cage, one.target);
     const { cage, target } = other;
-    const call = (change: Partial<Mesh>, options: object = {}) => (given: TransferResult) => transfer(cage, { ...target, ...change }, { ...options, into: given });
+    const call =
+      (change: Partial<Mesh>, options: object = {}) =>
+      (given: TransferResult) =>
+        transfer(cage, { ...target, ...change }, { ...options, into: given });
     leavesAlone(call({ indices: new Uint32Array([0, 1, 1e6]) }), into, 'indexOutOfRange');
     leavesAlone(call({}, { threshold: 2 }), into, 'badThreshold');
     leavesAlone(call({}, { locks: { groups: { 0: 'maybe' } } }), into, 'badOption');
     leavesAlone(call({}, { threshold: 2, locks: { groups: { 0: 'keep' } } }), into, 'badThreshold');
     // Found out when the projection is there.
     leavesAlone(call({}, { locks: { groups: { 9: 'keep' } } }), into, 'badOption');
-    leavesAlone((given) => transfer(one.cage, one.target, { locks: { segments: { 999: 'keep' } }, into: given }), into, 'badOption');
+    leavesAlone(
+      (given) => transfer(one.cage, one.target, { locks: { segments: { 999: 'keep' } }, into: given }),
+      into,
+      'badOption',
+    );
     leavesAlone(call({ positions: new Float32Array(6e8), groups: undefined }), into, 'outOfMemory');
     assert.deepEqual(lasting(transfer(cage, target, { into })), lasting(transfer(cage, target)));
   });
@@ -174,7 +226,11 @@ describe('into', () => {
   });
 
   test('what is no earlier answer of the function is said', () => {
-    const answers = { transfer: transfer(one.cage, one.target), project: project(one.cage, one.target), classify: classify(project(one.cage, one.target)) };
+    const answers = {
+      transfer: transfer(one.cage, one.target),
+      project: project(one.cage, one.target),
+      classify: classify(project(one.cage, one.target)),
+    };
     for (const fn of functions) {
       const from = (into: unknown, message: RegExp) => {
         const before = ArrayBuffer.isView(into) ? undefined : structuredClone(into);
@@ -184,15 +240,35 @@ describe('into', () => {
       from(null, new RegExp(`^${fn}: options\\.into is null; give an earlier answer of ${fn}\\(\\)$`));
       from(1, /options\.into is 1;/);
       from({}, /options\.into\.\w+ is undefined, not a \w+Array;/);
-      for (const wrong of functions.filter((name) => name !== fn)) from(answers[wrong], /options\.into\.\w+ is (undefined, not a \w+Array|of type \w+Array, and no answer of this function);/);
-      from({ ...answers[fn], zones: Array.from(answers[fn].zones) }, /options\.into\.zones is of type Array, not a Uint8Array;/);
-      from({ ...answers[fn], cosmeticTriangles: answers[fn].zones, restores: answers[fn].zones }, /options\.into\.\w+ (is|shares) /);
+      for (const wrong of functions.filter((name) => name !== fn))
+        from(
+          answers[wrong],
+          /options\.into\.\w+ is (undefined, not a \w+Array|of type \w+Array, and no answer of this function);/,
+        );
+      from(
+        { ...answers[fn], zones: Array.from(answers[fn].zones) },
+        /options\.into\.zones is of type Array, not a Uint8Array;/,
+      );
+      from(
+        { ...answers[fn], cosmeticTriangles: answers[fn].zones, restores: answers[fn].zones },
+        /options\.into\.\w+ (is|shares) /,
+      );
       from(Object.freeze({ ...answers[fn] }), /options\.into cannot be written to \(TypeError: /);
-      from(Object.defineProperty({ ...answers[fn] }, 'zones', { writable: false }), /options\.into cannot be written to \(TypeError: .*zones/);
+      from(
+        Object.defineProperty({ ...answers[fn] }, 'zones', { writable: false }),
+        /options\.into cannot be written to \(TypeError: .*zones/,
+      );
     }
     const { triangles } = answers.transfer;
-    rejects(() => transfer(one.cage, one.target, { into: { ...answers.transfer, segments: triangles } }), /options\.into\.segments shares its memory with another of its arrays;/);
-    rejects(() => transfer(one.cage, one.target, { into: { ...answers.transfer, segments: new Uint32Array(triangles.buffer) } }), /shares its memory/);
+    rejects(
+      () => transfer(one.cage, one.target, { into: { ...answers.transfer, segments: triangles } }),
+      /options\.into\.segments shares its memory with another of its arrays;/,
+    );
+    rejects(
+      () =>
+        transfer(one.cage, one.target, { into: { ...answers.transfer, segments: new Uint32Array(triangles.buffer) } }),
+      /shares its memory/,
+    );
   });
 
   test('a worker says that it has no use for it', async () => {
@@ -200,10 +276,16 @@ describe('into', () => {
     const before = structuredClone(into);
     await assert.rejects(worker.transfer(one.cage, one.target, { into } as object), (error) => {
       assert.ok(error instanceof CagecastError && error.code === 'badOption');
-      assert.equal(error.message, 'transfer: options.into is for calls on one thread; from a worker all arrays are new');
+      assert.equal(
+        error.message,
+        'transfer: options.into is for calls on one thread; from a worker all arrays are new',
+      );
       return true;
     });
     assert.deepEqual(into, before);
-    assert.deepEqual(lasting(await worker.transfer(one.cage, one.target, { into: undefined } as object)), lasting(into));
+    assert.deepEqual(
+      lasting(await worker.transfer(one.cage, one.target, { into: undefined } as object)),
+      lasting(into),
+    );
   });
 });

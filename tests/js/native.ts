@@ -18,8 +18,11 @@ export function nativeCommand(): string {
   const native = given ?? built;
   if (given === undefined) {
     // A reference of yesterday's library would prove nothing.
-    if (!existsSync('build/release/build.ninja')) execFileSync('cmake', ['--preset', 'release'], { stdio: ['ignore', 'ignore', 'inherit'] });
-    execFileSync('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference'], { stdio: ['ignore', 'ignore', 'inherit'] });
+    if (!existsSync('build/release/build.ninja'))
+      execFileSync('cmake', ['--preset', 'release'], { stdio: ['ignore', 'ignore', 'inherit'] });
+    execFileSync('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference'], {
+      stdio: ['ignore', 'ignore', 'inherit'],
+    });
   }
   assert.ok(existsSync(native), `${native} is missing`);
   return native;
@@ -36,15 +39,22 @@ function allowFusing(): void {
  */
 export async function packages(): Promise<Record<'SIMD' | 'fused' | 'scalar', typeof simd & typeof simdBorders>> {
   const given = process.env['CAGECAST_SCALAR'];
-  if (given === undefined) execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
+  if (given === undefined)
+    execFileSync(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { stdio: 'inherit' });
   const load = (name: string) => import(pathToFileURL(resolve(given ?? 'build/wasm-scalar/package', name)).href);
-  const scalar = { ...((await load('index.js')) as typeof simd), ...((await load('borders.js')) as typeof simdBorders) };
+  const scalar = {
+    ...((await load('index.js')) as typeof simd),
+    ...((await load('borders.js')) as typeof simdBorders),
+  };
   const { validate } = WebAssembly;
   WebAssembly.validate = () => false;
   await Promise.all([simd.init(), scalar.init()]);
   WebAssembly.validate = validate;
   allowFusing();
-  const fused: typeof simd & typeof simdBorders = { ...(await import('cagecast/slim')), ...(await import('cagecast/slim/borders')) };
+  const fused: typeof simd & typeof simdBorders = {
+    ...(await import('cagecast/slim')),
+    ...(await import('cagecast/slim/borders')),
+  };
   const { compile } = WebAssembly;
   const shipped = ['cagecast', 'cagecast-borders'].map((name) => readFileSync(`dist/${name}.wasm`));
   const fusedSizes: number[] = [];
@@ -53,9 +63,17 @@ export async function packages(): Promise<Record<'SIMD' | 'fused' | 'scalar', ty
     return compile(bytes);
   };
   await fused.init();
-  const mesh = { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0), indices: Uint32Array.of(0, 1, 2), uvs: Float32Array.of(0, 0, 1, 0, 0, 1) };
+  const mesh = {
+    positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0),
+    indices: Uint32Array.of(0, 1, 2),
+    uvs: Float32Array.of(0, 0, 1, 0, 0, 1),
+  };
   await fused.cutBorders(mesh, mesh, fused.transfer(mesh, mesh)); // compiles the module that cuts
   WebAssembly.compile = compile;
-  assert.deepEqual(fusedSizes, shipped.map(({ length }) => length), 'this Node fuses multiply-adds');
+  assert.deepEqual(
+    fusedSizes,
+    shipped.map(({ length }) => length),
+    'this Node fuses multiply-adds',
+  );
   return { SIMD: { ...simd, ...simdBorders }, fused, scalar };
 }

@@ -8,7 +8,8 @@ import { visiblePixels } from '../../bench/quality/visible.js';
 
 describe('quality', () => {
   const results: Record<string, Quality> = {};
-  const measureFiles = async (files: ModelFiles): Promise<Quality> => (results[files.name] = await measure(await loadFiles(files)));
+  const measureFiles = async (files: ModelFiles): Promise<Quality> =>
+    (results[files.name] = await measure(await loadFiles(files)));
   const filesOf = (kind: ModelFiles['kind']): ModelFiles[] => listFiles().filter((files) => files.kind === kind);
   before(init);
 
@@ -16,7 +17,9 @@ describe('quality', () => {
     test(`the ${files.name} is painted where it is to be, and nowhere else`, async (context) => {
       const quality = await measureFiles(files);
       for (const [method, { suppressed, kept, forbidden, bare }] of Object.entries(quality.methods)) {
-        const shares = Object.entries({ suppressed, kept, forbidden, bare }).map(([name, share]) => `${name} ${share.toFixed(4)}`);
+        const shares = Object.entries({ suppressed, kept, forbidden, bare }).map(
+          ([name, share]) => `${name} ${share.toFixed(4)}`,
+        );
         context.diagnostic(`${method}: ${shares.join(', ')}`);
       }
       assert.deepEqual(missedGoals({ [files.name]: quality }), []);
@@ -25,8 +28,13 @@ describe('quality', () => {
 
   test('each step of the method suppresses no less than those before it', () => {
     for (const { methods } of Object.values(results)) {
-      const suppressed = [methods.naive, methods['step 2'], methods['step 3'], methods.paper, methods.default].map((score) => score.suppressed);
-      assert.deepEqual(suppressed, [...suppressed].sort((a, b) => a - b));
+      const suppressed = [methods.naive, methods['step 2'], methods['step 3'], methods.paper, methods.default].map(
+        (score) => score.suppressed,
+      );
+      assert.deepEqual(
+        suppressed,
+        [...suppressed].sort((a, b) => a - b),
+      );
     }
   });
 
@@ -35,25 +43,37 @@ describe('quality', () => {
     assert.equal(sound.forbidden, 0);
     const spoiled = await Promise.all(filesOf('spoiled').map(measureFiles));
     assert.equal(spoiled.length, 2);
-    for (const { methods: { paper } } of spoiled) assert.ok(paper.forbidden > 0 && paper.suppressed < sound.suppressed, JSON.stringify(paper));
+    for (const {
+      methods: { paper },
+    } of spoiled)
+      assert.ok(paper.forbidden > 0 && paper.suppressed < sound.suppressed, JSON.stringify(paper));
   });
 
   test('what paints all, or nothing, misses the goals', () => {
     const { lizard } = results;
     const withDefault = (suppressed: number, kept: number, forbidden: number, bare: number): string => {
-      const methods = { ...lizard!.methods, default: { ...lizard!.methods.default, suppressed, kept, forbidden, bare } };
+      const methods = {
+        ...lizard!.methods,
+        default: { ...lizard!.methods.default, suppressed, kept, forbidden, bare },
+      };
       return missedGoals({ lizard: { ...lizard!, methods } }).join('\n');
     };
     const { naive } = lizard!.methods;
-    assert.match(withDefault(naive.suppressed, naive.kept, naive.forbidden, naive.bare), /default: suppressed.*\n.*paint where none must be/);
+    assert.match(
+      withDefault(naive.suppressed, naive.kept, naive.forbidden, naive.bare),
+      /default: suppressed.*\n.*paint where none must be/,
+    );
     assert.match(withDefault(1, 0, 0, 1), /default: kept.*\n.*without paint/);
     assert.match(withDefault(NaN, NaN, NaN, NaN), /suppressed.*\n.*kept.*\n.*none must be.*\n.*without paint/);
   });
 
   test('pictures show what lies in front, from all around', () => {
     // A box in a larger one: nothing of the inner one is seen, and every side of the outer, though not from everywhere.
-    const corners = (s: number): number[] => [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? s : -s]);
-    const sides = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5];
+    const corners = (s: number): number[] =>
+      [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? s : -s]);
+    const sides = [
+      0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
+    ];
     const positions = Float32Array.from([...corners(0.9), ...corners(1)]);
     const counts = visiblePixels({ positions, indices: Uint32Array.from([...sides, ...sides.map((v) => v + 8)]) });
     const seen = (from: number, to: number): number => counts.subarray(from, to).reduce((sum, count) => sum + count, 0);

@@ -7,7 +7,7 @@ import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import type { Mesh, Preset, TransferResult } from 'cagecast';
 import { nativeCommand, packages } from './native.js';
-import { head, modelFolders, readPlain, soup, type Scene } from './scenes.js';
+import { head, modelFolders, readPlain, type Scene, soup } from './scenes.js';
 
 let native: string;
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-reference-'));
@@ -29,7 +29,8 @@ interface Answer {
 
 function writeScene(path: string, { cage, target }: Scene): void {
   const parts: Uint8Array[] = [Buffer.from('CAGESCN1')];
-  const add = (array: Float32Array | Uint32Array) => parts.push(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+  const add = (array: Float32Array | Uint32Array) =>
+    parts.push(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
   for (const { positions, indices, uvs, groups } of [cage, target] satisfies Mesh[]) {
     add(new Uint32Array([positions.length / 3, indices.length]));
     parts.push(new Uint8Array([uvs ? 1 : 0, groups ? 1 : 0, 0, 0]));
@@ -61,19 +62,33 @@ function readAnswer(path: string): Answer {
     distances: new Float32Array(take(4 * vertices).buffer),
     segments: new Uint32Array(take(4 * vertices).buffer),
     stable: take(vertices),
-    stats: Array.from({ length: segments }, () => ({ points: u32(), culled: u32() === 1, exposedArea: f64(), coveredArea: f64() })),
+    stats: Array.from({ length: segments }, () => ({
+      points: u32(),
+      culled: u32() === 1,
+      exposedArea: f64(),
+      coveredArea: f64(),
+    })),
   };
   const [triangles, corners] = [u32(), u32()];
   const cosmeticTriangles = take(triangles);
   const cornerUvs = new Float32Array(take(4 * corners).buffer);
-  return { ...perVertex, cosmeticTriangles, cornerUvs, stableCorners: at < bytes.length && corners > 0 ? take(triangles) : new Uint8Array(0) };
+  return {
+    ...perVertex,
+    cosmeticTriangles,
+    cornerUvs,
+    stableCorners: at < bytes.length && corners > 0 ? take(triangles) : new Uint8Array(0),
+  };
 }
 
 /** What the reference, or with `--product` the native library, answers. */
 function ask(scene: Scene, preset: Preset, threshold: number, ...flags: string[]): Answer {
   const [sceneFile, resultFile] = [join(folder, 'scene'), join(folder, 'result')];
   writeScene(sceneFile, scene);
-  const { status, stderr } = spawnSync(native, [sceneFile, resultFile, '--preset', preset, '--threshold', String(threshold), ...flags], { encoding: 'utf8' });
+  const { status, stderr } = spawnSync(
+    native,
+    [sceneFile, resultFile, '--preset', preset, '--threshold', String(threshold), ...flags],
+    { encoding: 'utf8' },
+  );
   assert.equal(status, 0, `${native} failed: ${stderr}`);
   return readAnswer(resultFile);
 }
@@ -94,12 +109,18 @@ function compare(reference: Answer, result: TransferResult, indices: Mesh['indic
       reference.triangles[v] === result.triangles[v] &&
       Math.abs(reference.uvs[2 * v]! - result.uvs[2 * v]!) <= 1e-5 &&
       Math.abs(reference.uvs[2 * v + 1]! - result.uvs[2 * v + 1]!) <= 1e-5;
-    if (!same) differences.push(`vertex ${v}: zone ${result.zones[v]} for ${reference.zones[v]}, triangle ${result.triangles[v]} for ${reference.triangles[v]}, uv ${result.uvs.subarray(2 * v, 2 * v + 2)} for ${reference.uvs.subarray(2 * v, 2 * v + 2)}`);
+    if (!same)
+      differences.push(
+        `vertex ${v}: zone ${result.zones[v]} for ${reference.zones[v]}, triangle ${result.triangles[v]} for ${reference.triangles[v]}, uv ${result.uvs.subarray(2 * v, 2 * v + 2)} for ${reference.uvs.subarray(2 * v, 2 * v + 2)}`,
+      );
   }
   let unstableTriangles = 0;
   assert.equal(result.cornerUvs.length, reference.cornerUvs.length);
   for (let t = 0; t < indices.length / 3; ++t) {
-    if ([0, 1, 2].every((k) => reference.stable[indices[3 * t + k]!]) && result.cosmeticTriangles[t] !== reference.cosmeticTriangles[t]) {
+    if (
+      [0, 1, 2].every((k) => reference.stable[indices[3 * t + k]!]) &&
+      result.cosmeticTriangles[t] !== reference.cosmeticTriangles[t]
+    ) {
       differences.push(`triangle ${t}: cosmetic ${result.cosmeticTriangles[t]} for ${reference.cosmeticTriangles[t]}`);
     }
     if (reference.cornerUvs.length === 0) continue;
@@ -107,8 +128,11 @@ function compare(reference: Answer, result: TransferResult, indices: Mesh['indic
       ++unstableTriangles;
       continue;
     }
-    const [ours, theirs] = [result.cornerUvs, reference.cornerUvs].map((all) => [...all.subarray(6 * t, 6 * t + 6)]) as [number[], number[]];
-    if (ours.some((value, i) => Math.abs(value - theirs[i]!) > 1e-5)) differences.push(`triangle ${t}: corners ${ours} for ${theirs}`);
+    const [ours, theirs] = [result.cornerUvs, reference.cornerUvs].map((all) => [
+      ...all.subarray(6 * t, 6 * t + 6),
+    ]) as [number[], number[]];
+    if (ours.some((value, i) => Math.abs(value - theirs[i]!) > 1e-5))
+      differences.push(`triangle ${t}: corners ${ours} for ${theirs}`);
   }
   const line = `${vertices} vertices, ${differences.length} differences, ${unstable} vertices and the corners of ${unstableTriangles} triangles unstable`;
   assert.equal(differences.length, 0, `${line}\n${differences.slice(0, 5).join('\n')}`);
@@ -121,9 +145,18 @@ function unstableShare({ stable }: Answer): number {
 }
 
 /** A hash of the bits of an answer. */
-function hash({ uvs, zones, triangles, distances, segments, cosmeticTriangles, cornerUvs }: Omit<Answer, 'stable' | 'stats' | 'stableCorners'>): string {
+function hash({
+  uvs,
+  zones,
+  triangles,
+  distances,
+  segments,
+  cosmeticTriangles,
+  cornerUvs,
+}: Omit<Answer, 'stable' | 'stats' | 'stableCorners'>): string {
   const sum = createHash('sha256');
-  for (const array of [uvs, zones, triangles, distances, segments, cosmeticTriangles, cornerUvs]) sum.update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+  for (const array of [uvs, zones, triangles, distances, segments, cosmeticTriangles, cornerUvs])
+    sum.update(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
   return sum.digest('hex');
 }
 
@@ -139,7 +172,11 @@ describe('the package gives the answer of the reference, and the bits of the nat
   const scenes: (() => Promise<Scene>)[] = [
     ...[1, 2, 3, 4, 5, 6].map((seed) => async () => head(seed)),
     ...[1, 2, 3, 4, 5, 6].map((seed) => async () => soup(seed)),
-    ...modelFolders().map((model) => async () => ({ name: basename(model), cage: await readPlain(join(model, 'cage.glb')), target: await readPlain(join(model, 'target.glb')) })),
+    ...modelFolders().map((model) => async () => ({
+      name: basename(model),
+      cage: await readPlain(join(model, 'cage.glb')),
+      target: await readPlain(join(model, 'target.glb')),
+    })),
   ];
   for (const [i, makeScene] of scenes.entries()) {
     const isModel = i >= 12;
@@ -154,13 +191,21 @@ describe('the package gives the answer of the reference, and the bits of the nat
             const result = transfer(scene.cage, scene.target, { preset, threshold });
             assert.equal(hash(result), hash(product), `${build}: not the bits of the native library`);
             assert.deepEqual(
-              result.segmentStats.map(({ points, culled, exposedArea, coveredArea }) => ({ points, culled, exposedArea, coveredArea })),
+              result.segmentStats.map(({ points, culled, exposedArea, coveredArea }) => ({
+                points,
+                culled,
+                exposedArea,
+                coveredArea,
+              })),
               product.stats,
               `${build}: not the segments of the native library`,
             );
-            context.diagnostic(`${name}, ${preset}, ${build}, threshold ${threshold}: ${compare(reference, result, scene.target.indices)}`);
+            context.diagnostic(
+              `${name}, ${preset}, ${build}, threshold ${threshold}: ${compare(reference, result, scene.target.indices)}`,
+            );
           }
-          if (isModel) assert.ok(unstableShare(reference) <= 0.01, `${unstableShare(reference)} of the vertices are unstable`);
+          if (isModel)
+            assert.ok(unstableShare(reference) <= 0.01, `${unstableShare(reference)} of the vertices are unstable`);
         }
       });
     }

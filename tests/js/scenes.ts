@@ -1,4 +1,4 @@
-import { readFileSync, readdirSync, existsSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { NodeIO } from '@gltf-transform/core';
 import type { Mesh } from 'cagecast';
@@ -23,7 +23,12 @@ export function random(seed: number): () => number {
 }
 
 /** A closed grid of rings and sectors around a centre, its radius a function of the direction; UVs by longitude and latitude. */
-export function ball(centre: readonly number[], radius: (phi: number, theta: number) => number, rings: number, sectors: number): Required<Mesh> & { indices: Uint32Array } {
+export function ball(
+  centre: readonly number[],
+  radius: (phi: number, theta: number) => number,
+  rings: number,
+  sectors: number,
+): Required<Mesh> & { indices: Uint32Array } {
   const positions: number[] = [];
   const uvs: number[] = [];
   const indices: number[] = [];
@@ -33,7 +38,11 @@ export function ball(centre: readonly number[], radius: (phi: number, theta: num
       const phi = (2 * Math.PI * (s % sectors)) / sectors;
       const length = radius(phi, theta);
       const sine = r % rings === 0 ? 0 : Math.sin(theta); // poles are one place
-      positions.push(centre[0]! + length * sine * Math.cos(phi), centre[1]! + length * sine * Math.sin(phi), centre[2]! + length * Math.cos(theta));
+      positions.push(
+        centre[0]! + length * sine * Math.cos(phi),
+        centre[1]! + length * sine * Math.sin(phi),
+        centre[2]! + length * Math.cos(theta),
+      );
       uvs.push(s / sectors, r / rings);
       if (r === rings || s === sectors) continue;
       const a = r * (sectors + 1) + s;
@@ -42,7 +51,12 @@ export function ball(centre: readonly number[], radius: (phi: number, theta: num
       if (r < rings - 1) indices.push(a + 1, b, b + 1);
     }
   }
-  return { positions: new Float32Array(positions), indices: new Uint32Array(indices), uvs: new Float32Array(uvs), groups: new Uint32Array(positions.length / 3) };
+  return {
+    positions: new Float32Array(positions),
+    indices: new Uint32Array(indices),
+    uvs: new Float32Array(uvs),
+    groups: new Uint32Array(positions.length / 3),
+  };
 }
 
 /** Several meshes as one, a group for each. */
@@ -58,15 +72,33 @@ export function join3d(...meshes: Mesh[]): Required<Mesh> & { indices: Uint32Arr
     for (const index of mesh.indices) indices.push(first + index);
     for (let v = 0; v < mesh.positions.length / 3; ++v) groups.push(group);
   });
-  return { positions: new Float32Array(positions), indices: new Uint32Array(indices), uvs: new Float32Array(uvs), groups: new Uint32Array(groups) };
+  return {
+    positions: new Float32Array(positions),
+    indices: new Uint32Array(indices),
+    uvs: new Float32Array(uvs),
+    groups: new Uint32Array(groups),
+  };
 }
 
 /** A bumpy head with an eye in a socket and a tongue inside, and a cage with a hole over the eye. */
 export function head(seed: number, detail = 20): Scene {
   const next = random(seed);
   const [bumps, depth, lobes] = [0.02 + 0.08 * next(), 0.1 + 0.2 * next(), 2 + Math.floor(5 * next())];
-  const skin = ball([0, 0, 0], (phi, theta) => 1 + bumps * Math.sin(lobes * phi) * Math.sin(theta) ** 2 - depth * Math.exp(-20 * ((phi - 1) ** 2 + (theta - 1.5) ** 2)), detail, 2 * detail);
-  const eye = ball([0.85 * Math.cos(1) * Math.sin(1.5), 0.85 * Math.sin(1) * Math.sin(1.5), 0.85 * Math.cos(1.5)], () => 0.12, 8, 12);
+  const skin = ball(
+    [0, 0, 0],
+    (phi, theta) =>
+      1 +
+      bumps * Math.sin(lobes * phi) * Math.sin(theta) ** 2 -
+      depth * Math.exp(-20 * ((phi - 1) ** 2 + (theta - 1.5) ** 2)),
+    detail,
+    2 * detail,
+  );
+  const eye = ball(
+    [0.85 * Math.cos(1) * Math.sin(1.5), 0.85 * Math.sin(1) * Math.sin(1.5), 0.85 * Math.cos(1.5)],
+    () => 0.12,
+    8,
+    12,
+  );
   const tongue = ball([0.1 * next(), 0.1 * next(), 0.1 * next()], (phi) => 0.2 + 0.05 * Math.sin(3 * phi), 6, 9);
   const cage = ball([0, 0, 0], (phi, theta) => 1.15 + 0.05 * Math.sin(2 * phi) * Math.sin(theta), 10, 18);
   const open: number[] = [];
@@ -75,20 +107,37 @@ export function head(seed: number, detail = 20): Scene {
     const [phi, theta] = [2 * Math.PI * cage.uvs![2 * corner]!, Math.PI * cage.uvs![2 * corner + 1]!];
     if (Math.hypot(phi - 1, theta - 1.5) > 0.45) open.push(...cage.indices.subarray(t, t + 3));
   }
-  return { name: `head, seed ${seed}`, cage: { ...cage, indices: new Uint32Array(open) }, target: join3d(skin, eye, tongue) };
+  return {
+    name: `head, seed ${seed}`,
+    cage: { ...cage, indices: new Uint32Array(open) },
+    target: join3d(skin, eye, tongue),
+  };
 }
 
 /** A ball of skin with an eye on it, under a cage whose hole leaves a part of the eye bare: too little to fail by the threshold. */
 export function smallHole(opening = 0.1): Scene {
   const [phi, theta] = [1, 1.5];
-  const eye = ball([0.98 * Math.cos(phi) * Math.sin(theta), 0.98 * Math.sin(phi) * Math.sin(theta), 0.98 * Math.cos(theta)], () => 0.15, 12, 16);
+  const eye = ball(
+    [0.98 * Math.cos(phi) * Math.sin(theta), 0.98 * Math.sin(phi) * Math.sin(theta), 0.98 * Math.cos(theta)],
+    () => 0.15,
+    12,
+    16,
+  );
   const cage = ball([0, 0, 0], () => 1.2, 48, 96);
   const open: number[] = [];
   for (let t = 0; t < cage.indices.length; t += 3) {
     const corner = cage.indices[t]!;
-    if (Math.hypot(2 * Math.PI * cage.uvs![2 * corner]! - phi, Math.PI * cage.uvs![2 * corner + 1]! - theta) > opening) open.push(...cage.indices.subarray(t, t + 3));
+    if (Math.hypot(2 * Math.PI * cage.uvs![2 * corner]! - phi, Math.PI * cage.uvs![2 * corner + 1]! - theta) > opening)
+      open.push(...cage.indices.subarray(t, t + 3));
   }
-  return { name: 'small hole', cage: { ...cage, indices: new Uint32Array(open) }, target: join3d(ball([0, 0, 0], () => 1, 24, 48), eye) };
+  return {
+    name: 'small hole',
+    cage: { ...cage, indices: new Uint32Array(open) },
+    target: join3d(
+      ball([0, 0, 0], () => 1, 24, 48),
+      eye,
+    ),
+  };
 }
 
 /** Triangles thrown at random: nothing about it is a well-behaved surface. */
@@ -98,10 +147,15 @@ export function soup(seed: number, triangles = 150): Scene {
     const positions: number[] = [];
     for (let t = 0; t < triangles; ++t) {
       const centre = [next() - 0.5, next() - 0.5, next() - 0.5];
-      for (let corner = 0; corner < 3; ++corner) for (let k = 0; k < 3; ++k) positions.push(scale * (centre[k]! + 0.3 * (next() - 0.5)));
+      for (let corner = 0; corner < 3; ++corner)
+        for (let k = 0; k < 3; ++k) positions.push(scale * (centre[k]! + 0.3 * (next() - 0.5)));
     }
     const vertices = positions.length / 3;
-    return { positions: new Float32Array(positions), indices: Uint32Array.from({ length: vertices }, (_, v) => v), uvs: Float32Array.from({ length: 2 * vertices }, next) };
+    return {
+      positions: new Float32Array(positions),
+      indices: Uint32Array.from({ length: vertices }, (_, v) => v),
+      uvs: Float32Array.from({ length: 2 * vertices }, next),
+    };
   };
   return { name: `soup, seed ${seed}`, cage: mesh(1.3), target: mesh(1) };
 }
@@ -142,9 +196,11 @@ export async function readPlain(path: string): Promise<Mesh> {
       const positions = new Float32Array(3 * position.getCount());
       for (let v = 0; v < position.getCount(); ++v) {
         const [x = 0, y = 0, z = 0] = position.getElement(v, []);
-        for (let k = 0; k < 3; ++k) positions[3 * v + k] = matrix[k]! * x + matrix[4 + k]! * y + matrix[8 + k]! * z + matrix[12 + k]!;
+        for (let k = 0; k < 3; ++k)
+          positions[3 * v + k] = matrix[k]! * x + matrix[4 + k]! * y + matrix[8 + k]! * z + matrix[12 + k]!;
       }
-      const indices = primitive.getIndices()?.getArray() ?? Uint32Array.from({ length: position.getCount() }, (_, v) => v);
+      const indices =
+        primitive.getIndices()?.getArray() ?? Uint32Array.from({ length: position.getCount() }, (_, v) => v);
       const uvs = primitive.getAttribute('TEXCOORD_0')?.getArray();
       meshes.push({ positions, indices: Uint32Array.from(indices), ...(uvs && { uvs: Float32Array.from(uvs) }) });
     }

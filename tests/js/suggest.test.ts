@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import { init, transfer, type Mesh, type TransferOptions } from 'cagecast';
-import { inspect, suggest, type Finding } from 'cagecast/inspect';
+import { init, type Mesh, type TransferOptions, transfer } from 'cagecast';
+import { type Finding, inspect, suggest } from 'cagecast/inspect';
 import { ball, head, join3d, readPlain, smallHole } from './scenes.js';
 
 before(init);
@@ -17,20 +17,32 @@ const sample = async (name: string): Promise<{ cage: Mesh; target: Mesh }> => ({
   cage: await readPlain(`build/assets/${name}/cage.glb`),
   target: await readPlain(`build/assets/${name}/target.glb`),
 });
-const culled = (options: TransferOptions): boolean[] => transfer(cage, target, options).segmentStats.map((segment) => segment.culled);
+const culled = (options: TransferOptions): boolean[] =>
+  transfer(cage, target, options).segmentStats.map((segment) => segment.culled);
 
 describe('margin', () => {
   test('is at least 1 where a segment passes, less where it is culled, whatever locks say', () => {
-    for (const options of [{}, { preset: 'paper' }, { threshold: 0.9 }, { floor: 'area' }, { threshold: 0 }] satisfies TransferOptions[]) {
+    for (const options of [
+      {},
+      { preset: 'paper' },
+      { threshold: 0.9 },
+      { floor: 'area' },
+      { threshold: 0 },
+    ] satisfies TransferOptions[]) {
       const { segmentStats } = transfer(cage, target, options);
-      for (const segment of segmentStats) assert.equal(segment.margin < 1, segment.culled, JSON.stringify({ options, segment }));
+      for (const segment of segmentStats)
+        assert.equal(segment.margin < 1, segment.culled, JSON.stringify({ options, segment }));
       const locked = transfer(cage, target, { ...options, locks: { segments: { 0: 'exclude', 1: 'keep' } } });
-      assert.deepEqual(locked.segmentStats.map(({ margin }) => margin), segmentStats.map(({ margin }) => margin));
+      assert.deepEqual(
+        locked.segmentStats.map(({ margin }) => margin),
+        segmentStats.map(({ margin }) => margin),
+      );
     }
   });
 
   test('without a floor is the coverage by the threshold', () => {
-    for (const { exposedArea, coverage, margin } of transfer(cage, target, { preset: 'paper', threshold: 0.4 }).segmentStats) {
+    for (const { exposedArea, coverage, margin } of transfer(cage, target, { preset: 'paper', threshold: 0.4 })
+      .segmentStats) {
       const expected = exposedArea > 0 ? coverage / Math.fround(0.4) : Infinity; // nothing is asked of what is hidden
       assert.ok(margin === expected || Math.abs(margin - expected) < 1e-9, String(margin));
     }
@@ -51,8 +63,16 @@ describe('suggest', () => {
       const scene = await sample(name);
       const suggestions = suggest(scene.cage, scene.target);
       const { findings } = inspect(scene.cage, scene.target);
-      assert.deepEqual(suggestions, findings.filter(({ code }) => codes(suggestions).includes(code)));
-      assert.ok(findings.every(({ code }) => codes(suggestions).includes(code) || /^(uvs|cracks|nonManifold|degenerate|doubled)/.test(code)), JSON.stringify(findings));
+      assert.deepEqual(
+        suggestions,
+        findings.filter(({ code }) => codes(suggestions).includes(code)),
+      );
+      assert.ok(
+        findings.every(
+          ({ code }) => codes(suggestions).includes(code) || /^(uvs|cracks|nonManifold|degenerate|doubled)/.test(code),
+        ),
+        JSON.stringify(findings),
+      );
     }
   });
 
@@ -61,7 +81,10 @@ describe('suggest', () => {
     const { places, sentence } = find(suggest(scene.cage, scene.target), 'holeUnexplained');
     assert.match(sentence, /^2 holes/);
     const { segmentStats } = transfer(scene.cage, scene.target);
-    assert.deepEqual(places!.map(({ segment }) => segmentStats[segment]!.culled), [false]);
+    assert.deepEqual(
+      places!.map(({ segment }) => segmentStats[segment]!.culled),
+      [false],
+    );
   });
 
   test('a cage out of place: that first, then the skin in doubt, and the lock that decides it', async () => {
@@ -81,7 +104,10 @@ describe('suggest', () => {
 
   test('near the threshold on either side: what it is held against, and the lock that turns it', () => {
     const [, eye] = transfer(cage, target).segmentStats;
-    for (const [threshold, words] of [[eye!.coverage - 0.02, /is painted, but barely: .* against the threshold/], [eye!.coverage + 0.02, /is not painted, but nearly: .* less than the threshold/]] as const) {
+    for (const [threshold, words] of [
+      [eye!.coverage - 0.02, /is painted, but barely: .* against the threshold/],
+      [eye!.coverage + 0.02, /is not painted, but nearly: .* less than the threshold/],
+    ] as const) {
       const options = { threshold, floor: 'none', baredParts: false } as const;
       const { sentence, advice, places, locks } = find(suggest(cage, target, options), 'segmentInDoubt');
       assert.match(sentence, words);
@@ -95,22 +121,39 @@ describe('suggest', () => {
   test('a hole that seems to be meant for a part: it says so, and has the lock that paints it', () => {
     const { cage, target } = smallHole(0.08);
     const { sentence, places, locks } = find(suggest(cage, target), 'segmentInDoubt');
-    assert.match(sentence, /^"group 1" is not painted, but nearly: F = 0\.82, but a hole of the cage seems to be meant for it/);
-    assert.deepEqual(places!.map(({ segment }) => segment), [1]);
-    assert.deepEqual(transfer(cage, target, { locks }).segmentStats.map(({ culled }) => culled), [false, false]);
+    assert.match(
+      sentence,
+      /^"group 1" is not painted, but nearly: F = 0\.82, but a hole of the cage seems to be meant for it/,
+    );
+    assert.deepEqual(
+      places!.map(({ segment }) => segment),
+      [1],
+    );
+    assert.deepEqual(
+      transfer(cage, target, { locks }).segmentStats.map(({ culled }) => culled),
+      [false, false],
+    );
   });
 
   test('near the floor: it says so', () => {
     const [skin] = transfer(cage, target).segmentStats;
     const options = { threshold: 0.1, floor: 'area', minCovered: (0.95 * skin!.coveredArea) / skin!.area } as const;
-    assert.match(find(suggest(cage, target, options), 'segmentInDoubt').sentence, /"group 0" is painted, but barely: F = \d\.\d\d, and it reaches 1\.1 times what the floor asks/);
+    assert.match(
+      find(suggest(cage, target, options), 'segmentInDoubt').sentence,
+      /"group 0" is painted, but barely: F = \d\.\d\d, and it reaches 1\.1 times what the floor asks/,
+    );
   });
 
   test('many pieces of one part are one suggestion', () => {
     // Balls under the rim of a cage that ends at the equator: half of each is covered.
     const balls = join3d(...[0, 1, 2, 3, 4].map((i) => ball([2 * i, 0, 0], () => 0.5, 24, 24)));
     const shells = join3d(...[0, 1, 2, 3, 4].map((i) => ball([2 * i, 0, 0], () => 0.55, 24, 24)));
-    const upper = { ...shells, indices: shells.indices.filter((_, i) => [0, 1, 2].every((k) => shells.positions[3 * shells.indices[i - (i % 3) + k]! + 2]! > -0.01)) };
+    const upper = {
+      ...shells,
+      indices: shells.indices.filter((_, i) =>
+        [0, 1, 2].every((k) => shells.positions[3 * shells.indices[i - (i % 3) + k]! + 2]! > -0.01),
+      ),
+    };
     const one = { ...balls, groups: undefined };
     const found = suggest(upper, one, { preset: 'paper' }).filter(({ code }) => code === 'segmentInDoubt');
     assert.equal(found.length, 1);
@@ -120,7 +163,10 @@ describe('suggest', () => {
 
   test('copies of which some are painted and some not', () => {
     const shell = ball([0, 0, 0], () => 1.1, 16, 24);
-    const twins = join3d(ball([0, 0, 0], () => 1, 16, 24), ball([4, 0, 0], () => 1, 16, 24));
+    const twins = join3d(
+      ball([0, 0, 0], () => 1, 16, 24),
+      ball([4, 0, 0], () => 1, 16, 24),
+    );
     const { places, locks, sentence } = find(suggest(shell, twins), 'copiesDiffer');
     assert.equal(sentence, 'Of 2 equal pieces like "group 0" 1 is painted and 1 is not');
     assert.deepEqual(places!.map(({ segment }) => segment).sort(), [0, 1]);
@@ -128,7 +174,10 @@ describe('suggest', () => {
   });
 
   test('takes a result that is known, and gives plain data', () => {
-    const options = { threshold: 0.99, parts: [{ name: 'all', firstVertex: 0, vertexCount: target.positions.length / 3 }] };
+    const options = {
+      threshold: 0.99,
+      parts: [{ name: 'all', firstVertex: 0, vertexCount: target.positions.length / 3 }],
+    };
     const again = suggest(cage, target, { ...options, result: transfer(cage, target, { threshold: 0.99 }) });
     assert.ok(again.length > 0);
     assert.deepEqual(again, suggest(cage, target, options));

@@ -1,26 +1,52 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
-import {
-  Bone, BoxGeometry, BufferAttribute, BufferGeometry, Float16BufferAttribute, Float32BufferAttribute, Group, InstancedBufferGeometry, InstancedMesh, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, Mesh as ThreeMesh, MeshStandardMaterial, Quaternion, Skeleton, SkinnedMesh, Texture,
-  Uint16BufferAttribute, Vector3,
-} from 'three';
-import { CagecastError, classify, init, project, transfer, Zone, type Mesh, type TransferResult } from 'cagecast';
+import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import { applyTransfer, extract } from 'cagecast/three';
+import {
+  Bone,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  Float16BufferAttribute,
+  Float32BufferAttribute,
+  Group,
+  InstancedBufferGeometry,
+  InstancedMesh,
+  InterleavedBuffer,
+  InterleavedBufferAttribute,
+  Matrix4,
+  MeshStandardMaterial,
+  Quaternion,
+  Skeleton,
+  SkinnedMesh,
+  Texture,
+  Mesh as ThreeMesh,
+  Uint16BufferAttribute,
+  Vector3,
+} from 'three';
 import { ball, head, join3d } from './scenes.js';
 
 before(init);
 
 const scene = head(3, 10);
 const geometryOf = ({ positions, indices, uvs }: Mesh): BufferGeometry => {
-  const geometry = new BufferGeometry().setIndex(new BufferAttribute(Uint32Array.from(indices), 1)).setAttribute('position', new BufferAttribute(positions.slice(), 3));
+  const geometry = new BufferGeometry()
+    .setIndex(new BufferAttribute(Uint32Array.from(indices), 1))
+    .setAttribute('position', new BufferAttribute(positions.slice(), 3));
   return uvs ? geometry.setAttribute('uv', new BufferAttribute(uvs.slice(), 2)) : geometry;
 };
-const meshOf = (mesh: Mesh): ThreeMesh<BufferGeometry, MeshStandardMaterial> => new ThreeMesh(geometryOf(mesh), new MeshStandardMaterial({ roughness: 0.3 }));
+const meshOf = (mesh: Mesh): ThreeMesh<BufferGeometry, MeshStandardMaterial> =>
+  new ThreeMesh(geometryOf(mesh), new MeshStandardMaterial({ roughness: 0.3 }));
 const attribute = (geometry: BufferGeometry, name: string) => geometry.getAttribute(name).array as Float32Array;
 
 describe('extract', () => {
   test('a geometry, a mesh and a scene give the arrays that transfer takes', () => {
-    const single = { positions: scene.target.positions, indices: scene.target.indices, uvs: scene.target.uvs, groups: new Uint32Array(scene.target.positions.length / 3) };
+    const single = {
+      positions: scene.target.positions,
+      indices: scene.target.indices,
+      uvs: scene.target.uvs,
+      groups: new Uint32Array(scene.target.positions.length / 3),
+    };
     assert.deepEqual(extract(geometryOf(scene.target)).mesh, single);
     assert.deepEqual(extract(meshOf(scene.target)).mesh, single);
     assert.deepEqual(extract(new Group().add(meshOf(scene.target))).mesh, single);
@@ -36,12 +62,22 @@ describe('extract', () => {
     right.scale.x = -1;
     const { mesh, parts } = extract(new Group().add(left, right));
     const vertices = small.positions.length / 3;
-    assert.deepEqual(parts.map(({ firstVertex, vertexCount }) => [firstVertex, vertexCount]), [[0, vertices], [vertices, vertices]]);
+    assert.deepEqual(
+      parts.map(({ firstVertex, vertexCount }) => [firstVertex, vertexCount]),
+      [
+        [0, vertices],
+        [vertices, vertices],
+      ],
+    );
     assert.equal(parts[0]!.name, 'left');
     assert.deepEqual([...new Set(mesh.groups)], [0, 1]);
     for (let t = 0; t < mesh.indices.length / 3; ++t) {
       // Outside is away from the centre of each ball.
-      const [a, b, c] = [0, 1, 2].map((k) => new Vector3().fromArray(mesh.positions, 3 * mesh.indices[3 * t + k]!)) as [Vector3, Vector3, Vector3];
+      const [a, b, c] = [0, 1, 2].map((k) => new Vector3().fromArray(mesh.positions, 3 * mesh.indices[3 * t + k]!)) as [
+        Vector3,
+        Vector3,
+        Vector3,
+      ];
       const normal = b.clone().sub(a).cross(c.clone().sub(a));
       const centre = new Vector3(t < mesh.indices.length / 6 ? -0.6 : 0.6, 0, 0);
       assert.ok(normal.dot(a.add(b).add(c).divideScalar(3).sub(centre)) >= 0, `triangle ${t}`);
@@ -49,43 +85,75 @@ describe('extract', () => {
   });
 
   test('material groups are groups', () => {
-    const box = new ThreeMesh(new BoxGeometry(), Array.from({ length: 6 }, () => new MeshStandardMaterial()));
+    const box = new ThreeMesh(
+      new BoxGeometry(),
+      Array.from({ length: 6 }, () => new MeshStandardMaterial()),
+    );
     assert.deepEqual([...new Set(extract(box).mesh.groups)], [0, 1, 2, 3, 4, 5]);
-    assert.deepEqual([...new Set(extract(new ThreeMesh(new BoxGeometry(), new MeshStandardMaterial())).mesh.groups)], [0]);
+    assert.deepEqual(
+      [...new Set(extract(new ThreeMesh(new BoxGeometry(), new MeshStandardMaterial())).mesh.groups)],
+      [0],
+    );
   });
 
   test('not indexed, interleaved and normalised attributes are read', () => {
     const flat = geometryOf(scene.target).toNonIndexed();
     assert.equal(extract(flat).mesh.indices.length, scene.target.indices.length);
-    const quantised = new BufferGeometry().setAttribute('position', new BufferAttribute(Int16Array.from([0, 0, 0, 32767, 0, 0, 0, 32767, 0]), 3, true));
+    const quantised = new BufferGeometry().setAttribute(
+      'position',
+      new BufferAttribute(Int16Array.from([0, 0, 0, 32767, 0, 0, 0, 32767, 0]), 3, true),
+    );
     assert.deepEqual([...extract(quantised).mesh.positions], [0, 0, 0, 1, 0, 0, 0, 1, 0]);
   });
 
   test('what cannot be read is named', () => {
     const bad = geometryOf({ positions: new Float32Array(9), indices: new Uint32Array([0, 1, 7]) });
     bad.name = 'broken';
-    assert.throws(() => extract(bad), (error) => error instanceof CagecastError && /target: "broken" has indices\[2\] = 7, which is out of range \(3 vertices\)/.test(error.message));
+    assert.throws(
+      () => extract(bad),
+      (error) =>
+        error instanceof CagecastError &&
+        /target: "broken" has indices\[2\] = 7, which is out of range \(3 vertices\)/.test(error.message),
+    );
     const odd = new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 0, 1, 0, 0], 3));
     assert.throws(() => extract(odd, 'cage'), /cage: "geometry" has 2 corners, not 3 per triangle/);
-    assert.throws(() => applyTransfer(new Group(), meshOf(scene.cage)), (error) => error instanceof CagecastError && error.code === 'emptyMesh');
+    assert.throws(
+      () => applyTransfer(new Group(), meshOf(scene.cage)),
+      (error) => error instanceof CagecastError && error.code === 'emptyMesh',
+    );
     const flat = new BufferGeometry().setAttribute('position', new Float32BufferAttribute([0, 0, 1, 0, 0, 1], 2));
     assert.throws(() => extract(flat), /target: "geometry" has positions of 2 numbers, not 3/);
     const short = geometryOf(scene.cage).setAttribute('uv', new Float32BufferAttribute([0, 0, 1, 1], 2));
-    assert.throws(() => extract(short, 'cage'), new RegExp(`cage: "geometry" has 2 uv for ${scene.cage.positions.length / 3} vertices`));
+    assert.throws(
+      () => extract(short, 'cage'),
+      new RegExp(`cage: "geometry" has 2 uv for ${scene.cage.positions.length / 3} vertices`),
+    );
   });
 
   test('arguments that TypeScript would not let through are named', () => {
     const fails = (message: RegExp, ...args: unknown[]) =>
-      assert.throws(() => (applyTransfer as (...args: unknown[]) => unknown)(...args), (error) => error instanceof CagecastError && message.test(error.message), String(message));
+      assert.throws(
+        () => (applyTransfer as (...args: unknown[]) => unknown)(...args),
+        (error) => error instanceof CagecastError && message.test(error.message),
+        String(message),
+      );
     const [target, cage] = [meshOf(scene.target), meshOf(scene.cage)];
-    fails(/cagecast\/three: target is an object, not a scene, mesh or geometry \(of a loaded glTF, take \.scene\)/, { scene: target }, cage);
+    fails(
+      /cagecast\/three: target is an object, not a scene, mesh or geometry \(of a loaded glTF, take \.scene\)/,
+      { scene: target },
+      cage,
+    );
     fails(/cagecast\/three: cage is undefined, not a scene/, target);
     fails(/cagecast\/three: options is null, not an object/, target, cage, null);
     fails(/cagecast\/three: options\.texture is paint\.png, not a Texture/, target, cage, { texture: 'paint.png' });
     fails(/cagecast\/three: options\.material is an object, not a Material/, target, cage, { material: {} });
     fails(/cagecast\/three: options\.channel is 7, not 1, 2 or 3/, target, cage, { channel: 7 });
-    fails(/cagecast\/three: options\.result\.zones is no list, the target needs \d+; extract it before/, target, cage, { result: {} });
-    fails(/cagecast\/three: options\.result\.uvs is no list/, target, cage, { result: { ...transfer(scene.cage, { ...scene.target, groups: undefined }), uvs: undefined } });
+    fails(/cagecast\/three: options\.result\.zones is no list, the target needs \d+; extract it before/, target, cage, {
+      result: {},
+    });
+    fails(/cagecast\/three: options\.result\.uvs is no list/, target, cage, {
+      result: { ...transfer(scene.cage, { ...scene.target, groups: undefined }), uvs: undefined },
+    });
   });
 });
 
@@ -100,17 +168,26 @@ function assertSplit(geometry: BufferGeometry, before: BufferGeometry, result: T
     source.set(vertex, old);
     if (vertex < vertices) assert.equal(vertex, old);
     const uv = geometry.getAttribute('uv1');
-    assert.deepEqual([uv.getX(vertex) + 0, uv.getY(vertex) + 0], [result.cornerUvs[2 * i]! + 0, result.cornerUvs[2 * i + 1]! + 0]);
+    assert.deepEqual(
+      [uv.getX(vertex) + 0, uv.getY(vertex) + 0],
+      [result.cornerUvs[2 * i]! + 0, result.cornerUvs[2 * i + 1]! + 0],
+    );
     assert.equal(geometry.getAttribute('_ncz').getX(vertex), result.zones[old]);
   });
   const elements = ({ itemSize }: { itemSize: number }) => Array.from({ length: itemSize }, (_, k) => k);
   for (const [vertex, old] of source) {
     for (const [name, attribute] of Object.entries(before.attributes)) {
-      for (const k of elements(attribute)) assert.equal(geometry.getAttribute(name).getComponent(vertex, k), attribute.getComponent(old, k), name);
+      for (const k of elements(attribute))
+        assert.equal(geometry.getAttribute(name).getComponent(vertex, k), attribute.getComponent(old, k), name);
     }
     for (const [name, morphs] of Object.entries(before.morphAttributes)) {
       morphs!.forEach((morph, m) => {
-        for (const k of elements(morph)) assert.equal(geometry.morphAttributes[name as 'position']![m]!.getComponent(vertex, k), morph.getComponent(old, k), name);
+        for (const k of elements(morph))
+          assert.equal(
+            geometry.morphAttributes[name as 'position']![m]!.getComponent(vertex, k),
+            morph.getComponent(old, k),
+            name,
+          );
       });
     }
   }
@@ -121,12 +198,39 @@ describe('applyTransfer', () => {
     const vertices = scene.target.positions.length / 3;
     const target = meshOf(scene.target);
     const { geometry } = target;
-    const interleaved = new InterleavedBuffer(Float32Array.from({ length: 5 * vertices }, (_, i) => i), 5);
+    const interleaved = new InterleavedBuffer(
+      Float32Array.from({ length: 5 * vertices }, (_, i) => i),
+      5,
+    );
     geometry.setAttribute('normal', new InterleavedBufferAttribute(interleaved, 3, 1));
-    geometry.setAttribute('skinIndex', new Uint16BufferAttribute(Uint16Array.from({ length: 4 * vertices }, (_, i) => i % 999), 4));
-    geometry.setAttribute('color', new BufferAttribute(Uint8Array.from({ length: 3 * vertices }, (_, i) => i % 255), 3, true));
-    geometry.setAttribute('half', new Float16BufferAttribute(Uint16Array.from({ length: vertices }, (_, i) => i % 999), 1));
-    geometry.morphAttributes['position'] = [new BufferAttribute(scene.target.positions.map((x) => 0.5 * x), 3)];
+    geometry.setAttribute(
+      'skinIndex',
+      new Uint16BufferAttribute(
+        Uint16Array.from({ length: 4 * vertices }, (_, i) => i % 999),
+        4,
+      ),
+    );
+    geometry.setAttribute(
+      'color',
+      new BufferAttribute(
+        Uint8Array.from({ length: 3 * vertices }, (_, i) => i % 255),
+        3,
+        true,
+      ),
+    );
+    geometry.setAttribute(
+      'half',
+      new Float16BufferAttribute(
+        Uint16Array.from({ length: vertices }, (_, i) => i % 999),
+        1,
+      ),
+    );
+    geometry.morphAttributes['position'] = [
+      new BufferAttribute(
+        scene.target.positions.map((x) => 0.5 * x),
+        3,
+      ),
+    ];
     const before = geometry.clone();
     let disposed = 0;
     geometry.addEventListener('dispose', () => ++disposed);
@@ -138,13 +242,20 @@ describe('applyTransfer', () => {
   });
 
   test('a mirrored mesh is split as it is seen', () => {
-    const target = meshOf({ ...scene.target, positions: scene.target.positions.map((x, i) => (i % 3 === 0 ? -x : x)), indices: scene.target.indices.slice().reverse() });
+    const target = meshOf({
+      ...scene.target,
+      positions: scene.target.positions.map((x, i) => (i % 3 === 0 ? -x : x)),
+      indices: scene.target.indices.slice().reverse(),
+    });
     target.scale.x = -1;
     const before = target.geometry.clone();
     const { result, splitVertices } = applyTransfer(target, meshOf(scene.cage));
     assert.ok(splitVertices > 0);
     // In the arrays of the result the second and third corners of mirrored triangles have changed places.
-    const cornerUvs = Float32Array.from(result.cornerUvs, (_, i) => result.cornerUvs[i - (i % 6) + ([0, 1, 4, 5, 2, 3][i % 6]!)]!);
+    const cornerUvs = Float32Array.from(
+      result.cornerUvs,
+      (_, i) => result.cornerUvs[i - (i % 6) + [0, 1, 4, 5, 2, 3][i % 6]!]!,
+    );
     assertSplit(target.geometry, before, { ...result, cornerUvs });
   });
 
@@ -171,7 +282,9 @@ describe('applyTransfer', () => {
     assert.equal(overlay.material.roughness, 0.3);
     assert.equal(overlay.geometry.getAttribute('position'), target.geometry.getAttribute('position'));
     assert.equal(overlay.geometry.getAttribute('uv2'), target.geometry.getAttribute('uv2'));
-    const corners = [...target.geometry.index!.array].filter((_, i) => result.cosmeticTriangles[Math.floor(i / 3)] === 1);
+    const corners = [...target.geometry.index!.array].filter(
+      (_, i) => result.cosmeticTriangles[Math.floor(i / 3)] === 1,
+    );
     assert.deepEqual([...overlay.geometry.index!.array], corners);
 
     // Another threshold.
@@ -181,7 +294,13 @@ describe('applyTransfer', () => {
     assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
     const { zones, cosmeticTriangles } = decided;
     // @ts-expect-error that is half a decision
-    assert.throws(() => update({ zones, cosmeticTriangles }), (error) => error instanceof CagecastError && error.code === 'badArgument' && /classification\.segmentStats is no list/.test(error.message));
+    assert.throws(
+      () => update({ zones, cosmeticTriangles }),
+      (error) =>
+        error instanceof CagecastError &&
+        error.code === 'badArgument' &&
+        /classification\.segmentStats is no list/.test(error.message),
+    );
     // The renderer frees what a geometry has when it goes.
     let freed: unknown[] = [target.geometry.getAttribute('position')];
     overlay.geometry.addEventListener('dispose', () => (freed = Object.values(overlay.geometry.attributes)));
@@ -211,7 +330,10 @@ describe('applyTransfer', () => {
   test('instances are told of, and not taken for one mesh', () => {
     const { geometry, material } = meshOf(scene.target);
     assert.throws(() => extract(new Group().add(new InstancedMesh(geometry, material, 2))), /many places at once/);
-    assert.throws(() => extract(new ThreeMesh(new InstancedBufferGeometry().copy(geometry as InstancedBufferGeometry), material)), /many places at once/);
+    assert.throws(
+      () => extract(new ThreeMesh(new InstancedBufferGeometry().copy(geometry as InstancedBufferGeometry), material)),
+      /many places at once/,
+    );
     const few = geometry.clone().setAttribute('heat', new BufferAttribute(new Float32Array(5), 1));
     assert.throws(() => extract(few), /"geometry" has 5 heat for \d+ vertices/);
   });
@@ -235,7 +357,12 @@ describe('applyTransfer', () => {
     assert.equal(applied.result, known);
     assert.ok(applied.splitVertices > 0);
     // It is not of what the target has become.
-    assert.throws(() => applyTransfer(target, meshOf(scene.cage), { result: known }), (error) => error instanceof CagecastError && /options\.result\.zones has \d+ entries, the target needs \d+; extract it before/.test(error.message));
+    assert.throws(
+      () => applyTransfer(target, meshOf(scene.cage), { result: known }),
+      (error) =>
+        error instanceof CagecastError &&
+        /options\.result\.zones has \d+ entries, the target needs \d+; extract it before/.test(error.message),
+    );
     // Of which a transfer of its own splits no vertex again.
     assert.equal(applyTransfer(target, meshOf(scene.cage)).splitVertices, 0);
   });
@@ -255,24 +382,47 @@ describe('applyTransfer', () => {
 
   test('morph targets go with the overlay', () => {
     const target = meshOf(scene.target);
-    target.geometry.morphAttributes['position'] = [new BufferAttribute(scene.target.positions.map((x) => 0.5 * x), 3)];
+    target.geometry.morphAttributes['position'] = [
+      new BufferAttribute(
+        scene.target.positions.map((x) => 0.5 * x),
+        3,
+      ),
+    ];
     target.geometry.morphTargetsRelative = true;
     target.updateMorphTargets();
-    const { overlays: [overlay] } = applyTransfer(target, meshOf(scene.cage), { texture: new Texture() });
+    const {
+      overlays: [overlay],
+    } = applyTransfer(target, meshOf(scene.cage), { texture: new Texture() });
     const vertex = overlay!.geometry.index!.getX(0);
     for (const weight of [0, 1]) {
       target.morphTargetInfluences![0] = weight;
       const [a, b] = [target, overlay!].map((mesh) => mesh.getVertexPosition(vertex, new Vector3()));
       assert.deepEqual(b, a);
-      assert.ok(Math.abs(a!.length() - (1 + 0.5 * weight) * new Vector3().fromArray(scene.target.positions, 3 * vertex).length()) < 1e-6);
+      assert.ok(
+        Math.abs(
+          a!.length() - (1 + 0.5 * weight) * new Vector3().fromArray(scene.target.positions, 3 * vertex).length(),
+        ) < 1e-6,
+      );
     }
   });
 
   test('a skinned mesh is where its bones hold it, whatever the unit it is stored in', () => {
     const vertices = scene.target.positions.length / 3;
     const geometry = geometryOf({ ...scene.target, positions: scene.target.positions.map((x) => 128 * x) })
-      .setAttribute('skinIndex', new BufferAttribute(Uint16Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? (i / 4) % 2 : 0)), 4))
-      .setAttribute('skinWeight', new BufferAttribute(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 4));
+      .setAttribute(
+        'skinIndex',
+        new BufferAttribute(
+          Uint16Array.from({ length: 4 * vertices }, (_, i) => (i % 4 === 0 ? (i / 4) % 2 : 0)),
+          4,
+        ),
+      )
+      .setAttribute(
+        'skinWeight',
+        new BufferAttribute(
+          new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)),
+          4,
+        ),
+      );
     const [rig, tip] = [new Bone(), new Bone()];
     rig.add(tip);
     tip.position.x = 0.5;
@@ -287,8 +437,20 @@ describe('applyTransfer', () => {
   test('skins go with the overlay; the target is taken in its bind pose', () => {
     const vertices = scene.target.positions.length / 3;
     const geometry = geometryOf(scene.target)
-      .setAttribute('skinIndex', new BufferAttribute(Uint16Array.from({ length: 4 * vertices }, (_, i) => (i === 4 * vertices - 4 ? 1 : 0)), 4))
-      .setAttribute('skinWeight', new BufferAttribute(new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)), 4));
+      .setAttribute(
+        'skinIndex',
+        new BufferAttribute(
+          Uint16Array.from({ length: 4 * vertices }, (_, i) => (i === 4 * vertices - 4 ? 1 : 0)),
+          4,
+        ),
+      )
+      .setAttribute(
+        'skinWeight',
+        new BufferAttribute(
+          new Float32Array(4 * vertices).map((_, i) => (i % 4 === 0 ? 1 : 0)),
+          4,
+        ),
+      );
     const [bone, still] = [new Bone(), new Bone()];
     const target = new SkinnedMesh(geometry, new MeshStandardMaterial());
     const root = new Group().add(bone, still, target);
@@ -301,7 +463,11 @@ describe('applyTransfer', () => {
     assert.equal(overlay.skeleton, target.skeleton);
     root.updateMatrixWorld(true);
     const vertex = overlay.geometry.index!.getX(0);
-    const [rest, posed, painted] = [new Vector3().fromArray(scene.target.positions, 3 * vertex), target.getVertexPosition(vertex, new Vector3()), overlay.getVertexPosition(vertex, new Vector3())];
+    const [rest, posed, painted] = [
+      new Vector3().fromArray(scene.target.positions, 3 * vertex),
+      target.getVertexPosition(vertex, new Vector3()),
+      overlay.getVertexPosition(vertex, new Vector3()),
+    ];
     assert.ok(posed.distanceTo(rest) > 0.1);
     assert.ok(painted.distanceTo(posed) < 1e-9);
   });
@@ -311,7 +477,13 @@ describe('applyTransfer', () => {
     const tongue = ball([0, 0, 0], () => 0.3, 6, 9);
     const target = new Group().add(meshOf(skin), meshOf(tongue));
     const { result } = applyTransfer(target, meshOf(ball([0, 0, 0], () => 1.1, 10, 16)));
-    assert.deepEqual(result.zones, transfer(ball([0, 0, 0], () => 1.1, 10, 16), join3d(skin, tongue)).zones);
+    assert.deepEqual(
+      result.zones,
+      transfer(
+        ball([0, 0, 0], () => 1.1, 10, 16),
+        join3d(skin, tongue),
+      ).zones,
+    );
     const [outer, inner] = target.children as [ThreeMesh, ThreeMesh];
     assert.ok(attribute(outer.geometry, '_ncz').every((zone) => zone === Zone.Cosmetic));
     assert.ok(attribute(inner.geometry, '_ncz').every((zone) => zone === Zone.Occluded));

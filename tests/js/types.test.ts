@@ -9,7 +9,9 @@ const kProjects = {
 };
 for (const [what, project] of Object.entries(kProjects)) {
   test(`${what}: all types are right`, () => {
-    const { status, stdout } = spawnSync(process.execPath, ['node_modules/typescript/bin/tsc', '-p', project], { encoding: 'utf8' });
+    const { status, stdout } = spawnSync(process.execPath, ['node_modules/typescript/bin/tsc', '-p', project], {
+      encoding: 'utf8',
+    });
     assert.equal(status, 0, stdout);
   });
 }

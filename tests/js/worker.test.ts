@@ -25,20 +25,41 @@ describe('the worker', () => {
   test('answers as the package does, without init', async () => {
     const projection = await project(scene.cage, scene.target);
     const expected = direct.project(scene.cage, scene.target);
-    for (const name of ['uvs', 'zones', 'triangles', 'distances', 'segments', 'indices', 'segmentStats', 'cornerUvs', 'restores', 'holeShares', 'preset'] as const) assert.deepEqual(projection[name], expected[name], name);
+    for (const name of [
+      'uvs',
+      'zones',
+      'triangles',
+      'distances',
+      'segments',
+      'indices',
+      'segmentStats',
+      'cornerUvs',
+      'restores',
+      'holeShares',
+      'preset',
+    ] as const)
+      assert.deepEqual(projection[name], expected[name], name);
     assert.deepEqual(await classify(projection, { threshold: 0.3 }), direct.classify(expected, { threshold: 0.3 }));
     const result = await transfer(scene.cage, scene.target, { threshold: 0.3 });
     assert.deepEqual(result.zones, direct.transfer(scene.cage, scene.target, { threshold: 0.3 }).zones);
     const locks = { groups: { 0: 'exclude' } } as const;
-    assert.deepEqual((await transfer(scene.cage, scene.target, { locks })).zones, direct.transfer(scene.cage, scene.target, { locks }).zones);
-    assert.deepEqual(await splitVertices(scene.target, result.cornerUvs), direct.splitVertices(scene.target, result.cornerUvs));
+    assert.deepEqual(
+      (await transfer(scene.cage, scene.target, { locks })).zones,
+      direct.transfer(scene.cage, scene.target, { locks }).zones,
+    );
+    assert.deepEqual(
+      await splitVertices(scene.target, result.cornerUvs),
+      direct.splitVertices(scene.target, result.cornerUvs),
+    );
     assert.deepEqual(await presetOptions('paper'), direct.presetOptions('paper'));
     await init();
   });
 
   test('carries out calls made at once in order', async () => {
     const order: number[] = [];
-    await Promise.all([0, 1, 2, 3].map((i) => transfer(scene.cage, scene.target, { threshold: i / 4 }).then(() => order.push(i))));
+    await Promise.all(
+      [0, 1, 2, 3].map((i) => transfer(scene.cage, scene.target, { threshold: i / 4 }).then(() => order.push(i))),
+    );
     assert.deepEqual(order, [0, 1, 2, 3]);
   });
 
@@ -63,11 +84,19 @@ describe('the worker', () => {
     assert.equal(error.code, 'indexOutOfRange');
     assert.equal(error.at, 2);
     assert.match(error.message, /^transfer: target\.indices\[2\] = 99999 is out of range/);
-    const unsendable = await failure(transfer(scene.cage, { ...scene.target, extra: () => 0 } as unknown as typeof scene.target));
+    const unsendable = await failure(
+      transfer(scene.cage, { ...scene.target, extra: () => 0 } as unknown as typeof scene.target),
+    );
     assert.ok(unsendable instanceof CagecastError && unsendable.code === 'badArgument');
-    assert.equal(((await failure(transfer(scene.cage, scene.target, { threshold: 2 }))) as CagecastError).code, 'badThreshold');
+    assert.equal(
+      ((await failure(transfer(scene.cage, scene.target, { threshold: 2 }))) as CagecastError).code,
+      'badThreshold',
+    );
     const untyped = transfer as (...args: unknown[]) => Promise<unknown>;
-    for (const [options, says] of [[{ signal: {} }, /^transfer: options\.signal is of type Object, not an AbortSignal/], [{ move: 'x' }, /^transfer: options\.move is "x", not true or false/]] as const) {
+    for (const [options, says] of [
+      [{ signal: {} }, /^transfer: options\.signal is of type Object, not an AbortSignal/],
+      [{ move: 'x' }, /^transfer: options\.move is "x", not true or false/],
+    ] as const) {
       const wrong = await failure(untyped(scene.cage, scene.target, options));
       assert.ok(wrong instanceof CagecastError && wrong.code === 'badOption');
       assert.match(wrong.message, says);
@@ -91,7 +120,10 @@ describe('the worker', () => {
     controller.abort();
     assert.equal(((await second) as Error).name, 'AbortError');
     assert.equal((await first).zones.length, scene.target.positions.length / 3);
-    assert.equal(((await failure(transfer(scene.cage, scene.target, { signal: controller.signal }))) as Error).name, 'AbortError');
+    assert.equal(
+      ((await failure(transfer(scene.cage, scene.target, { signal: controller.signal }))) as Error).name,
+      'AbortError',
+    );
   });
 
   test('terminate gives up what waits; the next call starts afresh', async () => {
@@ -108,7 +140,13 @@ describe('the worker', () => {
       await init();
       const mesh = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) };
       console.log((await transfer(mesh, mesh)).zones.length);`;
-    assert.equal(execFileSync(process.execPath, ['--input-type=module', '-e', script], { encoding: 'utf8', timeout: 60000 }).trim(), '3');
+    assert.equal(
+      execFileSync(process.execPath, ['--input-type=module', '-e', script], {
+        encoding: 'utf8',
+        timeout: 60000,
+      }).trim(),
+      '3',
+    );
   });
 
   test('where no worker may be started, that is said, not that the arguments were wrong', () => {
@@ -116,8 +154,17 @@ describe('the worker', () => {
       import { init, transfer } from 'cagecast/worker';
       const mesh = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) };
       for (const call of [() => init(), () => transfer(mesh, mesh)]) await call().catch(({ code, message }) => console.log(code, message));`;
-    const forbidden = ['--experimental-permission', '--no-warnings', '--allow-fs-read=*', '--input-type=module', '-e', script];
-    const [ofInit, ofTransfer] = execFileSync(process.execPath, forbidden, { encoding: 'utf8', timeout: 60000 }).split('\n');
+    const forbidden = [
+      '--experimental-permission',
+      '--no-warnings',
+      '--allow-fs-read=*',
+      '--input-type=module',
+      '-e',
+      script,
+    ];
+    const [ofInit, ofTransfer] = execFileSync(process.execPath, forbidden, { encoding: 'utf8', timeout: 60000 }).split(
+      '\n',
+    );
     assert.match(ofInit!, /^unsupported init: this host cannot start the worker \(.+\)$/);
     assert.match(ofTransfer!, /^unsupported transfer: this host cannot start the worker \(.+\)$/);
   });

@@ -24,18 +24,30 @@ function node(...args: string[]): string {
 describe('examples', () => {
   test('node/arrays.js prints where each vertex lies in the texture', () => {
     const lines = node('examples/node/arrays.js').trim().split('\n');
-    assert.deepEqual(lines.slice(0, 2), ['vertex 0: u = 0.25, v = 0.25, may be painted', 'vertex 1: u = 0.5, v = 0.25, may be painted']);
+    assert.deepEqual(lines.slice(0, 2), [
+      'vertex 0: u = 0.25, v = 0.25, may be painted',
+      'vertex 1: u = 0.5, v = 0.25, may be painted',
+    ]);
     assert.equal(lines.length, 4);
   });
 
   test('node/transfer.js writes a painted model', async () => {
     const out = join(folder, 'painted.glb');
-    assert.match(node('examples/node/transfer.js', `${sample}/target.glb`, `${sample}/cage.glb`, `${sample}/paint-tiger.png`, out), /^\d+\.\d ms$/m);
+    assert.match(
+      node('examples/node/transfer.js', `${sample}/target.glb`, `${sample}/cage.glb`, `${sample}/paint-tiger.png`, out),
+      /^\d+\.\d ms$/m,
+    );
     assert.deepEqual(await validate(out), []);
   });
 
   test('three/ shows the paint', { timeout: 120000 }, async () => {
-    await build({ entryPoints: ['examples/three/main.js'], bundle: true, format: 'esm', outdir: folder, logLevel: 'warning' });
+    await build({
+      entryPoints: ['examples/three/main.js'],
+      bundle: true,
+      format: 'esm',
+      outdir: folder,
+      logLevel: 'warning',
+    });
     cpSync('examples/three/index.html', join(folder, 'index.html'));
     for (const file of ['target.glb', 'cage.glb']) cpSync(join(sample, file), join(folder, file));
     cpSync(join(sample, 'paint-tiger.png'), join(folder, 'paint.png'));
@@ -43,7 +55,9 @@ describe('examples', () => {
     const server = createServer((request, response) => {
       const path = join(folder, new URL(request.url ?? '/', 'http://localhost').pathname);
       if (!existsSync(path) || extname(path) === '') return response.writeHead(404).end();
-      response.writeHead(200, { 'content-type': types[extname(path)] ?? 'application/octet-stream' }).end(readFileSync(path));
+      response
+        .writeHead(200, { 'content-type': types[extname(path)] ?? 'application/octet-stream' })
+        .end(readFileSync(path));
     });
     await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
     const browser = await launchChromium({ drawing: true });
@@ -59,7 +73,8 @@ describe('examples', () => {
       // The tiger's orange, which nothing else of the picture has.
       const orange = ({ data }: PNG): number => {
         let count = 0;
-        for (let at = 0; at < data.length; at += 4) if (data[at]! > 120 && data[at]! > 1.6 * data[at + 2]! && data[at]! > 1.15 * data[at + 1]!) ++count;
+        for (let at = 0; at < data.length; at += 4)
+          if (data[at]! > 120 && data[at]! > 1.6 * data[at + 2]! && data[at]! > 1.15 * data[at + 1]!) ++count;
         return count;
       };
       // It is drawn a little later.

@@ -1,6 +1,15 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import { extname, join, resolve } from 'node:path';
@@ -46,15 +55,22 @@ const workerProgram = program
   .replace('classify(await', 'await classify(await');
 
 function run(command: string, args: string[], cwd = user): string {
-  const { status, stdout, stderr } = spawnSync(command, args, { cwd, encoding: 'utf8', env: { ...process.env, NODE_OPTIONS: '' } });
+  const { status, stdout, stderr } = spawnSync(command, args, {
+    cwd,
+    encoding: 'utf8',
+    env: { ...process.env, NODE_OPTIONS: '' },
+  });
   assert.equal(status, 0, `${command} ${args.join(' ')}:\n${stdout}${stderr}`);
   return stdout;
 }
 
-const distFiles = () => (readdirSync(join(installed, 'dist'), { recursive: true }) as string[]).filter((name) => extname(name) !== '');
+const distFiles = () =>
+  (readdirSync(join(installed, 'dist'), { recursive: true }) as string[]).filter((name) => extname(name) !== '');
 
 before(() => {
-  const [packed] = JSON.parse(run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', user], process.cwd())) as [{ filename: string }];
+  const [packed] = JSON.parse(
+    run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', user], process.cwd()),
+  ) as [{ filename: string }];
   writeFileSync(join(user, 'package.json'), '{ "private": true, "type": "module" }');
   run('npm', ['install', '--offline', '--no-audit', '--no-fund', '--ignore-scripts', join(user, packed.filename)]);
   writeFileSync(join(user, 'program.js'), program);
@@ -65,25 +81,40 @@ after(() => rmSync(user, { recursive: true, force: true }));
 describe('the packed package', () => {
   test('needs nothing else', () => {
     const manifest = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as Record<string, unknown>;
-    for (const name of ['dependencies', 'optionalDependencies', 'bundledDependencies']) assert.equal(manifest[name], undefined, name);
+    for (const name of ['dependencies', 'optionalDependencies', 'bundledDependencies'])
+      assert.equal(manifest[name], undefined, name);
     // What is made for three.js or glTF-Transform takes the user's own; who uses neither needs neither.
     const optional = manifest['peerDependenciesMeta'] as Record<string, { optional: boolean }>;
-    for (const name of Object.keys(manifest['peerDependencies'] as object)) assert.equal(optional[name]?.optional, true, name);
-    for (const script of ['preinstall', 'install', 'postinstall', 'prepare']) assert.equal((manifest['scripts'] as Record<string, string>)[script], undefined, script);
-    assert.deepEqual(readdirSync(join(user, 'node_modules')).filter((name) => !name.startsWith('.')), ['cagecast']);
+    for (const name of Object.keys(manifest['peerDependencies'] as object))
+      assert.equal(optional[name]?.optional, true, name);
+    for (const script of ['preinstall', 'install', 'postinstall', 'prepare'])
+      assert.equal((manifest['scripts'] as Record<string, string>)[script], undefined, script);
+    assert.deepEqual(
+      readdirSync(join(user, 'node_modules')).filter((name) => !name.startsWith('.')),
+      ['cagecast'],
+    );
   });
 
   test('has what its manifest promises, and only what belongs to it', () => {
-    const { exports, bin } = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as { exports: Record<string, unknown>; bin: Record<string, string> };
-    const promised = (value: unknown): string[] => (typeof value === 'string' ? [value] : Object.values(value as object).flatMap(promised));
-    for (const file of [...promised(exports), ...Object.values(bin)]) assert.ok(existsSync(join(installed, file)), file);
-    const top = readdirSync(installed).filter((name) => !/^(dist|package\.json|README\.md|LICENSE|CHANGELOG\.md)$/.test(name));
+    const { exports, bin } = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as {
+      exports: Record<string, unknown>;
+      bin: Record<string, string>;
+    };
+    const promised = (value: unknown): string[] =>
+      typeof value === 'string' ? [value] : Object.values(value as object).flatMap(promised);
+    for (const file of [...promised(exports), ...Object.values(bin)])
+      assert.ok(existsSync(join(installed, file)), file);
+    const top = readdirSync(installed).filter(
+      (name) => !/^(dist|package\.json|README\.md|LICENSE|CHANGELOG\.md)$/.test(name),
+    );
     assert.deepEqual(top, []);
     for (const name of distFiles()) assert.match(name, /\.(js|d\.ts|wasm)$/);
   });
 
   test('holds nothing of the machine it was built on', () => {
-    const places = [process.cwd(), process.env['HOME']].filter((place) => place !== undefined && place.length > 3) as string[];
+    const places = [process.cwd(), process.env['HOME']].filter(
+      (place) => place !== undefined && place.length > 3,
+    ) as string[];
     for (const name of distFiles()) {
       const text = readFileSync(join(installed, 'dist', name), 'latin1');
       for (const place of places) assert.ok(!text.includes(place), `${name} names ${place}`);
@@ -99,7 +130,8 @@ describe('the packed package', () => {
   });
 
   test('asks engines to compile its index as they read it: they look for that at the very beginning', () => {
-    for (const name of ['index', 'slim']) assert.match(readFileSync(join(installed, `dist/${name}.js`), 'utf8'), /^\/\/# allFunctionsCalledOnLoad\n/);
+    for (const name of ['index', 'slim'])
+      assert.match(readFileSync(join(installed, `dist/${name}.js`), 'utf8'), /^\/\/# allFunctionsCalledOnLoad\n/);
   });
 
   test('its further entries are small, and none of them is in the main one', (context) => {
@@ -110,7 +142,10 @@ describe('the packed package', () => {
       assert.ok(size <= most * 1024, `${name}: ${size} bytes`);
       assert.match(text.toString(), /from"\.\/index\.js"/);
     }
-    assert.doesNotMatch(readFileSync(join(installed, 'dist/index.js'), 'utf8'), /cageMisplaced|TEXCOORD_0|isBufferGeometry|cutBorders: result/);
+    assert.doesNotMatch(
+      readFileSync(join(installed, 'dist/index.js'), 'utf8'),
+      /cageMisplaced|TEXCOORD_0|isBufferGeometry|cutBorders: result/,
+    );
   });
 
   test('its entries for three.js and glTF-Transform, inspect and borders run and type-check beside these', () => {
@@ -119,7 +154,8 @@ describe('the packed package', () => {
     mkdirSync(join(folder, 'node_modules/@gltf-transform'));
     symlinkSync(installed, join(folder, 'node_modules/cagecast'));
     // property-graph is what @gltf-transform/core stands on.
-    for (const name of ['three', '@types/three', '@gltf-transform/core', 'property-graph']) symlinkSync(join(tools, name), join(folder, 'node_modules', name));
+    for (const name of ['three', '@types/three', '@gltf-transform/core', 'property-graph'])
+      symlinkSync(join(tools, name), join(folder, 'node_modules', name));
     writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
     writeFileSync(
       join(folder, 'program.ts'),
@@ -152,10 +188,28 @@ describe('the packed package', () => {
       void (() => cagecast({}));
       console.log(verdict !== undefined, cutTriangles > 0 && cut.triangles.length - indices.length / 3 === cutTriangles, applied.overlays.length, primitive.listSemantics().join());`,
     );
-    run(join(tools, 'esbuild/bin/esbuild'), ['program.ts', '--format=esm', '--outfile=program.js', '--log-level=warning'], folder);
-    assert.equal(run(process.execPath, ['--preserve-symlinks', '--preserve-symlinks-main', 'program.js'], folder).trim(), 'true true 1 POSITION,TEXCOORD_0,_NCZ');
+    run(
+      join(tools, 'esbuild/bin/esbuild'),
+      ['program.ts', '--format=esm', '--outfile=program.js', '--log-level=warning'],
+      folder,
+    );
+    assert.equal(
+      run(process.execPath, ['--preserve-symlinks', '--preserve-symlinks-main', 'program.js'], folder).trim(),
+      'true true 1 POSITION,TEXCOORD_0,_NCZ',
+    );
     // Without skipLibCheck the types of three would be checked as well, which is not ours to do.
-    const compilerOptions = { module: 'esnext', moduleResolution: 'bundler', target: 'es2022', lib: ['es2022', 'dom'], strict: true, exactOptionalPropertyTypes: true, noEmit: true, types: [], skipLibCheck: true, preserveSymlinks: true };
+    const compilerOptions = {
+      module: 'esnext',
+      moduleResolution: 'bundler',
+      target: 'es2022',
+      lib: ['es2022', 'dom'],
+      strict: true,
+      exactOptionalPropertyTypes: true,
+      noEmit: true,
+      types: [],
+      skipLibCheck: true,
+      preserveSymlinks: true,
+    };
     writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, files: ['program.ts'] }));
     run(process.execPath, [join(tools, 'typescript/bin/tsc'), '-p', 'tsconfig.json'], folder);
   });
@@ -163,7 +217,11 @@ describe('the packed package', () => {
   test('runs in Node', () => assert.equal(run(process.execPath, ['print.js']).trim(), answer));
 
   test('its other entries run in Node: slim, alone and with borders, and the worker', () => {
-    for (const [entry, text, expected] of [['slim', slimProgram, answer], ['cut', cutProgram, cutAnswer], ['worker', workerProgram, answer]] as const) {
+    for (const [entry, text, expected] of [
+      ['slim', slimProgram, answer],
+      ['cut', cutProgram, cutAnswer],
+      ['worker', workerProgram, answer],
+    ] as const) {
       writeFileSync(join(user, `${entry}.js`), `${text}; console.log(globalThis.answer);`);
       assert.equal(run(process.execPath, [`${entry}.js`]).trim(), expected, entry);
     }
@@ -182,7 +240,14 @@ describe('the packed package', () => {
 
   test('runs bundled by esbuild, for the browser and for Node', () => {
     for (const platform of ['browser', 'node']) {
-      run(join(tools, 'esbuild/bin/esbuild'), ['print.js', '--bundle', '--format=esm', `--platform=${platform}`, `--outfile=out-${platform}.js`, '--log-level=warning']);
+      run(join(tools, 'esbuild/bin/esbuild'), [
+        'print.js',
+        '--bundle',
+        '--format=esm',
+        `--platform=${platform}`,
+        `--outfile=out-${platform}.js`,
+        '--log-level=warning',
+      ]);
       assert.equal(run(process.execPath, [`out-${platform}.js`]).trim(), answer);
     }
   });
@@ -201,7 +266,22 @@ describe('the packed package', () => {
       const folder = join(user, `types-${name}`);
       mkdirSync(folder);
       writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
-      writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions: { ...compilerOptions, target: 'es2022', lib: ['es2022', 'dom'], strict: true, exactOptionalPropertyTypes: true, noEmit: true, types: [], skipLibCheck: false }, files: ['consumer.ts'] }));
+      writeFileSync(
+        join(folder, 'tsconfig.json'),
+        JSON.stringify({
+          compilerOptions: {
+            ...compilerOptions,
+            target: 'es2022',
+            lib: ['es2022', 'dom'],
+            strict: true,
+            exactOptionalPropertyTypes: true,
+            noEmit: true,
+            types: [],
+            skipLibCheck: false,
+          },
+          files: ['consumer.ts'],
+        }),
+      );
       writeFileSync(
         join(folder, 'consumer.ts'),
         `import { init, transfer, project, classify, Zone, CagecastError, type Code, type Mesh, type TransferResult, type Projection, type Classification, type SegmentStats, type Timings, type TransferOptions } from 'cagecast';
@@ -236,12 +316,17 @@ describe('the packed package', () => {
     writeFileSync(join(user, 'target.glb'), glbOf(target));
     writeFileSync(join(user, 'cage.glb'), glbOf(cage));
     const command = join(user, 'node_modules/.bin/cagecast');
-    assert.match(run(command, ['transfer', 'target.glb', '--cage', 'cage.glb', '-o', 'out.glb', '--report', 'r.json']), /wrote out\.glb/);
+    assert.match(
+      run(command, ['transfer', 'target.glb', '--cage', 'cage.glb', '-o', 'out.glb', '--report', 'r.json']),
+      /wrote out\.glb/,
+    );
     assert.ok(existsSync(join(user, 'out.glb')) && existsSync(join(user, 'r.json')));
     assert.match(run(command, ['inspect', 'target.glb', '--cage', 'cage.glb']), /: the cage fits/);
     const assets = process.env['CAGECAST_ASSETS'];
     // Compressed files need decoders, which must be aboard.
-    if (assets !== undefined) for (const name of readdirSync(join(assets, 'formats'))) run(command, ['transfer', join(assets, 'formats', name), '--cage', 'cage.glb']);
+    if (assets !== undefined)
+      for (const name of readdirSync(join(assets, 'formats')))
+        run(command, ['transfer', join(assets, 'formats', name), '--cage', 'cage.glb']);
   });
 });
 
@@ -253,25 +338,60 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
   const server = createServer((request, response) => {
     const path = join(pages, new URL(request.url ?? '/', 'http://localhost').pathname);
     if (!existsSync(path)) return response.writeHead(404).end();
-    response.writeHead(200, { 'content-type': types[extname(path)] ?? 'application/octet-stream', 'content-security-policy': policy }).end(readFileSync(path));
+    response
+      .writeHead(200, {
+        'content-type': types[extname(path)] ?? 'application/octet-stream',
+        'content-security-policy': policy,
+      })
+      .end(readFileSync(path));
   });
 
   before(async () => {
     mkdirSync(pages, { recursive: true });
     // As it is, through Vite, and in a worker.
-    run(join(tools, 'esbuild/bin/esbuild'), ['program.js', '--bundle', '--format=esm', '--outfile=pages/plain.js', '--log-level=warning']);
-    for (const [entry, text] of Object.entries({ main: program, slim: slimProgram, cut: cutProgram, worker: workerProgram })) {
+    run(join(tools, 'esbuild/bin/esbuild'), [
+      'program.js',
+      '--bundle',
+      '--format=esm',
+      '--outfile=pages/plain.js',
+      '--log-level=warning',
+    ]);
+    for (const [entry, text] of Object.entries({
+      main: program,
+      slim: slimProgram,
+      cut: cutProgram,
+      worker: workerProgram,
+    })) {
       const site = join(user, `site-${entry}`);
       mkdirSync(site);
       writeFileSync(join(site, 'index.html'), '<!doctype html><script type="module" src="/main.js"></script>');
       writeFileSync(join(site, 'main.js'), text);
       symlinkSync(join(user, 'node_modules'), join(site, 'node_modules'));
-      writeFileSync(join(site, 'vite.config.js'), "export default { build: { target: 'es2022', assetsInlineLimit: 0 }, worker: { format: 'es' } };");
-      run(process.execPath, [join(tools, 'vite/bin/vite.js'), 'build', '--logLevel', 'warn', '--outDir', join(pages, `vite-${entry}`), '--base', `/vite-${entry}/`], site);
+      writeFileSync(
+        join(site, 'vite.config.js'),
+        "export default { build: { target: 'es2022', assetsInlineLimit: 0 }, worker: { format: 'es' } };",
+      );
+      run(
+        process.execPath,
+        [
+          join(tools, 'vite/bin/vite.js'),
+          'build',
+          '--logLevel',
+          'warn',
+          '--outDir',
+          join(pages, `vite-${entry}`),
+          '--base',
+          `/vite-${entry}/`,
+        ],
+        site,
+      );
     }
     writeFileSync(join(pages, 'plain.html'), '<!doctype html><script type="module" src="/plain.js"></script>');
     writeFileSync(join(pages, 'worker.html'), '<!doctype html><script type="module" src="/start.js"></script>');
-    writeFileSync(join(pages, 'start.js'), "new Worker('/worker.js', { type: 'module' }).onmessage = ({ data }) => { globalThis.answer = data; };");
+    writeFileSync(
+      join(pages, 'start.js'),
+      "new Worker('/worker.js', { type: 'module' }).onmessage = ({ data }) => { globalThis.answer = data; };",
+    );
     writeFileSync(join(pages, 'worker.js'), "import '/plain.js'; postMessage(globalThis.answer);");
     await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
     const address = server.address();
@@ -283,15 +403,29 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
   test('every entry runs: bundled by esbuild, built by Vite, in a worker of the page and in its own', async () => {
     const browser = await launchChromium({ drawing: false });
     try {
-      for (const path of ['/plain.html', '/worker.html', '/vite-main/index.html', '/vite-slim/index.html', '/vite-cut/index.html', '/vite-worker/index.html']) {
+      for (const path of [
+        '/plain.html',
+        '/worker.html',
+        '/vite-main/index.html',
+        '/vite-slim/index.html',
+        '/vite-cut/index.html',
+        '/vite-worker/index.html',
+      ]) {
         const page = await browser.newPage();
         const faults: string[] = [];
         page.on('pageerror', (error) => faults.push(String(error)));
-        page.on('console', (message) => message.type() === 'error' && !/404/.test(message.text()) && faults.push(message.text()));
+        page.on(
+          'console',
+          (message) => message.type() === 'error' && !/404/.test(message.text()) && faults.push(message.text()),
+        );
         await page.goto(origin + path);
         // Playwright's own waiting evaluates strings in the page, which the policy forbids.
         let found: unknown;
-        for (const deadline = Date.now() + 60000; found === undefined && faults.length === 0 && Date.now() < deadline; await setTimeout(50)) {
+        for (
+          const deadline = Date.now() + 60000;
+          found === undefined && faults.length === 0 && Date.now() < deadline;
+          await setTimeout(50)
+        ) {
           found = await page.evaluate('globalThis.answer');
         }
         assert.deepEqual(faults, [], path);

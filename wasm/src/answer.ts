@@ -1,20 +1,36 @@
 import type { Answer } from './bindings.js';
 import { dropInstance } from './engine.js';
 import { CagecastError, coreCodes } from './error.js';
-import { count, type CheckedMesh } from './mesh.js';
-import { numberOf, ranges, type CheckedOptions } from './options.js';
+import { type CheckedMesh, count } from './mesh.js';
+import { type CheckedOptions, numberOf, ranges } from './options.js';
 
 /** Throws what the core reports, in words: function, argument, element, value and limit. */
-export function checkAnswer(fn: string, answer: Answer, cage: CheckedMesh | undefined, target: CheckedMesh | undefined, options?: CheckedOptions): void {
+export function checkAnswer(
+  fn: string,
+  answer: Answer,
+  cage: CheckedMesh | undefined,
+  target: CheckedMesh | undefined,
+  options?: CheckedOptions,
+): void {
   if (answer.code === 0) return;
   const code = coreCodes[answer.code - 1] ?? 'internal';
   if (code === 'outOfMemory') dropInstance();
   const name = answer.argument === 1 ? 'cage' : 'target';
   const { at } = answer;
-  throw new CagecastError(code, `${fn}: ${describe(code, at, name, name === 'cage' ? cage : target, options?.core)}`, at);
+  throw new CagecastError(
+    code,
+    `${fn}: ${describe(code, at, name, name === 'cage' ? cage : target, options?.core)}`,
+    at,
+  );
 }
 
-function describe(code: string, at: number, name: string, mesh: CheckedMesh | undefined, options: readonly number[] | undefined): string {
+function describe(
+  code: string,
+  at: number,
+  name: string,
+  mesh: CheckedMesh | undefined,
+  options: readonly number[] | undefined,
+): string {
   const range = (ranges as Record<string, (typeof ranges)[keyof typeof ranges]>)[code];
   if (range && options) return `options.${range[0]} = ${numberOf(options, range[0])} is not within ${range[1]}`;
   if (code === 'outOfMemory') return `not enough memory for this target${options ? ' and cage' : ''}`;

@@ -39,7 +39,16 @@ const presetArrays = { options: f64 };
 const classifyArrays = { zones: u8, cosmeticTriangles: u8, culledSegments: u8, margins: f64 };
 const begunArrays = { segmentStats: f64 };
 const splitArrays = { sources: u32, indices: u32, uvs: f32 };
-const cutArrays = { sources: u32, weights: f32, indices: u32, triangles: u32, uvs: f32, cornerUvs: f32, zones: u8, cosmeticTriangles: u8 };
+const cutArrays = {
+  sources: u32,
+  weights: f32,
+  indices: u32,
+  triangles: u32,
+  uvs: f32,
+  cornerUvs: f32,
+  zones: u8,
+  cosmeticTriangles: u8,
+};
 const projectedArrays = {
   uvs: f32,
   cornerUvs: f32,
@@ -114,7 +123,10 @@ export interface Bindings {
 
 /** Brings arrays into WebAssembly memory and out of it. What a call leaves there is freed when the next one begins. */
 export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
-  type View = { new (buffer: ArrayBuffer, at: number, length: number): { set(source: ArrayLike<number>): void }; BYTES_PER_ELEMENT: number };
+  type View = {
+    new (buffer: ArrayBuffer, at: number, length: number): { set(source: ArrayLike<number>): void };
+    BYTES_PER_ELEMENT: number;
+  };
 
   const put = (place: number, Type: View, source: ArrayLike<number>) => {
     if (source.length === 0) return;
@@ -142,7 +154,9 @@ export function bind(core: Glue, memory: WebAssembly.Memory): Bindings {
     if (code !== 0) return { code, argument, at } as AnswerOf<L>;
     const views = names.map((name, i) => layout[name]!(buffer, head[3 + 2 * i]!, head[4 + 2 * i]!));
     // What is new first: if there is no memory for it, nothing is written over.
-    const arrays = views.map((view, i) => (view instanceof Float64Array ? view : (reusable(into[names[i]!], view) ?? copyOf(view))));
+    const arrays = views.map((view, i) =>
+      view instanceof Float64Array ? view : (reusable(into[names[i]!], view) ?? copyOf(view)),
+    );
     const answer: Record<string, unknown> = { code, argument, at };
     arrays.forEach((array, i) => {
       if (array === into[names[i]!]) array.set(views[i]!);

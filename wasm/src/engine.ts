@@ -1,6 +1,6 @@
 import createModule from '#glue';
 import { compile } from '#wasm';
-import { bind, type Bindings, type Glue } from './bindings.js';
+import { type Bindings, bind, type Glue } from './bindings.js';
 import { CagecastError } from './error.js';
 
 let starting: Promise<void> | undefined;
@@ -31,7 +31,8 @@ function instantiate(module: WebAssembly.Module): Bindings {
     }),
   ).then(undefined, () => {});
   if (failure !== undefined) throw failure;
-  if (glue._room === undefined || memory === undefined) throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
+  if (glue._room === undefined || memory === undefined)
+    throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
   return bind(glue as Glue, memory);
 }
 
@@ -44,7 +45,9 @@ export function init(): Promise<void> {
   starting ??= start().catch((cause: unknown) => {
     starting = undefined;
     if (cause instanceof CagecastError) throw cause;
-    throw new CagecastError('unsupported', `init: this host cannot run the WebAssembly module (${String(cause)})`, 0, { cause });
+    throw new CagecastError('unsupported', `init: this host cannot run the WebAssembly module (${String(cause)})`, 0, {
+      cause,
+    });
   });
   return starting;
 }

@@ -72,7 +72,8 @@ export class CagecastError extends Error {
 /** Names a value in a message: what it is, and how much of it. */
 export function show(value: unknown): string {
   if (typeof value === 'string') return JSON.stringify(value.length > 40 ? `${value.slice(0, 40)}…` : value);
-  if (value === null || value === undefined || typeof value === 'number' || typeof value === 'boolean') return String(value);
+  if (value === null || value === undefined || typeof value === 'number' || typeof value === 'boolean')
+    return String(value);
   if (typeof value === 'object') return `of type ${value.constructor?.name ?? 'object'}`;
   return `of type ${typeof value}`;
 }

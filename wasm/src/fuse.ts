@@ -24,7 +24,12 @@ export function fuse(bytes: Uint8Array<ArrayBuffer>): Uint8Array<ArrayBuffer> {
   let end = 0;
   const places = sites.map((step) => (end += step));
   // A file of another build, or something a server sends in its place: as it is, it may work, or the engine says what it is.
-  if (!places.every((at) => bytes[at] === 0xfd && (bytes[at + 1] === product || bytes[at + 1] === sum) && bytes[at + 2] === 1)) return bytes;
+  if (
+    !places.every(
+      (at) => bytes[at] === 0xfd && (bytes[at + 1] === product || bytes[at + 1] === sum) && bytes[at + 2] === 1,
+    )
+  )
+    return bytes;
   for (const at of places) bytes.set(bytes[at + 1] === product ? nothing : fused, at);
   return bytes;
 }

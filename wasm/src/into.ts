@@ -41,7 +41,8 @@ const namesOf = {
 export function checkInto(fn: keyof typeof namesOf, into: unknown): Reusable {
   const arrays: Reusable = {};
   if (into === undefined) return arrays;
-  const wrong = (text: string, cause?: unknown) => new CagecastError('badOption', `${fn}: options.into${text}; give an earlier answer of ${fn}()`, 0, { cause });
+  const wrong = (text: string, cause?: unknown) =>
+    new CagecastError('badOption', `${fn}: options.into${text}; give an earlier answer of ${fn}()`, 0, { cause });
   if (typeof into !== 'object' || into === null) throw wrong(` is ${show(into)}`);
   const buffers: ArrayBufferLike[] = [];
   const own: readonly string[] = namesOf[fn];
@@ -66,4 +67,5 @@ export function checkInto(fn: keyof typeof namesOf, into: unknown): Reusable {
 }
 
 /** Hands an answer over: in an earlier one, if there is one. */
-export const handOver = <Answer extends object>(answer: Answer, into: Answer | undefined): Answer => (into ? Object.assign(into, answer) : answer);
+export const handOver = <Answer extends object>(answer: Answer, into: Answer | undefined): Answer =>
+  into ? Object.assign(into, answer) : answer;

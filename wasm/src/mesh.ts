@@ -39,10 +39,14 @@ export function checkMesh(fn: string, name: 'cage' | 'target', mesh: unknown): C
     throw wrong('indices', indices, 'Uint32Array, Uint16Array or Uint8Array');
   }
   if (uvs !== undefined && uvs !== null && !(uvs instanceof Float32Array)) throw wrong('uvs', uvs, 'Float32Array');
-  if (groups !== undefined && groups !== null && !(groups instanceof Uint32Array)) throw wrong('groups', groups, 'Uint32Array');
+  if (groups !== undefined && groups !== null && !(groups instanceof Uint32Array))
+    throw wrong('groups', groups, 'Uint32Array');
   // An empty array of UVs or groups with vertices there is a mistake of the caller that the core would take for "none".
   if (groups?.length === 0 && positions.length > 0) {
-    throw new CagecastError('groupCountMismatch', `${fn}: ${name}.groups has 0 entries, not 1 for each of ${count(positions.length / 3, 'vertex')}`);
+    throw new CagecastError(
+      'groupCountMismatch',
+      `${fn}: ${name}.groups has 0 entries, not 1 for each of ${count(positions.length / 3, 'vertex')}`,
+    );
   }
   return { positions, indices, uvs: uvs ?? noUvs, groups: groups ?? noGroups };
 }

@@ -92,7 +92,9 @@ export interface TransferOptions extends ProjectOptions, ClassifyOptions {
 }
 
 /** Everything that a preset stands for. */
-export type PresetOptions = { [Name in Exclude<keyof TransferOptions, 'preset' | 'locks'>]-?: NonNullable<TransferOptions[Name]> };
+export type PresetOptions = {
+  [Name in Exclude<keyof TransferOptions, 'preset' | 'locks'>]-?: NonNullable<TransferOptions[Name]>;
+};
 
 /** Options that were checked. */
 export interface CheckedOptions {
@@ -179,7 +181,11 @@ const presetNumbers: number[][] = [];
 /** What a preset stands for, as the core says. @returns an array of the caller's own. */
 function numbersOf(fn: string, name: string, preset: unknown): number[] {
   const number = presets.indexOf(preset as Preset);
-  if (number < 0) throw new CagecastError('badOption', `${fn}: ${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`);
+  if (number < 0)
+    throw new CagecastError(
+      'badOption',
+      `${fn}: ${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`,
+    );
   return (presetNumbers[number] ??= callCore(fn, (core) => Array.from(core.presetOptions(number)))).slice();
 }
 
@@ -188,7 +194,11 @@ function numbersOf(fn: string, name: string, preset: unknown): number[] {
  * @param preset  What holds if the options name none.
  * @throws {CagecastError} `badOption`, and `badThreshold` and its like for what is no number
  */
-export function checkOptions(fn: keyof typeof namesOf, options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
+export function checkOptions(
+  fn: keyof typeof namesOf,
+  options: unknown = {},
+  preset: Preset = 'default',
+): CheckedOptions {
   if (typeof options !== 'object' || options === null) {
     throw new CagecastError('badOption', `${fn}: options is ${show(options)}, not an object`);
   }
@@ -208,7 +218,8 @@ export function checkOptions(fn: keyof typeof namesOf, options: unknown = {}, pr
 }
 
 function checkOption(fn: string, name: string, kind: Kind, value: unknown): number {
-  const wrong = (code: 'badOption' | keyof typeof ranges, is: string) => new CagecastError(code, `${fn}: options.${name} = ${show(value)} is ${is}`);
+  const wrong = (code: 'badOption' | keyof typeof ranges, is: string) =>
+    new CagecastError(code, `${fn}: options.${name} = ${show(value)} is ${is}`);
   if (typeof kind === 'object') {
     const number = kind.indexOf(value as string);
     if (number < 0) throw wrong('badOption', `unknown; there are: ${kind.map(show).join(', ')}`);
@@ -229,10 +240,12 @@ function checkLocks(fn: string, locks: unknown = {}): Locks {
   for (const [field, numbers] of Object.entries(locks)) {
     if (field !== 'segments' && field !== 'groups') throw wrong(`.${field} is unknown; there are: segments, groups`);
     if (numbers === undefined) continue;
-    if (typeof numbers !== 'object' || numbers === null || numbers instanceof Map) throw wrong(`.${field} is ${show(numbers)}, not an object of numbers and locks`);
+    if (typeof numbers !== 'object' || numbers === null || numbers instanceof Map)
+      throw wrong(`.${field} is ${show(numbers)}, not an object of numbers and locks`);
     for (const [number, lock] of Object.entries(numbers)) {
       if (!/^(0|[1-9][0-9]*)$/.test(number)) throw wrong(`.${field} has the entry ${show(number)}, which is no number`);
-      if (!lockNames.includes(lock as Lock)) throw wrong(`.${field}[${number}] = ${show(lock)} is unknown; there are: ${lockNames.map(show).join(', ')}`);
+      if (!lockNames.includes(lock as Lock))
+        throw wrong(`.${field}[${number}] = ${show(lock)} is unknown; there are: ${lockNames.map(show).join(', ')}`);
     }
   }
   return locks;
@@ -242,16 +255,28 @@ function checkLocks(fn: string, locks: unknown = {}): Locks {
  * The locks of all segments, in the core's numbers; none if nothing is locked.
  * @throws {CagecastError} `badOption` for a lock of something that is not there
  */
-export function locksOf(fn: string, { segments = {}, groups = {} }: Locks, stats: readonly { group: number }[]): Uint8Array {
+export function locksOf(
+  fn: string,
+  { segments = {}, groups = {} }: Locks,
+  stats: readonly { group: number }[],
+): Uint8Array {
   const [bySegment, byGroup] = [Object.entries(segments), Object.entries(groups)];
   if (bySegment.length === 0 && byGroup.length === 0) return new Uint8Array(0);
   const lockOf = new Map(byGroup.map(([group, lock]) => [group, lockNames.indexOf(lock)]));
   const out = Uint8Array.from(stats, ({ group }) => lockOf.get(String(group)) ?? 0);
   const known = new Set(stats.map(({ group }) => String(group)));
   const stray = byGroup.find(([group]) => !known.has(group));
-  if (stray) throw new CagecastError('badOption', `${fn}: options.locks.groups[${stray[0]}] = ${show(stray[1])}, but no segment is of that group`);
+  if (stray)
+    throw new CagecastError(
+      'badOption',
+      `${fn}: options.locks.groups[${stray[0]}] = ${show(stray[1])}, but no segment is of that group`,
+    );
   for (const [segment, lock] of bySegment) {
-    if (!(Number(segment) in out)) throw new CagecastError('badOption', `${fn}: options.locks.segments[${segment}] = ${show(lock)}, but there are ${stats.length} segments`);
+    if (!(Number(segment) in out))
+      throw new CagecastError(
+        'badOption',
+        `${fn}: options.locks.segments[${segment}] = ${show(lock)}, but there are ${stats.length} segments`,
+      );
     out[Number(segment)] = lockNames.indexOf(lock);
   }
   return out;

@@ -14,7 +14,13 @@ const same = 1e-3;
  * @param stored     From the mesh as it is stored to the scene, in the bind pose, as far as that is known without the joints.
  * @return A matrix to the scene: `stored` itself, if that will do.
  */
-export function skinMatrix<M extends ArrayLike<number>>(joints: readonly M[], used: ReadonlySet<number>, positions: ArrayLike<number>, isFloat: boolean, stored: M): M {
+export function skinMatrix<M extends ArrayLike<number>>(
+  joints: readonly M[],
+  used: ReadonlySet<number>,
+  positions: ArrayLike<number>,
+  isFloat: boolean,
+  stored: M,
+): M {
   const [first, ...others] = joints.filter((_, joint) => used.has(joint));
   if (first === undefined) return stored;
   let reach = 0;
@@ -43,6 +49,18 @@ export function usedJoints(joints: ArrayLike<number>, weights: ArrayLike<number>
 
 /** The factor by which a matrix changes volumes. */
 function volume(m: ArrayLike<number>): number {
-  const [a, b, c, , d, e, f, , g, h, i] = Array.from(m) as [number, number, number, number, number, number, number, number, number, number, number];
+  const [a, b, c, , d, e, f, , g, h, i] = Array.from(m) as [
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+  ];
   return a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
 }

@@ -29,7 +29,8 @@ export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs'
   const { firstVertex, vertexCount, firstTriangle, triangleCount } = part;
   const localIndices = Uint32Array.from(part.localIndices);
   const uvs = result.uvs.slice(2 * firstVertex, 2 * (firstVertex + vertexCount));
-  if (result.cornerUvs.length === 0) return { uvs, sources: new Uint32Array(vertexCount).map((_, v) => v), indices: localIndices, copies: 0 };
+  if (result.cornerUvs.length === 0)
+    return { uvs, sources: new Uint32Array(vertexCount).map((_, v) => v), indices: localIndices, copies: 0 };
 
   const cornerUvs = result.cornerUvs.slice(6 * firstTriangle, 6 * (firstTriangle + triangleCount));
   if (part.turned) {
@@ -55,15 +56,22 @@ export function splitPart(part: PartGeometry, result: Pick<TransferResult, 'uvs'
   });
   return {
     uvs: all,
-    sources: new Uint32Array(vertexCount + added.length).map((_, v) => (v < vertexCount ? v : split.sources[added[v - vertexCount]!]!)),
+    sources: new Uint32Array(vertexCount + added.length).map((_, v) =>
+      v < vertexCount ? v : split.sources[added[v - vertexCount]!]!,
+    ),
     indices: split.indices.map((n) => place[n]!),
     copies: added.length,
   };
 }
 
 /** Elements of `size` numbers each, in the order of `sources`. */
-export function gather<A extends Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array>(values: A, size: number, sources: Uint32Array): A {
+export function gather<A extends Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array>(
+  values: A,
+  size: number,
+  sources: Uint32Array,
+): A {
   const out = new (values.constructor as new (length: number) => A)(size * sources.length);
-  for (let v = 0; v < sources.length; ++v) for (let k = 0; k < size; ++k) out[size * v + k] = values[size * sources[v]! + k]!;
+  for (let v = 0; v < sources.length; ++v)
+    for (let k = 0; k < size; ++k) out[size * v + k] = values[size * sources[v]! + k]!;
   return out;
 }

@@ -29,11 +29,18 @@ export interface SplitVertices {
  */
 export function splitVertices(target: Mesh, cornerUvs: Float32Array): SplitVertices {
   const mesh = checkMesh('splitVertices', 'target', target);
-  if (!(cornerUvs instanceof Float32Array)) throw new CagecastError('badArgument', `splitVertices: cornerUvs is ${show(cornerUvs)}, not a Float32Array`);
+  if (!(cornerUvs instanceof Float32Array))
+    throw new CagecastError('badArgument', `splitVertices: cornerUvs is ${show(cornerUvs)}, not a Float32Array`);
   if (cornerUvs.length !== 2 * mesh.indices.length) {
-    throw new CagecastError('cornerUvCountMismatch', `splitVertices: cornerUvs has ${cornerUvs.length} numbers, not 2 for each of ${mesh.indices.length} corners`, cornerUvs.length);
+    throw new CagecastError(
+      'cornerUvCountMismatch',
+      `splitVertices: cornerUvs has ${cornerUvs.length} numbers, not 2 for each of ${mesh.indices.length} corners`,
+      cornerUvs.length,
+    );
   }
-  const answer = callCore('splitVertices', (core) => core.splitVertices(mesh.indices, cornerUvs, Math.floor(mesh.positions.length / 3)));
+  const answer = callCore('splitVertices', (core) =>
+    core.splitVertices(mesh.indices, cornerUvs, Math.floor(mesh.positions.length / 3)),
+  );
   checkAnswer('splitVertices', answer, undefined, mesh);
   const { sources, indices, uvs } = answer;
   return { sources, indices, uvs };

@@ -4,7 +4,14 @@ import { callCore } from './engine.js';
 import { CagecastError, show } from './error.js';
 import { checkInto, handOver, type Into } from './into.js';
 import { checkMesh, count, type Mesh } from './mesh.js';
-import { checkOptions, locksOf, type ClassifyOptions, type Preset, type ProjectOptions, type TransferOptions } from './options.js';
+import {
+  type ClassifyOptions,
+  checkOptions,
+  locksOf,
+  type Preset,
+  type ProjectOptions,
+  type TransferOptions,
+} from './options.js';
 
 /** CPU time of each step, in milliseconds. */
 export interface Timings {
@@ -162,7 +169,9 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & I
     checkAnswer('transfer', begun, cageMesh, targetMesh, checked);
     locks = locksOf('transfer', checked.locks, segmentStats(begun.segmentStats));
   }
-  const answer = callCore('transfer', (core) => (locks ? core.endTransfer(locks, arrays) : core.transfer(cageMesh, targetMesh, checked.core, arrays)));
+  const answer = callCore('transfer', (core) =>
+    locks ? core.endTransfer(locks, arrays) : core.transfer(cageMesh, targetMesh, checked.core, arrays),
+  );
   checkAnswer('transfer', answer, cageMesh, targetMesh, checked);
   return handOver({ ...projected(answer, answer), cosmeticTriangles: answer.cosmeticTriangles }, into);
 }
@@ -181,7 +190,10 @@ export function project(cage: Mesh, target: Mesh, options?: ProjectOptions & Int
   const answer = callCore('project', (core) => core.project(cageMesh, targetMesh, checked.core, arrays));
   checkAnswer('project', answer, cageMesh, targetMesh, checked);
   const { restores, indices } = answer;
-  return handOver({ ...projected(answer), preset: checked.preset, restores, holeShares: holeShares(answer.holeShares), indices }, into);
+  return handOver(
+    { ...projected(answer), preset: checked.preset, restores, holeShares: holeShares(answer.holeShares), indices },
+    into,
+  );
 }
 
 /**
@@ -209,12 +221,37 @@ type Decided = Pick<ClassifyAnswer, 'culledSegments' | 'margins'>;
 
 function projected(answer: ProjectedAnswer, decided?: Decided): Projected {
   const { uvs, cornerUvs, zones, triangles, distances, segments } = answer;
-  return { uvs, cornerUvs, zones, triangles, distances, segments, segmentStats: segmentStats(answer.segmentStats, decided), ...measured(answer.numbers) };
+  return {
+    uvs,
+    cornerUvs,
+    zones,
+    triangles,
+    distances,
+    segments,
+    segmentStats: segmentStats(answer.segmentStats, decided),
+    ...measured(answer.numbers),
+  };
 }
 
 function measured(numbers: Float64Array): Pick<Projected, 'timings' | 'peakBytes'> {
-  const [weld = 0, build = 0, project = 0, occluded = 0, covered = 0, segments = 0, secondLook = 0, holes = 0, seams = 0, classify = 0, total = 0, peakBytes = 0] = numbers;
-  return { timings: { weld, build, project, occluded, covered, segments, secondLook, holes, seams, classify, total }, peakBytes };
+  const [
+    weld = 0,
+    build = 0,
+    project = 0,
+    occluded = 0,
+    covered = 0,
+    segments = 0,
+    secondLook = 0,
+    holes = 0,
+    seams = 0,
+    classify = 0,
+    total = 0,
+    peakBytes = 0,
+  ] = numbers;
+  return {
+    timings: { weld, build, project, occluded, covered, segments, secondLook, holes, seams, classify, total },
+    peakBytes,
+  };
 }
 
 function segmentStats(numbers: Float64Array, decided?: Decided): SegmentStats[] {
@@ -242,7 +279,13 @@ function segmentStats(numbers: Float64Array, decided?: Decided): SegmentStats[] 
 function holeShares(numbers: Float64Array): HoleShare[] {
   const shares: HoleShare[] = [];
   for (let i = 0; i < numbers.length; i += shareStride) {
-    shares.push({ hole: numbers[i]!, segment: numbers[i + 1]!, exposedArea: numbers[i + 2]!, uncoveredArea: numbers[i + 3]!, hiddenArea: numbers[i + 4]! });
+    shares.push({
+      hole: numbers[i]!,
+      segment: numbers[i + 1]!,
+      exposedArea: numbers[i + 2]!,
+      uncoveredArea: numbers[i + 3]!,
+      hiddenArea: numbers[i + 4]!,
+    });
   }
   return shares;
 }
@@ -252,7 +295,8 @@ function holeShares(numbers: Float64Array): HoleShare[] {
  * @returns it as the core takes it.
  */
 function checkProjection(projection: Projection): CoreProjection {
-  const wrong = (text: string, at = 0) => new CagecastError('badArgument', `classify: projection${text}; pass what project() returned`, at);
+  const wrong = (text: string, at = 0) =>
+    new CagecastError('badArgument', `classify: projection${text}; pass what project() returned`, at);
   if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
   const { zones, segments, segmentStats, restores, holeShares, indices } = projection;
   if (!(zones instanceof Uint8Array)) throw wrong(`.zones is ${show(zones)}, not a Uint8Array`);
@@ -262,7 +306,8 @@ function checkProjection(projection: Projection): CoreProjection {
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
   if (!Array.isArray(holeShares)) throw wrong(`.holeShares is ${show(holeShares)}, not an array`);
   if (zones.length !== segments.length) throw wrong(` has ${zones.length} zones but ${segments.length} segments`);
-  if (restores.length !== 0 && restores.length !== zones.length) throw wrong(` has ${zones.length} zones but ${restores.length} restores`);
+  if (restores.length !== 0 && restores.length !== zones.length)
+    throw wrong(` has ${zones.length} zones but ${restores.length} restores`);
   if (indices.length % 3 !== 0) throw wrong(`.indices has ${indices.length} entries, not 3 per triangle`);
   const isSegment = (s: unknown) => Number.isInteger(s) && (s as number) >= 0 && (s as number) < segmentStats.length;
 
@@ -270,7 +315,8 @@ function checkProjection(projection: Projection): CoreProjection {
   segmentStats.forEach((segment, s) => {
     const { points, area, exposedArea, coveredArea, sunkArea, group, copyOf } = segment ?? {};
     const row = [points, area, exposedArea, coveredArea, sunkArea, group, copyOf];
-    if (!row.every(Number.isFinite) || !isSegment(copyOf)) throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
+    if (!row.every(Number.isFinite) || !isSegment(copyOf))
+      throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
     stats.set(row, s * statsStride);
   });
   const shares = new Float64Array(holeShares.length * shareStride);
@@ -279,15 +325,25 @@ function checkProjection(projection: Projection): CoreProjection {
     const { hole, segment, exposedArea, uncoveredArea, hiddenArea } = share ?? {};
     const areas = [exposedArea, uncoveredArea, hiddenArea];
     // Holes are numbered and in order; more than there are vertices would only ask for memory.
-    if (!Number.isInteger(hole) || hole < holes - 1 || hole > 2 ** 28 || !isSegment(segment) || !areas.every(Number.isFinite)) {
-      throw wrong(`.holeShares[${i}] is not { hole, segment, exposedArea, uncoveredArea, hiddenArea } in the order of holes`, i);
+    if (
+      !Number.isInteger(hole) ||
+      hole < holes - 1 ||
+      hole > 2 ** 28 ||
+      !isSegment(segment) ||
+      !areas.every(Number.isFinite)
+    ) {
+      throw wrong(
+        `.holeShares[${i}] is not { hole, segment, exposedArea, uncoveredArea, hiddenArea } in the order of holes`,
+        i,
+      );
     }
     holes = hole + 1;
     shares.set([hole, segment, ...areas], i * shareStride);
   });
 
   const outOfRange = (name: string, array: Uint32Array, limit: number, what: string) => {
-    for (let i = 0; i < array.length; ++i) if (array[i]! >= limit) throw wrong(`.${name}[${i}] = ${array[i]} is out of range (${what})`, i);
+    for (let i = 0; i < array.length; ++i)
+      if (array[i]! >= limit) throw wrong(`.${name}[${i}] = ${array[i]} is out of range (${what})`, i);
   };
   outOfRange('segments', segments, segmentStats.length, `${segmentStats.length} segments`);
   outOfRange('restores', restores, 2 + holes, `${holes} holes`);

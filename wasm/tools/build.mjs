@@ -4,7 +4,19 @@
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { chmodSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, realpathSync, renameSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import {
+  chmodSync,
+  cpSync,
+  existsSync,
+  mkdirSync,
+  readdirSync,
+  readFileSync,
+  realpathSync,
+  renameSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { delimiter, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
@@ -15,7 +27,8 @@ const at = (...parts) => join(root, ...parts);
 
 const { values } = parseArgs({ options: { preset: { type: 'string', default: 'wasm' } } });
 const { preset } = values;
-if (preset !== 'wasm' && preset !== 'wasm-scalar') fail(`--preset ${preset} is unknown; there are wasm and wasm-scalar`);
+if (preset !== 'wasm' && preset !== 'wasm-scalar')
+  fail(`--preset ${preset} is unknown; there are wasm and wasm-scalar`);
 
 const shipped = preset === 'wasm';
 const out = shipped ? at('dist') : at('build', preset, 'package');
@@ -28,7 +41,10 @@ const lazy = [
   [/^\.\/borders\.js$/, './three-borders.js'],
 ];
 
-const hash = hashOf(['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'], preset);
+const hash = hashOf(
+  ['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'],
+  preset,
+);
 if (existsSync(stamp) && readFileSync(stamp, 'utf8') === hash && existsSync(join(out, 'index.js'))) {
   linkCommand();
   process.exit(0);
@@ -58,19 +74,32 @@ function buildWasm() {
   run('cmake', ['--build', '--preset', preset], env);
   // Binaryen comes with Emscripten: of emsdk in a folder beside it.
   const folders = [join(emscripten, '../bin'), ...(process.env.PATH ?? '').split(delimiter)];
-  const tool = (name) => folders.map((folder) => join(folder, name)).find((file) => existsSync(file)) ??
+  const tool = (name) =>
+    folders.map((folder) => join(folder, name)).find((file) => existsSync(file)) ??
     fail(`${name} of Binaryen is missing; Debian: apt install binaryen`);
   mkdirSync(at('build', preset, 'wasm/plain'), { recursive: true });
-  for (const module of ['cagecast', 'cagecast-borders']) takeApart(at('build', preset, `wasm/${module}.wasm`), tool, at('build', preset, `wasm/plain/${module}`));
+  for (const module of ['cagecast', 'cagecast-borders'])
+    takeApart(at('build', preset, `wasm/${module}.wasm`), tool, at('build', preset, `wasm/plain/${module}`));
 }
 
 /** The folder that holds Emscripten's CMake toolchain: of emsdk where its environment is set, else of the emcc in PATH. */
 function findEmscripten() {
-  const folders = [process.env.CAGECAST_EMSCRIPTEN, process.env.EMSDK && join(process.env.EMSDK, 'upstream/emscripten')];
-  const emcc = (process.env.PATH ?? '').split(delimiter).map((folder) => join(folder, 'emcc')).find((file) => existsSync(file));
+  const folders = [
+    process.env.CAGECAST_EMSCRIPTEN,
+    process.env.EMSDK && join(process.env.EMSDK, 'upstream/emscripten'),
+  ];
+  const emcc = (process.env.PATH ?? '')
+    .split(delimiter)
+    .map((folder) => join(folder, 'emcc'))
+    .find((file) => existsSync(file));
   if (emcc) folders.push(dirname(realpathSync(emcc)));
   const found = folders.find((folder) => folder && existsSync(join(folder, 'cmake/Modules/Platform/Emscripten.cmake')));
-  return found ?? fail('Emscripten is missing: emcc is not in PATH. Debian: apt install emscripten; elsewhere: https://emscripten.org (emsdk)');
+  return (
+    found ??
+    fail(
+      'Emscripten is missing: emcc is not in PATH. Debian: apt install emscripten; elsewhere: https://emscripten.org (emsdk)',
+    )
+  );
 }
 
 async function buildPackage() {
@@ -120,8 +149,15 @@ async function buildPackage() {
         plugins: [wasmModules('wasm-file.ts', modules)],
       });
     await beside('index.ts', 'slim.js', 'neutral', undefined, eager);
-    await beside('borders/index.ts', 'slim-borders.js', 'neutral', { module: 'cagecast-borders', index: './slim.js', errors: true });
-    for (const [name, file] of Object.entries({ 'read-wasm': 'cagecast.wasm', 'read-borders-wasm': 'cagecast-borders.wasm' })) {
+    await beside('borders/index.ts', 'slim-borders.js', 'neutral', {
+      module: 'cagecast-borders',
+      index: './slim.js',
+      errors: true,
+    });
+    for (const [name, file] of Object.entries({
+      'read-wasm': 'cagecast.wasm',
+      'read-borders-wasm': 'cagecast-borders.wasm',
+    })) {
       const more = { define: { ...common.define, CAGECAST_WASM: JSON.stringify(`./${file}`) } };
       await beside('read-wasm.ts', `${name}.js`, 'neutral', {}, more);
       await beside('read-wasm-node.ts', `${name}-node.js`, 'node', {}, more);
@@ -158,7 +194,13 @@ async function buildPackage() {
       external: ['./borders.js'],
       plugins: [wasmModules('wasm-inline.ts', { borders: true })],
     });
-    run(process.execPath, [at('node_modules/typescript/bin/tsc'), '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
+    run(process.execPath, [
+      at('node_modules/typescript/bin/tsc'),
+      '-p',
+      at('wasm/tsconfig.types.json'),
+      '--outDir',
+      fresh,
+    ]);
   }
   rmSync(out, { recursive: true, force: true });
   renameSync(fresh, out);
@@ -183,9 +225,13 @@ async function buildPackage() {
       setup(build) {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
         build.onResolve({ filter: /^#read-wasm$/ }, () => ({ path: reader, external: true }));
-        for (const [path, file] of borders ? lazy : []) build.onResolve({ filter: path }, () => ({ path: file, external: true }));
+        for (const [path, file] of borders ? lazy : [])
+          build.onResolve({ filter: path }, () => ({ path: file, external: true }));
         const own = at('wasm/src/borders/error.ts');
-        if (errors) build.onResolve({ filter: /^\.\.?\/error\.js$/ }, ({ importer }) => (importer === own ? undefined : { path: own }));
+        if (errors)
+          build.onResolve({ filter: /^\.\.?\/error\.js$/ }, ({ importer }) =>
+            importer === own ? undefined : { path: own },
+          );
         if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
         build.onLoad({ filter: /cagecast(-borders)?\.wasm$/ }, ({ path }) =>
           wasm === 'wasm-packed.ts'

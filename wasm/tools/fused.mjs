@@ -8,7 +8,14 @@ const fused = /\(f32x4\.relaxed_(?:fma|madd)\b/g;
 /** Whatever else "relaxed SIMD" has, by all names: not every engine knows it. */
 const relaxed = /\([a-z]\d+x\d+\.(?:relaxed_|laneselect|dot_i8x16)\w*/;
 /** What a module needs besides. */
-const features = ['--mvp-features', '--enable-simd', '--enable-nontrapping-float-to-int', '--enable-sign-ext', '--enable-mutable-globals', '--enable-bulk-memory'];
+const features = [
+  '--mvp-features',
+  '--enable-simd',
+  '--enable-nontrapping-float-to-int',
+  '--enable-sign-ext',
+  '--enable-mutable-globals',
+  '--enable-bulk-memory',
+];
 
 /**
  * Takes all fused multiply-adds of a module apart into what every engine knows: a product and a sum, which lie where
@@ -35,7 +42,9 @@ export function takeApart(module, tool, out) {
   }
   const expected = 2 * (text.match(fused)?.length ?? 0);
   if (plain.length !== others.length || sites.length !== expected) {
-    throw new Error(`${module}: ${sites.length} products and sums in ${plain.length} bytes, instead of ${expected} in ${others.length}`);
+    throw new Error(
+      `${module}: ${sites.length} products and sums in ${plain.length} bytes, instead of ${expected} in ${others.length}`,
+    );
   }
   writeFileSync(`${out}.json`, JSON.stringify(sites.map((site, i) => site - (sites[i - 1] ?? 0))));
 }

@@ -12,7 +12,8 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 const kOldestNode = 20;
 
 const command = (name) => () => spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
-const header = (path) => () => ['/usr/include', '/usr/local/include', '/opt/homebrew/include'].some((folder) => existsSync(`${folder}/${path}`));
+const header = (path) => () =>
+  ['/usr/include', '/usr/local/include', '/opt/homebrew/include'].some((folder) => existsSync(`${folder}/${path}`));
 
 /** What is needed beyond Node: how to see that it is there, and the Debian package that brings it. */
 const kNeeds = {
@@ -32,7 +33,17 @@ const kNeeds = {
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev'];
 // The last three count instructions, which a test holds against a budget.
-const kTests = [...kPage, 'g++', 'libtinygltf-dev', 'nlohmann-json3-dev', 'catch2', 'chromium', 'valgrind', 'qemu-user', 'g++-aarch64-linux-gnu'];
+const kTests = [
+  ...kPage,
+  'g++',
+  'libtinygltf-dev',
+  'nlohmann-json3-dev',
+  'catch2',
+  'chromium',
+  'valgrind',
+  'qemu-user',
+  'g++-aarch64-linux-gnu',
+];
 const kPurposes = {
   assets: [],
   start: kPage,
@@ -54,7 +65,9 @@ function installSystemPackages(names) {
   const list = missing.map((name) => `  ${kNeeds[name].what}  (Debian: ${name})`).join('\n');
   const asRoot = process.getuid?.() === 0 ? [] : command('sudo')() ? ['sudo'] : null;
   if (!command('apt-get')() || asRoot === null) {
-    fail(`Cagecast needs, and this machine lacks:\n${list}\nPlease install them (apt-get, which would do it, ${asRoot === null ? 'needs root or sudo' : 'is not here'}), then run this again.`);
+    fail(
+      `Cagecast needs, and this machine lacks:\n${list}\nPlease install them (apt-get, which would do it, ${asRoot === null ? 'needs root or sudo' : 'is not here'}), then run this again.`,
+    );
   }
   console.log(`Installing:\n${list}`);
   const apt = (...args) => {
@@ -68,20 +81,29 @@ function installSystemPackages(names) {
   if (still.length > 0) fail(`Installed, but still not found: ${still.map((name) => kNeeds[name].what).join(', ')}`);
   // Emscripten brings Debian's own Node along, which replaces one that was put into /usr/bin by hand.
   const node = spawnSync('node', ['--version'], { encoding: 'utf8' }).stdout?.trim() ?? 'none';
-  if (!isNewEnough(node)) fail(`The node in your PATH is now ${node}, from a Debian package; Cagecast needs ${kOldestNode} or newer. Put yours before it, in /usr/local/bin say, and run this again.`);
+  if (!isNewEnough(node))
+    fail(
+      `The node in your PATH is now ${node}, from a Debian package; Cagecast needs ${kOldestNode} or newer. Put yours before it, in /usr/local/bin say, and run this again.`,
+    );
 }
 
 function installNpmPackages() {
-  const lock = createHash('sha256').update(readFileSync(`${root}package-lock.json`)).digest('hex');
+  const lock = createHash('sha256')
+    .update(readFileSync(`${root}package-lock.json`))
+    .digest('hex');
   const stamp = `${root}node_modules/.installed-lock`;
   if (existsSync(stamp) && readFileSync(stamp, 'utf8') === lock) return;
   console.log('Installing npm packages…');
-  execFileSync('npm', ['ci', '--no-audit', '--no-fund', '--loglevel=error'], { cwd: root, stdio: ['ignore', 'inherit', 'inherit'] });
+  execFileSync('npm', ['ci', '--no-audit', '--no-fund', '--loglevel=error'], {
+    cwd: root,
+    stdio: ['ignore', 'inherit', 'inherit'],
+  });
   writeFileSync(stamp, lock);
 }
 
 const purpose = process.argv[2];
 if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
-if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kOldestNode} or newer; this is ${process.versions.node}.`);
+if (!isNewEnough(process.version))
+  fail(`Cagecast needs Node ${kOldestNode} or newer; this is ${process.versions.node}.`);
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();

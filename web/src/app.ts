@@ -1,97 +1,97 @@
-import { init } from 'cagecast'
-import { setUpPainting } from './brush/set-up'
-import { ExactBorders } from './exact-borders'
-import { FitPanel } from './fit'
-import { History } from './history'
-import { setUpJump } from './jump'
-import { Edits } from './layers/edits'
-import { followPaints, showComposite } from './layers/follow'
-import { LayerList } from './layers/layer-list'
-import { setUpSaving } from './layers/save'
-import { LayerStack } from './layers/stack'
-import { Live } from './live/live'
-import { keepOffline } from './offline'
-import { Opener } from './open'
-import { element } from './page'
-import { PartsTable } from './parts'
-import { showPicture } from './picture'
-import { showResults } from './results'
-import { setUpRules } from './rules'
-import { fetchAhead, loadSamples } from './samples'
-import { Session } from './session'
-import { showStatus } from './status'
-import { fadeStill } from './still'
-import { paintOf } from './take/paint'
-import { followLinks } from './take/links'
-import { Take } from './take/take'
-import { Tools } from './tools'
-import { setUpUndo } from './undo'
-import { setUpViewControls } from './view-controls'
-import { showViewModes } from './view-modes'
-import { Viewer } from './viewer'
-import { Why } from './why/why'
+import { init } from 'cagecast';
+import { setUpPainting } from './brush/set-up';
+import { ExactBorders } from './exact-borders';
+import { FitPanel } from './fit';
+import { History } from './history';
+import { setUpJump } from './jump';
+import { Edits } from './layers/edits';
+import { followPaints, showComposite } from './layers/follow';
+import { LayerList } from './layers/layer-list';
+import { setUpSaving } from './layers/save';
+import { LayerStack } from './layers/stack';
+import { Live } from './live/live';
+import { keepOffline } from './offline';
+import { Opener } from './open';
+import { element } from './page';
+import { PartsTable } from './parts';
+import { showPicture } from './picture';
+import { showResults } from './results';
+import { setUpRules } from './rules';
+import { fetchAhead, loadSamples } from './samples';
+import { Session } from './session';
+import { showStatus } from './status';
+import { fadeStill } from './still';
+import { followLinks } from './take/links';
+import { paintOf } from './take/paint';
+import { Take } from './take/take';
+import { Tools } from './tools';
+import { setUpUndo } from './undo';
+import { setUpViewControls } from './view-controls';
+import { showViewModes } from './view-modes';
+import { Viewer } from './viewer';
+import { Why } from './why/why';
 
 /** Without WebGL the page still transfers. */
 function startViewer(): Viewer | undefined {
   try {
-    return new Viewer(element('view', HTMLCanvasElement))
+    return new Viewer(element('view', HTMLCanvasElement));
   } catch {
-    return undefined
+    return undefined;
   }
 }
 
 /** Waits until the page is on the screen: making a picture in 3D can take a moment, and words come first. */
 function painted(): Promise<unknown> {
-  const frames = new Promise((done) => requestAnimationFrame(() => setTimeout(done)))
+  const frames = new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
   // A page in the background has no frames.
-  return Promise.race([frames, new Promise((done) => setTimeout(done, 200))])
+  return Promise.race([frames, new Promise((done) => setTimeout(done, 200))]);
 }
 
-const samples = loadSamples()
+const samples = loadSamples();
 // Begun while the files are on their way; told when they are waited for.
-for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {})
-await painted()
+for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {});
+await painted();
 
-const session = new Session()
-const viewer = startViewer()
+const session = new Session();
+const viewer = startViewer();
 // Each feature follows the session by itself. The picture comes first: what others lay on it needs it up to date.
-const stack = new LayerStack()
-const history = new History()
-const edits = new Edits(stack, history)
-followPaints(session, stack, edits)
-let png: (() => Promise<Blob>) | undefined
+const stack = new LayerStack();
+const history = new History();
+const edits = new Edits(stack, history);
+followPaints(session, stack, edits);
+let png: (() => Promise<Blob>) | undefined;
 if (viewer) {
-  showPicture(session, viewer)
-  showViewModes(session, viewer)
-  new ExactBorders(session, viewer)
-  const composite = showComposite(viewer, stack)
-  const tools = new Tools(viewer, element('stage', HTMLElement))
-  setUpPainting(session, viewer, tools, { stack, composite, edits })
-  new Why(session, viewer, tools)
-  png = setUpSaving(viewer, composite)
-} else element('why', HTMLElement).hidden = true
-new LayerList(stack, edits)
-setUpUndo(history)
-showStatus(session, viewer === undefined)
-fadeStill(session, viewer)
-showResults(session)
-new PartsTable(session, viewer)
-new FitPanel(session, viewer)
-setUpRules(session)
-setUpViewControls(session)
-setUpJump()
-const live = new Live(session, viewer)
-const opener = new Opener(session, stack, edits, viewer?.renderer)
-const { png: takenPng, layers } = paintOf(session, stack, edits, opener, png)
-const linked = { session, layers, live, viewer }
-const take = new Take(linked, takenPng)
-stack.on('change', () => take.refresh())
-keepOffline(session)
+  showPicture(session, viewer);
+  showViewModes(session, viewer);
+  new ExactBorders(session, viewer);
+  const composite = showComposite(viewer, stack);
+  const tools = new Tools(viewer, element('stage', HTMLElement));
+  setUpPainting(session, viewer, tools, { stack, composite, edits });
+  new Why(session, viewer, tools);
+  png = setUpSaving(viewer, composite);
+} else element('why', HTMLElement).hidden = true;
+new LayerList(stack, edits);
+setUpUndo(history);
+showStatus(session, viewer === undefined);
+fadeStill(session, viewer);
+showResults(session);
+new PartsTable(session, viewer);
+new FitPanel(session, viewer);
+setUpRules(session);
+setUpViewControls(session);
+setUpJump();
+const live = new Live(session, viewer);
+const opener = new Opener(session, stack, edits, viewer?.renderer);
+const { png: takenPng, layers } = paintOf(session, stack, edits, opener, png);
+const linked = { session, layers, live, viewer };
+const take = new Take(linked, takenPng);
+stack.on('change', () => take.refresh());
+keepOffline(session);
 
 try {
-  opener.listSamples(await samples)
+  opener.listSamples(await samples);
   // Files of one's own may have come in while the list was on its way.
-  if (!followLinks(linked, opener)) opener.openSample(opener.samples[0]!.name)
+  if (!followLinks(linked, opener)) opener.openSample(opener.samples[0]!.name);
 } catch (error) {
-  session.fail(error)
+  session.fail(error);
 }

@@ -1,27 +1,42 @@
-import type { GLTF } from 'three/addons/loaders/GLTFLoader.js'
+import type { GLTF } from 'three/addons/loaders/GLTFLoader.js';
 
 /** What tells one kind of image from others, and a whole one from one that is cut short. */
 interface Kind {
-  title: string
-  name: RegExp
-  begins: string
+  title: string;
+  name: RegExp;
+  begins: string;
   /** Where its last byte should be, or before. */
-  isWhole(bytes: Uint8Array): boolean
+  isWhole(bytes: Uint8Array): boolean;
 }
 
 /** What glTF has images in, by their media types. */
 const kKinds: Record<string, Kind> = {
-  'image/png': { title: 'PNG', name: /\.png$/i, begins: '\x89PNG\r\n\x1a\n', isWhole: (bytes) => textOf(bytes.subarray(-8, -4)) === 'IEND' },
-  'image/jpeg': { title: 'JPEG', name: /\.jpe?g$/i, begins: '\xff\xd8\xff', isWhole: (bytes) => textOf(bytes.subarray(-2)) === '\xff\xd9' },
-  'image/webp': { title: 'WebP', name: /\.webp$/i, begins: 'RIFF', isWhole: (bytes) => bytes.length >= 8 && viewOf(bytes).getUint32(4, true) + 8 <= bytes.length },
+  'image/png': {
+    title: 'PNG',
+    name: /\.png$/i,
+    begins: '\x89PNG\r\n\x1a\n',
+    isWhole: (bytes) => textOf(bytes.subarray(-8, -4)) === 'IEND',
+  },
+  'image/jpeg': {
+    title: 'JPEG',
+    name: /\.jpe?g$/i,
+    begins: '\xff\xd8\xff',
+    isWhole: (bytes) => textOf(bytes.subarray(-2)) === '\xff\xd9',
+  },
+  'image/webp': {
+    title: 'WebP',
+    name: /\.webp$/i,
+    begins: 'RIFF',
+    isWhole: (bytes) => bytes.length >= 8 && viewOf(bytes).getUint32(4, true) + 8 <= bytes.length,
+  },
   'image/ktx2': { title: 'KTX2', name: /\.ktx2$/i, begins: '\xabKTX 20\xbb\r\n\x1a\n', isWhole: isWholeKtx2 },
-}
+};
 
 interface ImageJson {
-  name?: string
-  uri?: string
-  mimeType?: string
-  bufferView?: number
+  name?: string;
+  uri?: string;
+  mimeType?: string;
+  bufferView?: number;
 }
 
 /**
@@ -29,47 +44,61 @@ interface ImageJson {
  * @param read Reads a file that the model refers to.
  * @returns One sentence, without the model's name, of the first of them and of how many there are; nothing if all are sound.
  */
-export async function damageOf({ parser }: GLTF, read: (uri: string) => Promise<ArrayBuffer>): Promise<string | undefined> {
-  const { textures = [], images = [] }: { textures?: { source?: number; extensions?: Record<string, { source?: number }> }[]; images?: ImageJson[] } = parser.json
-  const loaded = await parser.getDependencies('texture')
-  const damaged = new Set<number>()
+export async function damageOf(
+  { parser }: GLTF,
+  read: (uri: string) => Promise<ArrayBuffer>,
+): Promise<string | undefined> {
+  const {
+    textures = [],
+    images = [],
+  }: { textures?: { source?: number; extensions?: Record<string, { source?: number }> }[]; images?: ImageJson[] } =
+    parser.json;
+  const loaded = await parser.getDependencies('texture');
+  const damaged = new Set<number>();
   textures.forEach(({ source, extensions = {} }, index) => {
-    const image = Object.values(extensions).find((extension) => extension.source !== undefined)?.source ?? source
-    if (loaded[index] === null && image !== undefined) damaged.add(image)
-  })
-  const [first] = damaged
-  if (first === undefined) return undefined
-  const { name, uri, bufferView, mimeType }: ImageJson = images[first] ?? {}
-  const bytes = bufferView !== undefined ? await parser.getDependency('bufferView', bufferView) : await read(uri ?? '')
-  const file = uri?.startsWith('data:') ? undefined : uri
-  const title = name || file ? `image “${name || file}”` : `image ${first}`
-  const others = damaged.size > 1 ? `, nor can ${damaged.size - 1} more` : ''
-  return `${title} cannot be shown${others}: ${faultOf(new Uint8Array(bytes), kindOf(mimeType, uri))}. What it belongs to stays white.`
+    const image = Object.values(extensions).find((extension) => extension.source !== undefined)?.source ?? source;
+    if (loaded[index] === null && image !== undefined) damaged.add(image);
+  });
+  const [first] = damaged;
+  if (first === undefined) return undefined;
+  const { name, uri, bufferView, mimeType }: ImageJson = images[first] ?? {};
+  const bytes = bufferView !== undefined ? await parser.getDependency('bufferView', bufferView) : await read(uri ?? '');
+  const file = uri?.startsWith('data:') ? undefined : uri;
+  const title = name || file ? `image “${name || file}”` : `image ${first}`;
+  const others = damaged.size > 1 ? `, nor can ${damaged.size - 1} more` : '';
+  return `${title} cannot be shown${others}: ${faultOf(new Uint8Array(bytes), kindOf(mimeType, uri))}. What it belongs to stays white.`;
 }
 
 function kindOf(mimeType: string | undefined, uri = ''): Kind | undefined {
-  return kKinds[mimeType ?? /^data:([^;,]*)/.exec(uri)?.[1] ?? ''] ?? Object.values(kKinds).find(({ name }) => name.test(uri))
+  return (
+    kKinds[mimeType ?? /^data:([^;,]*)/.exec(uri)?.[1] ?? ''] ??
+    Object.values(kKinds).find(({ name }) => name.test(uri))
+  );
 }
 
 function faultOf(bytes: Uint8Array, kind: Kind | undefined): string {
-  if (bytes.length === 0) return 'it is empty'
-  if (!kind) return 'the browser does not read its kind'
-  if (!textOf(bytes.subarray(0, 12)).startsWith(kind.begins)) return `it is no ${kind.title}`
-  return kind.isWhole(bytes) ? `its ${kind.title} is damaged` : `its ${kind.title} is cut short, after ${bytes.length} bytes`
+  if (bytes.length === 0) return 'it is empty';
+  if (!kind) return 'the browser does not read its kind';
+  if (!textOf(bytes.subarray(0, 12)).startsWith(kind.begins)) return `it is no ${kind.title}`;
+  return kind.isWhole(bytes)
+    ? `its ${kind.title} is damaged`
+    : `its ${kind.title} is cut short, after ${bytes.length} bytes`;
 }
 
 function isWholeKtx2(bytes: Uint8Array): boolean {
-  const [view, levels] = [viewOf(bytes), 80]
-  if (bytes.length < levels) return false
-  const count = Math.max(1, view.getUint32(40, true))
+  const [view, levels] = [viewOf(bytes), 80];
+  if (bytes.length < levels) return false;
+  const count = Math.max(1, view.getUint32(40, true));
   for (let level = 0; level < count; level++) {
-    const at = levels + 24 * level
-    if (at + 16 > bytes.length || view.getBigUint64(at, true) + view.getBigUint64(at + 8, true) > bytes.length) return false
+    const at = levels + 24 * level;
+    if (at + 16 > bytes.length || view.getBigUint64(at, true) + view.getBigUint64(at + 8, true) > bytes.length)
+      return false;
   }
-  return true
+  return true;
 }
 
-const viewOf = ({ buffer, byteOffset, byteLength }: Uint8Array): DataView => new DataView(buffer, byteOffset, byteLength)
+const viewOf = ({ buffer, byteOffset, byteLength }: Uint8Array): DataView =>
+  new DataView(buffer, byteOffset, byteLength);
 
 /** Bytes as letters of the same numbers. */
-const textOf = (bytes: Uint8Array): string => String.fromCharCode(...bytes)
+const textOf = (bytes: Uint8Array): string => String.fromCharCode(...bytes);

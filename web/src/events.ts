@@ -1,15 +1,15 @@
 /** Listeners to what happens to one thing, by the name of the event. */
 export class Emitter<Events> {
-  readonly #listeners: { [Name in keyof Events]?: Set<(event: Events[Name]) => void> } = {}
+  readonly #listeners: { [Name in keyof Events]?: Set<(event: Events[Name]) => void> } = {};
 
   /** Calls `listener` whenever `name` happens, in the order in which listeners came. @returns what ends it. */
   on<Name extends keyof Events>(name: Name, listener: (event: Events[Name]) => void): () => void {
-    const listeners = (this.#listeners[name] ??= new Set())
-    listeners.add(listener)
-    return () => void listeners.delete(listener)
+    const listeners = (this.#listeners[name] ??= new Set());
+    listeners.add(listener);
+    return () => void listeners.delete(listener);
   }
 
   protected emit<Name extends keyof Events>(name: Name, event: Events[Name]): void {
-    for (const listener of this.#listeners[name] ?? []) listener(event)
+    for (const listener of this.#listeners[name] ?? []) listener(event);
   }
 }

@@ -1,19 +1,21 @@
-import { DataTexture, Loader, type LoadingManager, type Texture, type WebGLRenderer } from 'three'
-import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js'
+import { DataTexture, Loader, type LoadingManager, type Texture, type WebGLRenderer } from 'three';
+import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js';
 
 /**
  * Makes a decoder of KTX2 textures, whose files come with the page. Dispose of it: it holds workers.
  * @param renderer What is to show them: it says which formats its GPU keeps them in. Without one they are left white.
  */
 export function makeKtx2Loader(manager: LoadingManager, renderer: WebGLRenderer | undefined): KTX2Loader {
-  return renderer ? new KTX2Loader(manager).setWorkerLimit(2).detectSupport(renderer) : (new Blank(manager) as Loader as KTX2Loader)
+  return renderer
+    ? new KTX2Loader(manager).setWorkerLimit(2).detectSupport(renderer)
+    : (new Blank(manager) as Loader as KTX2Loader);
 }
 
 class Blank extends Loader<Texture> {
   override load(_url: string, onLoad: (texture: Texture) => void): void {
-    const texture = new DataTexture(new Uint8Array([255, 255, 255, 255]), 1, 1)
-    texture.needsUpdate = true
-    onLoad(texture)
+    const texture = new DataTexture(new Uint8Array([255, 255, 255, 255]), 1, 1);
+    texture.needsUpdate = true;
+    onLoad(texture);
   }
 
   dispose(): void {}

@@ -1,23 +1,23 @@
-import { Group, LoadingManager, Mesh, type AnimationClip, type Object3D, type WebGLRenderer } from 'three'
-import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js'
-import { damageOf } from './damage'
-import { extractMesh, type ExtractedMesh } from './extract'
-import { readGltfHead } from './gltf-file'
-import type { Sample } from './samples'
+import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
+import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { damageOf } from './damage';
+import { type ExtractedMesh, extractMesh } from './extract';
+import { readGltfHead } from './gltf-file';
+import type { Sample } from './samples';
 
 /** A model that was read: the scene to show, and its triangles to transfer with. */
 export interface Model {
   /** The file's name, for people. */
-  name: string
+  name: string;
   /** The file, and after it those that came with it. */
-  files: readonly File[]
-  scene: Object3D
-  animations: readonly AnimationClip[]
-  mesh: ExtractedMesh
+  files: readonly File[];
+  scene: Object3D;
+  animations: readonly AnimationClip[];
+  mesh: ExtractedMesh;
   /** What of its images cannot be shown, and why: a sentence. The model works all the same. */
-  damage?: string
+  damage?: string;
   /** Which sample it belongs to; the visitor's own to none. */
-  sample?: Sample
+  sample?: Sample;
 }
 
 /**
@@ -27,111 +27,132 @@ export interface Model {
  * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
  * @throws Error of one sentence that begins with the file's name.
  */
-export async function loadModel(file: File, renderer: WebGLRenderer | undefined, companions: readonly File[] = []): Promise<Model> {
-  const urls = new Map<string, string>()
+export async function loadModel(
+  file: File,
+  renderer: WebGLRenderer | undefined,
+  companions: readonly File[] = [],
+): Promise<Model> {
+  const urls = new Map<string, string>();
   try {
     const bytes = await file.arrayBuffer().catch(() => {
-      throw new Error(`the browser cannot read this file of ${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB; it may be too large, or gone`)
-    })
-    const head = readGltfHead(bytes)
-    for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions)))
+      throw new Error(
+        `the browser cannot read this file of ${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB; it may be too large, or gone`,
+      );
+    });
+    const head = readGltfHead(bytes);
+    for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions)));
 
-    const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url)
-    const loader = new GLTFLoader(manager)
-    const release = await addDecoders(loader, manager, head.extensions, renderer)
+    const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url);
+    const loader = new GLTFLoader(manager);
+    const release = await addDecoders(loader, manager, head.extensions, renderer);
     try {
-      const gltf = await loader.parseAsync(bytes, '')
-      const scene = await sceneOf(gltf)
-      const files = [file, ...new Set(head.uris.map((uri) => findCompanion(uri, companions)))]
-      const mesh = await extractMesh(scene, (mesh) => nameOf(mesh, gltf))
-      const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer())
-      return { name: file.name, files, scene, animations: gltf.animations, mesh, ...(damage && { damage: `${file.name}: ${damage}` }) }
+      const gltf = await loader.parseAsync(bytes, '');
+      const scene = await sceneOf(gltf);
+      const files = [file, ...new Set(head.uris.map((uri) => findCompanion(uri, companions)))];
+      const mesh = await extractMesh(scene, (mesh) => nameOf(mesh, gltf));
+      const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());
+      return {
+        name: file.name,
+        files,
+        scene,
+        animations: gltf.animations,
+        mesh,
+        ...(damage && { damage: `${file.name}: ${damage}` }),
+      };
     } finally {
-      release()
+      release();
     }
   } catch (error) {
-    throw new Error(`${file.name}: ${plainWords(error)}`, { cause: error })
+    throw new Error(`${file.name}: ${plainWords(error)}`, { cause: error });
   } finally {
-    for (const url of urls.values()) URL.revokeObjectURL(url)
+    for (const url of urls.values()) URL.revokeObjectURL(url);
   }
 }
 
 /** Frees the graphics memory of a model that is no longer shown. */
 export function disposeModel({ mesh }: Model): void {
   for (const part of mesh.parts) {
-    part.mesh.geometry.dispose()
+    part.mesh.geometry.dispose();
     for (const material of [part.mesh.material].flat()) {
-      for (const value of Object.values(material)) if (value?.isTexture) value.dispose()
-      material.dispose()
+      for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+      material.dispose();
     }
   }
 }
 
 /** The default scene; all nodes of a file without scenes. Nodes get their matrices exactly as the file has them. */
 async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
-  const nodes: Object3D[] = scene ? [] : await parser.getDependencies('node')
-  const root = scene ?? new Group().add(...nodes.filter((node) => !node.parent))
+  const nodes: Object3D[] = scene ? [] : await parser.getDependencies('node');
+  const root = scene ?? new Group().add(...nodes.filter((node) => !node.parent));
   root.traverse((object) => {
-    const matrix: number[] | undefined = parser.json.nodes?.[parser.associations.get(object)?.nodes ?? -1]?.matrix
-    if (!matrix) return
+    const matrix: number[] | undefined = parser.json.nodes?.[parser.associations.get(object)?.nodes ?? -1]?.matrix;
+    if (!matrix) return;
     // The loader takes it apart into a translation, a rotation and a scale, which rounds, and loses a shear.
-    object.matrixAutoUpdate = false
-    object.matrix.fromArray(matrix)
-  })
+    object.matrixAutoUpdate = false;
+    object.matrix.fromArray(matrix);
+  });
   // What an earlier transfer laid over the model, as `cagecast transfer` marks it, is no part of it.
-  const overlays: Object3D[] = []
+  const overlays: Object3D[] = [];
   root.traverse((object) => {
-    if (object instanceof Mesh && object.geometry.userData.cagecastOverlay === true) overlays.push(object)
-  })
-  for (const overlay of overlays) overlay.removeFromParent()
-  return root
+    if (object instanceof Mesh && object.geometry.userData.cagecastOverlay === true) overlays.push(object);
+  });
+  for (const overlay of overlays) overlay.removeFromParent();
+  return root;
 }
 
 /** The name of a mesh's node as the file has it, with its material's where a node has several: as the command line says it. */
 function nameOf(mesh: Mesh, { parser }: GLTF): string | undefined {
-  const { nodes = [], meshes = [], materials = [] } = parser.json
-  const place = parser.associations.get(mesh)
-  const primitives: { material?: number }[] = meshes[place?.meshes ?? -1]?.primitives ?? []
+  const { nodes = [], meshes = [], materials = [] } = parser.json;
+  const place = parser.associations.get(mesh);
+  const primitives: { material?: number }[] = meshes[place?.meshes ?? -1]?.primitives ?? [];
   // The loader makes one object of a node and its mesh, unless that has several primitives.
-  const node = nodes[(place?.nodes ?? (mesh.parent && parser.associations.get(mesh.parent)?.nodes)) ?? -1]
-  const name: string | undefined = node?.name ?? meshes[place?.meshes ?? -1]?.name
-  const material: string | undefined = materials[primitives[place?.primitives ?? -1]?.material ?? -1]?.name
-  return name !== undefined && material !== undefined && material !== name && primitives.length > 1 ? `${name}/${material}` : name
+  const node = nodes[place?.nodes ?? (mesh.parent && parser.associations.get(mesh.parent)?.nodes) ?? -1];
+  const name: string | undefined = node?.name ?? meshes[place?.meshes ?? -1]?.name;
+  const material: string | undefined = materials[primitives[place?.primitives ?? -1]?.material ?? -1]?.name;
+  return name !== undefined && material !== undefined && material !== name && primitives.length > 1
+    ? `${name}/${material}`
+    : name;
 }
 
 function findCompanion(uri: string, companions: readonly File[]): File {
-  const name = uri.split('/').at(-1)
-  const found = companions.find((file) => file.name === name)
-  if (!found) throw new Error(`the model needs the file ${uri}; choose or drop it together with the model`)
-  return found
+  const name = uri.split('/').at(-1);
+  const found = companions.find((file) => file.name === name);
+  if (!found) throw new Error(`the model needs the file ${uri}; choose or drop it together with the model`);
+  return found;
 }
 
 /** Gives the loader the decoders this file asks for; they are fetched only then. Returns what frees them. */
-async function addDecoders(loader: GLTFLoader, manager: LoadingManager, extensions: string[], renderer: WebGLRenderer | undefined): Promise<() => void> {
-  const held: { dispose(): void }[] = []
+async function addDecoders(
+  loader: GLTFLoader,
+  manager: LoadingManager,
+  extensions: string[],
+  renderer: WebGLRenderer | undefined,
+): Promise<() => void> {
+  const held: { dispose(): void }[] = [];
   if (extensions.includes('EXT_meshopt_compression') || extensions.includes('KHR_meshopt_compression')) {
-    const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js')
-    loader.setMeshoptDecoder(MeshoptDecoder)
+    const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js');
+    loader.setMeshoptDecoder(MeshoptDecoder);
   }
   if (extensions.includes('KHR_texture_basisu')) {
-    const { makeKtx2Loader } = await import('./ktx2')
-    const ktx2 = makeKtx2Loader(manager, renderer)
-    loader.setKTX2Loader(ktx2)
-    held.push(ktx2)
+    const { makeKtx2Loader } = await import('./ktx2');
+    const ktx2 = makeKtx2Loader(manager, renderer);
+    loader.setKTX2Loader(ktx2);
+    held.push(ktx2);
   }
   if (extensions.includes('KHR_draco_mesh_compression')) {
-    const { makeDracoLoader } = await import('./draco')
-    const draco = makeDracoLoader(manager)
-    loader.setDRACOLoader(draco)
-    held.push(draco)
+    const { makeDracoLoader } = await import('./draco');
+    const draco = makeDracoLoader(manager);
+    loader.setDRACOLoader(draco);
+    held.push(draco);
   }
-  return () => held.forEach((decoder) => decoder.dispose())
+  return () => held.forEach((decoder) => decoder.dispose());
 }
 
 function plainWords(error: unknown): string {
   // What reading past the end of a buffer looks like from inside the loader.
-  if (error instanceof RangeError || error instanceof TypeError) return 'the file is damaged: it refers to data it does not hold'
-  if (error instanceof Error) return error.message.replace(/^THREE\.\w+: /, '')
+  if (error instanceof RangeError || error instanceof TypeError)
+    return 'the file is damaged: it refers to data it does not hold';
+  if (error instanceof Error) return error.message.replace(/^THREE\.\w+: /, '');
   // Decoders reject with a bare message or event.
-  return (error as { error?: string })?.error ?? 'the file cannot be decoded'
+  return (error as { error?: string })?.error ?? 'the file cannot be decoded';
 }

@@ -1,5 +1,5 @@
 /** The file, or what went wrong. */
-export type PngReply = Blob | { message: string }
+export type PngReply = Blob | { message: string };
 
 /**
  * Writes a PNG that has every byte of an image. A worker of its own does it, and ends with it: on the page's thread Chromium waits
@@ -7,17 +7,18 @@ export type PngReply = Blob | { message: string }
  * @throws Error if the browser cannot.
  */
 export async function pngOf(image: ImageBitmapSource): Promise<Blob> {
-  const bitmap = await createImageBitmap(image, { premultiplyAlpha: 'none' })
-  const worker = new Worker(new URL('./png-worker.ts', import.meta.url), { type: 'module' })
+  const bitmap = await createImageBitmap(image, { premultiplyAlpha: 'none' });
+  const worker = new Worker(new URL('./png-worker.ts', import.meta.url), { type: 'module' });
   try {
     const reply = await new Promise<PngReply>((resolve, reject) => {
-      worker.onmessage = ({ data }: MessageEvent<PngReply>) => resolve(data)
-      worker.onerror = (event) => reject(new Error(`the PNG could not be begun${event.message ? `: ${event.message}` : ''}`))
-      worker.postMessage(bitmap, [bitmap])
-    })
-    if ('message' in reply) throw new Error(reply.message)
-    return reply
+      worker.onmessage = ({ data }: MessageEvent<PngReply>) => resolve(data);
+      worker.onerror = (event) =>
+        reject(new Error(`the PNG could not be begun${event.message ? `: ${event.message}` : ''}`));
+      worker.postMessage(bitmap, [bitmap]);
+    });
+    if ('message' in reply) throw new Error(reply.message);
+    return reply;
   } finally {
-    worker.terminate()
+    worker.terminate();
   }
 }

@@ -1,20 +1,20 @@
 /** A model that comes with the page. Files are addresses. */
 export interface Sample {
-  name: string
-  title: string
-  target: string
-  cage: string
-  paints: { title: string; file: string }[]
+  name: string;
+  title: string;
+  target: string;
+  cage: string;
+  paints: { title: string; file: string }[];
 }
 
-const kFolder = new URL('samples/', document.baseURI)
+const kFolder = new URL('samples/', document.baseURI);
 
 /** What links call the paint that every model has. */
-export const kChecker = 'checker'
+export const kChecker = 'checker';
 
 /** What links call a paint of a sample. @param file Its address. */
 export function paintName(file: string): string {
-  return file.startsWith(kFolder.href) ? file.slice(kFolder.href.length) : file
+  return file.startsWith(kFolder.href) ? file.slice(kFolder.href.length) : file;
 }
 
 /**
@@ -22,35 +22,35 @@ export function paintName(file: string): string {
  * @throws Error in plain words if there is none.
  */
 export async function loadSamples(): Promise<Sample[]> {
-  const response = await fetch(new URL('index.json', kFolder)).catch(() => undefined)
-  const list: Sample[] | undefined = response?.ok ? await response.json().catch(() => undefined) : undefined
+  const response = await fetch(new URL('index.json', kFolder)).catch(() => undefined);
+  const list: Sample[] | undefined = response?.ok ? await response.json().catch(() => undefined) : undefined;
   if (!Array.isArray(list) || list.length === 0) {
-    throw new Error('The samples are missing from this page. You can still drop a target and a cage of your own.')
+    throw new Error('The samples are missing from this page. You can still drop a target and a cage of your own.');
   }
-  const address = (path: string): string => new URL(path, kFolder).href
+  const address = (path: string): string => new URL(path, kFolder).href;
   return list.map(({ name, title, target, cage, paints }) => ({
     name,
     title,
     target: address(target),
     cage: address(cage),
     paints: paints.map((paint) => ({ title: paint.title, file: address(paint.file) })),
-  }))
+  }));
 }
 
-const begun = new Map<string, Promise<Response | undefined>>()
+const begun = new Map<string, Promise<Response | undefined>>();
 
 /** Begins to fetch what a sample opens with, before anything can be done with it. */
 export function fetchAhead({ target, cage, paints }: Sample): void {
-  for (const address of [target, cage, ...paints.slice(0, 1).map(({ file }) => file)]) begun.set(address, ask(address))
+  for (const address of [target, cage, ...paints.slice(0, 1).map(({ file }) => file)]) begun.set(address, ask(address));
 }
 
-const ask = (address: string): Promise<Response | undefined> => fetch(address).catch(() => undefined)
+const ask = (address: string): Promise<Response | undefined> => fetch(address).catch(() => undefined);
 
 /** Fetches one file of a sample. @throws Error that names it. */
 export async function fetchFile(address: string): Promise<File> {
-  const name = new URL(address).pathname.split('/').slice(-2).join('/')
-  const response = await (begun.get(address) ?? ask(address))
-  begun.delete(address) // its body can be read once
-  if (!response?.ok) throw new Error(`${name}: the file cannot be fetched`)
-  return new File([await response.blob()], name.split('/').at(-1)!)
+  const name = new URL(address).pathname.split('/').slice(-2).join('/');
+  const response = await (begun.get(address) ?? ask(address));
+  begun.delete(address); // its body can be read once
+  if (!response?.ok) throw new Error(`${name}: the file cannot be fetched`);
+  return new File([await response.blob()], name.split('/').at(-1)!);
 }

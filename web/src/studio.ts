@@ -1,53 +1,45 @@
-import {
-  DirectionalLight,
-  Group,
-  Mesh,
-  PlaneGeometry,
-  Scene,
-  ShadowMaterial,
-  type Camera,
-} from 'three'
-import { studioLight } from './light'
+import { type Camera, DirectionalLight, Group, Mesh, PlaneGeometry, Scene, ShadowMaterial } from 'three';
+import { studioLight } from './light';
 
 /**
  * The room a model is shown in: light from all around, a key light that stays over the viewer's shoulder, and a floor
  * that catches a soft shadow. Models of radius 1 about the origin fit it.
  */
 export class Studio {
-  readonly scene = new Scene()
+  readonly scene = new Scene();
   /** What is shown goes in here. */
-  readonly stage = new Group()
-  readonly #floor = new Mesh(new PlaneGeometry(12, 12), new ShadowMaterial({ opacity: 0.28 }))
-  readonly #key = new DirectionalLight(0xfff4e6, 2.1)
+  readonly stage = new Group();
+  readonly #floor = new Mesh(new PlaneGeometry(12, 12), new ShadowMaterial({ opacity: 0.28 }));
+  readonly #key = new DirectionalLight(0xfff4e6, 2.1);
 
   constructor() {
-    this.scene.environment = studioLight()
+    this.scene.environment = studioLight();
 
-    this.#floor.rotation.x = -Math.PI / 2
-    this.#floor.receiveShadow = true
+    this.#floor.rotation.x = -Math.PI / 2;
+    this.#floor.receiveShadow = true;
 
-    const { shadow } = this.#key
-    this.#key.castShadow = true
-    shadow.mapSize.set(1024, 1024)
-    shadow.radius = 6
-    shadow.normalBias = 0.02
-    shadow.camera.near = 1
-    shadow.camera.far = 10
-    shadow.camera.left = shadow.camera.bottom = -1.6
-    shadow.camera.right = shadow.camera.top = 1.6
-    this.scene.add(this.stage, this.#floor, this.#key)
+    const { shadow } = this.#key;
+    this.#key.castShadow = true;
+    shadow.mapSize.set(1024, 1024);
+    shadow.radius = 6;
+    shadow.normalBias = 0.02;
+    shadow.camera.near = 1;
+    shadow.camera.far = 10;
+    shadow.camera.left = shadow.camera.bottom = -1.6;
+    shadow.camera.right = shadow.camera.top = 1.6;
+    this.scene.add(this.stage, this.#floor, this.#key);
   }
 
   /** Puts the floor under a model whose lowest point is at `height`. */
   setFloor(height: number): void {
-    this.#floor.position.y = height - 0.01
+    this.#floor.position.y = height - 0.01;
   }
 
   /** Turns the light with the viewer, so that no side of the model is left in the dark. */
   follow(camera: Camera): void {
-    const turn = Math.atan2(camera.position.x, camera.position.z) - 0.6
-    this.#key.position.set(3 * Math.sin(turn), 4.6, 3 * Math.cos(turn))
+    const turn = Math.atan2(camera.position.x, camera.position.z) - 0.6;
+    this.#key.position.set(3 * Math.sin(turn), 4.6, 3 * Math.cos(turn));
     // Its share of the room's light turns too.
-    this.scene.environmentRotation.y = turn
+    this.scene.environmentRotation.y = turn;
   }
 }

@@ -1,29 +1,29 @@
-import type { Look } from './overlay'
+import type { Look } from './overlay';
 
 /** What the picture can show; `compare` is naive and result with a line between them. */
-export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const
-export type Mode = (typeof kModes)[number]
+export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
+export type Mode = (typeof kModes)[number];
 
 /** How the model is looked at. */
 export interface View {
-  mode: Mode
+  mode: Mode;
   /** Where the line of `compare` is: 0 at the left edge, 1 at the right. */
-  split: number
-  paint: boolean
-  cage: boolean
+  split: number;
+  paint: boolean;
+  cage: boolean;
 }
 
 /** Where the model is looked at from. */
 export interface Angle {
   /** Around it, from its front, in degrees; counter-clockwise seen from above. */
-  turn: number
+  turn: number;
   /** From straight above, in degrees. */
-  tilt: number
+  tilt: number;
   /** How many times nearer than where all of it is seen. */
-  near: number
+  near: number;
 }
 
-export const kFirstView: View = { mode: 'compare', split: 0.5, paint: true, cage: false }
+export const kFirstView: View = { mode: 'compare', split: 0.5, paint: true, cage: false };
 
 /** What lies over the model in each mode but `compare`. */
 export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
@@ -34,7 +34,7 @@ export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
   checker: 'checker',
   distance: 'tint',
   stretch: 'tint',
-}
+};
 
 /** Whether a mode shows the paint, which can then be switched off. */
-export const showsPaint = (mode: Mode): boolean => mode === 'compare' || mode === 'result' || mode === 'naive'
+export const showsPaint = (mode: Mode): boolean => mode === 'compare' || mode === 'result' || mode === 'naive';

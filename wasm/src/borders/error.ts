@@ -1,3 +1,4 @@
 // What the build puts in place of error.js in cagecast/borders: its errors are those of the main entry.
+
+export { type Code, coreCodes, show } from '../error.js';
 export { CagecastError } from '../index.js';
-export { coreCodes, show, type Code } from '../error.js';

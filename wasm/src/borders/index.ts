@@ -2,11 +2,12 @@
  * Exact borders: the target's triangles, cut where what is painted ends.
  * @module cagecast/borders
  */
-import type { Mesh, TransferOptions, TransferResult } from '../index.js';
+
 import { checkAnswer } from '../answer.js';
 import { callCore, init } from '../engine.js';
 import { CagecastError, show } from '../error.js';
-import { checkMesh, count, type CheckedMesh } from '../mesh.js';
+import type { Mesh, TransferOptions, TransferResult } from '../index.js';
+import { type CheckedMesh, checkMesh, count } from '../mesh.js';
 import { checkOptions } from '../options.js';
 
 /**
@@ -50,7 +51,12 @@ export interface CutTarget {
  * const result = transfer(cage, target);
  * const { indices, uvs, cosmeticTriangles } = await cutBorders(cage, target, result);
  */
-export async function cutBorders(cage: Mesh, target: Mesh, result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>, options?: TransferOptions): Promise<CutTarget> {
+export async function cutBorders(
+  cage: Mesh,
+  target: Mesh,
+  result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>,
+  options?: TransferOptions,
+): Promise<CutTarget> {
   await init();
   const checked = checkOptions('cutBorders', options);
   const [cageMesh, targetMesh] = [checkMesh('cutBorders', 'cage', cage), checkMesh('cutBorders', 'target', target)];
@@ -63,7 +69,8 @@ export async function cutBorders(cage: Mesh, target: Mesh, result: Pick<Transfer
 
 /** Checks that a result is one, and of this target: the core trusts what is in it. */
 function checkResult(result: unknown, { positions }: CheckedMesh) {
-  const wrong = (text: string) => new CagecastError('badArgument', `cutBorders: result${text}; pass what transfer() returned`);
+  const wrong = (text: string) =>
+    new CagecastError('badArgument', `cutBorders: result${text}; pass what transfer() returned`);
   if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);
   const { zones, segments, segmentStats } = result as Partial<TransferResult>;
   if (!(zones instanceof Uint8Array)) throw wrong(`.zones is ${show(zones)}, not a Uint8Array`);
@@ -71,11 +78,20 @@ function checkResult(result: unknown, { positions }: CheckedMesh) {
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
   const mismatch = (text: string, at: number) => new CagecastError('resultMismatch', `cutBorders: result.${text}`, at);
   for (const [name, { length }] of Object.entries({ zones, segments })) {
-    if (length !== Math.floor(positions.length / 3)) throw mismatch(`${name} has ${length} entries, not 1 for each of ${count(positions.length / 3, 'vertex')} of target`, length);
+    if (length !== Math.floor(positions.length / 3))
+      throw mismatch(
+        `${name} has ${length} entries, not 1 for each of ${count(positions.length / 3, 'vertex')} of target`,
+        length,
+      );
   }
   const unknown = zones.findIndex((zone) => zone > 3);
   if (unknown >= 0) throw mismatch(`zones[${unknown}] = ${zones[unknown]} is not a zone (0..3)`, unknown);
   const stray = segments.findIndex((segment) => segment >= segmentStats.length);
-  if (stray >= 0) throw mismatch(`segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);
-  return { zones, segments, culledSegments: Uint8Array.from(segmentStats, (segment) => Number(segment?.culled === true)) };
+  if (stray >= 0)
+    throw mismatch(`segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);
+  return {
+    zones,
+    segments,
+    culledSegments: Uint8Array.from(segmentStats, (segment) => Number(segment?.culled === true)),
+  };
 }

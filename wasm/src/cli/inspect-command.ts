@@ -1,14 +1,14 @@
-import { inspect, unfitFrom, usableFrom, type Inspection, type Verdict } from '../inspect/index.js';
+import { diagonal } from '../gltf/overlay.js';
 import { counted } from '../inspect/finding.js';
 import { vertexAreas } from '../inspect/geometry.js';
-import { diagonal } from '../gltf/overlay.js';
+import { type Inspection, inspect, unfitFrom, usableFrom, type Verdict } from '../inspect/index.js';
 import { inspectionPage } from './inspect-page.js';
-import { effectiveOptions, type EffectiveOptions, type Rules } from './options.js';
+import { type EffectiveOptions, effectiveOptions, type Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
-import { run, type Run } from './run.js';
+import { type Run, run } from './run.js';
 import { cut, fateText, integer, marginText, percent, short, table } from './table.js';
-import { perZone, type PerZone } from './zones.js';
+import { type PerZone, perZone } from './zones.js';
 
 /** What `cagecast inspect` was asked for. */
 export interface InspectCommand {
@@ -36,7 +36,10 @@ export interface InspectionReport extends Inspection {
  * @returns text for people, or JSON, and the verdict.
  * @throws {InputError} that names the file at fault.
  */
-export async function inspectCommand(command: InspectCommand, progress: Progress): Promise<{ text: string; verdict: Verdict }> {
+export async function inspectCommand(
+  command: InspectCommand,
+  progress: Progress,
+): Promise<{ text: string; verdict: Verdict }> {
   const done = await run(command.target, command.cage, command.rules, progress);
   progress.step('inspecting');
   const report = makeReport(command, done);
@@ -44,10 +47,16 @@ export async function inspectCommand(command: InspectCommand, progress: Progress
     progress.step(`writing ${command.html}`);
     writeFiles([{ path: command.html, data: inspectionPage(report, done) }]);
   }
-  return { text: command.json ? JSON.stringify(report, null, 2) : describe(report, command.html), verdict: report.verdict };
+  return {
+    text: command.json ? JSON.stringify(report, null, 2) : describe(report, command.html),
+    verdict: report.verdict,
+  };
 }
 
-function makeReport({ target: targetFile, cage: cageFile, rules }: InspectCommand, { target, cage, options, result }: Run): InspectionReport {
+function makeReport(
+  { target: targetFile, cage: cageFile, rules }: InspectCommand,
+  { target, cage, options, result }: Run,
+): InspectionReport {
   const { mesh, parts } = target;
   const areas = perZone(result.zones, vertexAreas(mesh));
   const total = areas.cosmetic + areas.occluded + areas.uncovered + areas.culled || 1;
@@ -64,7 +73,12 @@ function makeReport({ target: targetFile, cage: cageFile, rules }: InspectComman
     cage: { file: cageFile, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
     options: effectiveOptions(rules),
     counts: perZone(result.zones),
-    coverage: { cosmetic: areas.cosmetic / total, occluded: areas.occluded / total, uncovered: areas.uncovered / total, culled: areas.culled / total },
+    coverage: {
+      cosmetic: areas.cosmetic / total,
+      occluded: areas.occluded / total,
+      uncovered: areas.uncovered / total,
+      culled: areas.culled / total,
+    },
   };
 }
 
@@ -77,7 +91,21 @@ const conclusions: Record<Verdict, string> = {
 };
 
 function describe(report: InspectionReport, html: string | undefined): string {
-  const { verdict, findings, target, cage, counts, coverage, placement, inside, inward, topology, uv, holes, segments } = report;
+  const {
+    verdict,
+    findings,
+    target,
+    cage,
+    counts,
+    coverage,
+    placement,
+    inside,
+    inward,
+    topology,
+    uv,
+    holes,
+    segments,
+  } = report;
   const { outside, distances } = placement;
   const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const listed = segments
@@ -107,7 +135,13 @@ function describe(report: InspectionReport, html: string | undefined): string {
       : table([
           ['beneath', 'kind', 'size', 'perimeter', 'cut off'],
           ...holes.slice(0, mostRows).map(({ beneath, kind, diagonal: size, perimeter, cutOff }) => [
-            cut(beneath.slice(0, 3).map(({ part, share }) => `${part} ${Math.round(100 * share)} %`).join(', ') || 'nothing', 60),
+            cut(
+              beneath
+                .slice(0, 3)
+                .map(({ part, share }) => `${part} ${Math.round(100 * share)} %`)
+                .join(', ') || 'nothing',
+              60,
+            ),
             kind,
             percent(size),
             percent(perimeter),
@@ -118,11 +152,23 @@ function describe(report: InspectionReport, html: string | undefined): string {
     `segments: ${integer(segments.length)}${more(segments.length)}`,
     table([
       ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
-      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, margin, culled, bared }) => [cut(part, 40), String(s), integer(points), short(exposedArea), short(coveredArea), f.toFixed(3), marginText(margin), fateText({ culled, bared })]),
+      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, margin, culled, bared }) => [
+        cut(part, 40),
+        String(s),
+        integer(points),
+        short(exposedArea),
+        short(coveredArea),
+        f.toFixed(3),
+        marginText(margin),
+        fateText({ culled, bared }),
+      ]),
     ]),
     '',
     conclusions[verdict],
-    ...findings.flatMap(({ weight, sentence, advice }) => [`${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${sentence}.`, `  → ${advice}`]),
+    ...findings.flatMap(({ weight, sentence, advice }) => [
+      `${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${sentence}.`,
+      `  → ${advice}`,
+    ]),
     html === undefined ? '' : `wrote ${html}`,
   ]
     .join('\n')

@@ -2,7 +2,7 @@ import { PNG } from 'pngjs';
 import { counted } from '../inspect/finding.js';
 import { boxOf, pointAt, type Vector } from '../inspect/geometry.js';
 import { unfitFrom, usableFrom } from '../inspect/index.js';
-import { sceneOf, type Scene } from '../inspect/scene.js';
+import { type Scene, sceneOf } from '../inspect/scene.js';
 import type { InspectionReport } from './inspect-command.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
@@ -11,7 +11,12 @@ import { fateText, integer, marginText, percent, short } from './table.js';
 /** Pixels along each side of a picture. */
 const size = 420;
 /** Colours of the zones, after Okabe and Ito, so that colour-blind eyes tell them apart; what may be painted is clay. */
-const zoneColors: readonly Rgb[] = [[203, 198, 190], [0, 114, 178], [230, 159, 0], [204, 121, 167]];
+const zoneColors: readonly Rgb[] = [
+  [203, 198, 190],
+  [0, 114, 178],
+  [230, 159, 0],
+  [204, 121, 167],
+];
 const outsideColor: Rgb = [213, 40, 30];
 const cageColor: Rgb = [60, 70, 90];
 const borderColor: Rgb = [20, 20, 20];
@@ -69,11 +74,34 @@ ${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<
 <p>${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}; ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that more than once.</p>
 <div class="row" style="max-width: 28rem"><figure>${drawUvs(scene)}<figcaption>the cage in the texture; darker where triangles overlap</figcaption></figure></div>
 <h2>Holes</h2>
-${holes.length > 0 ? rows(['beneath', 'kind', 'size', 'cut off'], holes.map(({ beneath, kind, diagonal, cutOff }) => [beneath.map(({ part, share }) => `${part} ${Math.round(100 * share)} %`).join(', ') || 'nothing', kind, percent(diagonal), percent(cutOff)])) : '<p>None.</p>'}
+${
+  holes.length > 0
+    ? rows(
+        ['beneath', 'kind', 'size', 'cut off'],
+        holes.map(({ beneath, kind, diagonal, cutOff }) => [
+          beneath.map(({ part, share }) => `${part} ${Math.round(100 * share)} %`).join(', ') || 'nothing',
+          kind,
+          percent(diagonal),
+          percent(cutOff),
+        ]),
+      )
+    : '<p>None.</p>'
+}
 <h2>Segments</h2>
 ${rows(
   ['part', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
-  [...segments].sort((a, b) => b.exposedArea - a.exposedArea).slice(0, mostSegments).map(({ part, points, exposedArea, coveredArea, coverage, margin, culled, bared }) => [part, integer(points), short(exposedArea), short(coveredArea), coverage.toFixed(3), marginText(margin), fateText({ culled, bared })]),
+  [...segments]
+    .sort((a, b) => b.exposedArea - a.exposedArea)
+    .slice(0, mostSegments)
+    .map(({ part, points, exposedArea, coveredArea, coverage, margin, culled, bared }) => [
+      part,
+      integer(points),
+      short(exposedArea),
+      short(coveredArea),
+      coverage.toFixed(3),
+      marginText(margin),
+      fateText({ culled, bared }),
+    ]),
 )}
 </html>
 `;
@@ -84,7 +112,8 @@ function text(value: string): string {
 }
 
 function rows(head: readonly string[], body: readonly (readonly string[])[]): string {
-  const row = (cells: readonly string[], tag: string) => `<tr>${cells.map((cell) => `<${tag}>${text(cell)}</${tag}>`).join('')}</tr>`;
+  const row = (cells: readonly string[], tag: string) =>
+    `<tr>${cells.map((cell) => `<${tag}>${text(cell)}</${tag}>`).join('')}</tr>`;
   return `<table>${row(head, 'th')}${body.map((cells) => row(cells, 'td')).join('')}</table>`;
 }
 
@@ -99,11 +128,20 @@ function pictureOf({ targetBox: { min, max } }: Scene, view: View): Picture {
   return new Picture(size, view, middle, 0.56 * Math.max(max[0] - min[0], max[1] - min[1], max[2] - min[2]));
 }
 
-function drawTarget(picture: Picture, { target }: Scene, color: (triangle: readonly [number, number, number]) => Rgb): void {
+function drawTarget(
+  picture: Picture,
+  { target }: Scene,
+  color: (triangle: readonly [number, number, number]) => Rgb,
+): void {
   const { positions, indices } = target;
   for (let i = 0; i < indices.length; i += 3) {
     const corners = [indices[i]!, indices[i + 1]!, indices[i + 2]!] as const;
-    picture.triangle(pointAt(positions, corners[0]), pointAt(positions, corners[1]), pointAt(positions, corners[2]), color(corners));
+    picture.triangle(
+      pointAt(positions, corners[0]),
+      pointAt(positions, corners[1]),
+      pointAt(positions, corners[2]),
+      color(corners),
+    );
   }
 }
 
@@ -136,11 +174,18 @@ function drawFit(scene: Scene, view: View): Picture {
 
 function drawUvs({ cage, surface }: Scene): string {
   const uvs = cage.uvs ?? new Float32Array(0);
-  const box = boxOf(Float32Array.from({ length: (uvs.length / 2) * 3 }, (_, i) => (i % 3 === 2 ? 0 : uvs[2 * Math.floor(i / 3) + (i % 3)]!)));
+  const box = boxOf(
+    Float32Array.from({ length: (uvs.length / 2) * 3 }, (_, i) =>
+      i % 3 === 2 ? 0 : uvs[2 * Math.floor(i / 3) + (i % 3)]!,
+    ),
+  );
   // The texture, and whatever lies outside of it.
   const [left, top] = [Math.min(0, box.min[0]), Math.min(0, box.min[1])];
   const side = Math.max(1, box.max[0] - left, box.max[1] - top);
-  const place = (v: number) => [uvs[2 * v]!, uvs[2 * v + 1]!].map((value, k) => Number((((value - (k === 0 ? left : top)) / side) * 1000).toFixed(1))).join(' ');
+  const place = (v: number) =>
+    [uvs[2 * v]!, uvs[2 * v + 1]!]
+      .map((value, k) => Number((((value - (k === 0 ? left : top)) / side) * 1000).toFixed(1)))
+      .join(' ');
   let paths = '';
   for (let t = 0; t < Math.min(surface.areas.length, mostDrawn); ++t) {
     paths += `<path d="M${place(cage.indices[3 * t]!)}L${place(cage.indices[3 * t + 1]!)}L${place(cage.indices[3 * t + 2]!)}Z"/>`;

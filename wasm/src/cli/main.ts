@@ -1,6 +1,6 @@
 import { Command, CommanderError, InvalidArgumentError, Option } from 'commander';
+import { firstLine, InputError } from '../gltf/input-error.js';
 import { CagecastError, type Preset, type PresetOptions } from '../index.js';
-import { InputError, firstLine } from '../gltf/input-error.js';
 import { inspectCommand } from './inspect-command.js';
 import type { Rules } from './options.js';
 import { placeOf } from './output.js';
@@ -17,7 +17,8 @@ const progress = new Progress();
 function numberWithin(least: number, most: number): (text: string) => number {
   return (text) => {
     const value = Number(text);
-    if (text.trim() === '' || !(value >= least && value <= most)) throw new InvalidArgumentError(`It is not a number within ${least}..${most}.`);
+    if (text.trim() === '' || !(value >= least && value <= most))
+      throw new InvalidArgumentError(`It is not a number within ${least}..${most}.`);
     return value;
   };
 }
@@ -29,7 +30,10 @@ function endingIn(ending: string): (text: string) => string {
   };
 }
 
-interface CommonFlags extends Partial<Pick<PresetOptions, 'threshold' | 'seams' | 'weldTolerance' | 'occlusionReach' | 'pokeThrough' | 'minCovered'>> {
+interface CommonFlags
+  extends Partial<
+    Pick<PresetOptions, 'threshold' | 'seams' | 'weldTolerance' | 'occlusionReach' | 'pokeThrough' | 'minCovered'>
+  > {
   cage: string;
   preset: Preset;
   keep: string[];
@@ -41,20 +45,75 @@ function common(command: Command): Command {
   return command
     .argument('<TARGET>', 'GLB or glTF that receives the texture')
     .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it needs UVs')
-    .addOption(new Option('--preset <NAME>', 'the set of rules; the options below change single ones').choices(['default', 'paper']).default('default'))
-    .addOption(new Option('--threshold <SHARE>', 'a segment is painted if at least this share of its exposed area is covered').argParser(numberWithin(0, 1)))
-    .addOption(new Option('--seams <WHERE>', 'let no triangle stretch across seams of the texture (corner), or do not split vertices (vertex)').choices(['corner', 'vertex']))
-    .addOption(new Option('--keep <NAME>', 'paint parts of this node or material, * for any text, whatever their areas; may be repeated').default([], '').argParser(oneMore))
-    .addOption(new Option('--exclude <NAME>', 'never paint parts of this node or material; may be repeated').default([], '').argParser(oneMore))
-    .addOption(new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").argParser(numberWithin(0, 0.01)))
-    .addOption(new Option('--occlusion-reach <SHARE>', 'the target hides a point only up to this share of the diagonal beyond the cage').argParser(numberWithin(0, Infinity)))
-    .addOption(new Option('--poke-through <SHARE>', 'what is up to this share of the diagonal outside the cage is covered').argParser(numberWithin(0, 1)))
-    .addOption(new Option('--min-covered <SHARE>', "the least share of a segment's area that must be covered").argParser(numberWithin(0, 1)))
+    .addOption(
+      new Option('--preset <NAME>', 'the set of rules; the options below change single ones')
+        .choices(['default', 'paper'])
+        .default('default'),
+    )
+    .addOption(
+      new Option(
+        '--threshold <SHARE>',
+        'a segment is painted if at least this share of its exposed area is covered',
+      ).argParser(numberWithin(0, 1)),
+    )
+    .addOption(
+      new Option(
+        '--seams <WHERE>',
+        'let no triangle stretch across seams of the texture (corner), or do not split vertices (vertex)',
+      ).choices(['corner', 'vertex']),
+    )
+    .addOption(
+      new Option(
+        '--keep <NAME>',
+        'paint parts of this node or material, * for any text, whatever their areas; may be repeated',
+      )
+        .default([], '')
+        .argParser(oneMore),
+    )
+    .addOption(
+      new Option('--exclude <NAME>', 'never paint parts of this node or material; may be repeated')
+        .default([], '')
+        .argParser(oneMore),
+    )
+    .addOption(
+      new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").argParser(
+        numberWithin(0, 0.01),
+      ),
+    )
+    .addOption(
+      new Option(
+        '--occlusion-reach <SHARE>',
+        'the target hides a point only up to this share of the diagonal beyond the cage',
+      ).argParser(numberWithin(0, Infinity)),
+    )
+    .addOption(
+      new Option(
+        '--poke-through <SHARE>',
+        'what is up to this share of the diagonal outside the cage is covered',
+      ).argParser(numberWithin(0, 1)),
+    )
+    .addOption(
+      new Option('--min-covered <SHARE>', "the least share of a segment's area that must be covered").argParser(
+        numberWithin(0, 1),
+      ),
+    )
     .allowExcessArguments(false);
 }
 
-function rulesOf({ preset, keep, exclude, threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered }: CommonFlags): Rules {
-  const given = Object.entries({ threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered }).filter(([, value]) => value !== undefined);
+function rulesOf({
+  preset,
+  keep,
+  exclude,
+  threshold,
+  seams,
+  weldTolerance,
+  occlusionReach,
+  pokeThrough,
+  minCovered,
+}: CommonFlags): Rules {
+  const given = Object.entries({ threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered }).filter(
+    ([, value]) => value !== undefined,
+  );
   return { preset, keep, exclude, single: Object.fromEntries(given) };
 }
 
@@ -64,7 +123,15 @@ const program = new Command('cagecast')
   .helpOption('-h, --help', 'print help')
   .helpCommand(false)
   .exitOverride()
-  .configureOutput({ outputError: (text, write) => write(`cagecast: ${text.replace(/^error: /, '').replace(/\s*\n\s*/g, ' ').trim()}\n`) })
+  .configureOutput({
+    outputError: (text, write) =>
+      write(
+        `cagecast: ${text
+          .replace(/^error: /, '')
+          .replace(/\s*\n\s*/g, ' ')
+          .trim()}\n`,
+      ),
+  })
   .addHelpText(
     'after',
     `
@@ -80,7 +147,14 @@ common(program.command('transfer'))
   .description('write TARGET with a new UV set and the _NCZ attribute, all else as it was')
   .option('--texture <PAINT>', "PNG or JPEG in the cage's UVs: show it as an overlay of the cosmetic triangles")
   .addOption(new Option('-o, --output <OUT.glb>', 'where to write the GLB').argParser(endingIn('.glb')))
-  .addOption(new Option('--borders <HOW>', "let paint end at the target's triangles, or cut these where it does, at holes and seams").choices(['triangle', 'cut']).default('triangle'))
+  .addOption(
+    new Option(
+      '--borders <HOW>',
+      "let paint end at the target's triangles, or cut these where it does, at holes and seams",
+    )
+      .choices(['triangle', 'cut'])
+      .default('triangle'),
+  )
   .option('--report <R.json>', 'where to write counts, areas, segments and timings as JSON')
   .addHelpText(
     'after',
@@ -95,18 +169,30 @@ Examples:
   cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
   cagecast transfer body.glb --cage cage.glb --keep skin --exclude 'eye*' -o painted.glb`,
   )
-  .action(async (target: string, flags: CommonFlags & { texture?: string; output?: string; report?: string; borders: 'triangle' | 'cut' }, command: Command) => {
-    const { cage, texture, output, report, borders } = flags;
-    if (texture !== undefined && output === undefined) command.error('--texture needs -o OUT.glb to show it in', { exitCode: wrongUsage });
-    if (borders === 'cut' && output === undefined) command.error('--borders cut needs -o OUT.glb to write the cut target to', { exitCode: wrongUsage });
-    const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => placeOf(path));
-    const outputs = [output, report].filter((path) => path !== undefined).map((path) => placeOf(path));
-    const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
-    if (clash !== undefined) command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
-    const text = await transferCommand({ target, cage, texture, output, report, borders, rules: rulesOf(flags) }, progress);
-    progress.clear();
-    console.log(text);
-  });
+  .action(
+    async (
+      target: string,
+      flags: CommonFlags & { texture?: string; output?: string; report?: string; borders: 'triangle' | 'cut' },
+      command: Command,
+    ) => {
+      const { cage, texture, output, report, borders } = flags;
+      if (texture !== undefined && output === undefined)
+        command.error('--texture needs -o OUT.glb to show it in', { exitCode: wrongUsage });
+      if (borders === 'cut' && output === undefined)
+        command.error('--borders cut needs -o OUT.glb to write the cut target to', { exitCode: wrongUsage });
+      const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => placeOf(path));
+      const outputs = [output, report].filter((path) => path !== undefined).map((path) => placeOf(path));
+      const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
+      if (clash !== undefined)
+        command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
+      const text = await transferCommand(
+        { target, cage, texture, output, report, borders, rules: rulesOf(flags) },
+        progress,
+      );
+      progress.clear();
+      console.log(text);
+    },
+  );
 
 common(program.command('inspect'))
   .description('is this cage fit for this target? numbers, causes, what to do')
@@ -146,7 +232,9 @@ try {
     process.exitCode = error.exitCode === 0 && error.code !== 'commander.help' ? 0 : wrongUsage;
   } else {
     const known = error instanceof InputError || error instanceof CagecastError;
-    process.stderr.write(`cagecast: ${known ? firstLine(error) : `failed unexpectedly (${firstLine(error)}); please report it`}\n`);
+    process.stderr.write(
+      `cagecast: ${known ? firstLine(error) : `failed unexpectedly (${firstLine(error)}); please report it`}\n`,
+    );
     process.exitCode = unusable;
   }
 }

@@ -1,6 +1,6 @@
-import { presetOptions, type Lock, type Preset, type PresetOptions, type TransferOptions } from '../index.js';
 import type { Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
+import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
 
 /** What the command line says about how to transfer. */
 export interface Rules {
@@ -24,7 +24,13 @@ export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> 
 /** The options in full; needs `init`. */
 export function effectiveOptions({ preset, single, keep, exclude }: Rules): EffectiveOptions {
   const all = { ...presetOptions(preset), ...single };
-  return { preset, ...all, occlusionReach: Number.isFinite(all.occlusionReach) ? all.occlusionReach : null, keep, exclude };
+  return {
+    preset,
+    ...all,
+    occlusionReach: Number.isFinite(all.occlusionReach) ? all.occlusionReach : null,
+    keep,
+    exclude,
+  };
 }
 
 /**
@@ -34,16 +40,24 @@ export function effectiveOptions({ preset, single, keep, exclude }: Rules): Effe
 export function transferOptions({ preset, single, keep, exclude }: Rules, { parts }: Extracted): TransferOptions {
   const groups: Record<number, Lock> = {};
   const saidBy = new Map<number, string>();
-  for (const [lock, patterns] of [['keep', keep], ['exclude', exclude]] as const) {
+  for (const [lock, patterns] of [
+    ['keep', keep],
+    ['exclude', exclude],
+  ] as const) {
     for (const pattern of patterns) {
       const matches = matcher(pattern);
       const found = [...parts.keys()].filter((p) => parts[p]!.vertexCount > 0 && parts[p]!.aliases.some(matches));
       if (found.length === 0) {
         const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
-        throw new InputError(`--${lock} ${pattern}: no node or material is called that; there are: ${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`);
+        throw new InputError(
+          `--${lock} ${pattern}: no node or material is called that; there are: ${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
+        );
       }
       for (const p of found) {
-        if (groups[p] !== undefined && groups[p] !== lock) throw new InputError(`--${groups[p]} ${saidBy.get(p)} and --${lock} ${pattern} both mean "${parts[p]!.name}"`);
+        if (groups[p] !== undefined && groups[p] !== lock)
+          throw new InputError(
+            `--${groups[p]} ${saidBy.get(p)} and --${lock} ${pattern} both mean "${parts[p]!.name}"`,
+          );
         groups[p] = lock;
         saidBy.set(p, pattern);
       }
@@ -57,6 +71,11 @@ const mostNames = 20;
 
 /** Whether a name is one, or, with `*` for any text, one of many. */
 function matcher(pattern: string): (name: string) => boolean {
-  const expression = new RegExp(`^${pattern.split('*').map((text) => text.replace(/[.+?^${}()|[\]\\]/g, '\\$&')).join('[^]*')}$`);
+  const expression = new RegExp(
+    `^${pattern
+      .split('*')
+      .map((text) => text.replace(/[.+?^${}()|[\]\\]/g, '\\$&'))
+      .join('[^]*')}$`,
+  );
   return (name) => expression.test(name);
 }

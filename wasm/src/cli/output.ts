@@ -1,6 +1,6 @@
 import { chmodSync, lstatSync, readlinkSync, realpathSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
-import { InputError, firstLine } from '../gltf/input-error.js';
+import { firstLine, InputError } from '../gltf/input-error.js';
 
 /**
  * Writes files, all of them or none: each under another name first, which it gives up once all are complete. Links lead to
@@ -17,7 +17,8 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
       written.push({ path, temporary });
       attempt(path, () => writeAs(place, temporary, data));
     }
-    for (const { path, data } of files.filter(({ path }) => isStream(path))) attempt(path, () => writeFileSync(path, data));
+    for (const { path, data } of files.filter(({ path }) => isStream(path)))
+      attempt(path, () => writeFileSync(path, data));
     for (const { path, temporary } of written) attempt(path, () => renameSync(temporary, placeOf(path)));
   } finally {
     for (const { temporary } of written) rmSync(temporary, { force: true });
@@ -41,7 +42,8 @@ export function placeOf(path: string, links = 40): string {
     const place = resolve(path);
     const folder = dirname(place);
     if (links === 0 || folder === place) return place;
-    if (lstatSync(place, { throwIfNoEntry: false })?.isSymbolicLink()) return placeOf(resolve(realpathSync(folder), readlinkSync(place)), links - 1);
+    if (lstatSync(place, { throwIfNoEntry: false })?.isSymbolicLink())
+      return placeOf(resolve(realpathSync(folder), readlinkSync(place)), links - 1);
     return join(placeOf(folder, links), basename(place));
   }
 }
@@ -57,7 +59,8 @@ function attempt(path: string, write: () => void): void {
     write();
   } catch (error) {
     const { code } = error as NodeJS.ErrnoException;
-    const reason = code === 'ENOENT' ? 'its folder does not exist' : code === 'EISDIR' ? 'is a folder' : firstLine(error);
+    const reason =
+      code === 'ENOENT' ? 'its folder does not exist' : code === 'EISDIR' ? 'is a folder' : firstLine(error);
     throw new InputError(`cannot be written (${reason})`, { cause: error }).in(path);
   }
 }

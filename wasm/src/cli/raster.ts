@@ -52,8 +52,14 @@ export class Picture {
     const light = 0.35 + (0.65 * Math.abs(area)) / Math.hypot(area, uy * vz - uz * vy, uz * vx - ux * vz);
     const lit: Rgb = [color[0] * light, color[1] * light, color[2] * light];
     const last = this.size - 1;
-    const [left, right] = [Math.max(0, Math.ceil(Math.min(p[0], q[0], r[0]))), Math.min(last, Math.floor(Math.max(p[0], q[0], r[0])))];
-    const [top, bottom] = [Math.max(0, Math.ceil(Math.min(p[1], q[1], r[1]))), Math.min(last, Math.floor(Math.max(p[1], q[1], r[1])))];
+    const [left, right] = [
+      Math.max(0, Math.ceil(Math.min(p[0], q[0], r[0]))),
+      Math.min(last, Math.floor(Math.max(p[0], q[0], r[0]))),
+    ];
+    const [top, bottom] = [
+      Math.max(0, Math.ceil(Math.min(p[1], q[1], r[1]))),
+      Math.min(last, Math.floor(Math.max(p[1], q[1], r[1]))),
+    ];
     for (let row = top; row <= bottom; ++row) {
       for (let column = left; column <= right; ++column) {
         const [x, y] = [column - p[0], row - p[1]];
@@ -70,7 +76,8 @@ export class Picture {
     for (let i = 0; i <= steps; ++i) {
       const t = i / steps;
       const [column, row] = [Math.round(p[0] + t * (q[0] - p[0])), Math.round(p[1] + t * (q[1] - p[1]))];
-      if (column >= 0 && row >= 0 && column < this.size && row < this.size) this.#set(column, row, p[2] + t * (q[2] - p[2]) + 0.5, color);
+      if (column >= 0 && row >= 0 && column < this.size && row < this.size)
+        this.#set(column, row, p[2] + t * (q[2] - p[2]) + 0.5, color);
     }
   }
 

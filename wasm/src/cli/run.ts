@@ -1,8 +1,8 @@
-import { init, transfer, type CagecastError, type TransferOptions, type TransferResult } from '../index.js';
-import { extract, partOf, placeOf, type Extracted } from '../gltf/extract.js';
+import { type Extracted, extract, partOf, placeOf } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
-import { readGltf, type GltfFile } from '../gltf/read.js';
-import { transferOptions, type Rules } from './options.js';
+import { type GltfFile, readGltf } from '../gltf/read.js';
+import { type CagecastError, init, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { type Rules, transferOptions } from './options.js';
 import type { Progress } from './progress.js';
 
 /** Two files, read and transferred. */
@@ -29,8 +29,13 @@ export async function run(targetPath: string, cagePath: string, rules: Rules, pr
   const cageFile = await readGltf(cagePath);
   const cage = usable(cageFile, extract(cageFile));
   if (cage.mesh.uvs === undefined) {
-    const part = cage.parts.find(({ mesh, primitive }) => cageFile.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined)!;
-    throw new InputError(`${placeOf(part)} ("${part.name}") has no TEXCOORD_0: the texture is drawn in the cage's UVs`).in(cagePath);
+    const part = cage.parts.find(
+      ({ mesh, primitive }) =>
+        cageFile.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined,
+    )!;
+    throw new InputError(
+      `${placeOf(part)} ("${part.name}") has no TEXCOORD_0: the texture is drawn in the cage's UVs`,
+    ).in(cagePath);
   }
   const vertices = target.mesh.positions.length / 3;
   progress.step(`transferring to ${vertices.toLocaleString('en')} vertices`);
@@ -53,13 +58,18 @@ function optionsFor({ path }: GltfFile, target: Extracted, rules: Rules): Transf
 
 function usable(file: GltfFile, extracted: Extracted): Extracted {
   if (extracted.mesh.indices.length === 0) {
-    throw new InputError(`has no ${(file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene'}; at least one triangle is needed`).in(file.path);
+    throw new InputError(
+      `has no ${(file.json.meshes ?? []).length === 0 ? 'meshes' : 'triangles in its scene'}; at least one triangle is needed`,
+    ).in(file.path);
   }
   return extracted;
 }
 
 /** Says in which file, and where in it, lies what the core found; any other error stays what it is. */
-export function inFile(error: unknown, { targetFile, target, cageFile, cage }: Omit<Run, 'options' | 'result'>): unknown {
+export function inFile(
+  error: unknown,
+  { targetFile, target, cageFile, cage }: Omit<Run, 'options' | 'result'>,
+): unknown {
   // By name: what is loaded to cut borders has another copy of the class.
   if (!(error instanceof Error) || error.name !== 'CagecastError') return error;
   const { message, code, at } = error as CagecastError;

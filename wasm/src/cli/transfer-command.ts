@@ -2,16 +2,16 @@ import { basename } from 'node:path';
 import type { CutTarget } from '../borders/index.js';
 import { placeOf } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
+import { diagonal, type Paint, paintOf, zoneAttribute } from '../gltf/overlay.js';
 import { readBytes } from '../gltf/read.js';
-import { diagonal, paintOf, zoneAttribute, type Paint } from '../gltf/overlay.js';
-import { writeTransfer, type Added } from '../gltf/write.js';
+import { type Added, writeTransfer } from '../gltf/write.js';
 import { vertexAreas } from '../inspect/geometry.js';
-import { perZone, type PerZone } from './zones.js';
-import { effectiveOptions, type EffectiveOptions, type Rules } from './options.js';
+import { type EffectiveOptions, effectiveOptions, type Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
-import { inFile, run, type Run } from './run.js';
+import { inFile, type Run, run } from './run.js';
 import { integer, percent, table } from './table.js';
+import { type PerZone, perZone } from './zones.js';
 
 /** What `cagecast transfer` was asked for. */
 export interface TransferCommand {
@@ -39,9 +39,11 @@ export async function transferCommand(command: TransferCommand, progress: Progre
   if (command.output !== undefined) {
     if (command.borders === 'cut') cut = await cutTarget(done, progress);
     progress.step(`writing ${command.output}`);
-    const written = await writeTransfer(done.targetFile, done.target, done.result, paint, cut).catch((error: unknown) => {
-      throw error instanceof InputError ? error.in(command.target) : error;
-    });
+    const written = await writeTransfer(done.targetFile, done.target, done.result, paint, cut).catch(
+      (error: unknown) => {
+        throw error instanceof InputError ? error.in(command.target) : error;
+      },
+    );
     added = written.added;
     files.push({ path: command.output, data: written.glb });
   }
@@ -88,21 +90,49 @@ export interface Report {
    */
   cut: { vertices: number; counts: PerZone; triangles: { total: number; cosmetic: number } } | null;
   /** A, E, C, F and D of every connected component, in the order of their first vertices. */
-  segments: { part: string; vertices: number; points: number; area: number; exposedArea: number; coveredArea: number; coverage: number; sunkArea: number; culled: boolean }[];
+  segments: {
+    part: string;
+    vertices: number;
+    points: number;
+    area: number;
+    exposedArea: number;
+    coveredArea: number;
+    coverage: number;
+    sunkArea: number;
+    culled: boolean;
+  }[];
   /**
    * Every primitive of every node, in scene order. Without output `uvSet`, the attribute added, is `null`; so is
    * `splitVertices`, how many vertices were added because the corners that shared one have different UVs, and `cutTriangles`,
    * how many triangles by cutting borders.
    */
-  parts: { name: string; place: string; vertices: number; triangles: number; counts: PerZone; uvSet: string | null; overlayTriangles: number; splitVertices: number | null; cutTriangles: number | null }[];
+  parts: {
+    name: string;
+    place: string;
+    vertices: number;
+    triangles: number;
+    counts: PerZone;
+    uvSet: string | null;
+    overlayTriangles: number;
+    splitVertices: number | null;
+    cutTriangles: number | null;
+  }[];
   /** Milliseconds of CPU time. */
   timings: Run['result']['timings'];
   peakBytes: number;
 }
 
-const trianglesOf = (cosmetic: Uint8Array): Report['triangles'] => ({ total: cosmetic.length, cosmetic: cosmetic.reduce((sum, one) => sum + one, 0) });
+const trianglesOf = (cosmetic: Uint8Array): Report['triangles'] => ({
+  total: cosmetic.length,
+  cosmetic: cosmetic.reduce((sum, one) => sum + one, 0),
+});
 
-function makeReport(command: TransferCommand, { target, cage, result }: Run, added: Added[] | undefined, cut: CutTarget | undefined): Report {
+function makeReport(
+  command: TransferCommand,
+  { target, cage, result }: Run,
+  added: Added[] | undefined,
+  cut: CutTarget | undefined,
+): Report {
   const { mesh, parts } = target;
   const areas = vertexAreas(mesh);
   const partOfVertex = new Uint32Array(mesh.positions.length / 3);
@@ -115,7 +145,12 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
   }
   return {
     versions: { cagecast: CAGECAST_VERSION, node: process.versions.node },
-    target: { file: command.target, vertices: mesh.positions.length / 3, triangles: mesh.indices.length / 3, diagonal: diagonal(mesh.positions) },
+    target: {
+      file: command.target,
+      vertices: mesh.positions.length / 3,
+      triangles: mesh.indices.length / 3,
+      diagonal: diagonal(mesh.positions),
+    },
     cage: { file: command.cage, vertices: cage.mesh.positions.length / 3, triangles: cage.mesh.indices.length / 3 },
     texture: command.texture ?? null,
     output: command.output ?? null,
@@ -124,20 +159,24 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
     counts: perZone(result.zones),
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
     triangles: trianglesOf(result.cosmeticTriangles),
-    cut: cut ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) } : null,
-    segments: result.segmentStats.map(({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled, bared }, s) => ({
-      part: parts[segmentPart[s]!]!.name,
-      vertices: segmentVertices[s]!,
-      points,
-      area,
-      exposedArea,
-      coveredArea,
-      coverage,
-      sunkArea,
-      margin: Number.isFinite(margin) ? margin : null, // nothing is asked of it
-      culled,
-      bared,
-    })),
+    cut: cut
+      ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) }
+      : null,
+    segments: result.segmentStats.map(
+      ({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled, bared }, s) => ({
+        part: parts[segmentPart[s]!]!.name,
+        vertices: segmentVertices[s]!,
+        points,
+        area,
+        exposedArea,
+        coveredArea,
+        coverage,
+        sunkArea,
+        margin: Number.isFinite(margin) ? margin : null, // nothing is asked of it
+        culled,
+        bared,
+      }),
+    ),
     parts: parts.map((part, p) => ({
       name: part.name,
       place: placeOf(part),
@@ -154,7 +193,10 @@ function makeReport(command: TransferCommand, { target, cage, result }: Run, add
   };
 }
 
-function summary(command: TransferCommand, { target, counts, areas, triangles, cut, segments, parts, timings, output }: Report): string {
+function summary(
+  command: TransferCommand,
+  { target, counts, areas, triangles, cut, segments, parts, timings, output }: Report,
+): string {
   const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const rows = [
     ['', 'vertices', 'area'],
@@ -167,9 +209,13 @@ function summary(command: TransferCommand, { target, counts, areas, triangles, c
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
-    output === null ? '' : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
+    output === null
+      ? ''
+      : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
     command.report === undefined ? '' : `wrote ${command.report}`,
-    output === null && command.report === undefined ? 'nothing written; -o OUT.glb and --report R.json keep the result' : '',
+    output === null && command.report === undefined
+      ? 'nothing written; -o OUT.glb and --report R.json keep the result'
+      : '',
   ];
   return lines.filter(Boolean).join('\n');
 }

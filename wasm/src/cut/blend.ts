@@ -16,11 +16,17 @@ type Rule = 'mean' | 'direction' | 'heaviest';
 /** Whole numbers that nothing scales are names of something: there is nothing between them. */
 export function ruleOf(semantic: string, values: AttributeArray, normalized: boolean): Rule {
   if (semantic === 'NORMAL' || semantic === 'TANGENT') return 'direction';
-  return semantic.startsWith('JOINTS_') || (semantic.startsWith('_') && !(values instanceof Float32Array) && !normalized) ? 'heaviest' : 'mean';
+  return semantic.startsWith('JOINTS_') ||
+    (semantic.startsWith('_') && !(values instanceof Float32Array) && !normalized)
+    ? 'heaviest'
+    : 'mean';
 }
 
 /** The largest value of a normalised type: it stands for 1. */
-const one = (values: AttributeArray): number => (values instanceof Float32Array ? 1 : 2 ** (8 * values.BYTES_PER_ELEMENT - (values instanceof Int8Array || values instanceof Int16Array ? 1 : 0)) - 1);
+const one = (values: AttributeArray): number =>
+  values instanceof Float32Array
+    ? 1
+    : 2 ** (8 * values.BYTES_PER_ELEMENT - (values instanceof Int8Array || values instanceof Int16Array ? 1 : 0)) - 1;
 
 function extended<A extends AttributeArray>(values: A, size: number, { sources }: Blends): A {
   const out = new (values.constructor as new (length: number) => A)(values.length + (size * sources.length) / 3);
@@ -42,7 +48,8 @@ export function blend<A extends AttributeArray>(values: A, size: number, blends:
   const mean = new Float64Array(size);
   for (let i = 0; i < sources.length; i += 3) {
     const [a, b, c] = [size * sources[i]!, size * sources[i + 1]!, size * sources[i + 2]!];
-    for (let k = 0; k < size; ++k) mean[k] = weights[i]! * values[a + k]! + weights[i + 1]! * values[b + k]! + weights[i + 2]! * values[c + k]!;
+    for (let k = 0; k < size; ++k)
+      mean[k] = weights[i]! * values[a + k]! + weights[i + 1]! * values[b + k]! + weights[i + 2]! * values[c + k]!;
     const to = values.length + (size * i) / 3;
     const heaviest = rule === 'mean' ? 0 : size * heaviestOf(blends, i / 3);
     const length = rule === 'direction' ? Math.hypot(mean[0]!, mean[1]!, mean[2]!) : 0;
@@ -62,7 +69,10 @@ export function blend<A extends AttributeArray>(values: A, size: number, blends:
  * first, as many as there is room for; they add up to 1.
  * @param arrayOf  What belongs to a semantic, 4 numbers per vertex; sets are numbered without gaps.
  */
-export function blendSkin<A extends AttributeArray>(arrayOf: (semantic: string) => A | undefined, blends: Blends): Map<string, A> {
+export function blendSkin<A extends AttributeArray>(
+  arrayOf: (semantic: string) => A | undefined,
+  blends: Blends,
+): Map<string, A> {
   const joints: A[] = [];
   const weights: A[] = [];
   for (let set = 0; ; ++set) {
@@ -71,7 +81,10 @@ export function blendSkin<A extends AttributeArray>(arrayOf: (semantic: string) 
     joints.push(joint);
     weights.push(weight);
   }
-  const out = { joints: joints.map((set) => extended(set, 4, blends)), weights: weights.map((set) => extended(set, 4, blends)) };
+  const out = {
+    joints: joints.map((set) => extended(set, 4, blends)),
+    weights: weights.map((set) => extended(set, 4, blends)),
+  };
   for (let n = 0; n < blends.sources.length / 3; ++n) {
     const pulls = new Map<number, number>();
     for (let i = 3 * n; i < 3 * n + 3; ++i) {
@@ -90,12 +103,22 @@ export function blendSkin<A extends AttributeArray>(arrayOf: (semantic: string) 
       const [joint, pull] = strongest[place]!;
       const [set, slot] = [place >> 2, joints[0]!.length + 4 * n + (place & 3)];
       const whole = one(weights[set]!);
-      const share = place === 0 ? left : weights[set] instanceof Float32Array ? Math.fround(pull / sum) : Math.round((pull / sum) * whole) / whole;
+      const share =
+        place === 0
+          ? left
+          : weights[set] instanceof Float32Array
+            ? Math.fround(pull / sum)
+            : Math.round((pull / sum) * whole) / whole;
       left -= share;
       const weight = weights[set] instanceof Float32Array ? share : Math.round(share * whole);
       out.weights[set]![slot] = weight;
       out.joints[set]![slot] = weight > 0 ? joint : 0; // as the format has it
     }
   }
-  return new Map(joints.flatMap((_, set): [string, A][] => [[`JOINTS_${set}`, out.joints[set]!], [`WEIGHTS_${set}`, out.weights[set]!]]));
+  return new Map(
+    joints.flatMap((_, set): [string, A][] => [
+      [`JOINTS_${set}`, out.joints[set]!],
+      [`WEIGHTS_${set}`, out.weights[set]!],
+    ]),
+  );
 }

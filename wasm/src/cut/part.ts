@@ -1,7 +1,7 @@
 import type { CutTarget } from '../borders/index.js';
 import { gather, type PartGeometry } from '../split-part.js';
 import type { Classification } from '../transfer.js';
-import { heaviestOf, type Blends } from './blend.js';
+import { type Blends, heaviestOf } from './blend.js';
 
 /** A part as it was cut, as if there were no other, and what was transferred to it. */
 export interface CutPart {
@@ -19,27 +19,44 @@ export interface CutPart {
  */
 export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, ownCount: number): CutPart {
   const { firstVertex, vertexCount, firstTriangle, triangleCount, turned } = part;
-  const added = new Uint32Array(cut.sources.length / 3).map((_, n) => n).filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
+  const added = new Uint32Array(cut.sources.length / 3)
+    .map((_, n) => n)
+    .filter((n) => cut.sources[3 * n]! >= firstVertex && cut.sources[3 * n]! < firstVertex + vertexCount);
   const placeOf = new Uint32Array(cut.sources.length / 3);
   added.forEach((n, i) => (placeOf[n] = vertexCount + i));
-  const vertices = new Uint32Array(vertexCount + added.length).map((_, v) => (v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!));
+  const vertices = new Uint32Array(vertexCount + added.length).map((_, v) =>
+    v < vertexCount ? firstVertex + v : ownCount + added[v - vertexCount]!,
+  );
 
   const before = (limit: number) => {
     const first = cut.triangles.findIndex((t) => t >= limit);
     return first < 0 ? cut.triangles.length : first;
   };
   const [first, end] = [before(firstTriangle), before(firstTriangle + triangleCount)];
-  const localIndices = cut.indices.slice(3 * first, 3 * end).map((v) => (v < ownCount ? v - firstVertex : placeOf[v - ownCount]!));
-  for (let i = 0; turned && i < localIndices.length; i += 3) [localIndices[i + 1], localIndices[i + 2]] = [localIndices[i + 2]!, localIndices[i + 1]!];
+  const localIndices = cut.indices
+    .slice(3 * first, 3 * end)
+    .map((v) => (v < ownCount ? v - firstVertex : placeOf[v - ownCount]!));
+  for (let i = 0; turned && i < localIndices.length; i += 3)
+    [localIndices[i + 1], localIndices[i + 2]] = [localIndices[i + 2]!, localIndices[i + 1]!];
   return {
-    geometry: { firstVertex: 0, vertexCount: vertices.length, firstTriangle: 0, triangleCount: end - first, turned, localIndices },
+    geometry: {
+      firstVertex: 0,
+      vertexCount: vertices.length,
+      firstTriangle: 0,
+      triangleCount: end - first,
+      turned,
+      localIndices,
+    },
     result: {
       uvs: gather(cut.uvs, 2, vertices),
       cornerUvs: cut.cornerUvs.slice(6 * first, 6 * end),
       zones: gather(cut.zones, 1, vertices),
       cosmeticTriangles: cut.cosmeticTriangles.slice(first, end),
     },
-    blends: { sources: gather(cut.sources, 3, added).map((v) => v - firstVertex), weights: gather(cut.weights, 3, added) },
+    blends: {
+      sources: gather(cut.sources, 3, added).map((v) => v - firstVertex),
+      weights: gather(cut.weights, 3, added),
+    },
     origins: cut.triangles.slice(first, end),
   };
 }
@@ -53,7 +70,13 @@ type Decision = Pick<Classification, 'zones' | 'cosmeticTriangles'>;
  * @param indices  Of the whole target, as the decision is.
  * @param isOther  1 per vertex of the whole target: whether its segment has another verdict.
  */
-export function decideAgain({ result, blends, origins }: CutPart, { firstVertex, vertexCount }: PartGeometry, indices: ArrayLike<number>, isOther: ArrayLike<number>, now: Decision): Decision {
+export function decideAgain(
+  { result, blends, origins }: CutPart,
+  { firstVertex, vertexCount }: PartGeometry,
+  indices: ArrayLike<number>,
+  isOther: ArrayLike<number>,
+  now: Decision,
+): Decision {
   return {
     zones: result.zones.map((zone, v) => {
       // All of a piece, and all that a new vertex is a blend of, is of one segment.

@@ -31,7 +31,18 @@ export function meshoptView(view: GLTF.IBufferView): MeshoptView | undefined {
  */
 export function checkLists(json: GLTF.IGLTF): void {
   const isObject = (item: unknown) => typeof item === 'object' && item !== null;
-  for (const name of ['buffers', 'bufferViews', 'accessors', 'meshes', 'nodes', 'scenes', 'skins', 'materials', 'textures', 'images'] as const) {
+  for (const name of [
+    'buffers',
+    'bufferViews',
+    'accessors',
+    'meshes',
+    'nodes',
+    'scenes',
+    'skins',
+    'materials',
+    'textures',
+    'images',
+  ] as const) {
     listOf(name, json[name], isObject, 'objects');
   }
   const isText = (item: unknown) => typeof item === 'string';
@@ -44,7 +55,9 @@ export function checkLists(json: GLTF.IGLTF): void {
   }
   json.meshes?.forEach((mesh, m) => {
     listOf(`meshes[${m}].primitives`, mesh.primitives ?? null, isObject, 'objects');
-    mesh.primitives.forEach(({ targets }, p) => listOf(`meshes[${m}].primitives[${p}].targets`, targets, isObject, 'objects'));
+    mesh.primitives.forEach(({ targets }, p) =>
+      listOf(`meshes[${m}].primitives[${p}].targets`, targets, isObject, 'objects'),
+    );
   });
   json.nodes?.forEach((node, n) => listOf(`nodes[${n}].children`, node.children, Number.isInteger, 'numbers'));
   json.skins?.forEach((skin, s) => listOf(`skins[${s}].joints`, skin.joints, Number.isInteger, 'numbers'));
@@ -52,7 +65,8 @@ export function checkLists(json: GLTF.IGLTF): void {
 }
 
 function listOf(name: string, value: unknown, fits: (item: unknown) => boolean, what: string): void {
-  if (value !== undefined && !(Array.isArray(value) && value.every(fits))) throw new InputError(`${name} is not a list of ${what}`);
+  if (value !== undefined && !(Array.isArray(value) && value.every(fits)))
+    throw new InputError(`${name} is not a list of ${what}`);
 }
 
 /**
@@ -67,8 +81,21 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
   bufferViews.forEach((view, v) => {
     const name = `bufferViews[${v}]`;
     const compressed = meshoptView(view);
-    range(name, index(`${name}.buffer`, view.buffer, bytes.length, 'buffers'), view.byteOffset ?? 0, view.byteLength, compressed !== undefined);
-    if (compressed) range(`${name} (compressed)`, index(`${name}.buffer`, compressed.buffer, bytes.length, 'buffers'), compressed.byteOffset ?? 0, compressed.byteLength, false);
+    range(
+      name,
+      index(`${name}.buffer`, view.buffer, bytes.length, 'buffers'),
+      view.byteOffset ?? 0,
+      view.byteLength,
+      compressed !== undefined,
+    );
+    if (compressed)
+      range(
+        `${name} (compressed)`,
+        index(`${name}.buffer`, compressed.buffer, bytes.length, 'buffers'),
+        compressed.byteOffset ?? 0,
+        compressed.byteLength,
+        false,
+      );
   });
 
   function range(name: string, buffer: number, offset: number, length: number, mayLack: boolean): void {
@@ -84,14 +111,24 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
     const name = `accessors[${a}]`;
     const component = componentBytes[accessor.componentType];
     const components = typeComponents[accessor.type];
-    if (component === undefined) throw new InputError(`${name}.componentType = ${show(accessor.componentType)} is unknown`);
+    if (component === undefined)
+      throw new InputError(`${name}.componentType = ${show(accessor.componentType)} is unknown`);
     if (components === undefined) throw new InputError(`${name}.type = ${show(accessor.type)} is unknown`);
-    if (whole(`${name}.count`, accessor.count) > maxCount) throw new InputError(`${name}.count = ${accessor.count} is more than ${maxCount}`);
-    if (accessor.bufferView !== undefined) within(name, accessor.bufferView, accessor.byteOffset ?? 0, component * components, accessor.count);
+    if (whole(`${name}.count`, accessor.count) > maxCount)
+      throw new InputError(`${name}.count = ${accessor.count} is more than ${maxCount}`);
+    if (accessor.bufferView !== undefined)
+      within(name, accessor.bufferView, accessor.byteOffset ?? 0, component * components, accessor.count);
     if (accessor.sparse) {
       const { count, indices, values } = accessor.sparse;
-      if (whole(`${name}.sparse.count`, count) > accessor.count) throw new InputError(`${name}.sparse.count = ${count} is more than its count ${accessor.count}`);
-      within(`${name}.sparse.indices`, indices?.bufferView, indices?.byteOffset ?? 0, componentBytes[indices?.componentType] ?? 4, count);
+      if (whole(`${name}.sparse.count`, count) > accessor.count)
+        throw new InputError(`${name}.sparse.count = ${count} is more than its count ${accessor.count}`);
+      within(
+        `${name}.sparse.indices`,
+        indices?.bufferView,
+        indices?.byteOffset ?? 0,
+        componentBytes[indices?.componentType] ?? 4,
+        count,
+      );
       within(`${name}.sparse.values`, values?.bufferView, values?.byteOffset ?? 0, component * components, count);
     }
   });
@@ -101,28 +138,34 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
     whole(`${name}.byteOffset`, offset);
     const stride = view.byteStride ?? elementBytes;
     const end = count === 0 ? 0 : offset + stride * (count - 1) + elementBytes;
-    if (end > view.byteLength) throw new InputError(`${name} ends at byte ${end} of bufferViews[${at}], which has ${view.byteLength}`);
+    if (end > view.byteLength)
+      throw new InputError(`${name} ends at byte ${end} of bufferViews[${at}], which has ${view.byteLength}`);
   }
 
   meshes.forEach((mesh, m) => {
     if (mesh.primitives.length === 0) throw new InputError(`meshes[${m}] has no primitives`);
     mesh.primitives.forEach((primitive, p) => {
       const name = `meshes[${m}].primitives[${p}]`;
-      if (typeof primitive.attributes !== 'object' || primitive.attributes === null) throw new InputError(`${name} has no attributes`);
+      if (typeof primitive.attributes !== 'object' || primitive.attributes === null)
+        throw new InputError(`${name} has no attributes`);
       const vertexCount = accessors[primitive.attributes['POSITION']!]?.count ?? 0;
       const attribute = (place: string, accessor: unknown) => {
         const { count } = accessors[index(place, accessor, accessors.length, 'accessors')]!;
         if (count < vertexCount) throw new InputError(`${place} has ${count} elements for ${vertexCount} vertices`);
       };
-      for (const [semantic, accessor] of Object.entries(primitive.attributes)) attribute(`${name}.attributes.${semantic}`, accessor);
+      for (const [semantic, accessor] of Object.entries(primitive.attributes))
+        attribute(`${name}.attributes.${semantic}`, accessor);
       if (primitive.indices !== undefined) index(`${name}.indices`, primitive.indices, accessors.length, 'accessors');
       primitive.targets?.forEach((deltas, t) => {
-        for (const [semantic, accessor] of Object.entries(deltas)) attribute(`${name}.targets[${t}].${semantic}`, accessor);
+        for (const [semantic, accessor] of Object.entries(deltas))
+          attribute(`${name}.targets[${t}].${semantic}`, accessor);
       });
-      if (primitive.material !== undefined) index(`${name}.material`, primitive.material, materials.length, 'materials');
+      if (primitive.material !== undefined)
+        index(`${name}.material`, primitive.material, materials.length, 'materials');
       const draco = dracoOf(primitive);
       if (draco === undefined) return;
-      if (typeof draco?.attributes !== 'object' || draco.attributes === null) throw new InputError(`${name} is compressed, but has no compressed attributes`);
+      if (typeof draco?.attributes !== 'object' || draco.attributes === null)
+        throw new InputError(`${name} is compressed, but has no compressed attributes`);
       index(`${name} (compressed).bufferView`, draco.bufferView, bufferViews.length, 'bufferViews');
     });
   });
@@ -131,7 +174,12 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
   nodes.forEach((node, n) => {
     if (node.mesh !== undefined) index(`nodes[${n}].mesh`, node.mesh, meshes.length, 'meshes');
     if (node.skin !== undefined) index(`nodes[${n}].skin`, node.skin, skins.length, 'skins');
-    for (const [name, length] of [['matrix', 16], ['translation', 3], ['rotation', 4], ['scale', 3]] as const) {
+    for (const [name, length] of [
+      ['matrix', 16],
+      ['translation', 3],
+      ['rotation', 4],
+      ['scale', 3],
+    ] as const) {
       const value: unknown = node[name];
       if (value !== undefined && !(Array.isArray(value) && value.length === length && value.every(Number.isFinite))) {
         throw new InputError(`nodes[${n}].${name} is not ${length} finite numbers`);
@@ -139,13 +187,15 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
     }
     for (const child of node.children ?? []) {
       index(`nodes[${n}].children`, child, nodes.length, 'nodes');
-      if (parents[child] !== undefined) throw new InputError(`nodes[${child}] has two parents, nodes[${parents[child]}] and nodes[${n}]`);
+      if (parents[child] !== undefined)
+        throw new InputError(`nodes[${child}] has two parents, nodes[${parents[child]}] and nodes[${n}]`);
       parents[child] = n;
     }
   });
   skins.forEach(({ joints = [], inverseBindMatrices }, s) => {
     for (const joint of joints) index(`skins[${s}].joints`, joint, nodes.length, 'nodes');
-    if (inverseBindMatrices !== undefined) index(`skins[${s}].inverseBindMatrices`, inverseBindMatrices, accessors.length, 'accessors');
+    if (inverseBindMatrices !== undefined)
+      index(`skins[${s}].inverseBindMatrices`, inverseBindMatrices, accessors.length, 'accessors');
   });
   if (json.scene !== undefined) index('scene', json.scene, scenes.length, 'scenes');
   scenes.forEach((scene, s) => {
@@ -155,13 +205,16 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
       if (roots.has(node)) throw new InputError(`nodes[${node}] is twice a root of scenes[${s}]`);
       roots.add(node);
       // With one parent at most for every node, a root cannot be in a cycle.
-      if (parents[node] !== undefined) throw new InputError(`nodes[${node}] is a root of scenes[${s}] and a child of nodes[${parents[node]}]`);
+      if (parents[node] !== undefined)
+        throw new InputError(`nodes[${node}] is a root of scenes[${s}] and a child of nodes[${parents[node]}]`);
     }
   });
 }
 
 /** The Draco form of a primitive, if it has one. */
-export function dracoOf(primitive: GLTF.IMeshPrimitive): { bufferView: number; attributes: Record<string, number> } | undefined {
+export function dracoOf(
+  primitive: GLTF.IMeshPrimitive,
+): { bufferView: number; attributes: Record<string, number> } | undefined {
   return primitive.extensions?.['KHR_draco_mesh_compression'] as ReturnType<typeof dracoOf>;
 }
 
@@ -173,6 +226,7 @@ function index(name: string, value: unknown, count: number, list: string): numbe
 }
 
 function whole(name: string, value: unknown): number {
-  if (!Number.isSafeInteger(value) || (value as number) < 0) throw new InputError(`${name} = ${show(value)} is not a whole number`);
+  if (!Number.isSafeInteger(value) || (value as number) < 0)
+    throw new InputError(`${name} = ${show(value)} is not a whole number`);
   return value as number;
 }

@@ -1,13 +1,45 @@
-import type { Accessor, Document, Material, Mesh as DocumentMesh, Node, Primitive, Property, Skin, Texture, TypedArray } from '@gltf-transform/core';
+import type {
+  Accessor,
+  Document,
+  Mesh as DocumentMesh,
+  Material,
+  Node,
+  Primitive,
+  Property,
+  Skin,
+  Texture,
+  TypedArray,
+} from '@gltf-transform/core';
 import type * as cutting from '../cut/index.js';
 import type { Mesh, TransferResult } from '../index.js';
 import { skinMatrix, usedJoints } from '../skin.js';
-import { gather, splitPart, type SplitPart } from '../split-part.js';
+import { gather, type SplitPart, splitPart } from '../split-part.js';
 import { InputError } from './input-error.js';
 import { instancing, isInstanced } from './instancing.js';
-import { identity, isTurned, localMatrix, multiply, type Matrix } from './matrix.js';
-import { cosmeticCorners, diagonal, freeUvSet, isMorphed, isOverlaid, isOverlay, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
-import { aliasesOf, cutPiece, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
+import { identity, isTurned, localMatrix, type Matrix, multiply } from './matrix.js';
+import {
+  cosmeticCorners,
+  diagonal,
+  freeUvSet,
+  isMorphed,
+  isOverlaid,
+  isOverlay,
+  overlayMark,
+  overlayOffset,
+  overlayPositions,
+  type Paint,
+  zoneAttribute,
+} from './overlay.js';
+import {
+  aliasesOf,
+  cutPiece,
+  decodeFloats,
+  decodePositions,
+  decodeTriangles,
+  hasTriangles,
+  joinPieces,
+  type Piece,
+} from './pieces.js';
 
 /** A piece, and its place in the document. */
 export interface DocumentPart extends Piece {
@@ -38,8 +70,10 @@ export function extractDocument(document: Document): ExtractedDocument {
   const uvs = new Float32Array((mesh.positions.length / 3) * 2);
   parts.forEach((part, p) => {
     const set = sets[p]!;
-    if (set.getElementSize() !== 2) throw new InputError(`"${part.name}" has a TEXCOORD_0 of type ${set.getType()}, not VEC2`);
-    if (set.getCount() !== part.vertexCount) throw new InputError(`"${part.name}" has ${set.getCount()} TEXCOORD_0 for ${part.vertexCount} vertices`);
+    if (set.getElementSize() !== 2)
+      throw new InputError(`"${part.name}" has a TEXCOORD_0 of type ${set.getType()}, not VEC2`);
+    if (set.getCount() !== part.vertexCount)
+      throw new InputError(`"${part.name}" has ${set.getCount()} TEXCOORD_0 for ${part.vertexCount} vertices`);
     uvs.set(decodeFloats(set), 2 * part.firstVertex);
   });
   return { mesh: { ...mesh, uvs }, parts };
@@ -54,22 +88,34 @@ function listParts(document: Document): DocumentPart[] {
   const stack = roots.map((node) => ({ node, parent: identity })).reverse();
   for (let next = stack.pop(); next; next = stack.pop()) {
     const { node, parent } = next;
-    const matrix = multiply(parent, localMatrix({ translation: node.getTranslation(), rotation: node.getRotation(), scale: node.getScale() }));
+    const matrix = multiply(
+      parent,
+      localMatrix({ translation: node.getTranslation(), rotation: node.getRotation(), scale: node.getScale() }),
+    );
     for (const child of node.listChildren().reverse()) stack.push({ node: child, parent: matrix });
     const [mesh, skin] = [node.getMesh(), node.getSkin()];
-    if (mesh && node.getExtension(instancing)) throw new InputError(`"${node.getName() || mesh.getName()}" ${isInstanced}`);
+    if (mesh && node.getExtension(instancing))
+      throw new InputError(`"${node.getName() || mesh.getName()}" ${isInstanced}`);
     mesh?.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');
       if (position === null || !hasTriangles(primitive.getMode()) || isOverlay(primitive.getExtras())) return;
-      const all = [primitive, ...primitive.listTargets()].flatMap((of) => of.listSemantics().map((semantic) => [semantic, of.getAttribute(semantic)!.getCount()] as const));
+      const all = [primitive, ...primitive.listTargets()].flatMap((of) =>
+        of.listSemantics().map((semantic) => [semantic, of.getAttribute(semantic)!.getCount()] as const),
+      );
       const short = all.find(([, count]) => count < position.getCount());
       if (short) throw new InputError(`${place} has ${short[1]} ${short[0]} for ${position.getCount()} vertices`);
       const localPositions = decodePositions(place, position);
-      const localIndices = decodeTriangles(place, primitive.getIndices()?.getArray() ?? null, primitive.getMode(), localPositions.length / 3);
+      const localIndices = decodeTriangles(
+        place,
+        primitive.getIndices()?.getArray() ?? null,
+        primitive.getMode(),
+        localPositions.length / 3,
+      );
       const name = node.getName() || mesh.getName() || place;
       const material = primitive.getMaterial()?.getName() ?? '';
-      const fullName = material !== '' && material !== name && mesh.listPrimitives().length > 1 ? `${name}/${material}` : name;
+      const fullName =
+        material !== '' && material !== name && mesh.listPrimitives().length > 1 ? `${name}/${material}` : name;
       const last = parts.at(-1);
       parts.push({
         name: fullName,
@@ -92,11 +138,18 @@ function listParts(document: Document): DocumentPart[] {
 
 /** Where a skin holds a primitive. */
 function matrixOfSkin(skin: Skin, primitive: Primitive, positions: Float32Array): Matrix {
-  const [held, weights] = [primitive.getAttribute('JOINTS_0')?.getArray(), primitive.getAttribute('WEIGHTS_0')?.getArray()];
+  const [held, weights] = [
+    primitive.getAttribute('JOINTS_0')?.getArray(),
+    primitive.getAttribute('WEIGHTS_0')?.getArray(),
+  ];
   const joints = skin.listJoints();
   const inverses = skin.getInverseBindMatrices()?.getArray();
   if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
-  const products: Matrix[] = joints.map((joint, j) => (inverses ? multiply(joint.getWorldMatrix(), Array.from(inverses.subarray(16 * j, 16 * j + 16))) : joint.getWorldMatrix()));
+  const products: Matrix[] = joints.map((joint, j) =>
+    inverses
+      ? multiply(joint.getWorldMatrix(), Array.from(inverses.subarray(16 * j, 16 * j + 16)))
+      : joint.getWorldMatrix(),
+  );
   const isFloat = primitive.getAttribute('POSITION')!.getArray() instanceof Float32Array;
   return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
 }
@@ -112,12 +165,23 @@ export interface Cut {
  * with a texture, an overlay primitive of its cosmetic triangles; new vertices along borders that are cut, and copies of those
  * whose triangles have different UVs there, after those that it has. A mesh that several nodes show becomes one for each.
  */
-export function addTransfer(document: Document, { mesh, parts }: ExtractedDocument, result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>, paint?: Paint, cut?: Cut): void {
+export function addTransfer(
+  document: Document,
+  { mesh, parts }: ExtractedDocument,
+  result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
+  paint?: Paint,
+  cut?: Cut,
+): void {
   const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
   const attribute = (array: Float32Array, type: 'SCALAR' | 'VEC2' | 'VEC3') =>
     // A copy with a buffer of its own: views into one that is shared would be written whole, once for each.
     document.createAccessor().setType(type).setArray(new Float32Array(array)).setBuffer(buffer);
-  const texture = paint && document.createTexture(paint.name).setMimeType(paint.mimeType).setImage(paint.bytes as Uint8Array<ArrayBuffer>);
+  const texture =
+    paint &&
+    document
+      .createTexture(paint.name)
+      .setMimeType(paint.mimeType)
+      .setImage(paint.bytes as Uint8Array<ArrayBuffer>);
   const materials = new Map<string, Material>();
   const offset = overlayOffset * diagonal(mesh.positions);
   const primitiveOf = separatePrimitives(document, parts);
@@ -131,13 +195,30 @@ export function addTransfer(document: Document, { mesh, parts }: ExtractedDocume
     const blends = cutOne && cutOne.blends.sources.length > 0 ? cutOne.blends : undefined;
     const split = splitPart(geometry, own);
     const indices = (corners: Uint32Array) =>
-      document.createAccessor().setType('SCALAR').setArray(split.sources.length < 65536 ? Uint16Array.from(corners) : Uint32Array.from(corners)).setBuffer(buffer);
-    if (split.copies > 0 || blends) remakePrimitive(primitive, split, indices(split.indices), blends && blender(primitive, blends, cut!.tools));
+      document
+        .createAccessor()
+        .setType('SCALAR')
+        .setArray(split.sources.length < 65536 ? Uint16Array.from(corners) : Uint32Array.from(corners))
+        .setBuffer(buffer);
+    if (split.copies > 0 || blends)
+      remakePrimitive(primitive, split, indices(split.indices), blends && blender(primitive, blends, cut!.tools));
     const uvs = attribute(split.uvs, 'VEC2');
     const zones = own.zones.subarray(firstVertex, firstVertex + vertexCount);
-    primitive.setAttribute(freeUvSet((semantic) => primitive.getAttribute(semantic) !== null), uvs);
-    primitive.setAttribute(zoneAttribute, attribute(Float32Array.from(split.sources, (v) => zones[v]!), 'SCALAR'));
-    const corners = cosmeticCorners(split.indices, own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount));
+    primitive.setAttribute(
+      freeUvSet((semantic) => primitive.getAttribute(semantic) !== null),
+      uvs,
+    );
+    primitive.setAttribute(
+      zoneAttribute,
+      attribute(
+        Float32Array.from(split.sources, (v) => zones[v]!),
+        'SCALAR',
+      ),
+    );
+    const corners = cosmeticCorners(
+      split.indices,
+      own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
+    );
     if (!texture || corners.length === 0) return;
 
     const piece = cutOne ? cutPiece(part, geometry, cut!.tools.blend(part.localPositions, 3, cutOne.blends)) : part;
@@ -148,14 +229,17 @@ export function addTransfer(document: Document, { mesh, parts }: ExtractedDocume
       .setIndices(indices(corners))
       .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials))
       .setExtras({ ...overlayMark });
-    for (const semantic of primitive.listSemantics()) if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
+    for (const semantic of primitive.listSemantics())
+      if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
     for (const morph of primitive.listTargets()) {
       const own = document.createPrimitiveTarget(morph.getName());
       for (const semantic of morph.listSemantics()) {
-        if (isMorphed(semantic, overlay.getAttribute('NORMAL') !== null)) own.setAttribute(semantic, morph.getAttribute(semantic));
+        if (isMorphed(semantic, overlay.getAttribute('NORMAL') !== null))
+          own.setAttribute(semantic, morph.getAttribute(semantic));
       }
       // One without anything in it is not allowed.
-      if (own.listSemantics().length === 0) own.setAttribute('POSITION', attribute(new Float32Array(3 * split.sources.length), 'VEC3'));
+      if (own.listSemantics().length === 0)
+        own.setAttribute('POSITION', attribute(new Float32Array(3 * split.sources.length), 'VEC3'));
       overlay.addTarget(own);
     }
     part.node.getMesh()!.addPrimitive(overlay);
@@ -171,7 +255,15 @@ function blender(primitive: Primitive, blends: cutting.Blends, { blend, blendSki
   return (accessor, semantic) => {
     const array = accessor.getArray()!;
     const pulls = semantic === undefined ? undefined : skin.get(semantic);
-    return pulls ?? blend(array, accessor.getElementSize(), blends, semantic === undefined ? 'mean' : ruleOf(semantic, array, accessor.getNormalized()));
+    return (
+      pulls ??
+      blend(
+        array,
+        accessor.getElementSize(),
+        blends,
+        semantic === undefined ? 'mean' : ruleOf(semantic, array, accessor.getNormalized()),
+      )
+    );
   };
 }
 
@@ -179,18 +271,27 @@ function blender(primitive: Primitive, blends: cutting.Blends, { blend, blendSki
  * Gives a primitive new vertices, those that `extend` makes and copies, in all of its attributes and morph targets. What nothing
  * else uses is let go.
  */
-function remakePrimitive(primitive: Primitive, { sources }: SplitPart, indices: Accessor, extend: Extend = (accessor) => accessor.getArray()!): void {
+function remakePrimitive(
+  primitive: Primitive,
+  { sources }: SplitPart,
+  indices: Accessor,
+  extend: Extend = (accessor) => accessor.getArray()!,
+): void {
   const made = new Map<Accessor, Accessor>();
   const remake = (accessor: Accessor, semantic?: string): Accessor => {
     const known = made.get(accessor);
     if (known) return known;
-    const own = accessor.clone().setSparse(false).setArray(gather(extend(accessor, semantic), accessor.getElementSize(), sources));
+    const own = accessor
+      .clone()
+      .setSparse(false)
+      .setArray(gather(extend(accessor, semantic), accessor.getElementSize(), sources));
     made.set(accessor, own);
     return own;
   };
   const before = primitive.getIndices();
   primitive.setIndices(indices).setMode(4); // strips and fans have become lists
-  for (const semantic of primitive.listSemantics()) primitive.setAttribute(semantic, remake(primitive.getAttribute(semantic)!, semantic));
+  for (const semantic of primitive.listSemantics())
+    primitive.setAttribute(semantic, remake(primitive.getAttribute(semantic)!, semantic));
   for (const target of primitive.listTargets()) {
     const own = target.clone();
     for (const semantic of own.listSemantics()) own.setAttribute(semantic, remake(own.getAttribute(semantic)!));
@@ -200,7 +301,8 @@ function remakePrimitive(primitive: Primitive, { sources }: SplitPart, indices: 
   for (const accessor of [...made.keys(), ...(before ? [before] : [])]) if (isUnused(accessor)) accessor.dispose();
 }
 
-const isUnused = (property: Property): boolean => property.listParents().every((parent) => parent.propertyType === 'Root');
+const isUnused = (property: Property): boolean =>
+  property.listParents().every((parent) => parent.propertyType === 'Root');
 
 /**
  * Gives every node that is transferred to a mesh and primitives of its own; those that are not, as of other scenes, share a mesh
@@ -224,7 +326,9 @@ function separatePrimitives(document: Document, parts: readonly DocumentPart[]):
     ownOf.set(node, new Map(before.map((primitive, p) => [primitive, after[p]!])));
   }
   for (const mesh of document.getRoot().listMeshes()) {
-    const others = mesh.listParents().filter((parent) => parent.propertyType === 'Node' && !nodes.has(parent as Node)) as Node[];
+    const others = mesh
+      .listParents()
+      .filter((parent) => parent.propertyType === 'Node' && !nodes.has(parent as Node)) as Node[];
     if (others.length === 0 || !mesh.listPrimitives().some((primitive) => primitives.has(primitive))) continue;
     const own = mesh.clone();
     for (const primitive of mesh.listPrimitives()) own.removePrimitive(primitive).addPrimitive(primitive.clone());
@@ -234,7 +338,12 @@ function separatePrimitives(document: Document, parts: readonly DocumentPart[]):
 }
 
 /** A material that shows the texture alone, as rough and as two-sided as the base's. */
-function materialOn(document: Document, texture: Texture, base: Material | null, made: Map<string, Material>): Material {
+function materialOn(
+  document: Document,
+  texture: Texture,
+  base: Material | null,
+  made: Map<string, Material>,
+): Material {
   const roughness = base?.getRoughnessFactor() ?? 1;
   const doubleSided = base?.getDoubleSided() ?? false;
   const key = `${roughness} ${doubleSided}`;

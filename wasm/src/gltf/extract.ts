@@ -1,12 +1,20 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import type { Mesh } from '../mesh.js';
-import { InputError } from './input-error.js';
-import { identity, localMatrix, multiply, type Matrix } from './matrix.js';
-import { isOverlay } from './overlay.js';
-import { instancing, isInstanced } from './instancing.js';
-import { aliasesOf, decodeFloats, decodePositions, decodeTriangles, hasTriangles, joinPieces, type Piece } from './pieces.js';
-import type { GltfFile } from './read.js';
 import { skinMatrix, usedJoints } from '../skin.js';
+import { InputError } from './input-error.js';
+import { instancing, isInstanced } from './instancing.js';
+import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
+import { isOverlay } from './overlay.js';
+import {
+  aliasesOf,
+  decodeFloats,
+  decodePositions,
+  decodeTriangles,
+  hasTriangles,
+  joinPieces,
+  type Piece,
+} from './pieces.js';
+import type { GltfFile } from './read.js';
 
 /** A piece, and its place in the file's JSON. */
 export interface Part extends Piece {
@@ -77,14 +85,18 @@ function listParts(file: GltfFile): Part[] {
       if (localIndices === undefined) return;
       const name = nodeDef.name ?? meshDef.name ?? `nodes[${node}]`;
       const material = primitive.material === undefined ? undefined : materials[primitive.material]?.name;
-      const fullName = material !== undefined && material !== name && meshDef.primitives.length > 1 ? `${name}/${material}` : name;
+      const fullName =
+        material !== undefined && material !== name && meshDef.primitives.length > 1 ? `${name}/${material}` : name;
       const part: Part = {
         name: fullName,
         aliases: aliasesOf(nodeDef.name, meshDef.name, material, fullName),
         node,
         mesh: nodeDef.mesh!,
         primitive: p,
-        matrix: nodeDef.skin === undefined ? matrix : matrixOfSkin(file, nodeDef.skin, placeOf, place, nodeDef.mesh!, p, localPositions),
+        matrix:
+          nodeDef.skin === undefined
+            ? matrix
+            : matrixOfSkin(file, nodeDef.skin, placeOf, place, nodeDef.mesh!, p, localPositions),
         firstVertex,
         vertexCount: localPositions.length / 3,
         firstTriangle,
@@ -101,13 +113,26 @@ function listParts(file: GltfFile): Part[] {
 }
 
 /** Where a skin holds a primitive. */
-function matrixOfSkin(file: GltfFile, skin: number, placeOf: readonly Matrix[], place: string, mesh: number, primitive: number, positions: Float32Array): Matrix {
+function matrixOfSkin(
+  file: GltfFile,
+  skin: number,
+  placeOf: readonly Matrix[],
+  place: string,
+  mesh: number,
+  primitive: number,
+  positions: Float32Array,
+): Matrix {
   const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
   const accessor = (semantic: string) => accessorOf(file, place, mesh, primitive, semantic);
   const [held, weights] = [accessor('JOINTS_0')?.getArray(), accessor('WEIGHTS_0')?.getArray()];
-  const inverses = inverseBindMatrices === undefined ? undefined : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
+  const inverses =
+    inverseBindMatrices === undefined
+      ? undefined
+      : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
   if (!held || !weights || inverses === null || (inverses && inverses.length < 16 * joints.length)) return identity;
-  const products = joints.map((joint, j) => (inverses ? multiply(placeOf[joint]!, Array.from(inverses.subarray(16 * j, 16 * j + 16))) : placeOf[joint]!));
+  const products = joints.map((joint, j) =>
+    inverses ? multiply(placeOf[joint]!, Array.from(inverses.subarray(16 * j, 16 * j + 16))) : placeOf[joint]!,
+  );
   const isFloat = accessor('POSITION')?.getArray() instanceof Float32Array;
   return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
 }
@@ -135,13 +160,21 @@ function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {
 }
 
 /** The accessor of a primitive, decoded, and checked to have as many elements as the file says. */
-function accessorOf(file: GltfFile, place: string, mesh: number, primitive: number, semantic: string): Accessor | undefined {
+function accessorOf(
+  file: GltfFile,
+  place: string,
+  mesh: number,
+  primitive: number,
+  semantic: string,
+): Accessor | undefined {
   const { attributes } = file.json.meshes![mesh]!.primitives[primitive]!;
   if (attributes[semantic] === undefined) return undefined;
   const accessor = file.geometry.getRoot().listAccessors()[attributes[semantic]];
   const expected = file.json.accessors![attributes[semantic]]!.count;
   if (accessor?.getArray() === null || accessor?.getCount() !== expected) {
-    throw new InputError(`${place}.attributes.${semantic} has ${accessor?.getCount() ?? 0} elements, not the ${expected} of its accessor`);
+    throw new InputError(
+      `${place}.attributes.${semantic} has ${accessor?.getCount() ?? 0} elements, not the ${expected} of its accessor`,
+    );
   }
   return accessor;
 }
@@ -153,7 +186,13 @@ function readPositions(file: GltfFile, place: string, mesh: number, primitive: n
 }
 
 /** The triangles of a primitive, strips and fans expanded; `undefined` if it is of points or lines. */
-function readTriangles(file: GltfFile, place: string, mesh: number, primitive: number, vertexCount: number): Uint32Array | undefined {
+function readTriangles(
+  file: GltfFile,
+  place: string,
+  mesh: number,
+  primitive: number,
+  vertexCount: number,
+): Uint32Array | undefined {
   const { indices, mode = 4 } = file.json.meshes![mesh]!.primitives[primitive]!;
   if (!hasTriangles(mode)) return undefined;
   const accessor = indices === undefined ? undefined : file.geometry.getRoot().listAccessors()[indices];
@@ -167,7 +206,8 @@ function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Arr
   for (const part of parts) {
     const accessor = accessorOf(file, placeOf(part), part.mesh, part.primitive, 'TEXCOORD_0');
     if (accessor === undefined) return undefined;
-    if (accessor.getElementSize() !== 2) throw new InputError(`${placeOf(part)}.attributes.TEXCOORD_0 is ${accessor.getType()}, not VEC2`);
+    if (accessor.getElementSize() !== 2)
+      throw new InputError(`${placeOf(part)}.attributes.TEXCOORD_0 is ${accessor.getType()}, not VEC2`);
     if (accessor.getCount() !== part.vertexCount) {
       throw new InputError(`${placeOf(part)} has ${accessor.getCount()} TEXCOORD_0 for ${part.vertexCount} vertices`);
     }

@@ -1,9 +1,9 @@
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
 import { meshoptExtensions, meshoptView } from './check.js';
-import { readUri, type GltfFile } from './read.js';
-import { InputError } from './input-error.js';
 import { imageType } from './image.js';
+import { InputError } from './input-error.js';
+import { type GltfFile, readUri } from './read.js';
 
 const arrayBuffer = 34962;
 const elementArrayBuffer = 34963;
@@ -58,7 +58,9 @@ export class GlbWriter {
 
   #mergeBuffers(buffers: (Uint8Array | undefined)[]): void {
     const { json } = this;
-    const offsets = buffers.map((bytes, b) => (bytes ? this.#append(bytes.subarray(0, json.buffers![b]!.byteLength)) : 0));
+    const offsets = buffers.map((bytes, b) =>
+      bytes ? this.#append(bytes.subarray(0, json.buffers![b]!.byteLength)) : 0,
+    );
     // Buffers without bytes only stand for compressed views; they keep doing so, after the one that has them all.
     const kept = buffers.flatMap((bytes, b) => (bytes ? [] : [b]));
     const numbers = buffers.map((bytes, b) => (bytes ? 0 : 1 + kept.indexOf(b)));
@@ -104,7 +106,13 @@ export class GlbWriter {
 
   #addView(bytes: Uint8Array, target?: number, byteStride?: number): number {
     const byteOffset = this.#append(bytes);
-    const view = { buffer: 0, byteOffset, byteLength: bytes.byteLength, ...(byteStride !== undefined && { byteStride }), ...(target !== undefined && { target }) };
+    const view = {
+      buffer: 0,
+      byteOffset,
+      byteLength: bytes.byteLength,
+      ...(byteStride !== undefined && { byteStride }),
+      ...(target !== undefined && { target }),
+    };
     return (this.json.bufferViews ??= []).push(view as GLTF.IBufferView) - 1;
   }
 
@@ -112,7 +120,12 @@ export class GlbWriter {
   addAttribute(values: AttributeArray, size: number, more: Partial<GLTF.IAccessor> = {}): number {
     const count = values.length / size;
     const { aligned, byteStride } = align(values, size);
-    return this.#addAccessor(aligned, arrayBuffer, { componentType: componentTypeOf(values), count, type: types[size as keyof typeof types], ...more }, byteStride);
+    return this.#addAccessor(
+      aligned,
+      arrayBuffer,
+      { componentType: componentTypeOf(values), count, type: types[size as keyof typeof types], ...more },
+      byteStride,
+    );
   }
 
   /** Adds the indices of triangles, as small as they can be. @returns the number of their accessor. */
@@ -126,9 +139,19 @@ export class GlbWriter {
     });
   }
 
-  #addAccessor(values: AttributeArray, target: number, accessor: Omit<GLTF.IAccessor, 'bufferView'>, byteStride?: number): number {
+  #addAccessor(
+    values: AttributeArray,
+    target: number,
+    accessor: Omit<GLTF.IAccessor, 'bufferView'>,
+    byteStride?: number,
+  ): number {
     const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
-    return (this.json.accessors ??= []).push({ bufferView: this.#addView(bytes, target, byteStride), ...accessor } as GLTF.IAccessor) - 1;
+    return (
+      (this.json.accessors ??= []).push({
+        bufferView: this.#addView(bytes, target, byteStride),
+        ...accessor,
+      } as GLTF.IAccessor) - 1
+    );
   }
 
   /** Adds a texture of a PNG or JPEG file's bytes. @returns the number of the texture. */

@@ -3,10 +3,10 @@
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
-import { isCut, type Borders } from '../cut/option.js';
-import { CagecastError, init, transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
+import { type Borders, isCut } from '../cut/option.js';
 import { show } from '../error.js';
-import { addTransfer, extractDocument, type Cut } from './document.js';
+import { CagecastError, init, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { addTransfer, type Cut, extractDocument } from './document.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
@@ -54,14 +54,17 @@ export interface CagecastOptions extends TransferOptions {
  * await io.write('painted.glb', document);
  */
 export function cagecast(options: CagecastOptions): Transform {
-  if (typeof options !== 'object' || options === null) throw new CagecastError('badArgument', `cagecast: the argument is ${show(options)}, not an object`);
+  if (typeof options !== 'object' || options === null)
+    throw new CagecastError('badArgument', `cagecast: the argument is ${show(options)}, not an object`);
   const { cage, texture, borders, onResult, ...rules } = options;
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
     await init();
-    const wrong = (argument: string, value: unknown, type: string) => new CagecastError('badArgument', `cagecast: ${argument} is ${show(value)}, not ${type}`);
+    const wrong = (argument: string, value: unknown, type: string) =>
+      new CagecastError('badArgument', `cagecast: ${argument} is ${show(value)}, not ${type}`);
     if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'a document or a mesh');
-    if (texture !== undefined && !(texture instanceof Uint8Array)) throw wrong('texture', texture, "a Uint8Array of a file's bytes");
+    if (texture !== undefined && !(texture instanceof Uint8Array))
+      throw wrong('texture', texture, "a Uint8Array of a file's bytes");
     const paint = texture && within('texture', () => paintOf(texture));
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));
@@ -70,7 +73,13 @@ export function cagecast(options: CagecastOptions): Transform {
     addTransfer(document, target, result, paint, cut);
     onResult?.(
       result,
-      target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({ name, firstVertex, vertexCount, firstTriangle, triangleCount })),
+      target.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
+        name,
+        firstVertex,
+        vertexCount,
+        firstTriangle,
+        triangleCount,
+      })),
     );
   };
 }
@@ -84,6 +93,8 @@ function within<T>(argument: string, read: () => T): T {
   try {
     return read();
   } catch (error) {
-    throw error instanceof InputError ? new CagecastError('badArgument', `cagecast: ${argument}: ${error.message}`, 0, { cause: error }) : error;
+    throw error instanceof InputError
+      ? new CagecastError('badArgument', `cagecast: ${argument}: ${error.message}`, 0, { cause: error })
+      : error;
   }
 }

@@ -13,10 +13,22 @@ export function localMatrix(node: GLTF.INode): Matrix {
   const [sx = 1, sy = 1, sz = 1] = node.scale ?? [];
   // prettier-ignore
   return [
-    (1 - 2 * (y * y + z * z)) * sx, 2 * (x * y + z * w) * sx, 2 * (x * z - y * w) * sx, 0,
-    2 * (x * y - z * w) * sy, (1 - 2 * (x * x + z * z)) * sy, 2 * (y * z + x * w) * sy, 0,
-    2 * (x * z + y * w) * sz, 2 * (y * z - x * w) * sz, (1 - 2 * (x * x + y * y)) * sz, 0,
-    tx, ty, tz, 1,
+    (1 - 2 * (y * y + z * z)) * sx,
+    2 * (x * y + z * w) * sx,
+    2 * (x * z - y * w) * sx,
+    0,
+    2 * (x * y - z * w) * sy,
+    (1 - 2 * (x * x + z * z)) * sy,
+    2 * (y * z + x * w) * sy,
+    0,
+    2 * (x * z + y * w) * sz,
+    2 * (y * z - x * w) * sz,
+    (1 - 2 * (x * x + y * y)) * sz,
+    0,
+    tx,
+    ty,
+    tz,
+    1,
   ];
 }
 
@@ -35,7 +47,19 @@ export function multiply(a: Matrix, b: Matrix): Matrix {
 
 /** The determinant of the upper 3×3: the factor of volume, negative if the matrix mirrors. */
 export function determinant(m: Matrix): number {
-  const [a, b, c, , d, e, f, , g, h, i] = m as number[] as [number, number, number, number, number, number, number, number, number, number, number];
+  const [a, b, c, , d, e, f, , g, h, i] = m as number[] as [
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+  ];
   return a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
 }
 

@@ -21,7 +21,8 @@ export const overlayOffset = 5e-4;
 export const overlayMark = { cagecastOverlay: true } as const;
 
 /** Whether a primitive with these extras is an overlay. */
-export const isOverlay = (extras: object | undefined): boolean => (extras as Partial<typeof overlayMark> | undefined)?.cagecastOverlay === true;
+export const isOverlay = (extras: object | undefined): boolean =>
+  (extras as Partial<typeof overlayMark> | undefined)?.cagecastOverlay === true;
 
 /** The texture to show: a PNG or JPEG file's bytes, in the cage's UVs. */
 export interface Paint {
@@ -37,7 +38,8 @@ export interface Paint {
 export function paintOf(bytes: Uint8Array, name = 'paint'): Paint {
   const mimeType = imageType(bytes);
   if (mimeType !== 'image/png' && mimeType !== 'image/jpeg') throw new InputError('is neither a PNG nor a JPEG image');
-  if (!imageIsWhole(bytes)) throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image has no end`);
+  if (!imageIsWhole(bytes))
+    throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image has no end`);
   return { name, mimeType, bytes };
 }
 
@@ -57,10 +59,12 @@ export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uin
  * Whether an overlay takes an attribute over from its base: what it is lit and moved by. Not colours, which would tint the
  * texture, nor tangents, which its material has no use for.
  */
-export const isOverlaid = (semantic: string): boolean => semantic === 'NORMAL' || /^(JOINTS|WEIGHTS)_\d+$/.test(semantic);
+export const isOverlaid = (semantic: string): boolean =>
+  semantic === 'NORMAL' || /^(JOINTS|WEIGHTS)_\d+$/.test(semantic);
 
 /** Which deltas of a morph target an overlay takes from its base: those of what it has as well, but not of UVs, which are the paint's. */
-export const isMorphed = (semantic: string, hasNormals: boolean): boolean => semantic === 'POSITION' || (semantic === 'NORMAL' && hasNormals);
+export const isMorphed = (semantic: string, hasNormals: boolean): boolean =>
+  semantic === 'POSITION' || (semantic === 'NORMAL' && hasNormals);
 
 /** The positions of an overlay: those of the piece, moved a little off the surface along their normals, by `offset` units of the scene. */
 export function overlayPositions(piece: Piece, offset: number): Float32Array {

@@ -23,7 +23,8 @@ export interface Piece {
 }
 
 /** The names among some, each once. */
-export const aliasesOf = (...names: (string | undefined)[]): string[] => [...new Set(names.filter((name) => name !== undefined && name !== ''))] as string[];
+export const aliasesOf = (...names: (string | undefined)[]): string[] =>
+  [...new Set(names.filter((name) => name !== undefined && name !== ''))] as string[];
 
 const triangles = 4;
 const triangleStrip = 5;
@@ -50,7 +51,11 @@ export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Ar
 }
 
 /** A piece as it was cut. @param localPositions  Of all its vertices, new ones included. */
-export const cutPiece = (piece: Piece, { localIndices }: PartGeometry, localPositions: Float32Array): Piece => ({ ...piece, localPositions, localIndices: Uint32Array.from(localIndices) });
+export const cutPiece = (piece: Piece, { localIndices }: PartGeometry, localPositions: Float32Array): Piece => ({
+  ...piece,
+  localPositions,
+  localIndices: Uint32Array.from(localIndices),
+});
 
 /**
  * The positions of an accessor.
@@ -58,10 +63,14 @@ export const cutPiece = (piece: Piece, { localIndices }: PartGeometry, localPosi
  * @throws {InputError} that names the vertex.
  */
 export function decodePositions(place: string, accessor: Accessor): Float32Array {
-  if (accessor.getElementSize() !== 3) throw new InputError(`${place}.attributes.POSITION is ${accessor.getType()}, not VEC3`);
+  if (accessor.getElementSize() !== 3)
+    throw new InputError(`${place}.attributes.POSITION is ${accessor.getType()}, not VEC3`);
   const positions = decodeFloats(accessor);
   const bad = positions.findIndex((value) => !Number.isFinite(value));
-  if (bad >= 0) throw new InputError(`${place}: POSITION of vertex ${Math.floor(bad / 3)} has ${positions[bad]}, which is not a finite number`);
+  if (bad >= 0)
+    throw new InputError(
+      `${place}: POSITION of vertex ${Math.floor(bad / 3)} has ${positions[bad]}, which is not a finite number`,
+    );
   return positions;
 }
 
@@ -70,10 +79,16 @@ export function decodePositions(place: string, accessor: Accessor): Float32Array
  * @param array  Its indices; `null` if it has none.
  * @throws {InputError} that names the index.
  */
-export function decodeTriangles(place: string, array: ArrayLike<number> | null, mode: number, vertexCount: number): Uint32Array {
+export function decodeTriangles(
+  place: string,
+  array: ArrayLike<number> | null,
+  mode: number,
+  vertexCount: number,
+): Uint32Array {
   const corners = array ? Uint32Array.from(array) : Uint32Array.from({ length: vertexCount }, (_, v) => v);
   const bad = corners.findIndex((vertex) => vertex >= vertexCount);
-  if (bad >= 0) throw new InputError(`${place}: indices[${bad}] = ${corners[bad]} is out of range (${vertexCount} vertices)`);
+  if (bad >= 0)
+    throw new InputError(`${place}: indices[${bad}] = ${corners[bad]} is out of range (${vertexCount} vertices)`);
   if (mode === triangles) {
     if (corners.length % 3 !== 0) throw new InputError(`${place} has ${corners.length} corners, not 3 per triangle`);
     return corners;

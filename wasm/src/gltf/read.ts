@@ -1,12 +1,12 @@
 import { readFile } from 'node:fs/promises';
 import { dirname, resolve } from 'node:path';
-import { Logger, NodeIO, type Document, type GLTF, type JSONDocument } from '@gltf-transform/core';
+import { type Document, type GLTF, type JSONDocument, Logger, NodeIO } from '@gltf-transform/core';
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { show } from '../error.js';
-import { createDracoDecoder } from './draco.js';
 import { checkGeometry, checkLists, dracoOf, meshoptView } from './check.js';
-import { InputError, firstLine } from './input-error.js';
+import { createDracoDecoder } from './draco.js';
+import { firstLine, InputError } from './input-error.js';
 
 /** A glTF file as it is, and its geometry decoded. */
 export interface GltfFile {
@@ -33,7 +33,10 @@ export async function readGltf(path: string): Promise<GltfFile> {
     const bytes = await readBytes(path);
     const { json, binary } = parse(bytes);
     const buffers = await readBuffers(json, binary, dirname(path));
-    checkGeometry(json, buffers.map((buffer) => buffer?.byteLength));
+    checkGeometry(
+      json,
+      buffers.map((buffer) => buffer?.byteLength),
+    );
     return { path, json, buffers, geometry: await decode(json, buffers) };
   } catch (error) {
     if (error instanceof InputError) throw error.in(path);
@@ -71,7 +74,8 @@ function parse(bytes: Uint8Array): { json: GLTF.IGLTF; binary: Uint8Array | unde
   if (typeof json !== 'object' || json === null || version === undefined) {
     throw new InputError('is JSON but no glTF: it has no asset.version');
   }
-  if (!/^2\./.test(String(version))) throw new InputError(`is glTF ${typeof version === 'string' ? version : show(version)}; only 2.x can be read`);
+  if (!/^2\./.test(String(version)))
+    throw new InputError(`is glTF ${typeof version === 'string' ? version : show(version)}; only 2.x can be read`);
   checkLists(json);
   return { json, binary };
 }
@@ -89,7 +93,8 @@ function chunks(bytes: Uint8Array): { text: Uint8Array; binary: Uint8Array | und
   for (let at = 12; at + 8 <= length; ) {
     const size = view.getUint32(at, true);
     const type = view.getUint32(at + 4, true);
-    if (at + 8 + size > length) throw new InputError(`is damaged: the chunk at byte ${at} has ${size} bytes, ${length - at - 8} are left`);
+    if (at + 8 + size > length)
+      throw new InputError(`is damaged: the chunk at byte ${at} has ${size} bytes, ${length - at - 8} are left`);
     found[type] ??= bytes.subarray(at + 8, at + 8 + size);
     at += 8 + size;
   }
@@ -98,13 +103,20 @@ function chunks(bytes: Uint8Array): { text: Uint8Array; binary: Uint8Array | und
   return { text, binary: found[0x004e4942] }; // "BIN\0"
 }
 
-async function readBuffers(json: GLTF.IGLTF, binary: Uint8Array | undefined, folder: string): Promise<(Uint8Array | undefined)[]> {
+async function readBuffers(
+  json: GLTF.IGLTF,
+  binary: Uint8Array | undefined,
+  folder: string,
+): Promise<(Uint8Array | undefined)[]> {
   const { buffers = [] } = json;
   return Promise.all(
     buffers.map(async (buffer, b) => {
-      const bytes = buffer.uri === undefined ? (b === 0 ? binary : undefined) : await readUri(`buffers[${b}]`, buffer.uri, folder);
+      const bytes =
+        buffer.uri === undefined ? (b === 0 ? binary : undefined) : await readUri(`buffers[${b}]`, buffer.uri, folder);
       if (bytes !== undefined && bytes.byteLength < buffer.byteLength) {
-        throw new InputError(`buffers[${b}] is truncated: it should have ${buffer.byteLength} bytes, there are ${bytes.byteLength}`);
+        throw new InputError(
+          `buffers[${b}] is truncated: it should have ${buffer.byteLength} bytes, there are ${bytes.byteLength}`,
+        );
       }
       return bytes;
     }),
@@ -120,7 +132,9 @@ export async function readUri(name: string, uri: string, folder: string): Promis
     const [head, kind] = /^data:([^,]*),/i.exec(uri) ?? [];
     if (head === undefined) throw new InputError(`${name} is ${show(uri)}, no data URI`);
     // `fetch` would do it too, in 7 seconds for 60 MB instead of one tenth.
-    const bytes = uri.slice(head.length).replace(/%([0-9a-f]{2})/gi, (_, byte: string) => String.fromCharCode(Number.parseInt(byte, 16)));
+    const bytes = uri
+      .slice(head.length)
+      .replace(/%([0-9a-f]{2})/gi, (_, byte: string) => String.fromCharCode(Number.parseInt(byte, 16)));
     return Buffer.from(bytes, /;\s*base64\s*$/i.test(kind!) ? 'base64' : 'latin1');
   }
   if (/^[a-z][a-z0-9+.-]+:/i.test(uri)) throw new InputError(`${name} is at ${uri.slice(0, 60)}; only files are read`);

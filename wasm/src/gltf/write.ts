@@ -1,14 +1,25 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { CutTarget } from '../borders/index.js';
-import { blend, blendSkin, noBlends, ruleOf, type Blends } from '../cut/blend.js';
+import { type Blends, blend, blendSkin, noBlends, ruleOf } from '../cut/blend.js';
 import { cutPart } from '../cut/part.js';
-import { gather, splitPart, type SplitPart } from '../split-part.js';
+import { gather, type SplitPart, splitPart } from '../split-part.js';
 import type { TransferResult } from '../transfer.js';
 import { dracoOf } from './check.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
-import { cosmeticCorners, diagonal, freeUvSet, isMorphed, isOverlaid, overlayMark, overlayOffset, overlayPositions, zoneAttribute, type Paint } from './overlay.js';
+import {
+  cosmeticCorners,
+  diagonal,
+  freeUvSet,
+  isMorphed,
+  isOverlaid,
+  overlayMark,
+  overlayOffset,
+  overlayPositions,
+  type Paint,
+  zoneAttribute,
+} from './overlay.js';
 import { cutPiece, decodeFloats, type Piece } from './pieces.js';
 import type { GltfFile } from './read.js';
 
@@ -51,27 +62,58 @@ export async function writeTransfer(
     const primitives = json.meshes![meshOfNode.get(part.node)!]!.primitives;
     const primitive = primitives[part.primitive]!;
     const whole = { ...part, turned: isTurned(part.matrix) };
-    const { geometry, result: own, blends } = cut ? cutPart(whole, cut, mesh.positions.length / 3) : { geometry: whole, result, blends: noBlends };
+    const {
+      geometry,
+      result: own,
+      blends,
+    } = cut ? cutPart(whole, cut, mesh.positions.length / 3) : { geometry: whole, result, blends: noBlends };
     const split = splitPart(geometry, own);
     if (split.copies > 0 || blends.sources.length > 0) rewritePrimitive(writer, file, primitive, split, blends);
     const zones = own.zones.subarray(geometry.firstVertex, geometry.firstVertex + geometry.vertexCount);
     const uvSet = freeUvSet((semantic) => primitive.attributes[semantic] !== undefined);
     const uvAccessor = writer.addAttribute(split.uvs, 2);
     primitive.attributes[uvSet] = uvAccessor;
-    primitive.attributes[zoneAttribute] = writer.addAttribute(Float32Array.from(split.sources, (v) => zones[v]!), 1);
-    const cosmetic = own.cosmeticTriangles.subarray(geometry.firstTriangle, geometry.firstTriangle + geometry.triangleCount);
-    const overlay = painter?.overlay(cut ? cutPiece(part, geometry, blend(part.localPositions, 3, blends)) : part, split, primitive, cosmetic, uvAccessor);
+    primitive.attributes[zoneAttribute] = writer.addAttribute(
+      Float32Array.from(split.sources, (v) => zones[v]!),
+      1,
+    );
+    const cosmetic = own.cosmeticTriangles.subarray(
+      geometry.firstTriangle,
+      geometry.firstTriangle + geometry.triangleCount,
+    );
+    const overlay = painter?.overlay(
+      cut ? cutPiece(part, geometry, blend(part.localPositions, 3, blends)) : part,
+      split,
+      primitive,
+      cosmetic,
+      uvAccessor,
+    );
     if (overlay) primitives.push(overlay);
-    return { uvSet, overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0, splitVertices: split.copies, cutTriangles: geometry.triangleCount - part.triangleCount };
+    return {
+      uvSet,
+      overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0,
+      splitVertices: split.copies,
+      cutTriangles: geometry.triangleCount - part.triangleCount,
+    };
   });
   dropDraco(json);
   return { glb: writer.finish(), added };
 }
 
 /** Gives a primitive new vertices, blends and copies: in all of its attributes and morph targets, uncompressed. */
-function rewritePrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive, { sources, indices }: SplitPart, blends: Blends): void {
+function rewritePrimitive(
+  writer: GlbWriter,
+  file: GltfFile,
+  primitive: GLTF.IMeshPrimitive,
+  { sources, indices }: SplitPart,
+  blends: Blends,
+): void {
   const decodedOf = (accessor: number) => file.geometry.getRoot().listAccessors()[accessor]!;
-  const skin = blendSkin((semantic) => (primitive.attributes[semantic] === undefined ? undefined : decodedOf(primitive.attributes[semantic]).getArray()!), blends);
+  const skin = blendSkin(
+    (semantic) =>
+      primitive.attributes[semantic] === undefined ? undefined : decodedOf(primitive.attributes[semantic]).getArray()!,
+    blends,
+  );
   const made = new Map<string, number>();
   const rewrite = (accessor: number, semantic: string, isDelta: boolean): number => {
     const decoded = decodedOf(accessor);
@@ -85,13 +127,20 @@ function rewritePrimitive(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMe
     if (known !== undefined) return known;
     const values = gather(pulls ?? blend(array, size, blends, rule), size, sources);
     // The bounds are not those in the file where Draco has rounded what lies between them.
-    const more = { type: decoded.getType(), ...(normalized && { normalized }), ...(min && boundsOf(values, size)), ...(name !== undefined && { name }), ...(extras && { extras }) };
+    const more = {
+      type: decoded.getType(),
+      ...(normalized && { normalized }),
+      ...(min && boundsOf(values, size)),
+      ...(name !== undefined && { name }),
+      ...(extras && { extras }),
+    };
     const number = writer.addAttribute(values, size, more);
     made.set(key, number);
     return number;
   };
   const rewriteAll = (attributes: Record<string, number>, isDelta: boolean) => {
-    for (const [semantic, accessor] of Object.entries(attributes)) attributes[semantic] = rewrite(accessor, semantic, isDelta);
+    for (const [semantic, accessor] of Object.entries(attributes))
+      attributes[semantic] = rewrite(accessor, semantic, isDelta);
   };
   rewriteAll(primitive.attributes, false);
   primitive.targets?.forEach((deltas) => rewriteAll(deltas, true));
@@ -134,7 +183,8 @@ function separateMeshes(json: GLTF.IGLTF, parts: Part[]): Map<number, number> {
     const number = json.meshes!.push(structuredClone(json.meshes![mesh]!)) - 1;
     for (const { channels } of json.animations ?? []) {
       for (const channel of [...(channels ?? [])]) {
-        const pointerOf = ({ target }: GLTF.IAnimationChannel) => target?.extensions?.['KHR_animation_pointer'] as { pointer?: unknown } | undefined;
+        const pointerOf = ({ target }: GLTF.IAnimationChannel) =>
+          target?.extensions?.['KHR_animation_pointer'] as { pointer?: unknown } | undefined;
         const pointer = pointerOf(channel)?.pointer;
         const place = `/meshes/${mesh}/`;
         if (typeof pointer !== 'string' || !pointer.startsWith(place)) continue;
@@ -181,7 +231,13 @@ class Painter {
   }
 
   /** A primitive of the cosmetic triangles of `base`, moved and deformed as it is; none if there are none. */
-  overlay(piece: Piece, { sources, indices }: SplitPart, base: GLTF.IMeshPrimitive, cosmetic: Uint8Array, uvAccessor: number): GLTF.IMeshPrimitive | undefined {
+  overlay(
+    piece: Piece,
+    { sources, indices }: SplitPart,
+    base: GLTF.IMeshPrimitive,
+    cosmetic: Uint8Array,
+    uvAccessor: number,
+  ): GLTF.IMeshPrimitive | undefined {
     const corners = cosmeticCorners(indices, cosmetic);
     if (corners.length === 0) return undefined;
     const attributes: Record<string, number> = { POSITION: this.#positions(piece, sources), TEXCOORD_0: uvAccessor };
@@ -192,7 +248,9 @@ class Painter {
       attributes,
       indices: this.#writer.addIndices(corners, sources.length),
       material: this.#material(base),
-      ...(base.targets && { targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, sources.length)) }),
+      ...(base.targets && {
+        targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, sources.length)),
+      }),
       extras: overlayMark,
     };
   }
@@ -200,7 +258,9 @@ class Painter {
   /** What a morph target of the base is to the overlay. One without anything in it is not allowed: it moves nothing then. */
   #morph(deltas: Record<string, number>, hasNormals: boolean, count: number): Record<string, number> {
     const own = Object.entries(deltas).filter(([semantic]) => isMorphed(semantic, hasNormals));
-    return own.length > 0 ? Object.fromEntries(own) : { POSITION: this.#writer.addAttribute(new Float32Array(3 * count), 3, { min: [0, 0, 0], max: [0, 0, 0] }) };
+    return own.length > 0
+      ? Object.fromEntries(own)
+      : { POSITION: this.#writer.addAttribute(new Float32Array(3 * count), 3, { min: [0, 0, 0], max: [0, 0, 0] }) };
   }
 
   /** The base's own accessor, or, where it has no bytes because they are in a Draco stream, a decoded copy. */
@@ -229,12 +289,13 @@ class Painter {
     const key = `${roughnessFactor} ${doubleSided}`;
     let number = this.#materials.get(key);
     if (number === undefined) {
-      number = (json.materials ??= []).push({
-        name: 'Cagecast overlay',
-        alphaMode: 'BLEND',
-        doubleSided,
-        pbrMetallicRoughness: { baseColorTexture: { index: this.#texture }, metallicFactor: 0, roughnessFactor },
-      }) - 1;
+      number =
+        (json.materials ??= []).push({
+          name: 'Cagecast overlay',
+          alphaMode: 'BLEND',
+          doubleSided,
+          pbrMetallicRoughness: { baseColorTexture: { index: this.#texture }, metallicFactor: 0, roughnessFactor },
+        }) - 1;
       this.#materials.set(key, number);
     }
     return number;

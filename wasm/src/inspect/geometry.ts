@@ -3,10 +3,18 @@ import type { Mesh } from '../mesh.js';
 /** A point or a direction. */
 export type Vector = readonly [number, number, number];
 
-export const pointAt = (positions: ArrayLike<number>, v: number): Vector => [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!];
+export const pointAt = (positions: ArrayLike<number>, v: number): Vector => [
+  positions[3 * v]!,
+  positions[3 * v + 1]!,
+  positions[3 * v + 2]!,
+];
 export const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-export const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const cross = (a: Vector, b: Vector): Vector => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
 export const length = (a: Vector): number => Math.sqrt(dot(a, a));
 
 /** The normal of triangle abc, as long as twice its area. */
@@ -135,9 +143,14 @@ export function nearestPoint(p: Vector, a: Vector, b: Vector, c: Vector): Neares
   const vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return { point: along(a, ac, d2 / (d2 - d6)), corners: [0, 2] };
   const va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return { point: along(b, minus(c, b), (d4 - d3) / (d4 - d3 + d5 - d6)), corners: [1, 2] };
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return { point: along(b, minus(c, b), (d4 - d3) / (d4 - d3 + d5 - d6)), corners: [1, 2] };
   const sum = va + vb + vc;
   return { point: along(along(a, ab, vb / sum), ac, vc / sum), corners: [0, 1, 2] };
 }
 
-const along = (from: Vector, direction: Vector, t: number): Vector => [from[0] + t * direction[0], from[1] + t * direction[1], from[2] + t * direction[2]];
+const along = (from: Vector, direction: Vector, t: number): Vector => [
+  from[0] + t * direction[0],
+  from[1] + t * direction[1],
+  from[2] + t * direction[2],
+];

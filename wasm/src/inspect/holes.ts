@@ -1,4 +1,4 @@
-import { percent, type Finding } from './finding.js';
+import { type Finding, percent } from './finding.js';
 import { cross, dot, length, minus, pointAt, type Vector } from './geometry.js';
 import type { Reverse } from './reverse.js';
 import { partsOf, type Scene } from './scene.js';
@@ -38,7 +38,8 @@ export function spanPoints({ surface, cage }: Scene): Float32Array {
   for (const { edges, centre } of surface.loops) {
     for (const { a, b } of edges) {
       const [p, q] = [pointAt(cage.positions, a), pointAt(cage.positions, b)];
-      for (const weight of spanWeights) for (let k = 0; k < 3; ++k) points.push((weight * (p[k]! + q[k]!)) / 2 + (1 - weight) * centre[k]!);
+      for (const weight of spanWeights)
+        for (let k = 0; k < 3; ++k) points.push((weight * (p[k]! + q[k]!)) / 2 + (1 - weight) * centre[k]!);
     }
   }
   return Float32Array.from(points);
@@ -51,7 +52,11 @@ const spanWeights = [0.4, 0.85];
  * @param reversed   The target as seen from the points of `spanPoints`.
  * @param firstPoint  The number of the first of them.
  */
-export function holesOf({ surface, cage, target, parts, areas, diagonal, sides, result }: Scene, reversed: Reverse | undefined, firstPoint: number): Hole[] {
+export function holesOf(
+  { surface, cage, target, parts, areas, diagonal, sides, result }: Scene,
+  reversed: Reverse | undefined,
+  firstPoint: number,
+): Hole[] {
   const { loops } = surface;
   const partOf = partsOf(parts, areas.length);
   const excluded = new Float64Array(loops.length);
@@ -89,7 +94,9 @@ export function holesOf({ surface, cage, target, parts, areas, diagonal, sides, 
       perimeter: loop.perimeter / diagonal,
       area: loop.area / (exposed || 1),
       centre: [...loop.centre],
-      beneath: [...beneath].flatMap(([part, area]) => (area > 0 ? { part: parts[part]!.name, share: area / total } : [])).sort((x, y) => y.share - x.share),
+      beneath: [...beneath]
+        .flatMap(([part, area]) => (area > 0 ? { part: parts[part]!.name, share: area / total } : []))
+        .sort((x, y) => y.share - x.share),
       cutOff: [...cuts[l]!.values()].reduce((sum, area) => sum + area, 0) / (exposed || 1),
       cuts: [...cuts[l]!].sort(([, a], [, b]) => b - a).map(([segment]) => segment),
       excluded: excluded[l]! / (exposed || 1),
@@ -109,10 +116,14 @@ function isBeneath(reversed: Reverse, point: number, from: Vector, normal: Vecto
 
 /** Holes that cut the paint off where nothing that must stay bare is seen. */
 export function checkHoles(holes: readonly Hole[], segments: readonly Segment[]): Finding[] {
-  const unexplained = holes.filter(({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= leastCut && excluded < leastExplained * cutOff);
+  const unexplained = holes.filter(
+    ({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= leastCut && excluded < leastExplained * cutOff,
+  );
   if (unexplained.length === 0) return [];
   const cut = unexplained.reduce((sum, { cutOff }) => sum + cutOff, 0);
-  const where = [...new Set(unexplained.flatMap(({ beneath }) => beneath.slice(0, 1).map(({ part }) => `"${part}"`)))].slice(0, 3).join(', ');
+  const where = [...new Set(unexplained.flatMap(({ beneath }) => beneath.slice(0, 1).map(({ part }) => `"${part}"`)))]
+    .slice(0, 3)
+    .join(', ');
   return [
     {
       code: 'holeUnexplained',

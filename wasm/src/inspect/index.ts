@@ -2,22 +2,31 @@
  * Is this cage fit for this target? Numbers, causes, and what to do.
  * @module cagecast/inspect
  */
-import { CagecastError, transfer, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
-import { show } from '../error.js';
-import { unfitFrom, usableFrom, verdictOf, type Finding, type FindingCode, type Place, type Verdict } from './finding.js';
-import { joined } from './geometry.js';
-import { checkHoles, holesOf, spanPoints, type Hole } from './holes.js';
-import { checkInside, insideOf, type Inside } from './inside.js';
-import { checkNormals, orientationOf, turnedRight } from './normals.js';
-import { checkPlacement, placementOf, type Placement } from './placement.js';
-import { reverse } from './reverse.js';
-import { sceneOf, type PartName } from './scene.js';
-import { checkSegments, segmentsOf, type Segment } from './segments.js';
-import { checkTopology, topologyOf, type Topology } from './topology.js';
-import { checkUvs, uvLayoutOf, type UvLayout } from './uv.js';
 
-export { unfitFrom, usableFrom };
+import { show } from '../error.js';
+import { CagecastError, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import {
+  type Finding,
+  type FindingCode,
+  type Place,
+  unfitFrom,
+  usableFrom,
+  type Verdict,
+  verdictOf,
+} from './finding.js';
+import { joined } from './geometry.js';
+import { checkHoles, type Hole, holesOf, spanPoints } from './holes.js';
+import { checkInside, type Inside, insideOf } from './inside.js';
+import { checkNormals, orientationOf, turnedRight } from './normals.js';
+import { checkPlacement, type Placement, placementOf } from './placement.js';
+import { reverse } from './reverse.js';
+import { type PartName, sceneOf } from './scene.js';
+import { checkSegments, type Segment, segmentsOf } from './segments.js';
+import { checkTopology, type Topology, topologyOf } from './topology.js';
+import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
+
 export type { Finding, FindingCode, Hole, Inside, PartName, Place, Placement, Segment, Topology, UvLayout, Verdict };
+export { unfitFrom, usableFrom };
 
 /** Options of `inspect`: those of the transfer, and what is known already. */
 export interface InspectOptions extends TransferOptions {
@@ -63,7 +72,10 @@ export function inspect(cage: Mesh, target: Mesh, options?: InspectOptions): Ins
   return {
     verdict: verdictOf(findings),
     findings,
-    inward: { share: orientation.share, triangles: [...orientation.inward.keys()].filter((t) => orientation.inward[t] === 1) },
+    inward: {
+      share: orientation.share,
+      triangles: [...orientation.inward.keys()].filter((t) => orientation.inward[t] === 1),
+    },
     ...outcomes,
     topology,
     uv,
@@ -90,10 +102,17 @@ const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings]
 
 /** Where the cage lies, and what comes of it. */
 function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
-  if (typeof given !== 'object' || given === null) throw new CagecastError('badOption', `inspect: options is ${show(given)}, not an object`);
+  if (typeof given !== 'object' || given === null)
+    throw new CagecastError('badOption', `inspect: options is ${show(given)}, not an object`);
   const { result, parts, ...options } = given;
   if (result !== undefined) checkResult(result, target);
-  const scene = sceneOf(cage, target, result ?? transfer(cage, target, options), options.threshold ?? 0.5, parts ?? partsByGroup(target));
+  const scene = sceneOf(
+    cage,
+    target,
+    result ?? transfer(cage, target, options),
+    options.threshold ?? 0.5,
+    parts ?? partsByGroup(target),
+  );
   const orientation = orientationOf(scene);
   const upright = orientation.share > 0 ? uprightScene() : scene;
   const placement = placementOf(upright);
@@ -119,17 +138,29 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
 
 /** Checks that a result is one, and of this target. */
 function checkResult(result: TransferResult, { positions }: Mesh): void {
-  const wrong = (text: string) => new CagecastError('badArgument', `inspect: result${text}; pass what transfer() returned`);
+  const wrong = (text: string) =>
+    new CagecastError('badArgument', `inspect: result${text}; pass what transfer() returned`);
   if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);
   const { zones, segments, triangles, distances, segmentStats, cosmeticTriangles } = result;
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
-  if (!ArrayBuffer.isView(cosmeticTriangles)) throw wrong(`.cosmeticTriangles is ${show(cosmeticTriangles)}: nothing was decided yet`);
+  if (!ArrayBuffer.isView(cosmeticTriangles))
+    throw wrong(`.cosmeticTriangles is ${show(cosmeticTriangles)}: nothing was decided yet`);
   for (const [name, array] of Object.entries({ zones, segments, triangles, distances })) {
     if (!ArrayBuffer.isView(array)) throw wrong(`.${name} is ${show(array)}, not a typed array`);
-    if (array.length !== positions.length / 3) throw new CagecastError('resultMismatch', `inspect: result.${name} has ${array.length} entries, not 1 for each of the ${positions.length / 3} vertices of target`, array.length);
+    if (array.length !== positions.length / 3)
+      throw new CagecastError(
+        'resultMismatch',
+        `inspect: result.${name} has ${array.length} entries, not 1 for each of the ${positions.length / 3} vertices of target`,
+        array.length,
+      );
   }
   const stray = segments.findIndex((segment) => segment >= segmentStats.length);
-  if (stray >= 0) throw new CagecastError('resultMismatch', `inspect: result.segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);
+  if (stray >= 0)
+    throw new CagecastError(
+      'resultMismatch',
+      `inspect: result.segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`,
+      stray,
+    );
 }
 
 function partsByGroup({ positions, groups }: Mesh): PartName[] {

@@ -1,4 +1,4 @@
-import { percent, type Finding } from './finding.js';
+import { type Finding, percent } from './finding.js';
 import { cross, dot, minus, pointAt, type Vector } from './geometry.js';
 import type { Reverse } from './reverse.js';
 import type { Scene } from './scene.js';

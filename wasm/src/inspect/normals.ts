@@ -1,8 +1,8 @@
 import type { Mesh } from '../mesh.js';
-import { percent, type Finding } from './finding.js';
+import { type Finding, percent } from './finding.js';
 import { cross, dot, minus, pointAt, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
-import { middleOf, type Edge, type Surface } from './surface.js';
+import { type Edge, middleOf, type Surface } from './surface.js';
 
 /** A cage with more of its area than this turned inward is unfit: there the paint is lost. */
 const mostInward = 0.1;
@@ -44,7 +44,10 @@ export function orientationOf(scene: Scene): Orientation {
   pieces.forEach((triangles, p) => {
     const pieceArea = triangles.reduce((sum, t) => sum + surface.areas[t]!, 0);
     const volume = volumeOf(surface, triangles, borders[p]!, pieceOf, p, turned);
-    const outward = Math.abs(volume) >= leastVolume * pieceArea ** 1.5 ? volume > 0 : votes.totals[p]! < leastVote * voters || votes.sums[p]! >= -clearVote * votes.totals[p]!;
+    const outward =
+      Math.abs(volume) >= leastVolume * pieceArea ** 1.5
+        ? volume > 0
+        : votes.totals[p]! < leastVote * voters || votes.sums[p]! >= -clearVote * votes.totals[p]!;
     for (const t of triangles) {
       if ((turned[t] === 1) === outward) continue;
       inward[t] = 1;
@@ -88,19 +91,28 @@ function bordersOf({ edges }: Surface, pieceOf: Int32Array, pieces: number): Edg
   const borders: Edge[][] = Array.from({ length: pieces }, () => []);
   for (const edge of edges) {
     if (edge.uses.length === 2) continue;
-    for (const piece of new Set(edge.uses.map(({ triangle }) => pieceOf[triangle]!))) if (piece >= 0) borders[piece]!.push(edge);
+    for (const piece of new Set(edge.uses.map(({ triangle }) => pieceOf[triangle]!)))
+      if (piece >= 0) borders[piece]!.push(edge);
   }
   return borders;
 }
 
 /** The volume of a piece with its holes spanned, as its first triangle is wound. */
-function volumeOf({ mesh }: Surface, triangles: readonly number[], border: readonly Edge[], pieceOf: Int32Array, piece: number, turned: Int8Array): number {
+function volumeOf(
+  { mesh }: Surface,
+  triangles: readonly number[],
+  border: readonly Edge[],
+  pieceOf: Int32Array,
+  piece: number,
+  turned: Int8Array,
+): number {
   const { positions, indices } = mesh;
   const origin = pointAt(positions, indices[3 * triangles[0]!]!);
   const at = (v: number) => minus(pointAt(positions, v), origin);
   const tetrahedron = (a: Vector, b: Vector, c: Vector) => dot(a, cross(b, c)) / 6;
   let volume = 0;
-  for (const t of triangles) volume += turned[t]! * tetrahedron(at(indices[3 * t]!), at(indices[3 * t + 1]!), at(indices[3 * t + 2]!));
+  for (const t of triangles)
+    volume += turned[t]! * tetrahedron(at(indices[3 * t]!), at(indices[3 * t + 1]!), at(indices[3 * t + 2]!));
   // Its borders, by connection: each is spanned from its middle.
   const atPlace = new Map<number, Edge[]>();
   for (const edge of border) {
@@ -133,7 +145,12 @@ function volumeOf({ mesh }: Surface, triangles: readonly number[], border: reado
 }
 
 /** For each piece, the target's area that lies on its inner side less that on its outer side, as its first triangle is wound. */
-function votesOf({ areas, sides, result }: Scene, pieceOf: Int32Array, pieces: number, turned: Int8Array): { sums: Float64Array; totals: Float64Array } {
+function votesOf(
+  { areas, sides, result }: Scene,
+  pieceOf: Int32Array,
+  pieces: number,
+  turned: Int8Array,
+): { sums: Float64Array; totals: Float64Array } {
   const [sums, totals] = [new Float64Array(pieces), new Float64Array(pieces)];
   for (let v = 0; v < areas.length; ++v) {
     const t = result.triangles[v]!;
@@ -164,8 +181,11 @@ export function checkNormals({ inward, share }: Orientation): Finding[] {
       code: 'normalsInward',
       // What else follows from it weighs less, however far it goes.
       weight: share > mostInward ? 20 * share + 1 : Math.max(share / mostInward, 0.25),
-      sentence: all ? 'The cage is inside out: all its triangles face inward' : `${percent(share)} of the cage's area (${triangles} of its triangles) faces inward`,
-      advice: 'Turn these triangles round ("recalculate normals outside"): seen from outside, a cage is wound counter-clockwise. All else here is judged as if they were.',
+      sentence: all
+        ? 'The cage is inside out: all its triangles face inward'
+        : `${percent(share)} of the cage's area (${triangles} of its triangles) faces inward`,
+      advice:
+        'Turn these triangles round ("recalculate normals outside"): seen from outside, a cage is wound counter-clockwise. All else here is judged as if they were.',
       numbers: { share, triangles },
     },
   ];

@@ -1,5 +1,5 @@
-import { percent, type Finding } from './finding.js';
-import { boxOf, cross, minus, pointAt, quantiles, type Box, type Vector } from './geometry.js';
+import { type Finding, percent } from './finding.js';
+import { type Box, boxOf, cross, minus, pointAt, quantiles, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
 
 /** How far outside the cage a vertex may lie, as a share of the diagonal, before it counts as poking through. */
@@ -57,7 +57,8 @@ export function placementOf(scene: Scene): Placement {
       area += areas[v]!;
     }
     const over = sides.loops[v]! < 0;
-    if (over && sides.signed[v]! <= 0 && sides.signed[v]! > -close * diagonal) within[result.triangles[v]!]! += areas[v]!;
+    if (over && sides.signed[v]! <= 0 && sides.signed[v]! > -close * diagonal)
+      within[result.triangles[v]!]! += areas[v]!;
     if (result.zones[v] === 1 || areas[v] === 0) continue;
     exposed += areas[v]!;
     if (!over) continue;
@@ -65,19 +66,34 @@ export function placementOf(scene: Scene): Placement {
   }
   const [there, needed] = [overNeighbours(scene, within), overNeighbours(scene, scene.surface.areas)];
   const served = (t: number) => there[t]! >= leastServed * needed[t]!;
-  const servedShare = scene.surface.areas.reduce((sum, size, t) => sum + (served(t) ? size : 0), 0) / scene.surface.area;
-  const beside = (v: number) => servedShare >= allServed && sides.signed[v]! > elsewhere * diagonal && served(result.triangles[v]!);
+  const servedShare =
+    scene.surface.areas.reduce((sum, size, t) => sum + (served(t) ? size : 0), 0) / scene.surface.area;
+  const beside = (v: number) =>
+    servedShare >= allServed && sides.signed[v]! > elsewhere * diagonal && served(result.triangles[v]!);
   const judged = candidates.filter((v) => !beside(v));
   for (const v of judged) {
     beneath += areas[v]!;
     if (sides.signed[v]! > pokeThrough * diagonal) exposedOutside += areas[v]!;
   }
   const { correction, remaining } = correct(scene, judged);
-  const [p50 = 0, p90 = 0, p99 = 0, max = 0] = quantiles(result.distances, [0.5, 0.9, 0.99, 1]).map((d) => d / diagonal);
+  const [p50 = 0, p90 = 0, p99 = 0, max = 0] = quantiles(result.distances, [0.5, 0.9, 0.99, 1]).map(
+    (d) => d / diagonal,
+  );
   return {
-    outside: { vertices: areas.length > 0 ? vertices / areas.length : 0, area: total > 0 ? area / total : 0, exposedArea: beneath > 0 ? exposedOutside / beneath : 0 },
+    outside: {
+      vertices: areas.length > 0 ? vertices / areas.length : 0,
+      area: total > 0 ? area / total : 0,
+      exposedArea: beneath > 0 ? exposedOutside / beneath : 0,
+    },
     distances: { p50, p90, p99, max },
-    beneath: { share: exposed > 0 ? beneath / exposed : 0, distance: quantiles(judged.map((v) => result.distances[v]!), [0.5])[0]! / diagonal },
+    beneath: {
+      share: exposed > 0 ? beneath / exposed : 0,
+      distance:
+        quantiles(
+          judged.map((v) => result.distances[v]!),
+          [0.5],
+        )[0]! / diagonal,
+    },
     correction,
     outsideOnceMoved: beneath > 0 ? remaining / beneath : 0,
     room: roomOf(boxOf(scene.cage.positions, scene.cage.indices), boxOf(scene.target.positions, judged), diagonal),
@@ -88,11 +104,15 @@ export function placementOf(scene: Scene): Placement {
 function overNeighbours({ cage: { indices }, surface: { place } }: Scene, values: Float64Array): Float64Array {
   const atPlace = new Float64Array(place.length);
   for (let i = 0; i < indices.length; ++i) atPlace[place[indices[i]!]!]! += values[Math.floor(i / 3)]!;
-  return values.map((_, t) => atPlace[place[indices[3 * t]!]!]! + atPlace[place[indices[3 * t + 1]!]!]! + atPlace[place[indices[3 * t + 2]!]!]!);
+  return values.map(
+    (_, t) =>
+      atPlace[place[indices[3 * t]!]!]! + atPlace[place[indices[3 * t + 1]!]!]! + atPlace[place[indices[3 * t + 2]!]!]!,
+  );
 }
 
 function roomOf(cage: Box, judged: Box, diagonal: number): Vector {
-  const room = (k: 0 | 1 | 2) => (judged.diagonal > 0 ? (cage.max[k] - cage.min[k] - judged.max[k] + judged.min[k]) / diagonal : 0);
+  const room = (k: 0 | 1 | 2) =>
+    judged.diagonal > 0 ? (cage.max[k] - cage.min[k] - judged.max[k] + judged.min[k]) / diagonal : 0;
   return [room(0), room(1), room(2)];
 }
 
@@ -101,7 +121,10 @@ function roomOf(cage: Box, judged: Box, diagonal: number): Vector {
  * signed distances s along the cage's normals n, s = move · n + turn · (r × n) + grow (the linearised point-to-plane
  * alignment of Chen & Medioni, with the mean distance as an unknown).
  */
-function correct({ cage, target, areas, diagonal, targetBox, sides, result }: Scene, judged: readonly number[]): { correction: Placement['correction']; remaining: number } {
+function correct(
+  { cage, target, areas, diagonal, targetBox, sides, result }: Scene,
+  judged: readonly number[],
+): { correction: Placement['correction']; remaining: number } {
   const unknowns = 7;
   const middle = centreOf(targetBox);
   const matrix = Array.from({ length: unknowns }, () => new Float64Array(unknowns + 1));
@@ -173,7 +196,10 @@ const centreOf = ({ min, max }: Box): Vector => [(min[0] + max[0]) / 2, (min[1] 
 export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   const { targetBox, diagonal } = scene;
   const cageBox = boxOf(scene.cage.positions, scene.cage.indices);
-  const gap = Math.hypot(...[0, 1, 2].map((k) => Math.max(0, targetBox.min[k]! - cageBox.max[k]!, cageBox.min[k]! - targetBox.max[k]!))) / diagonal;
+  const gap =
+    Math.hypot(
+      ...[0, 1, 2].map((k) => Math.max(0, targetBox.min[k]! - cageBox.max[k]!, cageBox.min[k]! - targetBox.max[k]!)),
+    ) / diagonal;
   const size = cageBox.diagonal / diagonal;
   if (gap > 0) {
     return [
@@ -201,14 +227,26 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   const cause = causeOf(placement);
   if (share > 0 || cause === 'cageMisplaced') {
     const out = `${percent(share)} of what is exposed of the target pokes out of the cage by more than ${percent(pokeThrough)} of the diagonal`;
-    const { sentence, advice } = describe(cause, placement, diagonal, share > 0 ? out : 'it stands off the target unevenly');
+    const { sentence, advice } = describe(
+      cause,
+      placement,
+      diagonal,
+      share > 0 ? out : 'it stands off the target unevenly',
+    );
     const uneven = Math.hypot(...placement.correction.move) / (4 * unevenFrom);
     findings.push({
       code: cause,
       weight: Math.max(share / mostOutside, cause === 'cageMisplaced' ? Math.min(0.9, uneven) : 0),
       sentence,
       advice,
-      numbers: { share, onceMoved: placement.outsideOnceMoved, move: [...placement.correction.move], turn: [...placement.correction.turn], grow: placement.correction.grow, room: [...placement.room] },
+      numbers: {
+        share,
+        onceMoved: placement.outsideOnceMoved,
+        move: [...placement.correction.move],
+        turn: [...placement.correction.turn],
+        grow: placement.correction.grow,
+        room: [...placement.room],
+      },
     });
   }
   if (beneath.distance > farCage / 2) {
@@ -216,7 +254,8 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
       code: 'cageTooFar',
       weight: beneath.distance / farCage,
       sentence: `Half of what the cage lies over is farther than ${percent(beneath.distance)} of the diagonal from it; it is ${size.toPrecision(2)} times as large as the target`,
-      advice: 'Fit the cage more closely: the farther off, the more the texture is distorted. Check that both are in the same unit.',
+      advice:
+        'Fit the cage more closely: the farther off, the more the texture is distorted. Check that both are in the same unit.',
       numbers: { median: beneath.distance, size },
     });
   }
@@ -228,21 +267,38 @@ type Cause = 'cageMisplaced' | 'cageTooSmall' | 'targetPokesOut';
 /** Why the target is outside: what would help most. */
 function causeOf({ outside, outsideOnceMoved, correction, room }: Placement): Cause {
   const share = outside.exposedArea;
-  if (share === 0 ? Math.hypot(...correction.move) >= unevenFrom : outsideOnceMoved < 0.5 * share) return 'cageMisplaced';
+  if (share === 0 ? Math.hypot(...correction.move) >= unevenFrom : outsideOnceMoved < 0.5 * share)
+    return 'cageMisplaced';
   if (correction.grow > 0 || room[0] + room[1] + room[2] < 0) return 'cageTooSmall';
   // Large enough, and yet much is outside: it is turned or moved too far for an estimate.
   return share > 2 * mostOutside ? 'cageMisplaced' : 'targetPokesOut';
 }
 
-function describe(cause: Cause, { outside, outsideOnceMoved, correction }: Placement, diagonal: number, out: string): { sentence: string; advice: string } {
-  if (cause === 'cageTooSmall') return { sentence: `The cage is too small: ${out}`, advice: 'Grow it along its normals until the target is inside.' };
-  if (cause === 'targetPokesOut') return { sentence: out, advice: 'Pull the cage out there, or grow it along its normals.' };
+function describe(
+  cause: Cause,
+  { outside, outsideOnceMoved, correction }: Placement,
+  diagonal: number,
+  out: string,
+): { sentence: string; advice: string } {
+  if (cause === 'cageTooSmall')
+    return {
+      sentence: `The cage is too small: ${out}`,
+      advice: 'Grow it along its normals until the target is inside.',
+    };
+  if (cause === 'targetPokesOut')
+    return { sentence: out, advice: 'Pull the cage out there, or grow it along its normals.' };
   if (outside.exposedArea > 0 && outsideOnceMoved >= 0.5 * outside.exposedArea) {
-    return { sentence: `The cage is misplaced, or made for something else: ${out}, though it is large enough`, advice: 'Move and turn it onto the target; check that it belongs to it.' };
+    return {
+      sentence: `The cage is misplaced, or made for something else: ${out}, though it is large enough`,
+      advice: 'Move and turn it onto the target; check that it belongs to it.',
+    };
   }
   const moved = Math.hypot(...correction.move);
   const turned = Math.hypot(...correction.turn);
-  const how = [moved >= 0.002 ? `moved by about ${percent(moved)} of the diagonal` : '', turned >= 0.5 ? `turned by about ${turned.toFixed(1)}°` : ''].filter(Boolean);
+  const how = [
+    moved >= 0.002 ? `moved by about ${percent(moved)} of the diagonal` : '',
+    turned >= 0.5 ? `turned by about ${turned.toFixed(1)}°` : '',
+  ].filter(Boolean);
   const moves = correction.move.map((share) => Number((share * diagonal).toPrecision(2))).join(', ');
   const turns = correction.turn.map((degrees) => `${degrees.toFixed(1)}°`).join(', ');
   return {

@@ -25,7 +25,20 @@ export function reverse({ target, targetBox, cage, areas }: Scene, points: Float
   const uvs = new Float32Array((target.positions.length / 3) * 2);
   // With the corners of the target's box among them, a cage that is a speck beside the target is in proportion to it.
   const positions = joined(points, Float32Array.of(...targetBox.min, ...targetBox.max));
-  const { triangles, distances } = project({ positions: target.positions, indices: target.indices, uvs }, { positions, indices: cage.indices });
-  const corners = (point: number) => [0, 1, 2].map((k) => pointAt(target.positions, target.indices[3 * triangles[point]! + k]!)) as [Vector, Vector, Vector];
-  return { triangles, distances, corners, nearest: (point) => nearestPoint(pointAt(points, point), ...corners(point)).point };
+  const { triangles, distances } = project(
+    { positions: target.positions, indices: target.indices, uvs },
+    { positions, indices: cage.indices },
+  );
+  const corners = (point: number) =>
+    [0, 1, 2].map((k) => pointAt(target.positions, target.indices[3 * triangles[point]! + k]!)) as [
+      Vector,
+      Vector,
+      Vector,
+    ];
+  return {
+    triangles,
+    distances,
+    corners,
+    nearest: (point) => nearestPoint(pointAt(points, point), ...corners(point)).point,
+  };
 }

@@ -1,7 +1,7 @@
 import type { TransferResult } from '../index.js';
 import type { Mesh } from '../mesh.js';
-import { boxOf, dot, doubleAreaNormal, minus, nearestPoint, pointAt, vertexAreas, type Box } from './geometry.js';
-import { surfaceOf, type Surface } from './surface.js';
+import { type Box, boxOf, dot, doubleAreaNormal, minus, nearestPoint, pointAt, vertexAreas } from './geometry.js';
+import { type Surface, surfaceOf } from './surface.js';
 
 /** A named range of a target's vertices. */
 export interface PartName {
@@ -36,7 +36,13 @@ export interface Sides {
 }
 
 /** Puts together what the checks need. */
-export function sceneOf(cage: Mesh, target: Mesh, result: TransferResult, threshold: number, parts: readonly PartName[]): Scene {
+export function sceneOf(
+  cage: Mesh,
+  target: Mesh,
+  result: TransferResult,
+  threshold: number,
+  parts: readonly PartName[],
+): Scene {
   const surface = surfaceOf(cage);
   const targetBox = boxOf(target.positions);
   return {
@@ -53,21 +59,30 @@ export function sceneOf(cage: Mesh, target: Mesh, result: TransferResult, thresh
   };
 }
 
-function sidesOf(surface: Surface, target: Mesh, { triangles, distances }: Pick<TransferResult, 'triangles' | 'distances'>): Sides {
+function sidesOf(
+  surface: Surface,
+  target: Mesh,
+  { triangles, distances }: Pick<TransferResult, 'triangles' | 'distances'>,
+): Sides {
   const { mesh, place, loopOfVertex, loopOfEdge, edgeKey } = surface;
   const signed = new Float64Array(distances.length);
   const loops = new Int32Array(distances.length).fill(-1);
   for (let v = 0; v < distances.length; ++v) {
     const first = 3 * triangles[v]!;
     const corners = [mesh.indices[first]!, mesh.indices[first + 1]!, mesh.indices[first + 2]!] as const;
-    const [a, b, c] = [pointAt(mesh.positions, corners[0]), pointAt(mesh.positions, corners[1]), pointAt(mesh.positions, corners[2])];
+    const [a, b, c] = [
+      pointAt(mesh.positions, corners[0]),
+      pointAt(mesh.positions, corners[1]),
+      pointAt(mesh.positions, corners[2]),
+    ];
     const p = pointAt(target.positions, v);
     signed[v] = Math.sign(dot(doubleAreaNormal(a, b, c), minus(p, a))) * distances[v]!;
     // Most triangles touch no open edge.
     if (loopOfVertex[corners[0]]! < 0 && loopOfVertex[corners[1]]! < 0 && loopOfVertex[corners[2]]! < 0) continue;
     const touched = nearestPoint(p, a, b, c).corners;
     if (touched.length === 1) loops[v] = loopOfVertex[corners[touched[0]!]!]!;
-    if (touched.length === 2) loops[v] = loopOfEdge.get(edgeKey(place[corners[touched[0]!]!]!, place[corners[touched[1]!]!]!)) ?? -1;
+    if (touched.length === 2)
+      loops[v] = loopOfEdge.get(edgeKey(place[corners[touched[0]!]!]!, place[corners[touched[1]!]!]!)) ?? -1;
   }
   return { signed, loops };
 }

@@ -1,5 +1,5 @@
 import type { Locks } from '../index.js';
-import { counted, percent, type Finding, type Place } from './finding.js';
+import { counted, type Finding, type Place, percent } from './finding.js';
 import { partsOf, type Scene } from './scene.js';
 
 /** A segment whose margin is within this factor of 1 could as well be decided the other way. */
@@ -35,18 +35,20 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
   const partOf = partsOf(parts, result.segments.length);
   const partOfSegment = new Uint32Array(result.segmentStats.length);
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;
-  return result.segmentStats.map(({ points, group, area, exposedArea, coveredArea, coverage, margin, culled, bared }, s) => ({
-    part: parts[partOfSegment[s]!]?.name ?? '',
-    group,
-    points,
-    area,
-    exposedArea,
-    coveredArea,
-    coverage,
-    margin: Number.isFinite(margin) ? margin : null,
-    culled,
-    bared,
-  }));
+  return result.segmentStats.map(
+    ({ points, group, area, exposedArea, coveredArea, coverage, margin, culled, bared }, s) => ({
+      part: parts[partOfSegment[s]!]?.name ?? '',
+      group,
+      points,
+      area,
+      exposedArea,
+      coveredArea,
+      coverage,
+      margin: Number.isFinite(margin) ? margin : null,
+      culled,
+      bared,
+    }),
+  );
 }
 
 /** A segment and its number. */
@@ -58,7 +60,12 @@ export function checkSegments(scene: Scene, segments: readonly Segment[]): Findi
   const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
   if (exposed === 0) return [];
   const left = checkLeft(scene, numbered);
-  return [...left, ...checkDoubt(scene, numbered, exposed), ...checkCopies(scene, numbered, exposed), ...(left.length > 0 ? [] : checkCulled(numbered, exposed))];
+  return [
+    ...left,
+    ...checkDoubt(scene, numbered, exposed),
+    ...checkCopies(scene, numbered, exposed),
+    ...(left.length > 0 ? [] : checkCulled(numbered, exposed)),
+  ];
 }
 
 /** Too little is left to paint. */
@@ -72,13 +79,18 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
   }
   const share = over > 0 ? cosmetic / over : 0;
   if (share >= leastCosmetic) return [];
-  const only = cosmetic === 0 ? 'Nothing of the target' : `Only ${percent(share)} of what is exposed of the target, beneath the cage,`;
+  const only =
+    cosmetic === 0
+      ? 'Nothing of the target'
+      : `Only ${percent(share)} of what is exposed of the target, beneath the cage,`;
   const largest = cut > 0.5 * over ? numbered.find(({ culled }) => culled) : undefined;
   return [
     {
       code: 'nothingToPaint',
       weight: 2,
-      sentence: largest ? `${only} may be painted: of "${largest.part}" ${percent(largest.coverage)} is covered, ${reason(largest, threshold)}` : `${only} may be painted`,
+      sentence: largest
+        ? `${only} may be painted: of "${largest.part}" ${percent(largest.coverage)} is covered, ${reason(largest, threshold)}`
+        : `${only} may be painted`,
       advice: largest
         ? `If the cage is meant for a part of it only, lock it (${option(largest)}), or make that part a mesh of its own; otherwise extend the cage.`
         : 'See the other findings and the zones for the reason: uncovered means that the cage is not over it.',
@@ -147,7 +159,9 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
       sentence: `${percent(share)} of what is exposed of the target is culled, as too little of its ${counted(all.length, 'segment')} is covered; most of it of "${largest.part}"`,
       advice: `If some of it should be painted, lock it (${option(largest)}), or close the holes of the cage over it.`,
       numbers: { share },
-      places: all.filter(({ exposedArea }) => exposedArea >= leastArea * exposed).map((segment) => placeOf(segment.s, segment)),
+      places: all
+        .filter(({ exposedArea }) => exposedArea >= leastArea * exposed)
+        .map((segment) => placeOf(segment.s, segment)),
       locks: locksFor([largest]),
     },
   ];
@@ -156,7 +170,9 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
 /** What the areas of a segment are held against, and how near they come. */
 function reason({ coverage, culled, bared, margin }: Segment, threshold: number): string {
   if (bared) return 'but a hole of the cage seems to be meant for it';
-  const byThreshold = culled ? coverage < threshold : margin !== null && Math.abs(margin * threshold - coverage) <= 1e-6;
+  const byThreshold = culled
+    ? coverage < threshold
+    : margin !== null && Math.abs(margin * threshold - coverage) <= 1e-6;
   if (byThreshold) return `${culled ? 'less than' : 'against'} the threshold of ${threshold}`;
   return `and it reaches ${margin === null ? 'more than' : `${margin.toPrecision(2)} times`} what the floor asks`;
 }
@@ -167,7 +183,9 @@ export const placeOf = (segment: number, { group, part }: Segment): Place => ({ 
 /** The lock that decides a segment the other way, as an option of the command. */
 const option = ({ part, culled }: Segment): string => `--${culled ? 'keep' : 'exclude'} "${part}"`;
 
-const locksFor = (segments: readonly Numbered[]): Locks => ({ segments: Object.fromEntries(segments.map(({ s, culled }) => [s, culled ? 'keep' : 'exclude'])) });
+const locksFor = (segments: readonly Numbered[]): Locks => ({
+  segments: Object.fromEntries(segments.map(({ s, culled }) => [s, culled ? 'keep' : 'exclude'])),
+});
 
 /** Things with the same key together, in the order of the first of each. */
 function grouped<T, Key>(things: readonly T[], keyOf: (thing: T) => Key): [T, ...T[]][] {

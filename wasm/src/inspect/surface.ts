@@ -95,7 +95,18 @@ export function surfaceOf(mesh: Mesh): Surface {
     }
   });
   for (let v = 0; v < count; ++v) loopOfVertex[v] = loopOfVertex[place[v]!]!;
-  return { mesh, place, areas, doubled, area: areas.reduce((sum, area) => sum + area, 0), edges, loops, loopOfVertex, loopOfEdge, edgeKey };
+  return {
+    mesh,
+    place,
+    areas,
+    doubled,
+    area: areas.reduce((sum, area) => sum + area, 0),
+    edges,
+    loops,
+    loopOfVertex,
+    loopOfEdge,
+    edgeKey,
+  };
 }
 
 /** The middle of a chain of edges, each counted by its length. */
@@ -108,7 +119,9 @@ export function middleOf(positions: Float32Array, edges: readonly Edge[]): Vecto
     perimeter += weight;
     for (let k = 0; k < 3; ++k) sum[k]! += (weight * (p[k]! + q[k]!)) / 2;
   }
-  return perimeter > 0 ? [sum[0]! / perimeter, sum[1]! / perimeter, sum[2]! / perimeter] : pointAt(positions, edges[0]!.a);
+  return perimeter > 0
+    ? [sum[0]! / perimeter, sum[1]! / perimeter, sum[2]! / perimeter]
+    : pointAt(positions, edges[0]!.a);
 }
 
 function loopOf(positions: Float32Array, edges: Edge[]): Loop {
@@ -119,5 +132,14 @@ function loopOf(positions: Float32Array, edges: Edge[]): Loop {
     perimeter += Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
     area += length(doubleAreaNormal(p, q, centre)) / 2;
   }
-  return { edges, perimeter, diagonal: boxOf(positions, edges.flatMap(({ a, b }) => [a, b])).diagonal, area, centre };
+  return {
+    edges,
+    perimeter,
+    diagonal: boxOf(
+      positions,
+      edges.flatMap(({ a, b }) => [a, b]),
+    ).diagonal,
+    area,
+    centre,
+  };
 }

@@ -1,4 +1,4 @@
-import { counted, percent, type Finding } from './finding.js';
+import { counted, type Finding, percent } from './finding.js';
 import { length, minus, pointAt, UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
 import type { Surface } from './surface.js';
@@ -33,7 +33,14 @@ export function topologyOf({ surface, diagonal }: Scene): Topology {
   const degenerateTriangles = surface.areas.reduce((sum, area) => sum + (area === 0 ? 1 : 0), 0);
   const nonManifoldEdges = surface.edges.filter(({ uses }) => uses.length > 2).length;
   const doubledTriangles = surface.doubled.reduce((sum, one) => sum + one, 0);
-  return { degenerateTriangles, doubledTriangles, nonManifoldEdges, crackEdges: cracksIn(surface, crackWidth * diagonal), slits: slitsIn(surface, tiny * diagonal), pieces: piecesOf(surface) };
+  return {
+    degenerateTriangles,
+    doubledTriangles,
+    nonManifoldEdges,
+    crackEdges: cracksIn(surface, crackWidth * diagonal),
+    slits: slitsIn(surface, tiny * diagonal),
+    pieces: piecesOf(surface),
+  };
 }
 
 function slitsIn({ loops }: Surface, least: number): number {
@@ -49,7 +56,9 @@ function piecesOf({ areas, doubled, edges }: Surface): number {
 /** Counts open edges both ends of which lie within `width` of the ends of another. */
 function cracksIn({ mesh, edges }: Surface, width: number): number {
   const open = edges.filter(({ uses }) => uses.length === 1);
-  const ends = [...new Set(open.flatMap(({ a, b }) => [a, b]))].sort((v, w) => mesh.positions[3 * v]! - mesh.positions[3 * w]!);
+  const ends = [...new Set(open.flatMap(({ a, b }) => [a, b]))].sort(
+    (v, w) => mesh.positions[3 * v]! - mesh.positions[3 * w]!,
+  );
   if (open.length > mostCompared) return 0;
   // Each end gets the first of those beside it, swept along x.
   const twin = new Map<number, number>();
@@ -57,17 +66,23 @@ function cracksIn({ mesh, edges }: Surface, width: number): number {
     if (!twin.has(v)) twin.set(v, v);
     const p = pointAt(mesh.positions, v);
     for (let k = i + 1; k < ends.length && mesh.positions[3 * ends[k]!]! - p[0] <= width; ++k) {
-      if (!twin.has(ends[k]!) && length(minus(pointAt(mesh.positions, ends[k]!), p)) <= width) twin.set(ends[k]!, twin.get(v)!);
+      if (!twin.has(ends[k]!) && length(minus(pointAt(mesh.positions, ends[k]!), p)) <= width)
+        twin.set(ends[k]!, twin.get(v)!);
     }
   });
   const counts = new Map<string, number>();
-  const keys = open.map(({ a, b }) => [twin.get(a)!, twin.get(b)!].sort((v, w) => v - w)).map(([a, b]) => (a === b ? '' : `${a} ${b}`));
+  const keys = open
+    .map(({ a, b }) => [twin.get(a)!, twin.get(b)!].sort((v, w) => v - w))
+    .map(([a, b]) => (a === b ? '' : `${a} ${b}`));
   for (const key of keys) counts.set(key, (counts.get(key) ?? 0) + 1);
   return keys.filter((key) => key !== '' && counts.get(key)! > 1).length;
 }
 
 /** Triangles without area, edges of three triangles, and gaps where vertices almost meet. */
-export function checkTopology({ surface }: Scene, { degenerateTriangles, doubledTriangles, nonManifoldEdges, crackEdges, slits }: Topology): Finding[] {
+export function checkTopology(
+  { surface }: Scene,
+  { degenerateTriangles, doubledTriangles, nonManifoldEdges, crackEdges, slits }: Topology,
+): Finding[] {
   const findings: Finding[] = [];
   if (degenerateTriangles > 0) {
     findings.push({
@@ -103,7 +118,8 @@ export function checkTopology({ surface }: Scene, { degenerateTriangles, doubled
       code: 'cracks',
       weight: Math.min(0.9, 0.1 + 4 * share),
       sentence: `The cage has cracks, through which rays slip: ${[crackEdges > 0 ? edges : '', slits > 0 ? `${counted(slits, 'hole')} too narrow or too small to be meant` : ''].filter(Boolean).join('; ')}`,
-      advice: 'Merge vertices by distance, and fill such holes. Vertices that are split for UVs must be in exactly the same place.',
+      advice:
+        'Merge vertices by distance, and fill such holes. Vertices that are split for UVs must be in exactly the same place.',
       numbers: { edges: crackEdges, share, slits },
     });
   }

@@ -1,4 +1,4 @@
-import { counted, percent, type Finding } from './finding.js';
+import { counted, type Finding, percent } from './finding.js';
 import { UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
 
@@ -32,13 +32,16 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
   const { indices, positions } = cage;
   const uvs = cage.uvs ?? new Float32Array((positions.length / 3) * 2);
   let outside = 0;
-  for (let v = 0; v < uvs.length; v += 2) if (Math.min(uvs[v]!, uvs[v + 1]!) < 0 || Math.max(uvs[v]!, uvs[v + 1]!) > 1) ++outside;
+  for (let v = 0; v < uvs.length; v += 2)
+    if (Math.min(uvs[v]!, uvs[v + 1]!) < 0 || Math.max(uvs[v]!, uvs[v + 1]!) > 1) ++outside;
 
   let [flat, flatArea] = [0, 0];
   for (let t = 0; t < surface.areas.length; ++t) {
     if (surface.areas[t] === 0) continue;
     const [a, b, c] = [2 * indices[3 * t]!, 2 * indices[3 * t + 1]!, 2 * indices[3 * t + 2]!];
-    const area = Math.abs((uvs[b]! - uvs[a]!) * (uvs[c + 1]! - uvs[a + 1]!) - (uvs[c]! - uvs[a]!) * (uvs[b + 1]! - uvs[a + 1]!)) / 2;
+    const area =
+      Math.abs((uvs[b]! - uvs[a]!) * (uvs[c + 1]! - uvs[a + 1]!) - (uvs[c]! - uvs[a]!) * (uvs[b + 1]! - uvs[a + 1]!)) /
+      2;
     if (area >= leastArea) continue;
     ++flat;
     flatArea += surface.areas[t]!;
@@ -51,7 +54,7 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
     if (uses.length < 2) continue;
     const ends = uses.map(({ triangle, corner, forward }) => {
       const [from, to] = [indices[3 * triangle + corner]!, indices[3 * triangle + ((corner + 1) % 3)]!];
-      return forward ? [from, to] as const : [to, from] as const;
+      return forward ? ([from, to] as const) : ([to, from] as const);
     });
     const size = Math.hypot(...[0, 1, 2].map((k) => positions[3 * a + k]! - positions[3 * b + k]!));
     innerLength += size;
@@ -62,12 +65,19 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
       seamLength += size;
     }
   }
-  const { used, share, layers } = coverageOf(uvs, indices, surface.areas.map((area, t) => (surface.doubled[t] === 1 ? 0 : area)));
+  const { used, share, layers } = coverageOf(
+    uvs,
+    indices,
+    surface.areas.map((area, t) => (surface.doubled[t] === 1 ? 0 : area)),
+  );
   return {
     outside: { vertices: outside, share: uvs.length > 0 ? outside / (uvs.length / 2) : 0 },
     withoutArea: { triangles: flat, share: surface.area > 0 ? flatArea / surface.area : 0 },
     overlap: { share, layers },
-    charts: surface.areas.reduce((sum, area, t) => sum + (area > 0 && surface.doubled[t] === 0 && charts.root(t) === t ? 1 : 0), 0),
+    charts: surface.areas.reduce(
+      (sum, area, t) => sum + (area > 0 && surface.doubled[t] === 0 && charts.root(t) === t ? 1 : 0),
+      0,
+    ),
     seams: { edges: seams, share: innerLength > 0 ? seamLength / innerLength : 0 },
     used,
   };
@@ -77,7 +87,11 @@ export function uvLayoutOf({ surface, cage }: Scene): UvLayout {
  * Counts, at the centres of a grid of pixels over the texture, which repeats, how many UV triangles use each.
  * A pixel on a shared edge belongs to one of its triangles alone: the edges of each are half open, as in rasterisers.
  */
-function coverageOf(uvs: Float32Array, indices: ArrayLike<number>, areas: Float64Array): { used: number; share: number; layers: number } {
+function coverageOf(
+  uvs: Float32Array,
+  indices: ArrayLike<number>,
+  areas: Float64Array,
+): { used: number; share: number; layers: number } {
   const counts = new Uint16Array(samples * samples);
   // UVs in pixels, or otherwise far out, would take forever: then the layout as a whole is looked at.
   let [low, high] = [Infinity, -Infinity];
@@ -132,7 +146,10 @@ function fill(x: readonly number[], y: readonly number[], pixel: (column: number
 }
 
 /** UVs outside the texture, without area, one over another, or in crumbs. */
-export function checkUvs({ surface, cage }: Scene, { outside, withoutArea, overlap, charts, seams }: UvLayout): Finding[] {
+export function checkUvs(
+  { surface, cage }: Scene,
+  { outside, withoutArea, overlap, charts, seams }: UvLayout,
+): Finding[] {
   const findings: Finding[] = [];
   if (withoutArea.triangles > 0) {
     findings.push({

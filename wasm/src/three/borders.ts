@@ -3,16 +3,21 @@
  * worker: `cutBorders` there, `cutGeometry` here.
  * @module cagecast/three/borders
  */
-import { DataUtils, type BufferGeometry, type TypedArray } from 'three';
-import { blend, blendSkin, cutPart, ruleOf, type CutPart, type CutTarget } from '../cut/index.js';
-import { splitPart, type PartGeometry, type SplitPart } from '../split-part.js';
-import { likeAttribute, remakeGeometry, splitGeometry, valuesOf, type Attribute } from './split.js';
+import { type BufferGeometry, DataUtils, type TypedArray } from 'three';
+import { blend, blendSkin, type CutPart, type CutTarget, cutPart, ruleOf } from '../cut/index.js';
+import { type PartGeometry, type SplitPart, splitPart } from '../split-part.js';
+import { type Attribute, likeAttribute, remakeGeometry, splitGeometry, valuesOf } from './split.js';
 
-export { decideAgain, type CutPart, type CutTarget } from '../cut/index.js';
+export { type CutPart, type CutTarget, decideAgain } from '../cut/index.js';
 export type { SplitPart };
 
 /** glTF's names of what is not just a mean where triangles are cut. */
-const semantics: Record<string, string> = { normal: 'NORMAL', tangent: 'TANGENT', skinIndex: 'JOINTS_0', skinWeight: 'WEIGHTS_0' };
+const semantics: Record<string, string> = {
+  normal: 'NORMAL',
+  tangent: 'TANGENT',
+  skinIndex: 'JOINTS_0',
+  skinWeight: 'WEIGHTS_0',
+};
 const nameOf = (semantic: string): string => Object.keys(semantics).find((name) => semantics[name] === semantic) ?? '';
 
 type Values = Parameters<typeof blend>[0];
@@ -28,7 +33,12 @@ export type PartRange = Omit<PartGeometry, 'localIndices'>;
  * @returns the part as it was cut, `pieces`, with which of its triangles may be painted; and of each vertex that the geometry has
  * now which of the pieces' it is, `split.sources`, and its UV, `split.uvs`.
  */
-export function cutGeometry(geometry: BufferGeometry, part: PartRange, cut: CutTarget, ownCount: number): { pieces: CutPart; split: SplitPart } {
+export function cutGeometry(
+  geometry: BufferGeometry,
+  part: PartRange,
+  cut: CutTarget,
+  ownCount: number,
+): { pieces: CutPart; split: SplitPart } {
   const pieces = cutPart(part, cut, ownCount);
   if (pieces.blends.sources.length > 0) blendGeometry(geometry, pieces, part.firstTriangle);
   const split = splitPart(pieces.geometry, pieces.result);
@@ -36,7 +46,11 @@ export function cutGeometry(geometry: BufferGeometry, part: PartRange, cut: CutT
   return { pieces, split };
 }
 
-function blendGeometry(geometry: BufferGeometry, { geometry: { localIndices }, blends, origins }: CutPart, firstTriangle: number): void {
+function blendGeometry(
+  geometry: BufferGeometry,
+  { geometry: { localIndices }, blends, origins }: CutPart,
+  firstTriangle: number,
+): void {
   const skin = blendSkin((semantic) => {
     const attribute = geometry.getAttribute(nameOf(semantic)) as Attribute | undefined;
     return attribute && (valuesOf(attribute) as Values);
@@ -45,9 +59,13 @@ function blendGeometry(geometry: BufferGeometry, { geometry: { localIndices }, b
     const piece = origins.findIndex((t) => t - firstTriangle >= corner / 3);
     return 3 * (piece < 0 ? origins.length : piece);
   };
-  const moved = ({ start, count }: { start: number; count: number }) => ({ start: cornerAt(start), count: cornerAt(start + count) - cornerAt(start) });
+  const moved = ({ start, count }: { start: number; count: number }) => ({
+    start: cornerAt(start),
+    count: cornerAt(start + count) - cornerAt(start),
+  });
   geometry.groups = geometry.groups.map((group) => ({ ...group, ...moved(group) }));
-  if (Number.isFinite(geometry.drawRange.count) || geometry.drawRange.start > 0) Object.assign(geometry.drawRange, moved(geometry.drawRange));
+  if (Number.isFinite(geometry.drawRange.count) || geometry.drawRange.start > 0)
+    Object.assign(geometry.drawRange, moved(geometry.drawRange));
 
   remakeGeometry(geometry, Uint32Array.from(localIndices), (attribute, name, isMorph) => {
     const semantic = semantics[name] ?? name;
@@ -56,7 +74,9 @@ function blendGeometry(geometry: BufferGeometry, { geometry: { localIndices }, b
     // What is added to a direction is none itself.
     const rule = isMorph && geometry.morphTargetsRelative ? 'mean' : ruleOf(semantic, values, attribute.normalized);
     const isHalf = 'isFloat16BufferAttribute' in attribute;
-    const blended: TypedArray = pulls ?? blend(isHalf ? Float32Array.from(values, DataUtils.fromHalfFloat) : values, attribute.itemSize, blends, rule);
+    const blended: TypedArray =
+      pulls ??
+      blend(isHalf ? Float32Array.from(values, DataUtils.fromHalfFloat) : values, attribute.itemSize, blends, rule);
     return likeAttribute(attribute, isHalf && !pulls ? Uint16Array.from(blended, DataUtils.toHalfFloat) : blended);
   });
 }

@@ -1,4 +1,12 @@
-import { BufferGeometry, Matrix4, Mesh as ThreeMesh, type BufferAttribute, type InterleavedBufferAttribute, type Object3D, type SkinnedMesh } from 'three';
+import {
+  type BufferAttribute,
+  type BufferGeometry,
+  type InterleavedBufferAttribute,
+  Matrix4,
+  type Object3D,
+  type SkinnedMesh,
+  type Mesh as ThreeMesh,
+} from 'three';
 import { CagecastError, type Mesh } from '../index.js';
 import { skinMatrix, usedJoints } from '../skin.js';
 
@@ -56,12 +64,19 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 function listParts(object: Object3D | BufferGeometry, argument: string): Part[] {
   if (!isGeometry(object) && !isObject(object)) {
-    throw new CagecastError('badArgument', `cagecast/three: ${argument} is ${nameOf(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`);
+    throw new CagecastError(
+      'badArgument',
+      `cagecast/three: ${argument} is ${nameOf(object)}, not a scene, mesh or geometry (of a loaded glTF, take .scene)`,
+    );
   }
   const parts: Part[] = [];
   const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
     if ((mesh && ('isInstancedMesh' in mesh || 'isBatchedMesh' in mesh)) || 'isInstancedBufferGeometry' in geometry) {
-      throw wrong(argument, name, 'shows its geometry in many places at once (instances); make each a mesh of its own first');
+      throw wrong(
+        argument,
+        name,
+        'shows its geometry in many places at once (instances); make each a mesh of its own first',
+      );
     }
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
@@ -69,7 +84,9 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     if (vertexCount === 0 || corners === 0) return;
     if (position!.itemSize !== 3) throw wrong(argument, name, `has positions of ${position!.itemSize} numbers, not 3`);
     if (corners % 3 !== 0) throw wrong(argument, name, `has ${corners} corners, not 3 per triangle`);
-    const morphs = Object.entries(geometry.morphAttributes).flatMap(([of, attributes]) => attributes!.map((attribute): [string, { count: number }] => [`deltas of ${of}`, attribute]));
+    const morphs = Object.entries(geometry.morphAttributes).flatMap(([of, attributes]) =>
+      attributes!.map((attribute): [string, { count: number }] => [`deltas of ${of}`, attribute]),
+    );
     for (const [of, { count }] of [...Object.entries(geometry.attributes), ...morphs]) {
       if (count < vertexCount) throw wrong(argument, name, `has ${count} ${of} for ${vertexCount} vertices`);
     }
@@ -105,11 +122,22 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
 export function placeOf(mesh: ThreeMesh): Matrix4 {
   if (!isSkinned(mesh)) return mesh.matrixWorld;
   const { skeleton, bindMatrix, geometry } = mesh;
-  const [position, held, weights] = ['position', 'skinIndex', 'skinWeight'].map((name) => geometry.getAttribute(name) as Attribute | undefined);
+  const [position, held, weights] = ['position', 'skinIndex', 'skinWeight'].map(
+    (name) => geometry.getAttribute(name) as Attribute | undefined,
+  );
   // Three moves the vertices by the bind matrix first.
   if (!position || !held || !weights || !skeleton) return bindMatrix;
-  const products = skeleton.bones.map((bone, b) => new Matrix4().multiplyMatrices(bone.matrixWorld, skeleton.boneInverses[b]!).multiply(bindMatrix).elements);
-  const matrix = skinMatrix<ArrayLike<number>>(products, usedJoints(valuesOf(held), valuesOf(weights)), valuesOf(position), position.array instanceof Float32Array, bindMatrix.elements);
+  const products = skeleton.bones.map(
+    (bone, b) =>
+      new Matrix4().multiplyMatrices(bone.matrixWorld, skeleton.boneInverses[b]!).multiply(bindMatrix).elements,
+  );
+  const matrix = skinMatrix<ArrayLike<number>>(
+    products,
+    usedJoints(valuesOf(held), valuesOf(weights)),
+    valuesOf(position),
+    position.array instanceof Float32Array,
+    bindMatrix.elements,
+  );
   return new Matrix4().fromArray(matrix);
 }
 
@@ -129,7 +157,8 @@ function valuesOf(attribute: Attribute): Float32Array {
 export const overlayMark = 'cagecastOverlay';
 
 // By three's own marks, not by class: a page may have a second copy of three.
-const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry => (object as BufferGeometry | undefined)?.isBufferGeometry === true;
+const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry =>
+  (object as BufferGeometry | undefined)?.isBufferGeometry === true;
 const isObject = (object: Object3D): boolean => object?.isObject3D === true;
 export const isSkinned = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).isSkinnedMesh === true;
 const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
@@ -137,7 +166,8 @@ const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).
 /** What a value of the wrong kind is, for messages. */
 export const nameOf = (value: unknown): string => (typeof value === 'object' && value ? 'an object' : String(value));
 
-const wrong = (argument: string, name: string, text: string, at = 0): CagecastError => new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
+const wrong = (argument: string, name: string, text: string, at = 0): CagecastError =>
+  new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
 
 /** Whether a matrix mirrors, so that triangles have to be turned for their outside to stay outside. */
 export const isTurned = (matrix: Matrix4): boolean => matrix.determinant() < 0;
@@ -156,20 +186,29 @@ function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, ou
   }
 }
 
-function placeIndices({ name, geometry, matrix, firstVertex, vertexCount, firstTriangle, triangleCount }: Part, out: Uint32Array, argument: string): void {
+function placeIndices(
+  { name, geometry, matrix, firstVertex, vertexCount, firstTriangle, triangleCount }: Part,
+  out: Uint32Array,
+  argument: string,
+): void {
   const { index } = geometry;
   const mirrored = isTurned(matrix);
   for (let i = 0; i < 3 * triangleCount; ++i) {
     // Checked part by part: in the joined arrays an index too large would point into the next part.
     const vertex = index ? index.getX(i) : i;
-    if (vertex >= vertexCount) throw wrong(argument, name, `has indices[${i}] = ${vertex}, which is out of range (${vertexCount} vertices)`, i);
+    if (vertex >= vertexCount)
+      throw wrong(argument, name, `has indices[${i}] = ${vertex}, which is out of range (${vertexCount} vertices)`, i);
     const corner = i % 3;
     out[3 * firstTriangle + i - corner + (mirrored && corner > 0 ? 3 - corner : corner)] = firstVertex + vertex;
   }
 }
 
 /** Numbers the part's material groups, from `first` on. @returns the next number. */
-function placeGroups({ mesh, geometry, firstVertex, vertexCount, triangleCount }: Part, out: Uint32Array, first: number): number {
+function placeGroups(
+  { mesh, geometry, firstVertex, vertexCount, triangleCount }: Part,
+  out: Uint32Array,
+  first: number,
+): number {
   out.fill(first, firstVertex, firstVertex + vertexCount);
   if (!Array.isArray(mesh?.material)) return first + 1;
   let next = first;
@@ -193,7 +232,8 @@ function readUvs(parts: readonly Part[], vertices: number, argument: string): Fl
   const uvs = new Float32Array(2 * vertices);
   for (const { name, geometry, firstVertex, vertexCount } of parts) {
     const uv = geometry.getAttribute('uv') as Attribute;
-    if (uv.count !== vertexCount || uv.itemSize !== 2) throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
+    if (uv.count !== vertexCount || uv.itemSize !== 2)
+      throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
     for (let v = 0; v < vertexCount; ++v) {
       uvs[2 * (firstVertex + v)] = uv.getX(v);
       uvs[2 * (firstVertex + v) + 1] = uv.getY(v);

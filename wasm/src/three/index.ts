@@ -2,16 +2,23 @@
  * Cagecast for three.js: a loaded model in, its meshes with new UVs, zones and a cosmetic overlay out.
  * @module cagecast/three
  */
-import { BufferAttribute, Mesh, type BufferGeometry, type Material, type Object3D, type Texture } from 'three';
-import { isCut, type Borders } from '../cut/option.js';
-import { CagecastError, transfer, type Classification, type Mesh as Arrays, type TransferOptions, type TransferResult } from '../index.js';
+import { BufferAttribute, type BufferGeometry, type Material, type Mesh, type Object3D, type Texture } from 'three';
+import { type Borders, isCut } from '../cut/option.js';
+import {
+  type Mesh as Arrays,
+  CagecastError,
+  type Classification,
+  type TransferOptions,
+  type TransferResult,
+  transfer,
+} from '../index.js';
 import { splitPart } from '../split-part.js';
 import type * as borders from './borders.js';
-import { extract, isTurned, nameOf, placeOf, type Extracted, type Part } from './extract.js';
+import { type Extracted, extract, isTurned, nameOf, type Part, placeOf } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
 import { splitGeometry } from './split.js';
 
-export { extract, placeOf, type Borders, type Extracted, type Part };
+export { type Borders, type Extracted, extract, type Part, placeOf };
 
 /** The attribute that holds each vertex's `Zone`: the name that GLTFLoader gives to `_NCZ`. */
 export const zoneAttribute = '_ncz';
@@ -84,22 +91,49 @@ export interface Applied {
  * applyTransfer(head.scene, cage.scene, { texture: paint });
  * scene.add(head.scene);
  */
-export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions & { borders: 'cut' }): Promise<Applied>;
-export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options?: ApplyOptions & { borders?: 'triangle' | undefined }): Applied;
-export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options?: ApplyOptions): Applied | Promise<Applied>;
-export function applyTransfer(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions = {}): Applied | Promise<Applied> {
+export function applyTransfer(
+  target: Object3D | BufferGeometry,
+  cage: Object3D | BufferGeometry,
+  options: ApplyOptions & { borders: 'cut' },
+): Promise<Applied>;
+export function applyTransfer(
+  target: Object3D | BufferGeometry,
+  cage: Object3D | BufferGeometry,
+  options?: ApplyOptions & { borders?: 'triangle' | undefined },
+): Applied;
+export function applyTransfer(
+  target: Object3D | BufferGeometry,
+  cage: Object3D | BufferGeometry,
+  options?: ApplyOptions,
+): Applied | Promise<Applied>;
+export function applyTransfer(
+  target: Object3D | BufferGeometry,
+  cage: Object3D | BufferGeometry,
+  options: ApplyOptions = {},
+): Applied | Promise<Applied> {
   checkOptions(options);
   if (isCut('applyTransfer', options.borders)) return applyCut(target, cage, options);
   const extracted = extract(target, 'target');
-  return apply(extracted, resultOf(extracted, options, () => extract(cage, 'cage').mesh), options);
+  return apply(
+    extracted,
+    resultOf(extracted, options, () => extract(cage, 'cage').mesh),
+    options,
+  );
 }
 
-async function applyCut(target: Object3D | BufferGeometry, cage: Object3D | BufferGeometry, options: ApplyOptions): Promise<Applied> {
+async function applyCut(
+  target: Object3D | BufferGeometry,
+  cage: Object3D | BufferGeometry,
+  options: ApplyOptions,
+): Promise<Applied> {
   const [tools, { cutBorders }] = await Promise.all([import('./borders.js'), import('../borders/index.js')]);
   const extracted = extract(target, 'target');
   const { mesh } = extract(cage, 'cage');
   const result = resultOf(extracted, options, () => mesh);
-  return apply(extracted, result, options, { target: await cutBorders(mesh, extracted.mesh, result, rulesOf(options)), tools });
+  return apply(extracted, result, options, {
+    target: await cutBorders(mesh, extracted.mesh, result, rulesOf(options)),
+    tools,
+  });
 }
 
 const rulesOf = ({ result, texture, material, channel, borders, ...rules }: ApplyOptions): TransferOptions => rules;
@@ -110,7 +144,19 @@ function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays
   const [vertices, triangles] = [mesh.positions.length / 3, mesh.indices.length / 3];
   const hint = '; extract it before vertices are split';
   const cornerUvs = result?.cornerUvs?.length === 0 ? 0 : 6 * triangles;
-  checkLengths('options.result', result, { zones: vertices, cosmeticTriangles: triangles, uvs: 2 * vertices, cornerUvs, segments: vertices, segmentStats: result?.segmentStats?.length ?? 1 }, hint);
+  checkLengths(
+    'options.result',
+    result,
+    {
+      zones: vertices,
+      cosmeticTriangles: triangles,
+      uvs: 2 * vertices,
+      cornerUvs,
+      segments: vertices,
+      segmentStats: result?.segmentStats?.length ?? 1,
+    },
+    hint,
+  );
   return result;
 }
 
@@ -118,7 +164,11 @@ function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays
 function checkLengths(name: string, given: object, lengths: Record<string, number>, hint = ''): void {
   for (const [field, length] of Object.entries(lengths)) {
     const found = (given as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
-    if (found !== length) throw new CagecastError('badArgument', `cagecast/three: ${name}.${field} ${found === undefined ? 'is no list' : `has ${found} entries`}, the target needs ${length}${hint}`);
+    if (found !== length)
+      throw new CagecastError(
+        'badArgument',
+        `cagecast/three: ${name}.${field} ${found === undefined ? 'is no list' : `has ${found} entries`}, the target needs ${length}${hint}`,
+      );
   }
 }
 
@@ -126,13 +176,24 @@ function checkLengths(name: string, given: object, lengths: Record<string, numbe
 const givenChannels = new WeakMap<BufferGeometry, number>();
 
 function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
-  const free = ([1, 2, 3] as const).find((channel) => parts.every(({ geometry }) => givenChannels.get(geometry) === channel || !geometry.hasAttribute(`uv${channel}`)));
-  if (free === undefined) throw new CagecastError('badArgument', 'cagecast/three: target has uv1, uv2 and uv3 of its own; say by options.channel which of them is to go');
+  const free = ([1, 2, 3] as const).find((channel) =>
+    parts.every(({ geometry }) => givenChannels.get(geometry) === channel || !geometry.hasAttribute(`uv${channel}`)),
+  );
+  if (free === undefined)
+    throw new CagecastError(
+      'badArgument',
+      'cagecast/three: target has uv1, uv2 and uv3 of its own; say by options.channel which of them is to go',
+    );
   return free;
 }
 
 /** @param cut  The target as it was cut, and what cuts its parts, which is loaded only then. */
-function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, material, channel = freeChannel(parts) }: ApplyOptions, cut?: { target: borders.CutTarget; tools: typeof borders }): Applied {
+function apply(
+  { mesh, parts }: Extracted,
+  result: TransferResult,
+  { texture, material, channel = freeChannel(parts) }: ApplyOptions,
+  cut?: { target: borders.CutTarget; tools: typeof borders },
+): Applied {
   const uvName = `uv${channel}`;
   const taken = new Set<BufferGeometry>();
   for (const part of parts) {
@@ -143,7 +204,10 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     const { geometry, matrix, vertexCount, triangleCount } = part;
     const localIndices = geometry.index?.array ?? Uint32Array.from({ length: vertexCount }, (_, v) => v);
     const whole = { ...part, turned: isTurned(matrix), localIndices: localIndices.subarray(0, 3 * triangleCount) };
-    const { pieces, split } = cut?.tools.cutGeometry(geometry, whole, cut.target, mesh.positions.length / 3) ?? { pieces: undefined, split: splitPart(whole, result) };
+    const { pieces, split } = cut?.tools.cutGeometry(geometry, whole, cut.target, mesh.positions.length / 3) ?? {
+      pieces: undefined,
+      split: splitPart(whole, result),
+    };
     if (!pieces && split.copies > 0) splitGeometry(geometry, split);
     geometry.setAttribute(uvName, new BufferAttribute(split.uvs, 2));
     givenChannels.set(geometry, channel);
@@ -169,7 +233,10 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
       const { firstVertex, firstTriangle, triangleCount, vertexCount } = part;
       const { zones, cosmeticTriangles } = pieces
         ? cut!.tools.decideAgain(pieces, whole, mesh.indices, isOther!, now)
-        : { zones: now.zones.subarray(firstVertex, firstVertex + vertexCount), cosmeticTriangles: now.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount) };
+        : {
+            zones: now.zones.subarray(firstVertex, firstVertex + vertexCount),
+            cosmeticTriangles: now.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
+          };
       const attribute = part.geometry.getAttribute(zoneAttribute) as BufferAttribute;
       split.sources.forEach((source, v) => (attribute.array[v] = zones[source]!));
       attribute.needsUpdate = true;
@@ -187,7 +254,11 @@ function apply({ mesh, parts }: Extracted, result: TransferResult, { texture, ma
     parts,
     overlays,
     update(classification) {
-      checkLengths('classification', classification, { zones: result.zones.length, cosmeticTriangles: result.cosmeticTriangles.length, segmentStats: culled.length });
+      checkLengths('classification', classification, {
+        zones: result.zones.length,
+        cosmeticTriangles: result.cosmeticTriangles.length,
+        segmentStats: culled.length,
+      });
       show(classification);
     },
     dispose() {

@@ -1,4 +1,13 @@
-import { BufferAttribute, BufferGeometry, LessEqualDepth, Mesh, MeshStandardMaterial, SkinnedMesh, type Material, type Texture } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  LessEqualDepth,
+  type Material,
+  Mesh,
+  MeshStandardMaterial,
+  SkinnedMesh,
+  type Texture,
+} from 'three';
 import { isSkinned, overlayMark, type Part } from './extract.js';
 
 /**
@@ -47,7 +56,8 @@ export function makeOverlay(part: Part, base: Mesh, uvName: string, material: Ma
 export function showTriangles({ geometry }: Mesh, { geometry: { index } }: Part, cosmetic: Uint8Array): void {
   const corners = new Uint32Array(3 * cosmetic.reduce((sum, one) => sum + one, 0));
   let filled = 0;
-  for (let i = 0; i < 3 * cosmetic.length; ++i) if (cosmetic[Math.floor(i / 3)] === 1) corners[filled++] = index ? index.getX(i) : i;
+  for (let i = 0; i < 3 * cosmetic.length; ++i)
+    if (cosmetic[Math.floor(i / 3)] === 1) corners[filled++] = index ? index.getX(i) : i;
   geometry.setIndex(new BufferAttribute(corners, 1));
 }
 
@@ -55,7 +65,8 @@ export function showTriangles({ geometry }: Mesh, { geometry: { index } }: Part,
 export function paintMaterial(base: Material | undefined, texture: Texture): MeshStandardMaterial {
   const material = new MeshStandardMaterial({ roughness: 0.8 });
   if ((base as MeshStandardMaterial | undefined)?.isMeshStandardMaterial) {
-    const { roughness, roughnessMap, normalMap, normalMapType, normalScale, bumpMap, bumpScale } = base as MeshStandardMaterial;
+    const { roughness, roughnessMap, normalMap, normalMapType, normalScale, bumpMap, bumpScale } =
+      base as MeshStandardMaterial;
     material.setValues({ roughness, roughnessMap, normalMap, normalMapType, bumpMap, bumpScale });
     material.normalScale.copy(normalScale);
   }

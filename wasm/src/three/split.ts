@@ -5,7 +5,9 @@ export type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 /** Gives a geometry copies of vertices, in all of its attributes and morph targets. It stays the same object. */
 export function splitGeometry(geometry: BufferGeometry, { sources, indices }: SplitPart): void {
-  remakeGeometry(geometry, indices, (attribute) => likeAttribute(attribute, gather(valuesOf(attribute) as Float32Array, attribute.itemSize, sources)));
+  remakeGeometry(geometry, indices, (attribute) =>
+    likeAttribute(attribute, gather(valuesOf(attribute) as Float32Array, attribute.itemSize, sources)),
+  );
 }
 
 /** The values of an attribute as they are stored, one element after the other. */
@@ -22,7 +24,9 @@ export function valuesOf(attribute: Attribute): TypedArray {
 export function likeAttribute(attribute: Attribute, values: TypedArray): BufferAttribute {
   const { itemSize, normalized } = attribute;
   // What makes the values of a class of three's own what they are, as of half floats, is in the class.
-  const Class = ('isInterleavedBufferAttribute' in attribute ? BufferAttribute : attribute.constructor) as typeof BufferAttribute;
+  const Class = (
+    'isInterleavedBufferAttribute' in attribute ? BufferAttribute : attribute.constructor
+  ) as typeof BufferAttribute;
   const made = new Class(values, itemSize, normalized);
   made.name = attribute.name;
   if (!('isInterleavedBufferAttribute' in attribute)) {
@@ -33,11 +37,18 @@ export function likeAttribute(attribute: Attribute, values: TypedArray): BufferA
 }
 
 /** Replaces all attributes and morph targets of a geometry, and its triangles, and has its buffers on the graphics card made anew. */
-export function remakeGeometry(geometry: BufferGeometry, indices: Uint32Array, remake: (attribute: Attribute, name: string, isMorph: boolean) => BufferAttribute): void {
+export function remakeGeometry(
+  geometry: BufferGeometry,
+  indices: Uint32Array,
+  remake: (attribute: Attribute, name: string, isMorph: boolean) => BufferAttribute,
+): void {
   geometry.dispose();
-  for (const [name, attribute] of Object.entries(geometry.attributes)) geometry.setAttribute(name, remake(attribute, name, false));
+  for (const [name, attribute] of Object.entries(geometry.attributes))
+    geometry.setAttribute(name, remake(attribute, name, false));
   for (const [name, morphs] of Object.entries(geometry.morphAttributes)) {
-    geometry.morphAttributes[name as keyof typeof geometry.morphAttributes] = morphs!.map((morph) => remake(morph, name, true));
+    geometry.morphAttributes[name as keyof typeof geometry.morphAttributes] = morphs!.map((morph) =>
+      remake(morph, name, true),
+    );
   }
   geometry.setIndex(new BufferAttribute(indices, 1));
 }

@@ -5,6 +5,7 @@
  * @module cagecast/worker
  */
 import { spawn } from '#spawn';
+import { show } from '../error.js';
 import {
   CagecastError,
   type Classification,
@@ -18,7 +19,6 @@ import {
   type TransferOptions,
   type TransferResult,
 } from '../index.js';
-import { show } from '../error.js';
 import type { Reply, Request, Thread } from './protocol.js';
 
 export * from '../index.js';
@@ -50,7 +50,11 @@ export function init(): Promise<void> {
 }
 
 /** As `transfer` of `cagecast`, off the main thread; without `into`, as the arrays come over anew. */
-export function transfer(cage: Mesh, target: Mesh, options: TransferOptions & CallOptions = {}): Promise<TransferResult> {
+export function transfer(
+  cage: Mesh,
+  target: Mesh,
+  options: TransferOptions & CallOptions = {},
+): Promise<TransferResult> {
   return withOptions('transfer', [cage, target], options);
 }
 
@@ -65,7 +69,11 @@ export function classify(projection: Projection, options: ClassifyOptions & Call
 }
 
 /** As `splitVertices` of `cagecast`, off the main thread. */
-export function splitVertices(target: Mesh, cornerUvs: Float32Array, options: CallOptions = {}): Promise<SplitVertices> {
+export function splitVertices(
+  target: Mesh,
+  cornerUvs: Float32Array,
+  options: CallOptions = {},
+): Promise<SplitVertices> {
   return withOptions('splitVertices', [target, cornerUvs], options);
 }
 
@@ -87,10 +95,17 @@ function withOptions<T>(fn: Request['fn'], args: unknown[], options: CallOptions
   if (typeof options !== 'object' || options === null) return call(fn, [...args, options], {});
   const { signal, move, ...rest } = options;
   const wrong = (text: string) => Promise.reject(new CagecastError('badOption', `${fn}: options.${text}`));
-  if (signal !== undefined && typeof signal?.addEventListener !== 'function') return wrong(`signal is ${show(signal)}, not an AbortSignal`);
+  if (signal !== undefined && typeof signal?.addEventListener !== 'function')
+    return wrong(`signal is ${show(signal)}, not an AbortSignal`);
   if (move !== undefined && typeof move !== 'boolean') return wrong(`move is ${show(move)}, not true or false`);
   // A copy of it would be written over there, and what it is here would stay as it is.
-  if ('into' in rest && rest.into !== undefined) return Promise.reject(new CagecastError('badOption', `${fn}: options.into is for calls on one thread; from a worker all arrays are new`));
+  if ('into' in rest && rest.into !== undefined)
+    return Promise.reject(
+      new CagecastError(
+        'badOption',
+        `${fn}: options.into is for calls on one thread; from a worker all arrays are new`,
+      ),
+    );
   return call(fn, [...args, rest], { signal, move });
 }
 
@@ -128,14 +143,27 @@ function next(): void {
   try {
     thread ??= spawn(onReply, onFailure);
   } catch (cause) {
-    return finish(job, new CagecastError('unsupported', `${job.request.fn}: this host cannot start the worker (${String(cause)})`, 0, { cause }));
+    return finish(
+      job,
+      new CagecastError('unsupported', `${job.request.fn}: this host cannot start the worker (${String(cause)})`, 0, {
+        cause,
+      }),
+    );
   }
   try {
     thread.setBusy(true);
     thread.post(job.request, job.move ? buffersOf(job.request.args) : []);
   } catch (cause) {
     // An argument that cannot be sent, as a function or an array that has been moved away.
-    finish(job, new CagecastError('badArgument', `${job.request.fn}: the arguments cannot be sent to the worker (${String(cause)})`, 0, { cause }));
+    finish(
+      job,
+      new CagecastError(
+        'badArgument',
+        `${job.request.fn}: the arguments cannot be sent to the worker (${String(cause)})`,
+        0,
+        { cause },
+      ),
+    );
   }
 }
 
@@ -166,8 +194,12 @@ function stop(): void {
 }
 
 function buffersOf(args: unknown[]): ArrayBuffer[] {
-  const values = args.flatMap((arg) => (ArrayBuffer.isView(arg) ? [arg] : typeof arg === 'object' && arg !== null ? Object.values(arg) : []));
+  const values = args.flatMap((arg) =>
+    ArrayBuffer.isView(arg) ? [arg] : typeof arg === 'object' && arg !== null ? Object.values(arg) : [],
+  );
   const buffers = values.filter((value) => ArrayBuffer.isView(value)).map((view) => view.buffer);
   // An empty one may have been moved away before. Listed, it would be lost on the way; left to be copied, it throws.
-  return [...new Set(buffers)].filter((buffer): buffer is ArrayBuffer => buffer instanceof ArrayBuffer && buffer.byteLength > 0);
+  return [...new Set(buffers)].filter(
+    (buffer): buffer is ArrayBuffer => buffer instanceof ArrayBuffer && buffer.byteLength > 0,
+  );
 }

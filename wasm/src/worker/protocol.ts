@@ -8,7 +8,9 @@ export interface Request {
 }
 
 /** What became of it. */
-export type Reply = { id: number; result: unknown } | { id: number; error: { code: Code; message: string; at: number } };
+export type Reply =
+  | { id: number; result: unknown }
+  | { id: number; error: { code: Code; message: string; at: number } };
 
 /** A worker on some host. */
 export interface Thread {

@@ -1,90 +1,91 @@
-import { element } from '../page'
-import { kPaintedSizes, type PaintedSize } from './painted-sheet'
+import { element } from '../page';
+import { kPaintedSizes, type PaintedSize } from './painted-sheet';
 
 /** What a tool of painting is; each shows the options that concern it. */
-export type Kind = 'brush' | 'eraser' | 'sticker'
+export type Kind = 'brush' | 'eraser' | 'sticker';
 
 // What the slider of sizes goes from and to, as shares of the diagonal of the cage.
-const kLeastSize = 0.004
-const kMostSize = 0.4
+const kLeastSize = 0.004;
+const kMostSize = 0.4;
 
 /** What is chosen below the list of layers for the tools to paint with. */
 export class PaintOptions {
-  readonly #slot = element('tool-options', HTMLElement)
-  readonly #color = element('brush-color', HTMLInputElement)
-  readonly #size = element('brush-size', HTMLInputElement)
-  readonly #hardness = element('brush-hardness', HTMLInputElement)
-  readonly #opacity = element('brush-opacity', HTMLInputElement)
-  readonly #mirror = element('brush-mirror', HTMLInputElement)
-  readonly #fine = element('painting-fine', HTMLInputElement)
-  readonly #text = element('sticker-text', HTMLInputElement)
-  readonly #turn = element('sticker-turn', HTMLInputElement)
+  readonly #slot = element('tool-options', HTMLElement);
+  readonly #color = element('brush-color', HTMLInputElement);
+  readonly #size = element('brush-size', HTMLInputElement);
+  readonly #hardness = element('brush-hardness', HTMLInputElement);
+  readonly #opacity = element('brush-opacity', HTMLInputElement);
+  readonly #mirror = element('brush-mirror', HTMLInputElement);
+  readonly #fine = element('painting-fine', HTMLInputElement);
+  readonly #text = element('sticker-text', HTMLInputElement);
+  readonly #turn = element('sticker-turn', HTMLInputElement);
 
   constructor() {
-    for (const input of this.#slot.querySelectorAll('input')) input.addEventListener('input', () => this.#label())
-    this.#label()
+    for (const input of this.#slot.querySelectorAll('input')) input.addEventListener('input', () => this.#label());
+    this.#label();
   }
 
   /** #rrggbb */
   get color(): string {
-    return this.#color.value
+    return this.#color.value;
   }
 
   /** A share of the diagonal of the cage: across the brush, or along the longer side of a sticker. */
   get size(): number {
     // Even steps of the slider are even ratios.
-    return kLeastSize * (kMostSize / kLeastSize) ** (Number(this.#size.value) / 100)
+    return kLeastSize * (kMostSize / kLeastSize) ** (Number(this.#size.value) / 100);
   }
 
   /** 0..1 */
   get hardness(): number {
-    return Number(this.#hardness.value) / 100
+    return Number(this.#hardness.value) / 100;
   }
 
   /** 0..1 */
   get opacity(): number {
-    return Number(this.#opacity.value) / 100
+    return Number(this.#opacity.value) / 100;
   }
 
   get mirror(): boolean {
-    return this.#mirror.checked
+    return this.#mirror.checked;
   }
 
   /** Texels a side of what is painted on. */
   get texels(): PaintedSize {
-    return kPaintedSizes[this.#fine.checked ? 1 : 0]
+    return kPaintedSizes[this.#fine.checked ? 1 : 0];
   }
 
   set texels(texels: PaintedSize) {
-    this.#fine.checked = texels === kPaintedSizes[1]
+    this.#fine.checked = texels === kPaintedSizes[1];
   }
 
   get text(): string {
-    return this.#text.value
+    return this.#text.value;
   }
 
   set text(text: string) {
-    this.#text.value = text
+    this.#text.value = text;
   }
 
   /** Radians, clockwise. */
   get angle(): number {
-    return (Number(this.#turn.value) * Math.PI) / 180
+    return (Number(this.#turn.value) * Math.PI) / 180;
   }
 
   /** Shows the options of one tool, or of none. */
   show(kind: Kind | undefined): void {
-    this.#slot.hidden = kind === undefined
-    for (const part of this.#slot.querySelectorAll<HTMLElement>('[data-for]')) part.hidden = !part.dataset.for!.split(' ').includes(kind ?? '')
+    this.#slot.hidden = kind === undefined;
+    for (const part of this.#slot.querySelectorAll<HTMLElement>('[data-for]'))
+      part.hidden = !part.dataset.for!.split(' ').includes(kind ?? '');
   }
 
   #label(): void {
     const say = (input: HTMLInputElement, text: string): void => {
-      input.ariaValueText = input.closest('label')!.querySelector('output')!.value = text
-    }
-    say(this.#size, `${(100 * this.size).toFixed(1)} %`)
-    say(this.#hardness, `${this.#hardness.value} %`)
-    say(this.#opacity, `${this.#opacity.value} %`)
-    say(this.#turn, `${this.#turn.value}°`)
+      input.ariaValueText = input.closest('label')!.querySelector('output')!.value = text;
+    };
+    say(this.#size, `${(100 * this.size).toFixed(1)} %`);
+    say(this.#hardness, `${this.#hardness.value} %`);
+    say(this.#opacity, `${this.#opacity.value} %`);
+    say(this.#turn, `${this.#turn.value}°`);
   }
 }

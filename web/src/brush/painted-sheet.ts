@@ -1,17 +1,17 @@
-import { DataTexture, SRGBColorSpace, Vector2, WebGLRenderTarget, type Texture, type WebGLRenderer } from 'three'
-import type { Sheet } from '../layers/layer'
-import { isEmpty, type Rect } from '../layers/rect'
+import { DataTexture, SRGBColorSpace, type Texture, Vector2, type WebGLRenderer, WebGLRenderTarget } from 'three';
+import type { Sheet } from '../layers/layer';
+import { isEmpty, type Rect } from '../layers/rect';
 
 /** Texels a side that paintings may have. */
-export const kPaintedSizes = [1024, 2048] as const
-export type PaintedSize = (typeof kPaintedSizes)[number]
+export const kPaintedSizes = [1024, 2048] as const;
+export type PaintedSize = (typeof kPaintedSizes)[number];
 
 // One transparent pixel.
-const kNoPicture = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEKAAEALAAAAAABAAEAAAICTAEAOw=='
+const kNoPicture = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEKAAEALAAAAAABAAEAAAICTAEAOw==';
 
 /** Storage on the GPU for what is painted: sRGB, its colours multiplied by their alpha, transparent at first. */
 export function makePaintTarget(size: number): WebGLRenderTarget {
-  return new WebGLRenderTarget(size, size, { colorSpace: SRGBColorSpace, depthBuffer: false })
+  return new WebGLRenderTarget(size, size, { colorSpace: SRGBColorSpace, depthBuffer: false });
 }
 
 /**
@@ -19,65 +19,69 @@ export function makePaintTarget(size: number): WebGLRenderTarget {
  * copies about and from which the texture is made again when the graphics context was lost.
  */
 export class PaintedSheet implements Sheet {
-  readonly premultiplied = true
+  readonly premultiplied = true;
   /** Where strokes are drawn to; tell `take` afterwards. */
-  readonly target: WebGLRenderTarget
-  readonly #bytes: Uint8Array
-  readonly bytes: number
-  picture = kNoPicture
+  readonly target: WebGLRenderTarget;
+  readonly #bytes: Uint8Array;
+  readonly bytes: number;
+  picture = kNoPicture;
 
   /** @param size Texels a side. */
   constructor(readonly size: PaintedSize) {
-    this.target = makePaintTarget(size)
-    this.bytes = 4 * size * size
-    this.#bytes = new Uint8Array(this.bytes)
+    this.target = makePaintTarget(size);
+    this.bytes = 4 * size * size;
+    this.#bytes = new Uint8Array(this.bytes);
   }
 
   get texture(): Texture {
-    return this.target.texture
+    return this.target.texture;
   }
 
   /** The texels of a part, row by row. @param rect In texels. */
   get(rect: Rect): Uint8Array {
-    const part = new Uint8Array(4 * (rect.right - rect.left) * (rect.bottom - rect.top))
-    eachRow(rect, this.size, (place, inPart, length) => part.set(this.#bytes.subarray(place, place + length), inPart))
-    return part
+    const part = new Uint8Array(4 * (rect.right - rect.left) * (rect.bottom - rect.top));
+    eachRow(rect, this.size, (place, inPart, length) => part.set(this.#bytes.subarray(place, place + length), inPart));
+    return part;
   }
 
   /** Notes what was drawn to a part of the target, and returns it. @param rect In texels. Waits for the GPU. */
   take(renderer: WebGLRenderer, rect: Rect): Uint8Array {
-    const [width, height] = [rect.right - rect.left, rect.bottom - rect.top]
-    const part = new Uint8Array(4 * width * height)
-    renderer.readRenderTargetPixels(this.target, rect.left, rect.top, width, height, part)
-    this.#keep(rect, part)
-    return part
+    const [width, height] = [rect.right - rect.left, rect.bottom - rect.top];
+    const part = new Uint8Array(4 * width * height);
+    renderer.readRenderTargetPixels(this.target, rect.left, rect.top, width, height, part);
+    this.#keep(rect, part);
+    return part;
   }
 
   /** Puts texels back, as `bytes` or `take` gave them. */
   put(renderer: WebGLRenderer, rect: Rect, part: Uint8Array): void {
-    this.#keep(rect, part)
-    upload(renderer, this.target, rect, part)
+    this.#keep(rect, part);
+    upload(renderer, this.target, rect, part);
   }
 
   /** Makes the texture again from the bytes, after the graphics context was lost. */
   restore(renderer: WebGLRenderer): void {
-    upload(renderer, this.target, { left: 0, top: 0, right: this.size, bottom: this.size }, this.#bytes)
+    upload(renderer, this.target, { left: 0, top: 0, right: this.size, bottom: this.size }, this.#bytes);
   }
 
   #keep(rect: Rect, part: Uint8Array): void {
-    eachRow(rect, this.size, (place, inPart, length) => this.#bytes.set(part.subarray(inPart, inPart + length), place))
+    eachRow(rect, this.size, (place, inPart, length) => this.#bytes.set(part.subarray(inPart, inPart + length), place));
   }
 }
 
 /** @param size Texels a side of the sheet. @param visit Called for each row with where it begins in the sheet's bytes and in the part's, and how long it is. */
-function eachRow({ left, top, right, bottom }: Rect, size: number, visit: (place: number, inPart: number, length: number) => void): void {
-  const length = 4 * (right - left)
-  for (let row = top; row < bottom; row++) visit(4 * (row * size + left), (row - top) * length, length)
+function eachRow(
+  { left, top, right, bottom }: Rect,
+  size: number,
+  visit: (place: number, inPart: number, length: number) => void,
+): void {
+  const length = 4 * (right - left);
+  for (let row = top; row < bottom; row++) visit(4 * (row * size + left), (row - top) * length, length);
 }
 
 function upload(renderer: WebGLRenderer, target: WebGLRenderTarget, rect: Rect, part: Uint8Array): void {
-  if (isEmpty(rect)) return
-  renderer.initRenderTarget(target)
-  const source = new DataTexture(part, rect.right - rect.left, rect.bottom - rect.top)
-  renderer.copyTextureToTexture(source, target.texture, null, new Vector2(rect.left, rect.top))
+  if (isEmpty(rect)) return;
+  renderer.initRenderTarget(target);
+  const source = new DataTexture(part, rect.right - rect.left, rect.bottom - rect.top);
+  renderer.copyTextureToTexture(source, target.texture, null, new Vector2(rect.left, rect.top));
 }

@@ -1,25 +1,25 @@
-import { element } from '../page'
+import { element } from '../page';
 
 /** The outline of what would be painted, where the pointer is. */
 export class Ring {
-  readonly #ring = document.createElement('div')
+  readonly #ring = document.createElement('div');
 
   constructor() {
-    this.#ring.className = 'brush-ring'
-    this.#ring.hidden = true
-    element('stage', HTMLElement).append(this.#ring)
+    this.#ring.className = 'brush-ring';
+    this.#ring.hidden = true;
+    element('stage', HTMLElement).append(this.#ring);
   }
 
   /** @param x,y In pixels of the window. @param diameter In pixels. */
   show(x: number, y: number, diameter: number): void {
-    const { left, top } = this.#ring.parentElement!.getBoundingClientRect()
-    const { style } = this.#ring
-    style.width = style.height = `${diameter}px`
-    style.translate = `${x - left - diameter / 2}px ${y - top - diameter / 2}px`
-    this.#ring.hidden = false
+    const { left, top } = this.#ring.parentElement!.getBoundingClientRect();
+    const { style } = this.#ring;
+    style.width = style.height = `${diameter}px`;
+    style.translate = `${x - left - diameter / 2}px ${y - top - diameter / 2}px`;
+    this.#ring.hidden = false;
   }
 
   hide(): void {
-    this.#ring.hidden = true
+    this.#ring.hidden = true;
   }
 }

@@ -1,10 +1,10 @@
-import { announce, element } from '../page'
-import { kMostLayers } from './composite'
-import type { Edits } from './edits'
-import { kBlends, type Blend, type Layer, type Style } from './layer'
-import type { LayerStack } from './stack'
+import { announce, element } from '../page';
+import { kMostLayers } from './composite';
+import type { Edits } from './edits';
+import { type Blend, kBlends, type Layer, type Style } from './layer';
+import type { LayerStack } from './stack';
 
-const kBlendTitles: Record<Blend, string> = { normal: 'Normal', multiply: 'Multiply', screen: 'Screen', add: 'Add' }
+const kBlendTitles: Record<Blend, string> = { normal: 'Normal', multiply: 'Multiply', screen: 'Screen', add: 'Add' };
 
 const kRow = `
   <button type="button" class="grip" name="move"><svg viewBox="0 0 24 24" aria-hidden="true" focusable="false"><path d="M9 6h.01M15 6h.01M9 12h.01M15 12h.01M9 18h.01M15 18h.01"/></svg></button>
@@ -15,182 +15,191 @@ const kRow = `
     <label class="field"><span>Opacity <output></output></span><input type="range" name="opacity" min="0" max="100" /></label>
     <label class="field"><span>Blending</span><select name="blend"></select></label>
     <label class="field"><span>Tint</span><input type="color" name="tint" /></label>
-  </div>`
+  </div>`;
 
 /** One layer of the list, and its controls. */
 interface Row {
-  item: HTMLLIElement
-  show(layer: Layer, selected: boolean): void
+  item: HTMLLIElement;
+  show(layer: Layer, selected: boolean): void;
 }
 
 /** The list of layers, the uppermost first: how each is laid, and in which order. */
 export class LayerList {
-  readonly #stack: LayerStack
-  readonly #edits: Edits
-  readonly #list = element('layer-list', HTMLOListElement)
-  readonly #rows = new Map<number, Row>()
-  #dragged: Layer | undefined
+  readonly #stack: LayerStack;
+  readonly #edits: Edits;
+  readonly #list = element('layer-list', HTMLOListElement);
+  readonly #rows = new Map<number, Row>();
+  #dragged: Layer | undefined;
   /** The layer that is being laid in another way. */
-  #restyled: number | undefined
+  #restyled: number | undefined;
 
   constructor(stack: LayerStack, edits: Edits) {
-    this.#stack = stack
-    this.#edits = edits
-    for (const event of ['change', 'select', 'pictures'] as const) stack.on(event, () => this.#show())
+    this.#stack = stack;
+    this.#edits = edits;
+    for (const event of ['change', 'select', 'pictures'] as const) stack.on(event, () => this.#show());
     // On the list, not on the row: a row that moves would lose the pointer.
-    this.#list.addEventListener('pointermove', (event) => this.#drag(event))
-    for (const end of ['pointerup', 'pointercancel'] as const) this.#list.addEventListener(end, () => this.#drop())
-    const texture = element('texture-input', HTMLInputElement)
-    element('add-image', HTMLButtonElement).addEventListener('click', () => texture.click())
-    this.#show()
+    this.#list.addEventListener('pointermove', (event) => this.#drag(event));
+    for (const end of ['pointerup', 'pointercancel'] as const) this.#list.addEventListener(end, () => this.#drop());
+    const texture = element('texture-input', HTMLInputElement);
+    element('add-image', HTMLButtonElement).addEventListener('click', () => texture.click());
+    this.#show();
   }
 
   #show(): void {
-    const { layers, selected } = this.#stack
+    const { layers, selected } = this.#stack;
     for (const [id, { item }] of this.#rows) {
-      if (layers.some((layer) => layer.id === id)) continue
-      item.remove()
-      this.#rows.delete(id)
+      if (layers.some((layer) => layer.id === id)) continue;
+      item.remove();
+      this.#rows.delete(id);
       // Its controls do not tell any more that it is over.
-      if (this.#dragged?.id === id) this.#drop()
-      if (this.#restyled === id) this.#restyledAs('style')
+      if (this.#dragged?.id === id) this.#drop();
+      if (this.#restyled === id) this.#restyledAs('style');
     }
-    const focused = document.activeElement
+    const focused = document.activeElement;
     const items = layers.toReversed().map((layer) => {
-      const row = this.#rows.get(layer.id) ?? this.#makeRow(layer.id)
-      row.show(layer, layer === selected)
-      return row.item
-    })
+      const row = this.#rows.get(layer.id) ?? this.#makeRow(layer.id);
+      row.show(layer, layer === selected);
+      return row.item;
+    });
     if (items.some((item, index) => this.#list.children[index] !== item)) {
-      this.#list.replaceChildren(...items)
+      this.#list.replaceChildren(...items);
       // What is moved about loses the keyboard.
-      if (focused instanceof HTMLElement && this.#list.contains(focused)) focused.focus({ preventScroll: true })
+      if (focused instanceof HTMLElement && this.#list.contains(focused)) focused.focus({ preventScroll: true });
     }
-    this.#list.hidden = items.length === 0
-    element('layer-count', HTMLElement).textContent = `${layers.length} of ${kMostLayers}`
-    for (const name of ['add-image', 'add-painting']) element(name, HTMLButtonElement).disabled = this.#stack.full
+    this.#list.hidden = items.length === 0;
+    element('layer-count', HTMLElement).textContent = `${layers.length} of ${kMostLayers}`;
+    for (const name of ['add-image', 'add-painting']) element(name, HTMLButtonElement).disabled = this.#stack.full;
   }
 
   /** Ends a step in which a layer was laid in another way. */
   #restyledAs(what: string): void {
-    const { name } = this.#stack.layers.find(({ id }) => id === this.#restyled) ?? { name: 'a layer' }
-    this.#restyled = undefined
-    this.#edits.end(`${what} of ${name}`)
+    const { name } = this.#stack.layers.find(({ id }) => id === this.#restyled) ?? { name: 'a layer' };
+    this.#restyled = undefined;
+    this.#edits.end(`${what} of ${name}`);
   }
 
   #layerOf(id: number): Layer {
-    return this.#stack.layers.find((layer) => layer.id === id)!
+    return this.#stack.layers.find((layer) => layer.id === id)!;
   }
 
   #makeRow(id: number): Row {
-    const item = document.createElement('li')
-    item.className = 'layer'
-    item.innerHTML = kRow
-    const part = <T extends Element>(name: string): T => item.querySelector<T>(`[name=${name}]`)!
-    const grip = part<HTMLButtonElement>('move')
-    const [choose, remove] = [part<HTMLButtonElement>('choose'), part<HTMLButtonElement>('remove')]
-    const visible = part<HTMLInputElement>('visible')
-    const [opacity, tint, blend] = [part<HTMLInputElement>('opacity'), part<HTMLInputElement>('tint'), part<HTMLSelectElement>('blend')]
-    for (const name of kBlends) blend.add(new Option(kBlendTitles[name], name))
+    const item = document.createElement('li');
+    item.className = 'layer';
+    item.innerHTML = kRow;
+    const part = <T extends Element>(name: string): T => item.querySelector<T>(`[name=${name}]`)!;
+    const grip = part<HTMLButtonElement>('move');
+    const [choose, remove] = [part<HTMLButtonElement>('choose'), part<HTMLButtonElement>('remove')];
+    const visible = part<HTMLInputElement>('visible');
+    const [opacity, tint, blend] = [
+      part<HTMLInputElement>('opacity'),
+      part<HTMLInputElement>('tint'),
+      part<HTMLSelectElement>('blend'),
+    ];
+    for (const name of kBlends) blend.add(new Option(kBlendTitles[name], name));
     /** A drag says the same many times, and then that it is over. */
     const restyle = (style: Partial<Style>): void => {
-      if (!this.#rows.has(id)) return
-      this.#restyled = id
-      this.#edits.begin()
-      this.#stack.restyle(this.#layerOf(id), style)
-    }
+      if (!this.#rows.has(id)) return;
+      this.#restyled = id;
+      this.#edits.begin();
+      this.#stack.restyle(this.#layerOf(id), style);
+    };
 
-    choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)))
+    choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)));
     visible.addEventListener('change', () => {
-      restyle({ visible: visible.checked })
-      this.#restyledAs(visible.checked ? 'showing' : 'hiding')
-      announce(`${this.#layerOf(id).name} is ${visible.checked ? 'shown' : 'hidden'}.`)
-    })
-    opacity.addEventListener('input', () => restyle({ opacity: Number(opacity.value) / 100 }))
-    tint.addEventListener('input', () => restyle({ tint: tint.value }))
-    blend.addEventListener('input', () => restyle({ blend: blend.value as Blend }))
-    for (const [control, what] of [[opacity, 'opacity'], [tint, 'tint'], [blend, 'blending']] as const) {
+      restyle({ visible: visible.checked });
+      this.#restyledAs(visible.checked ? 'showing' : 'hiding');
+      announce(`${this.#layerOf(id).name} is ${visible.checked ? 'shown' : 'hidden'}.`);
+    });
+    opacity.addEventListener('input', () => restyle({ opacity: Number(opacity.value) / 100 }));
+    tint.addEventListener('input', () => restyle({ tint: tint.value }));
+    blend.addEventListener('input', () => restyle({ blend: blend.value as Blend }));
+    for (const [control, what] of [
+      [opacity, 'opacity'],
+      [tint, 'tint'],
+      [blend, 'blending'],
+    ] as const) {
       // Where it is in the end as it was, nothing changes for a browser: there is no `change` then.
-      for (const end of ['change', 'pointerup', 'pointercancel', 'blur'] as const) control.addEventListener(end, () => this.#restyled === id && this.#restyledAs(what))
+      for (const end of ['change', 'pointerup', 'pointercancel', 'blur'] as const)
+        control.addEventListener(end, () => this.#restyled === id && this.#restyledAs(what));
     }
-    remove.addEventListener('click', () => this.#remove(id))
+    remove.addEventListener('click', () => this.#remove(id));
     grip.addEventListener('pointerdown', (event) => {
-      if (event.button !== 0) return
-      this.#dragged = this.#layerOf(id)
-      this.#edits.begin()
-      this.#list.setPointerCapture(event.pointerId)
-      item.classList.add('dragged')
-    })
+      if (event.button !== 0) return;
+      this.#dragged = this.#layerOf(id);
+      this.#edits.begin();
+      this.#list.setPointerCapture(event.pointerId);
+      item.classList.add('dragged');
+    });
     grip.addEventListener('keydown', (event) => {
-      const steps: Record<string, number> = { ArrowUp: 1, ArrowDown: -1 }
-      const step = steps[event.key]
-      if (step === undefined) return
-      event.preventDefault()
-      const layer = this.#layerOf(id)
-      this.#edits.do(`move of ${layer.name}`, () => this.#move(layer, this.#stack.layers.indexOf(layer) + step))
-    })
+      const steps: Record<string, number> = { ArrowUp: 1, ArrowDown: -1 };
+      const step = steps[event.key];
+      if (step === undefined) return;
+      event.preventDefault();
+      const layer = this.#layerOf(id);
+      this.#edits.do(`move of ${layer.name}`, () => this.#move(layer, this.#stack.layers.indexOf(layer) + step));
+    });
 
     const row: Row = {
       item,
       show(layer, selected) {
-        const { name } = layer
-        item.classList.toggle('selected', selected)
-        item.querySelector('img')!.src = layer.sheet.picture
-        item.querySelector('.name')!.textContent = choose.title = name
-        choose.setAttribute('aria-pressed', String(selected))
-        grip.setAttribute('aria-label', `Reorder ${name}: up and down keys`)
-        remove.setAttribute('aria-label', `Remove ${name}`)
-        visible.setAttribute('aria-label', `Show ${name}`)
-        opacity.setAttribute('aria-label', `Opacity of ${name}`)
-        tint.setAttribute('aria-label', `Tint of ${name}`)
-        blend.setAttribute('aria-label', `Blending of ${name}`)
-        visible.checked = layer.visible
-        opacity.value = String(Math.round(100 * layer.opacity))
-        opacity.ariaValueText = item.querySelector('output')!.value = `${opacity.value} %`
-        tint.value = layer.tint
-        blend.value = layer.blend
-        item.querySelector<HTMLElement>('.style')!.hidden = !selected
+        const { name } = layer;
+        item.classList.toggle('selected', selected);
+        item.querySelector('img')!.src = layer.sheet.picture;
+        item.querySelector('.name')!.textContent = choose.title = name;
+        choose.setAttribute('aria-pressed', String(selected));
+        grip.setAttribute('aria-label', `Reorder ${name}: up and down keys`);
+        remove.setAttribute('aria-label', `Remove ${name}`);
+        visible.setAttribute('aria-label', `Show ${name}`);
+        opacity.setAttribute('aria-label', `Opacity of ${name}`);
+        tint.setAttribute('aria-label', `Tint of ${name}`);
+        blend.setAttribute('aria-label', `Blending of ${name}`);
+        visible.checked = layer.visible;
+        opacity.value = String(Math.round(100 * layer.opacity));
+        opacity.ariaValueText = item.querySelector('output')!.value = `${opacity.value} %`;
+        tint.value = layer.tint;
+        blend.value = layer.blend;
+        item.querySelector<HTMLElement>('.style')!.hidden = !selected;
       },
-    }
-    this.#rows.set(id, row)
-    return row
+    };
+    this.#rows.set(id, row);
+    return row;
   }
 
   #remove(id: number): void {
-    const layer = this.#layerOf(id)
-    const place = this.#stack.layers.length - 1 - this.#stack.layers.indexOf(layer)
-    this.#edits.do(`removal of ${layer.name}`, () => this.#stack.remove(id))
-    announce(`${layer.name} is removed.`)
+    const layer = this.#layerOf(id);
+    const place = this.#stack.layers.length - 1 - this.#stack.layers.indexOf(layer);
+    this.#edits.do(`removal of ${layer.name}`, () => this.#stack.remove(id));
+    announce(`${layer.name} is removed.`);
     // The keyboard goes on with the row that took its place.
-    const next = this.#list.children[Math.min(place, this.#list.children.length - 1)] ?? this.#list.parentElement!
-    next.querySelector<HTMLElement>('[name=remove], button:enabled')?.focus()
+    const next = this.#list.children[Math.min(place, this.#list.children.length - 1)] ?? this.#list.parentElement!;
+    next.querySelector<HTMLElement>('[name=remove], button:enabled')?.focus();
   }
 
   #move(layer: Layer, place: number): void {
-    const { layers } = this.#stack
-    if (place < 0 || place >= layers.length || layers[place]!.id === layer.id) return
-    this.#stack.move(layer, place)
-    announce(`${layer.name} is ${layers.length - place} of ${layers.length} from the top.`)
+    const { layers } = this.#stack;
+    if (place < 0 || place >= layers.length || layers[place]!.id === layer.id) return;
+    this.#stack.move(layer, place);
+    announce(`${layer.name} is ${layers.length - place} of ${layers.length} from the top.`);
   }
 
   /** Changes places with a neighbour once the pointer is past its middle. */
   #drag({ clientY }: PointerEvent): void {
-    if (!this.#dragged) return
-    const { layers } = this.#stack
-    const place = layers.findIndex(({ id }) => id === this.#dragged!.id)
+    if (!this.#dragged) return;
+    const { layers } = this.#stack;
+    const place = layers.findIndex(({ id }) => id === this.#dragged!.id);
     const middleOf = (neighbour: Layer | undefined): number => {
-      if (!neighbour) return NaN
-      const { top, bottom } = this.#rows.get(neighbour.id)!.item.getBoundingClientRect()
-      return (top + bottom) / 2
-    }
-    if (clientY < middleOf(layers[place + 1])) this.#move(this.#dragged, place + 1)
-    else if (clientY > middleOf(layers[place - 1])) this.#move(this.#dragged, place - 1)
+      if (!neighbour) return NaN;
+      const { top, bottom } = this.#rows.get(neighbour.id)!.item.getBoundingClientRect();
+      return (top + bottom) / 2;
+    };
+    if (clientY < middleOf(layers[place + 1])) this.#move(this.#dragged, place + 1);
+    else if (clientY > middleOf(layers[place - 1])) this.#move(this.#dragged, place - 1);
   }
 
   #drop(): void {
-    if (!this.#dragged) return
-    this.#rows.get(this.#dragged.id)?.item.classList.remove('dragged')
-    this.#edits.end(`move of ${this.#dragged.name}`)
-    this.#dragged = undefined
+    if (!this.#dragged) return;
+    this.#rows.get(this.#dragged.id)?.item.classList.remove('dragged');
+    this.#edits.end(`move of ${this.#dragged.name}`);
+    this.#dragged = undefined;
   }
 }

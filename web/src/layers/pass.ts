@@ -4,32 +4,32 @@ import {
   Camera,
   DynamicDrawUsage,
   GLSL3,
+  type IUniform,
   Mesh,
   NoBlending,
   RawShaderMaterial,
   Scene,
-  type IUniform,
   type ShaderMaterialParameters,
   type WebGLRenderer,
   type WebGLRenderTarget,
-} from 'three'
-import type { Rect } from './rect'
+} from 'three';
+import type { Rect } from './rect';
 
 /** Parts that one pass can be run over. */
-export const kMostRects = 128
+export const kMostRects = 128;
 
 const kVertexShader = /* glsl */ `
 in vec3 position;
 void main() { gl_Position = vec4(position, 1.0); }
-`
+`;
 
 /** Computes the texels of a texture on the GPU: a fragment shader, run over parts of it. */
 export class Pass<Uniforms extends Record<string, IUniform>> {
-  readonly #corners = new BufferAttribute(new Float32Array(6 * 3 * kMostRects), 3).setUsage(DynamicDrawUsage)
-  readonly #geometry = new BufferGeometry().setAttribute('position', this.#corners)
-  readonly #scene = new Scene()
-  readonly #camera = new Camera()
-  readonly #material: RawShaderMaterial
+  readonly #corners = new BufferAttribute(new Float32Array(6 * 3 * kMostRects), 3).setUsage(DynamicDrawUsage);
+  readonly #geometry = new BufferGeometry().setAttribute('position', this.#corners);
+  readonly #scene = new Scene();
+  readonly #camera = new Camera();
+  readonly #material: RawShaderMaterial;
 
   /**
    * @param fragmentShader GLSL ES 3.0. It writes linear colour; the target's format encodes it.
@@ -48,34 +48,34 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
       depthTest: false,
       depthWrite: false,
       ...blending,
-    })
-    const mesh = new Mesh(this.#geometry, this.#material)
-    mesh.frustumCulled = false
-    this.#scene.add(mesh)
+    });
+    const mesh = new Mesh(this.#geometry, this.#material);
+    mesh.frustumCulled = false;
+    this.#scene.add(mesh);
   }
 
   /** @param rects In texels of the target, at most `kMostRects`. */
   run(renderer: WebGLRenderer, target: WebGLRenderTarget, rects: readonly Rect[]): void {
-    if (rects.length === 0) return
-    rects.forEach((rect, index) => this.#setCorners(index, rect, target))
-    this.#corners.needsUpdate = true
-    this.#geometry.setDrawRange(0, 6 * rects.length)
-    const { autoClear } = renderer
-    renderer.autoClear = false
-    renderer.setRenderTarget(target)
-    renderer.render(this.#scene, this.#camera)
-    renderer.setRenderTarget(null)
-    renderer.autoClear = autoClear
+    if (rects.length === 0) return;
+    rects.forEach((rect, index) => this.#setCorners(index, rect, target));
+    this.#corners.needsUpdate = true;
+    this.#geometry.setDrawRange(0, 6 * rects.length);
+    const { autoClear } = renderer;
+    renderer.autoClear = false;
+    renderer.setRenderTarget(target);
+    renderer.render(this.#scene, this.#camera);
+    renderer.setRenderTarget(null);
+    renderer.autoClear = autoClear;
   }
 
   #setCorners(index: number, { left, top, right, bottom }: Rect, { width, height }: WebGLRenderTarget): void {
-    const [l, r] = [(2 * left) / width - 1, (2 * right) / width - 1]
-    const [t, b] = [(2 * top) / height - 1, (2 * bottom) / height - 1]
-    this.#corners.array.set([l, t, 0, r, t, 0, r, b, 0, l, t, 0, r, b, 0, l, b, 0], 18 * index)
+    const [l, r] = [(2 * left) / width - 1, (2 * right) / width - 1];
+    const [t, b] = [(2 * top) / height - 1, (2 * bottom) / height - 1];
+    this.#corners.array.set([l, t, 0, r, t, 0, r, b, 0, l, t, 0, r, b, 0, l, b, 0], 18 * index);
   }
 
   dispose(): void {
-    this.#geometry.dispose()
-    this.#material.dispose()
+    this.#geometry.dispose();
+    this.#material.dispose();
   }
 }

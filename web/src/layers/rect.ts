@@ -1,13 +1,13 @@
 /** A part of a texture: in shares of its sides, or in whole texels. The texture's first row is at `top` 0. */
 export interface Rect {
-  left: number
-  top: number
-  right: number
-  bottom: number
+  left: number;
+  top: number;
+  right: number;
+  bottom: number;
 }
 
 /** All of a texture, in shares. */
-export const kWhole: Rect = { left: 0, top: 0, right: 1, bottom: 1 }
+export const kWhole: Rect = { left: 0, top: 0, right: 1, bottom: 1 };
 
 /** The whole texels that a part touches, and `margin` more on every side. @param size Texels a side. */
 export function toTexels({ left, top, right, bottom }: Rect, size: number, margin = 0): Rect {
@@ -16,16 +16,16 @@ export function toTexels({ left, top, right, bottom }: Rect, size: number, margi
     top: Math.max(0, Math.floor(top * size) - margin),
     right: Math.min(size, Math.ceil(right * size) + margin),
     bottom: Math.min(size, Math.ceil(bottom * size) + margin),
-  }
+  };
 }
 
 /** A part in whole texels, as shares. */
 export function toShares({ left, top, right, bottom }: Rect, size: number): Rect {
-  return { left: left / size, top: top / size, right: right / size, bottom: bottom / size }
+  return { left: left / size, top: top / size, right: right / size, bottom: bottom / size };
 }
 
 export function isEmpty({ left, top, right, bottom }: Rect): boolean {
-  return left >= right || top >= bottom
+  return left >= right || top >= bottom;
 }
 
 /** The least part that holds both. */
@@ -35,7 +35,7 @@ export function hull(a: Rect, b: Rect): Rect {
     top: Math.min(a.top, b.top),
     right: Math.max(a.right, b.right),
     bottom: Math.max(a.bottom, b.bottom),
-  }
+  };
 }
 
 /**
@@ -44,32 +44,37 @@ export function hull(a: Rect, b: Rect): Rect {
  * @param rects In texels. @param tile Texels a side; tiles are larger if there were too many parts.
  */
 export function apart(rects: readonly Rect[], most: number, tile = 32): Rect[] {
-  const some = rects.filter((rect) => !isEmpty(rect))
-  if (some.length === 0) return []
-  const all = some.reduce(hull)
-  const [left, top] = [Math.floor(all.left / tile), Math.floor(all.top / tile)]
-  const [columns, rows] = [Math.ceil(all.right / tile) - left, Math.ceil(all.bottom / tile) - top]
-  const touched = new Uint8Array(columns * rows)
+  const some = rects.filter((rect) => !isEmpty(rect));
+  if (some.length === 0) return [];
+  const all = some.reduce(hull);
+  const [left, top] = [Math.floor(all.left / tile), Math.floor(all.top / tile)];
+  const [columns, rows] = [Math.ceil(all.right / tile) - left, Math.ceil(all.bottom / tile) - top];
+  const touched = new Uint8Array(columns * rows);
   for (const rect of some) {
-    const [from, to] = [Math.floor(rect.left / tile) - left, Math.ceil(rect.right / tile) - left]
-    for (let row = Math.floor(rect.top / tile) - top; tile * (row + top) < rect.bottom; row++) touched.fill(1, row * columns + from, row * columns + to)
+    const [from, to] = [Math.floor(rect.left / tile) - left, Math.ceil(rect.right / tile) - left];
+    for (let row = Math.floor(rect.top / tile) - top; tile * (row + top) < rect.bottom; row++)
+      touched.fill(1, row * columns + from, row * columns + to);
   }
-  const found: Rect[] = []
-  let above: Rect[] = []
+  const found: Rect[] = [];
+  let above: Rect[] = [];
   for (let row = 0; row < rows; row++) {
-    const here: Rect[] = []
+    const here: Rect[] = [];
     for (let column = 0; column < columns; column++) {
-      if (!touched[row * columns + column]) continue
-      const from = column
-      while (column < columns && touched[row * columns + column]) column++
-      const [first, last, bottom] = [Math.max(all.left, tile * (left + from)), Math.min(all.right, tile * (left + column)), Math.min(all.bottom, tile * (top + row + 1))]
+      if (!touched[row * columns + column]) continue;
+      const from = column;
+      while (column < columns && touched[row * columns + column]) column++;
+      const [first, last, bottom] = [
+        Math.max(all.left, tile * (left + from)),
+        Math.min(all.right, tile * (left + column)),
+        Math.min(all.bottom, tile * (top + row + 1)),
+      ];
       // One that goes on below is the same part.
-      let rect = above.find((other) => other.left === first && other.right === last)
-      if (rect) rect.bottom = bottom
-      else found.push((rect = { left: first, top: Math.max(all.top, tile * (top + row)), right: last, bottom }))
-      here.push(rect)
+      let rect = above.find((other) => other.left === first && other.right === last);
+      if (rect) rect.bottom = bottom;
+      else found.push((rect = { left: first, top: Math.max(all.top, tile * (top + row)), right: last, bottom }));
+      here.push(rect);
     }
-    above = here
+    above = here;
   }
-  return found.length > most ? apart(rects, most, 2 * tile) : found
+  return found.length > most ? apart(rects, most, 2 * tile) : found;
 }

@@ -1,6 +1,6 @@
-import { NoColorSpace, WebGLRenderTarget, type Texture, type WebGLRenderer } from 'three'
-import { Pass } from './pass'
-import { kWhole, toTexels } from './rect'
+import { NoColorSpace, type Texture, type WebGLRenderer, WebGLRenderTarget } from 'three';
+import { Pass } from './pass';
+import { kWhole, toTexels } from './rect';
 
 const kShader = /* glsl */ `
 uniform sampler2D source;
@@ -15,21 +15,21 @@ void main() {
   vec4 found = texture(source, gl_FragCoord.xy / size);
   color = found.a > 0.0 ? vec4(encode(min(found.rgb / found.a, 1.0)), found.a) : vec4(0.0);
 }
-`
+`;
 
-const pass = new Pass(kShader, { source: { value: null as Texture | null }, size: { value: 1 } })
+const pass = new Pass(kShader, { source: { value: null as Texture | null }, size: { value: 1 } });
 
 /**
  * Reads a premultiplied texture as an image file has it: sRGB, colours not multiplied by alpha, upper row first.
  * @param size Pixels a side of the image. Waits for the GPU.
  */
 export function readStraight(renderer: WebGLRenderer, source: Texture, size: number): ImageData {
-  const target = new WebGLRenderTarget(size, size, { colorSpace: NoColorSpace, depthBuffer: false })
-  pass.uniforms.source.value = source
-  pass.uniforms.size.value = size
-  pass.run(renderer, target, [toTexels(kWhole, size)])
-  const image = new ImageData(size, size)
-  renderer.readRenderTargetPixels(target, 0, 0, size, size, image.data)
-  target.dispose()
-  return image
+  const target = new WebGLRenderTarget(size, size, { colorSpace: NoColorSpace, depthBuffer: false });
+  pass.uniforms.source.value = source;
+  pass.uniforms.size.value = size;
+  pass.run(renderer, target, [toTexels(kWhole, size)]);
+  const image = new ImageData(size, size);
+  renderer.readRenderTargetPixels(target, 0, 0, size, size, image.data);
+  target.dispose();
+  return image;
 }

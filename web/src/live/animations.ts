@@ -1,45 +1,45 @@
-import type { AnimationClip } from 'three'
-import { element } from '../page'
-import type { Viewer } from '../viewer'
+import type { AnimationClip } from 'three';
+import { element } from '../page';
+import type { Viewer } from '../viewer';
 
 /** Lets a model's animations be played; the first of them plays by itself, unless the visitor wants no motion. */
 export class Animations {
-  readonly #viewer: Viewer
-  readonly #select = element('animation', HTMLSelectElement)
-  #clips: readonly AnimationClip[] = []
+  readonly #viewer: Viewer;
+  readonly #select = element('animation', HTMLSelectElement);
+  #clips: readonly AnimationClip[] = [];
 
   /** @param onPlay Is called before one plays because the visitor says so. */
   constructor(viewer: Viewer, onPlay: () => void) {
-    this.#viewer = viewer
+    this.#viewer = viewer;
     this.#select.addEventListener('change', () => {
-      if (this.playing) onPlay()
-      this.#play()
-    })
+      if (this.playing) onPlay();
+      this.#play();
+    });
   }
 
   get playing(): boolean {
-    return Number(this.#select.value) >= 0
+    return Number(this.#select.value) >= 0;
   }
 
   /** Offers those of another model. */
   offer(clips: readonly AnimationClip[]): void {
-    this.#clips = clips
-    element('animation-field', HTMLElement).hidden = clips.length === 0
-    const names = clips.map(({ name }, index) => new Option(name || `Animation ${index + 1}`, String(index)))
-    this.#select.replaceChildren(new Option('None', '-1'), ...names)
-    const still = matchMedia('(prefers-reduced-motion: reduce)').matches
-    this.#select.value = clips.length > 0 && !still ? '0' : '-1'
-    this.#play()
+    this.#clips = clips;
+    element('animation-field', HTMLElement).hidden = clips.length === 0;
+    const names = clips.map(({ name }, index) => new Option(name || `Animation ${index + 1}`, String(index)));
+    this.#select.replaceChildren(new Option('None', '-1'), ...names);
+    const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    this.#select.value = clips.length > 0 && !still ? '0' : '-1';
+    this.#play();
   }
 
   /** Brings the model back to rest. */
   stop(): void {
-    if (!this.playing) return
-    this.#select.value = '-1'
-    this.#play()
+    if (!this.playing) return;
+    this.#select.value = '-1';
+    this.#play();
   }
 
   #play(): void {
-    this.#viewer.play(this.#clips[Number(this.#select.value)])
+    this.#viewer.play(this.#clips[Number(this.#select.value)]);
   }
 }

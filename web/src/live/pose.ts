@@ -1,159 +1,161 @@
-import { Box3, BufferAttribute, Matrix3, Matrix4, Vector3, type BufferGeometry } from 'three'
-import type { ExtractedMesh, Part } from '../extract'
-import { deform, type Deform, type Room } from './deform'
-import { morphNames, type Weights } from './morphs'
+import { Box3, BufferAttribute, type BufferGeometry, Matrix3, type Matrix4, Vector3 } from 'three';
+import type { ExtractedMesh, Part } from '../extract';
+import { type Deform, deform, type Room } from './deform';
+import { morphNames, type Weights } from './morphs';
 
-const kStep = 1e-3 // of half the height: how far apart two points are moved to see how a normal turns
+const kStep = 1e-3; // of half the height: how far apart two points are moved to see how a normal turns
 
 /** What becomes of a model's shape: it is morphed, then deformed. */
 export interface Shape {
-  how: Deform
+  how: Deform;
   /** From −1 to 1; 0 leaves it as it is. */
-  amount: number
-  room: Room
+  amount: number;
+  room: Room;
   /** Undefined leaves morphs to the file, or to the animation that plays. */
-  morphs: Weights | undefined
+  morphs: Weights | undefined;
 }
 
 /** Whether that is how the file has it. */
-export const isAtRest = ({ amount, morphs }: Shape): boolean => amount === 0 && !morphs
+export const isAtRest = ({ amount, morphs }: Shape): boolean => amount === 0 && !morphs;
 
 /** A model's shape: moves its vertices, in the arrays to transfer with and in the meshes on show, and brings them back. */
 export class Pose {
-  readonly #mesh: ExtractedMesh
-  readonly #rest: Float32Array
-  readonly #parts: PartPose[]
+  readonly #mesh: ExtractedMesh;
+  readonly #rest: Float32Array;
+  readonly #parts: PartPose[];
 
   constructor(mesh: ExtractedMesh) {
-    this.#mesh = mesh
-    this.#rest = mesh.rest ??= mesh.positions.slice()
-    this.#parts = mesh.parts.map((part) => new PartPose(part))
+    this.#mesh = mesh;
+    this.#rest = mesh.rest ??= mesh.positions.slice();
+    this.#parts = mesh.parts.map((part) => new PartPose(part));
   }
 
   /** The box of the model at rest. */
   get room(): Room {
-    const box = new Box3().setFromArray(this.#rest)
-    return { center: box.getCenter(new Vector3()), half: Math.max(0.5 * (box.max.y - box.min.y), Number.MIN_VALUE) }
+    const box = new Box3().setFromArray(this.#rest);
+    return { center: box.getCenter(new Vector3()), half: Math.max(0.5 * (box.max.y - box.min.y), Number.MIN_VALUE) };
   }
 
   /** Where the vertices go. @returns 3 per vertex, in the scene's space. */
   positions(shape: Shape): Float32Array {
-    const moved = this.#rest.slice()
-    if (isAtRest(shape)) return moved // to the last bit
-    if (shape.morphs) for (const part of this.#parts) part.morph(moved, shape.morphs)
-    if (shape.amount === 0) return moved
-    const point = new Vector3()
+    const moved = this.#rest.slice();
+    if (isAtRest(shape)) return moved; // to the last bit
+    if (shape.morphs) for (const part of this.#parts) part.morph(moved, shape.morphs);
+    if (shape.amount === 0) return moved;
+    const point = new Vector3();
     for (let at = 0; at < moved.length; at += 3) {
-      point.fromArray(moved, at)
-      deform(point, shape.how, shape.amount, shape.room)
-      point.toArray(moved, at)
+      point.fromArray(moved, at);
+      deform(point, shape.how, shape.amount, shape.room);
+      point.toArray(moved, at);
     }
-    return moved
+    return moved;
   }
 
   /** Moves the vertices there. */
   set(positions: Float32Array, shape: Shape): void {
-    this.#mesh.positions.set(positions)
-    for (const part of this.#parts) part.set(positions, shape)
+    this.#mesh.positions.set(positions);
+    for (const part of this.#parts) part.set(positions, shape);
   }
 }
 
-type Name = 'position' | 'normal'
+type Name = 'position' | 'normal';
 
 /** One mesh of a model, and what its file says of its vertices. */
 class PartPose {
-  readonly #part: Part
-  readonly #inverse: Matrix4
-  readonly #linear: Matrix3
-  readonly #toWorld: Matrix3
-  readonly #toLocal: Matrix3
-  readonly #atRest: { name: Name; attribute: BufferAttribute }[]
-  readonly #morphs: BufferGeometry['morphAttributes']
-  #moved = false
+  readonly #part: Part;
+  readonly #inverse: Matrix4;
+  readonly #linear: Matrix3;
+  readonly #toWorld: Matrix3;
+  readonly #toLocal: Matrix3;
+  readonly #atRest: { name: Name; attribute: BufferAttribute }[];
+  readonly #morphs: BufferGeometry['morphAttributes'];
+  #moved = false;
 
   constructor(part: Part) {
-    this.#part = part
-    const { matrix } = part
-    this.#inverse = matrix.clone().invert()
-    this.#linear = new Matrix3().setFromMatrix4(matrix)
-    this.#toWorld = new Matrix3().getNormalMatrix(matrix)
-    this.#toLocal = this.#linear.clone().transpose()
-    const { attributes, morphAttributes } = part.mesh.geometry
+    this.#part = part;
+    const { matrix } = part;
+    this.#inverse = matrix.clone().invert();
+    this.#linear = new Matrix3().setFromMatrix4(matrix);
+    this.#toWorld = new Matrix3().getNormalMatrix(matrix);
+    this.#toLocal = this.#linear.clone().transpose();
+    const { attributes, morphAttributes } = part.mesh.geometry;
     this.#atRest = (['position', 'normal'] as const).flatMap((name) => {
-      const attribute = attributes[name] as BufferAttribute | undefined
-      return attribute ? [{ name, attribute }] : []
-    })
-    this.#morphs = morphAttributes
+      const attribute = attributes[name] as BufferAttribute | undefined;
+      return attribute ? [{ name, attribute }] : [];
+    });
+    this.#morphs = morphAttributes;
   }
 
   /** Adds what morphs do to the part's vertices. @param positions Of the whole model, in the scene's space. */
   morph(positions: Float32Array, morphs: Weights): void {
-    const { firstVertex, vertexCount } = this.#part
-    const [change, delta] = [new Vector3(), new Vector3()]
-    const active = this.#active('position', morphs)
-    if (active.length === 0) return
+    const { firstVertex, vertexCount } = this.#part;
+    const [change, delta] = [new Vector3(), new Vector3()];
+    const active = this.#active('position', morphs);
+    if (active.length === 0) return;
     for (let vertex = 0; vertex < vertexCount; vertex++) {
-      change.set(0, 0, 0)
-      for (const { weight, attribute } of active) change.addScaledVector(delta.fromBufferAttribute(attribute, vertex), weight)
-      change.applyMatrix3(this.#linear)
-      const at = 3 * (firstVertex + vertex)
-      for (let k = 0; k < 3; k++) positions[at + k]! += change.getComponent(k)
+      change.set(0, 0, 0);
+      for (const { weight, attribute } of active)
+        change.addScaledVector(delta.fromBufferAttribute(attribute, vertex), weight);
+      change.applyMatrix3(this.#linear);
+      const at = 3 * (firstVertex + vertex);
+      for (let k = 0; k < 3; k++) positions[at + k]! += change.getComponent(k);
     }
   }
 
   /** The morphs that change something, as glTF has them: by how much they move each vertex. */
   #active(name: Name, morphs: Weights | undefined): { weight: number; attribute: BufferAttribute }[] {
     return morphNames(this.#part.mesh).flatMap((morph, place) => {
-      const [weight, attribute] = [morphs?.get(morph) ?? 0, this.#morphs[name]?.[place]]
-      return weight !== 0 && attribute ? [{ weight, attribute: attribute as BufferAttribute }] : []
-    })
+      const [weight, attribute] = [morphs?.get(morph) ?? 0, this.#morphs[name]?.[place]];
+      return weight !== 0 && attribute ? [{ weight, attribute: attribute as BufferAttribute }] : [];
+    });
   }
 
   set(positions: Float32Array, shape: Shape): void {
-    const { geometry } = this.#part.mesh
+    const { geometry } = this.#part.mesh;
     // Those that are in the positions already are not to be added once more, nor copied along for every frame.
-    geometry.morphAttributes = shape.morphs ? {} : this.#morphs
+    geometry.morphAttributes = shape.morphs ? {} : this.#morphs;
     if (isAtRest(shape)) {
-      if (this.#moved) for (const { name, attribute } of this.#atRest) geometry.setAttribute(name, attribute)
-      this.#moved = false
+      if (this.#moved) for (const { name, attribute } of this.#atRest) geometry.setAttribute(name, attribute);
+      this.#moved = false;
     } else {
-      for (const { name, attribute } of this.#atRest) this.#write(name, attribute, positions, shape)
-      this.#moved = true
+      for (const { name, attribute } of this.#atRest) this.#write(name, attribute, positions, shape);
+      this.#moved = true;
     }
-    geometry.boundingBox = geometry.boundingSphere = null
+    geometry.boundingBox = geometry.boundingSphere = null;
   }
 
   #write(name: Name, rest: BufferAttribute, positions: Float32Array, shape: Shape): void {
-    const { mesh, firstVertex, vertexCount } = this.#part
+    const { mesh, firstVertex, vertexCount } = this.#part;
     // One that is quantised or interleaved cannot hold what moves.
-    if (!this.#moved) mesh.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertexCount), 3))
-    const attribute = mesh.geometry.getAttribute(name) as BufferAttribute
-    const active = this.#active('normal', shape.morphs)
-    const [vector, delta] = [new Vector3(), new Vector3()]
+    if (!this.#moved) mesh.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertexCount), 3));
+    const attribute = mesh.geometry.getAttribute(name) as BufferAttribute;
+    const active = this.#active('normal', shape.morphs);
+    const [vector, delta] = [new Vector3(), new Vector3()];
     for (let vertex = 0; vertex < vertexCount; vertex++) {
-      if (name === 'position') vector.fromArray(positions, 3 * (firstVertex + vertex)).applyMatrix4(this.#inverse)
+      if (name === 'position') vector.fromArray(positions, 3 * (firstVertex + vertex)).applyMatrix4(this.#inverse);
       else {
-        vector.fromBufferAttribute(rest, vertex)
-        for (const { weight, attribute } of active) vector.addScaledVector(delta.fromBufferAttribute(attribute, vertex), weight)
-        if (shape.amount === 0) vector.normalize()
-        else this.#turnNormal(vector, vertex, shape)
+        vector.fromBufferAttribute(rest, vertex);
+        for (const { weight, attribute } of active)
+          vector.addScaledVector(delta.fromBufferAttribute(attribute, vertex), weight);
+        if (shape.amount === 0) vector.normalize();
+        else this.#turnNormal(vector, vertex, shape);
       }
-      attribute.setXYZ(vertex, vector.x, vector.y, vector.z)
+      attribute.setXYZ(vertex, vector.x, vector.y, vector.z);
     }
-    attribute.needsUpdate = true
+    attribute.needsUpdate = true;
   }
 
   /** Turns a normal with the surface: two neighbours of its point are moved as well. */
   #turnNormal(normal: Vector3, vertex: number, { how, amount, room }: Shape): void {
-    const { attribute } = this.#atRest[0]!
-    const point = new Vector3().fromBufferAttribute(attribute, vertex).applyMatrix4(this.#part.matrix)
-    const n = normal.applyMatrix3(this.#toWorld).normalize()
-    const across = Math.abs(n.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0)
-    const right = across.cross(n).normalize()
-    const up = new Vector3().crossVectors(n, right)
-    const step = kStep * room.half
-    const [a, b] = [right, up].map((direction) => point.clone().addScaledVector(direction, step)) as [Vector3, Vector3]
-    for (const one of [point, a, b]) deform(one, how, amount, room)
-    normal.crossVectors(a.sub(point), b.sub(point)).applyMatrix3(this.#toLocal).normalize()
+    const { attribute } = this.#atRest[0]!;
+    const point = new Vector3().fromBufferAttribute(attribute, vertex).applyMatrix4(this.#part.matrix);
+    const n = normal.applyMatrix3(this.#toWorld).normalize();
+    const across = Math.abs(n.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
+    const right = across.cross(n).normalize();
+    const up = new Vector3().crossVectors(n, right);
+    const step = kStep * room.half;
+    const [a, b] = [right, up].map((direction) => point.clone().addScaledVector(direction, step)) as [Vector3, Vector3];
+    for (const one of [point, a, b]) deform(one, how, amount, room);
+    normal.crossVectors(a.sub(point), b.sub(point)).applyMatrix3(this.#toLocal).normalize();
   }
 }

@@ -4,9 +4,9 @@
  */
 export async function importAmd<Made>(address: string): Promise<Made> {
   const made = new Promise<Made>((resolve) => {
-    const define = (_: [], make: () => Made): void => resolve(make())
-    Object.assign(globalThis, { define: Object.assign(define, { amd: true }) })
-  })
-  await import(/* @vite-ignore */ address)
-  return made
+    const define = (_: [], make: () => Made): void => resolve(make());
+    Object.assign(globalThis, { define: Object.assign(define, { amd: true }) });
+  });
+  await import(/* @vite-ignore */ address);
+  return made;
 }

@@ -1,27 +1,29 @@
-import { presetOptions, type Lock } from 'cagecast'
-import type { Rules, Session, Shown } from '../session'
+import { type Lock, presetOptions } from 'cagecast';
+import type { Rules, Session, Shown } from '../session';
 
 /** Code that does what the page shows. */
 export interface Code {
-  three: string
-  command: string
+  three: string;
+  command: string;
 }
 
 /** Writes the code for what is shown: for a page with three.js, and for the command line. Needs `init`. */
 export function codeFor({ shown, rules, locks }: Session): Code {
-  return { three: threeCode(shown!, rules, locks), command: commandLine(shown!, rules, locks) }
+  return { three: threeCode(shown!, rules, locks), command: commandLine(shown!, rules, locks) };
 }
 
 function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
-  const { preset, threshold, borders } = saidBy(rules)
-  const segments = Object.entries(locks).flatMap(([segment, lock]) => (lock === 'auto' ? [] : [`${segment}: '${lock}'`]))
+  const { preset, threshold, borders } = saidBy(rules);
+  const segments = Object.entries(locks).flatMap(([segment, lock]) =>
+    lock === 'auto' ? [] : [`${segment}: '${lock}'`],
+  );
   const options = [
     'texture',
     ...(preset ? [`preset: '${preset}'`] : []),
     ...(threshold === undefined ? [] : [`threshold: ${threshold}`]),
     ...(borders ? [`borders: '${borders}'`] : []),
     ...(segments.length > 0 ? [`locks: { segments: { ${segments.join(', ')} } }`] : []),
-  ]
+  ];
   return `import { init } from 'cagecast'
 import { applyTransfer } from 'cagecast/three'
 import { SRGBColorSpace, TextureLoader } from 'three'
@@ -35,38 +37,56 @@ const texture = await new TextureLoader().loadAsync('paint.png')
 texture.flipY = false
 texture.colorSpace = SRGBColorSpace
 ${borders ? 'await ' : ''}applyTransfer(target.scene, cage.scene, { ${options.join(', ')} })
-scene.add(target.scene)`
+scene.add(target.scene)`;
 }
 
 function commandLine(shown: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
-  const { preset, threshold, borders } = saidBy(rules)
-  const words = ['npx cagecast transfer', shell(shown.target.name), '--cage', shell(shown.cage.name), '--texture paint.png']
-  if (preset) words.push(`--preset ${preset}`)
-  if (threshold !== undefined) words.push(`--threshold ${threshold}`)
-  if (borders) words.push(`--borders ${borders}`)
-  const partly: string[] = []
+  const { preset, threshold, borders } = saidBy(rules);
+  const words = [
+    'npx cagecast transfer',
+    shell(shown.target.name),
+    '--cage',
+    shell(shown.cage.name),
+    '--texture paint.png',
+  ];
+  if (preset) words.push(`--preset ${preset}`);
+  if (threshold !== undefined) words.push(`--threshold ${threshold}`);
+  if (borders) words.push(`--borders ${borders}`);
+  const partly: string[] = [];
   for (const lock of ['keep', 'exclude'] as const) {
-    const { whole, some } = partsLocked(shown, locks, lock)
-    for (const name of whole) words.push(`--${lock} ${shell(name)}`)
-    partly.push(...some)
+    const { whole, some } = partsLocked(shown, locks, lock);
+    for (const name of whole) words.push(`--${lock} ${shell(name)}`);
+    partly.push(...some);
   }
-  const note = partly.length > 0 ? `# The command locks whole parts; of ${partly.join(', ')} you locked some.\n` : ''
-  return `${note}${words.join(' ')} -o painted.glb`
+  const note = partly.length > 0 ? `# The command locks whole parts; of ${partly.join(', ')} you locked some.\n` : '';
+  return `${note}${words.join(' ')} -o painted.glb`;
 }
 
 /** The parts whose segments are locked so: all of them that have an area, or some. */
-function partsLocked({ target, projection }: Shown, locks: Readonly<Record<number, Lock>>, lock: Lock): { whole: string[]; some: string[] } {
-  const [locked, others] = [new Set<string>(), new Set<string>()]
+function partsLocked(
+  { target, projection }: Shown,
+  locks: Readonly<Record<number, Lock>>,
+  lock: Lock,
+): { whole: string[]; some: string[] } {
+  const [locked, others] = [new Set<string>(), new Set<string>()];
   projection.segmentStats.forEach(({ group, area }, segment) => {
-    if (area > 0) (locks[segment] === lock ? locked : others).add(target.mesh.parts[group]!.name)
-  })
-  return { whole: [...locked].filter((name) => !others.has(name)), some: [...locked].filter((name) => others.has(name)) }
+    if (area > 0) (locks[segment] === lock ? locked : others).add(target.mesh.parts[group]!.name);
+  });
+  return {
+    whole: [...locked].filter((name) => !others.has(name)),
+    some: [...locked].filter((name) => others.has(name)),
+  };
 }
 
 /** What has to be said of the rules, because it is not so by itself. */
 function saidBy({ preset, threshold, borders }: Rules): Partial<Rules> {
-  return { ...(preset !== 'default' && { preset }), ...(threshold !== presetOptions(preset).threshold && { threshold }), ...(borders !== 'triangle' && { borders }) }
+  return {
+    ...(preset !== 'default' && { preset }),
+    ...(threshold !== presetOptions(preset).threshold && { threshold }),
+    ...(borders !== 'triangle' && { borders }),
+  };
 }
 
 /** A word for a shell. */
-const shell = (word: string): string => (/^[\w.,:/@+-]+$/.test(word) ? word : `'${word.replaceAll("'", String.raw`'\''`)}'`)
+const shell = (word: string): string =>
+  /^[\w.,:/@+-]+$/.test(word) ? word : `'${word.replaceAll("'", String.raw`'\''`)}'`;
