@@ -9,7 +9,7 @@ const kProjects = {
 };
 for (const [what, project] of Object.entries(kProjects)) {
   test(`${what}: all types are right`, () => {
-    const { status, stdout } = spawnSync(process.execPath, ['node_modules/typescript/bin/tsc', '-p', project], {
+    const { status, stdout } = spawnSync(process.execPath, ['node_modules/@typescript/native/bin/tsc', '-p', project], {
       encoding: 'utf8',
     });
     assert.equal(status, 0, stdout);

@@ -211,7 +211,7 @@ describe('the packed package', () => {
       preserveSymlinks: true,
     };
     writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, files: ['program.ts'] }));
-    run(process.execPath, [join(tools, 'typescript/bin/tsc'), '-p', 'tsconfig.json'], folder);
+    run(process.execPath, [join(tools, '@typescript/native/bin/tsc'), '-p', 'tsconfig.json'], folder);
   });
 
   test('runs in Node', () => assert.equal(run(process.execPath, ['print.js']).trim(), answer));
@@ -307,7 +307,7 @@ describe('the packed package', () => {
         transfer(mesh, mesh, { into: projection });
         void [first, timings, again, buffers, zone];`,
       );
-      run(process.execPath, [join(tools, 'typescript/bin/tsc'), '-p', 'tsconfig.json'], folder);
+      run(process.execPath, [join(tools, '@typescript/native/bin/tsc'), '-p', 'tsconfig.json'], folder);
     });
   }
 

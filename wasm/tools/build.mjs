@@ -195,7 +195,7 @@ async function buildPackage() {
       plugins: [wasmModules('wasm-inline.ts', { borders: true })],
     });
     run(process.execPath, [
-      at('node_modules/typescript/bin/tsc'),
+      at('node_modules/@typescript/native/bin/tsc'),
       '-p',
       at('wasm/tsconfig.types.json'),
       '--outDir',
