@@ -3,8 +3,8 @@ import { test } from 'node:test';
 import { BoxGeometry, type BufferGeometry, SphereGeometry, Vector3 } from 'three';
 import { CageAtlas, type CageMesh, kFacing, type Place } from '../../web/src/brush/atlas';
 import { Stroke } from '../../web/src/brush/stroke';
-import { History } from '../../web/src/history';
 import { apart, type Rect } from '../../web/src/layers/rect';
+import { History } from '../../web/src/platform/history';
 
 const kSize = 128;
 

@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import path from 'node:path';
 import { before, test } from 'node:test';
 import { init, presetOptions, project } from 'cagecast';
-import { diagonalOf } from '../../web/src/surface';
-import { type Path, pathOf } from '../../web/src/why/path';
-import { Rims } from '../../web/src/why/rims';
+import { Rims } from '../../web/src/explain/boundary-loops';
+import { type Path, pathOf } from '../../web/src/explain/path';
+import { diagonalOf } from '../../web/src/scene/surface';
 import { modelFolders, readPlain } from '../js/scenes';
 
 /** The zone that each outcome is. */

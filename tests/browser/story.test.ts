@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import path from 'node:path';
 import { before, test } from 'node:test';
 import { type ClassifyOptions, classify, init, type Mesh, project } from 'cagecast';
-import type { Shown } from '../../web/src/session';
-import { Rims } from '../../web/src/why/rims';
-import { tell } from '../../web/src/why/story';
+import { Rims } from '../../web/src/explain/boundary-loops';
+import { tell } from '../../web/src/explain/story';
+import type { Shown } from '../../web/src/scene/session';
 import { modelFolders, readPlain, smallHole } from '../js/scenes';
 
 before(() => init());

@@ -1,6 +1,6 @@
-import type { Spot } from '../pick';
-import type { Tool } from '../pointing';
-import type { Viewer } from '../viewer';
+import type { Spot } from '../view/pick';
+import type { Tool } from '../view/pointing';
+import type { Viewer } from '../view/viewer';
 import type { PaintOptions } from './options';
 import type { Painter } from './painter';
 import type { Ring } from './ring';

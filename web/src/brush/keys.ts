@@ -1,5 +1,5 @@
-import { element } from '../page';
-import type { Viewer } from '../viewer';
+import { element } from '../platform/page';
+import type { Viewer } from '../view/viewer';
 import type { BrushTool } from './brush-tool';
 import type { StickerTool } from './sticker-tool';
 

@@ -1,4 +1,4 @@
-import { element } from '../page';
+import { element } from '../platform/page';
 import { kPaintedSizes, type PaintedSize } from './painted-sheet';
 
 /** What a tool of painting is; each shows the options that concern it. */

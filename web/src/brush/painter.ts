@@ -5,15 +5,15 @@ import type { Layer } from '../layers/layer';
 import { type Rect, toShares } from '../layers/rect';
 import { kFull, type LayerStack } from '../layers/stack';
 import { readStraight } from '../layers/straight';
-import { showError } from '../page';
-import type { Spot } from '../pick';
-import type { Session, Shown } from '../session';
-import type { Viewer } from '../viewer';
+import { showError } from '../platform/page';
+import type { Session, Shown } from '../scene/session';
+import type { Spot } from '../view/pick';
+import type { Viewer } from '../view/viewer';
 import { CageAtlas, type Capsule, type Place } from './atlas';
 import type { PaintOptions } from './options';
 import { PaintedSheet, type PaintedSize } from './painted-sheet';
 import type { StickerSheet, StickerStyle } from './sticker';
-import { type StrokeStyle, WetPaint } from './wet-paint';
+import { type StrokeStyle, WetPaint } from './stroke-layer';
 
 const kPicture = 96; // pixels a side of a layer's picture
 const kPictureDelay = 300; // milliseconds

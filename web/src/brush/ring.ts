@@ -1,4 +1,4 @@
-import { element } from '../page';
+import { element } from '../platform/page';
 
 /** The outline of what would be painted, where the pointer is. */
 export class Ring {

@@ -2,7 +2,7 @@ import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'thre
 import { Composite } from '../layers/composite';
 import { kPlain } from '../layers/layer';
 import type { Place } from './atlas';
-import type { Sticker } from './wet-paint';
+import type { Sticker } from './stroke-layer';
 
 /** What a sticker shows. */
 export type StickerPicture = { text: string; color: string } | { image: ImageBitmap };

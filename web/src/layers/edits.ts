@@ -1,4 +1,4 @@
-import type { Deed, History } from '../history';
+import type { Deed, History } from '../platform/history';
 import { areSame, type Layer } from './layer';
 import type { LayerStack } from './stack';
 

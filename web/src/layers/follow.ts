@@ -1,6 +1,6 @@
-import { type Paint, titleOf } from '../paint';
-import type { Session } from '../session';
-import type { Viewer } from '../viewer';
+import { type Paint, titleOf } from '../scene/paint';
+import type { Session } from '../scene/session';
+import type { Viewer } from '../view/viewer';
 import { Composite } from './composite';
 import type { Edits } from './edits';
 import type { LayerStack } from './stack';

@@ -1,4 +1,4 @@
-import { announce, element } from '../page';
+import { announce, element } from '../platform/page';
 import { kMostLayers } from './composite';
 import type { Edits } from './edits';
 import { type Blend, kBlends, type Layer, type Style } from './layer';

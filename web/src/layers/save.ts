@@ -1,8 +1,8 @@
 import type { WebGLRenderer } from 'three';
-import { element, showError } from '../page';
-import { pngOf } from '../png';
-import { download } from '../take/download';
-import type { Viewer } from '../viewer';
+import { download } from '../platform/download';
+import { element, showError } from '../platform/page';
+import { pngOf } from '../platform/png';
+import type { Viewer } from '../view/viewer';
 import type { Composite } from './composite';
 import { readStraight } from './straight';
 

@@ -1,4 +1,4 @@
-import { Emitter } from '../events';
+import { Emitter } from '../platform/events';
 import { kMostLayers } from './composite';
 import { apart, kPlain, type Layer, type Sheet, type Style } from './layer';
 

@@ -1,6 +1,6 @@
 import type { AnimationClip } from 'three';
-import { element } from '../page';
-import type { Viewer } from '../viewer';
+import { element } from '../platform/page';
+import type { Viewer } from '../view/viewer';
 
 /** Lets a model's animations be played; the first of them plays by itself, unless the visitor wants no motion. */
 export class Animations {

@@ -1,9 +1,9 @@
-import type { ExtractedMesh } from '../extract';
-import { announce, element } from '../page';
-import type { Session, Shown } from '../session';
-import type { LinkedShape } from '../take/link';
-import { Superseded, TransferClient } from '../transfer-client';
-import type { Viewer } from '../viewer';
+import type { LinkedShape } from '../export/link';
+import { announce, element } from '../platform/page';
+import type { ExtractedMesh } from '../scene/extract';
+import type { Session, Shown } from '../scene/session';
+import { Superseded, TransferClient } from '../scene/transfer-client';
+import type { Viewer } from '../view/viewer';
 import { Animations } from './animations';
 import { type Deform, kDeforms } from './deform';
 import { Morphs } from './morphs';

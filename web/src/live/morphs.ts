@@ -1,6 +1,6 @@
 import type { Mesh } from 'three';
-import type { ExtractedMesh } from '../extract';
-import { element } from '../page';
+import { element } from '../platform/page';
+import type { ExtractedMesh } from '../scene/extract';
 
 /** How far morphs are carried out, by name; those that are not in it are not. Meshes that have one of that name follow it together. */
 export type Weights = ReadonlyMap<string, number>;

@@ -1,5 +1,5 @@
 import { Box3, BufferAttribute, type BufferGeometry, Matrix3, type Matrix4, Vector3 } from 'three';
-import type { ExtractedMesh, Part } from '../extract';
+import type { ExtractedMesh, Part } from '../scene/extract';
 import { type Deform, deform, type Room } from './deform';
 import { morphNames, type Weights } from './morphs';
 

@@ -1,0 +1,92 @@
+import { type Lock, presetOptions } from 'cagecast';
+import type { Rules, Session, Shown } from '../scene/session';
+
+/** Code that does what the page shows. */
+export interface Code {
+  three: string;
+  command: string;
+}
+
+/** Writes the code for what is shown: for a page with three.js, and for the command line. Needs `init`. */
+export function codeFor({ shown, rules, locks }: Session): Code {
+  return { three: threeCode(shown!, rules, locks), command: commandLine(shown!, rules, locks) };
+}
+
+function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
+  const { preset, threshold, borders } = saidBy(rules);
+  const segments = Object.entries(locks).flatMap(([segment, lock]) =>
+    lock === 'auto' ? [] : [`${segment}: '${lock}'`],
+  );
+  const options = [
+    'texture',
+    ...(preset ? [`preset: '${preset}'`] : []),
+    ...(threshold === undefined ? [] : [`threshold: ${threshold}`]),
+    ...(borders ? [`borders: '${borders}'`] : []),
+    ...(segments.length > 0 ? [`locks: { segments: { ${segments.join(', ')} } }`] : []),
+  ];
+  return `import { init } from 'cagecast'
+import { applyTransfer } from 'cagecast/three'
+import { SRGBColorSpace, TextureLoader } from 'three'
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
+
+await init()
+const loader = new GLTFLoader()
+const files = [${JSON.stringify(target.name)}, ${JSON.stringify(cage.name)}]
+const [target, cage] = await Promise.all(files.map((file) => loader.loadAsync(file)))
+const texture = await new TextureLoader().loadAsync('paint.png')
+texture.flipY = false
+texture.colorSpace = SRGBColorSpace
+${borders ? 'await ' : ''}applyTransfer(target.scene, cage.scene, { ${options.join(', ')} })
+scene.add(target.scene)`;
+}
+
+function commandLine(shown: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
+  const { preset, threshold, borders } = saidBy(rules);
+  const words = [
+    'npx cagecast transfer',
+    shell(shown.target.name),
+    '--cage',
+    shell(shown.cage.name),
+    '--texture paint.png',
+  ];
+  if (preset) words.push(`--preset ${preset}`);
+  if (threshold !== undefined) words.push(`--threshold ${threshold}`);
+  if (borders) words.push(`--borders ${borders}`);
+  const partly: string[] = [];
+  for (const lock of ['keep', 'exclude'] as const) {
+    const { whole, some } = partsLocked(shown, locks, lock);
+    for (const name of whole) words.push(`--${lock} ${shell(name)}`);
+    partly.push(...some);
+  }
+  const note = partly.length > 0 ? `# The command locks whole parts; of ${partly.join(', ')} you locked some.\n` : '';
+  return `${note}${words.join(' ')} -o painted.glb`;
+}
+
+/** The parts whose segments are locked so: all of them that have an area, or some. */
+function partsLocked(
+  { target, projection }: Shown,
+  locks: Readonly<Record<number, Lock>>,
+  lock: Lock,
+): { whole: string[]; some: string[] } {
+  const [locked, others] = [new Set<string>(), new Set<string>()];
+  projection.segmentStats.forEach(({ group, area }, segment) => {
+    if (area > 0) (locks[segment] === lock ? locked : others).add(target.mesh.parts[group]!.name);
+  });
+  return {
+    whole: [...locked].filter((name) => !others.has(name)),
+    some: [...locked].filter((name) => others.has(name)),
+  };
+}
+
+/** What has to be said of the rules, because it is not so by itself. */
+function saidBy({ preset, threshold, borders }: Rules): Partial<Rules> {
+  return {
+    ...(preset !== 'default' && { preset }),
+    ...(threshold !== presetOptions(preset).threshold && { threshold }),
+    ...(borders !== 'triangle' && { borders }),
+  };
+}
+
+/** A word for a shell. */
+const shell = (word: string): string =>
+  /^[\w.,:/@+-]+$/.test(word) ? word : `'${word.replaceAll("'", String.raw`'\''`)}'`;

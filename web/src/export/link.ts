@@ -1,0 +1,142 @@
+import type { Lock } from 'cagecast';
+import { type Deform, kDeforms } from '../live/deform';
+import type { Locks, Rules } from '../scene/session';
+import { type Angle, kModes, type Mode, type View } from '../view/view';
+
+/** One of the paints a link carries, and how it is laid. */
+export interface LinkedLayer {
+  /** A paint that comes with the page: its file below the folder of samples, or `checker`. */
+  paint: string;
+  /** 0..1 */
+  opacity: number;
+  /** #rrggbb */
+  tint: string;
+  blend: string;
+  visible: boolean;
+}
+
+/** The shape a model was moved into. */
+export interface LinkedShape {
+  deform: Deform;
+  /** From −1 to 1; 0 leaves it as it is. */
+  amount: number;
+  /** Whether the cage went along. */
+  cage: boolean;
+  /** How far morphs are carried out, by name; the others are as the file has them. */
+  morphs: ReadonlyMap<string, number>;
+}
+
+/** What a link restores. */
+export interface LinkState {
+  sample: string;
+  /** From the lowest to the uppermost; undefined where they are as the sample opens. */
+  layers: LinkedLayer[] | undefined;
+  rules: Rules;
+  locks: Locks;
+  view: View;
+  /** Absent where the model is as its file has it. */
+  shape?: LinkedShape | undefined;
+  /** Absent where all of the model is seen from its front. */
+  angle?: Angle | undefined;
+}
+
+/** Writes a state as the fragment of an address, without its `#`: readable, and only what it has to say. */
+export function writeLink({ sample, layers, rules, locks, view, shape, angle }: LinkState): string {
+  const words = new URLSearchParams({ sample });
+  for (const { paint, opacity, tint, blend, visible } of layers ?? []) {
+    words.append(
+      'layer',
+      [paint, Number(opacity.toFixed(3)), tint.replace('#', ''), blend, ...(visible ? [] : ['hidden'])].join(','),
+    );
+  }
+  if (layers?.length === 0) words.set('layer', 'none');
+  words.set('rules', rules.preset);
+  words.set('threshold', String(rules.threshold));
+  if (rules.borders !== 'triangle') words.set('borders', rules.borders);
+  for (const lock of ['keep', 'exclude'] as const) {
+    const segments = Object.keys(locks).filter((segment) => locks[Number(segment)] === lock);
+    if (segments.length > 0) words.set(lock, segments.join(','));
+  }
+  words.set('view', view.mode);
+  if (view.mode === 'compare') words.set('split', view.split.toFixed(3));
+  if (!view.paint) words.set('paint', 'off');
+  if (view.cage) words.set('cage', 'on');
+  if (shape && shape.amount !== 0)
+    words.set('deform', [shape.deform, Number(shape.amount.toFixed(3)), ...(shape.cage ? [] : ['alone'])].join(','));
+  for (const [name, weight] of shape?.morphs ?? []) words.append('morph', `${Number(weight.toFixed(3))},${name}`);
+  if (angle)
+    words.set('angle', [angle.turn.toFixed(3), angle.tilt.toFixed(3), angle.near.toFixed(4)].map(Number).join(','));
+  return words.toString().replaceAll('%2F', '/').replaceAll('%2C', ',');
+}
+
+/**
+ * Reads a fragment. A link may be old, shortened or edited by hand: what is missing or makes no sense is as on a first visit.
+ * @returns Nothing if it names no sample.
+ */
+export function readLink(fragment: string): LinkState | undefined {
+  const words = new URLSearchParams(fragment.replace(/^#/, ''));
+  const sample = words.get('sample');
+  if (!sample) return undefined;
+  const mode = words.get('view') as Mode;
+  const layers = words.getAll('layer');
+  return {
+    sample,
+    layers: layers.length > 0 ? layers.filter((text) => text !== 'none').map(readLayer) : undefined,
+    rules: {
+      preset: words.get('rules') === 'paper' ? 'paper' : 'default',
+      threshold: share(words.get('threshold'), 0.5),
+      borders: words.get('borders') === 'cut' ? 'cut' : 'triangle',
+    },
+    locks: { ...readLocks(words, 'keep'), ...readLocks(words, 'exclude') },
+    view: {
+      mode: kModes.includes(mode) ? mode : 'compare',
+      split: share(words.get('split'), 0.5),
+      paint: words.get('paint') !== 'off',
+      cage: words.get('cage') === 'on',
+    },
+    shape: readShape(words),
+    angle: readAngle(words.get('angle')),
+  };
+}
+
+function readLayer(text: string): LinkedLayer {
+  const [paint = '', opacity = null, tint = '', blend = 'normal', hidden] = text.split(',');
+  return {
+    paint,
+    opacity: share(opacity, 1),
+    tint: /^[0-9a-f]{6}$/i.test(tint) ? `#${tint}` : '#ffffff',
+    blend,
+    visible: hidden !== 'hidden',
+  };
+}
+
+function readShape(words: URLSearchParams): LinkedShape | undefined {
+  const [deform = '', amount = '', alone] = (words.get('deform') ?? '').split(',');
+  const known = kDeforms.find((name) => name === deform);
+  const far = Math.abs(Number(amount)) <= 1 ? Number(amount) : 0;
+  const morphs = words.getAll('morph').flatMap((text): [string, number][] => {
+    const [, weight, name] = /^([^,]+),(.+)$/s.exec(text) ?? [];
+    return name !== undefined && Number.isFinite(Number(weight)) ? [[name, Number(weight)]] : [];
+  });
+  return (known && far !== 0) || morphs.length > 0
+    ? { deform: known ?? kDeforms[0], amount: known ? far : 0, cage: alone !== 'alone', morphs: new Map(morphs) }
+    : undefined;
+}
+
+function readLocks(words: URLSearchParams, lock: Lock): Locks {
+  const numbers = (words.get(lock) ?? '').split(',').filter((word) => /^\d{1,9}$/.test(word));
+  return Object.fromEntries(numbers.map((number) => [number, lock]));
+}
+
+function readAngle(word: string | null): Angle | undefined {
+  const [turn = NaN, tilt = NaN, near = NaN] = (word ?? '').split(',').map(Number);
+  return Math.abs(turn) <= 360 && tilt >= 0 && tilt <= 180 && near > 0 && near < Infinity
+    ? { turn, tilt, near }
+    : undefined;
+}
+
+/** A number from 0 to 1. */
+function share(word: string | null, otherwise: number): number {
+  const number = word === null || word === '' ? NaN : Number(word);
+  return number >= 0 && number <= 1 ? number : otherwise;
+}

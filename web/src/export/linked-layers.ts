@@ -1,0 +1,89 @@
+import type { Edits } from '../layers/edits';
+import { type Blend, kBlends, type Layer, type Style } from '../layers/layer';
+import type { LayerStack } from '../layers/stack';
+import { pngOf } from '../platform/png';
+import type { Opener } from '../scene/open';
+import { type Paint, titleOf } from '../scene/paint';
+import { kChecker, paintName } from '../scene/samples';
+import type { Session } from '../scene/session';
+import type { LinkedLayer } from './link';
+import type { LinkedLayers } from './links';
+
+/**
+ * The layers, to be taken away.
+ * @param png Makes a PNG of what they look like together; without it, where nothing can be drawn, the uppermost paint is taken.
+ */
+export function paintOf(
+  session: Session,
+  stack: LayerStack,
+  edits: Edits,
+  opener: Opener,
+  png = () => latestPng(stack),
+): { png(): Promise<Blob>; layers: LinkedLayers } {
+  /** What a link calls what is in a layer; nothing if it is the visitor's own. */
+  const nameOf = ({ sheet }: Layer): string | undefined => {
+    if (sheet === session.checker) return kChecker;
+    const name = paintName(sheet.picture);
+    return opener.has(name) ? name : undefined;
+  };
+  let wishes = 0;
+  return {
+    png,
+    layers: {
+      get layers() {
+        return stack.layers.flatMap((layer) => {
+          const paint = nameOf(layer);
+          const { opacity, tint, blend, visible } = layer;
+          return paint ? [{ paint, opacity, tint, blend, visible }] : [];
+        });
+      },
+      get left() {
+        return stack.layers.filter((layer) => !nameOf(layer)).length;
+      },
+      restore(layers) {
+        const before = session.shown?.target;
+        const wish = ++wishes;
+        const end = session.on('progress', async ({ state }) => {
+          if (state === 'working') return;
+          end();
+          // The sample was given up, or cannot be had, or another link was followed.
+          const target = session.shown?.target;
+          if (state !== 'ready' || target === before || wish !== wishes) return;
+          const known = layers.filter(({ paint }) => opener.has(paint));
+          // The lowest of them is what the sample opened with, unless that was taken away.
+          const isBase = stack.base !== undefined && nameOf(stack.base) === known[0]?.paint;
+          const rest = isBase ? known.slice(1) : known;
+          let paints: (Paint | undefined)[];
+          try {
+            paints = await Promise.all(rest.map(({ paint }) => opener.paint(paint)));
+          } catch (error) {
+            return session.fail(error);
+          }
+          // Another sample or link may have come while they were read. From here on all is done in one go.
+          if (session.shown?.target !== target || wish !== wishes) return;
+          // The visitor's own stay: no link may cost anyone their work.
+          for (const layer of stack.layers) if (layer !== stack.base && nameOf(layer)) stack.remove(layer.id);
+          const { base } = stack;
+          if (base && isBase) stack.restyle(base, styleOf(known[0]!));
+          else if (base && known.length === layers.length) stack.remove(base.id);
+          rest.forEach((layer, i) => {
+            const paint = paints[i];
+            if (paint && !stack.full) stack.add(titleOf(paint), paint, styleOf(layer));
+          });
+          // What was done before it led to something else.
+          edits.forget();
+        });
+      },
+    },
+  };
+}
+
+function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Style {
+  return { opacity, tint, blend: kBlends.includes(blend as Blend) ? (blend as Blend) : 'normal', visible };
+}
+
+function latestPng({ layers }: LayerStack): Promise<Blob> {
+  const layer = layers.findLast(({ visible }) => visible);
+  if (!layer) throw new Error('There is no paint.');
+  return pngOf(layer.sheet.texture.image as ImageBitmap | HTMLCanvasElement);
+}

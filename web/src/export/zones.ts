@@ -1,0 +1,28 @@
+import type { Session } from '../scene/session';
+
+/** What the page found out, for tools: which vertex is in which zone, by what rules, and what became of each segment. */
+export function zonesJson({ shown, classification, rules: { preset, threshold }, locks }: Session): string {
+  const { target, cage, projection } = shown!;
+  const { zones, segmentStats } = classification!;
+  const counts = [0, 0, 0, 0];
+  for (const zone of zones) counts[zone]!++;
+  const [cosmetic, occluded, uncovered, culled] = counts;
+  return JSON.stringify({
+    target: target.name,
+    cage: cage.name,
+    options: { preset, threshold, locks: { segments: locks } },
+    counts: { cosmetic, occluded, uncovered, culled },
+    parts: target.mesh.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
+      name,
+      firstVertex,
+      vertexCount,
+      firstTriangle,
+      triangleCount,
+    })),
+    segments: segmentStats.map((stats) => ({ part: target.mesh.parts[stats.group]!.name, ...stats })),
+    /** Per vertex: 0 cosmetic, 1 occluded, 2 uncovered, 3 culled. */
+    zones: [...zones],
+    /** Per vertex: the number of its segment. */
+    segmentOfVertex: [...projection.segments],
+  });
+}

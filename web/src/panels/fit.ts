@@ -1,0 +1,118 @@
+import type { Lock } from 'cagecast';
+import type { Finding, Inspection } from 'cagecast/inspect';
+import { element } from '../platform/page';
+import type { Session } from '../scene/session';
+import { Superseded, TransferClient } from '../scene/transfer-client';
+import { trianglesOf } from '../view/segments';
+import type { Viewer } from '../view/viewer';
+
+const kCalm = 800; // milliseconds without a change before a cage is inspected: until then other things matter more
+const kMost = 60_000; // triangles that are inspected unasked; twice as many take twice as long
+const kSoon = 'It is inspected as soon as there is time.';
+const kVerdicts: Record<Inspection['verdict'], string> = {
+  good: 'The cage fits this model as it should.',
+  usable: 'The cage can be used, with reservations.',
+  unfit: 'The cage does not fit this model.',
+};
+
+/**
+ * Says whether the cage fits the target, why not, and what to do: what `cagecast inspect` says, in a worker of its own. Parts
+ * that a finding is about light up with it, and can be locked as it proposes.
+ */
+export class FitPanel {
+  readonly #session: Session;
+  readonly #viewer: Viewer | undefined;
+  readonly #verdict = element('fit-verdict', HTMLElement);
+  readonly #findings = element('fit-findings', HTMLElement);
+  readonly #button = element('fit-inspect', HTMLButtonElement);
+  #client: TransferClient | undefined;
+  #waiting: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(session: Session, viewer: Viewer | undefined) {
+    this.#session = session;
+    this.#viewer = viewer;
+    session.on('transfer', () => this.#show('', [text('p', kSoon)]));
+    session.on('zones', () => this.#onChange());
+    this.#button.addEventListener('click', () => void this.#inspect());
+  }
+
+  /** What was found holds no longer. */
+  #onChange(): void {
+    const { target, cage } = this.#session.shown!;
+    const triangles = (target.mesh.indices.length + cage.mesh.indices.length) / 3;
+    clearTimeout(this.#waiting);
+    this.#client?.cancel();
+    if (triangles <= kMost) this.#waiting = setTimeout(() => void this.#inspect(), kCalm);
+    else this.#show('', [text('p', 'This model is large: inspecting it takes a while.')]);
+    this.#button.hidden = triangles <= kMost;
+  }
+
+  async #inspect(): Promise<void> {
+    const {
+      shown,
+      rules: { preset, threshold },
+      locks,
+    } = this.#session;
+    if (!shown) return;
+    this.#button.hidden = true;
+    this.#client ??= new TransferClient();
+    try {
+      const { target, cage } = shown;
+      const parts = target.mesh.parts.map(({ name, firstVertex, vertexCount }) => ({ name, firstVertex, vertexCount }));
+      this.#write(
+        await this.#client.ask('inspect', cage, target, { preset, threshold, locks: { segments: locks }, parts }),
+      );
+    } catch (error) {
+      if (error instanceof Superseded) return;
+      this.#show('', [text('p', `The cage cannot be inspected: ${error instanceof Error ? error.message : error}`)]);
+    }
+  }
+
+  #write({ verdict, findings }: Inspection): void {
+    const list = document.createElement('ul');
+    list.append(...findings.map((finding) => this.#item(finding)));
+    this.#show(verdict, [text('p', kVerdicts[verdict]), ...(findings.length > 0 ? [list] : [])]);
+  }
+
+  #show(verdict: Inspection['verdict'] | '', content: HTMLElement[]): void {
+    this.#verdict.textContent = this.#verdict.dataset.verdict = verdict;
+    this.#findings.replaceChildren(...content);
+  }
+
+  #item({ sentence, advice, places = [], locks }: Finding): HTMLElement {
+    const item = document.createElement('li');
+    item.append(text('p', `${sentence}.`), text('p', advice));
+    const segments = places.map(({ segment }) => segment);
+    if (segments.length > 0) {
+      for (const begin of ['pointerenter', 'focusin']) item.addEventListener(begin, () => this.#light(segments));
+      for (const end of ['pointerleave', 'focusout']) item.addEventListener(end, () => this.#light([]));
+    }
+    const entries = Object.entries(locks?.segments ?? {});
+    for (const lock of ['keep', 'exclude'] as const) {
+      const chosen = entries.filter(([, other]) => other === lock).map(([segment]) => Number(segment));
+      if (chosen.length > 0) item.append(this.#lockButton(chosen, lock));
+    }
+    return item;
+  }
+
+  #lockButton(segments: number[], lock: Lock): HTMLButtonElement {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.className = 'quiet';
+    const them = segments.length === 1 ? 'it' : `all ${segments.length}`;
+    button.textContent = lock === 'keep' ? `Keep ${them}` : `Exclude ${them}`;
+    button.addEventListener('click', () => this.#session.lock(segments, lock));
+    return button;
+  }
+
+  #light(segments: readonly number[]): void {
+    const { shown } = this.#session;
+    this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : []);
+  }
+}
+
+function text(tag: string, content: string): HTMLElement {
+  const made = document.createElement(tag);
+  made.textContent = content;
+  return made;
+}

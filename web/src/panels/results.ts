@@ -1,0 +1,85 @@
+import type { Classification, Timings } from 'cagecast';
+import { announce, element } from '../platform/page';
+import type { Session, Shown } from '../scene/session';
+
+const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
+/** What each step is called. */
+const kSteps = {
+  weld: 'weld',
+  build: 'build',
+  project: 'project',
+  occluded: 'occluded',
+  covered: 'covered',
+  segments: 'segments',
+  secondLook: 'look again',
+  holes: 'holes',
+  seams: 'seams',
+  classify: 'classify',
+} as const;
+/** So many times as long the first time is worth telling. */
+const kMuchLonger = 1.5;
+const kBeyondPaper: readonly string[] = ['secondLook', 'holes', 'seams'];
+
+/** Writes what came of each transfer: the zones in numbers, and how long it took. */
+export function showResults(session: Session): void {
+  const first = element('time-first', HTMLElement);
+  let latest = 0;
+  session.on('transfer', () => (first.hidden = true));
+  session.on('zones', ({ classification, spent }) => {
+    showCounts(classification);
+    latest = showTimings(session.shown!, spent);
+  });
+  session.on('again', ({ spent }) => {
+    const before = latest;
+    latest = showTimings(session.shown!, spent);
+    first.hidden = before < kMuchLonger * latest;
+    first.textContent = `${round(before)} ms the first time, while the browser still compiled it.`;
+  });
+}
+
+/** Writes how many vertices fall into each zone. */
+function showCounts({ zones, segmentStats }: Classification): void {
+  const counts = [0, 0, 0, 0];
+  for (const zone of zones) counts[zone]!++;
+  element('count-total', HTMLElement).textContent = zones.length.toLocaleString('en');
+  kZones.forEach((zone, number) => {
+    element(`count-${zone}`, HTMLElement).textContent = String(counts[number]);
+    const share = zones.length > 0 ? counts[number]! / zones.length : 0;
+    document.querySelector<HTMLElement>(`#bar [data-zone=${zone}]`)!.style.flexGrow = String(share);
+  });
+  const culled = segmentStats.filter((segment) => segment.culled).length;
+  announce(
+    `Done: ${counts[0]} of ${zones.length} vertices may be painted, ${counts[1]} are occluded, ${counts[2]} uncovered, ` +
+      `${counts[3]} culled; ${culled} of ${segmentStats.length} parts are culled.`,
+  );
+}
+
+/**
+ * Writes how long the transfer took, step by step, as far as the preset takes them.
+ * @returns The whole, in milliseconds.
+ */
+function showTimings({ projection: { timings: projected, preset } }: Shown, spent: number): number {
+  const timings: Timings = { ...projected, classify: spent, total: projected.total + spent };
+  element('time-total', HTMLElement).textContent = round(timings.total);
+  const steps = (Object.keys(kSteps) as (keyof typeof kSteps)[]).filter(
+    (step) => preset !== 'paper' || !kBeyondPaper.includes(step),
+  );
+  const longest = Math.max(...steps.map((step) => timings[step]), Number.MIN_VALUE);
+  element('timings', HTMLElement).replaceChildren(
+    ...steps.map((step) => {
+      const row = document.createElement('div');
+      const name = document.createElement('dt');
+      const time = document.createElement('dd');
+      name.textContent = kSteps[step];
+      time.textContent = round(timings[step]);
+      row.style.setProperty('--share', String(timings[step] / longest));
+      row.append(name, time);
+      return row;
+    }),
+  );
+  return timings.total;
+}
+
+function round(milliseconds: number): string {
+  return milliseconds.toFixed(milliseconds < 0.1 ? 3 : milliseconds < 10 ? 2 : 1);
+}

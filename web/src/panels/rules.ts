@@ -1,0 +1,23 @@
+import type { Preset } from 'cagecast';
+import type { Borders } from 'cagecast/three';
+import { element } from '../platform/page';
+import type { Session } from '../scene/session';
+
+/** Lets the preset, the threshold, and how the paint ends be chosen. */
+export function setUpRules(session: Session): void {
+  const preset = element('preset', HTMLSelectElement);
+  const threshold = element('threshold', HTMLInputElement);
+  preset.addEventListener('change', () => session.setRules({ preset: preset.value as Preset }));
+  const exact = element('exact-borders', HTMLInputElement);
+  const chosenBorders = (): Borders => (exact.checked ? 'cut' : 'triangle');
+  exact.addEventListener('change', () => session.setRules({ borders: chosenBorders() }));
+  threshold.addEventListener('input', () => session.setRules({ threshold: Number(threshold.value) }));
+  session.on('rules', (rules) => {
+    preset.value = rules.preset;
+    exact.checked = rules.borders === 'cut';
+    threshold.value = String(rules.threshold);
+    element('threshold-value', HTMLOutputElement).value = rules.threshold.toFixed(2);
+  });
+  // A reloaded page keeps its fields as they were.
+  session.setRules({ preset: preset.value as Preset, threshold: Number(threshold.value), borders: chosenBorders() });
+}

@@ -1,0 +1,76 @@
+import { clearError, element, showError, showNotice } from '../platform/page';
+import type { Model } from '../scene/load';
+import { kReading, type Progress, type Session } from '../scene/session';
+
+const kBlind =
+  'This browser draws no 3D here: WebGL 2 is missing or switched off. The transfer works all the same, its numbers are in the panel.';
+
+/** How far along the page is; the words are what people, and tests, read. */
+type Status = 'loading' | 'working' | 'ready' | 'error';
+
+/** Tells how far along the session is, and what went wrong. @param blind Whether there is no picture, for want of WebGL. */
+export function showStatus(session: Session, blind: boolean): void {
+  const status = element('status', HTMLElement);
+  const show = (to: Status): void => {
+    status.textContent = to;
+    status.dataset.state = to;
+  };
+  if (blind) {
+    element('stage', HTMLElement).classList.add('blind');
+    element('view', HTMLCanvasElement).hidden = true;
+    showNotice('stage-notice', kBlind);
+  }
+  const bar = new ProgressBar(session);
+  let told: Model | undefined;
+  session.on('transfer', ({ target }) => {
+    if (target.damage && target !== told) showError(target.damage);
+    told = target;
+  });
+  session.on('progress', (progress) => {
+    bar.show(progress);
+    switch (progress.state) {
+      case 'working':
+        // What was said of files stays while what follows from them is worked on.
+        if (progress.stage === kReading || status.dataset.state === 'error') clearError();
+        return show('working');
+      case 'ready':
+        showNotice('stage-notice', blind ? kBlind : '');
+        return show('ready');
+      case 'waiting':
+        showNotice('stage-notice', `Now add a ${progress.missing.join(' and a ')}.`);
+        return show('loading');
+      case 'failed':
+        showError(progress.error.message);
+        if (!session.shown) showNotice('stage-notice', 'Nothing to show yet: drop a target and its cage here.');
+        return show('error');
+    }
+  });
+}
+
+const kPatience = 300; // milliseconds: what takes no longer needs no bar
+
+/** How far along the work is that is under way, and the way to give it up: a button, and Escape. */
+class ProgressBar {
+  readonly #box = element('progress', HTMLElement);
+  readonly #bar = element('progress-bar', HTMLProgressElement);
+  #due: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(session: Session) {
+    element('cancel', HTMLButtonElement).addEventListener('click', () => session.cancel());
+    addEventListener('keydown', (event) => {
+      if (event.key === 'Escape' && !this.#box.hidden) session.cancel();
+    });
+  }
+
+  show(progress: Progress): void {
+    if (progress.state !== 'working') {
+      clearTimeout(this.#due);
+      this.#due = undefined;
+      this.#box.hidden = true;
+      return;
+    }
+    this.#due ??= setTimeout(() => (this.#box.hidden = false), kPatience);
+    this.#bar.value = progress.share;
+    element('progress-stage', HTMLElement).textContent = `${progress.stage}…`;
+  }
+}

@@ -1,0 +1,35 @@
+import { element } from '../platform/page';
+import type { Session } from '../scene/session';
+import { setUpDivider } from './divider';
+import { type Mode, showsPaint } from './view';
+
+/** Lets it be chosen what the picture shows. */
+export function setUpViewControls(session: Session): void {
+  const strip = element('view-mode', HTMLElement);
+  const modes = [...strip.querySelectorAll('input')];
+  const switches = (['paint', 'cage'] as const).map((name) => ({
+    name,
+    input: element(`show-${name}`, HTMLInputElement),
+  }));
+  const divider = setUpDivider((split) => session.setView({ split }));
+  for (const input of modes) input.addEventListener('change', () => session.setView({ mode: input.value as Mode }));
+  for (const { name, input } of switches)
+    input.addEventListener('change', () => session.setView({ [name]: input.checked }));
+
+  session.on('view', (view) => {
+    for (const input of modes) {
+      input.checked = input.value === view.mode;
+      // The strip is longer than a phone is wide.
+      if (input.checked)
+        strip.scrollTo({
+          left: input.offsetParent instanceof HTMLElement ? input.offsetParent.offsetLeft - strip.clientWidth / 3 : 0,
+        });
+    }
+    for (const { name, input } of switches) input.checked = view[name];
+    switches[0]!.input.disabled = !showsPaint(view.mode);
+    divider.show(view.mode === 'compare', view.split);
+  });
+  // A reloaded page keeps its fields as they were.
+  const mode = modes.find(({ checked }) => checked)!.value as Mode;
+  session.setView({ mode, ...Object.fromEntries(switches.map(({ name, input }) => [name, input.checked])) });
+}
