@@ -41,10 +41,10 @@ export const width = 760;
 const number = (value: number): string =>
   value >= 100 ? value.toFixed(0) : value >= 10 ? value.toFixed(1) : value.toPrecision(2);
 const short = (n: number): string => (n >= 1e6 ? `${n / 1e6}M` : n >= 1e3 ? `${+(n / 1e3).toFixed(1)}k` : `${n}`);
-const escape = (text: string): string =>
+const escapeXml = (text: string): string =>
   text.replace(/[&<>]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;' })[c]!);
 export const text = (x: number, y: number, content: string, rest = ''): string =>
-  `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" ${rest}>${escape(content)}</text>`;
+  `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" ${rest}>${escapeXml(content)}</text>`;
 
 // Light or dark as the reader's screen is; the classes are those of the elements that follow it.
 const style = `<style>
@@ -56,7 +56,7 @@ svg { background: #fff; fill: #222 } .grid { stroke: #ddd } .frame { stroke: #99
 export function picture(height: number, title: string, body: string[]): string {
   return [
     `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" font-family="system-ui, sans-serif" font-size="12">`,
-    `<title>${escape(title)}</title>`,
+    `<title>${escapeXml(title)}</title>`,
     style,
     text(16, 24, title, 'font-size="15" font-weight="600"'),
     ...body,

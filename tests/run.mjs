@@ -1,6 +1,6 @@
 // Builds everything and runs all tests; ends with how many of each suite passed.
 //
-//   node tests/run.mjs [suite …]        suites: core, package, browser
+//   node tests/run.mjs [suite …]        suites: lint, core, package, browser
 
 import { spawn } from 'node:child_process';
 import { readdirSync } from 'node:fs';
@@ -36,7 +36,7 @@ async function ctest(preset) {
   await mustRun('cmake', ['--preset', preset, '-Wno-dev', '--log-level=WARNING']);
   await mustRun('cmake', ['--build', '--preset', preset]);
   const { status, output } = await run('ctest', ['--preset', preset, '--progress', '-j2']);
-  const [, failed, all] = /(\d+) tests failed out of (\d+)/.exec(output) ?? [, 1, 1];
+  const [failed, all] = /(\d+) tests failed out of (\d+)/.exec(output)?.slice(1) ?? [1, 1];
   return { passed: all - failed, failed: Number(failed) || Number(status !== 0) };
 }
 
@@ -64,6 +64,11 @@ async function nodeTests(folder, { atOnce = 1, env } = {}) {
 
 /** Each suite builds what it needs. In the order in which a mistake is cheapest to find. */
 const kSuites = {
+  lint: async () => {
+    const { status, output } = await run(process.execPath, ['wasm/tools/lint/run.mjs']);
+    const count = (word) => output.match(new RegExp(`^lint \\w+ +${word}`, 'gm'))?.length ?? 0;
+    return { passed: count('ok'), failed: count('FAILED') || Number(status !== 0) };
+  },
   core: async () => {
     const lanes = [await ctest('release'), await ctest('scalar'), await ctest('dev')];
     return {

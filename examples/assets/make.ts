@@ -153,5 +153,5 @@ if (sources.length > 1) {
 
 const list = join(out, `.index-${process.pid}.json`);
 const index = Object.keys(models).flatMap((name) => madeOf(name)?.entry ?? []);
-writeFileSync(list, JSON.stringify(index, null, 2) + '\n');
+writeFileSync(list, `${JSON.stringify(index, null, 2)}\n`);
 renameSync(list, join(out, 'index.json'));

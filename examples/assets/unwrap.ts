@@ -234,7 +234,10 @@ export const fill = (mesh: Mesh, holes: number[][]): Mesh => {
 const onDisc = (mesh: Mesh, outer: number[]): Flat => {
   const total = vertexCount(mesh);
   const links = Array.from({ length: total }, () => new Set<number>());
-  const link = (a: number, b: number): void => void (links[a]!.add(b), links[b]!.add(a));
+  const link = (a: number, b: number): void => {
+    links[a]!.add(b);
+    links[b]!.add(a);
+  };
   for (let t = 0; t < triangleCount(mesh); t++) {
     const [a, b, c] = corners(mesh, t);
     link(a, b);

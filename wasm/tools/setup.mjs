@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs assets | start | test | bench
+//   node wasm/tools/setup.mjs assets | start | lint | test | bench
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -30,12 +30,16 @@ const kNeeds = {
   valgrind: { what: 'Valgrind', there: command('valgrind') },
   'qemu-user': { what: 'QEMU user emulation (qemu-aarch64)', there: command('qemu-aarch64') },
   'g++-aarch64-linux-gnu': { what: 'a C++20 cross compiler for aarch64', there: command('aarch64-linux-gnu-g++') },
+  'clang-format': { what: 'clang-format 14', there: command('clang-format') },
+  'clang-tidy': { what: 'clang-tidy 14', there: command('clang-tidy') },
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev'];
+// clang-tidy reads the sources as they are compiled, so it needs what they need.
+const kLint = ['cmake', 'ninja-build', 'g++', 'libnanoflann-dev', 'clang-format', 'clang-tidy'];
 // The last three count instructions, which a test holds against a budget.
 const kTests = [
   ...kPage,
-  'g++',
+  ...kLint,
   'libtinygltf-dev',
   'nlohmann-json3-dev',
   'catch2',
@@ -47,6 +51,7 @@ const kTests = [
 const kPurposes = {
   assets: [],
   start: kPage,
+  lint: kLint,
   test: kTests,
   bench: [...kTests, 'libembree-dev'],
 };
@@ -60,7 +65,7 @@ function fail(message) {
 const isNewEnough = (version) => Number(version.replace('v', '').split('.')[0]) >= kOldestNode;
 
 function installSystemPackages(names) {
-  const missing = names.filter((name) => !kNeeds[name].there());
+  const missing = [...new Set(names)].filter((name) => !kNeeds[name].there());
   if (missing.length === 0) return;
   const list = missing.map((name) => `  ${kNeeds[name].what}  (Debian: ${name})`).join('\n');
   const asRoot = process.getuid?.() === 0 ? [] : command('sudo')() ? ['sudo'] : null;

@@ -1,0 +1,91 @@
+// Checks which folder includes or imports which: dependencies go one way only.
+import { existsSync, readFileSync } from 'node:fs';
+import { dirname, join, normalize } from 'node:path';
+import { isCpp, isScript } from './files.mjs';
+
+/** The folders of core/src, lowest first; a file may include its own folder and those before it. transfer.cpp is the last. */
+const kCoreOrder = ['base', 'simd', 'geometry', 'input', 'search', 'cage', 'steps', 'seams', 'clip', 'transfer'];
+
+/** Where a quoted include is looked up, after the folder of the file itself. */
+const kIncludeFolders = ['core/src', 'core/include', 'core', 'tests/core'];
+
+/**
+ * What C++ files may include, by where they are; the first line that fits counts. Folders that are not listed, the tests and
+ * the benchmark, may include anything.
+ */
+const kCppRules = [
+  { from: 'core/include/', may: ['core/include/'], rule: 'public headers include public headers only' },
+  { from: 'core/src/', may: ['core/include/', 'core/src/'], rule: 'the core includes nothing but itself' },
+  { from: 'core/gltf/', may: ['core/include/', 'core/gltf/'], rule: 'core/gltf uses the public headers only' },
+  { from: 'wasm/', may: ['core/include/', 'wasm/'], rule: 'the bindings use the public headers only' },
+  {
+    from: 'examples/',
+    may: ['core/include/', 'core/gltf/', 'examples/'],
+    rule: 'examples use the public headers only',
+  },
+];
+
+/** What TypeScript and JavaScript may import by a relative path, as above. Other parts are imported by the package's name. */
+const kScriptRules = [
+  { from: 'wasm/src/', may: ['wasm/src/'], rule: 'the package imports nothing of the rest of the repository' },
+  { from: 'wasm/tools/', may: ['wasm/tools/', 'package.json'], rule: 'build tools import build tools only' },
+  { from: 'web/', may: ['web/'], rule: "the page imports the package by its public name, 'cagecast'" },
+  { from: 'examples/', may: ['examples/'], rule: "examples import the package by its public name, 'cagecast'" },
+];
+
+/** `steps` for core/src/steps/holes.cpp, `transfer` for core/src/transfer.cpp. */
+function coreFolder(path) {
+  const [first, ...rest] = path.slice('core/src/'.length).split('/');
+  return rest.length > 0 ? first : first.replace(/\.[a-z]+$/, '');
+}
+
+function checkOrder(from, to) {
+  const [lower, higher] = [coreFolder(to), coreFolder(from)].map((folder) => kCoreOrder.indexOf(folder));
+  if (higher < 0) return `${coreFolder(from)} is not in the order of folders: ${kCoreOrder.join(', ')}`;
+  if (lower > higher) return `${kCoreOrder[higher]} is below ${kCoreOrder[lower]}`;
+  return undefined;
+}
+
+function checkInclude(root, from, text) {
+  const to = [dirname(from), ...kIncludeFolders]
+    .map((folder) => normalize(join(folder, text)).replaceAll('\\', '/'))
+    .find((path) => existsSync(join(root, path)));
+  if (to === undefined) return undefined; // Of the system, or of a library.
+  const rule = kCppRules.find((candidate) => from.startsWith(candidate.from));
+  if (rule && !rule.may.some((folder) => to.startsWith(folder))) return rule.rule;
+  return from.startsWith('core/src/') && to.startsWith('core/src/') ? checkOrder(from, to) : undefined;
+}
+
+function checkImport(from, text) {
+  if (!text.startsWith('.')) {
+    const isItself = from.startsWith('wasm/src/') && /^cagecast(\/|$)/.test(text);
+    return isItself ? 'the package does not import itself by name' : undefined;
+  }
+  const to = normalize(join(dirname(from), text)).replaceAll('\\', '/');
+  const rule = kScriptRules.find((candidate) => from.startsWith(candidate.from));
+  return rule && !rule.may.some((folder) => to.startsWith(folder)) ? rule.rule : undefined;
+}
+
+const kInclude = /^\s*#\s*include\s+["<]([^">]+)[">]/;
+const kComment = /^\s*(\*|\/\/|\/\*)/;
+const kImport = /(?:^|[^\w.])(?:from|import)\s*\(?\s*(['"])([^'"\n]+)\1/;
+
+/**
+ * @param {string} root  The repository, or a tree like it.
+ * @param {string[]} files  Paths from there.
+ * @return {string[]}  What is wrong, as `path:line: …`.
+ */
+export function checkArrows(root, files) {
+  const problems = [];
+  for (const path of files) {
+    if (!isCpp(path) && !isScript(path)) continue;
+    const lines = readFileSync(join(root, path), 'utf8').split('\n');
+    for (const [index, line] of lines.entries()) {
+      if (kComment.test(line)) continue;
+      const text = isCpp(path) ? kInclude.exec(line)?.[1] : kImport.exec(line)?.[2];
+      const problem = text && (isCpp(path) ? checkInclude(root, path, text) : checkImport(path, text));
+      if (problem) problems.push(`${path}:${index + 1}: "${text}": ${problem}`);
+    }
+  }
+  return problems;
+}
