@@ -1,5 +1,5 @@
-/// The bridge from JavaScript. What a call leaves stays until `release` (bridge.hpp). Nothing is decided here; names, defaults and
-/// messages for people are the package's.
+/// The bridge from JavaScript. What a call leaves stays until `release` (bridge.hpp). Nothing is decided here; names,
+/// defaults and messages for people are the package's.
 
 #include <cagecast/seams.hpp>
 
@@ -10,7 +10,8 @@ namespace cagecast {
 /// This and the next ones in the order of wasm/src/transfer.ts.
 template <typename Visit>
 void eachField(SegmentStats& s, const Visit& visit) {
-  visit(s.points), visit(s.area), visit(s.exposedArea), visit(s.coveredArea), visit(s.sunkArea), visit(s.group), visit(s.copyOf);
+  visit(s.points), visit(s.area), visit(s.exposedArea), visit(s.coveredArea), visit(s.depthWeightedArea),
+      visit(s.group), visit(s.twinOf);
 }
 
 template <typename Visit>
@@ -21,7 +22,8 @@ void eachField(HoleShare& s, const Visit& visit) {
 template <typename Visit>
 void eachField(Projection& p, const Visit& visit) {
   Timings& t = p.timings;
-  visit(t.weld), visit(t.build), visit(t.project), visit(t.occluded), visit(t.covered), visit(t.segments), visit(t.secondLook);
+  visit(t.weld), visit(t.build), visit(t.project), visit(t.occluded), visit(t.covered), visit(t.segments),
+      visit(t.secondLook);
   visit(t.holes), visit(t.seams), visit(t.classify), visit(t.total), visit(p.peakBytes);
 }
 
@@ -47,17 +49,19 @@ struct Call {
 std::uintptr_t projected(const Status& status, const Array<Zone>& zones, const Bytes (&more)[3]) {
   cagecast::Projection& p = call.result.projection;
   if (!status.ok()) return answer(status);
-  if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats) || !toNumbers(std::span(&p, 1), call.numbers)) {
+  if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats) ||
+      !toNumbers(std::span(&p, 1), call.numbers)) {
     return answer(kOutOfMemory);
   }
-  return answer(status, {bytes(p.uvs), bytes(p.cornerUvs), bytes(zones), bytes(p.triangles), bytes(p.distances), bytes(p.segments),
-                         bytes(call.stats), bytes(call.numbers), more[0], more[1], more[2]});
+  return answer(status, {bytes(p.uvs), bytes(p.cornerUvs), bytes(zones), bytes(p.triangles), bytes(p.distances),
+                         bytes(p.segments), bytes(call.stats), bytes(call.numbers), more[0], more[1], more[2]});
 }
 
 /// The answer of a transfer.
 std::uintptr_t transferred(const Status& status) {
   const cagecast::Zones& zones = call.result.zones;
-  return projected(status, zones.zones, {bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.margins)});
+  return projected(status, zones.zones,
+                   {bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.scores)});
 }
 
 }  // namespace
@@ -68,8 +72,9 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE std::uintptr_t project() {
   cagecast::Projection& p = call.result.projection;
   const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), p);
-  if (status.ok() && !toNumbers(std::span(p.holeShares.begin(), p.holeShares.end()), call.shares)) return answer(kOutOfMemory);
-  return projected(status, p.zones, {bytes(p.restores), bytes(call.shares), std::as_bytes(mesh(5).indices)});
+  if (status.ok() && !toNumbers(std::span(p.holeShares.begin(), p.holeShares.end()), call.shares))
+    return answer(kOutOfMemory);
+  return projected(status, p.zones, {bytes(p.recovery), bytes(call.shares), std::as_bytes(mesh(5).indices)});
 }
 
 /// As `project`.
@@ -77,7 +82,8 @@ EMSCRIPTEN_KEEPALIVE std::uintptr_t transfer() {
   return transferred(cagecast::transfer(mesh(1), mesh(5), givenOptions(), call.result));
 }
 
-/// The first half of `transfer`, for those who must know the segments to say which are locked: of the answer their numbers alone.
+/// The first half of `transfer`, for those who must know the segments to say which are locked: of the answer their
+/// numbers alone.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t beginTransfer() {
   cagecast::Projection& p = call.result.projection;
   const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), p);
@@ -98,7 +104,8 @@ EMSCRIPTEN_KEEPALIVE std::uintptr_t endTransfer() {
   return transferred(status);
 }
 
-/// Of the inputs: options; zones, segments, stats, restores, shares and indices of a projection; a lock per segment, or none.
+/// Of the inputs: options; zones, segments, stats, recovery, shares and indices of a projection; a lock per segment, or
+/// none.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t classify() {
   Array<cagecast::SegmentStats> stats;
   Array<cagecast::HoleShare> shares;
@@ -111,9 +118,11 @@ EMSCRIPTEN_KEEPALIVE std::uintptr_t classify() {
   cagecast::ClassifyOptions classifyOptions = givenOptions();
   classifyOptions.locks = input<cagecast::Lock>(7);
   cagecast::Zones& zones = call.result.zones;
-  const Status status = cagecast::classify({input<Zone>(1), input<std::uint32_t>(2), stats, input<std::uint32_t>(4), shares},
-                                           input<std::uint32_t>(6), classifyOptions, zones);
-  return answer(status, {bytes(zones.zones), bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.margins)});
+  const Status status =
+      cagecast::classify({input<Zone>(1), input<std::uint32_t>(2), stats, input<std::uint32_t>(4), shares},
+                         input<std::uint32_t>(6), classifyOptions, zones);
+  return answer(status,
+                {bytes(zones.zones), bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.scores)});
 }
 
 /// Of the inputs: indices, UVs per corner.

@@ -18,8 +18,8 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE std::uintptr_t cutBorders() {
   const cagecast::DecidedView decided{input<cagecast::Zone>(9), input<std::uint32_t>(10), input<std::uint8_t>(11)};
   const cagecast::Status status = cagecast::cutBorders(mesh(1), mesh(5), givenOptions(), decided, cut);
-  return answer(status, {bytes(cut.sources), bytes(cut.weights), bytes(cut.indices), bytes(cut.origins), bytes(cut.uvs), bytes(cut.cornerUvs),
-                         bytes(cut.zones), bytes(cut.cosmeticTriangles)});
+  return answer(status, {bytes(cut.sources), bytes(cut.weights), bytes(cut.indices), bytes(cut.origins), bytes(cut.uvs),
+                         bytes(cut.cornerUvs), bytes(cut.zones), bytes(cut.cosmeticTriangles)});
 }
 
 /// Frees what a call read and left.

@@ -1,5 +1,5 @@
-/// What the bridges from JavaScript share (bindings.cpp, bindings_borders.cpp): JavaScript writes its arrays where `room` says,
-/// and copies those of an answer from where its table says (wasm/src/bindings.ts).
+/// What the bridges from JavaScript share (bindings.cpp, bindings_borders.cpp): JavaScript writes its arrays where
+/// `room` says, and copies those of an answer from where its table says (wasm/src/bindings.ts).
 ///
 /// Functions that JavaScript calls take and return numbers only, so they are exported as they are.
 #pragma once
@@ -21,8 +21,10 @@ namespace cagecast {
 template <typename Visit>
 constexpr void eachField(TransferOptions& o, const Visit& visit) {
   visit(o.projection), visit(o.weldTolerance), visit(o.seams), visit(o.occlusionReach), visit(o.pokeThrough);
-  visit(o.votes), visit(o.farRims), visit(o.depths), visit(o.secondLook), visit(o.bothSides), visit(o.exposedSide), visit(o.holes);
-  visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.maxUncovered), visit(o.copies), visit(o.baredParts), visit(o.partialTriangles);
+  visit(o.interiorSamples), visit(o.farLoops), visit(o.depthWeighting), visit(o.secondLook), visit(o.bothSides),
+      visit(o.exposedSide), visit(o.holes);
+  visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.maxUncovered), visit(o.twins),
+      visit(o.holeContents), visit(o.partialTriangles);
 }
 
 }  // namespace cagecast
@@ -64,7 +66,8 @@ std::span<const T> input(std::size_t place) {
 
 /// A mesh in four places: positions, indices, UVs, groups.
 inline MeshView mesh(std::size_t place) {
-  return {input<float>(place), input<std::uint32_t>(place + 1), input<float>(place + 2), input<std::uint32_t>(place + 3)};
+  return {input<float>(place), input<std::uint32_t>(place + 1), input<float>(place + 2),
+          input<std::uint32_t>(place + 3)};
 }
 
 /// @return Where `answer` is.

@@ -1,5 +1,6 @@
-/// Included before nanoflann (wasm/CMakeLists.txt), which throws, and prints, where memory runs out. In WebAssembly nothing
-/// catches that: it ends the call as `abort` does, and would bring 3.4 KB of the C++ runtime along, 1.8 KB gzipped.
+/// Included before nanoflann (wasm/CMakeLists.txt), which throws, and prints, where memory runs out. In WebAssembly
+/// nothing catches that: it ends the call as `abort` does, and would bring 3.4 KB of the C++ runtime along, 1.8 KB
+/// gzipped.
 #pragma once
 
 #define _LIBCPP_NO_EXCEPTIONS

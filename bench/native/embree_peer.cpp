@@ -4,19 +4,22 @@
 #include <cmath>
 #include <limits>
 
-#include "cpu_clock.hpp"
+#include "base/cpu_clock.hpp"
 #include "peer.hpp"
 #include "pipeline.hpp"
 
 // The form in which Embree is fastest at this, found by trying on heads of 4.8k and 9.9k triangles:
-// - both the scene's and the geometry's build quality low (Morton order): the geometry's alone decides how long the build
+// - both the scene's and the geometry's build quality low (Morton order): the geometry's alone decides how long the
+// build
 //   takes, 0.25 ms against 0.98 with the scene's set only; a cage tree of medium quality costs more than it saves;
 // - the point query starts with the sphere that the previous point's triangle gives: 2.35 → 2.05 ms;
-// - its callback, 19 a query, rejects by the distance of the plane: → 1.50 ms; and looks at triangles lying flat in a frame
+// - its callback, 19 a query, rejects by the distance of the plane: → 1.50 ms; and looks at triangles lying flat in a
+// frame
 //   of their own, without divisions: → 1.35 ms (a bounding sphere for each triangle and code for this very processor
 //   (-march=native) gave nothing);
 // - queries along a curve: −4 % of the queries, and much more where the input is shuffled;
-// - self rays in packets of 8: −8 %; of 4 and 16: nothing. No robust flag (+16 % of the rays), no compact one (+12 %); new
+// - self rays in packets of 8: −8 %; of 4 and 16: nothing. No robust flag (+16 % of the rays), no compact one (+12 %);
+// new
 //   scenes every time or kept ones, coherent flag or not: the same.
 namespace cagecast::bench {
 namespace {
@@ -25,8 +28,8 @@ namespace {
 struct CageTriangle {
   Vec3f a, ab, ac;
   Vec3f origin, x, y, normal;
-  float base;               ///< The length of the longest edge, from the origin.
-  float toCx, toCy, toC;    ///< The third corner from the origin: direction and length.
+  float base;                   ///< The length of the longest edge, from the origin.
+  float toCx, toCy, toC;        ///< The third corner from the origin: direction and length.
   float fromBx, fromBy, fromB;  ///< The same from the other end of the longest edge.
   float uvs[6];
   std::uint32_t index;
@@ -80,7 +83,8 @@ float squaredDistanceInPlane(Vec3f d, const CageTriangle& t) {
   const float alongB = clamp(fromB * t.fromBx + y * t.fromBy, t.fromB);
   const float bcX = fromB - alongB * t.fromBx;
   const float bcY = y - alongB * t.fromBy;
-  const bool within = static_cast<bool>(static_cast<int>(t.toCx * y <= t.toCy * x) & static_cast<int>(t.fromBy * fromB <= t.fromBx * y));
+  const bool within = static_cast<bool>(static_cast<int>(t.toCx * y <= t.toCy * x) &
+                                        static_cast<int>(t.fromBy * fromB <= t.fromBx * y));
   const float above = within ? 0 : std::min(acX * acX + acY * acY, bcX * bcX + bcY * bcY);
   return y < 0 ? baseX * baseX + y * y : above;
 }
@@ -164,7 +168,9 @@ class Query {
   [[nodiscard]] std::uint32_t answer(std::uint32_t likely) const {
     if (count_ == 0) return likely;
     if (count_ == 1) return found_[0].slot;
-    const auto planeDistance = [&](const Found& f) { return std::abs(dot(p_ - triangles_[f.slot].a, triangles_[f.slot].normal)); };
+    const auto planeDistance = [&](const Found& f) {
+      return std::abs(dot(p_ - triangles_[f.slot].a, triangles_[f.slot].normal));
+    };
     float farthest = 0;
     for (std::size_t i = 0; i < count_; ++i) farthest = std::max(farthest, planeDistance(found_[i]));
     std::uint32_t first = UINT32_MAX;
@@ -174,7 +180,8 @@ class Query {
   }
 
  private:
-  static constexpr std::size_t kMostTies = 32;  // More triangles than that at one corner are rare enough to be dropped here.
+  static constexpr std::size_t kMostTies =
+      32;  // More triangles than that at one corner are rare enough to be dropped here.
   struct Found {
     std::uint32_t slot;
     float distance;
@@ -206,8 +213,10 @@ class Scene {
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0, 12, positions.size() / 3);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, 12, indices.size() / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0, 12,
+                               positions.size() / 3);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(), 0, 12,
+                               indices.size() / 3);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_, geometry, 0);
     rtcReleaseGeometry(geometry);
@@ -254,7 +263,8 @@ class EmbreePeer final : public Peer {
     cageIndices_.clear();
     for (std::size_t i = 0; i < cage.indices.size(); i += 3) {
       const std::uint32_t* index = cage.indices.data() + i;
-      CageTriangle triangle = prepare(at(cage.positions, index[0]), at(cage.positions, index[1]), at(cage.positions, index[2]));
+      CageTriangle triangle =
+          prepare(at(cage.positions, index[0]), at(cage.positions, index[1]), at(cage.positions, index[2]));
       if (!std::isfinite(triangle.normal.x)) continue;  // It has no area.
       triangle.index = static_cast<std::uint32_t>(i / 3);
       for (std::size_t corner = 0; corner < 3; ++corner)

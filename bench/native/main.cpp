@@ -1,13 +1,12 @@
 /// Measures the library, and peers beside it, in CPU time.
 ///
-///     cagecast_bench TARGET.glb CAGE.glb [--preset paper|default] [--seams vertex|corner] [--runs 101] [--peers embree,nanoflann] [--json]
-///     cagecast_bench FILE.scene [...]
-///     cagecast_bench TARGET.glb CAGE.glb --save FILE.scene
+///     cagecast_bench TARGET.glb CAGE.glb [--preset paper|default] [--seams vertex|corner] [--runs 101] [--peers
+///     embree,nanoflann] [--json] cagecast_bench FILE.scene [...] cagecast_bench TARGET.glb CAGE.glb --save FILE.scene
 ///
-/// Every run is the whole work from raw arrays to zones. With peers, the runs alternate (library, peer, library, peer, …)
-/// and a ratio is the median of the ratios of such pairs, so that what else the machine does falls on both alike. The library
-/// is its own peer with another preset, `paper` or `default`.
-/// Exit code 1 if the input is unusable, 2 for wrong usage; a line on stderr says why.
+/// Every run is the whole work from raw arrays to zones. With peers, the runs alternate (library, peer, library, peer,
+/// …) and a ratio is the median of the ratios of such pairs, so that what else the machine does falls on both alike.
+/// The library is its own peer with another preset, `paper` or `default`. Exit code 1 if the input is unusable, 2 for
+/// wrong usage; a line on stderr says why.
 
 #include <sched.h>
 
@@ -61,11 +60,13 @@ Arguments parse(int argc, char** argv) {
         stop(2, "--runs " + std::string(text) + " is not a whole number of at least 1");
     } else if (argument == "--preset") {
       const std::string_view preset = value();
-      if (preset != "paper" && preset != "default") stop(2, "no preset \"" + std::string(preset) + "\"; there are: paper, default");
+      if (preset != "paper" && preset != "default")
+        stop(2, "no preset \"" + std::string(preset) + "\"; there are: paper, default");
       arguments.options = preset == "paper" ? TransferOptions::paper() : TransferOptions::standard();
     } else if (argument == "--seams") {
       const std::string_view text = value();
-      if (text != "vertex" && text != "corner") stop(2, "no seams \"" + std::string(text) + "\"; there are: vertex, corner");
+      if (text != "vertex" && text != "corner")
+        stop(2, "no seams \"" + std::string(text) + "\"; there are: vertex, corner");
       seams = text == "vertex" ? Seams::vertex : Seams::corner;
     } else if (argument == "--save") {
       arguments.save = value();
@@ -84,7 +85,8 @@ Arguments parse(int argc, char** argv) {
   }
   if (arguments.files.empty() || arguments.files.size() > 2)
     stop(2,
-         "usage: cagecast_bench TARGET.glb CAGE.glb | FILE.scene [--preset paper|default] [--seams vertex|corner] [--runs 101]\n"
+         "usage: cagecast_bench TARGET.glb CAGE.glb | FILE.scene [--preset paper|default] [--seams vertex|corner] "
+         "[--runs 101]\n"
          "       [--peers embree,nanoflann,paper,default] [--json] [--save FILE.scene]");
   if (seams) arguments.options.seams = *seams;
   return arguments;
@@ -95,7 +97,8 @@ class OtherPreset : public Peer {
  public:
   explicit OtherPreset(const TransferOptions& options) : options_(options) {}
   Timings run(const MeshView& cage, const MeshView& target) override {
-    if (const Status status = transfer(cage, target, options_, result_); !status.ok()) stop(1, describe(status, cage, target));
+    if (const Status status = transfer(cage, target, options_, result_); !status.ok())
+      stop(1, describe(status, cage, target));
     return result_.projection.timings;
   }
 
@@ -110,7 +113,8 @@ std::unique_ptr<Peer> makePeer(const std::string& name) {
   if (name == "nanoflann") return bench::makeNanoflannPeer();
   if (name != "embree") stop(2, "no peer \"" + name + "\"; there are: embree, nanoflann, paper, default");
   std::unique_ptr<Peer> peer = bench::makeEmbreePeer();
-  if (!peer) stop(2, "this benchmark was built without Embree (Debian: libembree-dev); configure again once it is installed");
+  if (!peer)
+    stop(2, "this benchmark was built without Embree (Debian: libembree-dev); configure again once it is installed");
   return peer;
 }
 
@@ -119,10 +123,17 @@ struct Stage {
   const char* name;
   double Timings::*time;
 };
-constexpr Stage kStages[] = {{"weld", &Timings::weld},         {"build", &Timings::build},     {"project", &Timings::project},
-                             {"occluded", &Timings::occluded}, {"covered", &Timings::covered}, {"segments", &Timings::segments},
-                             {"secondLook", &Timings::secondLook}, {"holes", &Timings::holes}, {"seams", &Timings::seams},
-                             {"classify", &Timings::classify}, {"total", &Timings::total}};
+constexpr Stage kStages[] = {{"weld", &Timings::weld},
+                             {"build", &Timings::build},
+                             {"project", &Timings::project},
+                             {"occluded", &Timings::occluded},
+                             {"covered", &Timings::covered},
+                             {"segments", &Timings::segments},
+                             {"secondLook", &Timings::secondLook},
+                             {"holes", &Timings::holes},
+                             {"seams", &Timings::seams},
+                             {"classify", &Timings::classify},
+                             {"total", &Timings::total}};
 
 struct Spread {
   double median, min, max;
@@ -183,27 +194,30 @@ std::uint32_t pointCount(const Projection& projection) {
   return sum;
 }
 
-void printJson(const Arguments& arguments, const bench::Model& model, const TransferResult& result, const std::vector<Timings>& runs,
-               const std::vector<Contest>& contests) {
+void printJson(const Arguments& arguments, const bench::Model& model, const TransferResult& result,
+               const std::vector<Timings>& runs, const std::vector<Contest>& contests) {
   const auto stages = [](const std::vector<Timings>& timings) {
     std::string text;
     for (const Stage& stage : kStages) {
       const Spread s = spread(timings, stage.time);
       char line[128];
-      std::snprintf(line, sizeof(line), "%s\"%s\":{\"median\":%.6f,\"min\":%.6f,\"max\":%.6f}", text.empty() ? "" : ",", stage.name, s.median,
-                    s.min, s.max);
+      std::snprintf(line, sizeof(line), "%s\"%s\":{\"median\":%.6f,\"min\":%.6f,\"max\":%.6f}", text.empty() ? "" : ",",
+                    stage.name, s.median, s.min, s.max);
       text += line;
     }
     return "{" + text + "}";
   };
-  std::printf("{\"runs\":%d,\"compiler\":\"%s\",\"triangles\":%zu,\"vertices\":%zu,\"points\":%u,\"cageTriangles\":%zu,", arguments.runs,
-              __VERSION__, model.target.indices.size() / 3, model.target.positions.size() / 3, pointCount(result.projection),
-              model.cage.indices.size() / 3);
-  std::printf("\"peakBytes\":%llu,\"hash\":\"%s\",\"cagecast\":%s,\"peers\":{", static_cast<unsigned long long>(result.projection.peakBytes),
-              hashOf(result).c_str(), stages(runs).c_str());
+  std::printf(
+      "{\"runs\":%d,\"compiler\":\"%s\",\"triangles\":%zu,\"vertices\":%zu,\"points\":%u,\"cageTriangles\":%zu,",
+      arguments.runs, __VERSION__, model.target.indices.size() / 3, model.target.positions.size() / 3,
+      pointCount(result.projection), model.cage.indices.size() / 3);
+  std::printf("\"peakBytes\":%llu,\"hash\":\"%s\",\"cagecast\":%s,\"peers\":{",
+              static_cast<unsigned long long>(result.projection.peakBytes), hashOf(result).c_str(),
+              stages(runs).c_str());
   for (std::size_t i = 0; i < contests.size(); ++i) {
     const Contest& contest = contests[i];
-    std::printf("%s\"%s\":{\"times\":%s,\"ratios\":{", i > 0 ? "," : "", contest.name.c_str(), stages(contest.theirs).c_str());
+    std::printf("%s\"%s\":{\"times\":%s,\"ratios\":{", i > 0 ? "," : "", contest.name.c_str(),
+                stages(contest.theirs).c_str());
     bool first = true;
     for (const Stage& stage : kStages) {
       if (const double ratio = contest.ratio(stage.time); ratio > 0) {
@@ -217,20 +231,23 @@ void printJson(const Arguments& arguments, const bench::Model& model, const Tran
   std::printf("}}\n");
 }
 
-void printTable(const bench::Model& model, const TransferResult& result, const std::vector<Timings>& runs, const std::vector<Contest>& contests) {
-  std::printf("%zu triangles, %u points, cage of %zu triangles; %zu runs, CPU time in ms\n\n", model.target.indices.size() / 3,
-              pointCount(result.projection), model.cage.indices.size() / 3, runs.size());
+void printTable(const bench::Model& model, const TransferResult& result, const std::vector<Timings>& runs,
+                const std::vector<Contest>& contests) {
+  std::printf("%zu triangles, %u points, cage of %zu triangles; %zu runs, CPU time in ms\n\n",
+              model.target.indices.size() / 3, pointCount(result.projection), model.cage.indices.size() / 3,
+              runs.size());
   std::printf("%-11s%10s%10s%10s", "", "median", "min", "max");
   for (const Contest& contest : contests) std::printf("%14s%10s", contest.name.c_str(), "ratio");
   std::printf("\n");
   for (const Stage& stage : kStages) {
     const Spread s = spread(runs, stage.time);
     std::printf("%-11s%10.4f%10.4f%10.4f", stage.name, s.median, s.min, s.max);
-    for (const Contest& contest : contests) std::printf("%14.4f%10.3f", spread(contest.theirs, stage.time).median, contest.ratio(stage.time));
+    for (const Contest& contest : contests)
+      std::printf("%14.4f%10.3f", spread(contest.theirs, stage.time).median, contest.ratio(stage.time));
     std::printf("\n");
   }
-  std::printf("\npeak %llu bytes above the inputs, hash %s\n", static_cast<unsigned long long>(result.projection.peakBytes),
-              hashOf(result).c_str());
+  std::printf("\npeak %llu bytes above the inputs, hash %s\n",
+              static_cast<unsigned long long>(result.projection.peakBytes), hashOf(result).c_str());
   for (const Contest& contest : contests) {
     if (contest.peer->zones().empty()) continue;
     std::printf("%s: another zone at %zu, another nearest triangle at %zu of %zu vertices\n", contest.name.c_str(),
@@ -257,7 +274,8 @@ int main(int argc, char** argv) {
   pinToOneCore();
   TransferResult result;
   const auto runOurs = [&] {
-    if (const Status status = transfer(cage, target, arguments.options, result); !status.ok()) stop(1, describe(status, cage, target));
+    if (const Status status = transfer(cage, target, arguments.options, result); !status.ok())
+      stop(1, describe(status, cage, target));
     return result.projection.timings;
   };
   // The first run takes memory, which later runs keep; it is not counted.

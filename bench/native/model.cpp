@@ -62,7 +62,8 @@ std::string readScene(const std::string& path, Model& out) {
   if (!in.good()) return path + ": cannot be read";
   std::array<char, 8> magic{};
   in.take(magic.data(), magic.size());
-  if (std::memcmp(magic.data(), "CAGESCN1", magic.size()) != 0) return path + ": is not a scene file (give two files, target and cage, for glTF)";
+  if (std::memcmp(magic.data(), "CAGESCN1", magic.size()) != 0)
+    return path + ": is not a scene file (give two files, target and cage, for glTF)";
   takeMesh(in, out.cage);
   takeMesh(in, out.target);
   return in.good() && in.atEnd() ? "" : path + ": is cut off, or longer than it says";
@@ -76,7 +77,9 @@ std::string readGltf(const std::string& path, Mesh& out) {
   return "";
 }
 #else
-std::string readGltf(const std::string& path, Mesh&) { return path + ": this benchmark was built without tinygltf, and reads scene files only"; }
+std::string readGltf(const std::string& path, Mesh&) {
+  return path + ": this benchmark was built without tinygltf, and reads scene files only";
+}
 #endif
 
 }  // namespace
@@ -95,7 +98,8 @@ std::string writeScene(const std::string& path, const Model& model) {
   };
   put(std::span<const char>("CAGESCN1", 8));
   for (const Mesh* mesh : {&model.cage, &model.target}) {
-    const std::uint32_t counts[] = {static_cast<std::uint32_t>(mesh->positions.size() / 3), static_cast<std::uint32_t>(mesh->indices.size())};
+    const std::uint32_t counts[] = {static_cast<std::uint32_t>(mesh->positions.size() / 3),
+                                    static_cast<std::uint32_t>(mesh->indices.size())};
     const std::uint8_t flags[] = {!mesh->uvs.empty(), !mesh->groups.empty(), 0, 0};
     put(std::span<const std::uint32_t>(counts));
     put(std::span<const std::uint8_t>(flags));

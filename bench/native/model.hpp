@@ -20,9 +20,9 @@ struct Model {
   Mesh cage, target;
 };
 
-/// Reads a target and a cage from two glTF files, or both from one scene file (one path). A scene file is little-endian:
-/// "CAGESCN1", then the cage, then the target, each as u32 vertexCount, u32 indexCount, u8 hasUvs, u8 hasGroups, two bytes
-/// 0, f32 positions, u32 indices, f32 uvs (if any), u32 groups (if any).
+/// Reads a target and a cage from two glTF files, or both from one scene file (one path). A scene file is
+/// little-endian: "CAGESCN1", then the cage, then the target, each as u32 vertexCount, u32 indexCount, u8 hasUvs, u8
+/// hasGroups, two bytes 0, f32 positions, u32 indices, f32 uvs (if any), u32 groups (if any).
 /// @return What is wrong, as one sentence; empty if nothing is.
 std::string readModel(const std::vector<std::string>& paths, Model& out);
 

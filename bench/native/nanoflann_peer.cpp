@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "cpu_clock.hpp"
+#include "base/cpu_clock.hpp"
 #include "peer.hpp"
 #include "pipeline.hpp"
 

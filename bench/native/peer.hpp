@@ -25,7 +25,8 @@ class Peer {
   std::vector<std::uint32_t> triangles_;
 };
 
-/// The whole pipeline on Embree 3, in the form in which it is fastest; null where the benchmark was built without Embree.
+/// The whole pipeline on Embree 3, in the form in which it is fastest; null where the benchmark was built without
+/// Embree.
 std::unique_ptr<Peer> makeEmbreePeer();
 
 /// The naive transfer on nanoflann: weld, and the nearest cage vertex of every point. Nothing is filtered.

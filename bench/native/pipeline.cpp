@@ -41,14 +41,17 @@ void Welded::weld(const MeshView& target) {
     // Adding 0 makes 0 of −0.
     const Vec3f p = at(target.positions, v) + Vec3f{0, 0, 0};
     const std::uint32_t group = target.groups.empty() ? 0 : target.groups[v];
-    std::uint64_t hash = (std::bit_cast<std::uint32_t>(p.x) ^ std::uint64_t{std::bit_cast<std::uint32_t>(p.y)} << 32) * 0x9e3779b97f4a7c15u;
+    std::uint64_t hash = (std::bit_cast<std::uint32_t>(p.x) ^ std::uint64_t{std::bit_cast<std::uint32_t>(p.y)} << 32) *
+                         0x9e3779b97f4a7c15u;
     hash = (hash ^ hash >> 32 ^ std::bit_cast<std::uint32_t>(p.z) ^ std::uint64_t{group} << 32) * 0x9e3779b97f4a7c15u;
     std::size_t slot = hash >> shift;
     for (;; slot = (slot + 1) & (slots - 1)) {
       const std::uint32_t point = table_[slot];
       if (point == kNone) break;
       const Vec3f q = points[point];
-      if (p.x == q.x && p.y == q.y && p.z == q.z && (target.groups.empty() || target.groups[firstVertex[point]] == group)) break;
+      if (p.x == q.x && p.y == q.y && p.z == q.z &&
+          (target.groups.empty() || target.groups[firstVertex[point]] == group))
+        break;
     }
     if (table_[slot] == kNone) {
       table_[slot] = static_cast<std::uint32_t>(points.size());
@@ -75,7 +78,8 @@ const std::vector<std::uint32_t>& Welded::alongCurve() {
   order_.resize(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Vec3f cell = scale * (points[i] - low_);
-    const std::uint32_t key = spread(static_cast<std::uint32_t>(cell.x)) | spread(static_cast<std::uint32_t>(cell.y)) << 1 |
+    const std::uint32_t key = spread(static_cast<std::uint32_t>(cell.x)) |
+                              spread(static_cast<std::uint32_t>(cell.y)) << 1 |
                               spread(static_cast<std::uint32_t>(cell.z)) << 2;
     keys_[i] = std::uint64_t{key} << 32 | i;
   }

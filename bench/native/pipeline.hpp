@@ -44,8 +44,9 @@ class Decision {
  public:
   /// @param zones  1 per point, decided but for the threshold.
   /// @param uvs,distances,triangles  1 (UVs: 2) per point.
-  void decide(const MeshView& target, const Welded& welded, const std::vector<Zone>& zones, const std::vector<float>& uvs,
-              const std::vector<float>& distances, const std::vector<std::uint32_t>& triangles);
+  void decide(const MeshView& target, const Welded& welded, const std::vector<Zone>& zones,
+              const std::vector<float>& uvs, const std::vector<float>& distances,
+              const std::vector<std::uint32_t>& triangles);
 
   std::vector<Zone> zones;  ///< 1 per vertex.
   std::vector<float> uvs, distances;

@@ -51,7 +51,8 @@ Result guarded(const std::string& name, Work work) {
   }
 }
 
-// -------------------------------------------------------------------------------------------------------------- Reading
+// --------------------------------------------------------------------------------------------------------------
+// Reading
 
 std::uint32_t word(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::uint32_t value;
@@ -68,7 +69,8 @@ bool isBinary(std::span<const std::uint8_t> bytes) {
 std::string_view findJson(std::span<const std::uint8_t> bytes) {
   const char* text = reinterpret_cast<const char*>(bytes.data());
   if (!isBinary(bytes)) {
-    const auto first = std::find_if_not(bytes.begin(), bytes.end(), [](std::uint8_t c) { return std::isspace(c) != 0; });
+    const auto first =
+        std::find_if_not(bytes.begin(), bytes.end(), [](std::uint8_t c) { return std::isspace(c) != 0; });
     if (first == bytes.end()) fail("is empty");
     if (*first != '{') fail("is not a glTF file (it begins with neither \"glTF\" nor \"{\")");
     return {text, bytes.size()};
@@ -126,10 +128,10 @@ tinygltf::Model parse(std::span<const std::uint8_t> bytes, const std::string& fo
   tinygltf::Model model;
   std::string error, warning;
   const unsigned size = static_cast<unsigned>(bytes.size());
-  const bool good =
-      isBinary(bytes) ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, folder)
-                      : loader.LoadASCIIFromString(&model, &error, &warning,
-                                                   reinterpret_cast<const char*>(bytes.data()), size, folder);
+  const bool good = isBinary(bytes)
+                        ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, folder)
+                        : loader.LoadASCIIFromString(&model, &error, &warning,
+                                                     reinterpret_cast<const char*>(bytes.data()), size, folder);
   for (const auto& [extension, name] : kCompressions) {
     // A file that cannot do without an extension often has no buffers to fall back to, and does not get through.
     const auto& required = model.extensionsRequired;
@@ -172,8 +174,8 @@ struct Elements {
   std::size_t stride;
 };
 
-Elements elementsIn(const tinygltf::Model& model, int viewIndex, std::size_t offset, std::size_t count, std::size_t size,
-                    const std::string& where) {
+Elements elementsIn(const tinygltf::Model& model, int viewIndex, std::size_t offset, std::size_t count,
+                    std::size_t size, const std::string& where) {
   const tinygltf::BufferView& view = element(model.bufferViews, viewIndex, "bufferViews", where);
   const std::string viewName = "bufferViews[" + std::to_string(viewIndex) + "]";
   const tinygltf::Buffer& buffer = element(model.buffers, view.buffer, "buffers", viewName);
@@ -243,8 +245,9 @@ std::vector<double> decode(const tinygltf::Model& model, int index, int type, st
     fail(where, " has a sparse part that does not fit it");
   const std::size_t replaced = static_cast<std::size_t>(sparse.count);
   const int indexType = sparse.indices.componentType;
-  const Elements places = elementsIn(model, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
-                                     replaced, componentSize(indexType, where), where);
+  const Elements places =
+      elementsIn(model, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), replaced,
+                 componentSize(indexType, where), where);
   const Elements fresh = elementsIn(model, sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset),
                                     replaced, bytes * components, where);
   for (std::size_t i = 0; i < replaced; ++i) {
@@ -271,14 +274,14 @@ struct Transform {
   bool operator==(const Transform&) const = default;
   bool mirrors() const {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-               m[2] * (m[4] * m[9] - m[5] * m[8]) < 0;
+               m[2] * (m[4] * m[9] - m[5] * m[8]) <
+           0;
   }
 };
 
 Transform transformOf(const tinygltf::Node& node, const std::string& where) {
   const auto numbers = [&](const std::vector<double>& given, std::size_t count, const char* name) {
-    if (!given.empty() && given.size() != count)
-      fail(where, ".", name, " has ", given.size(), " numbers, not ", count);
+    if (!given.empty() && given.size() != count) fail(where, ".", name, " has ", given.size(), " numbers, not ", count);
     return !given.empty();
   };
   Transform local;
@@ -289,9 +292,9 @@ Transform transformOf(const tinygltf::Node& node, const std::string& where) {
   }
   if (numbers(node.rotation, 4, "rotation")) {
     const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-    local.m = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 0,
-               2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 0,
-               2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), 0};
+    local.m = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),     0,
+               2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),     0,
+               2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y), 0};
   }
   if (numbers(node.scale, 3, "scale"))
     for (std::size_t row = 0; row < 3; ++row)
@@ -372,8 +375,7 @@ void append(const tinygltf::Model& model, const Instance& instance, Model& out, 
       out.positions.push_back(
           toFloat(moves ? m[0] * local[i] + m[1] * local[i + 1] + m[2] * local[i + 2] + m[3] : local[i + row]));
     }
-  for (const std::uint32_t corner : triangles)
-    out.indices.push_back(static_cast<std::uint32_t>(firstVertex) + corner);
+  for (const std::uint32_t corner : triangles) out.indices.push_back(static_cast<std::uint32_t>(firstVertex) + corner);
   out.groups.resize(firstVertex + vertexCount, part);
   haveUvs = haveUvs && texcoord >= 0;
   if (!haveUvs) return;
@@ -390,7 +392,8 @@ std::vector<int> rootsOf(const tinygltf::Model& model) {
   std::vector<bool> isChild(model.nodes.size(), false);
   for (const tinygltf::Node& node : model.nodes)
     for (const int child : node.children)
-      if (child >= 0 && static_cast<std::size_t>(child) < isChild.size()) isChild[static_cast<std::size_t>(child)] = true;
+      if (child >= 0 && static_cast<std::size_t>(child) < isChild.size())
+        isChild[static_cast<std::size_t>(child)] = true;
   std::vector<int> roots;
   for (std::size_t i = 0; i < isChild.size(); ++i)
     if (!isChild[i]) roots.push_back(static_cast<int>(i));
@@ -455,7 +458,8 @@ Model flatten(const tinygltf::Model& model) {
   return out;
 }
 
-// -------------------------------------------------------------------------------------------------------------- Writing
+// --------------------------------------------------------------------------------------------------------------
+// Writing
 
 /// Appends an accessor over values laid out one after the other, `stride` bytes for each element.
 int addAccessor(tinygltf::Model& model, std::span<const std::uint8_t> bytes, std::size_t count, std::size_t stride,
@@ -547,9 +551,9 @@ std::string serialise(const Content& content) {
     for (std::size_t v = 0; v < count; ++v) padded[v * 4] = static_cast<std::uint8_t>(content.zones[v]);
     attribute("_NCZ", padded, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE);
   }
-  primitive.indices = addAccessor(model, asBytes(mesh.indices), mesh.indices.size(), sizeof(std::uint32_t),
-                                  TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                                  TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+  primitive.indices =
+      addAccessor(model, asBytes(mesh.indices), mesh.indices.size(), sizeof(std::uint32_t), TINYGLTF_TYPE_SCALAR,
+                  TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
   model.meshes.emplace_back().name = content.name;
   model.meshes[0].primitives.push_back(std::move(primitive));
   tinygltf::Node& node = model.nodes.emplace_back();

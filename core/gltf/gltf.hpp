@@ -9,7 +9,8 @@
 
 /// glTF 2.0 for native hosts: files to the plain arrays that the library takes, and back. Needs tinygltf.
 ///
-/// Made for files of unknown origin: whatever is wrong with one comes back as a sentence, nothing is read out of bounds.
+/// Made for files of unknown origin: whatever is wrong with one comes back as a sentence, nothing is read out of
+/// bounds.
 namespace cagecast::gltf {
 
 /// How a call ended: an error as one sentence that begins with the name of the file; nothing of the output is valid
@@ -28,11 +29,11 @@ struct Part {
 
 /// All triangles of a file's default scene, as one mesh in world space.
 struct Model {
-  std::vector<float> positions;       ///< 3 per vertex, world transforms applied.
-  std::vector<std::uint32_t> indices; ///< 3 per triangle; strips and fans are expanded.
-  std::vector<float> uvs;             ///< 2 per vertex (TEXCOORD_0); empty unless every part has them.
-  std::vector<std::uint32_t> groups;  ///< 1 per vertex: the number of its part.
-  std::vector<Part> parts;            ///< In scene order, depth first.
+  std::vector<float> positions;        ///< 3 per vertex, world transforms applied.
+  std::vector<std::uint32_t> indices;  ///< 3 per triangle; strips and fans are expanded.
+  std::vector<float> uvs;              ///< 2 per vertex (TEXCOORD_0); empty unless every part has them.
+  std::vector<std::uint32_t> groups;   ///< 1 per vertex: the number of its part.
+  std::vector<Part> parts;             ///< In scene order, depth first.
 
   /// The model as the library takes it; valid as long as the model is.
   [[nodiscard]] MeshView view() const noexcept { return {positions, indices, uvs, groups}; }
@@ -52,10 +53,10 @@ Result readMemory(std::span<const std::uint8_t> bytes, const std::string& name, 
 
 /// What to write: one mesh.
 struct Content {
-  MeshView mesh;                   ///< Positions and indices; UVs, if any, become TEXCOORD_0.
+  MeshView mesh;                     ///< Positions and indices; UVs, if any, become TEXCOORD_0.
   std::span<const float> uvs1 = {};  ///< 2 per vertex or none: TEXCOORD_1.
   std::span<const Zone> zones = {};  ///< 1 per vertex or none: the attribute _NCZ, an unsigned byte each.
-  std::string name = "mesh";       ///< The node's and the mesh's.
+  std::string name = "mesh";         ///< The node's and the mesh's.
 };
 
 /// Writes a mesh as a .glb file; an existing file is replaced once the new one is complete.

@@ -4,18 +4,18 @@
 #include <cmath>
 #include <cstring>
 
-#include "check.hpp"
-#include "cpu_clock.hpp"
-#include "seams.hpp"
-#include "steps.hpp"
+#include "base/cpu_clock.hpp"
+#include "input/validate.hpp"
+#include "seams/corner_uvs.hpp"
+#include "steps/steps.hpp"
 
 namespace cagecast {
 namespace {
 
 #ifdef __wasm__  // One thread, which does not end: nothing to make for each, or to clean up.
-[[clang::no_destroy]] constinit Scratch scratch;
+[[clang::no_destroy]] constinit Arena arena;
 #else
-thread_local Scratch scratch;
+thread_local Arena arena;
 #endif
 
 constexpr Status kOutOfMemory{Code::outOfMemory};
@@ -26,34 +26,35 @@ struct Scene {
   Cage cage;
   CageTree cageTree;
   RayTree targetTree;
-  CageEdges cageEdges;
-  Rims rims;
+  HalfEdges halfEdges;
+  BoundaryLoops loops;
 };
 
 bool takeResults(std::uint32_t count, const ProjectOptions& options, PointResults& results) {
-  if (std::isfinite(options.occlusionReach)) results.cageDistances = scratch.take<double>(count);
-  results.uvs = scratch.take<float>(std::size_t{2} * count);
-  results.distances = scratch.take<float>(count);
-  results.triangles = scratch.take<std::uint32_t>(count);
-  results.zones = scratch.take<Zone>(count);
-  results.meetsCage = scratch.take<bool>(count);
-  results.segments = scratch.take<std::uint32_t>(count);
-  return !scratch.failed();
+  if (std::isfinite(options.occlusionReach)) results.cageDistances = arena.allocate<double>(count);
+  results.uvs = arena.allocate<float>(std::size_t{2} * count);
+  results.distances = arena.allocate<float>(count);
+  results.triangles = arena.allocate<std::uint32_t>(count);
+  results.zones = arena.allocate<Zone>(count);
+  results.meetsCage = arena.allocate<bool>(count);
+  results.segments = arena.allocate<std::uint32_t>(count);
+  return !arena.failed();
 }
 
 /// Steps 1 to 3: where points lie on the cage, and what lies over them.
-bool judge(const Points& points, const Scene& scene, const ProjectOptions& options, PointResults& results, Timings& timings,
-           StopWatch& watch) {
-  const auto& [units, cage, cageTree, targetTree, cageEdges, rims] = scene;
-  if (!projectPoints(points, cage, cageTree, units, scratch, results)) return false;
+bool judge(const Points& points, const Scene& scene, const ProjectOptions& options, PointResults& results,
+           Timings& timings, StopWatch& watch) {
+  const auto& [units, cage, cageTree, targetTree, halfEdges, loops] = scene;
+  if (!projectPoints(points, cage, cageTree, units, arena, results)) return false;
   timings.project += watch.lap();
-  if (results.cageDistances != nullptr && !findCageDistances(points, cage, cageTree, units, scratch, results)) return false;
+  if (results.cageDistances != nullptr && !findCageDistances(points, cage, cageTree, units, arena, results))
+    return false;
   timings.covered += watch.lap();
   const double reach = static_cast<double>(options.occlusionReach) * units.diagonal;
-  if (!markOccluded(points, cage, targetTree, units, reach, scratch, results)) return false;
+  if (!markOccluded(points, cage, targetTree, units, reach, arena, results)) return false;
   timings.occluded += watch.lap();
   const double pokeThrough = static_cast<double>(options.pokeThrough) * units.diagonal;
-  if (!markUncovered(points, cage, cageTree, rims, units, pokeThrough, scratch, results)) return false;
+  if (!markUncovered(points, cage, cageTree, loops, units, pokeThrough, arena, results)) return false;
   timings.covered += watch.lap();
   return true;
 }
@@ -61,8 +62,8 @@ bool judge(const Points& points, const Scene& scene, const ProjectOptions& optio
 /// Hands the results of the points to their vertices, in the caller's units and numbering.
 bool writeOut(const Points& points, const Cage& cage, const Units& units, const PointResults& results,
               std::uint32_t vertexCount, Projection& out) {
-  if (!out.uvs.reset(std::size_t{2} * vertexCount) || !out.zones.reset(vertexCount) || !out.triangles.reset(vertexCount) ||
-      !out.distances.reset(vertexCount) || !out.segments.reset(vertexCount)) {
+  if (!out.uvs.reset(std::size_t{2} * vertexCount) || !out.zones.reset(vertexCount) ||
+      !out.triangles.reset(vertexCount) || !out.distances.reset(vertexCount) || !out.segments.reset(vertexCount)) {
     return false;
   }
   const float toInput = 1 / units.scale;  // A power of two, like the scale.
@@ -87,30 +88,32 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
 }
 
 /// Steps 6 and 7: what brings each point back if its segment passes, handed to its vertices.
-bool findRestores(const Points& points, const Scene& scene, const ProjectOptions& options, const PointResults& results,
+bool findRecovery(const Points& points, const Scene& scene, const ProjectOptions& options, const PointResults& results,
                   const PointAreas& areas, std::uint32_t vertexCount, Projection& out, StopWatch& watch) {
-  const auto& [units, cage, cageTree, targetTree, cageEdges, rims] = scene;
-  auto* restores = scratch.take<std::uint32_t>(points.count);
-  if (scratch.failed() || !out.restores.reset(vertexCount)) return false;
-  std::fill(restores, restores + points.count, Restores::never);
-  if (options.secondLook &&
-      !lookAgain(points, cage, cageTree, targetTree, units, results, areas, out.segmentStats, options, scratch, restores)) {
+  const auto& [units, cage, cageTree, targetTree, halfEdges, loops] = scene;
+  auto* recovery = arena.allocate<std::uint32_t>(points.count);
+  if (arena.failed() || !out.recovery.reset(vertexCount)) return false;
+  std::fill(recovery, recovery + points.count, Recovery::never);
+  if (options.secondLook && !recheckOccluded(points, cage, cageTree, targetTree, units, results, areas,
+                                             out.segmentStats, options, arena, recovery)) {
     return false;
   }
   out.timings.secondLook = watch.lap();
-  if (options.holes && !lookUnderHoles(points, cage, rims, units, results, areas, out.segmentStats, scratch, restores, out.holeShares)) {
+  if (options.holes &&
+      !assignHoles(points, cage, loops, units, results, areas, out.segmentStats, arena, recovery, out.holeShares)) {
     return false;
   }
-  for (std::uint32_t v = 0; v < vertexCount; ++v) out.restores[v] = restores[points.ofVertex[v]];
+  for (std::uint32_t v = 0; v < vertexCount; ++v) out.recovery[v] = recovery[points.ofVertex[v]];
   out.timings.holes = watch.lap();
   return true;
 }
 
 }  // namespace
 
-Status project(const MeshView& cageMesh, const MeshView& targetMesh, const ProjectOptions& options, Projection& out) noexcept {
+Status project(const MeshView& cageMesh, const MeshView& targetMesh, const ProjectOptions& options,
+               Projection& out) noexcept {
   StopWatch watch;
-  scratch.begin();
+  arena.begin();
   out.timings = {};
   const auto vertexCount = static_cast<std::uint32_t>(targetMesh.positions.size() / 3);
 
@@ -118,70 +121,79 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   Units& units = scene.units;
   Cage& cage = scene.cage;
   if (const Status status = checkInput(cageMesh, targetMesh, options, units); !status.ok()) return status;
-  if (!gatherCage(cageMesh, units, scratch, cage)) return kOutOfMemory;
+  if (!gatherCage(cageMesh, units, arena, cage)) return kOutOfMemory;
   if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
   Points points;
-  if (!weld(targetMesh, units, options.weldTolerance, scratch, points)) return kOutOfMemory;
+  if (!weld(targetMesh, units, options.weldTolerance, arena, points)) return kOutOfMemory;
   PointResults results;
   if (!takeResults(points.count, options, results)) return kOutOfMemory;
   out.timings.weld = watch.lap();
 
   const bool isFiltered = options.projection == ProjectionMode::nearestPoint;
   if (!isFiltered) {
-    if (!projectToVertices(cageMesh, points, cage, units, scratch, results)) return kOutOfMemory;
+    if (!projectToVertices(cageMesh, points, cage, units, arena, results)) return kOutOfMemory;
     out.timings.project = watch.lap();
   } else {
-    const bool asksForRims = options.pokeThrough > 0 || options.votes || options.depths || options.holes;
-    const bool asksForEdges = asksForRims || options.seams == Seams::corner;
-    if (!buildCageTree(cage, units, scratch, scene.cageTree) || !buildTargetTree(points, units, scratch, scene.targetTree) ||
-        (asksForEdges && !findCageEdges(cageMesh, cage, scratch, scene.cageEdges)) ||
-        (asksForRims && !findRims(cage, scene.cageEdges, scratch, scene.rims))) {
+    const bool needsLoops =
+        options.pokeThrough > 0 || options.interiorSamples || options.depthWeighting || options.holes;
+    const bool asksForEdges = needsLoops || options.seams == Seams::corner;
+    if (!buildCageTree(cage, units, arena, scene.cageTree) ||
+        !buildTargetTree(points, units, arena, scene.targetTree) ||
+        (asksForEdges && !findHalfEdges(cageMesh, cage, arena, scene.halfEdges)) ||
+        (needsLoops && !findBoundaryLoops(cage, scene.halfEdges, arena, scene.loops))) {
       return kOutOfMemory;
     }
     out.timings.build = watch.lap();
     if (!judge(points, scene, options, results, out.timings, watch)) return kOutOfMemory;
   }
 
-  if (!findSegments(points, vertexCount, targetMesh.groups, scratch, results, out.segmentStats)) return kOutOfMemory;
-  Voters voters;
-  if (isFiltered && options.votes) {
-    if (!findVoters(points, scene.rims, units, results, out.segmentStats, options, scratch, voters) ||
-        !takeResults(voters.points.count, options, voters.results)) {
+  if (!findSegments(points, vertexCount, targetMesh.groups, arena, results, out.segmentStats)) return kOutOfMemory;
+  InteriorSamples samples;
+  if (isFiltered && options.interiorSamples) {
+    if (!findInteriorSamples(points, scene.loops, units, results, out.segmentStats, options, arena, samples) ||
+        !takeResults(samples.points.count, options, samples.results)) {
       return kOutOfMemory;
     }
     Timings ofVoters;
     StopWatch voterWatch;
-    if (voters.count > 0 && !judge(voters.points, scene, options, voters.results, ofVoters, voterWatch)) return kOutOfMemory;
+    if (samples.count > 0 && !judge(samples.points, scene, options, samples.results, ofVoters, voterWatch))
+      return kOutOfMemory;
   }
   PointAreas areas;
-  if (!addUpAreas(points, voters, units, results, scratch, areas, out.segmentStats)) return kOutOfMemory;
-  if (isFiltered && options.depths &&
-      (!findSunkAreas(points, cage, scene.cageEdges, voters, areas, units, results, scratch, out.segmentStats) ||
-       !findCopies(points, results, scratch, out.segmentStats))) {
+  if (!addUpAreas(points, samples, units, results, arena, areas, out.segmentStats)) return kOutOfMemory;
+  if (isFiltered && options.depthWeighting &&
+      (!findDepthWeightedAreas(points, cage, scene.halfEdges, samples, areas, units, results, arena,
+                               out.segmentStats) ||
+       !findTwins(points, results, arena, out.segmentStats))) {
     return kOutOfMemory;
   }
   if (!writeOut(points, cage, units, results, vertexCount, out)) return kOutOfMemory;
   out.timings.segments = watch.lap();
 
-  if (!out.restores.reset(0) || !out.holeShares.reset(0)) return kOutOfMemory;
+  if (!out.recovery.reset(0) || !out.holeShares.reset(0)) return kOutOfMemory;
   if (isFiltered && (options.secondLook || options.holes) &&
-      !findRestores(points, scene, options, results, areas, vertexCount, out, watch)) {
+      !findRecovery(points, scene, options, results, areas, vertexCount, out, watch)) {
     return kOutOfMemory;
   }
 
   const bool atCorners = options.seams == Seams::corner && options.projection == ProjectionMode::nearestPoint;
   if (!out.cornerUvs.reset(atCorners ? 2 * targetMesh.indices.size() : 0)) return kOutOfMemory;
-  if (atCorners && !findCornerUvs(targetMesh, points, cage, scene.cageEdges, scene.cageTree, units, results, scratch, out.cornerUvs.data())) return kOutOfMemory;
+  if (atCorners && !findCornerUvs(targetMesh, points, cage, scene.halfEdges, scene.cageTree, units, results, arena,
+                                  out.cornerUvs.data()))
+    return kOutOfMemory;
   out.timings.seams = watch.lap();
   const Timings& t = out.timings;
-  out.timings.total = t.weld + t.build + t.project + t.occluded + t.covered + t.segments + t.secondLook + t.holes + t.seams;
-  out.peakBytes = scratch.peak() + vertexCount * (2 * sizeof(float) + sizeof(Zone) + 2 * sizeof(std::uint32_t) + sizeof(float)) +
+  out.timings.total =
+      t.weld + t.build + t.project + t.occluded + t.covered + t.segments + t.secondLook + t.holes + t.seams;
+  out.peakBytes = arena.peak() +
+                  vertexCount * (2 * sizeof(float) + sizeof(Zone) + 2 * sizeof(std::uint32_t) + sizeof(float)) +
                   out.segmentStats.size() * sizeof(SegmentStats) + out.cornerUvs.size() * sizeof(float) +
-                  out.restores.size() * sizeof(std::uint32_t) + out.holeShares.size() * sizeof(HoleShare);
+                  out.recovery.size() * sizeof(std::uint32_t) + out.holeShares.size() * sizeof(HoleShare);
   return {};
 }
 
-Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options, TransferResult& out) noexcept {
+Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options,
+                TransferResult& out) noexcept {
   if (const Status status = checkClassifyOptions(options); !status.ok()) return status;
   Projection& projection = out.projection;
   if (const Status status = project(cage, target, options, projection); !status.ok()) return status;
@@ -189,14 +201,15 @@ Status transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   if (const Status status = classify(projection.view(), target.indices, options, out.zones); !status.ok()) {
     return status;
   }
-  for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) projection.segmentStats[s].culled = out.zones.culledSegments[s] != 0;
+  for (std::size_t s = 0; s < projection.segmentStats.size(); ++s)
+    projection.segmentStats[s].culled = out.zones.culledSegments[s] != 0;
   projection.timings.classify = watch.lap();
   projection.timings.total += projection.timings.classify;
-  projection.peakBytes += out.zones.zones.size() + out.zones.cosmeticTriangles.size() + out.zones.culledSegments.size() +
-                          out.zones.margins.size() * sizeof(double);
+  projection.peakBytes += out.zones.zones.size() + out.zones.cosmeticTriangles.size() +
+                          out.zones.culledSegments.size() + out.zones.scores.size() * sizeof(double);
   return {};
 }
 
-void releaseScratch() noexcept { scratch.release(); }
+void releaseArena() noexcept { arena.release(); }
 
 }  // namespace cagecast

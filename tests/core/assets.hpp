@@ -9,8 +9,8 @@
 /// Real models, where there are any.
 namespace cagecast {
 
-/// The folders in the one that CAGECAST_ASSETS names, by name: each has a target.glb and a cage.glb. If it is not set there are none,
-/// and a line says so; if there is no model in it the test fails.
+/// The folders in the one that CAGECAST_ASSETS names, by name: each has a target.glb and a cage.glb. If it is not set
+/// there are none, and a line says so; if there is no model in it the test fails.
 inline std::vector<std::filesystem::path> assetFolders() {
   const char* all = std::getenv("CAGECAST_ASSETS");
   std::vector<std::filesystem::path> folders;
@@ -19,7 +19,8 @@ inline std::vector<std::filesystem::path> assetFolders() {
     return folders;
   }
   for (const std::filesystem::path& folder : std::filesystem::directory_iterator(all)) {
-    if (std::filesystem::exists(folder / "target.glb") && std::filesystem::exists(folder / "cage.glb")) folders.push_back(folder);
+    if (std::filesystem::exists(folder / "target.glb") && std::filesystem::exists(folder / "cage.glb"))
+      folders.push_back(folder);
   }
   INFO("CAGECAST_ASSETS=" << all);
   REQUIRE_FALSE(folders.empty());

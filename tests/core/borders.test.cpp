@@ -23,8 +23,8 @@ namespace {
 /// What a border may be off, as a share of the diagonal.
 constexpr double kTolerance = 1e-3;
 
-/// The length of all edges that one triangle more runs along in one direction than in the other: where the surface is open.
-/// Vertices with equal position and group are one.
+/// The length of all edges that one triangle more runs along in one direction than in the other: where the surface is
+/// open. Vertices with equal position and group are one.
 double openLength(const MeshView& mesh) {
   using End = std::array<double, 4>;
   std::map<std::pair<End, End>, int> uses;
@@ -46,10 +46,11 @@ double openLength(const MeshView& mesh) {
   return sum;
 }
 
-/// On which side of the rims a place is, by brute force.
+/// On which side of the loops a place is, by brute force.
 class Sides {
  public:
-  Sides(const MeshView& cage, const MeshView& target) : scene_(reference::makeScene(cage, target, reference::Options::paper())) {}
+  Sides(const MeshView& cage, const MeshView& target)
+      : scene_(reference::makeScene(cage, target, reference::Options::paper())) {}
   [[nodiscard]] bool isBeyond(Vec p) const { return loopAt(scene_, project(scene_, p)) >= 0; }
   [[nodiscard]] double diagonal() const { return scene_.diag; }
 
@@ -58,11 +59,11 @@ class Sides {
 };
 
 struct Found {
-  std::size_t added = 0;       ///< Triangles that there were not before.
-  std::size_t onRim = 0;       ///< Places on painted borders that were looked at,
-  double mostOff = 0;          ///< and how far the farthest is from a projected rim, as a share of the diagonal.
-  std::size_t inside = 0;      ///< Places well inside triangles that were looked at,
-  std::size_t otherSide = 0;   ///< and those that are not on the side that their triangle is painted for.
+  std::size_t added = 0;      ///< Triangles that there were not before.
+  std::size_t onRim = 0;      ///< Places on painted borders that were looked at,
+  double mostOff = 0;         ///< and how far the farthest is from a projected loop, as a share of the diagonal.
+  std::size_t inside = 0;     ///< Places well inside triangles that were looked at,
+  std::size_t otherSide = 0;  ///< and those that are not on the side that their triangle is painted for.
 };
 
 /// Checks everything that holds for a cut target, and measures what is asked of it.
@@ -93,7 +94,9 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
     REQUIRE(origin < target.indices.size() / 3);
     unsorted += i >= 3 && origin < cut.origins[i / 3 - 1];
     const auto corners = target.indices.subspan(3 * std::size_t{origin}, 3);
-    const auto isCorner = [&](std::uint32_t w) { return std::find(corners.begin(), corners.end(), w) != corners.end(); };
+    const auto isCorner = [&](std::uint32_t w) {
+      return std::find(corners.begin(), corners.end(), w) != corners.end();
+    };
     const std::uint32_t* sources = cut.sources.data() + (v < vertexCount ? 0 : 3 * (v - vertexCount));
     strangers += v < vertexCount ? !isCorner(v) : !std::all_of(sources, sources + 3, isCorner);
   }
@@ -132,7 +135,8 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
   std::vector<std::uint8_t> takesPart(triangleCount, 0);
   for (std::size_t t = 0; t < triangleCount; ++t) {
     const auto corners = target.indices.subspan(3 * std::size_t{cut.origins[t]}, 3);
-    const bool isHidden = std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return result.zones.zones[v] == Zone::occluded; });
+    const bool isHidden = std::all_of(corners.begin(), corners.end(),
+                                      [&](std::uint32_t v) { return result.zones.zones[v] == Zone::occluded; });
     const bool fails = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
       return result.zones.culledSegments[result.projection.segments[v]] != 0;
     });
@@ -162,11 +166,12 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
     found.otherSide += static_cast<std::size_t>(cut.cosmeticTriangles[t] != 0 ? seen[1] : std::min(seen[0], seen[1]));
   }
 
-  // What is painted ends where the rims are projected to.
+  // What is painted ends where the loops are projected to.
   std::map<std::pair<std::array<double, 3>, std::array<double, 3>>, std::array<std::int64_t, 2>> edges;
   for (std::size_t t = 0; t < triangleCount; ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec p = reference::vertex(view, view.indices[3 * t + k]), q = reference::vertex(view, view.indices[3 * t + (k + 1) % 3]);
+      const Vec p = reference::vertex(view, view.indices[3 * t + k]),
+                q = reference::vertex(view, view.indices[3 * t + (k + 1) % 3]);
       const std::array from{p.x, p.y, p.z}, to{q.x, q.y, q.z};
       const auto ends = std::pair(std::min(from, to), std::max(from, to));
       auto& both = edges.try_emplace(ends, std::array<std::int64_t, 2>{-1, -1}).first->second;
@@ -182,7 +187,8 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
     for (const double share : {0.05, 0.35, 0.65, 0.95}) {
       const Vec at = p + (q - p) * share;
       const bool isBeyond = sides.isBeyond(at);
-      // The nearest place on the other side, in the planes of both triangles: looked for in eight directions, ever farther.
+      // The nearest place on the other side, in the planes of both triangles: looked for in eight directions, ever
+      // farther.
       double least = 10 * kTolerance;
       for (const std::int64_t t : both) {
         const Vec normal = areaOf(view, static_cast<std::size_t>(t));
@@ -203,7 +209,7 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
 
 }  // namespace
 
-TEST_CASE("cut borders follow the projected rims on heads", "[borders]") {
+TEST_CASE("cut borders follow the projected loops on heads", "[borders]") {
   for (const int cells : {8, 16}) {
     const scenes::Scene scene = scenes::head(cells);
     const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), cutting());
@@ -214,13 +220,14 @@ TEST_CASE("cut borders follow the projected rims on heads", "[borders]") {
 }
 
 #ifdef CAGECAST_GLTF
-TEST_CASE("cut borders follow the projected rims on real models", "[borders][assets]") {
+TEST_CASE("cut borders follow the projected loops on real models", "[borders][assets]") {
   for (const std::filesystem::path& folder : assetFolders()) {
     const gltf::Model target = readAsset(folder / "target.glb"), cage = readAsset(folder / "cage.glb");
     for (const Seams seams : {Seams::vertex, Seams::corner}) {
       const std::string name = folder.filename().string() + (seams == Seams::corner ? ", seams too" : "");
       const Found found = checkCut(name, cage.view(), target.view(), cutting(seams));
-      std::cout << name << ": " << found.added << " triangles more, borders at most " << found.mostOff << " of the diagonal off\n";
+      std::cout << name << ": " << found.added << " triangles more, borders at most " << found.mostOff
+                << " of the diagonal off\n";
       CHECK(found.mostOff <= kTolerance);
       CHECK(found.otherSide == 0);
     }
@@ -228,7 +235,7 @@ TEST_CASE("cut borders follow the projected rims on real models", "[borders][ass
 }
 #endif
 
-TEST_CASE("cut borders follow the projected rims of strewn triangles", "[borders]") {
+TEST_CASE("cut borders follow the projected loops of strewn triangles", "[borders]") {
   for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 4; ++seed) {
     scenes::Scene scene = scenes::strewn(seed, 40);
     INFO("CAGECAST_SEED=" << seed);
@@ -241,18 +248,20 @@ TEST_CASE("cut borders follow the projected rims of strewn triangles", "[borders
   }
 }
 
-TEST_CASE("cut borders follow the projected rims of patchwork", "[borders]") {
+TEST_CASE("cut borders follow the projected loops of patchwork", "[borders]") {
   for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 12; ++seed) {
     const scenes::Scene scene = scenes::patchwork(seed);
     INFO("CAGECAST_SEED=" << seed);
-    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner));
+    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(),
+                                 cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner));
     CHECK(found.mostOff <= kTolerance);
     CHECK(found.otherSide == 0);
   }
 }
 
-TEST_CASE("cut borders follow the projected rims in triangles larger than the holes", "[borders]") {
-  // A box of twelve triangles under a box of 12 by 12 cells a side, with two windows; one of them is within a single triangle.
+TEST_CASE("cut borders follow the projected loops in triangles larger than the holes", "[borders]") {
+  // A box of twelve triangles under a box of 12 by 12 cells a side, with two windows; one of them is within a single
+  // triangle.
   const auto inWindow = [](scenes::Point p) {
     const auto cell = [](float x) { return static_cast<int>((x + 1.2f) / 0.2f); };
     const int x = cell(p[0]), y = cell(p[1]);
@@ -287,11 +296,13 @@ TEST_CASE("a cut does not depend on the unit, and is made alike on both sides of
   }
   SECTION("every triangle with vertices of its own") {
     scenes::Mesh apart;
-    for (const std::uint32_t v : scene.target.indices) apart.addVertex(scene.target.vertex(v), 0, 0, scene.target.groups[v]);
+    for (const std::uint32_t v : scene.target.indices)
+      apart.addVertex(scene.target.vertex(v), 0, 0, scene.target.groups[v]);
     for (std::uint32_t i = 0; i < apart.vertexCount(); i += 3) apart.addTriangle(i, i + 1, i + 2);
     const CutTarget other = cutOf(scene.cage.view(), apart.view(), cutting());
     // `checkCut` would find a gap by the length of what is open.
-    CHECK(openLength(meshOf(apart.view(), other).view()) == Approx(openLength(meshOf(scene.target.view(), cut).view())).epsilon(1e-5));
+    CHECK(openLength(meshOf(apart.view(), other).view()) ==
+          Approx(openLength(meshOf(scene.target.view(), cut).view())).epsilon(1e-5));
     CHECK(copied(cut.origins) == copied(other.origins));
     CHECK(copied(cut.cosmeticTriangles) == copied(other.cosmeticTriangles));
   }
@@ -321,8 +332,11 @@ TEST_CASE("a result of another target is refused", "[borders]") {
   const TransferResult result = transferred(scene.cage.view(), scene.target.view(), cutting());
   const MeshView cage = scene.cage.view(), other = scene.cage.view();
   CutTarget cut;
-  const auto codeOf = [&](const MeshView& target, const DecidedView& decided) { return cutBorders(cage, target, cutting(), decided, cut).code; };
-  CHECK(codeOf(other, {result.zones.zones, result.projection.segments, result.zones.culledSegments}) == Code::resultMismatch);
+  const auto codeOf = [&](const MeshView& target, const DecidedView& decided) {
+    return cutBorders(cage, target, cutting(), decided, cut).code;
+  };
+  CHECK(codeOf(other, {result.zones.zones, result.projection.segments, result.zones.culledSegments}) ==
+        Code::resultMismatch);
   CHECK(codeOf(scene.target.view(), {result.zones.zones, result.projection.segments, {}}) == Code::resultMismatch);
   CHECK(codeOf(scene.target.view(), {result.zones.zones, {}, result.zones.culledSegments}) == Code::resultMismatch);
 }
@@ -332,7 +346,8 @@ TEST_CASE("a result of another target with as many vertices cuts what that says"
   scenes::Random random(firstSeed());
   std::vector<std::uint32_t> order;
   const scenes::Mesh other = scenes::shuffled(scene.target, random, order);
-  const CutTarget cut = cutOf(scene.cage.view(), scene.target.view(), cutting(), transferred(scene.cage.view(), other.view(), cutting()));
+  const CutTarget cut =
+      cutOf(scene.cage.view(), scene.target.view(), cutting(), transferred(scene.cage.view(), other.view(), cutting()));
   const scenes::Mesh mesh = meshOf(scene.target.view(), cut);
   double before = 0, after = 0;
   for (std::size_t t = 0; t < scene.target.triangleCount(); ++t) before += length(areaOf(scene.target.view(), t));
@@ -341,11 +356,13 @@ TEST_CASE("a result of another target with as many vertices cuts what that says"
 }
 
 TEST_CASE("a cage of thousands of islands, each a triangle, cuts a target at all of them", "[borders]") {
-  const scenes::Mesh whole = scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 14), target = scenes::ellipsoid({}, {1, 1, 1}, 6);
+  const scenes::Mesh whole = scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 14),
+                     target = scenes::ellipsoid({}, {1, 1, 1}, 6);
   scenes::Mesh cage;
   for (const std::uint32_t v : whole.indices) {
     const auto i = static_cast<std::uint32_t>(cage.vertexCount());
-    const auto u = static_cast<float>(i / 3 % 64) + (i % 3 == 1 ? 0.5f : 0), w = static_cast<float>(i / 3 / 64) + (i % 3 == 2 ? 0.5f : 0);
+    const auto u = static_cast<float>(i / 3 % 64) + (i % 3 == 1 ? 0.5f : 0),
+               w = static_cast<float>(i / 3 / 64) + (i % 3 == 2 ? 0.5f : 0);
     cage.addVertex(whole.vertex(v), u / 64, w / 64);
   }
   for (std::uint32_t i = 0; i < cage.vertexCount(); i += 3) cage.addTriangle(i, i + 1, i + 2);
@@ -363,7 +380,8 @@ TEST_CASE("a cage of thousands of islands, each a triangle, cuts a target at all
       low[i % 2] = std::min(low[i % 2], cut.cornerUvs[i]);
       high[i % 2] = std::max(high[i % 2], cut.cornerUvs[i]);
     }
-    torn += std::floor(low[0] * 64 + 1e-3f) < std::floor(high[0] * 64 - 1e-3f) || std::floor(low[1] * 64 + 1e-3f) < std::floor(high[1] * 64 - 1e-3f);
+    torn += std::floor(low[0] * 64 + 1e-3f) < std::floor(high[0] * 64 - 1e-3f) ||
+            std::floor(low[1] * 64 + 1e-3f) < std::floor(high[1] * 64 - 1e-3f);
   }
   CHECK(large > 2000);
   CHECK(torn == 0);
@@ -379,7 +397,9 @@ TEST_CASE("a triangle that spans hundreds of islands is cut at all of them", "[b
   scenes::Mesh cage;
   for (std::uint32_t i = 0; i < whole.indices.size(); i += 6) {
     const auto u = static_cast<float>(i / 6 % kRow), w = static_cast<float>(i / 6 / kRow);
-    const auto add = [&](std::uint32_t corner, float du, float dw) { return cage.addVertex(whole.vertex(whole.indices[i + corner]), (u + du) / kRow, (w + dw) / kRow); };
+    const auto add = [&](std::uint32_t corner, float du, float dw) {
+      return cage.addVertex(whole.vertex(whole.indices[i + corner]), (u + du) / kRow, (w + dw) / kRow);
+    };
     const std::uint32_t a = add(0, 0.1f, 0.1f), b = add(1, 0.9f, 0.1f), c = add(2, 0.9f, 0.9f), d = add(5, 0.1f, 0.9f);
     cage.addTriangle(a, b, c);
     cage.addTriangle(a, c, d);
@@ -392,7 +412,8 @@ TEST_CASE("a triangle that spans hundreds of islands is cut at all of them", "[b
   for (std::size_t t = 0; t < cut.origins.size(); ++t) {
     const auto corner = [&](std::size_t k) { return reference::vertex(mesh.view(), mesh.indices[3 * t + k]); };
     const double area = length(areaOf(mesh.view(), t));
-    const double longest = std::max({length(corner(1) - corner(0)), length(corner(2) - corner(1)), length(corner(0) - corner(2))});
+    const double longest =
+        std::max({length(corner(1) - corner(0)), length(corner(2) - corner(1)), length(corner(0) - corner(2))});
     all += area;
     if (area < kTolerance * scene.diag * longest) continue;  // It may lie wholly within what a border may be off.
     const auto island = project(scene, (corner(0) + corner(1) + corner(2)) * (1.0 / 3)).triangle->index / 2;
@@ -412,7 +433,8 @@ TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut",
     for (std::size_t i = 0; i + 6 < indices.size(); i += 60) {
       target.addTriangle(indices[i], indices[i + 1], indices[i]);
       const scenes::Point p = target.vertex(indices[i]), q = target.vertex(indices[i + 1]);
-      const std::uint32_t middle = target.addVertex({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2}, 0, 0, target.groups[indices[i]]);
+      const std::uint32_t middle =
+          target.addVertex({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2}, 0, 0, target.groups[indices[i]]);
       target.addTriangle(indices[i], middle, indices[i + 1]);
     }
   }

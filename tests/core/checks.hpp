@@ -23,8 +23,8 @@ inline TransferResult transferred(const MeshView& cage, const MeshView& target, 
 
 /// Requires the library to give the reference's answer at every vertex where that is stable.
 /// @return How the two compare, for the share of unstable vertices.
-inline reference::Differences requireSameAsReference(const std::string& name, const MeshView& cage, const MeshView& target,
-                                                     const TransferOptions& options = {}) {
+inline reference::Differences requireSameAsReference(const std::string& name, const MeshView& cage,
+                                                     const MeshView& target, const TransferOptions& options = {}) {
   const TransferResult product = transferred(cage, target, options);
   const reference::Differences found = compare(reference::transfer(cage, target, options), product, target);
   INFO(name << ": " << found.vertices << " vertices, " << found.unstable << " unstable\n" << found.details);

@@ -15,10 +15,11 @@ inline TransferOptions cutting(Seams seams = Seams::corner) {
 }
 
 /// Cuts the target of a transfer.
-inline CutTarget cutOf(const MeshView& cage, const MeshView& target, const TransferOptions& options, const TransferResult& result) {
+inline CutTarget cutOf(const MeshView& cage, const MeshView& target, const TransferOptions& options,
+                       const TransferResult& result) {
   CutTarget cut;
-  const Status status =
-      cutBorders(cage, target, options, {result.zones.zones, result.projection.segments, result.zones.culledSegments}, cut);
+  const Status status = cutBorders(cage, target, options,
+                                   {result.zones.zones, result.projection.segments, result.zones.culledSegments}, cut);
   INFO(describe(status, cage, target));
   REQUIRE(status.ok());
   return cut;
@@ -39,7 +40,8 @@ inline scenes::Mesh meshOf(const MeshView& target, const CutTarget& cut) {
     for (std::size_t k = 0; k < 3; ++k) {
       double sum = 0;
       for (std::size_t j = 0; j < 3; ++j)
-        sum += static_cast<double>(cut.weights[i + j]) * static_cast<double>(target.positions[cut.sources[i + j] * std::size_t{3} + k]);
+        sum += static_cast<double>(cut.weights[i + j]) *
+               static_cast<double>(target.positions[cut.sources[i + j] * std::size_t{3} + k]);
       p[k] = static_cast<float>(sum);
     }
     mesh.addVertex(p, 0, 0, mesh.groups[cut.sources[i]]);
@@ -50,7 +52,9 @@ inline scenes::Mesh meshOf(const MeshView& target, const CutTarget& cut) {
 
 inline reference::Vec areaOf(const MeshView& mesh, std::size_t t) {
   const reference::Vec a = reference::vertex(mesh, mesh.indices[3 * t]);
-  return cross(reference::vertex(mesh, mesh.indices[3 * t + 1]) - a, reference::vertex(mesh, mesh.indices[3 * t + 2]) - a) * 0.5;
+  return cross(reference::vertex(mesh, mesh.indices[3 * t + 1]) - a,
+               reference::vertex(mesh, mesh.indices[3 * t + 2]) - a) *
+         0.5;
 }
 
 }  // namespace cagecast

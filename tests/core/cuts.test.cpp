@@ -5,7 +5,8 @@
 
 #include "cuts.hpp"
 
-// What holds for a cut whatever is cut: on triangles and their edges, where `borders.test.cpp` looks at places and lengths.
+// What holds for a cut whatever is cut: on triangles and their edges, where `borders.test.cpp` looks at places and
+// lengths.
 using namespace cagecast;
 
 namespace {
@@ -31,10 +32,13 @@ void eachCut(std::uint64_t count, Call call) {
   }
 }
 
-bool isEdge(const std::uint32_t* corners) { return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]; }
+bool isEdge(const std::uint32_t* corners) {
+  return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+}
 
 /// The new vertices on a side of a triangle, from its first end to its second.
-std::vector<std::uint32_t> stopsOn(const scenes::Mesh& target, const CutTarget& cut, const std::set<std::uint32_t>& vertices, std::uint32_t from, std::uint32_t to) {
+std::vector<std::uint32_t> stopsOn(const scenes::Mesh& target, const CutTarget& cut,
+                                   const std::set<std::uint32_t>& vertices, std::uint32_t from, std::uint32_t to) {
   std::vector<std::pair<float, std::uint32_t>> stops;
   for (const std::uint32_t v : vertices) {
     if (v < target.vertexCount()) continue;
@@ -64,9 +68,12 @@ TEST_CASE("an edge is cut alike for all triangles on it, and pieces fit without 
     std::size_t gaps = 0, torn = 0, piece = 0;
     for (std::uint32_t t = 0; t < scene.target.triangleCount(); ++t) {
       const std::uint32_t* corners = scene.target.indices.data() + std::size_t{3} * t;
-      // What runs along an edge in one direction more often than in the other: of all pieces, that is the triangle's own border.
+      // What runs along an edge in one direction more often than in the other: of all pieces, that is the triangle's
+      // own border.
       std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
-      const auto use = [&](std::uint32_t a, std::uint32_t b, int times) { uses[{std::min(a, b), std::max(a, b)}] += a < b ? times : -times; };
+      const auto use = [&](std::uint32_t a, std::uint32_t b, int times) {
+        uses[{std::min(a, b), std::max(a, b)}] += a < b ? times : -times;
+      };
       std::set<std::uint32_t> vertices;
       for (; piece < cut.origins.size() && cut.origins[piece] == t; ++piece) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -103,7 +110,8 @@ TEST_CASE("a cut adds no vertex that nothing uses, and hardly a triangle without
     std::set<std::uint32_t> used(cut.indices.begin(), cut.indices.end());
     std::size_t lost = 0;
     for (const std::uint32_t v : scene.target.indices) lost += used.count(v) == 0;
-    for (std::size_t v = scene.target.vertexCount(); v < mesh.vertexCount(); ++v) lost += used.count(static_cast<std::uint32_t>(v)) == 0;
+    for (std::size_t v = scene.target.vertexCount(); v < mesh.vertexCount(); ++v)
+      lost += used.count(static_cast<std::uint32_t>(v)) == 0;
     CHECK(lost == 0);
     for (std::size_t t = 0; t < cut.origins.size(); ++t) {
       flat += length(areaOf(scene.target.view(), cut.origins[t])) > 0 && length(areaOf(mesh.view(), t)) == 0;
@@ -115,7 +123,8 @@ TEST_CASE("a cut adds no vertex that nothing uses, and hardly a triangle without
 }
 
 TEST_CASE("a cut does not depend on the order of triangles and vertices", "[borders]") {
-  eachCut(6, [](const scenes::Scene& scene, const TransferOptions& options, const CutTarget& cut, const scenes::Mesh& mesh) {
+  eachCut(6, [](const scenes::Scene& scene, const TransferOptions& options, const CutTarget& cut,
+                const scenes::Mesh& mesh) {
     scenes::Random random(7);
     std::vector<std::uint32_t> order;
     const scenes::Mesh target = scenes::shuffled(scene.target, random, order);
@@ -124,7 +133,9 @@ TEST_CASE("a cut does not depend on the order of triangles and vertices", "[bord
     const auto pieces = [](const CutTarget& from, const scenes::Mesh& of) {
       std::vector<std::pair<std::array<scenes::Point, 3>, std::uint8_t>> all;
       for (std::size_t t = 0; t < from.origins.size(); ++t) {
-        all.push_back({{of.vertex(of.indices[3 * t]), of.vertex(of.indices[3 * t + 1]), of.vertex(of.indices[3 * t + 2])}, from.cosmeticTriangles[t]});
+        all.push_back(
+            {{of.vertex(of.indices[3 * t]), of.vertex(of.indices[3 * t + 1]), of.vertex(of.indices[3 * t + 2])},
+             from.cosmeticTriangles[t]});
       }
       std::sort(all.begin(), all.end());
       return all;

@@ -29,12 +29,12 @@ struct Step {
 constexpr Step kSteps[] = {
     {"an end for the self ray", [](TransferOptions& o) { o.occlusionReach = preset().occlusionReach; }},
     {"poke-through", [](TransferOptions& o) { o.pokeThrough = preset().pokeThrough; }},
-    {"votes", [](TransferOptions& o) { o.votes = true; }},
-    {"votes under far rims", [](TransferOptions& o) { o.votes = o.farRims = true; }},
+    {"interiorSamples", [](TransferOptions& o) { o.interiorSamples = true; }},
+    {"interiorSamples under far loops", [](TransferOptions& o) { o.interiorSamples = o.farLoops = true; }},
     {"the floor of area", [](TransferOptions& o) { o.floor = Floor::area; }},
-    {"the floor of depth", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = true; }},
-    {"copies", [](TransferOptions& o) { o.floor = Floor::depth, o.depths = o.copies = true; }},
-    {"bared parts", [](TransferOptions& o) { o.holes = o.baredParts = true; }},
+    {"the floor of depth", [](TransferOptions& o) { o.floor = Floor::depth, o.depthWeighting = true; }},
+    {"copies", [](TransferOptions& o) { o.floor = Floor::depth, o.depthWeighting = o.twins = true; }},
+    {"bared parts", [](TransferOptions& o) { o.holes = o.holeContents = true; }},
     {"the second look", [](TransferOptions& o) { o.secondLook = true; }},
     {"the second look to both sides", [](TransferOptions& o) { o.secondLook = o.bothSides = true; }},
     {"the second look by what is exposed", [](TransferOptions& o) { o.secondLook = o.exposedSide = true; }},
@@ -58,7 +58,9 @@ std::vector<std::pair<std::string, TransferOptions>> variants() {
 scenes::Scene crowdedHead(int cells, float shift) {
   scenes::Scene scene = scenes::head(cells);
   const auto pane = [&](scenes::Point centre, float half) {
-    const auto corner = [&](float x, float y) { return scenes::Point{centre[0] + half * x, centre[1] + half * y, centre[2]}; };
+    const auto corner = [&](float x, float y) {
+      return scenes::Point{centre[0] + half * x, centre[1] + half * y, centre[2]};
+    };
     const std::uint32_t group = static_cast<std::uint32_t>(scene.target.vertexCount());
     const std::uint32_t first = scene.target.addVertex(corner(-1, -1), 0, 0, group);
     scene.target.addVertex(corner(1, -1), 0, 0, group);
@@ -94,31 +96,33 @@ TEST_CASE("any choice of the preset's steps and constants is the reference's on 
     scenes::Random random(seed);
     const auto flip = [&] { return random.below(2) == 0; };
     TransferOptions options;
-    options.threshold = random.between(0.01f, 1);  // At 0 without a floor the library does not look where nothing is covered.
+    options.threshold =
+        random.between(0.01f, 1);  // At 0 without a floor the library does not look where nothing is covered.
     options.seams = flip() ? Seams::corner : Seams::vertex;
     if (flip()) options.weldTolerance = random.between(0, 0.01f);
     if (flip()) options.occlusionReach = random.between(0, 0.1f);
     if (flip()) options.pokeThrough = random.between(0, 0.02f);
-    options.votes = flip();
-    options.farRims = flip();
+    options.interiorSamples = flip();
+    options.farLoops = flip();
     options.floor = std::array{Floor::none, Floor::area, Floor::depth}[random.below(3)];
-    options.depths = options.floor == Floor::depth;
+    options.depthWeighting = options.floor == Floor::depth;
     options.minCovered = random.between(0, 1);
     options.minOfAll = random.between(0, 0.05f);
     options.maxUncovered = random.between(0, 1);
-    options.copies = options.floor == Floor::depth && flip();
+    options.twins = options.floor == Floor::depth && flip();
     options.secondLook = flip();
     options.bothSides = flip();
     options.exposedSide = flip();
     options.holes = flip();
-    options.baredParts = flip();
+    options.holeContents = flip();
     options.partialTriangles = flip();
     const int triangles = 10 + static_cast<int>(random.below(50));
     scenes::Scene scene = flip() ? scenes::strewn(seed, triangles) : scenes::gridded(seed, triangles);
     if (flip()) {
       // A copy of every triangle in reverse winding, so that normals cancel out.
       for (std::size_t t = 0, count = scene.target.triangleCount(); t < count; ++t) {
-        const std::uint32_t a = scene.target.indices[3 * t], b = scene.target.indices[3 * t + 1], c = scene.target.indices[3 * t + 2];
+        const std::uint32_t a = scene.target.indices[3 * t], b = scene.target.indices[3 * t + 1],
+                            c = scene.target.indices[3 * t + 2];
         scene.target.addTriangle(a, c, b);
       }
     }
@@ -127,7 +131,8 @@ TEST_CASE("any choice of the preset's steps and constants is the reference's on 
     vertices += found.vertices;
     unstable += found.unstable;
     const TransferResult result = transferred(scene.cage.view(), scene.target.view(), options);
-    bared += static_cast<std::size_t>(std::count(result.zones.culledSegments.begin(), result.zones.culledSegments.end(), Zones::kBared));
+    bared += static_cast<std::size_t>(
+        std::count(result.zones.culledSegments.begin(), result.zones.culledSegments.end(), Zones::kBared));
   }
   INFO(unstable << " of " << vertices << " vertices are unstable");
   CHECK(unstable * 10 <= vertices);
@@ -163,7 +168,8 @@ TEST_CASE("the preset is the reference's where everything lies on a grid", "[def
       requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
     }
     const std::array<int, 4> turn{3, 1, -2, 1};
-    requireSameAsReference(scene.name + " rotated", rotated(scene.cage, turn).view(), rotated(scene.target, turn).view(), preset());
+    requireSameAsReference(scene.name + " rotated", rotated(scene.cage, turn).view(),
+                           rotated(scene.target, turn).view(), preset());
   }
 }
 
@@ -264,8 +270,8 @@ TEST_CASE("a lock is the last word about its segment", "[default]") {
     const Zones kept = decided(s, Lock::keep), excluded = decided(s, Lock::exclude);
     CHECK(kept.culledSegments[s] == 0);
     CHECK(excluded.culledSegments[s] == 1);
-    CHECK((result.zones.margins[s] < 1) == (result.zones.culledSegments[s] != 0));
-    CHECK(copied(kept.margins) == copied(result.zones.margins));
+    CHECK((result.zones.scores[s] < 1) == (result.zones.culledSegments[s] != 0));
+    CHECK(copied(kept.scores) == copied(result.zones.scores));
     for (std::size_t v = 0; v < scene.target.vertexCount(); ++v) {
       if (result.projection.segments[v] != s) continue;
       if (result.projection.zones[v] == Zone::cosmetic) {
@@ -299,20 +305,20 @@ TEST_CASE("a small part that a hole bares fails, unless it is kept or something 
   for (std::size_t eye = 1; eye < 3; ++eye) {
     CHECK(result.projection.segmentStats[eye].coverage() > 0.6);
     CHECK(result.zones.culledSegments[eye] == Zones::kBared);
-    CHECK(result.zones.margins[eye] < 1);
+    CHECK(result.zones.scores[eye] < 1);
     CHECK(result.zones.explainedHoles[result.projection.holeShares[0].hole] == 1);
   }
   CHECK(result.zones.culledSegments[0] == 0);
 
   TransferOptions options = preset();
-  options.baredParts = false;
+  options.holeContents = false;
   CHECK(copied(decided(options).culledSegments) == std::vector<std::uint8_t>{0, 0, 0});
-  options.baredParts = true;
+  options.holeContents = true;
   const Lock kept[] = {Lock::automatic, Lock::keep, Lock::automatic};
   options.locks = kept;
   CHECK(copied(decided(options).culledSegments) == std::vector<std::uint8_t>{0, 0, Zones::kBared});
   const Lock excluded[] = {Lock::exclude, Lock::automatic, Lock::automatic};
-  options.locks = excluded;  // The skin beside the eyes lies nearest to the rims, too.
+  options.locks = excluded;  // The skin beside the eyes lies nearest to the loops, too.
   CHECK(copied(decided(options).culledSegments) == std::vector<std::uint8_t>{1, 0, Zones::kBared});
 }
 
@@ -371,13 +377,14 @@ TEST_CASE("options of the preset that are out of range are named", "[default]") 
 // As for `paper`: the same file is asserted in every build.
 TEST_CASE("the preset's answer on fixed scenes has the golden hash", "[default][golden]") {
   Hash hash;
-  for (const scenes::Scene& scene : scenes::golden()) hash.add(transferred(scene.cage.view(), scene.target.view(), preset()));
+  for (const scenes::Scene& scene : scenes::golden())
+    hash.add(transferred(scene.cage.view(), scene.target.view(), preset()));
   for (const float shift : {0.0f, 0.06f, -0.1f}) {
     const scenes::Scene scene = crowdedHead(18, shift);
     const TransferResult result = transferred(scene.cage.view(), scene.target.view(), preset());
     hash.add(result);
     hash.add(result.zones.cosmeticTriangles);
-    hash.add(result.projection.restores);
+    hash.add(result.projection.recovery);
   }
   std::ifstream file(CAGECAST_GOLDEN_DEFAULT);
   std::string expected;

@@ -17,11 +17,13 @@ TEST_CASE("the answer is the reference's where everything lies on a grid", "[equ
     INFO("CAGECAST_SEED=" << seed);
     requireSameAsReference(scene.name, scene.cage.view(), scene.target.view());
     const std::array<int, 4> turn{3, 1, -2, 1};
-    requireSameAsReference(scene.name + " rotated", rotated(scene.cage, turn).view(), rotated(scene.target, turn).view());
+    requireSameAsReference(scene.name + " rotated", rotated(scene.cage, turn).view(),
+                           rotated(scene.target, turn).view());
   }
 }
 
-TEST_CASE("the answer is the reference's where the cage's triangles crowd in one plane, and in one place", "[equivalence]") {
+TEST_CASE("the answer is the reference's where the cage's triangles crowd in one plane, and in one place",
+          "[equivalence]") {
   // No pivot between the ends of such a row is near its middle.
   for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 10; ++seed) {
     scenes::Scene scene = scenes::strewn(seed, 600);

@@ -15,7 +15,8 @@ struct Case {
   scenes::Mesh cage = scenes::box({}, {2, 2, 2}, 1), target = scenes::box({}, {1, 1, 1}, 1);
   TransferOptions options;
 
-  /// Of a transfer; what is wrong with its input must be wrong for `cutBorders` alike, but for locks, which it does not read.
+  /// Of a transfer; what is wrong with its input must be wrong for `cutBorders` alike, but for locks, which it does not
+  /// read.
   Status run() const {
     TransferResult result;
     const Status status = transfer(cage.view(), target.view(), options, result);
@@ -35,7 +36,8 @@ struct Case {
 };
 
 /// Runs the call and checks its status and that the sentence names all of `words`.
-void requireError(const Case& call, Code code, Argument argument, std::uint32_t at, std::initializer_list<const char*> words) {
+void requireError(const Case& call, Code code, Argument argument, std::uint32_t at,
+                  std::initializer_list<const char*> words) {
   const Status status = call.run();
   CHECK(status.code == code);
   CHECK(status.argument == argument);
@@ -231,7 +233,8 @@ TEST_CASE("options out of range are errors", "[errors]") {
 
 TEST_CASE("every code has a name of its own", "[errors]") {
   std::vector<std::string> names;
-  for (int code = 0; code <= static_cast<int>(Code::outOfMemory); ++code) names.emplace_back(codeName(static_cast<Code>(code)));
+  for (int code = 0; code <= static_cast<int>(Code::outOfMemory); ++code)
+    names.emplace_back(codeName(static_cast<Code>(code)));
   CHECK(names.front() == "ok");
   CHECK(names.back() == "outOfMemory");
   for (std::size_t i = 0; i < names.size(); ++i)

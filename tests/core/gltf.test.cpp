@@ -56,18 +56,20 @@ struct File {
   void accessor(int viewIndex, int componentType, const char* type, std::size_t count, const std::string& more = "") {
     accessors += (accessors.empty() ? "" : ",") + std::string("{") +
                  (viewIndex >= 0 ? R"("bufferView":)" + std::to_string(viewIndex) + "," : "") + R"("componentType":)" +
-                 std::to_string(componentType) + R"(,"type":")" + type + R"(","count":)" + std::to_string(count) + more + "}";
+                 std::to_string(componentType) + R"(,"type":")" + type + R"(","count":)" + std::to_string(count) +
+                 more + "}";
   }
   std::string json() const {
     const std::string held = buffer.empty() ? R"({"byteLength":)" + std::to_string(bin.size()) + "}" : buffer;
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + sceneNodes + R"(]}],"nodes":[)" + nodes +
-           R"(],"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[)" + accessors + R"(],"bufferViews":[)" +
-           views + R"(],"buffers":[)" + held + "]" + extra + "}";
+           R"(],"meshes":[{"primitives":[{)" + primitive + R"(}]}],"accessors":[)" + accessors +
+           R"(],"bufferViews":[)" + views + R"(],"buffers":[)" + held + "]" + extra + "}";
   }
   Bytes bytes() const { return glb(json(), bin); }
 };
 
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
+              kFloat = 5126;
 
 /// Five points, as floats.
 File points() {
@@ -161,12 +163,14 @@ TEST_CASE("quantised numbers are decoded", "[gltf]") {
     CHECK(readable(file.bytes()).positions == Floats{-5, 0, 7, 300, 0, 0, 1, 0, -32768});
   }
   SECTION("normalised bytes") {
-    file.accessor(file.view<std::int8_t>({127, -127, -128, 0, 0, 64, -64, 0, 1, 2, 3, 0}, 4), kByte, "VEC3", 3, R"(,"normalized":true)");
+    file.accessor(file.view<std::int8_t>({127, -127, -128, 0, 0, 64, -64, 0, 1, 2, 3, 0}, 4), kByte, "VEC3", 3,
+                  R"(,"normalized":true)");
     const Floats expected{1, -1, -1, 0, 64 / 127.0f, -64 / 127.0f, 1 / 127.0f, 2 / 127.0f, 3 / 127.0f};
     CHECK(readable(file.bytes()).positions == expected);
   }
   SECTION("normalised shorts") {
-    file.accessor(file.view<std::int16_t>({32767, -32767, -32768, 0, 0, 1, 2, 0, 3, 4, 5, 0}, 8), kShort, "VEC3", 3, R"(,"normalized":true)");
+    file.accessor(file.view<std::int16_t>({32767, -32767, -32768, 0, 0, 1, 2, 0, 3, 4, 5, 0}, 8), kShort, "VEC3", 3,
+                  R"(,"normalized":true)");
     const Floats positions = readable(file.bytes()).positions;
     CHECK(positions[0] == 1);
     CHECK(positions[1] == -1);
@@ -177,13 +181,15 @@ TEST_CASE("quantised numbers are decoded", "[gltf]") {
     file = points();
     file.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":1})";
     SECTION("bytes") {
-      file.accessor(file.view<std::uint8_t>({0, 255, 0, 0, 51, 102, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 0, 0}, 4), kUnsignedByte, "VEC2", 5, R"(,"normalized":true)");
+      file.accessor(file.view<std::uint8_t>({0, 255, 0, 0, 51, 102, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 0, 0}, 4),
+                    kUnsignedByte, "VEC2", 5, R"(,"normalized":true)");
       const Floats uvs = readable(file.bytes()).uvs;
       CHECK(Floats(uvs.begin(), uvs.begin() + 4) == Floats{0, 1, 0.2f, 0.4f});
       CHECK(uvs[9] == 2 / 255.0f);
     }
     SECTION("shorts") {
-      file.accessor(file.view<std::uint16_t>({0, 65535, 13107, 26214, 0, 0, 0, 0, 1, 2}), kUnsignedShort, "VEC2", 5, R"(,"normalized":true)");
+      file.accessor(file.view<std::uint16_t>({0, 65535, 13107, 26214, 0, 0, 0, 0, 1, 2}), kUnsignedShort, "VEC2", 5,
+                    R"(,"normalized":true)");
       const Floats uvs = readable(file.bytes()).uvs;
       CHECK(Floats(uvs.begin(), uvs.begin() + 4) == Floats{0, 1, 0.2f, 0.4f});
     }
@@ -297,7 +303,8 @@ TEST_CASE("a .gltf file with a data URI is read", "[gltf]") {
   // Nine floats: (0,0,0), (1,0,0), (0,1,0).
   file.views = R"({"buffer":0,"byteLength":36})";
   file.accessor(0, kFloat, "VEC3", 3);
-  file.buffer = R"({"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"})";
+  file.buffer =
+      R"({"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"})";
   const std::string json = file.json();
   CHECK(readable({json.begin(), json.end()}).positions == Floats{0, 0, 0, 1, 0, 0, 0, 1, 0});
 }
@@ -310,8 +317,10 @@ TEST_CASE("a .gltf file with a buffer beside it is read, and a missing one is na
   std::ofstream(folder / "thing.gltf") << file.json();
   std::filesystem::remove(folder / "beside it.bin");
   gltf::Model model;
-  CHECK_THAT(gltf::read((folder / "thing.gltf").string(), model).error, Contains("thing.gltf: ") && Contains("missing: beside it.bin"));
-  std::ofstream(folder / "beside it.bin", std::ios::binary).write(reinterpret_cast<const char*>(file.bin.data()), static_cast<std::streamsize>(file.bin.size()));
+  CHECK_THAT(gltf::read((folder / "thing.gltf").string(), model).error,
+             Contains("thing.gltf: ") && Contains("missing: beside it.bin"));
+  std::ofstream(folder / "beside it.bin", std::ios::binary)
+      .write(reinterpret_cast<const char*>(file.bin.data()), static_cast<std::streamsize>(file.bin.size()));
   const gltf::Result result = gltf::read((folder / "thing.gltf").string(), model);
   INFO(result.error);
   CHECK(result.ok());
@@ -321,7 +330,8 @@ TEST_CASE("a .gltf file with a buffer beside it is read, and a missing one is na
 
 TEST_CASE("pictures are not looked at", "[gltf]") {
   File file = triangle();
-  file.extra = R"(,"images":[{"uri":"nowhere.png"},{"bufferView":0,"mimeType":"image/png"},{"uri":"data:image/png;base64,AAAA"}])";
+  file.extra =
+      R"(,"images":[{"uri":"nowhere.png"},{"bufferView":0,"mimeType":"image/png"},{"uri":"data:image/png;base64,AAAA"}])";
   CHECK(readable(file.bytes()).indices.size() == 3);
 }
 
@@ -362,7 +372,8 @@ TEST_CASE("a GLB with any byte changed is read or refused, never worse", "[gltf]
   const Bytes whole = triangle().bytes();
   scenes::Random random(firstSeed());
   for (std::size_t i = 0; i < whole.size(); ++i) {
-    for (const auto value : {std::uint8_t{0}, std::uint8_t{255}, std::uint8_t{'9'}, static_cast<std::uint8_t>(random.below(256))}) {
+    for (const auto value :
+         {std::uint8_t{0}, std::uint8_t{255}, std::uint8_t{'9'}, static_cast<std::uint8_t>(random.below(256))}) {
       Bytes changed = whole;
       changed[i] = value;
       gltf::Model model;
@@ -375,20 +386,23 @@ TEST_CASE("a GLB with any byte changed is read or refused, never worse", "[gltf]
 
 TEST_CASE("compression that is not understood is named", "[gltf]") {
   File file = triangle();
-  file.extra = R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
+  file.extra =
+      R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
   CHECK_THAT(errorOf(file.bytes()), Contains("Draco"));
   // As it is in the wild: accessors without data.
   File bare;
   bare.accessor(-1, kFloat, "VEC3", 3);
   bare.accessor(-1, kUnsignedShort, "SCALAR", 3);
   bare.view<std::uint32_t>({0});
-  bare.primitive = R"("attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})";
+  bare.primitive =
+      R"("attributes":{"POSITION":0},"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})";
   CHECK_THAT(errorOf(bare.bytes()), Contains("Draco"));
   bare.extra = file.extra;
   CHECK_THAT(errorOf(bare.bytes()), Contains("Draco"));
   file.extra = R"(,"extensionsUsed":["EXT_meshopt_compression"],"extensionsRequired":["EXT_meshopt_compression"])";
   CHECK_THAT(errorOf(file.bytes()), Contains("meshopt"));
-  file.buffer = R"({"byteLength":)" + std::to_string(file.bin.size()) + R"(},{"byteLength":100,"extensions":{"EXT_meshopt_compression":{"fallback":true}}})";
+  file.buffer = R"({"byteLength":)" + std::to_string(file.bin.size()) +
+                R"(},{"byteLength":100,"extensions":{"EXT_meshopt_compression":{"fallback":true}}})";
   CHECK_THAT(errorOf(file.bytes()), Contains("meshopt"));
 }
 
@@ -417,7 +431,8 @@ TEST_CASE("references that lead nowhere are named", "[gltf]") {
     CHECK_THAT(errorOf(file.bytes()), Contains("bufferViews[0] reaches past the end of buffers[0]"));
   }
   SECTION("a view whose end overflows") {
-    file.views = R"({"buffer":0,"byteOffset":18446744073709551600,"byteLength":60},{"buffer":0,"byteOffset":60,"byteLength":6})";
+    file.views =
+        R"({"buffer":0,"byteOffset":18446744073709551600,"byteLength":60},{"buffer":0,"byteOffset":60,"byteLength":6})";
     (void)errorOf(file.bytes());
   }
   SECTION("no such buffer") {
@@ -463,8 +478,9 @@ TEST_CASE("references that lead nowhere are named", "[gltf]") {
   }
   SECTION("a sparse part out of range") {
     file.accessors.clear();
-    file.accessor(0, kFloat, "VEC3", 2,
-                  R"(,"sparse":{"count":2,"indices":{"bufferView":1,"byteOffset":2,"componentType":5123},"values":{"bufferView":0}})");
+    file.accessor(
+        0, kFloat, "VEC3", 2,
+        R"(,"sparse":{"count":2,"indices":{"bufferView":1,"byteOffset":2,"componentType":5123},"values":{"bufferView":0}})");
     file.primitive = R"("attributes":{"POSITION":0})";
     CHECK_THAT(errorOf(file.bytes()), Contains("replaces element 2"));
   }
@@ -547,7 +563,8 @@ TEST_CASE("what cannot be written is an error, and leaves no file", "[gltf]") {
   const scenes::Mesh mesh = scenes::box({}, {1, 1, 1}, 1);
   gltf::Content content;
   content.mesh = mesh.view();
-  CHECK_THAT(gltf::write("/nowhere/at-all/out.glb", content).error, StartsWith("/nowhere/at-all/out.glb: cannot be written"));
+  CHECK_THAT(gltf::write("/nowhere/at-all/out.glb", content).error,
+             StartsWith("/nowhere/at-all/out.glb: cannot be written"));
   const std::string path = (std::filesystem::temp_directory_path() / "cagecast-not-written.glb").string();
   scenes::Mesh bad = mesh;
   bad.positions[4] = std::numeric_limits<float>::infinity();

@@ -102,7 +102,8 @@ TEST_CASE("moving cage and target together changes no firm zone", "[invariance]"
     const reference::Result expected = reference::transfer(cage.view(), target.view());
     const auto move = [](scenes::Point p) { return scenes::Point{p[0] + 512, p[1] - 1024, p[2] + 256}; };
     const scenes::Mesh movedCage = mapped(cage, move), movedTarget = mapped(target, move);
-    const reference::Differences found = compare(expected, transferred(movedCage.view(), movedTarget.view()), target.view());
+    const reference::Differences found =
+        compare(expected, transferred(movedCage.view(), movedTarget.view()), target.view());
     INFO(scene.name << '\n' << found.details);
     CHECK(found.zones == 0);
     CHECK(found.triangles == 0);
@@ -116,7 +117,7 @@ TEST_CASE("the same call gives the same bits again, whatever was called in betwe
   const TransferResult first = transferred(small.cage.view(), small.target.view());
   (void)transferred(large.cage.view(), large.target.view());
   const TransferResult second = transferred(small.cage.view(), small.target.view());
-  releaseScratch();
+  releaseArena();
   const TransferResult third = transferred(small.cage.view(), small.target.view());
   for (const TransferResult* again : {&second, &third}) {
     CHECK(copied(again->zones.zones) == copied(first.zones.zones));

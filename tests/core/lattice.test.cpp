@@ -18,7 +18,8 @@ TEST_CASE("no ray leaks through the edges and corners of a closed cage, and none
       const scenes::Scene scene = scenes::lattice(cells);
       const scenes::Mesh cage = rotated(scene.cage, rotation), target = rotated(scene.target, rotation);
       const TransferResult result = transferred(cage.view(), target.view());
-      INFO(scene.name << " rotated by " << rotation[0] << ' ' << rotation[1] << ' ' << rotation[2] << ' ' << rotation[3]);
+      INFO(scene.name << " rotated by " << rotation[0] << ' ' << rotation[1] << ' ' << rotation[2] << ' '
+                      << rotation[3]);
       const auto& zones = result.zones.zones;
       CHECK(std::count(zones.begin(), zones.end(), Zone::uncovered) == 0);
       CHECK(std::count(zones.begin(), zones.end(), Zone::occluded) == 0);
@@ -55,9 +56,10 @@ TEST_CASE("a ray along a wall does not hit the wall", "[lattice]") {
     target.addTriangle(first, first + 1, first + 2);
     target.addTriangle(first, first + 2, first + 3);
   };
-  quad({0, -2, -2}, {0, 2, -2}, {0, 2, 2}, {0, -2, 2});          // The floor: x = 0, facing +x.
-  for (float x = 1; x < 4; ++x) quad({x, -1, 0}, {x, 1, 0}, {x + 1, 1, 0}, {x + 1, -1, 0});  // The wall: z = 0, above a gap.
-  target.addVertex({0, 0, 0});  // The foot of the wall, in no triangle.
+  quad({0, -2, -2}, {0, 2, -2}, {0, 2, 2}, {0, -2, 2});  // The floor: x = 0, facing +x.
+  for (float x = 1; x < 4; ++x)
+    quad({x, -1, 0}, {x, 1, 0}, {x + 1, 1, 0}, {x + 1, -1, 0});  // The wall: z = 0, above a gap.
+  target.addVertex({0, 0, 0});                                   // The foot of the wall, in no triangle.
   const std::uint32_t foot = static_cast<std::uint32_t>(target.vertexCount() - 1);
   const scenes::Mesh cage = scenes::box({-7.5f, 0, 0}, {12.5f, 100, 100}, 1);
   for (const auto& rotation : kRotations) {

@@ -16,8 +16,8 @@ namespace cagecast::reference {
 namespace {
 
 // Tolerances of the method, as shares of the diagonal of the target's bounding box.
-constexpr double kSelfHitStart = 1e-5;  // A self hit nearer than this is the surface the point lies on.
-constexpr double kCageHitStart = -1e-5; // A point this far outside the cage still counts as covered by it.
+constexpr double kSelfHitStart = 1e-5;   // A self hit nearer than this is the surface the point lies on.
+constexpr double kCageHitStart = -1e-5;  // A point this far outside the cage still counts as covered by it.
 
 // To how many sides a ray is turned: a ray that touches a corner hits it from a narrow wedge of them only.
 constexpr int kNudges = 16;
@@ -30,7 +30,8 @@ struct Verdict {
   bool is = false, might = false, must = false;
 };
 
-// ------------------------------------------------------------------------------------------- 2, 3 Ray tests, 2', 3' too
+// ------------------------------------------------------------------------------------------- 2, 3 Ray tests, 2', 3'
+// too
 
 /// A point's ray, with the triangles worth testing it against.
 struct Sight {
@@ -41,7 +42,7 @@ struct Sight {
 
 /// @param own  Whether a triangle (by its number among the usable ones) is the point's own, which its ray leaves.
 template <typename Own>
-Sight look(const Scene& scene, const Options& options, Vec p, const Place& place, Own own) {
+Sight look(const Scene& scene, const Options& options, Vec p, const ClosestPoint& place, Own own) {
   Sight sight;
   sight.ray = {p, place.triangle->normal};
   const double behind = -2 * kCageHitStart * scene.diag;
@@ -54,7 +55,7 @@ Sight look(const Scene& scene, const Options& options, Vec p, const Place& place
 }
 
 /// How far along the ray the cage is; infinity if the ray does not come to it.
-double cageDistance(const Scene& scene, const Sight& sight, const Ray& ray, const Place& place) {
+double cageDistance(const Scene& scene, const Sight& sight, const Ray& ray, const ClosestPoint& place) {
   const double height = planeDistance(*place.triangle, ray.origin);
   if (place.inside() && height <= 0) return -height;
   double least = kInfinity;
@@ -72,7 +73,8 @@ struct Outcome {
 };
 
 /// Steps 2 and 3 for one ray.
-Outcome outcomeOf(const Scene& scene, const Options& options, const Sight& sight, const Ray& ray, const Place& place) {
+Outcome outcomeOf(const Scene& scene, const Options& options, const Sight& sight, const Ray& ray,
+                  const ClosestPoint& place) {
   const double cage = cageDistance(scene, sight, ray, place);
   const double end = options.endOfSelfRay ? cage + options.occlusionReach * scene.diag : kInfinity;
   const bool occluded = std::any_of(sight.target.begin(), sight.target.end(), [&](const Triangle* triangle) {
@@ -106,7 +108,7 @@ struct Finding {
   Verdict hidden;
 };
 
-Finding judge(const Scene& scene, const Options& options, const Sight& sight, const Place& place) {
+Finding judge(const Scene& scene, const Options& options, const Sight& sight, const ClosestPoint& place) {
   Finding finding;
   const Outcome is = outcomeOf(scene, options, sight, sight.ray, place);
   finding.zone = is.zone;
@@ -142,7 +144,7 @@ std::vector<std::uint32_t> findSegments(const Scene& scene, std::uint32_t& count
 
 /// Everything that is known of the points, and of their segments.
 struct State {
-  std::vector<Place> places;
+  std::vector<ClosestPoint> places;
   std::vector<Finding> findings;
   std::vector<double> areas;  // A third of each triangle.
   std::vector<std::uint32_t> segments;
@@ -151,14 +153,15 @@ struct State {
   std::vector<Verdict> passes;  // Per segment.
 };
 
-// ------------------------------------------------------------------------------------------------------ 4', 5 Threshold
+// ------------------------------------------------------------------------------------------------------ 4', 5
+// Threshold
 
 /// A share of a segment's area, and what is found there.
 struct Voter {
   std::uint32_t segment;
   double area;
   Finding finding;
-  Place place;
+  ClosestPoint place;
 };
 
 /// Step 4': whether the triangles of each segment may vote from within: if it is small, and near a hole.
@@ -169,44 +172,45 @@ std::vector<bool> mayVoteFromWithin(const Scene& scene, const Options& options, 
   std::vector<std::uint32_t> points(state.segmentCount, 0);
   for (std::size_t p = 0; p < state.segments.size(); ++p) {
     // Holes may be as far off as the cage is.
-    const double around = options.farRims ? state.places[p].nearest.distance : 0;
-    for (const double side : {-around, around}) boxes[state.segments[p]].add(scene.points.positions[p] + Vec{side, side, side});
+    const double around = options.farLoops ? state.places[p].nearest.distance : 0;
+    for (const double side : {-around, around})
+      boxes[state.segments[p]].add(scene.points.positions[p] + Vec{side, side, side});
     ++points[state.segments[p]];
   }
   std::vector<bool> result;
   for (std::uint32_t s = 0; s < state.segmentCount; ++s)
     result.push_back(points[s] < kFewPoints &&
-                     std::any_of(scene.rims.loops.begin(), scene.rims.loops.end(),
+                     std::any_of(scene.loops.loops.begin(), scene.loops.loops.end(),
                                  [&](const Loop& loop) { return boxes[s].meets(loop.box, kNear * scene.diag); }));
   return result;
 }
 
-/// Who votes over the segments: the points, for a third of each of their triangles; with step 4' the big triangles of
-/// some segments from the centroids of their four quarters instead.
-std::vector<Voter> findVoters(const Scene& scene, const Options& options, const State& state) {
+/// Who interiorSamples over the segments: the points, for a third of each of their triangles; with step 4' the big
+/// triangles of some segments from the centroids of their four quarters instead.
+std::vector<Voter> findInteriorSamples(const Scene& scene, const Options& options, const State& state) {
   constexpr double kBigTriangle = 0.06;
-  std::vector<Voter> voters;
+  std::vector<Voter> samples;
   for (std::size_t p = 0; p < state.segments.size(); ++p)
-    voters.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
+    samples.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
   std::vector<bool> within(state.segmentCount, false);
-  if (options.votes) within = mayVoteFromWithin(scene, options, state);
+  if (options.interiorSamples) within = mayVoteFromWithin(scene, options, state);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
     const Triangle& triangle = scene.target.triangles()[t];
     const auto& [a, b, c] = triangle.corners;
     const std::uint32_t segment = state.segments[scene.corners[t][0]];
     const double longest = std::max({length(b - a), length(c - b), length(a - c)});
     if (!within[segment] || longest < kBigTriangle * scene.diag) {
-      for (const std::uint32_t p : scene.corners[t]) voters[p].area += triangle.area / 3;
+      for (const std::uint32_t p : scene.corners[t]) samples[p].area += triangle.area / 3;
       continue;
     }
     for (const Vec& centroid : {(a * 4 + b + c) * (1.0 / 6), (b * 4 + a + c) * (1.0 / 6), (c * 4 + a + b) * (1.0 / 6),
                                 (a + b + c) * (1.0 / 3)}) {
-      const Place place = project(scene, centroid);
+      const ClosestPoint place = project(scene, centroid);
       const Sight sight = look(scene, options, centroid, place, [&](std::size_t other) { return other == t; });
-      voters.push_back({segment, triangle.area / 4, judge(scene, options, sight, place), place});
+      samples.push_back({segment, triangle.area / 4, judge(scene, options, sight, place), place});
     }
   }
-  return voters;
+  return samples;
 }
 
 /// A sum whose terms are not all certain.
@@ -217,7 +221,7 @@ struct Range {
 /// For each voter the share of its area that counts when it is covered: less than all of it where it lies deeper than
 /// what else the cage covers there. Teeth and tongues are seen past the lips, from below; what is to be painted lies
 /// about as deep as its neighbours, or above them.
-std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& voters) {
+std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& samples) {
   constexpr double kNotDeep = 0.01;  // No depth below this share of the diagonal counts as deep.
   // What is usual about each vertex of the cage: of what is covered in the triangles around it.
   struct Sum {
@@ -228,7 +232,7 @@ std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& vo
   const auto corners = [&](const Voter& voter) {
     return scene.cageCorners[static_cast<std::size_t>(voter.place.triangle - scene.cage.triangles().data())];
   };
-  for (const Voter& voter : voters) {
+  for (const Voter& voter : samples) {
     const bool isCovered = voter.finding.zone == Zone::cosmetic;
     for (const std::uint32_t v : corners(voter)) {
       if (isCovered) sums[v].area += voter.area, sums[v].depth += voter.area * voter.place.nearest.distance;
@@ -241,7 +245,7 @@ std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& vo
     return share * share;
   };
   std::vector<Range> weights;
-  for (const Voter& voter : voters) {
+  for (const Voter& voter : samples) {
     Sum is;
     for (const std::uint32_t v : corners(voter)) is.area += sums[v].area, is.depth += sums[v].depth;
     // Every unsure neighbour that would pull what is usual down, or up, does so.
@@ -261,11 +265,12 @@ std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& vo
   return weights;
 }
 
-/// The first of the segments that each is a copy of: as many points, nearly the same area, nearly the same extent. Taken by
-/// points, area and number, a segment belongs to the latest of the last few runs whose first it is like; else it begins one.
-std::vector<std::uint32_t> findCopies(const Scene& scene, const State& state, const std::vector<SegmentStats>& stats) {
+/// The first of the segments that each is a copy of: as many points, nearly the same area, nearly the same extent.
+/// Taken by points, area and number, a segment belongs to the latest of the last few runs whose first it is like; else
+/// it begins one.
+std::vector<std::uint32_t> findTwins(const Scene& scene, const State& state, const std::vector<SegmentStats>& stats) {
   constexpr double kSameArea = 0.01, kSameExtent = 0.02;
-  constexpr std::size_t kRuns = 8;  // Parts of equal area and another shape may lie between copies; not many do.
+  constexpr std::size_t kRuns = 8;  // Parts of equal area and another shape may lie between twins; not many do.
   std::vector<Vec> centres(state.segmentCount);
   std::vector<double> extents(state.segmentCount, 0.0);  // Sum of squared distances of the points from their mean.
   for (std::size_t p = 0; p < state.segments.size(); ++p)
@@ -275,7 +280,7 @@ std::vector<std::uint32_t> findCopies(const Scene& scene, const State& state, co
     const Vec offset = scene.points.positions[p] - centres[state.segments[p]];
     extents[state.segments[p]] += dot(offset, offset);
   }
-  std::vector<std::uint32_t> order(state.segmentCount), copies(state.segmentCount);
+  std::vector<std::uint32_t> order(state.segmentCount), twins(state.segmentCount);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t s, std::uint32_t t) {
     return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
@@ -288,10 +293,10 @@ std::vector<std::uint32_t> findCopies(const Scene& scene, const State& state, co
     };
     const auto oldest = runs.rbegin() + static_cast<std::ptrdiff_t>(std::min(kRuns, runs.size()));
     const auto run = std::find_if(runs.rbegin(), oldest, isLike);
-    copies[s] = run == oldest ? s : *run;
+    twins[s] = run == oldest ? s : *run;
     if (run == oldest) runs.push_back(s);
   }
-  return copies;
+  return twins;
 }
 
 /// The sums that step 5 compares.
@@ -321,16 +326,16 @@ double marginOf(const Options& options, const Tally& tally, double allCovered) {
   return std::min(coverage, floor);
 }
 
-/// Step 5: whether each segment passes, and could have passed, given what its voters might have found.
-void decide(const Scene& scene, const Options& options, const std::vector<Voter>& voters, State& state,
+/// Step 5: whether each segment passes, and could have passed, given what its samples might have found.
+void decide(const Scene& scene, const Options& options, const std::vector<Voter>& samples, State& state,
             std::vector<SegmentStats>& stats, std::vector<SegmentMeasure>& measures) {
   // Three times: as it is, and with every voter at its worst and at its best.
   std::vector<Tally> is(state.segmentCount), worst(state.segmentCount), best(state.segmentCount);
-  const std::vector<Range> weights = depthWeights(scene, voters);
+  const std::vector<Range> weights = depthWeights(scene, samples);
   Range all;  // The covered area of all segments.
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) is[s] = worst[s] = best[s] = {stats[s].area, 0, 0, 0, 1};
-  for (std::size_t i = 0; i < voters.size(); ++i) {
-    const Voter& voter = voters[i];
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Voter& voter = samples[i];
     const auto count = [&](Tally& tally, Zone zone, double weight) {
       if (zone != Zone::occluded) tally.exposed += voter.area;
       if (zone == Zone::cosmetic) tally.covered += voter.area, tally.sunk += voter.area * weight;
@@ -355,28 +360,28 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
   // Copies that are in doubt are judged together, so that twins do not fall on either side by accident.
   constexpr double kDoubt = 2;
   std::vector<bool> unsureDoubt(state.segmentCount, false);
-  if (options.copies) {
-    const std::vector<std::uint32_t> copies = findCopies(scene, state, stats);
+  if (options.twins) {
+    const std::vector<std::uint32_t> twins = findTwins(scene, state, stats);
     const auto inDoubt = [](double margin) { return margin >= 1 / kDoubt && margin < kDoubt; };
     std::vector<Tally> sums(state.segmentCount), worstSums(state.segmentCount), bestSums(state.segmentCount);
     std::vector<bool> doubted(state.segmentCount), unsureSum(state.segmentCount, false);
     for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-      measures[s].copies = copies[s];
+      measures[s].twins = twins[s];
       const double least = marginOf(options, worst[s], all.most), most = marginOf(options, best[s], all.least);
       doubted[s] = inDoubt(measures[s].margin);
-      if (inDoubt(least) != doubted[s] || inDoubt(most) != doubted[s]) unsureSum[copies[s]] = unsureDoubt[s] = true;
+      if (inDoubt(least) != doubted[s] || inDoubt(most) != doubted[s]) unsureSum[twins[s]] = unsureDoubt[s] = true;
       if (!doubted[s]) continue;
-      sums[copies[s]].add(is[s]);
-      worstSums[copies[s]].add(worst[s]);
-      bestSums[copies[s]].add(best[s]);
+      sums[twins[s]].add(is[s]);
+      worstSums[twins[s]].add(worst[s]);
+      bestSums[twins[s]].add(best[s]);
     }
     for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-      if (unsureSum[copies[s]] && copies[s] != s) unsureDoubt[s] = unsureDoubt[s] || doubted[s];
+      if (unsureSum[twins[s]] && twins[s] != s) unsureDoubt[s] = unsureDoubt[s] || doubted[s];
       if (!doubted[s]) continue;
-      is[s] = sums[copies[s]];
-      worst[s] = worstSums[copies[s]];
-      best[s] = bestSums[copies[s]];
-      unsureDoubt[s] = unsureDoubt[s] || unsureSum[copies[s]];
+      is[s] = sums[twins[s]];
+      worst[s] = worstSums[twins[s]];
+      best[s] = bestSums[twins[s]];
+      unsureDoubt[s] = unsureDoubt[s] || unsureSum[twins[s]];
     }
   }
 
@@ -399,14 +404,14 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
 
 /// Which way a point looks.
 struct Outlook {
-  Vec normal;          // Unit; zero if it has none.
+  Vec normal;             // Unit; zero if it has none.
   bool twoSided = false;  // The other way as well.
 };
 
 /// Each point's normal: of its triangles, weighted by area, turned so that the segment's mostly agree with the cage.
 ///
-/// Where they cancel out, because every triangle has a copy in reverse winding, the point looks to both sides: along the
-/// sum of the normals, each turned to the side of the largest triangle (the first of equals), and against it.
+/// Where they cancel out, because every triangle has a copy in reverse winding, the point looks to both sides: along
+/// the sum of the normals, each turned to the side of the largest triangle (the first of equals), and against it.
 /// @param firm  Receives for each segment whether that turn is certain.
 std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const State& state, std::vector<bool>& firm) {
   constexpr double kCancelled = 1e-6;  // Of the areas summed up: less than this is nothing.
@@ -426,7 +431,8 @@ std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const 
       turned[p] = turned[p] + triangles[t].normal * (triangles[t].area * side);
     }
   std::vector<Outlook> result(scene.points.count());
-  std::vector<double> agreement(state.segmentCount, 0.0), most(state.segmentCount, 0.0), unsure(state.segmentCount, 0.0);
+  std::vector<double> agreement(state.segmentCount, 0.0), most(state.segmentCount, 0.0),
+      unsure(state.segmentCount, 0.0);
   for (std::size_t p = 0; p < result.size(); ++p) {
     if (length(sums[p]) > kCancelled * weights[p]) result[p].normal = unit(sums[p]);
     const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
@@ -443,7 +449,8 @@ std::vector<Outlook> outlooks(const Scene& scene, const Options& options, const 
   for (std::size_t p = 0; p < result.size(); ++p) {
     const bool cancelled = dot(result[p].normal, result[p].normal) == 0;
     if (!cancelled && agreement[state.segments[p]] < 0) result[p].normal = result[p].normal * -1;
-    if (cancelled && options.bothSides && length(turned[p]) > kCancelled * weights[p]) result[p] = {unit(turned[p]), true};
+    if (cancelled && options.bothSides && length(turned[p]) > kCancelled * weights[p])
+      result[p] = {unit(turned[p]), true};
   }
   return result;
 }
@@ -491,8 +498,8 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, const Outlook&
   return {seen.is || behind.is, seen.might || behind.might, seen.must || behind.must};
 }
 
-/// Step 6: the occluded points of passing segments that are seen from elsewhere. Begins at the rim of what is occluded; a
-/// restored point brings its neighbours in, a rejected one does not.
+/// Step 6: the occluded points of passing segments that are seen from elsewhere. Begins at the loop of what is
+/// occluded; a restored point brings its neighbours in, a rejected one does not.
 std::vector<Verdict> secondLook(const Scene& scene, const Options& options, const State& state) {
   const std::size_t count = scene.points.count();
   std::vector<bool> firm;
@@ -546,7 +553,7 @@ struct Hole {
 
 std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
   constexpr double kExplaining = 0.02;
-  std::vector<Hole> holes(scene.rims.loops.size());
+  std::vector<Hole> holes(scene.loops.loops.size());
   std::vector<Range> failing(holes.size());
   for (std::size_t p = 0; p < state.loops.size(); ++p) {
     if (state.loops[p] < 0) continue;
@@ -565,19 +572,20 @@ std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
   for (std::size_t l = 0; l < holes.size(); ++l) {
     const auto explains = [](double some, double all) { return some > 0 && some >= kExplaining * all; };
     const Range& uncovered = holes[l].uncovered;
-    holes[l].explained = {explains(failing[l].is, uncovered.is), explains(failing[l].most, uncovered.least * (1 - kSumNoise)),
+    holes[l].explained = {explains(failing[l].is, uncovered.is),
+                          explains(failing[l].most, uncovered.least * (1 - kSumNoise)),
                           explains(failing[l].least, uncovered.most * (1 + kSumNoise))};
   }
   return holes;
 }
 
-/// Step 5": a hole may be meant for small parts: they do not pass if nothing else explains the hole, and it bares much of them, or if
-/// much of them lies hidden under it.
-void failBaredParts(const Scene& scene, const std::vector<Voter>& voters, State& state, Result& result) {
+/// Step 5": a hole may be meant for small parts: they do not pass if nothing else explains the hole, and it bares much
+/// of them, or if much of them lies hidden under it.
+void failBaredParts(const Scene& scene, const std::vector<Voter>& samples, State& state, Result& result) {
   constexpr double kBare = 0.15, kMuchOfHole = 0.25, kHidden = 0.25, kSmall = 0.02;
   std::vector<Range> exposed(state.segmentCount), covered(state.segmentCount);
   Range all;  // The covered area of all segments.
-  for (const Voter& voter : voters) {
+  for (const Voter& voter : samples) {
     const auto add = [&](Range& sum, unsigned zones) {
       if ((bit(voter.finding.zone) & zones) != 0) sum.is += voter.area;
       if ((voter.finding.nearby & ~zones) == 0) sum.least += voter.area;
@@ -609,19 +617,23 @@ void failBaredParts(const Scene& scene, const std::vector<Voter>& voters, State&
   for (const auto& [where, share] : shares) {
     const auto& [loop, s] = where;
     const auto& [uncovered, explained] = holes[loop];
-    const auto isMeant = [](double bare, double hidden, double itsExposed, double itsCovered, bool isExplained, double allBare, double allCovered) {
-      return itsCovered < kSmall * allCovered && (hidden > kHidden * (itsExposed + hidden) ||
-                                                  (!isExplained && bare > kBare * itsExposed && bare >= kMuchOfHole * allBare));
+    const auto isMeant = [](double bare, double hidden, double itsExposed, double itsCovered, bool isExplained,
+                            double allBare, double allCovered) {
+      return itsCovered < kSmall * allCovered &&
+             (hidden > kHidden * (itsExposed + hidden) ||
+              (!isExplained && bare > kBare * itsExposed && bare >= kMuchOfHole * allBare));
     };
     // Where nothing of it is covered, nothing of it counts as hidden.
     const auto& [bare, found] = share;
-    const Range hidden{covered[s].is > 0 ? found.is : 0, covered[s].least > 0 ? found.least : 0, covered[s].most > 0 ? found.most : 0};
+    const Range hidden{covered[s].is > 0 ? found.is : 0, covered[s].least > 0 ? found.least : 0,
+                       covered[s].most > 0 ? found.most : 0};
     Verdict& fail = fails[s];
     fail.is = fail.is || isMeant(bare.is, hidden.is, exposed[s].is, covered[s].is, explained.is, uncovered.is, all.is);
-    fail.might = fail.might || isMeant(bare.most * more, hidden.most * more, exposed[s].least * less, covered[s].least * less,
-                                       explained.must, uncovered.least * less, all.most * more);
-    fail.must = fail.must || isMeant(bare.least * less, hidden.least * less, exposed[s].most * more, covered[s].most * more,
-                                     explained.might, uncovered.most * more, all.least * less);
+    fail.might =
+        fail.might || isMeant(bare.most * more, hidden.most * more, exposed[s].least * less, covered[s].least * less,
+                              explained.must, uncovered.least * less, all.most * more);
+    fail.must = fail.must || isMeant(bare.least * less, hidden.least * less, exposed[s].most * more,
+                                     covered[s].most * more, explained.might, uncovered.most * more, all.least * less);
   }
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
     Verdict& pass = state.passes[s];
@@ -646,12 +658,13 @@ std::vector<Verdict> underHoles(const Scene& scene, const State& state) {
     const auto loop = static_cast<std::size_t>(state.loops[p]);
     const Vec n = state.places[p].triangle->normal, offset = scene.points.positions[p] - state.places[p].position();
     const double overhang = length(offset - n * dot(offset, n));
-    const double little = std::min(kOverhang * scene.diag, kOverhangOfLoop * scene.rims.loops[loop].box.diagonal());
+    const double little = std::min(kOverhang * scene.diag, kOverhangOfLoop * scene.loops.loops[loop].box.diagonal());
     const auto allowed = [&](double h, bool isExplained) {
       return h <= little || (isExplained && h <= kExplainedOverhang * scene.diag);
     };
     const double unsure = kUnsure * scene.diag;
-    result.push_back({allowed(overhang, holes[loop].explained.is), allowed(overhang - unsure, holes[loop].explained.might),
+    result.push_back({allowed(overhang, holes[loop].explained.is),
+                      allowed(overhang - unsure, holes[loop].explained.might),
                       allowed(overhang + unsure, holes[loop].explained.must)});
   }
   return result;
@@ -669,11 +682,12 @@ unsigned outcomes(Zone found, const Verdict& passes, const Verdict& seen, const 
   return zones;
 }
 
-// --------------------------------------------------------------------------------------------------------- The baseline
+// --------------------------------------------------------------------------------------------------------- The
+// baseline
 
-/// The classical baseline: the nearest vertex of the cage, the lowest of equally near ones; nothing is filtered. A vertex
-/// of no triangle, or only of degenerate ones, is not part of the cage; of the triangles at a vertex the first stands
-/// for it.
+/// The classical baseline: the nearest vertex of the cage, the lowest of equally near ones; nothing is filtered. A
+/// vertex of no triangle, or only of degenerate ones, is not part of the cage; of the triangles at a vertex the first
+/// stands for it.
 void nearestVertex(const MeshView& cage, const Scene& scene, Result& result) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> triangleAt(cage.positions.size() / 3, kNone);
@@ -702,9 +716,9 @@ Options Options::paper() { return {}; }
 
 Options Options::standard() {
   Options options;
-  options.endOfSelfRay = options.pokes = options.votes = options.farRims = true;
+  options.endOfSelfRay = options.pokes = options.interiorSamples = options.farLoops = true;
   options.floor = Floor::depth;
-  options.copies = options.baredParts = options.secondLook = options.bothSides = options.exposedSide = true;
+  options.twins = options.holeContents = options.secondLook = options.bothSides = options.exposedSide = true;
   options.holes = options.partialTriangles = options.seams = true;
   return options;
 }
@@ -712,7 +726,7 @@ Options Options::standard() {
 Options Options::earlier() {
   Options options = standard();
   options.floor = Floor::area;
-  options.copies = options.baredParts = options.bothSides = options.farRims = options.exposedSide = false;
+  options.twins = options.holeContents = options.bothSides = options.farLoops = options.exposedSide = false;
   return options;
 }
 
@@ -747,11 +761,11 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     result.segmentStats[state.segments[p]].area += state.areas[p];
   }
   if (filtered) {
-    const std::vector<Voter> voters = findVoters(scene, options, state);
-    for (const Voter& voter : voters)
+    const std::vector<Voter> samples = findInteriorSamples(scene, options, state);
+    for (const Voter& voter : samples)
       if (!single(voter.finding.nearby)) result.firmAreas[voter.segment] = 0;
-    decide(scene, options, voters, state, result.segmentStats, result.measures);
-    if (options.holes && options.baredParts) failBaredParts(scene, voters, state, result);
+    decide(scene, options, samples, state, result.segmentStats, result.measures);
+    if (options.holes && options.holeContents) failBaredParts(scene, samples, state, result);
   } else {
     state.passes.assign(state.segmentCount, {true, true, true});
     for (SegmentStats& stats : result.segmentStats) stats.exposedArea = stats.coveredArea = stats.area;
@@ -808,14 +822,14 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.occlusionReach = static_cast<double>(library.occlusionReach);
   options.pokes = library.pokeThrough > 0;
   options.pokeThrough = static_cast<double>(library.pokeThrough);
-  options.votes = library.votes;
-  options.farRims = library.farRims;
+  options.interiorSamples = library.interiorSamples;
+  options.farLoops = library.farLoops;
   options.floor = library.floor;
   options.minCovered = static_cast<double>(library.minCovered);
   options.minOfAll = static_cast<double>(library.minOfAll);
   options.maxUncovered = static_cast<double>(library.maxUncovered);
-  options.copies = library.copies;
-  options.baredParts = library.baredParts;
+  options.twins = library.twins;
+  options.holeContents = library.holeContents;
   options.secondLook = library.secondLook;
   options.bothSides = library.bothSides;
   options.exposedSide = library.exposedSide;

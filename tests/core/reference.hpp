@@ -6,8 +6,8 @@
 
 #include "cagecast/transfer.hpp"
 
-/// The method once more, as plainly as it can be said: in double precision, sharing no code with the library. It is what
-/// the library is measured against, so it prefers being readable to being fast.
+/// The method once more, as plainly as it can be said: in double precision, sharing no code with the library. It is
+/// what the library is measured against, so it prefers being readable to being fast.
 namespace cagecast::reference {
 
 /// Which steps are taken, and their constants. Lengths are shares of the diagonal of the target's bounding box.
@@ -15,26 +15,26 @@ struct Options {
   ProjectionMode projection = ProjectionMode::nearestPoint;
   double threshold = 0.5;
   double weldTolerance = 0;
-  bool groups = true;               ///< Weld within a group only; else all vertices count as one group.
-  bool endOfSelfRay = false;        ///< Step 2': a self hit counts only up to `occlusionReach` beyond the cage.
+  bool groups = true;         ///< Weld within a group only; else all vertices count as one group.
+  bool endOfSelfRay = false;  ///< Step 2': a self hit counts only up to `occlusionReach` beyond the cage.
   double occlusionReach = 0.03;
-  bool pokes = false;               ///< Step 3': a point without a cage hit, up to `pokeThrough` outside, is covered.
+  bool pokes = false;  ///< Step 3': a point without a cage hit, up to `pokeThrough` outside, is covered.
   double pokeThrough = 0.0025;
-  bool votes = false;               ///< Step 4': big triangles of small segments at a hole vote from within.
-  bool farRims = false;             ///< Step 4': a rim is near a segment up to where the cage is; else within 0.01.
-  Floor floor = Floor::none;        ///< Step 5': what a segment needs besides its coverage, and C > 0.
+  bool interiorSamples = false;  ///< Step 4': big triangles of small segments at a hole vote from within.
+  bool farLoops = false;         ///< Step 4': a loop is near a segment up to where the cage is; else within 0.01.
+  Floor floor = Floor::none;     ///< Step 5': what a segment needs besides its coverage, and C > 0.
   double minCovered = 0.2;
   double minOfAll = 0.005;
   double maxUncovered = 0.25;
-  bool copies = false;              ///< Step 5': copies of one part that are in doubt are judged together.
-  bool baredParts = false;          ///< Step 5": small parts that a hole bares which nothing explains fail; with `holes`.
-  bool secondLook = false;          ///< Step 6: occluded points that are seen from elsewhere are restored.
-  bool bothSides = false;           ///< Step 6: where normals cancel out, look to both sides; else such points stay.
-  bool exposedSide = false;         ///< Step 6: the side a segment looks to is that of its points that are not occluded.
-  bool holes = false;               ///< Step 7: uncovered points whose hole is not meant for them are restored.
-  bool partialTriangles = false;    ///< Step 8: triangles with some corners occluded are painted.
-  bool seams = false;               ///< Step 9: UVs per corner, where a triangle lies across a seam.
-  bool stability = true;            ///< Find out where the answer is firm; without, everything is called stable.
+  bool twins = false;             ///< Step 5': copies of one part that are in doubt are judged together.
+  bool holeContents = false;      ///< Step 5": small parts that a hole bares which nothing explains fail; with `holes`.
+  bool secondLook = false;        ///< Step 6: occluded points that are seen from elsewhere are restored.
+  bool bothSides = false;         ///< Step 6: where normals cancel out, look to both sides; else such points stay.
+  bool exposedSide = false;       ///< Step 6: the side a segment looks to is that of its points that are not occluded.
+  bool holes = false;             ///< Step 7: uncovered points whose hole is not meant for them are restored.
+  bool partialTriangles = false;  ///< Step 8: triangles with some corners occluded are painted.
+  bool seams = false;             ///< Step 9: UVs per corner, where a triangle lies across a seam.
+  bool stability = true;          ///< Find out where the answer is firm; without, everything is called stable.
 
   static Options paper();     ///< The literal method: none of the steps that can be switched.
   static Options standard();  ///< The preset `default`: all of them.
@@ -43,35 +43,38 @@ struct Options {
 
 /// What step 5' asks of a segment, besides what is in its `SegmentStats`.
 struct SegmentMeasure {
-  double sunkArea = 0;  ///< D: the covered area, less where it lies deeper under the cage than what else lies there.
-  double margin = 0;    ///< How many times what is asked of it the segment reaches, by itself: it passes from 1 on.
-  std::uint32_t copies = 0;  ///< The first of the segments that it is a copy of.
+  double depthWeightedArea =
+      0;              ///< D: the covered area, less where it lies deeper under the cage than what else lies there.
+  double margin = 0;  ///< How many times what is asked of it the segment reaches, by itself: it passes from 1 on.
+  std::uint32_t twins = 0;  ///< The first of the segments that it is a copy of.
 };
 
 /// The answer of the reference, with the same fields and meanings as `Projection` and `Zones`.
 struct Result {
-  std::vector<float> uvs;                        ///< 2 per target vertex.
-  std::vector<Zone> zones;                       ///< 1 per target vertex, with the threshold applied.
-  std::vector<std::uint32_t> triangles;          ///< 1 per target vertex.
-  std::vector<float> distances;                  ///< 1 per target vertex.
-  std::vector<std::uint32_t> segments;           ///< 1 per target vertex.
-  std::vector<SegmentStats> segmentStats;        ///< 1 per segment; exposed and covered areas are those that voted.
-  std::vector<std::uint8_t> firmAreas;           ///< 1 per segment: 0 where what a voter found hangs on rounding.
-  std::vector<SegmentMeasure> measures;          ///< 1 per segment.
-  std::vector<std::uint8_t> cosmeticTriangles;   ///< 1 per target triangle.
-  std::vector<float> cornerUvs;                  ///< 6 per target triangle, with `seams`; else empty.
+  std::vector<float> uvs;                       ///< 2 per target vertex.
+  std::vector<Zone> zones;                      ///< 1 per target vertex, with the threshold applied.
+  std::vector<std::uint32_t> triangles;         ///< 1 per target vertex.
+  std::vector<float> distances;                 ///< 1 per target vertex.
+  std::vector<std::uint32_t> segments;          ///< 1 per target vertex.
+  std::vector<SegmentStats> segmentStats;       ///< 1 per segment; exposed and covered areas are those that voted.
+  std::vector<std::uint8_t> firmAreas;          ///< 1 per segment: 0 where what a voter found hangs on rounding.
+  std::vector<SegmentMeasure> measures;         ///< 1 per segment.
+  std::vector<std::uint8_t> cosmeticTriangles;  ///< 1 per target triangle.
+  std::vector<float> cornerUvs;                 ///< 6 per target triangle, with `seams`; else empty.
   /// 1 per target vertex: 0 where the method itself has no firm answer, so that another may be right as well.
   ///
   /// Each ray that has a say is turned by `kRayNudge` to sixteen sides, and what may come of it is followed to the end:
-  /// to the verdict over its segment, to the neighbours that a second look brings in, to the hole that a failing segment
-  /// explains. A vertex is unstable if it may then end up in more than one zone; or if that hangs on the last bits of
-  /// the sums. Nothing else is unstable: the nearest triangle and its ties are decided by tolerances of their own.
+  /// to the verdict over its segment, to the neighbours that a second look brings in, to the hole that a failing
+  /// segment explains. A vertex is unstable if it may then end up in more than one zone; or if that hangs on the last
+  /// bits of the sums. Nothing else is unstable: the nearest triangle and its ties are decided by tolerances of their
+  /// own.
   std::vector<std::uint8_t> stable;
   /// 1 per target triangle, with `seams`: 0 where which corner's patch serves it is decided by rounding.
   std::vector<std::uint8_t> stableCorners;
 };
 
-/// Carries the cage's UVs to the target and finds its zones; with `ProjectionMode::nearestVertex` the classical baseline.
+/// Carries the cage's UVs to the target and finds its zones; with `ProjectionMode::nearestVertex` the classical
+/// baseline.
 /// @pre The meshes are valid, and the cage has a triangle that is not degenerate.
 Result transfer(const MeshView& cage, const MeshView& target, const Options& options);
 
@@ -88,9 +91,10 @@ struct Differences {
   std::size_t distances = 0;  ///< Vertices with a distance more than 1e-6 of the target's diagonal off.
   std::size_t segments = 0;   ///< Vertices (stable or not) with another segment.
   std::size_t painted = 0;    ///< Triangles, all their corners being stable, that are cosmetic for one of the two only.
-  std::size_t corners = 0;    ///< Triangles, stable where their patch is concerned, with a corner whose UV is more than 1e-5 off.
-  std::size_t stats = 0;      ///< Segments with other counts, or, all their vertices and areas being firm, other areas.
-  std::string details;        ///< A line for each of the first few.
+  std::size_t corners =
+      0;  ///< Triangles, stable where their patch is concerned, with a corner whose UV is more than 1e-5 off.
+  std::size_t stats = 0;  ///< Segments with other counts, or, all their vertices and areas being firm, other areas.
+  std::string details;    ///< A line for each of the first few.
   [[nodiscard]] std::size_t total() const noexcept {
     return zones + triangles + uvs + distances + segments + painted + corners + stats;
   }

@@ -8,7 +8,8 @@
 
 using namespace cagecast;
 
-// The yardstick is measured first: that it says where it is unsure, nowhere else, and that a comparison finds differences.
+// The yardstick is measured first: that it says where it is unsure, nowhere else, and that a comparison finds
+// differences.
 
 namespace {
 
@@ -52,7 +53,8 @@ Score scoreOf(const scenes::Trap& trap, const std::vector<Zone>& zones) {
   for (std::size_t t = 0; t < target.indices.size(); t += 3) {
     std::array<Corner, 3> p{};
     for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < 3; ++k) p[c][k] = static_cast<double>(target.positions[target.indices[t + c] * 3 + k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        p[c][k] = static_cast<double>(target.positions[target.indices[t + c] * 3 + k]);
     const auto edge = [&](std::size_t c, std::size_t k) { return p[c][k] - p[0][k]; };
     double square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -63,7 +65,8 @@ Score scoreOf(const scenes::Trap& trap, const std::vector<Zone>& zones) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t v = target.indices[t + c];
       all[trap.truth[v]] += std::sqrt(square);
-      if ((zones[v] == Zone::cosmetic) == (trap.truth[v] == scenes::Wanted::painted)) right[trap.truth[v]] += std::sqrt(square);
+      if ((zones[v] == Zone::cosmetic) == (trap.truth[v] == scenes::Wanted::painted))
+        right[trap.truth[v]] += std::sqrt(square);
     }
   }
   const auto share = [&](scenes::Wanted wanted) { return all[wanted] > 0 ? right[wanted] / all[wanted] : 1; };
@@ -121,7 +124,8 @@ TEST_CASE("a comparison finds every kind of difference", "[reference]") {
   TransferResult answer = transferred(scene.cage.view(), scene.target.view());
   const auto differences = [&] { return compare(expected, answer, scene.target.view()); };
   REQUIRE(differences().total() == 0);
-  const auto vertex = static_cast<std::size_t>(std::find(expected.stable.begin(), expected.stable.end(), 1) - expected.stable.begin());
+  const auto vertex =
+      static_cast<std::size_t>(std::find(expected.stable.begin(), expected.stable.end(), 1) - expected.stable.begin());
   Zone& zone = answer.zones.zones[vertex];
   zone = zone == Zone::cosmetic ? Zone::occluded : Zone::cosmetic;
   CHECK(differences().zones == 1);
@@ -160,11 +164,10 @@ TEST_CASE("a point that pokes through the cage by very little is covered", "[ref
   CHECK(zonesOf(levelAt(2.02f), Options::paper())[0] == Zone::uncovered);
 }
 
-TEST_CASE("a window of two triangles votes from within, not from its frame", "[reference]") {
+TEST_CASE("a window of two triangles interiorSamples from within, not from its frame", "[reference]") {
   scenes::Scene scene;
-  scene.cage = without(scenes::box({}, {6, 6, 1}, 12), [](scenes::Point p) {
-    return p[2] > 0.9f && std::abs(p[0]) < 2 && std::abs(p[1]) < 2;
-  });
+  scene.cage = without(scenes::box({}, {6, 6, 1}, 12),
+                       [](scenes::Point p) { return p[2] > 0.9f && std::abs(p[0]) < 2 && std::abs(p[1]) < 2; });
   append(scene.target, scenes::box({}, {5.8f, 5.8f, 0.8f}, 6));
   scenes::Mesh window;
   for (const auto& [x, y] : {std::pair{-2.1f, -2.1f}, {2.1f, -2.1f}, {2.1f, 2.1f}, {-2.1f, 2.1f}})
@@ -174,7 +177,7 @@ TEST_CASE("a window of two triangles votes from within, not from its frame", "[r
   append(scene.target, window);
   Options options = Options::standard();
   CHECK(zonesOf(scene, options).back() == Zone::culled);
-  options.votes = false;
+  options.interiorSamples = false;
   CHECK(zonesOf(scene, options).back() == Zone::cosmetic);
 }
 
@@ -210,20 +213,24 @@ TEST_CASE("the models made to be difficult are: the rule as it was first written
   }
 }
 
-TEST_CASE("panes under far rims need votes there, a brim nearest to the cage above it the side of what is exposed, small eyes aside or behind glasses the holes over them", "[reference]") {
+TEST_CASE(
+    "panes under far loops need interiorSamples there, a brim nearest to the cage above it the side of what is "
+    "exposed, small eyes aside or behind glasses the holes over them",
+    "[reference]") {
   const auto scoreWithout = [](const scenes::Trap& trap, bool Options::*step) {
     Options options = Options::standard();
     options.stability = false;
     options.*step = false;
     return scoreOf(trap, zonesOf(trap.scene, options));
   };
-  CHECK(scoreWithout(scenes::glazed(), &Options::farRims).suppressed == 0);
+  CHECK(scoreWithout(scenes::glazed(), &Options::farLoops).suppressed == 0);
   CHECK(scoreWithout(scenes::hatted(), &Options::exposedSide).kept < 0.8);
-  CHECK(scoreWithout(scenes::aside(), &Options::baredParts).suppressed < 0.6);
-  CHECK(scoreWithout(scenes::bespectacled(), &Options::baredParts).suppressed < 0.6);
+  CHECK(scoreWithout(scenes::aside(), &Options::holeContents).suppressed < 0.6);
+  CHECK(scoreWithout(scenes::bespectacled(), &Options::holeContents).suppressed < 0.6);
 }
 
-TEST_CASE("a cage of the skin's own vertices needs the poke-through, a dome over all the end of the self ray", "[reference]") {
+TEST_CASE("a cage of the skin's own vertices needs the poke-through, a dome over all the end of the self ray",
+          "[reference]") {
   const auto keptWithout = [](const scenes::Trap& trap, bool Options::*step) {
     Options options = Options::standard();
     options.stability = false;
@@ -241,7 +248,8 @@ TEST_CASE("a triangle is painted if a corner is cosmetic and none is uncovered o
   for (std::size_t t = 0; t < result.cosmeticTriangles.size(); ++t) {
     std::multiset<Zone> corners;
     for (std::size_t c = 0; c < 3; ++c) corners.insert(result.zones[scene.target.indices[t * 3 + c]]);
-    const bool painted = corners.contains(Zone::cosmetic) && !corners.contains(Zone::uncovered) && !corners.contains(Zone::culled);
+    const bool painted =
+        corners.contains(Zone::cosmetic) && !corners.contains(Zone::uncovered) && !corners.contains(Zone::culled);
     REQUIRE((result.cosmeticTriangles[t] != 0) == painted);
     partly += painted && corners.contains(Zone::occluded);
   }

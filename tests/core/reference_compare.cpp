@@ -69,7 +69,8 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     for (std::size_t k = v * 2; k < v * 2 + 2; ++k) {
       if (!isOtherUv(projection.uvs[k], reference.uvs[k])) continue;
       ++found.uvs;
-      report("%s: uv %.9g, expected %.9g", at().c_str(), static_cast<double>(projection.uvs[k]), static_cast<double>(reference.uvs[k]));
+      report("%s: uv %.9g, expected %.9g", at().c_str(), static_cast<double>(projection.uvs[k]),
+             static_cast<double>(reference.uvs[k]));
       break;
     }
     const double expected = static_cast<double>(reference.distances[v]);
@@ -84,13 +85,14 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     if (!isStable(0) || !isStable(1) || !isStable(2)) continue;
     if (product.zones.cosmeticTriangles[t] == reference.cosmeticTriangles[t]) continue;
     ++found.painted;
-    report("triangle %zu: cosmetic %d, expected %d", t, int{product.zones.cosmeticTriangles[t]}, int{reference.cosmeticTriangles[t]});
+    report("triangle %zu: cosmetic %d, expected %d", t, int{product.zones.cosmeticTriangles[t]},
+           int{reference.cosmeticTriangles[t]});
   }
   for (std::size_t i = 0; i < reference.cornerUvs.size(); ++i) {
     if (reference.stableCorners[i / 6] == 0 || !isOtherUv(projection.cornerUvs[i], reference.cornerUvs[i])) continue;
     ++found.corners;
-    report("triangle %zu, corner %zu: uv %.9g, expected %.9g", i / 6, i % 6 / 2, static_cast<double>(projection.cornerUvs[i]),
-           static_cast<double>(reference.cornerUvs[i]));
+    report("triangle %zu, corner %zu: uv %.9g, expected %.9g", i / 6, i % 6 / 2,
+           static_cast<double>(projection.cornerUvs[i]), static_cast<double>(reference.cornerUvs[i]));
     i += 5 - i % 6;  // The next triangle.
   }
   for (std::size_t s = 0; s < reference.segmentStats.size(); ++s) {
@@ -105,8 +107,8 @@ Differences compare(const Result& reference, const TransferResult& product, cons
              !differs(got.coveredArea, expected.coveredArea);
     if (same) continue;
     ++found.stats;
-    report("segment %zu: %u points, area %.9g, exposed %.9g, covered %.9g, expected %u, %.9g, %.9g, %.9g", s, got.points,
-           got.area, got.exposedArea, got.coveredArea, expected.points, expected.area, expected.exposedArea,
+    report("segment %zu: %u points, area %.9g, exposed %.9g, covered %.9g, expected %u, %.9g, %.9g, %.9g", s,
+           got.points, got.area, got.exposedArea, got.coveredArea, expected.points, expected.area, expected.exposedArea,
            expected.coveredArea);
   }
   return found;

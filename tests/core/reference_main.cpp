@@ -1,24 +1,25 @@
 /// Runs the brute-force reference, or the library itself, over one scene file, so that hosts in other languages can
 /// compare their answer with it on exactly the same arrays.
 ///
-///     cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked] [--product]
-///     cagecast_reference --golden FOLDER
-///     cagecast_reference --traps FOLDER
+///     cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked]
+///     [--product] cagecast_reference --golden FOLDER cagecast_reference --traps FOLDER
 ///
 /// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
-/// votes, far-rims, floor, copies, bared-parts, second-look, both-sides, exposed-side, holes, triangles, seams. --preset earlier is `default`
-/// with step 4', the floor and the second look as they were first written down. --unchecked does not ask which vertices are
-/// stable. --product asks the library instead, which knows nothing of --without. The second form writes the scenes of the golden hashes, in their order,
-/// as FOLDER/0.scene and so on, and those that are cut as FOLDER/borders-0.scene and so on; the third the models made to be difficult as FOLDER/NAME.scene, each with
-/// the truth about its vertices in FOLDER/NAME.truth: u8 per target vertex, 0 to be painted, 1 not to be, 2 either.
+/// interior-samples, far-loops, floor, twins, hole-contents, second-look, both-sides, exposed-side, holes, triangles,
+/// seams. --preset earlier is `default` with step 4', the floor and the second look as they were first written down.
+/// --unchecked does not ask which vertices are stable. --product asks the library instead, which knows nothing of
+/// --without. The second form writes the scenes of the golden hashes, in their order, as FOLDER/0.scene and so on, and
+/// those that are cut as FOLDER/borders-0.scene and so on; the third the models made to be difficult as
+/// FOLDER/NAME.scene, each with the truth about its vertices in FOLDER/NAME.truth: u8 per target vertex, 0 to be
+/// painted, 1 not to be, 2 either.
 ///
 /// SCENE, little-endian: "CAGESCN1", then the cage, then the target, each as u32 vertexCount, u32 indexCount,
 /// u8 hasUvs, u8 hasGroups, two bytes 0, f32 positions, u32 indices, f32 uvs (if any), u32 groups (if any).
 /// RESULT: "CAGEREF1", u32 vertexCount, u32 segmentCount, f32 uvs (2 per vertex), u8 zones (then to a multiple of 4),
 /// u32 triangles, f32 distances, u32 segments, u8 stable (then to a multiple of 4), and per segment u32 points,
-/// u32 culled, f64 exposed area, f64 covered area; then u32 triangleCount, u32 cornerUvCount, u8 cosmeticTriangles (to a
-/// multiple of 4), and if there are any f32 cornerUvs and u8 stableCorners (to a multiple of 4); then, by the reference, per
-/// segment f64 whole area, f64 sunk area. Exit code 1, and a line on stderr, if it cannot be done.
+/// u32 culled, f64 exposed area, f64 covered area; then u32 triangleCount, u32 cornerUvCount, u8 cosmeticTriangles (to
+/// a multiple of 4), and if there are any f32 cornerUvs and u8 stableCorners (to a multiple of 4); then, by the
+/// reference, per segment f64 whole area, f64 sunk area. Exit code 1, and a line on stderr, if it cannot be done.
 
 #include <algorithm>
 #include <bit>
@@ -116,7 +117,8 @@ bool saveScene(const std::string& path, const MeshView& cage, const MeshView& ta
 }
 
 int writeGolden(const std::string& folder) {
-  const std::pair<const char*, std::vector<scenes::Scene>> kinds[] = {{"", scenes::golden()}, {"borders-", scenes::goldenBorders()}};
+  const std::pair<const char*, std::vector<scenes::Scene>> kinds[] = {{"", scenes::golden()},
+                                                                      {"borders-", scenes::goldenBorders()}};
   for (const auto& [prefix, all] : kinds) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const std::string path = folder + "/" + prefix + std::to_string(i) + ".scene";
@@ -142,10 +144,10 @@ constexpr std::pair<std::string_view, bool reference::Options::*> kSteps[] = {
     {"groups", &reference::Options::groups},
     {"end-of-self-ray", &reference::Options::endOfSelfRay},
     {"pokes", &reference::Options::pokes},
-    {"votes", &reference::Options::votes},
-    {"far-rims", &reference::Options::farRims},
-    {"copies", &reference::Options::copies},
-    {"bared-parts", &reference::Options::baredParts},
+    {"interior-samples", &reference::Options::interiorSamples},
+    {"far-loops", &reference::Options::farLoops},
+    {"twins", &reference::Options::twins},
+    {"hole-contents", &reference::Options::holeContents},
     {"second-look", &reference::Options::secondLook},
     {"both-sides", &reference::Options::bothSides},
     {"exposed-side", &reference::Options::exposedSide},
@@ -182,7 +184,8 @@ int main(int argc, char** argv) {
       } else if (preset == "earlier") {
         options = TransferOptions::standard();
         options.floor = Floor::area;
-        options.copies = options.baredParts = options.bothSides = options.depths = options.farRims = options.exposedSide = false;
+        options.twins = options.holeContents = options.bothSides = options.depthWeighting = options.farLoops =
+            options.exposedSide = false;
         plain = reference::Options::earlier();
       } else {
         return fail("--preset " + std::string(preset) + ": there are paper, default and earlier");
@@ -198,13 +201,16 @@ int main(int argc, char** argv) {
     }
   }
   if (files.size() != 2)
-    return fail("usage: cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked] [--product]");
+    return fail(
+        "usage: cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] "
+        "[--unchecked] [--product]");
   for (const std::string& step : without) {
     if (step == "floor") {
       plain.floor = Floor::none;
       continue;
     }
-    const auto known = std::find_if(std::begin(kSteps), std::end(kSteps), [&](const auto& s) { return s.first == step; });
+    const auto known =
+        std::find_if(std::begin(kSteps), std::end(kSteps), [&](const auto& s) { return s.first == step; });
     if (known == std::end(kSteps)) return fail("--without " + step + ": there is no such step");
     plain.*(known->second) = false;
   }
@@ -256,12 +262,13 @@ int main(int argc, char** argv) {
   };
   if (useProduct) {
     write(product.projection, product.zones.zones, std::vector<std::uint8_t>(product.zones.zones.size(), 1),
-          product.zones.cosmeticTriangles, {product.projection.cornerUvs.begin(), product.projection.cornerUvs.end()}, {});
+          product.zones.cosmeticTriangles, {product.projection.cornerUvs.begin(), product.projection.cornerUvs.end()},
+          {});
   } else {
     const reference::Result result = reference::transfer(cage.view(), target.view(), plain);
     write(result, result.zones, result.stable, result.cosmeticTriangles, result.cornerUvs, result.stableCorners);
     for (std::size_t s = 0; s < result.measures.size(); ++s) {
-      const double areas[] = {result.segmentStats[s].area, result.measures[s].sunkArea};
+      const double areas[] = {result.segmentStats[s].area, result.measures[s].depthWeightedArea};
       put(out, areas, 2);
     }
   }

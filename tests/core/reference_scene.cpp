@@ -61,7 +61,8 @@ std::vector<Vec> weldCage(Scene& scene) {
   return positions;
 }
 
-Rims findRims(const std::vector<std::array<std::uint32_t, 3>>& corners, const std::vector<Vec>& positions) {
+BoundaryLoops findBoundaryLoops(const std::vector<std::array<std::uint32_t, 3>>& corners,
+                                const std::vector<Vec>& positions) {
   const auto edge = [&](std::size_t t, std::size_t k) { return std::minmax(corners[t][k], corners[t][(k + 1) % 3]); };
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
   for (std::size_t t = 0; t < corners.size(); ++t)
@@ -74,17 +75,17 @@ Rims findRims(const std::vector<std::array<std::uint32_t, 3>>& corners, const st
     sets.join(ends.first, ends.second);
     onRim[ends.first] = onRim[ends.second] = true;
   }
-  Rims rims;
+  BoundaryLoops loops;
   std::vector<std::int32_t> loopOf(positions.size(), -1);
   for (std::uint32_t v = 0; v < positions.size(); ++v) {
     if (!onRim[v]) continue;
     std::int32_t& loop = loopOf[sets.find(v)];
     if (loop < 0) {
-      loop = static_cast<std::int32_t>(rims.loops.size());
-      rims.loops.emplace_back();
+      loop = static_cast<std::int32_t>(loops.loops.size());
+      loops.loops.emplace_back();
     }
     loopOf[v] = loop;
-    rims.loops[static_cast<std::size_t>(loop)].box.add(positions[v]);
+    loops.loops[static_cast<std::size_t>(loop)].box.add(positions[v]);
   }
   for (std::size_t t = 0; t < corners.size(); ++t) {
     std::array<std::int32_t, 3> ofEdge{}, ofCorner{};
@@ -92,10 +93,10 @@ Rims findRims(const std::vector<std::array<std::uint32_t, 3>>& corners, const st
       ofEdge[k] = uses[edge(t, k)] == 1 ? loopOf[corners[t][k]] : -1;
       ofCorner[k] = loopOf[corners[t][k]];
     }
-    rims.loopOfEdge.push_back(ofEdge);
-    rims.loopOfCorner.push_back(ofCorner);
+    loops.loopOfEdge.push_back(ofEdge);
+    loops.loopOfCorner.push_back(ofCorner);
   }
-  return rims;
+  return loops;
 }
 
 }  // namespace
@@ -117,44 +118,44 @@ Scene makeScene(const MeshView& cage, const MeshView& target, const Options& opt
     scene.corners.push_back(corners);
   }
   const std::vector<Vec> cagePositions = weldCage(scene);
-  scene.rims = findRims(scene.cageCorners, cagePositions);
+  scene.loops = findBoundaryLoops(scene.cageCorners, cagePositions);
   return scene;
 }
 
-Place project(const std::vector<const Triangle*>& triangles, Vec p, double diag) {
+ClosestPoint project(const std::vector<const Triangle*>& triangles, Vec p, double diag) {
   double least = kInfinity, farthest = 0;
-  std::vector<Place> near;
+  std::vector<ClosestPoint> near;
   for (const Triangle* triangle : triangles) {
     near.push_back({triangle, nearestOn(*triangle, p)});
     least = std::min(least, near.back().nearest.distance);
   }
-  std::erase_if(near, [&](const Place& place) { return place.nearest.distance > least + kNearestTie * diag; });
-  for (const Place& place : near) farthest = std::max(farthest, std::abs(planeDistance(*place.triangle, p)));
-  for (const Place& place : near)
+  std::erase_if(near, [&](const ClosestPoint& place) { return place.nearest.distance > least + kNearestTie * diag; });
+  for (const ClosestPoint& place : near) farthest = std::max(farthest, std::abs(planeDistance(*place.triangle, p)));
+  for (const ClosestPoint& place : near)
     if (std::abs(planeDistance(*place.triangle, p)) >= farthest - kPlaneTie * diag) return place;
   return {};
 }
 
-Place project(const Scene& scene, Vec p) {
+ClosestPoint project(const Scene& scene, Vec p) {
   return project(scene.cage.near(p, 2 * kNearestTie * scene.diag), p, scene.diag);
 }
 
-std::int32_t loopAt(const Scene& scene, const Place& place) {
+std::int32_t loopAt(const Scene& scene, const ClosestPoint& place) {
   const Triangle& triangle = *place.triangle;
   const auto t = static_cast<std::size_t>(&triangle - scene.cage.triangles().data());
   const Vec q = place.position();
   for (std::size_t k = 0; k < 3; ++k) {
-    if (scene.rims.loopOfEdge[t][k] < 0) continue;
+    if (scene.loops.loopOfEdge[t][k] < 0) continue;
     const Vec start = triangle.corners[k], edge = triangle.corners[(k + 1) % 3] - start;
-    if (length(cross(edge, q - start)) <= kOnRim * scene.diag * length(edge)) return scene.rims.loopOfEdge[t][k];
+    if (length(cross(edge, q - start)) <= kOnRim * scene.diag * length(edge)) return scene.loops.loopOfEdge[t][k];
   }
   for (std::size_t k = 0; k < 3; ++k)
-    if (scene.rims.loopOfCorner[t][k] >= 0 && length(q - triangle.corners[k]) <= kOnRim * scene.diag)
-      return scene.rims.loopOfCorner[t][k];
+    if (scene.loops.loopOfCorner[t][k] >= 0 && length(q - triangle.corners[k]) <= kOnRim * scene.diag)
+      return scene.loops.loopOfCorner[t][k];
   return -1;
 }
 
-std::array<double, 2> uvAt(const MeshView& cage, const Place& place) {
+std::array<double, 2> uvAt(const MeshView& cage, const ClosestPoint& place) {
   std::array<double, 2> uv{};
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t c = 0; c < 3; ++c) {

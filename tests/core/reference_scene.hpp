@@ -33,13 +33,13 @@ struct Points {
   [[nodiscard]] std::size_t count() const { return positions.size(); }
 };
 
-/// A connected component of the cage's open edges: the rim of a hole, or of the cage.
+/// A connected component of the cage's open edges: the loop of a hole, or of the cage.
 struct Loop {
   Box box;
 };
 
 /// The open edges of the cage: those of exactly one triangle, where equal positions are one vertex.
-struct Rims {
+struct BoundaryLoops {
   std::vector<Loop> loops;
   /// Per usable triangle: the loop of each edge (edge k goes from corner k to the next) and of each corner; −1 if none.
   std::vector<std::array<std::int32_t, 3>> loopOfEdge, loopOfCorner;
@@ -52,14 +52,14 @@ struct Scene {
   std::uint32_t cageVertices = 0;
   Points points;
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< The points of each usable triangle of the target.
-  Rims rims;
+  BoundaryLoops loops;
   double diag = 0;  ///< Of the target's bounding box: all tolerances are shares of it.
 };
 
 Scene makeScene(const MeshView& cage, const MeshView& target, const Options& options);
 
 /// A point's place on the cage.
-struct Place {
+struct ClosestPoint {
   const Triangle* triangle = nullptr;
   Nearest nearest;
   [[nodiscard]] Vec position() const { return blend(*triangle, nearest.weights); }
@@ -68,25 +68,25 @@ struct Place {
   }
 };
 
-/// Step 1. Of triangles that are equally near, the one whose plane is farthest from p; of those that are equally far, the
-/// one with the lowest index.
+/// Step 1. Of triangles that are equally near, the one whose plane is farthest from p; of those that are equally far,
+/// the one with the lowest index.
 /// @param triangles  In order.
-Place project(const std::vector<const Triangle*>& triangles, Vec p, double diag);
-Place project(const Scene& scene, Vec p);
+ClosestPoint project(const std::vector<const Triangle*>& triangles, Vec p, double diag);
+ClosestPoint project(const Scene& scene, Vec p);
 
-/// The loop whose open edge a place lies on (an end of an open edge is on it); −1 if it lies on none. Within 1e-6 of the
-/// diagonal is on it, so that rounding does not decide.
-std::int32_t loopAt(const Scene& scene, const Place& place);
+/// The loop whose open edge a place lies on (an end of an open edge is on it); −1 if it lies on none. Within 1e-6 of
+/// the diagonal is on it, so that rounding does not decide.
+std::int32_t loopAt(const Scene& scene, const ClosestPoint& place);
 
 /// Where a place lies in the texture.
-std::array<double, 2> uvAt(const MeshView& cage, const Place& place);
+std::array<double, 2> uvAt(const MeshView& cage, const ClosestPoint& place);
 
 /// Step 9: UVs per corner of the target's triangles, 6 per triangle.
 /// @param places  1 per point.
 /// @param uvs     2 per vertex: what a corner has if its triangle lies across no seam.
 /// @param stable  Receives 1 per triangle: 0 where rounding decides which patch serves it.
 std::vector<float> cornerUvs(const MeshView& cage, const MeshView& target, const Scene& scene,
-                             const std::vector<Place>& places, const std::vector<float>& uvs,
+                             const std::vector<ClosestPoint>& places, const std::vector<float>& uvs,
                              std::vector<std::uint8_t>& stable);
 
 }  // namespace cagecast::reference

@@ -21,16 +21,16 @@ constexpr double kUnsure = 1e-6;
 double apart(Uv a, Uv b) { return std::hypot(a[0] - b[0], a[1] - b[1]); }
 
 /// Which triangles of the cage hang together in the texture: over edges with equal position and UV at both ends.
-struct Atlas {
+struct UvCharts {
   std::vector<std::vector<std::uint32_t>> neighbours;  // Per usable triangle.
   std::vector<std::uint32_t> islands;                  // Per usable triangle.
   std::vector<double> stretch;                         // Per usable triangle: most UV per length of its edges.
 };
 
-Atlas findAtlas(const MeshView& cage, const Scene& scene) {
+UvCharts findUvCharts(const MeshView& cage, const Scene& scene) {
   const auto& triangles = scene.cage.triangles();
-  Atlas atlas;
-  atlas.neighbours.resize(triangles.size());
+  UvCharts charts;
+  charts.neighbours.resize(triangles.size());
   using End = std::array<double, 5>;
   std::map<std::pair<End, End>, std::vector<std::uint32_t>> edges;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -48,45 +48,45 @@ Atlas findAtlas(const MeshView& cage, const Scene& scene) {
       edges[std::minmax(ends[k], ends[l])].push_back(t);
       stretch = std::max(stretch, apart(uvs[k], uvs[l]) / length(triangles[t].corners[k] - triangles[t].corners[l]));
     }
-    atlas.stretch.push_back(stretch);
+    charts.stretch.push_back(stretch);
   }
   Sets sets(triangles.size());
   for (const auto& [ends, sharing] : edges)
     for (const std::uint32_t s : sharing)
       for (const std::uint32_t t : sharing) {
         if (s == t) continue;
-        atlas.neighbours[s].push_back(t);
+        charts.neighbours[s].push_back(t);
         sets.join(s, t);
       }
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) atlas.islands.push_back(sets.find(t));
-  return atlas;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) charts.islands.push_back(sets.find(t));
+  return charts;
 }
 
 }  // namespace
 
 std::vector<float> cornerUvs(const MeshView& cage, const MeshView& target, const Scene& scene,
-                             const std::vector<Place>& places, const std::vector<float>& uvs,
+                             const std::vector<ClosestPoint>& places, const std::vector<float>& uvs,
                              std::vector<std::uint8_t>& stable) {
-  const Atlas atlas = findAtlas(cage, scene);
+  const UvCharts charts = findUvCharts(cage, scene);
   const Triangle* first = scene.cage.triangles().data();
-  const auto number = [&](const Place& place) { return static_cast<std::uint32_t>(place.triangle - first); };
+  const auto number = [&](const ClosestPoint& place) { return static_cast<std::uint32_t>(place.triangle - first); };
   std::vector<float> result;
   for (const std::uint32_t v : target.indices) result.insert(result.end(), {uvs[v * 2], uvs[v * 2 + 1]});
   stable.assign(target.indices.size() / 3, 1);
 
   for (std::size_t i = 0; i < scene.corners.size(); ++i) {
     const Triangle& triangle = scene.target.triangles()[i];
-    std::array<Place, 3> own;
+    std::array<ClosestPoint, 3> own;
     for (std::size_t c = 0; c < 3; ++c) own[c] = places[scene.corners[i][c]];
     bool apartInTexture = false, smeared = false, unsure = false;
     double longest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t d = (c + 1) % 3;
       const std::uint32_t s = number(own[c]), t = number(own[d]);
-      apartInTexture = apartInTexture || atlas.islands[s] != atlas.islands[t];
+      apartInTexture = apartInTexture || charts.islands[s] != charts.islands[t];
       const double edge = length(triangle.corners[c] - triangle.corners[d]);
       longest = std::max(longest, edge);
-      const double explained = std::max(atlas.stretch[s], atlas.stretch[t]) *
+      const double explained = std::max(charts.stretch[s], charts.stretch[t]) *
                                (edge + std::abs(own[c].nearest.distance - own[d].nearest.distance));
       const double limit = kSmear * explained + kSmearSlack, uvLength = apart(uvAt(cage, own[c]), uvAt(cage, own[d]));
       smeared = smeared || uvLength > limit;
@@ -97,19 +97,19 @@ std::vector<float> cornerUvs(const MeshView& cage, const MeshView& target, const
 
     struct Choice {
       double sum = kInfinity;
-      std::array<Place, 3> places;
+      std::array<ClosestPoint, 3> places;
     };
     std::vector<Choice> choices;
     const double reach = kPatchEdges * longest + kPatchSlack * scene.diag;
     for (std::size_t k = 0; k < 3; ++k) {
       if (std::any_of(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(k),
-                      [&](const Place& earlier) { return earlier.triangle == own[k].triangle; }))
+                      [&](const ClosestPoint& earlier) { return earlier.triangle == own[k].triangle; }))
         continue;
       // Flood the cage from the corner's triangle, over edges shared in the texture.
       const Vec q = own[k].position();
       std::vector<std::uint32_t> patch{number(own[k])};
       for (std::size_t next = 0; next < patch.size(); ++next)
-        for (const std::uint32_t t : atlas.neighbours[patch[next]]) {
+        for (const std::uint32_t t : charts.neighbours[patch[next]]) {
           const double distance = nearestOn(first[t], q).distance;
           if (std::abs(distance - reach) <= kUnsure * reach) stable[triangle.index] = 0;
           if (distance <= reach && std::find(patch.begin(), patch.end(), t) == patch.end()) patch.push_back(t);
@@ -130,12 +130,12 @@ std::vector<float> cornerUvs(const MeshView& cage, const MeshView& target, const
     for (const Choice& choice : choices) least = std::min(least, choice.sum);
     for (const Choice& choice : choices)
       if (std::abs(choice.sum - least - kSumTie * scene.diag) <= kSumTie / 2 * scene.diag) stable[triangle.index] = 0;
-    const auto chosen = std::find_if(choices.begin(), choices.end(), [&](const Choice& choice) {
-      return choice.sum <= least + kSumTie * scene.diag;
-    });
+    const auto chosen = std::find_if(choices.begin(), choices.end(),
+                                     [&](const Choice& choice) { return choice.sum <= least + kSumTie * scene.diag; });
     for (std::size_t c = 0; c < 3; ++c) {
       const Uv uv = uvAt(cage, chosen->places[c]);
-      for (std::size_t k = 0; k < 2; ++k) result[(triangle.index * std::size_t{3} + c) * 2 + k] = static_cast<float>(uv[k]);
+      for (std::size_t k = 0; k < 2; ++k)
+        result[(triangle.index * std::size_t{3} + c) * 2 + k] = static_cast<float>(uv[k]);
     }
   }
   return result;

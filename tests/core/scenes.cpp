@@ -26,16 +26,18 @@ Point onCube(int face, float u, float v) {
 }
 
 /// Six grids of cells × cells quads.
-template <typename Place>
-Mesh sixGrids(int cells, Place place) {
+template <typename ClosestPoint>
+Mesh sixGrids(int cells, ClosestPoint place) {
   Mesh mesh;
   for (int face = 0; face < 6; ++face) {
     const auto first = static_cast<std::uint32_t>(mesh.vertexCount());
     const auto side = static_cast<std::uint32_t>(cells + 1);
     for (int j = 0; j <= cells; ++j)
       for (int i = 0; i <= cells; ++i) {
-        const float u = static_cast<float>(i) / static_cast<float>(cells), v = static_cast<float>(j) / static_cast<float>(cells);
-        mesh.addVertex(place(face, u, v), (static_cast<float>(face % 3) + u) / 3, (static_cast<float>(face / 3) + v) / 2);
+        const float u = static_cast<float>(i) / static_cast<float>(cells),
+                    v = static_cast<float>(j) / static_cast<float>(cells);
+        mesh.addVertex(place(face, u, v), (static_cast<float>(face % 3) + u) / 3,
+                       (static_cast<float>(face / 3) + v) / 2);
       }
     for (std::uint32_t j = 0; j + 1 < side; ++j)
       for (std::uint32_t i = 0; i + 1 < side; ++i) {
@@ -137,7 +139,8 @@ Mesh shuffled(const Mesh& mesh, Random& random, std::vector<std::uint32_t>& vert
     placeOf[old] = v;
   }
   for (const std::uint32_t t : order(mesh.triangleCount()))
-    result.addTriangle(placeOf[mesh.indices[t * 3]], placeOf[mesh.indices[t * 3 + 1]], placeOf[mesh.indices[t * 3 + 2]]);
+    result.addTriangle(placeOf[mesh.indices[t * 3]], placeOf[mesh.indices[t * 3 + 1]],
+                       placeOf[mesh.indices[t * 3 + 2]]);
   return result;
 }
 
@@ -178,7 +181,8 @@ Scene gridded(std::uint64_t seed, int triangles) {
     for (float& x : p) x = std::round(x * 8) / 8;
     return p;
   });
-  scene.cage = without(box({}, {1.5f, 1.5f, 1.5f}, 12), [&](Point p) { return p[2] > 1.49f && p[0] > 0 && p[1] > 0.5f; });
+  scene.cage =
+      without(box({}, {1.5f, 1.5f, 1.5f}, 12), [&](Point p) { return p[2] > 1.49f && p[0] > 0 && p[1] > 0.5f; });
   return scene;
 }
 
@@ -189,7 +193,8 @@ Scene patchwork(std::uint64_t seed) {
   const float size = random.between(1.05f, 1.4f);
   const int count = cells(10);
   scene.target = random.below(3) == 0 ? box({}, {0.7f, 0.7f, 0.7f}, count) : ellipsoid({}, {1, 0.95f, 0.9f}, count);
-  scene.cage = random.below(2) == 0 ? box({}, {size, size, size}, cells(8)) : ellipsoid({}, {size, size, size}, cells(8));
+  scene.cage =
+      random.below(2) == 0 ? box({}, {size, size, size}, cells(8)) : ellipsoid({}, {size, size, size}, cells(8));
   for (std::uint32_t holes = random.below(4); holes > 0; --holes) {
     const Point middle = scene.cage.vertex(random.below(static_cast<std::uint32_t>(scene.cage.vertexCount())));
     const float radius = random.between(0.2f, 0.8f);
@@ -197,7 +202,8 @@ Scene patchwork(std::uint64_t seed) {
   }
   if (random.below(2) == 0) {
     const std::size_t perSide = scene.target.vertexCount() / 6;
-    for (std::size_t v = 0; v < scene.target.vertexCount(); ++v) scene.target.groups[v] = static_cast<std::uint32_t>(v / perSide % 2);
+    for (std::size_t v = 0; v < scene.target.vertexCount(); ++v)
+      scene.target.groups[v] = static_cast<std::uint32_t>(v / perSide % 2);
   }
   const float lumps = random.between(0, 0.1f);
   // Moved by their place, so that vertices that were equal stay so.
@@ -239,7 +245,9 @@ Scene head(int cells) {
     return Point{p[0], p[1] - 0.1f * chin, p[2] + 0.25f * nose + 0.1f * chin};
   };
   const auto skin = [&](float size, int count, float grow) {
-    return mapped(without(ellipsoid({}, {0.8f * size, size, 0.95f * size}, count), [&](Point p) { return inHole(p, grow); }), shape);
+    return mapped(
+        without(ellipsoid({}, {0.8f * size, size, 0.95f * size}, count), [&](Point p) { return inHole(p, grow); }),
+        shape);
   };
   Scene scene{"head " + std::to_string(cells), skin(1.12f, std::max(6, cells / 3), 1.15f), {}};
   append(scene.target, skin(1, cells, 1));

@@ -7,8 +7,8 @@
 
 #include "cagecast/mesh.hpp"
 
-/// Meshes made by code, for tests and benchmarks: the same bits on every platform (nothing but + − × ÷ and square roots),
-/// so that a hash of what the library makes of them can be asserted everywhere.
+/// Meshes made by code, for tests and benchmarks: the same bits on every platform (nothing but + − × ÷ and square
+/// roots), so that a hash of what the library makes of them can be asserted everywhere.
 namespace cagecast::scenes {
 
 using Point = std::array<float, 3>;
@@ -52,7 +52,8 @@ class Random {
   std::uint64_t state_;
 };
 
-/// An axis-aligned box of cells × cells quads a side, each two triangles, with UVs in an atlas of six; split at its edges.
+/// An axis-aligned box of cells × cells quads a side, each two triangles, with UVs in an charts of six; split at its
+/// edges.
 Mesh box(Point centre, Point halfSize, int cells);
 
 /// The same grid blown up to an ellipsoid.
@@ -93,12 +94,12 @@ Mesh shuffled(const Mesh& mesh, Random& random, std::vector<std::uint32_t>& vert
 /// regular. Some triangles of both are degenerate.
 Scene strewn(std::uint64_t seed, int triangles);
 
-/// Strewn triangles with all corners on a grid, in a box of that grid: many are degenerate, coplanar or equally near, and
-/// most rays go through edges and corners.
+/// Strewn triangles with all corners on a grid, in a box of that grid: many are degenerate, coplanar or equally near,
+/// and most rays go through edges and corners.
 Scene gridded(std::uint64_t seed, int triangles);
 
-/// A box or a ball, lumpy or not, often of two groups that meet along edges, in a box or a ball of other cells, with up to three
-/// holes, all of it turned: islands, rims and edges cross each other anyhow.
+/// A box or a ball, lumpy or not, often of two groups that meet along edges, in a box or a ball of other cells, with up
+/// to three holes, all of it turned: islands, loops and edges cross each other anyhow.
 Scene patchwork(std::uint64_t seed);
 
 /// A box in a box on one lattice: every nearest point is on a corner or an edge of the cage, and every ray goes exactly

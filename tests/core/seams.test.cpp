@@ -95,14 +95,16 @@ scenes::Mesh tube(float radius, int around, int along) {
 double lengthOf(const MeshView& mesh, std::uint32_t v, std::uint32_t w) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double d = static_cast<double>(mesh.positions[v * std::size_t{3} + k]) - static_cast<double>(mesh.positions[w * std::size_t{3} + k]);
+    const double d = static_cast<double>(mesh.positions[v * std::size_t{3} + k]) -
+                     static_cast<double>(mesh.positions[w * std::size_t{3} + k]);
     sum += d * d;
   }
   return std::sqrt(sum);
 }
 
 double apart(const float* a, const float* b) {
-  return std::hypot(static_cast<double>(a[0]) - static_cast<double>(b[0]), static_cast<double>(a[1]) - static_cast<double>(b[1]));
+  return std::hypot(static_cast<double>(a[0]) - static_cast<double>(b[0]),
+                    static_cast<double>(a[1]) - static_cast<double>(b[1]));
 }
 
 struct Smear {
@@ -117,7 +119,8 @@ Smear smearOf(const MeshView& cage, const MeshView& target, const TransferResult
     const std::size_t t = i / 3;
     const std::uint32_t v = cage.indices[i], w = cage.indices[3 * t + (i + 1) % 3];
     const double edge = lengthOf(cage, v, w);
-    if (edge > 0) stretch[t] = std::max(stretch[t], apart(&cage.uvs[v * std::size_t{2}], &cage.uvs[w * std::size_t{2}]) / edge);
+    if (edge > 0)
+      stretch[t] = std::max(stretch[t], apart(&cage.uvs[v * std::size_t{2}], &cage.uvs[w * std::size_t{2}]) / edge);
   }
   double painted = 0;
   Smear smear;
@@ -130,8 +133,10 @@ Smear smearOf(const MeshView& cage, const MeshView& target, const TransferResult
       const std::uint32_t v = target.indices[i], w = target.indices[j];
       const Projection& projection = result.projection;
       edges[k] = lengthOf(target, v, w);
-      const double path = edges[k] + std::abs(static_cast<double>(projection.distances[v]) - static_cast<double>(projection.distances[w]));
-      const double limit = 4 * std::max(stretch[projection.triangles[v]], stretch[projection.triangles[w]]) * path + 0.005;
+      const double path = edges[k] + std::abs(static_cast<double>(projection.distances[v]) -
+                                              static_cast<double>(projection.distances[w]));
+      const double limit =
+          4 * std::max(stretch[projection.triangles[v]], stretch[projection.triangles[w]]) * path + 0.005;
       byVertex = byVertex || apart(&projection.uvs[v * std::size_t{2}], &projection.uvs[w * std::size_t{2}]) > limit;
       byCorner = byCorner || apart(&projection.cornerUvs[2 * i], &projection.cornerUvs[2 * j]) > limit;
     }
@@ -199,7 +204,8 @@ TEST_CASE("corners get the reference's UVs on a head, and on all fixed scenes", 
     CHECK(found.mended > 10);
     CHECK(found.unstable * 100 <= found.triangles);
   }
-  for (const scenes::Scene& scene : scenes::golden()) compareCorners(scene.name, scene.cage.view(), scene.target.view());
+  for (const scenes::Scene& scene : scenes::golden())
+    compareCorners(scene.name, scene.cage.view(), scene.target.view());
 }
 
 TEST_CASE("corners get the reference's UVs where places tie, as on cuts", "[seams]") {
@@ -226,9 +232,12 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
   const scenes::Mesh ball = scenes::ellipsoid({0.02f, -0.03f, 0.01f}, {1, 1, 0.9f}, 9);
   const scenes::Scene strewn = scenes::strewn(firstSeed(), 200);
   SECTION("denser than the target") {
-    compareCorners("dense", scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 30).view(), scenes::ellipsoid({}, {1, 1, 1}, 3).view());
+    compareCorners("dense", scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 30).view(),
+                   scenes::ellipsoid({}, {1, 1, 1}, 3).view());
   }
-  SECTION("coarser than the target") { compareCorners("coarse", scenes::box({}, {1.5f, 1.4f, 1.6f}, 1).view(), ball.view()); }
+  SECTION("coarser than the target") {
+    compareCorners("coarse", scenes::box({}, {1.5f, 1.4f, 1.6f}, 1).view(), ball.view());
+  }
   SECTION("each triangle an island") {
     scenes::Mesh apart;
     for (const std::uint32_t index : strewn.cage.indices) {
@@ -241,27 +250,31 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
   }
   SECTION("its triangles stacked on each other: edges of many triangles") {
     scenes::Mesh stacked = strewn.cage;
-    for (int copy = 0; copy < 3; ++copy) stacked.indices.insert(stacked.indices.end(), strewn.cage.indices.begin(), strewn.cage.indices.end());
+    for (int copy = 0; copy < 3; ++copy)
+      stacked.indices.insert(stacked.indices.end(), strewn.cage.indices.begin(), strewn.cage.indices.end());
     compareCorners("stacked", stacked.view(), ball.view());
   }
   SECTION("so many of its triangles equally near that those of a few corners are all that can be listed at once") {
     const scenes::Mesh once = tube(1.5f, 4, 2);
     scenes::Mesh stacked = once;
-    for (int copy = 1; copy < 200; ++copy) stacked.indices.insert(stacked.indices.end(), once.indices.begin(), once.indices.end());
+    for (int copy = 1; copy < 200; ++copy)
+      stacked.indices.insert(stacked.indices.end(), once.indices.begin(), once.indices.end());
     const scenes::Mesh fine = scenes::ellipsoid({0.02f, -0.03f, 0.01f}, {1, 1.5f, 0.9f}, 40);
     CHECK(compareCorners("once", once.view(), fine.view()).mended > 100);
     CHECK(copied(withCorners(stacked.view(), fine.view()).projection.cornerUvs) ==
           copied(withCorners(once.view(), fine.view()).projection.cornerUvs));
   }
   SECTION("edges of many triangles, of which some are one in the texture") {
-    // Of two to four copies of each triangle two have UVs that meet, the others their own. Which is first, and so the nearest, changes.
+    // Of two to four copies of each triangle two have UVs that meet, the others their own. Which is first, and so the
+    // nearest, changes.
     const scenes::Mesh shell = scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 5);
     scenes::Mesh mixed;
     const auto add = [&](std::size_t triangle, float shift) {
       const auto first = static_cast<std::uint32_t>(mixed.vertexCount());
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t index = shell.indices[3 * triangle + k];
-        mixed.addVertex(shell.vertex(index), shell.uvs[index * std::size_t{2}] + shift, shell.uvs[index * std::size_t{2} + 1]);
+        mixed.addVertex(shell.vertex(index), shell.uvs[index * std::size_t{2}] + shift,
+                        shell.uvs[index * std::size_t{2} + 1]);
       }
       mixed.addTriangle(first, first + 1, first + 2);
     };
@@ -340,8 +353,8 @@ TEST_CASE("corner UVs do not depend on the order of the target's vertices and tr
       CHECK(cornersOf(target, withCorners(scene.cage.view(), target.view()).projection.cornerUvs) ==
             cornersOf(scene.target, before.projection.cornerUvs));
       const auto scale = [](scenes::Point p) { return scenes::Point{p[0] * 0.125f, p[1] * 0.125f, p[2] * 0.125f}; };
-      CHECK(copied(withCorners(mapped(scene.cage, scale).view(), mapped(scene.target, scale).view()).projection.cornerUvs) ==
-            copied(before.projection.cornerUvs));
+      CHECK(copied(withCorners(mapped(scene.cage, scale).view(), mapped(scene.target, scale).view())
+                       .projection.cornerUvs) == copied(before.projection.cornerUvs));
     }
   }
 }
@@ -359,7 +372,8 @@ TEST_CASE("corners of whole triangles, and of those without an area, have the UV
   const TransferResult result = withCorners(cage.view(), target.view());
   const auto isAsVertices = [&](std::size_t t) {
     for (std::size_t i = 6 * t; i < 6 * t + 6; ++i)
-      if (result.projection.cornerUvs[i] != result.projection.uvs[target.indices[i / 2] * std::size_t{2} + i % 2]) return false;
+      if (result.projection.cornerUvs[i] != result.projection.uvs[target.indices[i / 2] * std::size_t{2} + i % 2])
+        return false;
     return true;
   };
   CHECK(isAsVertices(0));
@@ -440,9 +454,10 @@ TEST_CASE("on real models corners get the reference's UVs, and at most a hundred
     const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
     REQUIRE(splitVertices(target.indices, result.projection.cornerUvs, vertexCount, split).ok());
     requireSameCorners(target.view(), result.projection.cornerUvs, split);
-    std::cout << name << ": " << found.different << " differences at " << found.triangles << " triangles, " << found.unstable
-              << " unstable, " << found.mended << " mended; smeared: " << 100 * smear.vertex << " % by vertex, "
-              << 100 * smear.corner << " % by corner; " << vertexCount << " vertices become " << split.sources.size() << '\n';
+    std::cout << name << ": " << found.different << " differences at " << found.triangles << " triangles, "
+              << found.unstable << " unstable, " << found.mended << " mended; smeared: " << 100 * smear.vertex
+              << " % by vertex, " << 100 * smear.corner << " % by corner; " << vertexCount << " vertices become "
+              << split.sources.size() << '\n';
     INFO(name);
     CHECK(found.unstable * 100 <= found.triangles);
     CHECK(smear.corner <= 0.01);

@@ -107,7 +107,8 @@ TEST_CASE("a surface that lies on the point does not occlude it", "[occluded]") 
 TEST_CASE("degenerate triangles take no part", "[degenerate]") {
   scenes::Mesh target = square(0.5f, 0);
   // Over it: a point, a segment, three points in a row. Each would join or occlude something if it counted.
-  const std::uint32_t a = target.addVertex({-3, 0, 0.5f}), b = target.addVertex({0, 0, 0.5f}), c = target.addVertex({3, 0, 0.5f});
+  const std::uint32_t a = target.addVertex({-3, 0, 0.5f}), b = target.addVertex({0, 0, 0.5f}),
+                      c = target.addVertex({3, 0, 0.5f});
   target.addTriangle(a, a, a);
   target.addTriangle(a, c, a);
   target.addTriangle(a, b, c);
@@ -197,7 +198,8 @@ TEST_CASE("the weld tolerance joins what is nearer than its share of the diagona
 TEST_CASE("a segment below the threshold is culled, one at it is not", "[classify]") {
   // Three of four equal corners covered... of a square whose corners have 2/6, 1/6, 2/6, 1/6 of its area.
   scenes::Mesh target = square(1, 0);
-  const scenes::Mesh cage = without(scenes::box({}, {2, 2, 2}, 4), [](scenes::Point p) { return p[2] < 2 || (p[0] > 0 && p[1] > 0); });
+  const scenes::Mesh cage =
+      without(scenes::box({}, {2, 2, 2}, 4), [](scenes::Point p) { return p[2] < 2 || (p[0] > 0 && p[1] > 0); });
   TransferOptions options;
   const auto at = [&](float threshold) {
     options.threshold = threshold;
@@ -221,7 +223,8 @@ TEST_CASE("threshold 0 culls nothing and 1 spares what is covered entirely", "[c
   CHECK(copied(none.zones.zones) == copied(none.projection.zones));
   options.threshold = 1;
   const TransferResult all = transferred(scene.cage.view(), scene.target.view(), options);
-  for (const SegmentStats& stats : all.projection.segmentStats) CHECK(stats.culled == (stats.coveredArea < stats.exposedArea));
+  for (const SegmentStats& stats : all.projection.segmentStats)
+    CHECK(stats.culled == (stats.coveredArea < stats.exposedArea));
 }
 
 TEST_CASE("classify with another threshold equals transfer with it", "[classify]") {
@@ -243,9 +246,9 @@ TEST_CASE("classify with another threshold equals transfer with it", "[classify]
     CHECK(copied(projection.zones) == copied(whole.projection.zones));
     for (std::size_t s = 0; s < zones.culledSegments.size(); ++s)
       CHECK((zones.culledSegments[s] != 0) == whole.projection.segmentStats[s].culled);
-    for (std::size_t s = 0; s < zones.margins.size(); ++s) {
+    for (std::size_t s = 0; s < zones.scores.size(); ++s) {
       const SegmentStats& stats = projection.segmentStats[s];
-      CHECK((zones.culledSegments[s] != 0) == (zones.margins[s] < 1));
+      CHECK((zones.culledSegments[s] != 0) == (zones.scores[s] < 1));
       CHECK((zones.culledSegments[s] != 0) == (stats.coveredArea < static_cast<double>(threshold) * stats.exposedArea));
     }
     requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
@@ -258,7 +261,8 @@ TEST_CASE("a triangle is cosmetic only if all its corners are", "[classify]") {
   std::size_t wrong = 0, cosmetic = 0;
   for (std::size_t t = 0; t < scene.target.triangleCount(); ++t) {
     const std::uint32_t* corners = &scene.target.indices[t * 3];
-    const bool all = std::all_of(corners, corners + 3, [&](std::uint32_t v) { return result.zones.zones[v] == Zone::cosmetic; });
+    const bool all =
+        std::all_of(corners, corners + 3, [&](std::uint32_t v) { return result.zones.zones[v] == Zone::cosmetic; });
     wrong += all != (result.zones.cosmeticTriangles[t] == 1);
     cosmetic += all;
   }
@@ -270,7 +274,8 @@ TEST_CASE("the nearest-vertex baseline takes the nearest vertex, the lowest of e
           "[nearestVertex]") {
   TransferOptions options;
   options.projection = ProjectionMode::nearestVertex;
-  for (const scenes::Scene& scene : {scenes::strewn(firstSeed(), 300), scenes::head(10), scenes::lattice(3), scenes::stairs()}) {
+  for (const scenes::Scene& scene :
+       {scenes::strewn(firstSeed(), 300), scenes::head(10), scenes::lattice(3), scenes::stairs()}) {
     requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
     const TransferResult result = transferred(scene.cage.view(), scene.target.view(), options);
     const auto& zones = result.zones.zones;
@@ -284,7 +289,8 @@ TEST_CASE("of equally near cage vertices the nearest-vertex baseline takes the l
   scenes::Mesh cage = square(1, 1), target;
   // Nearer than all, but in no triangle: not part of the cage.
   cage.addVertex({0, 0, 0.1f});
-  for (const scenes::Point p : {scenes::Point{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {-0.1f, 0.1f, 0}}) target.addVertex(p);
+  for (const scenes::Point p : {scenes::Point{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {-0.1f, 0.1f, 0}})
+    target.addVertex(p);
   target.addTriangle(0, 1, 2);
   TransferOptions options;
   options.projection = ProjectionMode::nearestVertex;

@@ -46,13 +46,16 @@ Point onFigure(Point p, float size) {
   const float neck = 1 - 0.72f * ramp(h, 0.3f, 0.5f) + 0.22f * ramp(h, 0.55f, 0.65f);
   const float thick = 0.8f * neck;
   // What is above and below grows with the size as the sides do.
-  return {p[0] * thick + (size - 1) * p[0] * 0.8f, 1.4f * h + (size - 1) * h * 0.8f, p[2] * thick + (size - 1) * p[2] * 0.8f};
+  return {p[0] * thick + (size - 1) * p[0] * 0.8f, 1.4f * h + (size - 1) * h * 0.8f,
+          p[2] * thick + (size - 1) * p[2] * 0.8f};
 }
 
 constexpr Point kEyes[] = {{0.12f, 1.17f, 0.235f}, {-0.12f, 1.17f, 0.235f}};
 constexpr Point kMouth{0, 0.98f, 0.29f};
 
-float fromMouth(Point p) { return distance({p[0] * 0.6f, p[1] * 1.6f, p[2]}, {kMouth[0], kMouth[1] * 1.6f, kMouth[2]}); }
+float fromMouth(Point p) {
+  return distance({p[0] * 0.6f, p[1] * 1.6f, p[2]}, {kMouth[0], kMouth[1] * 1.6f, kMouth[2]});
+}
 
 /// Whether a point is where a figure's eyes or mouth are open.
 bool inOpening(Point p, float grow) {
@@ -77,7 +80,8 @@ Trap clothed(bool hooded) {
   addBy(trap, without(figure(1, 40), [](Point p) { return inOpening(p, 1); }),
         [&](Point p) { return leftFree(p, 0.08f) ? Wanted::painted : Wanted::either; });
   add(trap, without(figure(1.05f, 32), [&](Point p) { return leftFree(p, 0); }), Wanted::painted);
-  for (const Point& eye : kEyes) add(trap, ellipsoid({eye[0], eye[1], eye[2] - 0.05f}, {0.07f, 0.07f, 0.07f}, 6), Wanted::bare);
+  for (const Point& eye : kEyes)
+    add(trap, ellipsoid({eye[0], eye[1], eye[2] - 0.05f}, {0.07f, 0.07f, 0.07f}, 6), Wanted::bare);
   add(trap, ellipsoid({0, 0.975f, 0.16f}, {0.09f, 0.03f, 0.13f}, 6), Wanted::bare);
   for (const float y : {-0.4f, -0.2f, 0.0f, 0.2f}) {
     const float x = y / 1.4f;
@@ -99,20 +103,25 @@ Trap twins(std::uint64_t seed) {
     });
   };
   const auto inWindow = [](Point p, float grow) {
-    return std::abs(p[0]) > 0.4f && p[1] > 0.18f - 0.02f * grow && p[1] < 0.38f + 0.02f * grow && std::abs(p[2]) < 0.6f + 0.02f * grow;
+    return std::abs(p[0]) > 0.4f && p[1] > 0.18f - 0.02f * grow && p[1] < 0.38f + 0.02f * grow &&
+           std::abs(p[2]) < 0.6f + 0.02f * grow;
   };
-  const auto shell = [&](float grow, int cells) { return ellipsoid({}, {0.9f + grow, 0.55f + grow, 1.9f + grow}, cells); };
+  const auto shell = [&](float grow, int cells) {
+    return ellipsoid({}, {0.9f + grow, 0.55f + grow, 1.9f + grow}, cells);
+  };
   trap.scene.cage = without(uneven(shell(0.08f, 20), 5e-3f), [&](Point p) { return inWindow(p, 0) || p[1] < -0.4f; });
-  addBy(trap, without(uneven(shell(0, 36), 5e-4f), [&](Point p) { return inWindow(p, 0) || p[1] < -0.25f; }), [&](Point p) {
-    const bool behindSills = p[1] > -0.17f && p[1] < -0.03f && std::abs(p[0]) > 0.4f && std::abs(p[2]) < 1.3f;
-    const bool besideHole = inWindow(p, 4) || p[1] < -0.2f;  // The cage ends there.
-    return behindSills || besideHole ? Wanted::either : Wanted::painted;
-  });
+  addBy(trap, without(uneven(shell(0, 36), 5e-4f), [&](Point p) { return inWindow(p, 0) || p[1] < -0.25f; }),
+        [&](Point p) {
+          const bool behindSills = p[1] > -0.17f && p[1] < -0.03f && std::abs(p[0]) > 0.4f && std::abs(p[2]) < 1.3f;
+          const bool besideHole = inWindow(p, 4) || p[1] < -0.2f;  // The cage ends there.
+          return behindSills || besideHole ? Wanted::either : Wanted::painted;
+        });
   const auto pair = [&](const Mesh& right, Wanted wanted) {
     for (const float side : {1.0f, -1.0f}) {
       Mesh part = uneven(mapped(right, [&](Point p) { return Point{side * p[0], p[1], p[2]}; }), 5e-4f);
       // Mirrored triangles are turned round, so that they still face outward.
-      for (std::size_t i = 0; side < 0 && i < part.indices.size(); i += 3) std::swap(part.indices[i + 1], part.indices[i + 2]);
+      for (std::size_t i = 0; side < 0 && i < part.indices.size(); i += 3)
+        std::swap(part.indices[i + 1], part.indices[i + 2]);
       add(trap, part, wanted);
       trap.twins.push_back(trap.scene.target.groups.back());
     }
@@ -141,13 +150,13 @@ Trap doubled(bool own) {
   Scene plain = head(24);
   // A fold under the brow, that goes in and up.
   const auto depthAt = [](Point p) { return p[2] < 0 ? 0 : ramp(p[1], 0.35f, 0.6f) * (1 - ramp(p[1], 0.6f, 0.75f)); };
-  std::vector<float> depths;
+  std::vector<float> depthWeighting;
   std::size_t v = 0;
   for (; v < plain.target.vertexCount(); ++v)
-    depths.push_back(plain.target.groups[v] == plain.target.groups[0] ? depthAt(plain.target.vertex(v)) : 0);
+    depthWeighting.push_back(plain.target.groups[v] == plain.target.groups[0] ? depthAt(plain.target.vertex(v)) : 0);
   v = 0;
   plain.target = mapped(plain.target, [&](Point p) {
-    const float depth = depths[v++], in = 1 - 0.35f * depth;
+    const float depth = depthWeighting[v++], in = 1 - 0.35f * depth;
     return Point{p[0] * in, p[1] + 0.12f * depth, p[2] * in};
   });
   Trap trap;
@@ -159,7 +168,7 @@ Trap doubled(bool own) {
     float besides = 1e9f;
     for (const Point hole : {Point{0.35f, 0.25f, 0.85f}, Point{-0.35f, 0.25f, 0.85f}, Point{0, -0.4f, 0.95f}})
       besides = std::min(besides, distance(target.vertex(v), hole));
-    const Wanted skin = depths[v] > 0.7f || besides < 0.32f ? Wanted::either : Wanted::painted;
+    const Wanted skin = depthWeighting[v] > 0.7f || besides < 0.32f ? Wanted::either : Wanted::painted;
     trap.truth.push_back(target.groups[v] == target.groups[0] ? skin : Wanted::bare);
   }
   const std::size_t triangles = target.triangleCount();
@@ -172,7 +181,8 @@ Trap doubled(bool own) {
     }
   }
   for (std::size_t t = 0; t < triangles; ++t)
-    target.addTriangle(shift + target.indices[t * 3], shift + target.indices[t * 3 + 2], shift + target.indices[t * 3 + 1]);
+    target.addTriangle(shift + target.indices[t * 3], shift + target.indices[t * 3 + 2],
+                       shift + target.indices[t * 3 + 1]);
   return trap;
 }
 
@@ -181,11 +191,14 @@ Trap wrapped() {
   trap.scene.name = "wrapped";
   constexpr Point kRadii{0.8f, 1, 0.9f};
   constexpr Point kHoles[] = {{0.3f, 0.25f, 0.8f}, {-0.3f, 0.25f, 0.8f}};
-  const auto besideEye = [&](Point p, float reach) { return distance(p, kHoles[0]) < reach || distance(p, kHoles[1]) < reach; };
+  const auto besideEye = [&](Point p, float reach) {
+    return distance(p, kHoles[0]) < reach || distance(p, kHoles[1]) < reach;
+  };
   trap.scene.cage = without(ellipsoid({}, kRadii, 12), [&](Point p) { return besideEye(p, 0.24f); });
   addBy(trap, without(ellipsoid({}, kRadii, 25), [&](Point p) { return besideEye(p, 0.2f); }),
         [&](Point p) { return besideEye(p, 0.4f) ? Wanted::either : Wanted::painted; });
-  for (const Point& hole : kHoles) add(trap, ellipsoid({hole[0], hole[1], hole[2] - 0.12f}, {0.16f, 0.16f, 0.16f}, 6), Wanted::bare);
+  for (const Point& hole : kHoles)
+    add(trap, ellipsoid({hole[0], hole[1], hole[2] - 0.12f}, {0.16f, 0.16f, 0.16f}, 6), Wanted::bare);
   return trap;
 }
 
@@ -211,7 +224,8 @@ Trap glazed() {
     return std::abs(p[0]) < 0.7f ? 1 : std::sqrt(above * above + along * along);
   };
   trap.scene.cage = without(box({}, {kBody[0] + kAway, kBody[1] + kAway, kBody[2] + kAway}, 30), [&](Point p) {
-    return std::abs(p[0]) > kBody[0] && p[1] > kLow + 0.03f && p[1] < kHigh - 0.03f && std::abs(p[2]) > kBack + 0.05f && std::abs(p[2]) < kFront - 0.05f;
+    return std::abs(p[0]) > kBody[0] && p[1] > kLow + 0.03f && p[1] < kHigh - 0.03f && std::abs(p[2]) > kBack + 0.05f &&
+           std::abs(p[2]) < kFront - 0.05f;
   });
   addBy(trap, without(box({}, kBody, 24), [&](Point p) { return fromWindow(p) == 0; }),
         [&](Point p) { return fromWindow(p) < 0.15f ? Wanted::either : Wanted::painted; });
@@ -236,12 +250,18 @@ Trap hatted() {
   const auto round = [](float x) { return std::sqrt(std::max(0.0f, 1 - x * x)); };
   const auto crown = [&](float r) { return 0.45f * round(r / kCrown); };
   // A hat of one closed shell, of a unit sphere whose upper half becomes its outside: a crown and a flat brim.
-  addBy(trap, mapped(ellipsoid({}, {1, 1, 1}, 32), [&](Point p) {
-    const float r = fromAxis(p);
-    return Point{p[0], crown(r) + (p[1] < 0 ? -kThick : kThick) * round(r), p[2]};
-  }), [&](Point p) { return fromAxis(p) < kCrown + 0.1f && p[1] < crown(fromAxis(p)) ? Wanted::either : Wanted::painted; });
+  addBy(trap,
+        mapped(ellipsoid({}, {1, 1, 1}, 32),
+               [&](Point p) {
+                 const float r = fromAxis(p);
+                 return Point{p[0], crown(r) + (p[1] < 0 ? -kThick : kThick) * round(r), p[2]};
+               }),
+        [&](Point p) {
+          return fromAxis(p) < kCrown + 0.1f && p[1] < crown(fromAxis(p)) ? Wanted::either : Wanted::painted;
+        });
   // The head under it.
-  addBy(trap, ellipsoid({0, -0.4f, 0}, {0.42f, 0.75f, 0.42f}, 20), [](Point p) { return p[1] > -0.2f ? Wanted::either : Wanted::painted; });
+  addBy(trap, ellipsoid({0, -0.4f, 0}, {0.42f, 0.75f, 0.42f}, 20),
+        [](Point p) { return p[1] > -0.2f ? Wanted::either : Wanted::painted; });
   // Too high by 1 % of the diagonal, so that its upper side is nearer to the brim's lower one too.
   constexpr float kUp = 0.033f;
   trap.scene.cage = mapped(ellipsoid({}, {1, 1, 1}, 24), [&](Point p) {
@@ -266,7 +286,8 @@ struct SmallEyed {
     return mapped(ellipsoid({}, {1, 1, 1}, 30), [&](Point p) {
       const Point q{p[0], p[1], p[2] + 0.85f};
       const float size = distance(q, {});
-      return Point{q[0] / size * (kRadii[0] + away), q[1] / size * (kRadii[1] + away), q[2] / size * (kRadii[2] + away)};
+      return Point{q[0] / size * (kRadii[0] + away), q[1] / size * (kRadii[1] + away),
+                   q[2] / size * (kRadii[2] + away)};
     });
   }
   static Mesh cage(float away, float hole) {

@@ -21,8 +21,8 @@ struct Trap {
   std::vector<std::uint32_t> twins;  ///< Groups in pairs, of which both are to be painted or neither; may be empty.
 };
 
-/// A figure in clothes: its skin, of one piece, shows at the head alone; eyes, a tongue that pushes out between the lips
-/// as far as under the cage, and buttons on the shirt.
+/// A figure in clothes: its skin, of one piece, shows at the head alone; eyes, a tongue that pushes out between the
+/// lips as far as under the cage, and buttons on the shirt.
 /// @param hooded  The clothes leave nothing free but the face.
 Trap clothed(bool hooded);
 
@@ -30,18 +30,20 @@ Trap clothed(bool hooded);
 /// openings, left and right; all of it a little uneven, so that twins differ by what modelling leaves.
 Trap twins(std::uint64_t seed);
 
-/// A head with a deep fold under its brow, eyes, teeth and tongue, in which every triangle has a copy in reverse winding.
+/// A head with a deep fold under its brow, eyes, teeth and tongue, in which every triangle has a copy in reverse
+/// winding.
 /// @param own  The copies have vertices of their own; else they share those of the originals.
 Trap doubled(bool own);
 
-/// A head whose cage is its own skin with fewer vertices and no offset: between them the skin lies outside, by less than a
-/// thousandth of the diagonal. Eyes behind holes.
+/// A head whose cage is its own skin with fewer vertices and no offset: between them the skin lies outside, by less
+/// than a thousandth of the diagonal. Eyes behind holes.
 Trap wrapped();
 
 /// A figure under a closed dome that is part of the target: whatever leaves the figure's cage meets it.
 Trap domed();
 
-/// A van whose windows are panes of two triangles, in a cage 3 % of the diagonal away, with holes smaller than they are.
+/// A van whose windows are panes of two triangles, in a cage 3 % of the diagonal away, with holes smaller than they
+/// are.
 Trap glazed();
 
 /// A hat of one closed shell, whose brim is to be painted from below as well, on a head; the cage is too high.

@@ -1,0 +1,55 @@
+#include "input/cage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cagecast {
+
+RayDirection RayDirection::along(Vec3 unit) noexcept {
+  const auto x = static_cast<float>(unit.x);
+  const auto y = static_cast<float>(unit.y);
+  const auto z = static_cast<float>(unit.z);
+  const float row[] = {x, y, z, x, y};  // From each axis on the next two follow.
+  RayDirection ray{{}, unit};
+  Rough& rough = ray.rough;
+  // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
+  const simd::f32x4 direction = simd::of(x, y, z, 1);
+  const simd::f32x4 size = simd::splat(1) / simd::max(simd::abs(direction), simd::splat(1e-20f));
+  simd::store(rough.inverse, simd::select(direction < simd::splat(0), simd::splat(0) - size, size));
+  // No branch: nobody can guess where rays go.
+  const auto second = static_cast<std::uint32_t>(std::abs(y) > std::abs(x));
+  rough.z = second + (2 - second) * static_cast<std::uint32_t>(std::abs(z) > std::max(std::abs(x), std::abs(y)));
+  rough.scaleZ = -rough.inverse[rough.z];
+  rough.shearX = row[rough.z + 1] * rough.scaleZ;
+  rough.shearY = row[rough.z + 2] * rough.scaleZ;
+  return ray;
+}
+
+bool gatherCage(const MeshView& cage, const Units& units, Arena& arena, Cage& out) noexcept {
+  const std::size_t all = cage.indices.size() / 3;
+  auto* triangles = arena.allocate<CageTriangle>(all);
+  if (arena.failed()) return false;
+  std::uint32_t count = 0;
+  for (std::size_t t = 0; t < all; ++t) {
+    CageTriangle& triangle = triangles[count];
+    float* corners[3] = {triangle.a, triangle.b, triangle.c};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t v = cage.indices[3 * t + i];
+      simd::store(corners[i], simd::load3(&cage.positions[3 * v]) * simd::splat(units.scale));
+      std::copy_n(&cage.uvs[2 * v], 2, triangle.uvs + 2 * i);
+    }
+    const Vec3 normal = areaNormal(triangle.a, triangle.b, triangle.c);
+    const double doubleArea = length(normal);
+    if (!(doubleArea > 0)) continue;
+    const Vec3 unit = 1 / doubleArea * normal;
+    triangle.index = static_cast<std::uint32_t>(t);
+    const TwoVec3 edges = pointsAt(triangle.a, triangle.b) - pointsAt(triangle.c, triangle.a);
+    triangle.gradients = simd::splatDouble(1 / doubleArea) * cross(twice(unit), edges);
+    triangle.normal = RayDirection::along(unit);
+    ++count;
+  }
+  out = {count, triangles};
+  return true;
+}
+
+}  // namespace cagecast

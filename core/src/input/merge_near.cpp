@@ -1,0 +1,133 @@
+// The only file that is compiled with exceptions: nanoflann and the containers it fills throw when memory runs out.
+#include "input/merge_near.hpp"
+
+#include <nanoflann.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <vector>
+
+#include "base/union_find.hpp"
+
+namespace cagecast {
+namespace {
+
+/// Floats per position.
+constexpr std::size_t kStride = 4;
+
+/// Points as nanoflann wants to see them.
+struct Cloud {
+  const float* positions;
+  std::size_t count;
+
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return count; }
+  [[nodiscard]] float kdtree_get_pt(std::size_t point, std::size_t axis) const {
+    return positions[kStride * point + axis];
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+/// Distances are summed in double, so that equal means equal.
+using Tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud, double>, Cloud, 3, std::uint32_t>;
+
+/// Keeps the nearest site, of equally near ones the first. (nanoflann's own set keeps the one it meets first.)
+class FirstNearest {
+ public:
+  [[nodiscard]] std::size_t size() const { return 1; }
+  [[nodiscard]] bool full() const { return true; }
+  /// Just beyond the best, so that its equals are shown too.
+  [[nodiscard]] double worstDist() const {
+    return std::nextafter(squaredDistance_, std::numeric_limits<double>::infinity());
+  }
+  bool addPoint(double squaredDistance, std::uint32_t site) {
+    if (squaredDistance < squaredDistance_ || (squaredDistance == squaredDistance_ && site < site_)) {
+      squaredDistance_ = squaredDistance;
+      site_ = site;
+    }
+    return true;
+  }
+  [[nodiscard]] std::uint32_t site() const { return site_; }
+
+ private:
+  double squaredDistance_ = std::numeric_limits<double>::max();
+  std::uint32_t site_ = 0;
+};
+
+/// Joins all points of a group within a radius of one of them.
+class JoinNear {
+ public:
+  JoinNear(UnionFind& sets, const std::uint32_t* groups, double squaredRadius)
+      : sets_(sets), groups_(groups), squaredRadius_(squaredRadius) {}
+  void around(std::uint32_t point) { point_ = point; }
+
+  [[nodiscard]] std::size_t size() const { return 1; }
+  [[nodiscard]] bool full() const { return true; }
+  [[nodiscard]] double worstDist() const { return squaredRadius_; }
+  bool addPoint(double squaredDistance, std::uint32_t other) {
+    if (squaredDistance < squaredRadius_ && groups_[other] == groups_[point_]) sets_.join(point_, other);
+    return true;
+  }
+
+ private:
+  UnionFind& sets_;
+  const std::uint32_t* groups_;
+  double squaredRadius_;
+  std::uint32_t point_ = 0;
+};
+
+}  // namespace
+
+bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius, std::uint32_t* joined,
+               std::uint32_t& joinedCount) noexcept {
+  try {
+    const Cloud cloud{positions, count};
+    const Tree tree(3, cloud);
+    std::vector<std::uint32_t> parents(count);
+    UnionFind sets(parents.data(), count);
+    JoinNear near(sets, groups, radius * radius);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      near.around(i);
+      tree.findNeighbors(near, positions + kStride * i, nanoflann::SearchParams());
+    }
+    joinedCount = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t root = sets.find(i);  // Never behind i, so it has its number already.
+      const float* from = positions + kStride * i;
+      if (root == i) {
+        joined[i] = joinedCount++;
+        std::copy(from, from + kStride, positions + kStride * joined[i]);
+        continue;
+      }
+      joined[i] = joined[root];
+      float* to = positions + kStride * joined[i];
+      if (std::lexicographical_compare(from, from + kStride, to, to + kStride)) std::copy(from, from + kStride, to);
+    }
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+}
+
+bool nearestSites(const float* sites, std::uint32_t siteCount, const float* points, std::uint32_t pointCount,
+                  std::uint32_t* nearest) noexcept {
+  try {
+    const Cloud cloud{sites, siteCount};
+    const Tree tree(3, cloud);
+    for (std::uint32_t i = 0; i < pointCount; ++i) {
+      FirstNearest found;
+      tree.findNeighbors(found, points + kStride * i, nanoflann::SearchParams());
+      nearest[i] = found.site();
+    }
+    return true;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+}
+
+}  // namespace cagecast

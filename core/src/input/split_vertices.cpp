@@ -1,0 +1,52 @@
+#include <algorithm>
+#include <cstring>
+
+#include "base/hash_index.hpp"
+#include "cagecast/seams.hpp"
+
+namespace cagecast {
+
+Status splitVertices(std::span<const std::uint32_t> indices, std::span<const float> cornerUvs,
+                     std::uint32_t vertexCount, SplitVertices& out) noexcept {
+  const auto fault = [](Code code, std::size_t at = 0) {
+    return Status{code, Argument::target, static_cast<std::uint32_t>(at)};
+  };
+  if (indices.size() % 3 != 0) return fault(Code::indicesNotTriples);
+  if (indices.size() / 3 > kMaxTriangles) return fault(Code::tooLarge, indices.size() / 3);
+  if (cornerUvs.size() != 2 * indices.size()) return fault(Code::cornerUvCountMismatch);
+  const auto stray = std::find_if(indices.begin(), indices.end(), [=](std::uint32_t v) { return v >= vertexCount; });
+  if (stray != indices.end()) return fault(Code::indexOutOfRange, static_cast<std::size_t>(stray - indices.begin()));
+
+  // A corner is what it is by its vertex and its UV, of which −0 is 0.
+  struct Corner {
+    std::uint32_t vertex;
+    float u, v;
+    bool operator==(const Corner& other) const { return std::memcmp(this, &other, sizeof(Corner)) == 0; }
+  };
+  const auto corner = [&](std::size_t i) {
+    return Corner{indices[i], cornerUvs[2 * i] + 0.0f, cornerUvs[2 * i + 1] + 0.0f};
+  };
+
+  Arena arena;
+  const auto cornerCount = static_cast<std::uint32_t>(indices.size());
+  auto* firstCorners = arena.allocate<std::uint32_t>(cornerCount);  // Of each new vertex.
+  HashIndex known(cornerCount, arena);
+  if (arena.failed() || !out.indices.reset(cornerCount)) return {Code::outOfMemory};
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < cornerCount; ++i) {
+    const Corner c = corner(i);
+    const std::uint32_t first =
+        known.firstEqual(i, HashIndex::hash(c), [&](std::uint32_t other) { return corner(other) == c; });
+    if (first == i) firstCorners[count++] = i;
+    out.indices[i] = first == i ? count - 1 : out.indices[first];
+  }
+  if (!out.sources.reset(count) || !out.uvs.reset(std::size_t{2} * count)) return {Code::outOfMemory};
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const std::size_t i = firstCorners[n];
+    out.sources[n] = indices[i];
+    std::copy_n(cornerUvs.data() + 2 * i, 2, out.uvs.data() + std::size_t{2} * n);
+  }
+  return {};
+}
+
+}  // namespace cagecast

@@ -1,0 +1,182 @@
+#include "input/validate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simd/simd.hpp"
+
+namespace cagecast {
+namespace {
+
+/// Farthest a coordinate may be from the origin, in diagonals of the target: fourth powers of it still fit a float with
+/// room to spare, and at this distance a float no longer resolves the target anyway.
+constexpr float kMaxProportion = 1e8f;
+/// Rays may begin between floats, and then round with the distance from the origin of coordinates; where that is so
+/// many times the scene, it is what the kernels must allow for.
+constexpr float kRestReach = 0.5f;
+/// Largest weld tolerance, as a share of the diagonal: beyond it a head is a handful of points.
+constexpr float kMaxWeldTolerance = 0.01f;
+
+struct Box {
+  float low[4];  ///< x, y, z; the fourth is of no use.
+  float high[4];
+
+  [[nodiscard]] double diagonal() const {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double side = static_cast<double>(high[k]) - static_cast<double>(low[k]);
+      sum += side * side;
+    }
+    return std::sqrt(sum);
+  }
+};
+
+/// What is known of four rows of numbers.
+struct Rows {
+  simd::f32x4 low = simd::splat(std::numeric_limits<float>::infinity());
+  simd::f32x4 high = simd::splat(-std::numeric_limits<float>::infinity());
+  simd::f32x4 sum = simd::splat(0);  ///< Of x · 0, which is 0 for a finite x and NaN otherwise.
+
+  void take(simd::f32x4 x) {
+    low = simd::min(low, x);
+    high = simd::max(high, x);
+    sum = sum + x * simd::splat(0);
+  }
+  [[nodiscard]] bool areFinite() const { return simd::bits(sum <= simd::splat(0)) == 15; }
+};
+
+bool areFinite(std::span<const float> values) {
+  Rows rows;
+  std::size_t i = 0;
+  for (; i + simd::kWidth <= values.size(); i += simd::kWidth) rows.take(simd::load(&values[i]));
+  for (; i < values.size(); ++i) rows.take(simd::splat(values[i]));
+  return rows.areFinite();
+}
+
+/// The place of the first value that is not finite; there must be one.
+std::size_t firstNonFinite(std::span<const float> values) {
+  std::size_t i = 0;
+  while (std::isfinite(values[i])) ++i;
+  return i;
+}
+
+/// Finds the box around positions.
+/// @return false if any is not finite.
+bool bound(std::span<const float> positions, Box& box) {
+  // Four vertices are three vectors; what row is of which axis repeats.
+  Rows rows[3];
+  const float* p = positions.data();
+  const float* const end = p + positions.size();
+  for (; end - p >= 12; p += 12) {
+    for (int j = 0; j < 3; ++j) rows[j].take(simd::load(p + 4 * j));
+  }
+  for (; p != end; p += 3) rows[0].take(simd::of(p[0], p[1], p[2], p[0]));
+  float lows[12];
+  float highs[12];
+  for (int j = 0; j < 3; ++j) {
+    simd::store(lows + 4 * j, rows[j].low);
+    simd::store(highs + 4 * j, rows[j].high);
+  }
+  simd::f32x4 low = simd::load3(lows);
+  simd::f32x4 high = simd::load3(highs);
+  for (int i = 3; i < 12; i += 3) {
+    low = simd::min(low, simd::load3(lows + i));
+    high = simd::max(high, simd::load3(highs + i));
+  }
+  simd::store(box.low, low);
+  simd::store(box.high, high);
+  rows[0].sum = rows[0].sum + rows[1].sum + rows[2].sum;
+  return rows[0].areFinite();
+}
+
+std::uint32_t highestOf(std::span<const std::uint32_t> indices) {
+  simd::count4 fours = simd::splatCount(0);
+  std::size_t i = 0;
+  for (; i + simd::kWidth <= indices.size(); i += simd::kWidth) fours = simd::max(fours, simd::load(&indices[i]));
+  for (; i < indices.size(); ++i) fours = simd::max(fours, simd::splatCount(indices[i]));
+  return std::max({simd::countOf<0>(fours), simd::countOf<1>(fours), simd::countOf<2>(fours), simd::countOf<3>(fours)});
+}
+
+Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
+  const auto fault = [argument](Code code, std::size_t at = 0) {
+    return Status{code, argument, static_cast<std::uint32_t>(std::min<std::size_t>(at, UINT32_MAX))};
+  };
+  if (mesh.positions.empty()) return fault(Code::emptyMesh);
+  if (mesh.positions.size() % 3 != 0) return fault(Code::positionsNotTriples, mesh.positions.size());
+  const std::size_t vertices = mesh.positions.size() / 3;
+  if (mesh.indices.empty()) return fault(Code::emptyMesh);
+  if (mesh.indices.size() % 3 != 0) return fault(Code::indicesNotTriples, mesh.indices.size());
+  if (vertices > kMaxVertices) return fault(Code::tooLarge, vertices);
+  if (mesh.indices.size() / 3 > kMaxTriangles) return fault(Code::tooLarge, mesh.indices.size() / 3);
+  if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * vertices) return fault(Code::uvCountMismatch, mesh.uvs.size());
+  if (argument == Argument::cage && mesh.uvs.empty()) return fault(Code::missingUvs);
+  if (!mesh.groups.empty() && mesh.groups.size() != vertices)
+    return fault(Code::groupCountMismatch, mesh.groups.size());
+
+  if (!bound(mesh.positions, box)) return fault(Code::nonFinitePosition, firstNonFinite(mesh.positions));
+  if (!areFinite(mesh.uvs)) return fault(Code::nonFiniteUv, firstNonFinite(mesh.uvs));
+  if (highestOf(mesh.indices) >= vertices) {
+    std::size_t first = 0;
+    while (mesh.indices[first] < vertices) ++first;
+    return fault(Code::indexOutOfRange, first);
+  }
+  return {};
+}
+
+/// The place of the first coordinate that is out of proportion; there must be one.
+std::size_t firstTooLarge(std::span<const float> positions, double scale) {
+  std::size_t i = 0;
+  while (std::abs(static_cast<double>(positions[i]) * scale) <= static_cast<double>(kMaxProportion)) ++i;
+  return i;
+}
+
+}  // namespace
+
+Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOptions& options, Units& units) noexcept {
+  Box cageBox;
+  Box targetBox;
+  if (const Status status = checkMesh(cage, Argument::cage, cageBox); !status.ok()) return status;
+  if (const Status status = checkMesh(target, Argument::target, targetBox); !status.ok()) return status;
+  if (!(options.weldTolerance >= 0.0f && options.weldTolerance <= kMaxWeldTolerance)) {
+    return {Code::badWeldTolerance, Argument::options};
+  }
+  if (!(options.occlusionReach >= 0.0f)) return {Code::badOcclusionReach, Argument::options};
+  if (!(options.pokeThrough >= 0.0f && options.pokeThrough <= 1.0f)) return {Code::badPokeThrough, Argument::options};
+
+  // A target that is a single point has no size; then the cage's serves.
+  const double size = targetBox.diagonal() > 0 ? targetBox.diagonal() : cageBox.diagonal();
+  int exponent = 0;
+  if (size > 0) std::frexp(size, &exponent);
+  const double scale = std::ldexp(1.0, std::clamp(1 - exponent, -126, 127));
+  float reach = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto scaled = [scale](float x) { return static_cast<float>(static_cast<double>(x) * scale); };
+    for (const bool ofCage : {true, false}) {
+      const Box& box = ofCage ? cageBox : targetBox;
+      if (std::max(-scaled(box.low[k]), scaled(box.high[k])) <= kMaxProportion) continue;
+      const std::size_t at = firstTooLarge((ofCage ? cage : target).positions, scale);
+      return {Code::tooLarge, ofCage ? Argument::cage : Argument::target, static_cast<std::uint32_t>(at)};
+    }
+    units.low[k] = scaled(targetBox.low[k]);
+    units.high[k] = scaled(targetBox.high[k]);
+    const float low = std::min(units.low[k], scaled(cageBox.low[k]));
+    const float high = std::max(units.high[k], scaled(cageBox.high[k]));
+    reach = std::max({reach, high - low, high * kRestReach, -low * kRestReach});
+  }
+  units.scale = static_cast<float>(scale);
+  units.diagonal = targetBox.diagonal() * scale;
+  units.reach = reach;
+  return {};
+}
+
+Status checkClassifyOptions(const ClassifyOptions& options) noexcept {
+  if (!(options.threshold >= 0.0f && options.threshold <= 1.0f)) return {Code::badThreshold, Argument::options};
+  if (!(options.minCovered >= 0.0f && options.minCovered <= 1.0f)) return {Code::badMinCovered, Argument::options};
+  if (!(options.minOfAll >= 0.0f && options.minOfAll <= 1.0f)) return {Code::badMinOfAll, Argument::options};
+  if (!(options.maxUncovered >= 0.0f && options.maxUncovered <= 1.0f))
+    return {Code::badMaxUncovered, Argument::options};
+  return {};
+}
+
+}  // namespace cagecast

@@ -1,0 +1,252 @@
+#include "input/weld.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "base/heap_sort.hpp"
+#include "geometry/hilbert.hpp"
+#include "geometry/triangle.hpp"
+#include "input/merge_near.hpp"
+#include "simd/simd.hpp"
+
+namespace cagecast {
+namespace {
+
+using simd::f32x4;
+
+/// A vertex below the place of its cell on the curve.
+using Placed = std::uint64_t;
+std::uint32_t keyOf(Placed placed) { return static_cast<std::uint32_t>(placed >> 32); }
+std::uint32_t vertexOf(Placed placed) { return static_cast<std::uint32_t>(placed); }
+
+/// More than any key.
+constexpr std::uint32_t kNoKey = ~0u;
+/// So many vertices of a cell are compared each with each; more are sorted, so that no input makes it quadratic.
+constexpr std::uint32_t kFew = 16;
+
+/// Keys are sorted by two or three digits: 2 · 9, 2 · 12 or 3 · 10 bits.
+class Digits {
+ public:
+  static constexpr std::uint32_t kMostValues = 2 << 12;
+
+  explicit Digits(int keyBits) : count_(keyBits > 24 ? 3 : 2), bits_(keyBits / count_) {}
+
+  [[nodiscard]] std::uint32_t values() const { return 1u << bits_; }  ///< Of one digit.
+  [[nodiscard]] std::uint32_t allValues() const { return static_cast<std::uint32_t>(count_) << bits_; }
+
+  /// Counts a key's digits.
+  /// @param counts  `allValues()`, digit by digit, 0 in the beginning.
+  void count(std::uint32_t key, std::uint32_t* counts) const {
+    const std::uint32_t mask = values() - 1;
+    ++counts[key & mask];
+    ++(counts + values())[key >> bits_ & mask];
+    // Of large meshes: others need not even prepare for it.
+    if (count_ > 2) [[unlikely]]
+      ++(counts + 2 * std::size_t{values()})[key >> 2 * bits_];
+  }
+
+  /// Sorts by key, stably: least significant digit first.
+  /// @param counts  Of all keys; used up.
+  /// @return The one of the two arrays that holds the result.
+  Placed* sort(Placed* items, Placed* other, std::uint32_t itemCount, std::uint32_t* counts) const {
+    for (int digit = 0; digit < count_; ++digit) {
+      std::uint32_t sum = 0;
+      for (std::uint32_t value = 0; value < values(); ++value) sum += std::exchange(counts[value], sum);
+      const int shift = 32 + digit * bits_;
+      const std::uint32_t mask = values() - 1;
+      for (std::uint32_t i = 0; i < itemCount; ++i) other[counts[items[i] >> shift & mask]++] = items[i];
+      std::swap(items, other);
+      counts += values();
+    }
+    return items;
+  }
+
+ private:
+  int count_, bits_;
+};
+
+/// A vertex as weld sees it, scaled. Adding 0 made 0 of −0, so equal is the same as equal to the bit.
+struct Site {
+  float x, y, z;
+  std::uint32_t group;
+
+  void put(f32x4 position, std::uint32_t itsGroup) {
+    simd::store(&x, position);
+    group = itsGroup;
+  }
+  /// Makes a point of it: the group takes the place of the fourth float.
+  void putAt(float* position) const { std::memcpy(position, this, sizeof(Site)); }
+  [[nodiscard]] bool isAt(const float* position) const {
+    // By halves: memcmp is a loop in WebAssembly.
+    std::uint64_t halves[2];
+    std::uint64_t others[2];
+    std::memcpy(halves, this, sizeof halves);
+    std::memcpy(others, position, sizeof others);
+    return ((halves[0] ^ others[0]) | (halves[1] ^ others[1])) == 0;
+  }
+
+  friend bool operator==(const Site& a, const Site& b) { return a.isAt(&b.x); }
+  friend bool operator<(const Site& a, const Site& b) {
+    return std::tie(a.x, a.y, a.z, a.group) < std::tie(b.x, b.y, b.z, b.group);
+  }
+};
+
+/// Sorts the vertices of the first cell by site, and equal ones by index.
+void sortCell(Placed* begin, const Site* sites) {
+  Placed* end = begin;
+  while (keyOf(*end) == keyOf(*begin)) ++end;
+  heapSort(begin, end, [&](Placed a, Placed b) {
+    const Site& s = sites[vertexOf(a)];
+    const Site& t = sites[vertexOf(b)];
+    return s == t ? a < b : s < t;
+  });
+}
+
+/// Makes points of the vertices, in the order of their cells and, within, of the first vertex at each.
+/// @param placed  Sorted, and `kFew` more that are of no cell.
+/// @return How many there are.
+std::uint32_t weldEqual(Placed* placed, std::uint32_t vertexCount, const Site* sites, float* positions,
+                        std::uint32_t* places, std::uint32_t* ofVertex) {
+  std::uint32_t count = 0;
+  std::uint32_t first = 0;  // Point of the cell, or of those that a vertex may still be equal to.
+  bool crowded = false;
+  std::uint32_t lastKey = kNoKey;
+  for (Placed* const end = placed + vertexCount; placed < end; ++placed) {
+    const std::uint32_t key = keyOf(*placed);
+    if (key != lastKey) {
+      lastKey = key;
+      first = count;
+      crowded = keyOf(placed[kFew]) == key;
+      if (crowded) sortCell(placed, sites);
+    }
+    const std::uint32_t v = vertexOf(*placed);
+    std::uint32_t point = first;
+    while (point < count && !sites[v].isAt(positions + Points::kStride * point)) ++point;
+    ofVertex[v] = point;
+    if (point < count) continue;
+    sites[v].putAt(positions + Points::kStride * point);
+    places[point] = key;
+    ++count;
+    if (crowded) first = point;
+  }
+  return count;
+}
+
+/// Finds the corners of the triangles that have an area, and twice that, two by two: there must be room for one more.
+/// @return How many there are.
+std::uint32_t weldTriangles(std::span<const std::uint32_t> indices, const std::uint32_t* ofVertex,
+                            const float* positions, std::uint32_t* triangles, double* areas) {
+  simd::f64x2 least = simd::splatDouble(std::numeric_limits<double>::infinity());
+  double* area = areas;
+  for (std::size_t i = 0; i < indices.size(); i += 6, area += 2) {
+    const std::uint32_t* index = &indices[i];
+    const std::uint32_t* other = i + 3 < indices.size() ? index + 3 : index;
+    const std::uint32_t corners[6] = {ofVertex[index[0]], ofVertex[index[1]], ofVertex[index[2]],
+                                      ofVertex[other[0]], ofVertex[other[1]], ofVertex[other[2]]};
+    for (std::size_t k = 0; k < 6; ++k) triangles[i + k] = corners[k];
+    const simd::f64x2 both = doubleAreas(positions, corners, corners + 3);
+    simd::store(area, both);
+    least = simd::min(least, both);
+  }
+  double leastOf[2];
+  simd::store(leastOf, least);
+  const auto all = static_cast<std::uint32_t>(indices.size() / 3);
+  if (leastOf[0] > 0 && leastOf[1] > 0) return all;
+
+  std::uint32_t kept = 0;
+  for (std::uint32_t t = 0; t < all; ++t) {
+    if (!(areas[t] > 0)) continue;
+    std::copy_n(triangles + std::size_t{3} * t, 3, triangles + std::size_t{3} * kept);
+    areas[kept++] = areas[t];
+  }
+  return kept;
+}
+
+}  // namespace
+
+void Points::split(Vec3 p, float* position, float* rest) noexcept {
+  const auto part = [](double x, float& rounded, float& left) {
+    rounded = static_cast<float>(x);
+    left = static_cast<float>(x - static_cast<double>(rounded));
+  };
+  part(p.x, position[0], rest[0]);
+  part(p.y, position[1], rest[1]);
+  part(p.z, position[2], rest[2]);
+  position[3] = 0;
+}
+
+bool weld(const MeshView& target, const Units& units, float tolerance, Arena& arena, Points& out) noexcept {
+  const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
+  const auto allTriangles = static_cast<std::uint32_t>(target.indices.size() / 3);
+  auto* ofVertex = arena.allocate<std::uint32_t>(vertexCount);
+  auto* positions = arena.allocate<float>(Points::kStride * vertexCount);
+  auto* places = arena.allocate<std::uint32_t>(vertexCount);
+  auto* triangles = arena.allocate<std::uint32_t>(std::size_t{3} * (allTriangles + 1));
+  auto* doubleAreas = arena.allocate<double>(allTriangles + std::size_t{1});
+  const bool tolerant = tolerance > 0;
+  auto* groups = arena.allocate<std::uint32_t>(tolerant ? vertexCount : 0);
+  const Arena::Mark mark = arena.mark();
+  auto* sites = arena.allocate<Site>(vertexCount);
+  auto* unsorted = arena.allocate<Placed>(vertexCount + kFew);
+  auto* spare = arena.allocate<Placed>(vertexCount + kFew);
+  if (arena.failed()) return false;
+
+  // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
+  const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
+  float side = 0;
+  for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
+  const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
+  const HilbertCurve curve(levels);
+  const Digits digits(3 * levels);
+  std::uint32_t counts[Digits::kMostValues];
+  std::fill(counts, counts + digits.allValues(), 0u);
+  const float* position = target.positions.data();
+  const std::uint32_t* groupOf = target.groups.empty() ? nullptr : target.groups.data();
+  const f32x4 scale = simd::splat(units.scale);
+  const f32x4 low = simd::load3(units.low);
+  for (std::uint32_t v = 0; v < vertexCount; ++v, position += 3) {
+    const f32x4 p = simd::load3(position) * scale + simd::splat(0);
+    sites[v].put(p, groupOf == nullptr ? 0 : groupOf[v]);
+    const simd::count4 cell = simd::rounded((p - low) * simd::splat(cells));
+    const std::uint32_t key = curve.key(simd::countOf<0>(cell), simd::countOf<1>(cell), simd::countOf<2>(cell));
+    digits.count(key, counts);
+    unsorted[v] = Placed{key} << 32 | v;
+  }
+  Placed* placed = digits.sort(unsorted, spare, vertexCount, counts);
+  std::fill_n(placed + vertexCount, kFew, Placed{kNoKey} << 32);
+
+  std::uint32_t pointCount = weldEqual(placed, vertexCount, sites, positions, places, ofVertex);
+  if (!target.groups.empty()) {
+    for (std::uint32_t i = 0; i < pointCount; ++i) {
+      float& group = positions[Points::kStride * i + 3];
+      if (tolerant) std::memcpy(&groups[i], &group, sizeof group);
+      group = 0;
+    }
+  } else if (tolerant) {
+    std::fill(groups, groups + pointCount, 0u);
+  }
+  arena.rewind(mark);
+
+  if (tolerant) {
+    const std::uint32_t all = pointCount;
+    auto* merged = arena.allocate<std::uint32_t>(all);
+    if (arena.failed()) return false;
+    const double radius = static_cast<double>(tolerance) * units.diagonal;
+    if (!mergeNear(positions, groups, all, radius, merged, pointCount)) return false;
+    // Joined points keep the order of their first members, and the places of these.
+    for (std::uint32_t i = 0, next = 0; i < all; ++i) {
+      if (merged[i] == next) places[next++] = places[i];
+    }
+    for (std::uint32_t v = 0; v < vertexCount; ++v) ofVertex[v] = merged[ofVertex[v]];
+    arena.rewind(mark);
+  }
+
+  const std::uint32_t kept = weldTriangles(target.indices, ofVertex, positions, triangles, doubleAreas);
+  out = {pointCount, positions, places, ofVertex, kept, triangles, doubleAreas};
+  return true;
+}
+
+}  // namespace cagecast

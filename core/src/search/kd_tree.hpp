@@ -1,0 +1,260 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include "base/arena.hpp"
+#include "input/cage.hpp"
+#include "input/weld.hpp"
+#include "search/leaf_box.hpp"
+#include "simd/simd.hpp"
+
+/// The search trees: every node has four children, whose boxes lie side by side so that one SIMD instruction looks at
+/// all of them; every leaf has up to four triangles, which lie side by side when it is looked at.
+namespace cagecast {
+
+/// A node's child: the index of a node, or a leaf with the high bit set: its first triangle. An unused child is some
+/// leaf, in a box that is a point far away.
+inline constexpr std::uint32_t kLeafBit = 0x8000'0000u;
+inline constexpr std::uint32_t leafOf(std::uint32_t first) { return kLeafBit | first; }
+inline constexpr std::uint32_t firstOf(std::uint32_t leaf) { return leaf & ~kLeafBit; }
+static_assert(kMaxTriangles < kLeafBit);
+
+/// Four boxes: low[axis][child], high[axis][child]. Each is a little larger than what it holds, by more than the
+/// rounding of the kernels that use it, so that no box hides a triangle that its kernel would hit.
+struct alignas(16) Node {
+  float low[3][4];
+  float high[3][4];
+  std::uint32_t child[4];
+};
+
+/// Four triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its
+/// longest edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B.
+/// Unused lanes are infinitely far away.
+struct alignas(16) NearLeaf {
+  /// What makes a coordinate of a point: where the middle of the cage is, from which the point is counted, and a unit
+  /// vector.
+  struct Axis {
+    float middle[4];
+    float direction[3][4];
+  };
+  Axis axes[3];
+  /// The two upper edges, AC on the left and BC, each from its foot on AB to C; x is counted from that foot, towards
+  /// the other one. Unit vectors, and lengths. What is of the left one is as `simd::toChoose` has it.
+  float rightX[4], rightY[4], leftY[4], leftX[4];
+  float rightLength[4];
+  float base[4];  ///< B = (base, 0).
+  float foot[4];  ///< x of C.
+  float leftLength[4];
+  std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
+};
+
+/// A tree for rays: boxes, and under them triangles that stay where they are.
+struct RayTree {
+  const Node* nodes = nullptr;       ///< The root is node 0.
+  const float* positions = nullptr;  ///< x, y, z and a fourth float each, scaled.
+  /// 3 positions per triangle, leaf by leaf. A ray that comes to a leaf is tried with the four triangles from its first
+  /// on, of which the last may be another leaf's: the row has so many more at its end.
+  const std::uint32_t* corners = nullptr;
+  float reach = 0;  ///< The longest side of the box around all rays and triangles, scaled.
+};
+
+/// A tree over the cage's triangles, without gaps: node i of a level holds nodes 4i … 4i + 3 of the next, or such
+/// leaves.
+struct CageTree {
+  /// A level of at most so many nodes is looked at as a whole: quicker than finding the way to it from the root.
+  static constexpr std::uint32_t kMostEntries = 16;
+
+  RayTree rays;                    ///< Its nodes go level by level.
+  const NearLeaf* near = nullptr;  ///< The triangles of `rays`, four by four.
+  const LeafBox* boxes = nullptr;  ///< Of the leaves.
+  std::uint32_t leafCount = 0;
+  std::uint32_t lastLevel = 0;   ///< The first node whose children are leaves.
+  std::uint32_t entry = 0;       ///< The first node of the lowest level with at most `kMostEntries`.
+  std::uint32_t entryCount = 0;  ///< Nodes of that level.
+  std::uint32_t levelsBelowEntry = 0;
+  double extent = 0;     ///< Longest side of its box, scaled.
+  float middle[4] = {};  ///< Of its box: x, y, z, 0, scaled. From there on coordinates have few roundings.
+};
+
+/// @return false if memory ran out.
+bool buildTargetTree(const Points& target, const Units& units, Arena& arena, RayTree& out) noexcept;
+bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree& out) noexcept;
+
+/// docs/method.md, step 1: a cage triangle can be the answer if its distance is within this share of the diagonal of
+/// the least.
+inline constexpr double kTieDistance = 1e-6;
+
+/// Searches the cage's triangles for the nearest to a few points at once.
+///
+/// Points that are neighbours are near the same triangles: the tree is walked once for all of them, by the box around
+/// them, and only its leaves are looked at by each. The walk begins with the limits that two leaves give them, one near
+/// each end.
+class NearestSearch {
+ public:
+  static constexpr std::uint32_t kGroup = 16;  ///< Points searched for at once.
+
+  /// Takes what it needs from `arena`; `arena.failed()` tells if that was there.
+  /// @param diagonal  Of the target, scaled.
+  NearestSearch(const CageTree& tree, double diagonal, Arena& arena) noexcept;
+
+  /// From now on finds triangles as well that are farther than the nearest by up to `more`.
+  /// @param distance  Some distance to the cage, greater than 0: the nearer to that of what is searched for, the fewer
+  /// are found.
+  void widen(double more, double distance) noexcept;
+
+  /// Searches for `count` ≤ `kGroup` points that are near each other.
+  /// @param positions  As in `Points`; `candidates` may look at them again.
+  void search(const float* positions, std::uint32_t count) noexcept;
+
+  /// The triangles that could be the nearest to point i of the last search by the tie rule: all whose distance is
+  /// within `kTieDistance` of the least, and some that rounding cannot tell from them.
+  /// @param[out] found  Room for every triangle of the cage.
+  /// @return How many were found: at least 1.
+  std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) noexcept;
+  /// The same where there is but one, as most often: quicker.
+  /// @return That triangle; `kSeveral` if there are more.
+  [[nodiscard]] std::uint32_t onlyCandidate(std::uint32_t i) const noexcept {
+    const unsigned lanes = found_[i] & 15;
+    if (nearCount_[i] >= kRoom || foundCount_[i] != 1 || (lanes & (lanes - 1)) != 0) return kSeveral;
+    return tree_.near[found_[i] >> 4].slot[std::countr_zero(lanes)];
+  }
+  static constexpr std::uint32_t kSeveral = UINT32_MAX;
+
+ private:
+  /// Leaves whose distances are kept at a time: a tag tells them apart.
+  static constexpr int kTagBits = 6;
+  static constexpr std::uint32_t kBatch = 1u << kTagBits;
+  /// One more than the leaves to remember of a point; if more come close, `candidates` looks again.
+  static constexpr std::uint32_t kRoom = 8;
+
+  /// Leaves that are near enough to a box, level by level.
+  /// @return How many.
+  std::uint32_t listLeaves(const simd::f32x4 (&low)[3], const simd::f32x4 (&high)[3], simd::f32x4 limit,
+                           std::uint32_t*& leaves) const noexcept;
+  /// Some leaf whose box is near a point: at each node the nearest child.
+  [[nodiscard]] std::uint32_t leafNear(simd::f32x4 point) const noexcept;
+  /// Searches up to `kBatch` leaves for each of `count` points.
+  void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept;
+  void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
+  /// Searches a leaf for all of `count` points.
+  /// @param place  How many leaves they have been searched for before: triangles of each came within the limit.
+  void searchSeed(std::uint32_t leaf, std::uint32_t place, std::uint32_t count) noexcept;
+
+  const CageTree& tree_;
+  double slack_;      ///< The s of `kRelativeSlack`.
+  float growth_;      ///< 1 + r,
+  float fixedSlack_;  ///< and s² · (1 + 1/r).
+  std::uint32_t lastLeaf_ = 0;
+  const float* positions_ = nullptr;           ///< Of the last search.
+  alignas(16) float points_[kGroup][4];        ///< x, y, z, 0 each, from the middle of the cage.
+  alignas(32) float columns_[3][kGroup] = {};  ///< The same, by axis; any, where points are fewer.
+  alignas(32) float limits_[kGroup];           ///< Squared distance within which a triangle is of interest.
+  std::uint32_t* list_;                        ///< Room for all leaves, and four more.
+  std::uint32_t* otherList_;
+  alignas(16) std::uint32_t nearCount_[kGroup];  ///< From `kRoom` on some may be written over.
+  // Of each point's leaves that had triangles within the limit, as it was then:
+  alignas(32) float squaredDistances_[kRoom][kGroup];    ///< that of the nearest of these triangles,
+  alignas(16) std::uint32_t lanes_[kRoom][kGroup] = {};  ///< which they were, a bit each, below the leaf's index,
+  alignas(16) std::uint32_t foundCount_[kGroup];         ///< how many leaves still have some in the end,
+  alignas(16) std::uint32_t found_[kGroup];              ///< and, if one has, its `lanes_`.
+};
+
+/// Four triangles for rays.
+struct RayLeaf;
+
+/// A ray: r(t) = origin + rest + t · direction.
+struct Ray {
+  /// Axes in a row go x, y, z, x, y: from each of them on the next two follow.
+  static constexpr int kRow = 5;
+  /// The origin in floats, in a row; then what the exact one has beyond them: x, y, z. So four can be loaded from each
+  /// axis on.
+  float place[kRow + 3];
+  const RayDirection* direction;
+  double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
+
+  /// @param position  x, y, z, and a fourth float,
+  /// @param rest      and what the exact origin has beyond them.
+  void startAt(const float* position, const float* rest) noexcept {
+    const simd::f32x4 from = simd::load(position);
+    simd::store(place, from);
+    simd::store(place + 3, from);
+    for (int axis = 0; axis < 3; ++axis) place[kRow + axis] = rest[axis];
+  }
+  [[nodiscard]] double origin(std::uint32_t axis) const noexcept {
+    return static_cast<double>(place[axis]) + static_cast<double>(place[kRow + axis]);
+  }
+};
+
+/// What filters look at of a ray, side by side.
+struct alignas(16) RoughRay {
+  float origin[4];  ///< For leaves: x, y, z of it, from the direction's own z on; the last is any.
+  float offset[4];  ///< For boxes: −origin · inverse.
+  RayDirection::Rough direction;
+
+  /// Not before the ray's end; less than anything once there is no more to find.
+  [[nodiscard]] float end() const noexcept { return direction.inverse[3]; }
+  void endAt(float end) noexcept { direction.inverse[3] = end; }
+};
+
+/// Finds which rays hit a triangle at a distance greater than `from` and up to their end, from either side. Watertight:
+/// a ray through an edge or a corner that triangles share hits at least one of them. A triangle that holds the origin
+/// as a corner is hit at distance 0, exactly; one that holds the whole ray in its plane is not hit.
+///
+/// Many rays go through the tree together: each node is read once for all rays that enter it, which are then listed for
+/// its children. They should come in an order in which neighbours are neighbours in space.
+class HitSearch {
+ public:
+  /// Rays that go together: enough to share nodes, few enough for their lists to stay in the cache.
+  static constexpr std::uint32_t kMostRays = 1792;
+
+  /// Takes what it needs from `arena`; `arena.failed()` tells if that was there.
+  /// @param from  Scaled.
+  HitSearch(const RayTree& tree, double from, Arena& arena) noexcept;
+
+  /// What is asked about a ray.
+  enum class Find : std::uint8_t {
+    any,      ///< Whether it hits anything.
+    nearest,  ///< And at what distance the first: that becomes the ray's end.
+  };
+
+  /// @param rays      Up to `kMostRays`.
+  /// @param[out] hit  1 per ray.
+  void search(Ray* rays, std::uint32_t count, bool* hit, Find find = Find::any) noexcept;
+
+ private:
+  /// Room for lists, of all levels: enough but for odd trees. Where it ends, rays go in smaller parties.
+  static constexpr std::size_t kListRoom = std::size_t{8} * kMostRays;
+  /// From so many rays on, a list is worth being moved.
+  static constexpr std::uint32_t kLong = 256;
+  /// What is left of it for rays that go alone, four lists with room for two at each level: a tree is not that deep.
+  static constexpr std::ptrdiff_t kLastRoom = 8 * 64;
+
+  /// Lists name rays by where in memory they are, from the first on, in halves of their size.
+  static constexpr std::uint32_t kStep = sizeof(RoughRay) / 2;
+  static_assert(kMostRays * kStep <= std::size_t{1} << 16);
+  [[nodiscard]] const RoughRay& roughRay(std::uint16_t ray) const noexcept {
+    return *reinterpret_cast<const RoughRay*>(reinterpret_cast<const char*>(rough_) + std::size_t{2} * ray);
+  }
+
+  void enter(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept;
+  void testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
+                 std::uint32_t (&counts)[4]) const noexcept;
+  void testLeaf(const Node& node, int child, std::uint16_t* rays, std::uint32_t count) noexcept;
+  void decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept;
+
+  const RayTree& tree_;
+  double from_;
+  float boxFrom_;         ///< The same for boxes.
+  float loose_;           ///< Hits beyond this are worth deciding in double,
+  float strict_;          ///< and beyond this they count for sure.
+  float zero_;            ///< 0 if a hit at distance 0 is none, else no number.
+  RoughRay* rough_;       ///< 1 per ray.
+  std::uint16_t* lists_;  ///< `kListRoom`.
+  Ray* rays_ = nullptr;
+  bool* hit_ = nullptr;
+  Find find_ = Find::any;
+};
+
+}  // namespace cagecast
