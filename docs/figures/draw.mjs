@@ -12,7 +12,7 @@ export const kColors = {
 };
 
 const number = (x) => String(Math.round(x * 100) / 100);
-const escape = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');
+const escaped = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');
 const attributes = (values) =>
   Object.entries(values)
     .filter(([, value]) => value !== undefined)
@@ -103,7 +103,7 @@ export function arrow([x0, y0], [x1, y1], color, style = {}) {
 
 /** A line of text; `anchor` is start, middle or end. Text between asterisks is italic. */
 export function text([x, y], content, { color = kColors.text, size = 13, anchor = 'start', bold = false } = {}) {
-  const styled = escape(content).replace(/\*([^*]+)\*/g, '<tspan font-style="italic">$1</tspan>');
+  const styled = escaped(content).replace(/\*([^*]+)\*/g, '<tspan font-style="italic">$1</tspan>');
   const values = { x, y, fill: color, 'font-size': size, 'text-anchor': anchor, 'font-weight': bold ? 600 : undefined };
   return `<text${attributes(values)}>${styled}</text>`;
 }
@@ -137,7 +137,7 @@ export const cross = ([x, y], color, size = 5) =>
 /** A whole figure. Its background is white, so that it can be read on dark pages too. */
 export function figure(width, height, description, parts) {
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" role="img" font-family="system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif">
-<title>${escape(description)}</title>
+<title>${escaped(description)}</title>
 ${rectangle(0, 0, width, height, '#ffffff', { radius: 8 })}
 ${parts.flat(3).join('\n')}
 </svg>
