@@ -1,11 +1,11 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs assets | start | lint | test | bench
+//   node wasm/tools/setup.mjs assets | start | lint | test | bench | docs
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { existsSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, lstatSync, readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
@@ -31,6 +31,7 @@ const kNeeds = {
   'qemu-user': { what: 'QEMU user emulation (qemu-aarch64)', there: command('qemu-aarch64') },
   'g++-aarch64-linux-gnu': { what: 'a C++20 cross compiler for aarch64', there: command('aarch64-linux-gnu-g++') },
   'clang-format': { what: 'clang-format 14', there: command('clang-format') },
+  doxygen: { what: 'Doxygen 1.9', there: command('doxygen') },
   'clang-tidy': { what: 'clang-tidy 14', there: command('clang-tidy') },
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev'];
@@ -54,6 +55,7 @@ const kPurposes = {
   lint: kLint,
   test: kTests,
   bench: [...kTests, 'libembree-dev'],
+  docs: ['doxygen'],
 };
 
 function fail(message) {
@@ -93,6 +95,8 @@ function installSystemPackages(names) {
 }
 
 function installNpmPackages() {
+  // The packages of another checkout, shared by a link as worktrees do: npm ci would empty them.
+  if (lstatSync(`${root}node_modules`, { throwIfNoEntry: false })?.isSymbolicLink()) return;
   const lock = createHash('sha256')
     .update(readFileSync(`${root}package-lock.json`))
     .digest('hex');
