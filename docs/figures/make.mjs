@@ -21,6 +21,8 @@ import {
 } from './draw.mjs';
 
 const { cage, target, cosmetic, occluded, uncovered, culled, faint } = kColors;
+/** Points, from text: x,y x,y … */
+const at = (points) => points.split(' ').map((point) => point.split(',').map(Number));
 const small = { size: 12 };
 const mid = { size: 12, anchor: 'middle' };
 const label = (at, content, color = kColors.text) => text(at, content, { color, size: 13 });
@@ -52,65 +54,19 @@ const weld = () => {
   return figure(700, 190, 'Vertices with equal positions and equal group become one point', [
     title(20, 'In the file'),
     grid(25, 90),
-    [
-      [95, 60],
-      [95, 140],
-      [111, 60],
-      [111, 140],
-    ].map((p) => dot(p, target)),
+    at('95,60 95,140 111,60 111,140').map((p) => dot(p, target)),
     text([103, 172], 'four vertices along a UV seam', mid),
     arrow([205, 95], [245, 95], faint),
     title(270, 'Welded, same group'),
-    polygon(
-      [
-        [275, 90],
-        [345, 60],
-        [345, 140],
-      ],
-      '#eeeeee',
-      { color: target },
-    ),
-    polygon(
-      [
-        [345, 60],
-        [415, 90],
-        [345, 140],
-      ],
-      '#eeeeee',
-      { color: target },
-    ),
-    [
-      [345, 60],
-      [345, 140],
-    ].map((p) => dot(p, cosmetic, 6)),
+    polygon(at('275,90 345,60 345,140'), '#eeeeee', { color: target }),
+    polygon(at('345,60 415,90 345,140'), '#eeeeee', { color: target }),
+    at('345,60 345,140').map((p) => dot(p, cosmetic, 6)),
     text([345, 172], 'two points, one segment', mid),
     title(480, 'Two groups'),
-    polygon(
-      [
-        [490, 90],
-        [560, 60],
-        [560, 140],
-      ],
-      '#eeeeee',
-      { color: target },
-    ),
-    polygon(
-      [
-        [560, 60],
-        [630, 90],
-        [560, 140],
-      ],
-      '#e6dff0',
-      { color: culled },
-    ),
-    [
-      [557, 60],
-      [557, 140],
-    ].map((p) => dot(p, cosmetic, 6)),
-    [
-      [563, 60],
-      [563, 140],
-    ].map((p) => dot(p, culled, 6)),
+    polygon(at('490,90 560,60 560,140'), '#eeeeee', { color: target }),
+    polygon(at('560,60 630,90 560,140'), '#e6dff0', { color: culled }),
+    at('557,60 557,140').map((p) => dot(p, cosmetic, 6)),
+    at('563,60 563,140').map((p) => dot(p, culled, 6)),
     text([560, 172], 'four points, two segments', mid),
   ]);
 };
@@ -134,39 +90,10 @@ const project = () => {
     label([p[0] - 38, p[1] - 38], '*d*'),
     text([20, 203], 'UV(p): blend of the triangle’s UVs at q', small),
     title(380, 'A tie, at a shared edge'),
-    line(
-      [
-        [400, 52],
-        [520, 100],
-        [660, 84],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    line(
-      [
-        [520, 100],
-        [620, 140],
-      ],
-      faint,
-      { dash: '3 5' },
-    ),
-    line(
-      [
-        [520, 100],
-        [400, 113.7],
-      ],
-      faint,
-      { dash: '3 5' },
-    ),
-    line(
-      [
-        [520, 100],
-        [533, 158],
-      ],
-      faint,
-      { dash: '5 4' },
-    ),
+    line(at('400,52 520,100 660,84'), cage, { width: 3 }),
+    line(at('520,100 620,140'), faint, { dash: '3 5' }),
+    line(at('520,100 400,113.7'), faint, { dash: '3 5' }),
+    line(at('520,100 533,158'), faint, { dash: '5 4' }),
     dot([520, 100], cage),
     dot([533, 158], target),
     label([545, 163], '*p*'),
@@ -182,40 +109,14 @@ const project = () => {
 };
 
 const occludedFigure = () => {
-  const gum = [
-    [20, 190],
-    [70, 150],
-    [120, 118],
-    [165, 110],
-    [190, 122],
-    [196, 142],
-    [180, 156],
-    [140, 160],
-    [100, 178],
-    [70, 205],
-  ];
-  const outer = [
-    [14, 140],
-    [70, 92],
-    [140, 62],
-    [215, 70],
-    [300, 130],
-  ];
+  const gum = at('20,190 70,150 120,118 165,110 190,122 196,142 180,156 140,160 100,178 70,205');
+  const outer = at('14,140 70,92 140,62 215,70 300,130');
   return figure(700, 256, 'A self-intersection hides a point; the ray ends a little beyond the cage', [
     title(20, '2 · A tooth behind a lip'),
     curve(outer, cage, { width: 3 }),
     curve(gum, target),
     text([98, 112], 'lip', { ...small, color: target }),
-    curve(
-      [
-        [150, 225],
-        [146, 190],
-        [160, 176],
-        [176, 190],
-        [172, 225],
-      ],
-      target,
-    ),
+    curve(at('150,225 146,190 160,176 176,190 172,225'), target),
     text([184, 215], 'tooth', { ...small, color: target }),
     arrow([160, 176], [163, 74], occluded),
     cross([161, 158], occluded),
@@ -224,76 +125,17 @@ const occludedFigure = () => {
     label([172, 172], '*p*', occluded),
     lines([215, 178], ['The ray meets the target:', 'p is *occluded*.'], small),
     title(370, '2′ · Two legs'),
-    line(
-      [
-        [420, 60],
-        [420, 205],
-      ],
-      target,
-    ),
-    line(
-      [
-        [480, 60],
-        [480, 205],
-      ],
-      target,
-    ),
-    line(
-      [
-        [580, 60],
-        [580, 205],
-      ],
-      target,
-    ),
-    line(
-      [
-        [640, 60],
-        [640, 205],
-      ],
-      target,
-    ),
-    line(
-      [
-        [405, 50],
-        [405, 208],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    line(
-      [
-        [495, 50],
-        [495, 208],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    line(
-      [
-        [565, 50],
-        [565, 208],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    line(
-      [
-        [655, 50],
-        [655, 208],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    line(at('420,60 420,205'), target),
+    line(at('480,60 480,205'), target),
+    line(at('580,60 580,205'), target),
+    line(at('640,60 640,205'), target),
+    line(at('405,50 405,208'), cage, { width: 3 }),
+    line(at('495,50 495,208'), cage, { width: 3 }),
+    line(at('565,50 565,208'), cage, { width: 3 }),
+    line(at('655,50 655,208'), cage, { width: 3 }),
     rectangle(495, 118, 26, 44, occluded, { opacity: 0.15 }),
     arrow([480, 140], [522, 140], cosmetic),
-    line(
-      [
-        [522, 140],
-        [578, 140],
-      ],
-      faint,
-      { dash: '4 4' },
-    ),
+    line(at('522,140 578,140'), faint, { dash: '4 4' }),
     cross([580, 140], faint),
     dot([480, 140], cosmetic),
     label([460, 132], '*p*', cosmetic),
@@ -309,89 +151,25 @@ const occludedFigure = () => {
 const uncoveredFigure = () =>
   figure(700, 230, 'The ray leaves through a hole of the cage; a point slightly outside counts as covered', [
     title(20, '3 · A hole for an eye'),
-    curve(
-      [
-        [20, 170],
-        [70, 120],
-        [120, 96],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    curve(
-      [
-        [220, 92],
-        [270, 112],
-        [325, 165],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    curve(at('20,170 70,120 120,96'), cage, { width: 3 }),
+    curve(at('220,92 270,112 325,165'), cage, { width: 3 }),
     dot([120, 96], cage, 4),
     dot([220, 92], cage, 4),
     circle(170, 160, 44, target),
-    curve(
-      [
-        [20, 200],
-        [80, 140],
-        [128, 118],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [214, 115],
-        [262, 136],
-        [320, 195],
-      ],
-      target,
-    ),
+    curve(at('20,200 80,140 128,118'), target),
+    curve(at('214,115 262,136 320,195'), target),
     arrow([168, 116], [160, 46], uncovered),
     dot([168, 116], uncovered),
     label([178, 112], '*p*', uncovered),
-    line(
-      [
-        [168, 116],
-        [220, 92],
-      ],
-      faint,
-      { dash: '5 4' },
-    ),
+    line(at('168,116 220,92'), faint, { dash: '5 4' }),
     arrow([75, 144], [52, 100], cosmetic),
     dot([75, 144], cosmetic),
     key([200, 44], uncovered, 'no cage hit: *uncovered*'),
     key([20, 64], cosmetic, 'hits the cage'),
     title(380, '3′ · A nose that pokes through'),
-    curve(
-      [
-        [400, 190],
-        [470, 110],
-        [530, 90],
-        [590, 110],
-        [660, 190],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    curve(
-      [
-        [400, 215],
-        [470, 130],
-        [512, 92],
-        [530, 74],
-        [548, 92],
-        [590, 130],
-        [660, 215],
-      ],
-      target,
-    ),
-    line(
-      [
-        [530, 74],
-        [530, 90],
-      ],
-      faint,
-    ),
+    curve(at('400,190 470,110 530,90 590,110 660,190'), cage, { width: 3 }),
+    curve(at('400,215 470,130 512,92 530,74 548,92 590,130 660,215'), target),
+    line(at('530,74 530,90'), faint),
     dot([530, 74], cosmetic),
     label([542, 72], '*p*', cosmetic),
     lines([530, 178], ['outside the cage by at', 'most 0.0025: covered'], mid),
@@ -460,14 +238,7 @@ const segments = () => {
       text([541, 87], 'under the cage', small),
       key([530, 116], uncovered, 'samples inside:'),
       text([541, 133], 'under the hole', small),
-      line(
-        [
-          [526, 160],
-          [548, 160],
-        ],
-        cage,
-        { dash: '6 4' },
-      ),
+      line(at('526,160 548,160'), cage, { dash: '6 4' }),
       text([556, 164], 'boundary loop', small),
       lines(
         [360, 200],
@@ -505,69 +276,13 @@ const score = () => {
     rectangle(292, 224, 12, 8, cosmetic),
     text([310, 233], 'D by depth', small),
     title(430, '5′ · Depth'),
-    curve(
-      [
-        [440, 90],
-        [500, 62],
-        [570, 58],
-        [640, 70],
-        [685, 92],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    curve(
-      [
-        [440, 106],
-        [490, 84],
-        [530, 76],
-        [548, 90],
-        [542, 110],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [604, 112],
-        [598, 92],
-        [612, 78],
-        [650, 88],
-        [685, 108],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [552, 200],
-        [556, 158],
-        [572, 140],
-        [588, 158],
-        [592, 200],
-      ],
-      target,
-    ),
-    line(
-      [
-        [520, 78],
-        [519, 62],
-      ],
-      cosmetic,
-    ),
-    line(
-      [
-        [628, 81],
-        [630, 68],
-      ],
-      cosmetic,
-    ),
-    line(
-      [
-        [572, 140],
-        [571, 59],
-      ],
-      occluded,
-      { dash: '4 3' },
-    ),
+    curve(at('440,90 500,62 570,58 640,70 685,92'), cage, { width: 3 }),
+    curve(at('440,106 490,84 530,76 548,90 542,110'), target),
+    curve(at('604,112 598,92 612,78 650,88 685,108'), target),
+    curve(at('552,200 556,158 572,140 588,158 592,200'), target),
+    line(at('520,78 519,62'), cosmetic),
+    line(at('628,81 630,68'), cosmetic),
+    line(at('572,140 571,59'), occluded, { dash: '4 3' }),
     dot([520, 78], cosmetic),
     dot([628, 81], cosmetic),
     dot([572, 140], occluded),
@@ -581,43 +296,13 @@ const score = () => {
 const holeContents = () =>
   figure(700, 240, 'A small part that a hole of the cage is meant for', [
     title(20, '5″ · Bare: the cage is a little aside'),
-    curve(
-      [
-        [20, 150],
-        [80, 108],
-        [150, 90],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    curve(
-      [
-        [222, 88],
-        [270, 104],
-        [330, 150],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    curve(at('20,150 80,108 150,90'), cage, { width: 3 }),
+    curve(at('222,88 270,104 330,150'), cage, { width: 3 }),
     dot([150, 90], cage, 4),
     dot([222, 88], cage, 4),
     circle(168, 150, 40, target),
-    curve(
-      [
-        [20, 190],
-        [80, 150],
-        [124, 124],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [212, 122],
-        [262, 146],
-        [325, 190],
-      ],
-      target,
-    ),
+    curve(at('20,190 80,150 124,124'), target),
+    curve(at('212,122 262,146 325,190'), target),
     line(
       Array.from({ length: 12 }, (_, i) => [
         168 + 40 * Math.cos(-2.4 + i * 0.09),
@@ -640,52 +325,15 @@ const holeContents = () =>
       small,
     ),
     title(380, '5″ · Hidden: behind glasses'),
-    curve(
-      [
-        [400, 150],
-        [450, 108],
-        [490, 94],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    curve(
-      [
-        [590, 94],
-        [630, 108],
-        [680, 150],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    curve(at('400,150 450,108 490,94'), cage, { width: 3 }),
+    curve(at('590,94 630,108 680,150'), cage, { width: 3 }),
     dot([490, 94], cage, 4),
     dot([590, 94], cage, 4),
-    line(
-      [
-        [470, 76],
-        [610, 76],
-      ],
-      target,
-      { width: 4 },
-    ),
+    line(at('470,76 610,76'), target, { width: 4 }),
     text([616, 72], 'lens', small),
     circle(540, 150, 40, target),
-    curve(
-      [
-        [400, 190],
-        [450, 150],
-        [494, 124],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [586, 122],
-        [632, 146],
-        [680, 190],
-      ],
-      target,
-    ),
+    curve(at('400,190 450,150 494,124'), target),
+    curve(at('586,122 632,146 680,190'), target),
     line(
       Array.from({ length: 18 }, (_, i) => [
         540 + 40 * Math.cos(-2.2 + i * 0.075),
@@ -709,17 +357,7 @@ const recheck = () => {
   const seen = new Set([14, 28]);
   return figure(700, 250, 'Occluded points that the cage sees from another direction are recovered', [
     title(20, '6 · Twelve directions'),
-    curve(
-      [
-        [20, 108],
-        [90, 62],
-        [170, 50],
-        [250, 62],
-        [325, 108],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    curve(at('20,108 90,62 170,50 250,62 325,108'), cage, { width: 3 }),
     curve(
       [
         [20, 140],
@@ -787,61 +425,15 @@ const recheck = () => {
 const holes = () =>
   figure(700, 240, 'Uncovered points are recovered unless the hole is meant for them', [
     title(20, '7 · A lid over an explained hole'),
-    curve(
-      [
-        [20, 140],
-        [70, 104],
-        [130, 88],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    curve(
-      [
-        [236, 88],
-        [280, 102],
-        [330, 140],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    curve(at('20,140 70,104 130,88'), cage, { width: 3 }),
+    curve(at('236,88 280,102 330,140'), cage, { width: 3 }),
     dot([130, 88], cage, 4),
     dot([236, 88], cage, 4),
     circle(183, 160, 42, culled),
-    curve(
-      [
-        [20, 176],
-        [80, 132],
-        [130, 112],
-        [152, 112],
-        [150, 122],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [214, 122],
-        [214, 112],
-        [240, 112],
-        [282, 132],
-        [326, 176],
-      ],
-      target,
-    ),
-    line(
-      [
-        [130, 88],
-        [130, 70],
-      ],
-      faint,
-    ),
-    line(
-      [
-        [152, 112],
-        [152, 70],
-      ],
-      faint,
-    ),
+    curve(at('20,176 80,132 130,112 152,112 150,122'), target),
+    curve(at('214,122 214,112 240,112 282,132 326,176'), target),
+    line(at('130,88 130,70'), faint),
+    line(at('152,112 152,70'), faint),
     arrow([141, 75], [131, 75], target, { width: 1 }),
     arrow([141, 75], [151, 75], target, { width: 1 }),
     text([141, 64], 'h', mid),
@@ -849,56 +441,14 @@ const holes = () =>
     lines([183, 160], ['eyeball,', 'culled'], { ...mid, color: culled }),
     lines([20, 220], ['h ≤ 0.03, and an eyeball explains the hole.'], small),
     title(380, 'The cut at a neck is obeyed'),
-    line(
-      [
-        [440, 60],
-        [440, 132],
-      ],
-      cage,
-      { width: 3 },
-    ),
-    line(
-      [
-        [640, 60],
-        [640, 132],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    line(at('440,60 440,132'), cage, { width: 3 }),
+    line(at('640,60 640,132'), cage, { width: 3 }),
     dot([440, 132], cage, 4),
     dot([640, 132], cage, 4),
-    curve(
-      [
-        [456, 50],
-        [458, 90],
-        [456, 132],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [624, 50],
-        [622, 90],
-        [624, 132],
-      ],
-      target,
-    ),
-    curve(
-      [
-        [456, 132],
-        [450, 165],
-        [410, 195],
-      ],
-      uncovered,
-    ),
-    curve(
-      [
-        [624, 132],
-        [630, 165],
-        [672, 195],
-      ],
-      uncovered,
-    ),
+    curve(at('456,50 458,90 456,132'), target),
+    curve(at('624,50 622,90 624,132'), target),
+    curve(at('456,132 450,165 410,195'), uncovered),
+    curve(at('624,132 630,165 672,195'), uncovered),
     dot([452, 160], uncovered),
     dot([629, 160], uncovered),
     text([540, 100], 'neck', mid),
@@ -932,99 +482,42 @@ const triangles = () => {
 };
 
 const seams = () => {
-  const atlas = (x, content) => [
+  const texture = (x, content) => [
     rectangle(x, 60, 150, 130, '#f7fafd', { color: faint }),
     text([x + 75, 54], 'texture', mid),
     content,
   ];
-  const left = [
-    [0, 0],
-    [52, 0],
-    [52, 110],
-    [0, 110],
-  ];
+  const left = at('0,0 52,0 52,110 0,110');
   const chart = (x, y, fill) =>
     polygon(
       left.map(([u, v]) => [x + u, y + v]),
       fill,
       { color: cage },
     );
-  const corners = [
-    [70, 96],
-    [70, 150],
-    [142, 120],
-  ];
+  const corners = at('70,96 70,150 142,120');
   return figure(700, 225, 'A triangle across a seam of the texture gets UVs per corner', [
     title(20, '9 · On the target'),
-    polygon(
-      [
-        [30, 70],
-        [106, 70],
-        [106, 190],
-        [30, 190],
-      ],
-      '#e9f1fa',
-      { color: faint },
-    ),
-    polygon(
-      [
-        [106, 70],
-        [182, 70],
-        [182, 190],
-        [106, 190],
-      ],
-      '#fdf1e0',
-      { color: faint },
-    ),
-    line(
-      [
-        [106, 70],
-        [106, 190],
-      ],
-      cage,
-      { width: 3 },
-    ),
+    polygon(at('30,70 106,70 106,190 30,190'), '#e9f1fa', { color: faint }),
+    polygon(at('106,70 182,70 182,190 106,190'), '#fdf1e0', { color: faint }),
+    line(at('106,70 106,190'), cage, { width: 3 }),
     polygon(corners, '#bfe3c8', { color: target, opacity: 0.8 }),
     corners.map((p, i) => dot(p, i === 2 ? uncovered : cosmetic)),
     text([106, 210], 'a seam runs through it', mid),
     title(240, 'UVs per vertex'),
-    atlas(240, [
+    texture(240, [
       chart(248, 70, '#e9f1fa'),
       chart(330, 70, '#fdf1e0'),
-      polygon(
-        [
-          [285, 92],
-          [285, 142],
-          [352, 118],
-        ],
-        occluded,
-        { opacity: 0.35, color: occluded },
-      ),
-      [
-        [285, 92],
-        [285, 142],
-      ].map((p) => dot(p, cosmetic)),
+      polygon(at('285,92 285,142 352,118'), occluded, { opacity: 0.35, color: occluded }),
+      at('285,92 285,142').map((p) => dot(p, cosmetic)),
       dot([352, 118], uncovered),
     ]),
-    text([315, 210], 'smeared over the atlas'.replace('atlas', 'texture'), mid),
+    text([315, 210], 'smeared over the texture', mid),
     title(470, 'UVs per corner'),
-    atlas(470, [
+    texture(470, [
       chart(478, 70, '#e9f1fa'),
       chart(560, 70, '#fdf1e0'),
-      polygon(
-        [
-          [505, 92],
-          [505, 142],
-          [530, 116],
-        ],
-        cosmetic,
-        { opacity: 0.5, color: cosmetic },
-      ),
-      [
-        [505, 92],
-        [505, 142],
-        [530, 116],
-      ].map((p) => dot(p, cosmetic)),
+      polygon(at('505,92 505,142 530,116'), cosmetic, { opacity: 0.5, color: cosmetic }),
+      at('505,92 505,142 530,116').map((p) => dot(p, cosmetic)),
     ]),
     lines([545, 208], ['all three projected onto the part of', 'one chart that is near'], { ...mid, size: 11 }),
   ]);
