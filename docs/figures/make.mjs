@@ -1,7 +1,7 @@
-// Draws the figures of the documentation: node docs/figures/make.mjs
+// Draws the figures of the documentation: node docs/figures/make.mjs [--check]
 // Cross-sections, unless a caption says otherwise: the cage is a blue line, the target a grey one.
 
-import { writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { architecture } from './architecture.mjs';
 import {
@@ -581,5 +581,11 @@ const figures = {
   borders: borders(),
   architecture: architecture(),
 };
-for (const [name, svg] of Object.entries(figures))
-  writeFileSync(fileURLToPath(new URL(`${name}.svg`, import.meta.url)), svg);
+// With --check nothing is written; what differs is named.
+const isCheck = process.argv.includes('--check');
+for (const [name, svg] of Object.entries(figures)) {
+  const file = fileURLToPath(new URL(`${name}.svg`, import.meta.url));
+  if (!isCheck) writeFileSync(file, svg);
+  else if (!existsSync(file) || readFileSync(file, 'utf8') !== svg)
+    console.log(`docs/figures/${name}.svg is stale: node docs/figures/make.mjs`);
+}

@@ -121,6 +121,19 @@ describe('lint', () => {
     assertFails('limits', root, /list\.cpp has 451 lines/);
   });
 
+  const pages: Record<string, [text: string, message: RegExp]> = {
+    'links to a page that is not there': ['[gone](gone.md)\n', /links to gone\.md/],
+    'links to a heading that is not there': ['# Here\n\n[there](#there)\n', /no such heading/],
+    'names a file that is not there': ['See `core/src/steps/gone.cpp`.\n', /names core\/src\/steps\/gone\.cpp/],
+    'uses a word that was given up': ['The rims of the cage.\n', /says "rims"; say boundary loop/],
+    'is too long': ['\n'.repeat(151), /README\.md has 151 lines/],
+  };
+  for (const [what, [text, message]] of Object.entries(pages)) {
+    test(`fails where the README ${what}`, () => {
+      assertFails('docs', treeOf(what.replace(/\W/g, '-'), { 'README.md': text }), message);
+    });
+  }
+
   const generator = 'wasm/tools/generate.mjs';
   test('fails where a generated file is stale', {
     skip: !existsSync(join(repository, generator)) && 'no generator',

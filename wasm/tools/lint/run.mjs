@@ -1,7 +1,7 @@
 // Checks how the sources look: `npm run lint`, and the first thing that `npm test` does.
 //
 //   node wasm/tools/lint/run.mjs [step …] [--root FOLDER]
-//     step      arrows, limits, generated, format, biome, tidy; all of them if none is named
+//     step      arrows, limits, generated, docs, format, biome, tidy; all of them if none is named
 //     --root    another tree than this repository, such as a test's
 
 import { execFile } from 'node:child_process';
@@ -10,6 +10,7 @@ import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { checkArrows } from './arrows.mjs';
+import { checkDocs } from './docs.mjs';
 import { isCpp, listFiles } from './files.mjs';
 import { checkLimits } from './limits.mjs';
 import { checkTidy } from './tidy.mjs';
@@ -43,6 +44,7 @@ const kSteps = {
     const generate = join(root, 'wasm/tools/generate.mjs');
     return existsSync(generate) ? problemsOf(root, process.execPath, generate, '--check') : [];
   },
+  docs: (root, files) => checkDocs(root, files),
   format: (root, files) => {
     const sources = files.filter(isCpp).filter((file) => !file.endsWith('.def'));
     return sources.length > 0 ? problemsOf(root, 'clang-format', '--dry-run', '-Werror', ...sources) : [];
