@@ -37,10 +37,12 @@ function expand({ names, body }, values) {
       .replace(/^toggle$/, 'bool'),
   );
   const code = typed.replace(/\b\w+\b/g, (word) => valueOf[word] ?? word);
-  if (/^\w+\.|\boptions\./.test(code) || !valueOf.text) return code;
-  const range =
-    valueOf.range && valueOf.range !== '(false, true)' ? ` Range ${valueOf.range.replace(', ', '..')}.` : '';
-  return `${code}  ///< ${valueOf.text.slice(1, -1)}${/^\(\w+(, \w+)+\)$/.test(valueOf.range ?? '') ? '' : range}`;
+  if (/\boptions\./.test(code)) return code;
+  const [least, most] = (valueOf.range ?? '').slice(1, -1).split(', ');
+  const range = /^(share|length)$/.test(valueOf.kind)
+    ? ` Range ${least} to ${most}.`.replace(/(\d)f/g, '$1').replace('kInfinity', 'infinity')
+    : '';
+  return `${code}  ///< ${valueOf.text.slice(1, -1)}${range}`;
 }
 
 const text = readFileSync(process.argv[2], 'utf8').replace(
