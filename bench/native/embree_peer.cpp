@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/cpu_clock.hpp"
+#include "base/timer.hpp"
 #include "peer.hpp"
 #include "pipeline.hpp"
 

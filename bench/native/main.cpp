@@ -62,7 +62,7 @@ Arguments parse(int argc, char** argv) {
       const std::string_view preset = value();
       if (preset != "paper" && preset != "default")
         stop(2, "no preset \"" + std::string(preset) + "\"; there are: paper, default");
-      arguments.options = preset == "paper" ? TransferOptions::paper() : TransferOptions::standard();
+      arguments.options = preset == "paper" ? TransferOptions::paper() : TransferOptions{};
     } else if (argument == "--seams") {
       const std::string_view text = value();
       if (text != "vertex" && text != "corner")
@@ -97,19 +97,20 @@ class OtherPreset : public Peer {
  public:
   explicit OtherPreset(const TransferOptions& options) : options_(options) {}
   Timings run(const MeshView& cage, const MeshView& target) override {
-    if (const Status status = transfer(cage, target, options_, result_); !status.ok())
+    if (const Status status = transfer(cage, target, options_, workspace_, result_); !status.ok())
       stop(1, describe(status, cage, target));
     return result_.projection.timings;
   }
 
  private:
   TransferOptions options_;
+  Workspace workspace_;
   TransferResult result_;
 };
 
 std::unique_ptr<Peer> makePeer(const std::string& name) {
   if (name == "paper") return std::make_unique<OtherPreset>(TransferOptions::paper());
-  if (name == "default") return std::make_unique<OtherPreset>(TransferOptions::standard());
+  if (name == "default") return std::make_unique<OtherPreset>(TransferOptions{});
   if (name == "nanoflann") return bench::makeNanoflannPeer();
   if (name != "embree") stop(2, "no peer \"" + name + "\"; there are: embree, nanoflann, paper, default");
   std::unique_ptr<Peer> peer = bench::makeEmbreePeer();
@@ -272,9 +273,10 @@ int main(int argc, char** argv) {
   const MeshView target = model.target.view();
 
   pinToOneCore();
+  Workspace workspace;
   TransferResult result;
   const auto runOurs = [&] {
-    if (const Status status = transfer(cage, target, arguments.options, result); !status.ok())
+    if (const Status status = transfer(cage, target, arguments.options, workspace, result); !status.ok())
       stop(1, describe(status, cage, target));
     return result.projection.timings;
   };

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "base/cpu_clock.hpp"
+#include "base/timer.hpp"
 #include "peer.hpp"
 #include "pipeline.hpp"
 

@@ -4,19 +4,13 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/cpu_clock.hpp"
+#include "base/timer.hpp"
 #include "input/validate.hpp"
 #include "seams/corner_uvs.hpp"
 #include "steps/steps.hpp"
 
 namespace cagecast {
 namespace {
-
-#ifdef __wasm__  // One thread, which does not end: nothing to make for each, or to clean up.
-[[clang::no_destroy]] constinit Arena arena;
-#else
-thread_local Arena arena;
-#endif
 
 constexpr Status kOutOfMemory{Code::outOfMemory};
 
@@ -30,7 +24,7 @@ struct Scene {
   BoundaryLoops loops;
 };
 
-bool takeResults(std::uint32_t count, const ProjectOptions& options, PointResults& results) {
+bool takeResults(std::uint32_t count, const TransferOptions& options, Arena& arena, PointResults& results) {
   if (std::isfinite(options.occlusionReach)) results.cageDistances = arena.allocate<double>(count);
   results.uvs = arena.allocate<float>(std::size_t{2} * count);
   results.distances = arena.allocate<float>(count);
@@ -42,8 +36,8 @@ bool takeResults(std::uint32_t count, const ProjectOptions& options, PointResult
 }
 
 /// Steps 1 to 3: where points lie on the cage, and what lies over them.
-bool judge(const Points& points, const Scene& scene, const ProjectOptions& options, PointResults& results,
-           Timings& timings, StopWatch& watch) {
+bool judge(const Points& points, const Scene& scene, const TransferOptions& options, Arena& arena,
+           PointResults& results, Timings& timings, StopWatch& watch) {
   const auto& [units, cage, cageTree, targetTree, halfEdges, loops] = scene;
   if (!projectPoints(points, cage, cageTree, units, arena, results)) return false;
   timings.project += watch.lap();
@@ -88,18 +82,18 @@ bool writeOut(const Points& points, const Cage& cage, const Units& units, const 
 }
 
 /// Steps 6 and 7: what brings each point back if its segment passes, handed to its vertices.
-bool findRecovery(const Points& points, const Scene& scene, const ProjectOptions& options, const PointResults& results,
-                  const PointAreas& areas, std::uint32_t vertexCount, Projection& out, StopWatch& watch) {
+bool findRecovery(const Points& points, const Scene& scene, const TransferOptions& options, const PointResults& results,
+                  const PointAreas& areas, std::uint32_t vertexCount, Arena& arena, Projection& out, StopWatch& watch) {
   const auto& [units, cage, cageTree, targetTree, halfEdges, loops] = scene;
   auto* recovery = arena.allocate<std::uint32_t>(points.count);
   if (arena.failed() || !out.recovery.reset(vertexCount)) return false;
   std::fill(recovery, recovery + points.count, Recovery::never);
-  if (options.secondLook && !recheckOccluded(points, cage, cageTree, targetTree, units, results, areas,
-                                             out.segmentStats, options, arena, recovery)) {
+  if (options.steps.secondLook && !recheckOccluded(points, cage, cageTree, targetTree, units, results, areas,
+                                                   out.segmentStats, options, arena, recovery)) {
     return false;
   }
   out.timings.secondLook = watch.lap();
-  if (options.holes &&
+  if (options.steps.holes &&
       !assignHoles(points, cage, loops, units, results, areas, out.segmentStats, arena, recovery, out.holeShares)) {
     return false;
   }
@@ -110,32 +104,35 @@ bool findRecovery(const Points& points, const Scene& scene, const ProjectOptions
 
 }  // namespace
 
-Status project(const MeshView& cageMesh, const MeshView& targetMesh, const ProjectOptions& options,
-               Projection& out) noexcept {
+Status project(const MeshView& cageMesh, const MeshView& targetMesh, const TransferOptions& options,
+               Workspace& workspace, Projection& out) noexcept {
   StopWatch watch;
-  arena.begin();
+  Arena* const memory = workspace.restart();
+  if (memory == nullptr) return kOutOfMemory;
+  Arena& arena = *memory;
   out.timings = {};
   const auto vertexCount = static_cast<std::uint32_t>(targetMesh.positions.size() / 3);
 
   Scene scene;
   Units& units = scene.units;
   Cage& cage = scene.cage;
-  if (const Status status = checkInput(cageMesh, targetMesh, options, units); !status.ok()) return status;
+  if (const Status status = checkOptions(options, Stage::project); !status.ok()) return status;
+  if (const Status status = checkMeshes(cageMesh, targetMesh, units); !status.ok()) return status;
   if (!gatherCage(cageMesh, units, arena, cage)) return kOutOfMemory;
   if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
   Points points;
   if (!weld(targetMesh, units, options.weldTolerance, arena, points)) return kOutOfMemory;
   PointResults results;
-  if (!takeResults(points.count, options, results)) return kOutOfMemory;
+  if (!takeResults(points.count, options, arena, results)) return kOutOfMemory;
   out.timings.weld = watch.lap();
 
-  const bool isFiltered = options.projection == ProjectionMode::nearestPoint;
+  const bool isFiltered = options.steps.projection == ProjectionMode::nearestPoint;
   if (!isFiltered) {
     if (!projectToVertices(cageMesh, points, cage, units, arena, results)) return kOutOfMemory;
     out.timings.project = watch.lap();
   } else {
     const bool needsLoops =
-        options.pokeThrough > 0 || options.interiorSamples || options.depthWeighting || options.holes;
+        options.pokeThrough > 0 || options.steps.interiorSamples || options.steps.depthWeighting || options.steps.holes;
     const bool asksForEdges = needsLoops || options.seams == Seams::corner;
     if (!buildCageTree(cage, units, arena, scene.cageTree) ||
         !buildTargetTree(points, units, arena, scene.targetTree) ||
@@ -144,24 +141,24 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
       return kOutOfMemory;
     }
     out.timings.build = watch.lap();
-    if (!judge(points, scene, options, results, out.timings, watch)) return kOutOfMemory;
+    if (!judge(points, scene, options, arena, results, out.timings, watch)) return kOutOfMemory;
   }
 
   if (!findSegments(points, vertexCount, targetMesh.groups, arena, results, out.segmentStats)) return kOutOfMemory;
   InteriorSamples samples;
-  if (isFiltered && options.interiorSamples) {
+  if (isFiltered && options.steps.interiorSamples) {
     if (!findInteriorSamples(points, scene.loops, units, results, out.segmentStats, options, arena, samples) ||
-        !takeResults(samples.points.count, options, samples.results)) {
+        !takeResults(samples.points.count, options, arena, samples.results)) {
       return kOutOfMemory;
     }
     Timings ofVoters;
     StopWatch voterWatch;
-    if (samples.count > 0 && !judge(samples.points, scene, options, samples.results, ofVoters, voterWatch))
+    if (samples.count > 0 && !judge(samples.points, scene, options, arena, samples.results, ofVoters, voterWatch))
       return kOutOfMemory;
   }
   PointAreas areas;
   if (!addUpAreas(points, samples, units, results, arena, areas, out.segmentStats)) return kOutOfMemory;
-  if (isFiltered && options.depthWeighting &&
+  if (isFiltered && options.steps.depthWeighting &&
       (!findDepthWeightedAreas(points, cage, scene.halfEdges, samples, areas, units, results, arena,
                                out.segmentStats) ||
        !findTwins(points, results, arena, out.segmentStats))) {
@@ -171,12 +168,12 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   out.timings.segments = watch.lap();
 
   if (!out.recovery.reset(0) || !out.holeShares.reset(0)) return kOutOfMemory;
-  if (isFiltered && (options.secondLook || options.holes) &&
-      !findRecovery(points, scene, options, results, areas, vertexCount, out, watch)) {
+  if (isFiltered && (options.steps.secondLook || options.steps.holes) &&
+      !findRecovery(points, scene, options, results, areas, vertexCount, arena, out, watch)) {
     return kOutOfMemory;
   }
 
-  const bool atCorners = options.seams == Seams::corner && options.projection == ProjectionMode::nearestPoint;
+  const bool atCorners = options.seams == Seams::corner && options.steps.projection == ProjectionMode::nearestPoint;
   if (!out.cornerUvs.reset(atCorners ? 2 * targetMesh.indices.size() : 0)) return kOutOfMemory;
   if (atCorners && !findCornerUvs(targetMesh, points, cage, scene.halfEdges, scene.cageTree, units, results, arena,
                                   out.cornerUvs.data()))
@@ -192,24 +189,24 @@ Status project(const MeshView& cageMesh, const MeshView& targetMesh, const Proje
   return {};
 }
 
-Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options,
+Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                 TransferResult& out) noexcept {
-  if (const Status status = checkClassifyOptions(options); !status.ok()) return status;
+  if (const Status status = checkOptions(options); !status.ok()) return status;
   Projection& projection = out.projection;
-  if (const Status status = project(cage, target, options, projection); !status.ok()) return status;
+  if (const Status status = project(cage, target, options, workspace, projection); !status.ok()) return status;
   StopWatch watch;
   if (const Status status = classify(projection.view(), target.indices, options, out.zones); !status.ok()) {
     return status;
   }
-  for (std::size_t s = 0; s < projection.segmentStats.size(); ++s)
-    projection.segmentStats[s].culled = out.zones.culledSegments[s] != 0;
+  for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) {
+    projection.segmentStats[s].culledBy = out.zones.culledBy[s];
+    projection.segmentStats[s].score = out.zones.scores[s];
+  }
   projection.timings.classify = watch.lap();
   projection.timings.total += projection.timings.classify;
-  projection.peakBytes += out.zones.zones.size() + out.zones.cosmeticTriangles.size() +
-                          out.zones.culledSegments.size() + out.zones.scores.size() * sizeof(double);
+  projection.peakBytes += out.zones.zones.size() + out.zones.cosmeticTriangles.size() + out.zones.culledBy.size() +
+                          out.zones.scores.size() * sizeof(double);
   return {};
 }
-
-void releaseArena() noexcept { arena.release(); }
 
 }  // namespace cagecast

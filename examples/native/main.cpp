@@ -11,8 +11,9 @@ int main() {
   const cagecast::MeshView cage{.positions = cagePositions, .indices = cageIndices, .uvs = cageUvs};
   const cagecast::MeshView square{.positions = squarePositions, .indices = squareIndices};
 
+  cagecast::Workspace workspace;
   cagecast::TransferResult result;
-  if (const auto status = cagecast::transfer(cage, square, {}, result); !status.ok()) {
+  if (const auto status = cagecast::transfer(cage, square, {}, workspace, result); !status.ok()) {
     return std::fprintf(stderr, "%s\n", cagecast::describe(status, cage, square).c_str()), 1;
   }
   for (std::size_t v = 0; v < 4; ++v) {

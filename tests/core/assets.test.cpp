@@ -16,7 +16,7 @@ TEST_CASE("the answer is the reference's on real models", "[assets]") {
         const std::string name = folder.filename().string() + "/" + file.filename().string() +
                                  (grouped ? ", parts apart" : ", welded across parts");
         for (const bool isPreset : {false, true}) {
-          TransferOptions options = isPreset ? TransferOptions::standard() : TransferOptions::paper();
+          TransferOptions options = isPreset ? TransferOptions{} : TransferOptions::paper();
           options.seams = Seams::vertex;  // They have tests of their own.
           const reference::Differences found = requireSameAsReference(name, cage.view(), view, options);
           std::cout << name << (isPreset ? ", default" : ", paper") << ": " << found.total() << " differences at "

@@ -138,7 +138,7 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
     const bool isHidden = std::all_of(corners.begin(), corners.end(),
                                       [&](std::uint32_t v) { return result.zones.zones[v] == Zone::occluded; });
     const bool fails = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t v) {
-      return result.zones.culledSegments[result.projection.segments[v]] != 0;
+      return result.projection.segmentStats[result.projection.segments[v]].culled();
     });
     takesPart[t] = !isHidden && !fails && length(areaOf(target, cut.origins[t])) > 0;
   }
@@ -240,7 +240,7 @@ TEST_CASE("cut borders follow the projected loops of strewn triangles", "[border
     scenes::Scene scene = scenes::strewn(seed, 40);
     INFO("CAGECAST_SEED=" << seed);
     TransferOptions options = cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner);
-    options.floor = Floor::none;
+    options.steps.floor = Floor::none;
     options.threshold = 0;
     const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), options);
     CHECK(found.mostOff <= kTolerance);
@@ -323,7 +323,7 @@ TEST_CASE("a target is as it was where the cage has neither holes nor seams", "[
 TEST_CASE("nothing is cut where only vertices of the cage count", "[borders]") {
   const scenes::Scene scene = scenes::head(8);
   TransferOptions options = cutting();
-  options.projection = ProjectionMode::nearestVertex;
+  options.steps.projection = ProjectionMode::nearestVertex;
   CHECK(cutOf(scene.cage.view(), scene.target.view(), options).sources.empty());
 }
 
@@ -332,13 +332,13 @@ TEST_CASE("a result of another target is refused", "[borders]") {
   const TransferResult result = transferred(scene.cage.view(), scene.target.view(), cutting());
   const MeshView cage = scene.cage.view(), other = scene.cage.view();
   CutTarget cut;
-  const auto codeOf = [&](const MeshView& target, const DecidedView& decided) {
-    return cutBorders(cage, target, cutting(), decided, cut).code;
+  const auto codeOf = [&](const DecidedTarget& target) {
+    return cutBorders(cage, target, cutting(), testWorkspace(), cut).code;
   };
-  CHECK(codeOf(other, {result.zones.zones, result.projection.segments, result.zones.culledSegments}) ==
-        Code::resultMismatch);
-  CHECK(codeOf(scene.target.view(), {result.zones.zones, result.projection.segments, {}}) == Code::resultMismatch);
-  CHECK(codeOf(scene.target.view(), {result.zones.zones, {}, result.zones.culledSegments}) == Code::resultMismatch);
+  const auto& [projection, zones] = result;
+  CHECK(codeOf({other, zones.zones, projection.segments, zones.culledBy}) == Code::resultMismatch);
+  CHECK(codeOf({scene.target.view(), zones.zones, projection.segments, {}}) == Code::resultMismatch);
+  CHECK(codeOf({scene.target.view(), zones.zones, {}, zones.culledBy}) == Code::resultMismatch);
 }
 
 TEST_CASE("a result of another target with as many vertices cuts what that says", "[borders]") {

@@ -12,10 +12,17 @@
 /// What several tests ask.
 namespace cagecast {
 
+/// Of all tests: so that each of them also tests whether a call finds anything of the one before.
+inline Workspace& testWorkspace() {
+  static Workspace workspace;
+  return workspace;
+}
+
 /// Transfers valid meshes.
-inline TransferResult transferred(const MeshView& cage, const MeshView& target, const TransferOptions& options = {}) {
+inline TransferResult transferred(const MeshView& cage, const MeshView& target,
+                                  const TransferOptions& options = TransferOptions::paper()) {
   TransferResult result;
-  const Status status = transfer(cage, target, options, result);
+  const Status status = transfer(cage, target, options, testWorkspace(), result);
   INFO(describe(status, cage, target));
   REQUIRE(status.ok());
   return result;
@@ -24,7 +31,8 @@ inline TransferResult transferred(const MeshView& cage, const MeshView& target, 
 /// Requires the library to give the reference's answer at every vertex where that is stable.
 /// @return How the two compare, for the share of unstable vertices.
 inline reference::Differences requireSameAsReference(const std::string& name, const MeshView& cage,
-                                                     const MeshView& target, const TransferOptions& options = {}) {
+                                                     const MeshView& target,
+                                                     const TransferOptions& options = TransferOptions::paper()) {
   const TransferResult product = transferred(cage, target, options);
   const reference::Differences found = compare(reference::transfer(cage, target, options), product, target);
   INFO(name << ": " << found.vertices << " vertices, " << found.unstable << " unstable\n" << found.details);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cagecast/borders.hpp"
+#include "cagecast/clip.hpp"
 #include "checks.hpp"
 #include "reference_scene.hpp"
 
@@ -9,7 +9,7 @@ namespace cagecast {
 
 /// The preset `default`.
 inline TransferOptions cutting(Seams seams = Seams::corner) {
-  TransferOptions options = TransferOptions::standard();
+  TransferOptions options = TransferOptions{};
   options.seams = seams;
   return options;
 }
@@ -18,8 +18,8 @@ inline TransferOptions cutting(Seams seams = Seams::corner) {
 inline CutTarget cutOf(const MeshView& cage, const MeshView& target, const TransferOptions& options,
                        const TransferResult& result) {
   CutTarget cut;
-  const Status status = cutBorders(cage, target, options,
-                                   {result.zones.zones, result.projection.segments, result.zones.culledSegments}, cut);
+  const DecidedTarget decided{target, result.zones.zones, result.projection.segments, result.zones.culledBy};
+  const Status status = cutBorders(cage, decided, options, testWorkspace(), cut);
   INFO(describe(status, cage, target));
   REQUIRE(status.ok());
   return cut;

@@ -48,7 +48,7 @@ TEST_CASE("the answer is the reference's with nothing but single triangles", "[e
     for (std::uint32_t i = 0; i < apart.vertexCount(); i += 3) apart.addTriangle(i, i + 1, i + 2);
     INFO("CAGECAST_SEED=" << seed);
     for (const float threshold : {0.0f, 0.3f, 0.5f, 1.0f}) {
-      TransferOptions options;
+      TransferOptions options = TransferOptions::paper();
       options.threshold = threshold;
       requireSameAsReference(scene.name, scene.cage.view(), apart.view(), options);
     }
@@ -88,7 +88,7 @@ TEST_CASE("the answer is the reference's when vertices are welded within a toler
     scenes::Scene scene = scenes::head(10);
     scenes::Random random(seed);
     for (float& x : scene.target.positions) x += random.between(-1e-6f, 1e-6f);
-    TransferOptions options;
+    TransferOptions options = TransferOptions::paper();
     options.weldTolerance = 1e-4f;
     INFO("CAGECAST_SEED=" << seed);
     requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);

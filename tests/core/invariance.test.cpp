@@ -117,7 +117,7 @@ TEST_CASE("the same call gives the same bits again, whatever was called in betwe
   const TransferResult first = transferred(small.cage.view(), small.target.view());
   (void)transferred(large.cage.view(), large.target.view());
   const TransferResult second = transferred(small.cage.view(), small.target.view());
-  releaseArena();
+  testWorkspace().release();
   const TransferResult third = transferred(small.cage.view(), small.target.view());
   for (const TransferResult* again : {&second, &third}) {
     CHECK(copied(again->zones.zones) == copied(first.zones.zones));

@@ -396,7 +396,7 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
     pass.is = margin >= 1;
     pass.might = pass.is || most >= 1 - noise || unsureDoubt[s];
     pass.must = pass.is && least >= 1 + noise && !unsureDoubt[s];
-    stats[s].culled = !pass.is;
+    stats[s].culledBy = pass.is ? CulledBy::none : CulledBy::coverage;
   }
 }
 
@@ -639,7 +639,7 @@ void failBaredParts(const Scene& scene, const std::vector<Voter>& samples, State
     Verdict& pass = state.passes[s];
     if (fails[s].might != fails[s].must && pass.might) result.firmAreas[s] = 0;
     pass = {pass.is && !fails[s].is, pass.might && !fails[s].must, pass.must && !fails[s].might};
-    result.segmentStats[s].culled = !pass.is;
+    result.segmentStats[s].culledBy = pass.is ? CulledBy::none : CulledBy::coverage;
   }
 }
 
@@ -815,26 +815,26 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
 
 Result transfer(const MeshView& cage, const MeshView& target, const TransferOptions& library) {
   Options options = Options::paper();
-  options.projection = library.projection;
+  options.projection = library.steps.projection;
   options.threshold = static_cast<double>(library.threshold);
   options.weldTolerance = static_cast<double>(library.weldTolerance);
   options.endOfSelfRay = std::isfinite(library.occlusionReach);
   options.occlusionReach = static_cast<double>(library.occlusionReach);
   options.pokes = library.pokeThrough > 0;
   options.pokeThrough = static_cast<double>(library.pokeThrough);
-  options.interiorSamples = library.interiorSamples;
-  options.farLoops = library.farLoops;
-  options.floor = library.floor;
+  options.interiorSamples = library.steps.interiorSamples;
+  options.farLoops = library.steps.farLoops;
+  options.floor = library.steps.floor;
   options.minCovered = static_cast<double>(library.minCovered);
-  options.minOfAll = static_cast<double>(library.minOfAll);
-  options.maxUncovered = static_cast<double>(library.maxUncovered);
-  options.twins = library.twins;
-  options.holeContents = library.holeContents;
-  options.secondLook = library.secondLook;
-  options.bothSides = library.bothSides;
-  options.exposedSide = library.exposedSide;
-  options.holes = library.holes;
-  options.partialTriangles = library.partialTriangles;
+  options.minOfAll = static_cast<double>(library.steps.minOfAll);
+  options.maxUncovered = static_cast<double>(library.steps.maxUncovered);
+  options.twins = library.steps.twins;
+  options.holeContents = library.steps.holeContents;
+  options.secondLook = library.steps.secondLook;
+  options.bothSides = library.steps.bothSides;
+  options.exposedSide = library.steps.exposedSide;
+  options.holes = library.steps.holes;
+  options.partialTriangles = library.steps.partialTriangles;
   options.seams = library.seams == Seams::corner;
   return transfer(cage, target, options);
 }

@@ -79,7 +79,8 @@ struct Result {
 Result transfer(const MeshView& cage, const MeshView& target, const Options& options);
 
 /// The same for the options of the library, without its locks.
-Result transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options = {});
+Result transfer(const MeshView& cage, const MeshView& target,
+                const TransferOptions& options = TransferOptions::paper());
 
 /// How an answer of the library differs from the reference, counted over the vertices where the reference is stable.
 struct Differences {

@@ -105,7 +105,7 @@ TEST_CASE("a vertex whose ray passes an edge by less than a nudge is unstable, b
 TEST_CASE("if a segment's verdict hangs on an unstable vertex, its cosmetic vertices are unstable too", "[reference]") {
   scenes::Scene scene = nearEdge(5e-5f);  // The first corner may be occluded or not.
   scene.target.positions[5] = 2.5f;       // The second is outside the cage: uncovered. The third is covered.
-  TransferOptions options;
+  TransferOptions options = TransferOptions::paper();
   const auto stableWith = [&](float threshold) {
     options.threshold = threshold;
     const auto stable = reference::transfer(scene.cage.view(), scene.target.view(), options).stable;

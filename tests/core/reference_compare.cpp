@@ -26,7 +26,7 @@ Differences compare(const Result& reference, const TransferResult& product, cons
   if (product.zones.zones.size() != found.vertices || projection.uvs.size() != 2 * found.vertices ||
       projection.triangles.size() != found.vertices || projection.distances.size() != found.vertices ||
       projection.segments.size() != found.vertices || projection.segmentStats.size() != reference.segmentStats.size() ||
-      product.zones.culledSegments.size() != reference.segmentStats.size() ||
+      product.zones.culledBy.size() != reference.segmentStats.size() ||
       product.zones.cosmeticTriangles.size() != reference.cosmeticTriangles.size() ||
       projection.cornerUvs.size() != reference.cornerUvs.size()) {
     report("the arrays have other lengths: %zu zones of %zu, %zu segments of %zu", product.zones.zones.size(),
@@ -103,7 +103,7 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     const auto differs = [&](double a, double b) { return !(std::abs(a - b) <= slack); };
     bool same = got.points == expected.points && !differs(got.area, expected.area);
     if (firm[s] != 0)
-      same = same && got.culled == expected.culled && !differs(got.exposedArea, expected.exposedArea) &&
+      same = same && got.culled() == expected.culled() && !differs(got.exposedArea, expected.exposedArea) &&
              !differs(got.coveredArea, expected.coveredArea);
     if (same) continue;
     ++found.stats;

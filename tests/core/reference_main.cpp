@@ -161,7 +161,7 @@ constexpr std::pair<std::string_view, bool reference::Options::*> kSteps[] = {
 int main(int argc, char** argv) {
   if (argc == 3 && std::string_view(argv[1]) == "--golden") return writeGolden(argv[2]);
   if (argc == 3 && std::string_view(argv[1]) == "--traps") return writeTraps(argv[2]);
-  TransferOptions options;
+  TransferOptions options = TransferOptions::paper();
   float threshold = options.threshold;
   reference::Options plain = reference::Options::paper();
   std::vector<std::string> without;
@@ -179,13 +179,13 @@ int main(int argc, char** argv) {
         options = TransferOptions::paper();
         plain = reference::Options::paper();
       } else if (preset == "default") {
-        options = TransferOptions::standard();
+        options = TransferOptions{};
         plain = reference::Options::standard();
       } else if (preset == "earlier") {
-        options = TransferOptions::standard();
-        options.floor = Floor::area;
-        options.twins = options.holeContents = options.bothSides = options.depthWeighting = options.farLoops =
-            options.exposedSide = false;
+        options = TransferOptions{};
+        options.steps.floor = Floor::area;
+        options.steps.twins = options.steps.holeContents = options.steps.bothSides = options.steps.depthWeighting =
+            options.steps.farLoops = options.steps.exposedSide = false;
         plain = reference::Options::earlier();
       } else {
         return fail("--preset " + std::string(preset) + ": there are paper, default and earlier");
@@ -229,8 +229,9 @@ int main(int argc, char** argv) {
 
   if (useProduct && !without.empty()) return fail("--product does not go with --without");
   // The reference takes valid meshes only, so the library is asked first either way.
+  Workspace workspace;
   TransferResult product;
-  const Status status = transfer(cage.view(), target.view(), options, product);
+  const Status status = transfer(cage.view(), target.view(), options, workspace, product);
   if (!status.ok()) return fail(describe(status, cage.view(), target.view()));
 
   std::vector<char> out;
@@ -248,7 +249,7 @@ int main(int argc, char** argv) {
     put(out, answer.segments.data(), answer.segments.size());
     put(out, stable.data(), stable.size());
     for (const SegmentStats& stats : answer.segmentStats) {
-      const std::uint32_t counts[] = {stats.points, stats.culled ? 1u : 0u};
+      const std::uint32_t counts[] = {stats.points, stats.culled() ? 1u : 0u};
       const double areas[] = {stats.exposedArea, stats.coveredArea};
       put(out, counts, 2);
       put(out, areas, 2);

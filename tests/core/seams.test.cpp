@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "cagecast/seams.hpp"
+#include "cagecast/split.hpp"
 #include "checks.hpp"
 #include "cuts.hpp"
 #ifdef CAGECAST_GLTF
@@ -16,7 +16,7 @@ using namespace cagecast;
 namespace {
 
 TransferResult withCorners(const MeshView& cage, const MeshView& target, float weldTolerance = 0) {
-  TransferOptions options;
+  TransferOptions options = TransferOptions::paper();
   options.seams = Seams::corner;
   options.weldTolerance = weldTolerance;
   return transferred(cage, target, options);
@@ -383,17 +383,18 @@ TEST_CASE("corners of whole triangles, and of those without an area, have the UV
 
 TEST_CASE("there are corner UVs only where they were asked for and mean something", "[seams]") {
   const scenes::Scene scene = scenes::head(8);
-  TransferOptions options;
+  TransferOptions options = TransferOptions::paper();
   TransferResult result;
   options.seams = Seams::corner;
-  REQUIRE(transfer(scene.cage.view(), scene.target.view(), options, result).ok());
+  REQUIRE(transfer(scene.cage.view(), scene.target.view(), options, testWorkspace(), result).ok());
   CHECK(result.projection.cornerUvs.size() == 2 * scene.target.indices.size());
   options.seams = Seams::vertex;
-  REQUIRE(transfer(scene.cage.view(), scene.target.view(), options, result).ok());  // The same result, used again.
+  REQUIRE(transfer(scene.cage.view(), scene.target.view(), options, testWorkspace(), result)
+              .ok());  // The same result, used again.
   CHECK(result.projection.cornerUvs.empty());
   options.seams = Seams::corner;
-  options.projection = ProjectionMode::nearestVertex;
-  REQUIRE(transfer(scene.cage.view(), scene.target.view(), options, result).ok());
+  options.steps.projection = ProjectionMode::nearestVertex;
+  REQUIRE(transfer(scene.cage.view(), scene.target.view(), options, testWorkspace(), result).ok());
   CHECK(result.projection.cornerUvs.empty());
 }
 

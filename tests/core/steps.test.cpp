@@ -183,7 +183,7 @@ TEST_CASE("the weld tolerance joins what is nearer than its share of the diagona
   // Triangle 1's first corner is beside triangle 0's second; triangle 2's second corner is triangle 0's first.
   const scenes::Mesh cage = square(9, 1);
   const auto segmentsWith = [&](float tolerance) {
-    TransferOptions options;
+    TransferOptions options = TransferOptions::paper();
     options.weldTolerance = tolerance;
     requireSameAsReference("tolerance", cage.view(), target.view(), options);
     return transferred(cage.view(), target.view(), options).projection.segmentStats.size();
@@ -200,7 +200,7 @@ TEST_CASE("a segment below the threshold is culled, one at it is not", "[classif
   scenes::Mesh target = square(1, 0);
   const scenes::Mesh cage =
       without(scenes::box({}, {2, 2, 2}, 4), [](scenes::Point p) { return p[2] < 2 || (p[0] > 0 && p[1] > 0); });
-  TransferOptions options;
+  TransferOptions options = TransferOptions::paper();
   const auto at = [&](float threshold) {
     options.threshold = threshold;
     return zonesOf(transferred(cage.view(), target.view(), options));
@@ -216,7 +216,7 @@ TEST_CASE("a segment below the threshold is culled, one at it is not", "[classif
 
 TEST_CASE("threshold 0 culls nothing and 1 spares what is covered entirely", "[classify]") {
   const scenes::Scene scene = scenes::head(12);
-  TransferOptions options;
+  TransferOptions options = TransferOptions::paper();
   options.threshold = 0;
   const TransferResult none = transferred(scene.cage.view(), scene.target.view(), options);
   CHECK(std::count(none.zones.zones.begin(), none.zones.zones.end(), Zone::culled) == 0);
@@ -224,32 +224,33 @@ TEST_CASE("threshold 0 culls nothing and 1 spares what is covered entirely", "[c
   options.threshold = 1;
   const TransferResult all = transferred(scene.cage.view(), scene.target.view(), options);
   for (const SegmentStats& stats : all.projection.segmentStats)
-    CHECK(stats.culled == (stats.coveredArea < stats.exposedArea));
+    CHECK(stats.culled() == (stats.coveredArea < stats.exposedArea));
 }
 
 TEST_CASE("classify with another threshold equals transfer with it", "[classify]") {
   const scenes::Scene scene = scenes::strewn(firstSeed(), 600);
   Projection projection;
-  REQUIRE(project(scene.cage.view(), scene.target.view(), {}, projection).ok());
+  REQUIRE(project(scene.cage.view(), scene.target.view(), TransferOptions::paper(), testWorkspace(), projection).ok());
   for (const float threshold : {0.0f, 0.1f, 0.25f, 0.5f, 0.51f, 0.75f, 0.9f, 1.0f}) {
-    TransferOptions options;
+    TransferOptions options = TransferOptions::paper();
     options.threshold = threshold;
     const TransferResult whole = transferred(scene.cage.view(), scene.target.view(), options);
     Zones zones;
-    ClassifyOptions decide;
+    TransferOptions decide = TransferOptions::paper();
     decide.threshold = threshold;
     REQUIRE(classify(projection.view(), scene.target.indices, decide, zones).ok());
     INFO("threshold " << threshold);
     CHECK(copied(zones.zones) == copied(whole.zones.zones));
     CHECK(copied(zones.cosmeticTriangles) == copied(whole.zones.cosmeticTriangles));
-    CHECK(copied(zones.culledSegments) == copied(whole.zones.culledSegments));
+    CHECK(copied(zones.culledBy) == copied(whole.zones.culledBy));
     CHECK(copied(projection.zones) == copied(whole.projection.zones));
-    for (std::size_t s = 0; s < zones.culledSegments.size(); ++s)
-      CHECK((zones.culledSegments[s] != 0) == whole.projection.segmentStats[s].culled);
+    for (std::size_t s = 0; s < zones.culledBy.size(); ++s)
+      CHECK((zones.culledBy[s] != CulledBy::none) == whole.projection.segmentStats[s].culled());
     for (std::size_t s = 0; s < zones.scores.size(); ++s) {
       const SegmentStats& stats = projection.segmentStats[s];
-      CHECK((zones.culledSegments[s] != 0) == (zones.scores[s] < 1));
-      CHECK((zones.culledSegments[s] != 0) == (stats.coveredArea < static_cast<double>(threshold) * stats.exposedArea));
+      CHECK((zones.culledBy[s] != CulledBy::none) == (zones.scores[s] < 1));
+      CHECK((zones.culledBy[s] != CulledBy::none) ==
+            (stats.coveredArea < static_cast<double>(threshold) * stats.exposedArea));
     }
     requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
   }
@@ -272,8 +273,8 @@ TEST_CASE("a triangle is cosmetic only if all its corners are", "[classify]") {
 
 TEST_CASE("the nearest-vertex baseline takes the nearest vertex, the lowest of equal ones, and filters nothing",
           "[nearestVertex]") {
-  TransferOptions options;
-  options.projection = ProjectionMode::nearestVertex;
+  TransferOptions options = TransferOptions::paper();
+  options.steps.projection = ProjectionMode::nearestVertex;
   for (const scenes::Scene& scene :
        {scenes::strewn(firstSeed(), 300), scenes::head(10), scenes::lattice(3), scenes::stairs()}) {
     requireSameAsReference(scene.name, scene.cage.view(), scene.target.view(), options);
@@ -292,8 +293,8 @@ TEST_CASE("of equally near cage vertices the nearest-vertex baseline takes the l
   for (const scenes::Point p : {scenes::Point{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, {-0.1f, 0.1f, 0}})
     target.addVertex(p);
   target.addTriangle(0, 1, 2);
-  TransferOptions options;
-  options.projection = ProjectionMode::nearestVertex;
+  TransferOptions options = TransferOptions::paper();
+  options.steps.projection = ProjectionMode::nearestVertex;
   const TransferResult result = transferred(cage.view(), target.view(), options);
   CHECK(copied(result.projection.uvs) == std::vector<float>{-1, -1, 1, -1, 1, 1, -1, 1});
   CHECK(copied(result.projection.triangles) == std::vector<std::uint32_t>{0, 0, 0, 1});

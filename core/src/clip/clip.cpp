@@ -1,4 +1,4 @@
-#include "cagecast/borders.hpp"
+#include "cagecast/clip.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -12,30 +12,29 @@ namespace {
 constexpr Status kOutOfMemory{Code::outOfMemory};
 
 /// Which vertices can be on a triangle that is painted, or on an edge of one.
-bool findParts(const MeshView& target, const Points& points, const DecidedView& decided, Arena& arena,
-               std::uint8_t* takesPart) {
+bool findParts(const DecidedTarget& decided, const Points& points, Arena& arena, std::uint8_t* takesPart) {
   auto* isSeen = arena.allocate<bool>(points.count);
   if (arena.failed()) return false;
   std::fill(isSeen, isSeen + points.count, false);
-  for (std::size_t i = 0; i < target.indices.size(); i += 3) {
+  for (std::size_t i = 0; i < decided.mesh.indices.size(); i += 3) {
     const auto isOccluded = [&](std::uint32_t v) { return decided.zones[v] == Zone::occluded; };
-    const auto corners = target.indices.subspan(i, 3);
+    const auto corners = decided.mesh.indices.subspan(i, 3);
     if (std::all_of(corners.begin(), corners.end(), isOccluded)) continue;
     for (const std::uint32_t v : corners) isSeen[points.ofVertex[v]] = true;
   }
-  for (std::size_t v = 0; v < target.positions.size() / 3; ++v) {
-    const bool passes = decided.culledSegments[decided.segments[v]] == 0;
+  for (std::size_t v = 0; v < decided.mesh.positions.size() / 3; ++v) {
+    const bool passes = decided.culledBy[decided.segments[v]] == CulledBy::none;
     takesPart[v] = passes && isSeen[points.ofVertex[v]];
   }
   return true;
 }
 
 /// Finds what is needed to cut the target, and cuts it.
-Status cutAlone(const MeshView& cageMesh, const MeshView& target, const TransferOptions& options,
-                const DecidedView& decided, CutMesh& out) {
-  Arena arena;
+Status cutAlone(const MeshView& cageMesh, const DecidedTarget& decided, const TransferOptions& options, Arena& arena,
+                CutMesh& out) {
+  const MeshView& target = decided.mesh;
   Units units;
-  if (const Status status = checkInput(cageMesh, target, options, units); !status.ok()) return status;
+  if (const Status status = checkMeshes(cageMesh, target, units); !status.ok()) return status;
   Cage cage;
   CageTree cageTree;
   HalfEdges edges;
@@ -45,11 +44,10 @@ Status cutAlone(const MeshView& cageMesh, const MeshView& target, const Transfer
   auto* takesPart = arena.allocate<std::uint8_t>(target.positions.size() / 3);
   if (arena.failed() || !gatherCage(cageMesh, units, arena, cage)) return kOutOfMemory;
   if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
-  if (!weld(target, units, options.weldTolerance, arena, points) ||
-      !findParts(target, points, decided, arena, takesPart))
+  if (!weld(target, units, options.weldTolerance, arena, points) || !findParts(decided, points, arena, takesPart))
     return kOutOfMemory;
   // A target in one place has nothing to cut, nor a length to search by.
-  if (options.projection != ProjectionMode::nearestPoint || !(units.diagonal > 0))
+  if (options.steps.projection != ProjectionMode::nearestPoint || !(units.diagonal > 0))
     std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
   const bool isDone = buildCageTree(cage, units, arena, cageTree) && findHalfEdges(cageMesh, cage, arena, edges) &&
                       findBoundaryLoops(cage, edges, arena, loops) && findUvCharts(cage, edges, arena, charts) &&
@@ -60,21 +58,24 @@ Status cutAlone(const MeshView& cageMesh, const MeshView& target, const Transfer
 
 }  // namespace
 
-Status cutBorders(const MeshView& cage, const MeshView& target, const TransferOptions& options,
-                  const DecidedView& decided, CutTarget& out) noexcept {
+Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const TransferOptions& options,
+                  Workspace& workspace, CutTarget& out) noexcept {
+  const MeshView& target = decided.mesh;
   const std::size_t ownCount = target.positions.size() / 3;
-  const std::size_t segmentCount = decided.culledSegments.size();
+  const std::size_t segmentCount = decided.culledBy.size();
   const auto isStray = [=](std::uint32_t segment) { return segment >= segmentCount; };
   if (decided.zones.size() != ownCount || decided.segments.size() != ownCount ||
       std::any_of(decided.segments.begin(), decided.segments.end(), isStray)) {
     return {Code::resultMismatch, Argument::target, static_cast<std::uint32_t>(decided.zones.size())};
   }
-  if (const Status status = checkClassifyOptions(options); !status.ok()) return status;
+  if (const Status status = checkOptions(options); !status.ok()) return status;
+  Arena* const arena = workspace.restart();
+  if (arena == nullptr) return kOutOfMemory;
   CutMesh cut;
-  if (const Status status = cutAlone(cage, target, options, decided, cut); !status.ok()) return status;
+  if (const Status status = cutAlone(cage, decided, options, *arena, cut); !status.ok()) return status;
   const std::size_t count = cut.vertexSides.size();
   Array<std::uint32_t> groups, segments;
-  Array<Lock> locks;
+  Array<LockEntry> locks;
   Array<SegmentStats> stats;
   if (!groups.reset(target.groups.empty() ? 0 : count) || !segments.reset(count) || !locks.reset(segmentCount) ||
       !stats.reset(segmentCount)) {
@@ -86,14 +87,16 @@ Status cutBorders(const MeshView& cage, const MeshView& target, const TransferOp
     segments[v] = decided.segments[source];
   }
   std::fill(stats.begin(), stats.end(), SegmentStats{});  // Locks have the last word.
-  for (std::size_t s = 0; s < segmentCount; ++s) locks[s] = decided.culledSegments[s] != 0 ? Lock::exclude : Lock::keep;
+  for (std::uint32_t s = 0; s < segmentCount; ++s)
+    locks[s] = {s, decided.culledBy[s] != CulledBy::none ? Lock::exclude : Lock::keep};
 
   Projection again;
-  if (const Status status = project(cage, {cut.positions, cut.indices, {}, groups}, options, again); !status.ok())
+  if (const Status status = project(cage, {cut.positions, cut.indices, {}, groups}, options, workspace, again);
+      !status.ok())
     return status;
-  ClassifyOptions locked = options;
-  locked.twins = false;
-  locked.locks = locks;
+  TransferOptions locked = options;
+  locked.steps.twins = false;
+  locked.locks = {locks, {}};
   Zones zones;
   const ProjectionView view{again.zones, segments, stats, again.recovery, {}};
   if (const Status status = classify(view, cut.indices, locked, zones); !status.ok()) return status;

@@ -1,39 +1,19 @@
+#include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <iterator>
 
-#include "cagecast/mesh.hpp"
+#include "cagecast/status.hpp"
+#include "input/option_list.hpp"
 
 namespace cagecast {
 
-const char* codeName(Code code) noexcept {
-  switch (code) {
-    case Code::ok: return "ok";
-    case Code::emptyMesh: return "emptyMesh";
-    case Code::positionsNotTriples: return "positionsNotTriples";
-    case Code::indicesNotTriples: return "indicesNotTriples";
-    case Code::missingUvs: return "missingUvs";
-    case Code::uvCountMismatch: return "uvCountMismatch";
-    case Code::groupCountMismatch: return "groupCountMismatch";
-    case Code::cornerUvCountMismatch: return "cornerUvCountMismatch";
-    case Code::indexOutOfRange: return "indexOutOfRange";
-    case Code::nonFinitePosition: return "nonFinitePosition";
-    case Code::nonFiniteUv: return "nonFiniteUv";
-    case Code::noUsableCageTriangle: return "noUsableCageTriangle";
-    case Code::tooLarge: return "tooLarge";
-    case Code::badThreshold: return "badThreshold";
-    case Code::badWeldTolerance: return "badWeldTolerance";
-    case Code::badOcclusionReach: return "badOcclusionReach";
-    case Code::badPokeThrough: return "badPokeThrough";
-    case Code::badMinCovered: return "badMinCovered";
-    case Code::badMinOfAll: return "badMinOfAll";
-    case Code::badMaxUncovered: return "badMaxUncovered";
-    case Code::badLocks: return "badLocks";
-    case Code::resultMismatch: return "resultMismatch";
-    case Code::outOfMemory: return "outOfMemory";
-  }
-  return "unknown";
-}
-
 namespace {
+
+constexpr const char* kCodeNames[] = {
+#define CAGECAST_CODE(name, text) #name,
+#include "cagecast/codes.def"
+};
 
 std::string number(double value) {
   char text[32];
@@ -41,7 +21,27 @@ std::string number(double value) {
   return text;
 }
 
+std::string describeOption(const Status& status) {
+  const std::string name = std::string("options.") + optionName(status.option);
+  if (status.option == Option::segmentLocks || status.option == Option::groupLocks) {
+    const bool isGroup = status.option == Option::groupLocks;
+    return name + "[" + std::to_string(status.at) + "] is given, but there is no " +
+           (isGroup ? "segment of group " : "segment ") + std::to_string(status.at);
+  }
+  const std::string given = name + " = " + number(static_cast<double>(status.value));
+  const OptionEntry* entry = findOption(status.option);
+  if (entry == nullptr) return "options are not valid";
+  if (entry->names != nullptr) return given + " is none of " + entry->names;
+  if (std::isinf(entry->high)) return given + " is not a number of at least " + number(entry->low);
+  return given + " is not within " + number(entry->low) + ".." + number(entry->high);
+}
+
 }  // namespace
+
+const char* codeName(Code code) noexcept {
+  const auto i = static_cast<std::size_t>(code);
+  return i < std::size(kCodeNames) ? kCodeNames[i] : "unknown";
+}
 
 std::string describe(const Status& status, const MeshView& cage, const MeshView& target) {
   const bool isCage = status.argument == Argument::cage;
@@ -82,17 +82,10 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
       }
       return name + ".positions" + at + " = " + number(static_cast<double>(mesh.positions[status.at])) +
              " is out of all proportion (farther from the origin than 1e8 diagonals of the target)";
-    case Code::badThreshold: return "options.threshold is not within 0..1";
-    case Code::badWeldTolerance: return "options.weldTolerance is not within 0..0.01";
-    case Code::badOcclusionReach: return "options.occlusionReach is not a number of at least 0";
-    case Code::badPokeThrough: return "options.pokeThrough is not within 0..1";
-    case Code::badMinCovered: return "options.minCovered is not within 0..1";
-    case Code::badMinOfAll: return "options.minOfAll is not within 0..1";
-    case Code::badMaxUncovered: return "options.maxUncovered is not within 0..1";
-    case Code::badLocks: return "options.locks has " + std::to_string(status.at) + " entries, not 1 per segment";
+    case Code::badOption: return describeOption(status);
     case Code::resultMismatch:
       return "the result is of " + std::to_string(status.at) + " vertices, or of other segments; the target has " +
-             std::to_string(target.positions.size() / 3) + " vertices";
+             vertices;
     case Code::outOfMemory: return "not enough memory for this target and cage";
   }
   return "unknown";

@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "base/hash_index.hpp"
-#include "cagecast/seams.hpp"
+#include "cagecast/split.hpp"
 
 namespace cagecast {
 

@@ -15,9 +15,6 @@ constexpr float kMaxProportion = 1e8f;
 /// Rays may begin between floats, and then round with the distance from the origin of coordinates; where that is so
 /// many times the scene, it is what the kernels must allow for.
 constexpr float kRestReach = 0.5f;
-/// Largest weld tolerance, as a share of the diagonal: beyond it a head is a handful of points.
-constexpr float kMaxWeldTolerance = 0.01f;
-
 struct Box {
   float low[4];  ///< x, y, z; the fourth is of no use.
   float high[4];
@@ -133,17 +130,11 @@ std::size_t firstTooLarge(std::span<const float> positions, double scale) {
 
 }  // namespace
 
-Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOptions& options, Units& units) noexcept {
+Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) noexcept {
   Box cageBox;
   Box targetBox;
   if (const Status status = checkMesh(cage, Argument::cage, cageBox); !status.ok()) return status;
   if (const Status status = checkMesh(target, Argument::target, targetBox); !status.ok()) return status;
-  if (!(options.weldTolerance >= 0.0f && options.weldTolerance <= kMaxWeldTolerance)) {
-    return {Code::badWeldTolerance, Argument::options};
-  }
-  if (!(options.occlusionReach >= 0.0f)) return {Code::badOcclusionReach, Argument::options};
-  if (!(options.pokeThrough >= 0.0f && options.pokeThrough <= 1.0f)) return {Code::badPokeThrough, Argument::options};
-
   // A target that is a single point has no size; then the cage's serves.
   const double size = targetBox.diagonal() > 0 ? targetBox.diagonal() : cageBox.diagonal();
   int exponent = 0;
@@ -167,15 +158,6 @@ Status checkInput(const MeshView& cage, const MeshView& target, const ProjectOpt
   units.scale = static_cast<float>(scale);
   units.diagonal = targetBox.diagonal() * scale;
   units.reach = reach;
-  return {};
-}
-
-Status checkClassifyOptions(const ClassifyOptions& options) noexcept {
-  if (!(options.threshold >= 0.0f && options.threshold <= 1.0f)) return {Code::badThreshold, Argument::options};
-  if (!(options.minCovered >= 0.0f && options.minCovered <= 1.0f)) return {Code::badMinCovered, Argument::options};
-  if (!(options.minOfAll >= 0.0f && options.minOfAll <= 1.0f)) return {Code::badMinOfAll, Argument::options};
-  if (!(options.maxUncovered >= 0.0f && options.maxUncovered <= 1.0f))
-    return {Code::badMaxUncovered, Argument::options};
   return {};
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "input/validate.hpp"
 #include "steps/steps.hpp"
 
 namespace cagecast {
@@ -42,7 +43,7 @@ struct Tally {
 /// Step 5: which segments pass.
 class Verdicts {
  public:
-  Verdicts(std::span<const SegmentStats> stats, const ClassifyOptions& options) noexcept
+  Verdicts(std::span<const SegmentStats> stats, const TransferOptions& options) noexcept
       : stats_(stats), options_(options) {
     for (const SegmentStats& s : stats) allCovered_ += s.coveredArea;
   }
@@ -58,7 +59,7 @@ class Verdicts {
       scores[s] = marginOf(Tally::of(stats_[s]));
       anyDoubt = anyDoubt || isInDoubt(scores[s]);
     }
-    return !(options_.twins && options_.floor != Floor::none && anyDoubt) || judgeCopies(scores);
+    return !(options_.steps.twins && options_.steps.floor != Floor::none && anyDoubt) || judgeCopies(scores);
   }
 
  private:
@@ -67,17 +68,17 @@ class Verdicts {
   /// How many times what is asked of it a tally reaches: it passes from 1 on.
   [[nodiscard]] double marginOf(const Tally& tally) const {
     const double coverage = times(tally.covered, static_cast<double>(options_.threshold) * tally.exposed);
-    if (options_.floor == Floor::none) return coverage;
+    if (options_.steps.floor == Floor::none) return coverage;
     if (!(tally.covered > 0)) return 0;
     const double ofItself = static_cast<double>(options_.minCovered) * tally.area;
-    if (options_.floor == Floor::area) return std::min(coverage, times(tally.covered, ofItself));
+    if (options_.steps.floor == Floor::area) return std::min(coverage, times(tally.covered, ofItself));
     // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
     const double counted = tally.sunk * (tally.covered / tally.exposed);
     // A part that is mostly hidden passes for what it is of the whole, if where it is exposed it is covered beyond
     // doubt.
-    const double ofAll =
-        std::min(times(counted, static_cast<double>(options_.minOfAll) * allCovered_ * tally.segments),
-                 times(static_cast<double>(options_.maxUncovered) * tally.exposed, tally.exposed - tally.covered));
+    const double ofAll = std::min(
+        times(counted, static_cast<double>(options_.steps.minOfAll) * allCovered_ * tally.segments),
+        times(static_cast<double>(options_.steps.maxUncovered) * tally.exposed, tally.exposed - tally.covered));
     return std::min(coverage, std::max(times(counted, ofItself), ofAll));
   }
 
@@ -97,7 +98,7 @@ class Verdicts {
   }
 
   std::span<const SegmentStats> stats_;
-  const ClassifyOptions& options_;
+  const TransferOptions& options_;
   double allCovered_ = 0;
 };
 
@@ -106,18 +107,19 @@ class Verdicts {
 /// @param small  A part is small if less than this area of it is covered; 0: none is.
 void judgeHoles(std::span<const HoleShare> shares, std::span<const SegmentStats> stats, double small, Zones& out) {
   std::fill(out.explainedHoles.begin(), out.explainedHoles.end(), std::uint8_t{0});
+  const auto isCulled = [&](std::size_t s) { return out.culledBy[s] != CulledBy::none; };
   for (std::size_t i = 0, end = 0; i < shares.size(); i = end) {
     double failing = 0;
     double uncovered = 0;
     for (; end < shares.size() && shares[end].hole == shares[i].hole; ++end) {
-      (out.culledSegments[shares[end].segment] ? failing : uncovered) +=
-          out.culledSegments[shares[end].segment] ? shares[end].exposedArea : shares[end].uncoveredArea;
+      (isCulled(shares[end].segment) ? failing : uncovered) +=
+          isCulled(shares[end].segment) ? shares[end].exposedArea : shares[end].uncoveredArea;
     }
     const bool isExplained = failing > 0 && failing >= kExplaining * uncovered;
     out.explainedHoles[shares[i].hole] = isExplained;
     for (const HoleShare& share : shares.subspan(i, end - i)) {
       const SegmentStats& part = stats[share.segment];
-      if (out.culledSegments[share.segment] || part.coveredArea >= small) continue;
+      if (isCulled(share.segment) || part.coveredArea >= small) continue;
       double& margin = out.scores[share.segment];
       margin = std::min(margin, times(kHidden * (part.exposedArea + share.hiddenArea), share.hiddenArea));
       if (isExplained || share.uncoveredArea < kMuchOfHole * uncovered) continue;
@@ -128,11 +130,11 @@ void judgeHoles(std::span<const HoleShare> shares, std::span<const SegmentStats>
 
 }  // namespace
 
-void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const ClassifyOptions& options,
+void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const TransferOptions& options,
                   Array<std::uint8_t>& cosmetic) noexcept {
   static_assert(static_cast<int>(Zone::cosmetic) == 0 && static_cast<int>(Zone::occluded) == 1);
   // The depth buffer hides what is occluded of a triangle. Squares of the others are too much for any sum.
-  const int most = options.partialTriangles ? 2 : 0;
+  const int most = options.steps.partialTriangles ? 2 : 0;
   const Zone* zone = zones.data();
   const std::uint32_t* index = indices.data();
   for (std::uint8_t& itsCosmetic : cosmetic) {
@@ -145,40 +147,41 @@ void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indic
 }
 
 Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices,
-                const ClassifyOptions& options, Zones& out) noexcept {
-  if (const Status status = checkClassifyOptions(options); !status.ok()) return status;
+                const TransferOptions& options, Zones& out) noexcept {
+  if (const Status status = checkOptions(options, Stage::classify); !status.ok()) return status;
   const auto& [zones, segments, stats, recovery, shares] = projection;
-  if (!options.locks.empty() && options.locks.size() != stats.size()) {
-    return {Code::badLocks, Argument::options, static_cast<std::uint32_t>(options.locks.size())};
-  }
+  Array<Lock> locks;
+  if (const Status status = resolveLocks(options.locks, stats, locks); !status.ok()) return status;
   const std::size_t triangles = indices.size() / 3;
-  if (!out.zones.reset(zones.size()) || !out.cosmeticTriangles.reset(triangles) ||
-      !out.culledSegments.reset(stats.size()) || !out.scores.reset(stats.size()) ||
+  if (!out.zones.reset(zones.size()) || !out.cosmeticTriangles.reset(triangles) || !out.culledBy.reset(stats.size()) ||
+      !out.scores.reset(stats.size()) ||
       !out.explainedHoles.reset(shares.empty() ? 0 : std::size_t{shares.back().hole} + 1)) {
     return {Code::outOfMemory};
   }
 
   const Verdicts verdicts(stats, options);
   if (!verdicts.decide(out.scores)) return {Code::outOfMemory};
-  const auto isLocked = [&](std::size_t s) { return !options.locks.empty() && options.locks[s] != Lock::automatic; };
-  for (std::size_t s = 0; s < stats.size(); ++s)
-    out.culledSegments[s] = isLocked(s) ? options.locks[s] == Lock::exclude : out.scores[s] < 1;
-  if (options.holeContents) {
+  const auto isLocked = [&](std::size_t s) { return !locks.empty() && locks[s] != Lock::automatic; };
+  for (std::size_t s = 0; s < stats.size(); ++s) {
+    out.culledBy[s] = out.scores[s] < 1 ? CulledBy::coverage : CulledBy::none;
+    if (isLocked(s)) out.culledBy[s] = locks[s] == Lock::exclude ? CulledBy::lock : CulledBy::none;
+  }
+  const auto isCulled = [&](std::size_t s) { return out.culledBy[s] != CulledBy::none; };
+  if (options.steps.holeContents) {
     judgeHoles(shares, stats, kSmallPart * verdicts.allCovered(), out);
     for (std::size_t s = 0; s < stats.size(); ++s) {
-      if (!out.culledSegments[s] && out.scores[s] < 1 && !isLocked(s)) out.culledSegments[s] = Zones::kBared;
+      if (!isCulled(s) && out.scores[s] < 1 && !isLocked(s)) out.culledBy[s] = CulledBy::hole;
     }
   }
   judgeHoles(shares, stats, 0, out);
   for (std::size_t v = 0; v < zones.size(); ++v) {
     // As numbers, without a branch: cosmetic is 0, less than the 1 of a segment that is culled.
     const auto zone = static_cast<unsigned>(zones[v]);
-    const unsigned becomes =
-        unsigned{out.culledSegments[segments[v]] != 0} > zone ? static_cast<unsigned>(Zone::culled) : 0;
+    const unsigned becomes = unsigned{isCulled(segments[v])} > zone ? static_cast<unsigned>(Zone::culled) : 0;
     out.zones[v] = static_cast<Zone>(zone | becomes);
   }
   for (std::size_t v = 0; v < recovery.size(); ++v) {
-    if (recovery[v] == Recovery::never || out.culledSegments[segments[v]]) continue;
+    if (recovery[v] == Recovery::never || isCulled(segments[v])) continue;
     const std::size_t hole = recovery[v] - Recovery::throughHole;
     const bool isExplained = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
     if (recovery[v] == Recovery::always || isExplained) out.zones[v] = Zone::cosmetic;

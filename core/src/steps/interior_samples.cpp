@@ -19,7 +19,7 @@ bool meets(const BoundaryLoops::Box& box, const BoundaryLoops::Box& loop, double
 }  // namespace
 
 bool findInteriorSamples(const Points& points, const BoundaryLoops& loops, const Units& units,
-                         const PointResults& results, const Array<SegmentStats>& stats, const ProjectOptions& options,
+                         const PointResults& results, const Array<SegmentStats>& stats, const TransferOptions& options,
                          Arena& arena, InteriorSamples& out) noexcept {
   const auto isSmall = [](const SegmentStats& segment) { return segment.points < kFewPoints; };
   if (loops.count == 0 || std::none_of(stats.begin(), stats.end(), isSmall)) return true;
@@ -36,7 +36,7 @@ bool findInteriorSamples(const Points& points, const BoundaryLoops& loops, const
     const std::uint32_t s = results.segments[i];
     if (!isSmall(stats[s])) continue;
     // All that is as near to the point as the cage is: with that, what lies over the point.
-    const double around = options.farLoops ? static_cast<double>(results.distances[i]) : 0;
+    const double around = options.steps.farLoops ? static_cast<double>(results.distances[i]) : 0;
     for (const double side : {-around, around}) boxes[s].grow(Vec3::from(points.at(i)) + Vec3{side, side, side});
   }
   // Small segments mostly have no room for a big edge, and then nobody has to look for one.

@@ -184,7 +184,7 @@ class NormalSums {
 /// @return false if memory ran out.
 bool findOutlooks(const Points& points, const Cage& cage, const Units& units, const PointResults& results,
                   const PointAreas& areas, std::uint32_t segmentCount, const bool* isWanted, const bool* asks,
-                  const ProjectOptions& options, Arena& arena, Outlooks& outlooks) noexcept {
+                  const TransferOptions& options, Arena& arena, Outlooks& outlooks) noexcept {
   Vec3* normals = outlooks.normals = arena.allocate<Vec3>(points.count);
   outlooks.isTwoSided = arena.allocate<bool>(points.count);
   outlooks.isTurned = arena.allocate<bool>(segmentCount);
@@ -217,12 +217,12 @@ bool findOutlooks(const Points& points, const Cage& cage, const Units& units, co
     anyCancelled = anyCancelled | (asks[p] & isZero(normals[p]));
     const double agrees = dot(normals[p], cage.triangles[results.triangles[p]].normal.exact);
     // Of a closed part inside and outside cancel out, but what is inside of it is occluded.
-    const bool counts = !(options.exposedSide & asks[p]);
+    const bool counts = !(options.steps.exposedSide & asks[p]);
     agreement[s] += static_cast<std::int64_t>(static_cast<double>(areas.all[p]) * agrees) * counts;
   }
   for (std::uint32_t s = 0; s < segmentCount; ++s) outlooks.isTurned[s] = agreement[s] < 0;
 
-  if (anyCancelled && options.bothSides) {
+  if (anyCancelled && options.steps.bothSides) {
     auto* largest = arena.allocate<std::uint32_t>(points.count);
     if (arena.failed()) return false;
     std::fill(largest, largest + points.count, UINT32_MAX);
@@ -364,7 +364,7 @@ class Lookout {
 
 bool recheckOccluded(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree,
                      const Units& units, const PointResults& results, const PointAreas& areas,
-                     const Array<SegmentStats>& stats, const ProjectOptions& options, Arena& arena,
+                     const Array<SegmentStats>& stats, const TransferOptions& options, Arena& arena,
                      std::uint32_t* recovery) noexcept {
   const auto segmentCount = static_cast<std::uint32_t>(stats.size());
   const Arena::Mark mark = arena.mark();

@@ -77,7 +77,7 @@ bool findSegments(const Points& points, std::uint32_t vertexCount, std::span<con
 
 /// Step 4′: finds the triangles that vote from within, and the places inside them, not yet judged.
 bool findInteriorSamples(const Points& points, const BoundaryLoops& loops, const Units& units,
-                         const PointResults& results, const Array<SegmentStats>& stats, const ProjectOptions& options,
+                         const PointResults& results, const Array<SegmentStats>& stats, const TransferOptions& options,
                          Arena& arena, InteriorSamples& out) noexcept;
 
 /// Areas of the points, as whole numbers of an `AreaUnit`.
@@ -103,7 +103,7 @@ bool findTwins(const Points& points, const PointResults& results, Arena& arena, 
 /// @param[out] recovery  1 per point: set to `Recovery::always` for those.
 bool recheckOccluded(const Points& points, const Cage& cage, const CageTree& cageTree, const RayTree& targetTree,
                      const Units& units, const PointResults& results, const PointAreas& areas,
-                     const Array<SegmentStats>& stats, const ProjectOptions& options, Arena& arena,
+                     const Array<SegmentStats>& stats, const TransferOptions& options, Arena& arena,
                      std::uint32_t* recovery) noexcept;
 
 /// Step 7: finds what brings each uncovered point back, and what the segments have at each hole.
@@ -114,7 +114,7 @@ bool assignHoles(const Points& points, const Cage& cage, const BoundaryLoops& lo
 
 /// Step 8: marks the triangles that may be painted.
 /// @param[out] cosmetic  1 per triangle.
-void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const ClassifyOptions& options,
+void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const TransferOptions& options,
                   Array<std::uint8_t>& cosmetic) noexcept;
 
 /// How far from its origin, as a share of the diagonal, a ray's hit begins to count (step 2), and how far behind it one

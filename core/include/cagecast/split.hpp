@@ -4,15 +4,15 @@
 #include <span>
 
 #include "cagecast/array.hpp"
-#include "cagecast/mesh.hpp"
+#include "cagecast/status.hpp"
 
 namespace cagecast {
 
 /// A mesh whose vertices are split wherever the UVs of their corners differ, so that UVs per corner become UVs per
 /// vertex.
 struct SplitVertices {
-  Array<std::uint32_t>
-      sources;  ///< 1 per new vertex: the vertex it is a copy of. In the order in which `indices` uses them.
+  /// 1 per new vertex: the vertex it is a copy of. In the order in which `indices` uses them.
+  Array<std::uint32_t> sources;
   Array<std::uint32_t> indices;  ///< As many as before, into the new vertices.
   Array<float> uvs;              ///< 2 per new vertex.
 };

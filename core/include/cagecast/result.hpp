@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "cagecast/array.hpp"
+
+/// What the functions of transfer.hpp return.
+namespace cagecast {
+
+/// Why a vertex may, or may not, be painted. All but `cosmetic` are Non-Cosmetic Zones (NCZ).
+enum class Zone : std::uint8_t {
+  cosmetic = 0,   ///< May be painted.
+  occluded = 1,   ///< The target itself lies over it.
+  uncovered = 2,  ///< The cage has a hole over it, or it lies outside the cage.
+  culled = 3,     ///< Its segment is culled; see `CulledBy`.
+};
+
+/// Why a segment is culled, that is, why none of it may be painted.
+enum class CulledBy : std::uint8_t {
+  none,      ///< It is not culled.
+  coverage,  ///< Too little of it is covered.
+  hole,      ///< A hole of the cage is meant for it.
+  lock,      ///< `Lock::exclude`.
+};
+
+/// CPU time of each step in milliseconds; wall time in WebAssembly, which has no other clock.
+struct Timings {
+  double weld = 0;        ///< Checking the input and welding the target's vertices.
+  double build = 0;       ///< Building the search trees, and the boundary loops of the cage.
+  double project = 0;     ///< Step 1: the nearest point of the cage for every point of the target.
+  double occluded = 0;    ///< Step 2: self-intersection.
+  double covered = 0;     ///< Step 3: cage intersection.
+  double segments = 0;    ///< Steps 4 and 5′: connected components, their areas and twins.
+  double secondLook = 0;  ///< Step 6: occluded points that are seen in another direction.
+  double holes = 0;       ///< Step 7: what lies under the holes of the cage.
+  double seams = 0;       ///< Step 9: UVs per triangle corner.
+  double classify = 0;    ///< Step 5 and 8: which segments are culled; zones of vertices and triangles.
+  double total = 0;       ///< All of it.
+};
+
+/// What is known of one segment: a connected component of the welded target. Areas are in squared units of the input.
+struct SegmentStats {
+  std::uint32_t points = 0;  ///< Welded points.
+  std::uint32_t group = 0;   ///< The group of its first vertex; 0 if the target has no groups.
+  std::uint32_t twinOf = 0;  ///< The first of the segments that are its copies; itself without `depthWeighting`.
+  CulledBy culledBy = CulledBy::none;  ///< Set by `transfer`; `project` leaves `none`.
+  double area = 0;                     ///< A: its whole area.
+  double exposedArea = 0;              ///< E: the area that the target does not occlude.
+  double coveredArea = 0;              ///< C: what of E the cage covers.
+  double depthWeightedArea = 0;        ///< D: C, counted less where it is unusually deep under the cage; C without
+                                       ///< `depthWeighting`.
+  /// How many times what it needs it has: it is kept from 1 on, unless a lock decides. Infinity if nothing is needed,
+  /// and before `transfer` sets it.
+  double score = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool culled() const noexcept { return culledBy != CulledBy::none; }
+  /// F = C / E, the share of the exposed area that the cage covers; 0 if nothing is exposed.
+  [[nodiscard]] double coverage() const noexcept { return exposedArea > 0 ? coveredArea / exposedArea : 0; }
+};
+
+/// Whether an occluded or uncovered vertex becomes cosmetic if its segment is not culled: `never`, `always`, or, from
+/// `throughHole` on, if hole number `value − throughHole` is explained by a culled segment behind it.
+struct Recovery {
+  static constexpr std::uint32_t never = 0;
+  static constexpr std::uint32_t always = 1;
+  static constexpr std::uint32_t throughHole = 2;
+};
+
+/// The part of a segment that lies nearest to the boundary loop of one hole of the cage. Areas are in squared units of
+/// the input, rounded so that sums of them are exact.
+struct HoleShare {
+  std::uint32_t hole = 0;  ///< The number of the boundary loop.
+  std::uint32_t segment = 0;
+  double exposedArea = 0;    ///< Area that the target does not occlude.
+  double uncoveredArea = 0;  ///< What of that the cage does not cover.
+  /// Area that the target occludes and the cage does not cover; 0 if `occlusionReach` is infinite, and in segments
+  /// nothing of which is covered.
+  double hiddenArea = 0;
+};
+
+/// What `classify` needs of a projection, seen but not owned.
+struct ProjectionView {
+  std::span<const Zone> zones;  ///< The fields are those of `Projection`.
+  std::span<const std::uint32_t> segments;
+  std::span<const SegmentStats> segmentStats;
+  std::span<const std::uint32_t> recovery = {};
+  std::span<const HoleShare> holeShares = {};
+};
+
+/// The result of `project`: steps 1 to 4, and what later steps need.
+struct Projection {
+  Array<float> uvs;  ///< 2 per target vertex: its place in the cage's texture, NCZ or not.
+  /// 2 per target index with `Seams::corner` and `ProjectionMode::nearestPoint`, else empty. They differ from `uvs`
+  /// only where a seam of the cage's texture runs through a triangle.
+  Array<float> cornerUvs;
+  Array<Zone> zones;                 ///< 1 per vertex: cosmetic, occluded or uncovered; `classify` adds culled.
+  Array<std::uint32_t> triangles;    ///< 1 per vertex: the nearest cage triangle.
+  Array<float> distances;            ///< 1 per vertex: the distance to it, in units of the input.
+  Array<std::uint32_t> segments;     ///< 1 per vertex: its segment. Segments are numbered by their first vertex.
+  Array<SegmentStats> segmentStats;  ///< 1 per segment.
+  Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `secondLook` or `holes`; else empty.
+  Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes`; ordered by hole.
+  Timings timings;
+  std::uint64_t peakBytes = 0;  ///< Most memory in use at once during the call, beyond the caller's inputs.
+
+  [[nodiscard]] ProjectionView view() const noexcept { return {zones, segments, segmentStats, recovery, holeShares}; }
+};
+
+/// The result of `classify`: step 5, and what follows from it.
+struct Zones {
+  Array<Zone> zones;                      ///< 1 per target vertex.
+  Array<std::uint8_t> cosmeticTriangles;  ///< 1 per target triangle: 1 if it may be painted; see `partialTriangles`.
+  Array<CulledBy> culledBy;               ///< 1 per segment.
+  Array<double> scores;                   ///< 1 per segment; see `SegmentStats::score`.
+  /// 1 per hole up to the last of `holeShares`: 1 if a culled segment behind it explains it.
+  Array<std::uint8_t> explainedHoles;
+};
+
+/// The result of `transfer`.
+struct TransferResult {
+  Projection projection;  ///< With `culledBy` and `score` of each segment set.
+  Zones zones;
+};
+
+}  // namespace cagecast

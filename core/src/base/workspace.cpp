@@ -1,0 +1,26 @@
+#include <new>
+#include <utility>
+
+#include "base/arena.hpp"
+#include "cagecast/transfer.hpp"
+
+namespace cagecast {
+
+Workspace::Workspace(Workspace&& other) noexcept : arena_(std::exchange(other.arena_, nullptr)) {}
+
+Workspace& Workspace::operator=(Workspace&& other) noexcept {
+  std::swap(arena_, other.arena_);
+  return *this;
+}
+
+Workspace::~Workspace() { release(); }
+
+void Workspace::release() noexcept { delete std::exchange(arena_, nullptr); }
+
+Arena* Workspace::restart() noexcept {
+  if (arena_ == nullptr) arena_ = new (std::nothrow) Arena;
+  if (arena_ != nullptr) arena_->begin();
+  return arena_;
+}
+
+}  // namespace cagecast
