@@ -1,7 +1,7 @@
 /// The bridge from JavaScript. What a call leaves stays until `release` (bridge.hpp). Nothing is decided here; names,
 /// defaults and messages for people are the package's.
 
-#include <cagecast/seams.hpp>
+#include <cagecast/split.hpp>
 
 #include "bridge.hpp"
 
@@ -41,9 +41,22 @@ struct Call {
   cagecast::TransferResult result;
   cagecast::SplitVertices split;
   Array<double> stats, shares, numbers;
+  Array<cagecast::LockEntry> locks;
 };
 
 [[clang::no_destroy]] Call call;
+[[clang::no_destroy]] cagecast::Workspace workspace;
+
+/// Of one lock per segment, or none.
+cagecast::TransferOptions optionsWithLocks(std::size_t place) {
+  cagecast::TransferOptions options = givenOptions();
+  const auto locks = input<cagecast::Lock>(place);
+  if (call.locks.reset(locks.size())) {
+    for (std::uint32_t s = 0; s < locks.size(); ++s) call.locks[s] = {s, locks[s]};
+    options.locks.segments = call.locks;
+  }
+  return options;
+}
 
 /// What a projection and a transfer both answer, and more.
 std::uintptr_t projected(const Status& status, const Array<Zone>& zones, const Bytes (&more)[3]) {
@@ -60,8 +73,7 @@ std::uintptr_t projected(const Status& status, const Array<Zone>& zones, const B
 /// The answer of a transfer.
 std::uintptr_t transferred(const Status& status) {
   const cagecast::Zones& zones = call.result.zones;
-  return projected(status, zones.zones,
-                   {bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.scores)});
+  return projected(status, zones.zones, {bytes(zones.cosmeticTriangles), bytes(zones.culledBy), bytes(zones.scores)});
 }
 
 }  // namespace
@@ -71,7 +83,7 @@ extern "C" {
 /// Of the inputs: options, cage, target.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t project() {
   cagecast::Projection& p = call.result.projection;
-  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), p);
+  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), workspace, p);
   if (status.ok() && !toNumbers(std::span(p.holeShares.begin(), p.holeShares.end()), call.shares))
     return answer(kOutOfMemory);
   return projected(status, p.zones, {bytes(p.recovery), bytes(call.shares), std::as_bytes(mesh(5).indices)});
@@ -79,14 +91,14 @@ EMSCRIPTEN_KEEPALIVE std::uintptr_t project() {
 
 /// As `project`.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t transfer() {
-  return transferred(cagecast::transfer(mesh(1), mesh(5), givenOptions(), call.result));
+  return transferred(cagecast::transfer(mesh(1), mesh(5), givenOptions(), workspace, call.result));
 }
 
 /// The first half of `transfer`, for those who must know the segments to say which are locked: of the answer their
 /// numbers alone.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t beginTransfer() {
   cagecast::Projection& p = call.result.projection;
-  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), p);
+  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), workspace, p);
   if (!status.ok()) return answer(status);
   if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats)) return answer(kOutOfMemory);
   return answer(status, {bytes(call.stats)});
@@ -94,8 +106,7 @@ EMSCRIPTEN_KEEPALIVE std::uintptr_t beginTransfer() {
 
 /// The second half, with what the first was given still there: of a lock per segment besides, after the target.
 EMSCRIPTEN_KEEPALIVE std::uintptr_t endTransfer() {
-  cagecast::ClassifyOptions classifyOptions = givenOptions();
-  classifyOptions.locks = input<cagecast::Lock>(9);
+  const cagecast::TransferOptions classifyOptions = optionsWithLocks(9);
   cagecast::Projection& p = call.result.projection;
   const double start = emscripten_get_now();
   const Status status = cagecast::classify(p.view(), mesh(5).indices, classifyOptions, call.result.zones);
@@ -115,14 +126,13 @@ EMSCRIPTEN_KEEPALIVE std::uintptr_t classify() {
   }
   fromNumbers(input<double>(3).data(), std::span(stats.begin(), stats.end()));
   fromNumbers(input<double>(5).data(), std::span(shares.begin(), shares.end()));
-  cagecast::ClassifyOptions classifyOptions = givenOptions();
-  classifyOptions.locks = input<cagecast::Lock>(7);
+  const cagecast::TransferOptions classifyOptions = optionsWithLocks(7);
   cagecast::Zones& zones = call.result.zones;
   const Status status =
       cagecast::classify({input<Zone>(1), input<std::uint32_t>(2), stats, input<std::uint32_t>(4), shares},
                          input<std::uint32_t>(6), classifyOptions, zones);
   return answer(status,
-                {bytes(zones.zones), bytes(zones.cosmeticTriangles), bytes(zones.culledSegments), bytes(zones.scores)});
+                {bytes(zones.zones), bytes(zones.cosmeticTriangles), bytes(zones.culledBy), bytes(zones.scores)});
 }
 
 /// Of the inputs: indices, UVs per corner.

@@ -20,11 +20,11 @@ namespace cagecast {
 /// In the order of wasm/src/options.ts.
 template <typename Visit>
 constexpr void eachField(TransferOptions& o, const Visit& visit) {
-  visit(o.projection), visit(o.weldTolerance), visit(o.seams), visit(o.occlusionReach), visit(o.pokeThrough);
-  visit(o.interiorSamples), visit(o.farLoops), visit(o.depthWeighting), visit(o.secondLook), visit(o.bothSides),
-      visit(o.exposedSide), visit(o.holes);
-  visit(o.threshold), visit(o.floor), visit(o.minCovered), visit(o.minOfAll), visit(o.maxUncovered), visit(o.twins),
-      visit(o.holeContents), visit(o.partialTriangles);
+  visit(o.steps.projection), visit(o.weldTolerance), visit(o.seams), visit(o.occlusionReach), visit(o.pokeThrough);
+  visit(o.steps.interiorSamples), visit(o.steps.farLoops), visit(o.steps.depthWeighting), visit(o.steps.secondLook),
+      visit(o.steps.bothSides), visit(o.steps.exposedSide), visit(o.steps.holes);
+  visit(o.threshold), visit(o.steps.floor), visit(o.minCovered), visit(o.steps.minOfAll), visit(o.steps.maxUncovered),
+      visit(o.steps.twins), visit(o.steps.holeContents), visit(o.steps.partialTriangles);
 }
 
 }  // namespace cagecast
@@ -145,7 +145,7 @@ constexpr OptionNumbers numbersOf(TransferOptions options) {
 }
 
 /// In numbers already: the code to make them of fields is longer than they are.
-constexpr OptionNumbers kPresets[] = {numbersOf(TransferOptions::paper()), numbersOf(TransferOptions::standard())};
+constexpr OptionNumbers kPresets[] = {numbersOf(TransferOptions::paper()), numbersOf(TransferOptions{})};
 
 /// The options of a preset: 0 `paper`, 1 `default`.
 extern "C" EMSCRIPTEN_KEEPALIVE inline std::uintptr_t presetOptions(unsigned preset) {

@@ -31,8 +31,13 @@ function describe(
   mesh: CheckedMesh | undefined,
   options: readonly number[] | undefined,
 ): string {
-  const range = (ranges as Record<string, (typeof ranges)[keyof typeof ranges]>)[code];
-  if (range && options) return `options.${range[0]} = ${numberOf(options, range[0])} is not within ${range[1]}`;
+  if (code === 'badOption' && options) {
+    for (const [key, [low, high]] of Object.entries(ranges)) {
+      const value = numberOf(options, key as keyof typeof ranges);
+      if (!(value >= low && value <= Math.fround(high)))
+        return `options.${key} = ${value} is not within ${low}..${high}`;
+    }
+  }
   if (code === 'outOfMemory') return `not enough memory for this target${options ? ' and cage' : ''}`;
   if (mesh === undefined) return `failed (${code})`;
   const { positions, indices, uvs, groups } = mesh;

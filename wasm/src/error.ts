@@ -12,14 +12,7 @@ export const coreCodes = [
   'nonFiniteUv',
   'noUsableCageTriangle',
   'tooLarge',
-  'badThreshold',
-  'badWeldTolerance',
-  'badOcclusionReach',
-  'badPokeThrough',
-  'badMinCovered',
-  'badMinOfAll',
-  'badMaxUncovered',
-  'badLocks',
+  'badOption',
   'resultMismatch',
   'outOfMemory',
 ] as const;
@@ -35,9 +28,8 @@ export const coreCodes = [
  * - `indexOutOfRange`, `nonFinitePosition`, `nonFiniteUv`: `at` is the place in the array.
  * - `noUsableCageTriangle`: every triangle of the cage has zero area.
  * - `tooLarge`: too many elements, or (`at`: the place in `positions`) coordinates out of all proportion.
- * - `badThreshold`, `badWeldTolerance`, `badOcclusionReach`, `badPokeThrough`, `badMinCovered`, `badMinOfAll`, `badMaxUncovered`: that
- *   option is not a number, or not within its limits. `badOption`: another one of a wrong type or value, or of no known name.
- * - `badArgument`: an argument of a wrong type. `badLocks`: locks that are not one per segment.
+ * - `badOption`: an option of a wrong type, out of its range, or of no known name.
+ * - `badArgument`: an argument of a wrong type.
  * - `resultMismatch`: a result that is not of the target it is given with.
  * - `outOfMemory`: the work does not fit into memory; the next call starts afresh.
  * - `notInitialised`: `init()` has not resolved yet.
@@ -48,7 +40,6 @@ export const coreCodes = [
 export type Code =
   | (typeof coreCodes)[number]
   | 'badArgument'
-  | 'badOption'
   | 'notInitialised'
   | 'unsupported'
   | 'aborted'

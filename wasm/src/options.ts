@@ -148,16 +148,16 @@ const namesOf: Record<'project' | 'classify' | 'transfer' | 'cutBorders', readon
 /** The value of an option in numbers for the core. */
 export const numberOf = (core: readonly number[], name: keyof PresetOptions): number => core[allNames.indexOf(name)]!;
 
-/** The numbers that the core takes, by the code of its error. */
+/** The numbers that the core takes. */
 export const ranges = {
-  badThreshold: ['threshold', '0..1'],
-  badWeldTolerance: ['weldTolerance', '0..0.01'],
-  badOcclusionReach: ['occlusionReach', '0..Infinity'],
-  badPokeThrough: ['pokeThrough', '0..1'],
-  badMinCovered: ['minCovered', '0..1'],
-  badMinOfAll: ['minOfAll', '0..1'],
-  badMaxUncovered: ['maxUncovered', '0..1'],
-} as const satisfies Record<string, readonly [keyof PresetOptions, string]>;
+  threshold: [0, 1],
+  weldTolerance: [0, 0.01],
+  occlusionReach: [0, Infinity],
+  pokeThrough: [0, 1],
+  minCovered: [0, 1],
+  minOfAll: [0, 1],
+  maxUncovered: [0, 1],
+} as const satisfies Partial<Record<keyof PresetOptions, readonly [number, number]>>;
 
 /**
  * What a preset stands for: the value of every option but `preset` and `locks`.
@@ -192,7 +192,7 @@ function numbersOf(fn: string, name: string, preset: unknown): number[] {
 /**
  * Checks options. The core checks the ranges of numbers, and knows what is not given.
  * @param preset  What holds if the options name none.
- * @throws {CagecastError} `badOption`, and `badThreshold` and its like for what is no number
+ * @throws {CagecastError} `badOption`
  */
 export function checkOptions(
   fn: keyof typeof namesOf,
@@ -218,20 +218,19 @@ export function checkOptions(
 }
 
 function checkOption(fn: string, name: string, kind: Kind, value: unknown): number {
-  const wrong = (code: 'badOption' | keyof typeof ranges, is: string) =>
-    new CagecastError(code, `${fn}: options.${name} = ${show(value)} is ${is}`);
+  const wrong = (is: string) => new CagecastError('badOption', `${fn}: options.${name} = ${show(value)} is ${is}`);
   if (typeof kind === 'object') {
     const number = kind.indexOf(value as string);
-    if (number < 0) throw wrong('badOption', `unknown; there are: ${kind.map(show).join(', ')}`);
+    if (number < 0) throw wrong(`unknown; there are: ${kind.map(show).join(', ')}`);
     return number;
   }
   if (kind === 'boolean') {
-    if (typeof value !== 'boolean') throw wrong('badOption', 'not true or false');
+    if (typeof value !== 'boolean') throw wrong('not true or false');
     return Number(value);
   }
   if (typeof value === 'number') return value;
-  const [code, [, range]] = Object.entries(ranges).find(([, [option]]) => option === name)!;
-  throw wrong(code as keyof typeof ranges, `not a number within ${range}`);
+  const [low, high] = ranges[name as keyof typeof ranges];
+  throw wrong(`not a number within ${low}..${high}`);
 }
 
 function checkLocks(fn: string, locks: unknown = {}): Locks {

@@ -27,6 +27,7 @@ constexpr bool areInOrder(Values... values) {
   return (!std::is_enum_v<Values> && ...) || ((static_cast<int>(values) == next++) && ...);
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the arguments are types, names and lists.
 // Opens a function in whose scope the names of a range are known.
 #define CAGECAST_SCOPE_share [] {
 #define CAGECAST_SCOPE_length [] {
@@ -52,6 +53,7 @@ constexpr OptionEntry kEntries[] = {
 #include "cagecast/options.def"
 };
 // clang-format on
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace
 
