@@ -11,79 +11,93 @@
 namespace cagecast {
 namespace {
 
-/// A UV as one number, equal where the UVs are.
+/// Both coordinates of a UV in one integer, equal for equal UVs.
 using UvBits = std::uint64_t;
 
 UvBits bitsOf(const float* uv) {
-  const float place[2] = {uv[0] + 0.0f, uv[1] + 0.0f};  // Now −0 is 0.
+  const float normalized[2] = {uv[0] + 0.0f, uv[1] + 0.0f};  // −0 becomes 0.
   UvBits bits;
-  std::memcpy(&bits, place, sizeof bits);
+  std::memcpy(&bits, normalized, sizeof bits);
   return bits;
+}
+
+/// The greatest ratio of UV length to length among a triangle's edges.
+double stretchOf(const CageTriangle& triangle) {
+  const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
+  double squared = 0;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t l = (k + 1) % 3;
+    const double du = static_cast<double>(triangle.uvs[2 * l]) - static_cast<double>(triangle.uvs[2 * k]);
+    const double dv = static_cast<double>(triangle.uvs[2 * l + 1]) - static_cast<double>(triangle.uvs[2 * k + 1]);
+    const Vec3 edge = corners[l] - corners[k];
+    squared = std::max(squared, (du * du + dv * dv) * (1 / dot(edge, edge)));
+  }
+  return std::sqrt(squared);
+}
+
+/// Links the half-edges that are one edge in UV.
+/// @param uvs    1 per half-edge: the UV at its origin.
+/// @param fans   For the edges of three or more triangles.
+void linkHalfEdges(const HalfEdges& halfEdges, const UvBits* uvs, std::uint32_t count, HashIndex& fans,
+                   std::uint32_t* nextHalfEdge) {
+  const std::uint32_t* origins = halfEdges.starts;
+  const auto isSameEdge = [=](std::uint32_t halfEdge, std::uint32_t other) {
+    const std::uint32_t end = HalfEdges::after(halfEdge);
+    std::uint32_t from = other, to = HalfEdges::after(other);
+    if (origins[halfEdge] != origins[from]) std::swap(from, to);
+    return origins[halfEdge] == origins[from] && origins[end] == origins[to] && uvs[halfEdge] == uvs[from] &&
+           uvs[end] == uvs[to];
+  };
+  const auto hashOfOrigin = [=](std::uint32_t halfEdge) {
+    return HashIndex::mix(HashIndex::mix(0, origins[halfEdge]), uvs[halfEdge]);
+  };
+  for (std::uint32_t halfEdge = 0; halfEdge < count; ++halfEdge) {
+    std::uint32_t other = halfEdges.next[halfEdge];
+    nextHalfEdge[halfEdge] = halfEdge;
+    if (halfEdges.next[other] == halfEdge) {
+      nextHalfEdge[halfEdge] = isSameEdge(halfEdge, other) ? other : halfEdge;
+      continue;
+    }
+    // A hash table instead of comparing all pairs: hundreds of triangles may share one edge.
+    other = fans.firstEqual(halfEdge, hashOfOrigin(halfEdge) + hashOfOrigin(HalfEdges::after(halfEdge)),
+                            [&](std::uint32_t known) { return isSameEdge(halfEdge, known); });
+    std::swap(nextHalfEdge[halfEdge], nextHalfEdge[other]);
+  }
 }
 
 }  // namespace
 
-bool findUvCharts(const Cage& cage, const HalfEdges& edges, Arena& arena, UvCharts& out) noexcept {
-  const std::uint32_t sideCount = 3 * cage.count;
-  out.nextSide = arena.allocate<std::uint32_t>(sideCount);
-  out.beside = arena.allocate<Beside>(cage.count);
-  out.islands = arena.allocate<std::uint32_t>(cage.count);
+bool findUvCharts(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, UvCharts& out) noexcept {
+  const std::uint32_t halfEdgeCount = 3 * cage.count;
+  out.nextHalfEdge = arena.allocate<std::uint32_t>(halfEdgeCount);
+  out.neighbors = arena.allocate<ChartNeighbors>(cage.count);
+  out.charts = arena.allocate<std::uint32_t>(cage.count);
   out.stretch = arena.allocate<double>(cage.count);
   const Arena::Mark mark = arena.mark();
-  auto* uvs = arena.allocate<UvBits>(sideCount);  // Where sides begin.
-  HashIndex fans(sideCount, arena);               // Edges of three triangles and more.
+  auto* uvs = arena.allocate<UvBits>(halfEdgeCount);
+  HashIndex fans(halfEdgeCount, arena);
   if (arena.failed()) return false;
 
-  out.mostUv = 0;
+  out.maxUv = 0;
   for (std::uint32_t t = 0; t < cage.count; ++t) {
     const CageTriangle& triangle = cage.triangles[t];
-    const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
-    double stretch = 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t l = (k + 1) % 3;
-      uvs[3 * t + k] = bitsOf(triangle.uvs + 2 * k);
-      const double du = static_cast<double>(triangle.uvs[2 * l]) - static_cast<double>(triangle.uvs[2 * k]);
-      const double dv = static_cast<double>(triangle.uvs[2 * l + 1]) - static_cast<double>(triangle.uvs[2 * k + 1]);
-      const Vec3 along = corners[l] - corners[k];
-      stretch = std::max(stretch, (du * du + dv * dv) * (1 / dot(along, along)));
-    }
-    out.stretch[t] = std::sqrt(stretch);
-    for (const float x : triangle.uvs) out.mostUv = std::max(out.mostUv, std::abs(x));
+    for (std::uint32_t k = 0; k < 3; ++k) uvs[3 * t + k] = bitsOf(triangle.uvs + 2 * k);
+    out.stretch[t] = stretchOf(triangle);
+    for (const float x : triangle.uvs) out.maxUv = std::max(out.maxUv, std::abs(x));
   }
-  const std::uint32_t* starts = edges.starts;
-  const auto isSame = [starts, uvs](std::uint32_t side, std::uint32_t other) {
-    const std::uint32_t end = HalfEdges::after(side);
-    std::uint32_t from = other, to = HalfEdges::after(other);
-    if (starts[side] != starts[from]) std::swap(from, to);
-    return starts[side] == starts[from] && starts[end] == starts[to] && uvs[side] == uvs[from] && uvs[end] == uvs[to];
-  };
-  const auto hash = [starts, uvs](std::uint32_t corner) {
-    return HashIndex::mix(HashIndex::mix(0, starts[corner]), uvs[corner]);
-  };
-  for (std::uint32_t side = 0; side < sideCount; ++side) {
-    std::uint32_t other = edges.next[side];
-    out.nextSide[side] = side;
-    if (edges.next[other] != side) {
-      // There may be very many: none looks at all others.
-      other = fans.firstEqual(side, hash(side) + hash(HalfEdges::after(side)),
-                              [&](std::uint32_t known) { return isSame(side, known); });
-      std::swap(out.nextSide[side], out.nextSide[other]);
-    } else {
-      if (!isSame(side, other)) other = side;
-      out.nextSide[side] = other;
-    }
-  }
-  UnionFind sets(out.islands, cage.count);
-  for (std::uint32_t t = 0, side = 0; t < cage.count; ++t) {
-    Beside& beside = out.beside[t];
-    beside.isOnFan = 0;
+  linkHalfEdges(halfEdges, uvs, halfEdgeCount, fans, out.nextHalfEdge);
+  UnionFind sets(out.charts, cage.count);
+  for (std::uint32_t t = 0; t < cage.count; ++t) {
+    ChartNeighbors& neighbors = out.neighbors[t];
+    neighbors.hasFan = 0;
     std::uint32_t next[3];
-    for (std::uint32_t k = 0; k < 3; ++k, ++side) {
-      const std::uint32_t other = out.nextSide[side];
-      const bool isOnFan = out.nextSide[other] != side;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t halfEdge = 3 * t + k;
+      const std::uint32_t other = out.nextHalfEdge[halfEdge];
+      const bool isFan = out.nextHalfEdge[other] != halfEdge;
       next[k] = other / 3;
-      beside.triangles[k] = isOnFan ? t : next[k];
-      beside.isOnFan |= unsigned{isOnFan};
+      neighbors.triangles[k] = isFan ? t : next[k];
+      neighbors.hasFan |= unsigned{isFan};
     }
     sets.join({t, next[0], next[1], next[2]});
   }

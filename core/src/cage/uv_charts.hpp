@@ -11,45 +11,45 @@
 
 namespace cagecast {
 
-/// docs/method.md, step 9: an edge is smeared if it is so many times longer in UV than the cage explains, and so much
-/// in UV besides.
+/// docs/method.md, step 9: an edge is smeared if its UV length exceeds the length that the cage explains by this
+/// factor plus this slack.
 inline constexpr double kSmear = 4;
 inline constexpr double kSmearSlack = 0.005;
 
-/// Where a place of the target falls in the texture.
-struct Landing {
-  std::uint32_t slot;  ///< The cage triangle that it is nearest to.
-  double distance;     ///< To it.
+/// The closest point of a target vertex, as far as the texture is concerned.
+struct UvSample {
+  std::uint32_t cageTriangle;
+  double distance;  ///< From the vertex to the cage, scaled.
   Uv uv;
 };
 
-/// What a triangle of the cage shares its edges with, in the texture.
-struct Beside {
-  std::uint32_t triangles[3];  ///< One per edge: itself if no other triangle has the edge, or more than one.
-  std::uint32_t isOnFan;       ///< Whether more than one other has any of them.
+/// The triangles that share the edges of a cage triangle in UV.
+struct ChartNeighbors {
+  std::uint32_t triangles[3];  ///< Per edge. The triangle itself at an edge that no other or several others share.
+  std::uint32_t hasFan;        ///< 1 if several others share one of the edges.
 };
 
-/// How the cage's triangles hang together in the texture: over edges with equal position and UV at both ends.
+/// The UV charts of the cage: its triangles connected over edges that have equal positions and equal UVs at both ends.
 struct UvCharts {
-  Beside* beside;  ///< 1 per triangle.
-  std::uint32_t*
-      nextSide;  ///< 1 per side, as in `HalfEdges`: another side on the same edge; all sides of an edge form a ring.
-  std::uint32_t* islands;  ///< 1 per triangle: equal for those that hang together.
-  double* stretch;         ///< 1 per triangle: the most of its edges' UV length / length.
-  float mostUv;            ///< The largest UV, without its sign.
+  ChartNeighbors* neighbors;    ///< 1 per triangle.
+  std::uint32_t* nextHalfEdge;  ///< 1 per half-edge: the next one of the same edge in UV. Those of an edge form a ring.
+  std::uint32_t* charts;        ///< 1 per triangle: the number of its chart.
+  double* stretch;              ///< 1 per triangle: the greatest ratio of UV length to length among its edges.
+  float maxUv;                  ///< The greatest absolute UV coordinate.
 
-  /// Whether the texture is torn or smeared between two places of the target, so far apart.
-  [[nodiscard]] bool tears(const Landing& a, const Landing& b, double apart) const noexcept {
-    if (islands[a.slot] != islands[b.slot]) return true;
+  /// Whether a seam separates two target vertices in the texture: their charts differ, or the edge is smeared.
+  /// @param length  Of the edge between the vertices, scaled.
+  [[nodiscard]] bool separates(const UvSample& a, const UvSample& b, double length) const noexcept {
+    if (charts[a.cageTriangle] != charts[b.cageTriangle]) return true;
     const double du = b.uv.u - a.uv.u;
     const double dv = b.uv.v - a.uv.v;
-    const double path = apart + std::abs(b.distance - a.distance);
-    const double explained = std::max(stretch[a.slot], stretch[b.slot]) * path;
+    const double path = length + std::abs(b.distance - a.distance);
+    const double explained = std::max(stretch[a.cageTriangle], stretch[b.cageTriangle]) * path;
     return std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack;
   }
 };
 
 /// @return false if memory ran out.
-bool findUvCharts(const Cage& cage, const HalfEdges& edges, Arena& arena, UvCharts& out) noexcept;
+bool findUvCharts(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, UvCharts& out) noexcept;
 
 }  // namespace cagecast

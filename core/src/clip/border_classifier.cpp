@@ -78,7 +78,7 @@ Look BorderClassifier::judge(const Candidate& nearest) const noexcept {
   const CageTriangle& t = cage_.triangles[slot];
   const Vec3 q = positionOf(t, place);
   const std::uint32_t side =
-      charts_ != nullptr ? charts_->islands[slot] : loops_.sideAt(t, slot, q, diagonal_) != BoundaryLoops::kNone;
+      charts_ != nullptr ? charts_->charts[slot] : loops_.sideAt(t, slot, q, diagonal_) != BoundaryLoops::kNone;
   return {side, slot, q, uvAt(t, place)};
 }
 
@@ -124,7 +124,7 @@ bool BorderClassifier::isBetween(const Look& a, const Look& b) const noexcept {
 bool BorderClassifier::areAllOn(std::uint32_t side, Nearby nearby, Hull hull) const noexcept {
   const auto* slots = &listed_[nearby.first];
   return nearby.count > 0 && std::all_of(slots, slots + nearby.count, [&](std::uint32_t slot) {
-           if (charts_ != nullptr) return charts_->islands[slot] == side;
+           if (charts_ != nullptr) return charts_->charts[slot] == side;
            return side == 0 ? loops_.areOff(cage_.triangles[slot], slot, hull, diagonal_)
                             : loops_.areOn(cage_.triangles[slot], slot, hull);
          });

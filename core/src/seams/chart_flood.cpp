@@ -5,13 +5,9 @@
 #include <limits>
 
 #include "cage/boundary_loops.hpp"
+#include "search/near_kernel.hpp"
 
 namespace cagecast {
-
-void setPlace(const Cage& cage, const Vec3& p, std::uint32_t t, Candidate& out) noexcept {
-  out.slot = t;
-  out.place = closestPointOnTriangle(cage.triangles[t], p);
-}
 
 ChartFlood::ChartFlood(const Cage& cage, const CageTree& tree, const UvCharts& charts, double diagonal,
                        Arena& arena) noexcept
@@ -19,65 +15,54 @@ ChartFlood::ChartFlood(const Cage& cage, const CageTree& tree, const UvCharts& c
       tree_(tree),
       charts_(charts),
       fixedSlack_(fixedSlack(slackOf(tree, diagonal), kRelativeSlack)),
-      rows_(arena.allocate<NearTriangle>(cage.count)),
-      patches_(arena.allocate<Patch>(kMostPatches)),
-      groups_(arena.allocate<Group>(kMostGroups)),
-      near_(arena.allocate<NearPoints>(kRoom + std::size_t{3} * cage.count)),
-      room_(kRoom + 3 * cage.count) {
-  const std::size_t count = cage.count;
-  for (Walk& walk : walks_) {
-    walk.triangles = arena.allocate<std::uint32_t>(count + 1);
-    walk.squares = arena.allocate<float>(Patch::kPoints * (count + 1));
-    walk.beyond = arena.allocate<std::uint32_t>(count + 1);
-    walk.beyondSquares = arena.allocate<float>(count + 1);
-    walk.seen = arena.allocate<std::uint32_t>(4 * count);
-    if (arena.failed()) return;
-    walk.sideSeen = walk.seen + count;
-    std::fill(walk.seen, walk.sideSeen + 3 * count, 0u);
-  }
-  for (std::uint32_t i = 0; i < tree.leafCount; ++i) {
-    NearTriangle four[4];
-    NearTriangle::of(tree.near[i], four);
-    // Leaves are full but for the last.
-    for (std::uint32_t k = 0; k < std::min(4u, cage.count - 4 * i); ++k) rows_[tree.near[i].slot[k]] = four[k];
-  }
+      triangles_(arena.allocate<FlatTriangle>(cage.count)),
+      patches_(arena.allocate<ChartPatch>(kMaxPatches)),
+      groups_(arena.allocate<Group>(kMaxGroups)),
+      candidates_(arena.allocate<PatchCandidate>(kCandidateRoom + std::size_t{3} * cage.count)),
+      candidateRoom_(kCandidateRoom + 3 * cage.count),
+      queue_(arena.allocate<std::uint32_t>(std::size_t{cage.count} + 1)),
+      members_(arena.allocate<std::uint32_t>(cage.count)),
+      squares_(arena.allocate<float>(ChartPatch::kPoints * (std::size_t{cage.count} + 1))),
+      outside_(arena.allocate<OutOfReach>(cage.count)),
+      met_(arena.allocate<std::uint32_t>(cage.count)),
+      edgeMet_(arena.allocate<std::uint32_t>(std::size_t{3} * cage.count)) {
+  if (arena.failed()) return;
+  std::fill(met_, met_ + cage.count, 0u);
+  std::fill(edgeMet_, edgeMet_ + std::size_t{3} * cage.count, 0u);
+  for (std::uint32_t i = 0; i < cage.count; ++i)
+    triangles_[tree.near[i / 4].slot[i % 4]] = FlatTriangle::of(tree.near[i / 4], i % 4);
 }
 
-Patch& ChartFlood::add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept {
+ChartPatch& ChartFlood::add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept {
   Group& group = groupWith(corners, k, inGroup);
-  Patch** at = &group.narrowest;
+  ChartPatch** at = &group.narrowest;
   while (*at != nullptr && (*at)->reach < reach) at = &(*at)->wider;
   if (*at != nullptr && (*at)->reach == reach) return **at;
-  const Vec3& q = group.place;
-  const double rounding = 2 * kRounding * (tree_.extent + reach + std::abs(q.x) + std::abs(q.y) + std::abs(q.z));
-  const double surely = std::max(0.0, reach - rounding);
-  const auto within = static_cast<float>(surely * surely);
-  const auto beyond = static_cast<float>((reach + rounding) * (reach + rounding));
-  Patch& patch = patches_[patchCount_++];
+  ChartPatch& patch = patches_[patchCount_++];
   patch.reach = reach;
-  patch.limits = simd::of(within, beyond, beyond, beyond);
-  patch.near = nullptr;
+  patch.candidates = nullptr;
   patch.wider = *at;
   *at = &patch;
   return patch;
 }
 
-/// A group around the place of corner k that has the other two among its points.
+/// Finds or adds a group around the closest point of corner k that has the other two corners among its points.
 ChartFlood::Group& ChartFlood::groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&inGroup)[3]) noexcept {
   Corner& own = *corners[k];
-  const bool isThere = own.group < groupCount_ && groups_[own.group].points[kPlace] == own.point;
-  Group* group = isThere ? groups_ + own.group : &addGroup(own);
-  inGroup[k] = kPlace;
+  const bool isKnown = own.group < groupCount_ && groups_[own.group].points[kCentre] == own.point;
+  Group* group = isKnown ? groups_ + own.group : &addGroup(own);
+  inGroup[k] = kCentre;
   for (;;) {
     std::uint32_t count = group->count;
     for (int c = 0; c < 3; ++c) {
       if (c == k) continue;
       std::uint32_t at = count;
-      for (std::uint32_t i = kPlace + 1; i < Patch::kPoints; ++i) at = group->points[i] == corners[c]->point ? i : at;
+      for (std::uint32_t i = kCentre + 1; i < ChartPatch::kPoints; ++i)
+        at = group->points[i] == corners[c]->point ? i : at;
       inGroup[c] = static_cast<std::uint8_t>(at);
       count = std::max(count, at + 1);
     }
-    if (count <= Patch::kPoints) {
+    if (count <= ChartPatch::kPoints) {
       for (int c = 0; c < 3; ++c) {
         if (c != k) setPoint(*group, inGroup[c], *corners[c]);
       }
@@ -91,18 +76,15 @@ ChartFlood::Group& ChartFlood::groupWith(Corner* const (&corners)[3], int k, std
 ChartFlood::Group& ChartFlood::addGroup(Corner& own) noexcept {
   own.group = groupCount_++;
   Group& group = groups_[own.group];
-  group.first = own.at.slot;
-  group.place = positionOf(cage_.triangles[group.first], own.at.place);
-  const double place[3] = {group.place.x, group.place.y, group.place.z};
-  // What is not a point yet is where the place is.
-  for (int axis = 0; axis < 3; ++axis) {
-    const simd::wide ofPlace = simd::splatWide(static_cast<float>(place[axis]) - tree_.middle[axis]);
-    for (std::size_t v = 0; v < kVectors; ++v) simd::store(group.positions[axis] + simd::kWide * v, ofPlace);
-  }
-  for (std::uint32_t i = 0; i < Patch::kPoints; i += simd::kWidth)
-    simd::store(group.points + i, simd::splatCount(UINT32_MAX));
-  group.points[kPlace] = own.point;
-  group.count = kPlace + 1;
+  group.cageTriangle = own.closest.slot;
+  group.centre = positionOf(cage_.triangles[group.cageTriangle], own.closest.place);
+  const double centre[3] = {group.centre.x, group.centre.y, group.centre.z};
+  // Unused points lie at the centre, so that the kernel has numbers to work on.
+  for (int axis = 0; axis < 3; ++axis)
+    std::fill_n(group.positions[axis], ChartPatch::kPoints, static_cast<float>(centre[axis]) - tree_.middle[axis]);
+  std::fill_n(group.points, ChartPatch::kPoints, UINT32_MAX);
+  group.points[kCentre] = own.point;
+  group.count = kCentre + 1;
   group.narrowest = nullptr;
   return group;
 }
@@ -112,195 +94,143 @@ void ChartFlood::setPoint(Group& group, std::uint32_t at, const Corner& corner) 
   for (int axis = 0; axis < 3; ++axis) group.positions[axis][at] = corner.position[axis] - tree_.middle[axis];
 }
 
-/// Begins the next group, if there is one.
-void ChartFlood::begin(Walk& walk) noexcept {
-  walk.size = walk.end = 0;
-  walk.patch = nullptr;
-  if (nextGroup_ == groupCount_) return;
-  walk.group = groups_ + nextGroup_++;
-  walk.narrower = nullptr;
-  walk.patch = walk.group->narrowest;
-  walk.beyondCount = 0;
-  for (simd::wide& least : walk.least) least = simd::splatWide(std::numeric_limits<float>::max());
-  // The first is always near enough: what is next to it is looked at with it, but for fans, one ring less.
-  ++walk.mark;
-  const auto add = [&](std::uint32_t t) {
-    walk.triangles[walk.end] = t;
-    walk.end += walk.seen[t] != walk.mark;
-    walk.seen[t] = walk.mark;
-  };
-  add(walk.group->first);
-  for (const std::uint32_t t : charts_.beside[walk.group->first].triangles) add(t);
+void ChartFlood::grow() noexcept {
+  while (grownGroups_ < groupCount_ && growGroup(groups_[grownGroups_])) ++grownGroups_;
 }
 
-// What is always inlined is called from one place, for every ring.
-
-/// Looks at the triangles next to the last ring, and keeps those near enough.
-[[gnu::always_inline]] inline void ChartFlood::look(Walk& walk) noexcept {
-  if (walk.patch == nullptr) return;
-  // In registers, as stores might change the walk for all the compiler knows.
-  std::uint32_t* const triangles = walk.triangles;
-  float* const squares = walk.squares;
-  std::uint32_t* const beyond = walk.beyond;
-  float* const beyondSquares = walk.beyondSquares;
-  const NearTriangle* const rows = rows_;
-  const simd::f32x4 limits = walk.patch->limits;
-  const Group& group = *walk.group;
-  simd::wide x[kVectors], y[kVectors], z[kVectors];
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    x[v] = simd::loadWide(group.positions[0] + simd::kWide * v);
-    y[v] = simd::loadWide(group.positions[1] + simd::kWide * v);
-    z[v] = simd::loadWide(group.positions[2] + simd::kWide * v);
-  }
-  const std::uint32_t end = walk.end;
-  std::uint32_t size = walk.size;
-  std::uint32_t beyondCount = walk.beyondCount;
-  for (std::uint32_t i = size; i < end; ++i) {
-    const std::uint32_t t = triangles[i];
-    float* const row = squares + std::size_t{Patch::kPoints} * size;
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      simd::store(row + simd::kWide * v, squaredDistances(rows[t], x[v], y[v], z[v]));
+/// @return false if there is no room for the candidates of all its patches.
+bool ChartFlood::growGroup(const Group& group) noexcept {
+  ++mark_;
+  queueEnd_ = memberCount_ = outsideCount_ = 0;
+  for (simd::f32x4& least : least_) least = simd::splat(std::numeric_limits<float>::max());
+  const ChartPatch* narrower = nullptr;
+  for (ChartPatch* patch = group.narrowest; patch != nullptr; patch = patch->wider) {
+    const double limit = patch->reach + roundingAt(group, patch->reach);
+    if (narrower != nullptr) requeueWithin(static_cast<float>(limit * limit));
+    flood(group, patch->reach);
+    patch->triangleCount = memberCount_;
+    if (narrower != nullptr && narrower->triangleCount == memberCount_) {
+      patch->candidates = narrower->candidates;
+      patch->candidateCount = narrower->candidateCount;
+      std::copy_n(narrower->leastSquared, ChartPatch::kPoints, patch->leastSquared);
+    } else if (!listCandidates(group, *patch)) {
+      return false;
     }
-    // No branch that is a coin toss: what is not kept is written over by the next.
-    const unsigned isWithin = simd::bits(simd::splat(row[kPlace]) <= limits);
-    std::uint32_t isNear = isWithin & 1;
-    if (isWithin == kUnsure) isNear = isWithinReach(walk, t);
-    beyond[beyondCount] = t;
-    beyondSquares[beyondCount] = row[kPlace];
-    beyondCount += 1 - isNear;
-    triangles[size] = t;
-    size += isNear;
+    narrower = patch;
   }
-  walk.kept = size;
-  walk.beyondCount = beyondCount;
-}
-
-/// In double, where floats do not tell.
-[[gnu::noinline, gnu::cold]] bool ChartFlood::isWithinReach(const Walk& walk, std::uint32_t t) const noexcept {
-  if (t == walk.group->first) return true;
-  Candidate at;
-  setPlace(cage_, walk.group->place, t, at);
-  return at.place.distance <= walk.patch->reach;
-}
-
-/// Adds the triangles that were kept, and finds what is next to them.
-[[gnu::always_inline]] inline void ChartFlood::meet(Walk& walk) noexcept {
-  if (walk.patch == nullptr) return;
-  // In registers, as above.
-  std::uint32_t* const triangles = walk.triangles;
-  std::uint32_t* const seen = walk.seen;
-  const float* const squares = walk.squares;
-  const Beside* const besides = charts_.beside;
-  const std::uint32_t mark = walk.mark;
-  const std::uint32_t kept = walk.kept;
-  simd::wide least[kVectors];
-  std::copy(walk.least, walk.least + kVectors, least);
-  std::uint32_t end = kept;
-  const auto add = [&](std::uint32_t t) {
-    triangles[end] = t;
-    end += seen[t] != mark;
-    seen[t] = mark;
-  };
-  for (std::uint32_t i = walk.size; i < kept; ++i) {
-    const float* const row = squares + std::size_t{Patch::kPoints} * i;
-    for (std::size_t v = 0; v < kVectors; ++v) least[v] = simd::min(least[v], simd::loadWide(row + simd::kWide * v));
-    const Beside& beside = besides[triangles[i]];
-    for (const std::uint32_t t : beside.triangles) add(t);
-    if (beside.isOnFan == 0) continue;
-    const std::uint32_t sides = 3 * triangles[i];
-    for (std::uint32_t side = sides; side < sides + 3; ++side) {
-      if (walk.sideSeen[side] == mark) continue;
-      // One round for all triangles that share the edge, however many.
-      for (std::uint32_t more = charts_.nextSide[side]; more != side; more = charts_.nextSide[more]) {
-        walk.sideSeen[more] = mark;
-        add(more / 3);
-      }
-    }
-  }
-  std::copy(least, least + kVectors, walk.least);
-  walk.size = kept;
-  walk.end = end;
-}
-
-/// Lists what of a patch that has grown might be the nearest to any point.
-/// @return false if there is no room.
-[[gnu::always_inline]] inline bool ChartFlood::findNear(const Walk& walk) noexcept {
-  if (room_ - nearCount_ < walk.size) return false;
-  // In registers, as above.
-  NearPoints* const near = near_ + nearCount_;
-  const std::uint32_t* const triangles = walk.triangles;
-  const float* const squares = walk.squares;
-  const std::uint32_t size = walk.size;
-  simd::wide limits[kVectors];
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    simd::store(walk.patch->least + simd::kWide * v, walk.least[v]);
-    limits[v] = walk.least[v] * simd::splatWide(1 + static_cast<float>(kRelativeSlack)) + simd::splatWide(fixedSlack_);
-  }
-  const unsigned corners = (1u << walk.group->count) - (2u << kPlace);
-  std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < size; ++i) {
-    const float* const row = squares + std::size_t{Patch::kPoints} * i;
-    unsigned points = 0;
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      points |= simd::bits(simd::loadWide(row + simd::kWide * v) <= limits[v]) << simd::kWide * v;
-    }
-    near[count] = {triangles[i], points};
-    count += (points & corners) != 0;
-  }
-  walk.patch->near = near;
-  walk.patch->nearCount = count;
-  walk.patch->size = size;
-  nearCount_ += count;
   return true;
 }
 
-/// Ends a patch, and goes on to the next wider one, or to the next group of the walk; where there is no more room, ends
-/// the walk.
-[[gnu::always_inline]] inline void ChartFlood::finish(Walk& walk) noexcept {
-  Patch& patch = *walk.patch;
-  Patch* const wider = patch.wider;
-  if (walk.narrower != nullptr && walk.narrower->size == walk.size) {
-    std::copy(walk.narrower->least, walk.narrower->least + Patch::kPoints, patch.least);
-    patch.near = walk.narrower->near;
-    patch.nearCount = walk.narrower->nearCount;
-    patch.size = walk.size;
-  } else if (!findNear(walk)) {
-    walk.patch = nullptr;
-    return;
-  }
-  if (wider == nullptr) return begin(walk);
-  walk.narrower = &patch;
-  walk.patch = wider;
-  // What was too far, and may not be any more.
-  float limits[4];
-  simd::store(limits, wider->limits);
-  std::uint32_t end = walk.end, left = 0;
-  for (std::uint32_t i = 0; i < walk.beyondCount; ++i) {
-    const std::uint32_t t = walk.beyond[i];
-    const float squared = walk.beyondSquares[i];
-    const bool isNear = squared <= limits[1];
-    walk.triangles[end] = t;
-    end += isNear;
-    walk.beyond[left] = t;
-    walk.beyondSquares[left] = squared;
-    left += !isNear;
-  }
-  walk.end = end;
-  walk.beyondCount = left;
+/// How much a float distance from the centre of a group may be off, for distances about as long as the reach.
+double ChartFlood::roundingAt(const Group& group, double reach) const noexcept {
+  const Vec3& c = group.centre;
+  return 2 * kRounding * (tree_.extent + reach + std::abs(c.x) + std::abs(c.y) + std::abs(c.z));
 }
 
-void ChartFlood::grow() noexcept {
-  for (Walk& walk : walks_) begin(walk);
-  // In turn: how many triangles a ring leaves is known only when its looks are through; until then there are those of
-  // the other.
-  static_assert(kWalks == 2);
-  while (walks_[0].patch != nullptr || walks_[1].patch != nullptr) {
-    for (Walk& walk : walks_) look(walk);
-    for (Walk& walk : walks_) {
-      meet(walk);
-      while (walk.size == walk.end && walk.patch != nullptr) finish(walk);
+/// Queues the triangles again that were out of reach and are not surely out of a wider one.
+/// @param limit  Squared distance.
+void ChartFlood::requeueWithin(float limit) noexcept {
+  std::uint32_t left = 0;
+  for (std::uint32_t i = 0; i < outsideCount_; ++i) {
+    if (outside_[i].squared <= limit) {
+      queue_[queueEnd_++] = outside_[i].cageTriangle;
+    } else {
+      outside_[left++] = outside_[i];
     }
   }
+  outsideCount_ = left;
+}
+
+/// Calls `visit` with the triangles that share an edge in UV with this one: once per edge, however many share it.
+template <typename Visit>
+void ChartFlood::visitFans(std::uint32_t cageTriangle, Visit visit) noexcept {
+  for (std::uint32_t halfEdge = 3 * cageTriangle; halfEdge < 3 * cageTriangle + 3; ++halfEdge) {
+    if (edgeMet_[halfEdge] == mark_) continue;
+    for (std::uint32_t other = charts_.nextHalfEdge[halfEdge]; other != halfEdge; other = charts_.nextHalfEdge[other]) {
+      edgeMet_[other] = mark_;
+      visit(other / 3);
+    }
+  }
+}
+
+/// Visits the queued triangles, adds those within reach to the members and queues their neighbors.
+void ChartFlood::flood(const Group& group, double reach) noexcept {
+  const double rounding = roundingAt(group, reach);
+  const double inner = std::max(0.0, reach - rounding), outer = reach + rounding;
+  const auto surelyWithin = static_cast<float>(inner * inner);
+  const auto perhapsWithin = static_cast<float>(outer * outer);
+  simd::f32x4 x[kVectors], y[kVectors], z[kVectors];
+  for (std::uint32_t v = 0; v < kVectors; ++v) {
+    x[v] = simd::load(group.positions[0] + simd::kWidth * v);
+    y[v] = simd::load(group.positions[1] + simd::kWidth * v);
+    z[v] = simd::load(group.positions[2] + simd::kWidth * v);
+  }
+  // Locals: the stores below may alias members, and the compiler would reload those for every triangle.
+  std::uint32_t* const queue = queue_;
+  std::uint32_t* const met = met_;
+  const std::uint32_t mark = mark_;
+  std::uint32_t end = queueEnd_, memberCount = memberCount_, outsideCount = outsideCount_;
+  const auto enqueue = [&](std::uint32_t t) {
+    // Without a branch, as it could not be predicted: a triangle met before is overwritten by the next.
+    queue[end] = t;
+    end += met[t] != mark;
+    met[t] = mark;
+  };
+  if (memberCount == 0) enqueue(group.cageTriangle);
+  for (std::uint32_t i = 0; i < end; ++i) {
+    const std::uint32_t t = queue[i];
+    const FlatTriangle& triangle = triangles_[t];
+    const simd::f32x4 squared = triangle.squaredDistances(x[0], y[0], z[0]);
+    const float toCentre = simd::first(squared);
+    bool isWithin = toCentre <= surelyWithin;
+    if (!isWithin && toCentre <= perhapsWithin)
+      isWithin = closestPointOnTriangle(cage_.triangles[t], group.centre).distance <= reach;
+    if (!isWithin) {
+      outside_[outsideCount++] = {t, toCentre};
+      continue;
+    }
+    float* const squares = squares_ + std::size_t{ChartPatch::kPoints} * memberCount;
+    members_[memberCount++] = t;
+    simd::store(squares, squared);
+    least_[0] = simd::min(least_[0], squared);
+    for (std::uint32_t v = 1; v < group.vectors(); ++v) {
+      const simd::f32x4 more = triangle.squaredDistances(x[v], y[v], z[v]);
+      simd::store(squares + simd::kWidth * v, more);
+      least_[v] = simd::min(least_[v], more);
+    }
+    const ChartNeighbors& neighbors = charts_.neighbors[t];
+    for (const std::uint32_t neighbor : neighbors.triangles) enqueue(neighbor);
+    if (neighbors.hasFan != 0) visitFans(t, enqueue);
+  }
+  queueEnd_ = 0;
+  memberCount_ = memberCount;
+  outsideCount_ = outsideCount;
+}
+
+/// Lists the members that may be the nearest to any point of the group but the centre.
+/// @return false if there is no room.
+bool ChartFlood::listCandidates(const Group& group, ChartPatch& patch) noexcept {
+  if (candidateRoom_ - candidateCount_ < memberCount_) return false;
+  simd::f32x4 limits[kVectors];
+  for (std::uint32_t v = 0; v < group.vectors(); ++v) {
+    simd::store(patch.leastSquared + simd::kWidth * v, least_[v]);
+    limits[v] = least_[v] * simd::splat(1 + static_cast<float>(kRelativeSlack)) + simd::splat(fixedSlack_);
+  }
+  PatchCandidate* const candidates = candidates_ + candidateCount_;
+  const unsigned corners = (1u << group.count) - (2u << kCentre);
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < memberCount_; ++i) {
+    const float* const squares = squares_ + std::size_t{ChartPatch::kPoints} * i;
+    unsigned points = 0;
+    for (std::uint32_t v = 0; v < group.vectors(); ++v)
+      points |= simd::bits(simd::load(squares + simd::kWidth * v) <= limits[v]) << simd::kWidth * v;
+    candidates[count] = {members_[i], points};
+    count += (points & corners) != 0;
+  }
+  patch.candidates = candidates;
+  patch.candidateCount = count;
+  candidateCount_ += count;
+  return true;
 }
 
 }  // namespace cagecast

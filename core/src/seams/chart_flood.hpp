@@ -6,137 +6,131 @@
 #include "cage/uv_charts.hpp"
 #include "geometry/closest_point.hpp"
 #include "input/cage.hpp"
+#include "seams/flat_triangle.hpp"
 #include "search/kd_tree.hpp"
-#include "search/near_kernel.hpp"
 #include "simd/simd.hpp"
 
 namespace cagecast {
 
-/// Finds the place of a point on a triangle of the cage.
-void setPlace(const Cage& cage, const Vec3& p, std::uint32_t t, Candidate& out) noexcept;
-
-/// A corner of a target triangle, and its place on the cage.
+/// A corner of a target triangle, and its closest point on the cage.
 struct Corner {
-  std::uint32_t point;
-  std::uint32_t group;    ///< The last one of patches around its place, if `ChartFlood` has any.
-  const float* position;  ///< x, y, z.
+  std::uint32_t point;    ///< In `Points`.
+  std::uint32_t group;    ///< The group of `ChartFlood` that was last made around its closest point.
+  const float* position;  ///< x, y, z, scaled.
   Vec3 p;                 ///< The same.
-  Candidate at;
-  Uv uv;  ///< Of that place.
+  Candidate closest;
+  Uv uv;  ///< At the closest point.
 };
 
-/// A triangle of the cage that might be the nearest of a patch to some points.
-struct NearPoints {
-  std::uint32_t triangle;
-  std::uint32_t points;  ///< Bit i is point i of the patch's group.
+/// A cage triangle that may be the nearest one of its patch to some points of the patch's group.
+struct PatchCandidate {
+  std::uint32_t cageTriangle;
+  std::uint32_t points;  ///< Bit i: point i of the group.
 };
 
-/// docs/method.md, step 9: what hangs together in the texture with the triangle under a corner, within reach of the
-/// corner's place.
-struct Patch {
-  /// Points whose distances are found at once: the place, and corners that share a triangle with the one whose place it
-  /// is.
+/// docs/method.md, step 9: the cage triangles that a flood over edges shared in UV reaches from a corner's closest
+/// point, up to a distance.
+struct ChartPatch {
+  /// Points whose distances to a cage triangle are found at once: the closest point around which the patch lies, and
+  /// target corners that are to be projected onto the patch.
   static constexpr std::uint32_t kPoints = 8;
 
-  double reach;
-  simd::f32x4 limits;      ///< Squared distances: up to lane 0 surely within reach, up to the others perhaps.
-  float least[kPoints];    ///< Squared distances of the points, in float.
-  Patch* wider;            ///< The next one of its group.
-  const NearPoints* near;  ///< What of it might be the nearest to any point; null until it has grown.
-  std::uint32_t nearCount;
-  std::uint32_t size;  ///< Triangles.
+  double reach;                      ///< Scaled.
+  float leastSquared[kPoints];       ///< Squared distances of the points to the patch, in float.
+  ChartPatch* wider;                 ///< The next patch of its group, by reach.
+  const PatchCandidate* candidates;  ///< Null until the patch has grown.
+  std::uint32_t candidateCount;
+  std::uint32_t triangleCount;
 };
 
-/// Finds patches of a cage, many at a time.
+/// Grows patches of the cage by flooding its charts, many at a time.
 ///
-/// Those around one place, of triangles with few enough other corners, are a group: each begins as the narrower one,
-/// and a look at a triangle of the cage tells how far it is from all that they are asked for.
+/// The patches around one closest point form groups: the flood of a wider patch goes on where that of the narrower one
+/// stopped, and one pass of the kernel over a cage triangle finds its distances to all points of the group.
 class ChartFlood {
  public:
-  /// Of so many triangles at a time: most of them share places.
-  static constexpr std::uint32_t kMostTriangles = 256;
+  /// Target triangles at a time: most of them share closest points.
+  static constexpr std::uint32_t kBatch = 256;
 
-  /// Takes what it needs from `arena`; `arena.failed()` tells if that was there.
+  /// Allocates its working memory from `arena`; check `arena.failed()` afterwards.
   ChartFlood(const Cage& cage, const CageTree& tree, const UvCharts& charts, double diagonal, Arena& arena) noexcept;
 
-  /// Forgets all of them.
-  void clear() noexcept { patchCount_ = groupCount_ = nextGroup_ = nearCount_ = 0; }
+  /// Forgets all patches.
+  void clear() noexcept { patchCount_ = groupCount_ = grownGroups_ = candidateCount_ = 0; }
 
-  /// Whether those of another triangle can be added.
+  /// Whether the patches of another target triangle can be added.
   [[nodiscard]] bool hasRoom() const noexcept {
-    return patchCount_ + 3 <= kMostPatches && groupCount_ + 3 <= kMostGroups;
+    return patchCount_ + 3 <= kMaxPatches && groupCount_ + 3 <= kMaxGroups;
   }
 
-  /// Notes the patch around the place of corner k of a triangle.
-  /// @param[out] inGroup  Which of its group's points the other two are; of k the place.
-  Patch& add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept;
+  /// Adds the patch around the closest point of corner k of a target triangle. It has no triangles before `grow`.
+  /// @param[out] inGroup  For each corner its number among the points of the group; of k that of the closest point.
+  ChartPatch& add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept;
 
-  /// Grows what was noted, until there is no more room for what is near. For three patches there always is.
+  /// Grows the patches in the order in which they were added, until there is no more room for candidates. There is
+  /// always room for the patches of one target triangle.
   void grow() noexcept;
 
  private:
-  static constexpr std::uint32_t kPlace = 0;
-  /// So many hold one number of each point.
-  static constexpr std::uint32_t kVectors = Patch::kPoints / simd::kWide;
-  /// What `kMostTriangles` ask for, on most models.
-  static constexpr std::uint32_t kMostPatches = 704;
-  static constexpr std::uint32_t kMostGroups = 352;
-  /// Room for what is near, besides three times the whole cage.
-  static constexpr std::uint32_t kRoom = 4096;
-  /// Beyond lane 0 of `Patch::limits`, within the others.
-  static constexpr unsigned kUnsure = 0b1110;
-  static constexpr std::uint32_t kWalks = 2;
+  /// The closest point's number among the points of its group.
+  static constexpr std::uint32_t kCentre = 0;
+  static constexpr std::uint32_t kVectors = ChartPatch::kPoints / simd::kWidth;
+  /// What `kBatch` triangles need on most models.
+  static constexpr std::uint32_t kMaxPatches = 704;
+  static constexpr std::uint32_t kMaxGroups = 352;
+  /// Room for candidates, in addition to three times the whole cage.
+  static constexpr std::uint32_t kCandidateRoom = 4096;
 
+  /// Patches around one closest point, for up to `ChartPatch::kPoints` points.
   struct Group {
-    float positions[3][Patch::kPoints];    ///< By axis, from the middle of the cage.
-    std::uint32_t points[Patch::kPoints];  ///< Which of the target these are; first the one whose place it is.
-    std::uint32_t count;                   ///< Of points.
-    std::uint32_t first;                   ///< The triangle that the place is on.
-    Vec3 place;
-    Patch* narrowest;
+    float positions[3][ChartPatch::kPoints];    ///< By axis, from the middle of the cage.
+    std::uint32_t points[ChartPatch::kPoints];  ///< In `Points`; `kCentre`: the point whose closest point it is.
+    std::uint32_t count;                        ///< Of points.
+    std::uint32_t cageTriangle;                 ///< That the closest point lies on.
+    Vec3 centre;                                ///< The closest point.
+    ChartPatch* narrowest;
+    /// SIMD vectors that hold one number of each point.
+    [[nodiscard]] std::uint32_t vectors() const noexcept { return (count + simd::kWidth - 1) / simd::kWidth; }
   };
-  /// Grows the patches of one group after the other, ring by ring.
-  struct Walk {
-    const Group* group;
-    const Patch* narrower;     ///< The one before; null at first.
-    Patch* patch;              ///< Null at the end of the walk.
-    std::uint32_t size;        ///< Triangles so far,
-    std::uint32_t kept;        ///< with what was kept of those next to the last ring,
-    std::uint32_t end;         ///< and, before they are looked at, with all of those.
-    std::uint32_t* triangles;  ///< 1 per triangle of the cage.
-    float* squares;            ///< Squared distances: `kPoints` per triangle.
-    simd::wide least[kVectors];
-    std::uint32_t beyondCount;
-    std::uint32_t* beyond;  ///< What was looked at and not kept,
-    float* beyondSquares;   ///< and how far from the place it is.
-    std::uint32_t mark = 0;
-    std::uint32_t* seen;      ///< 1 per triangle: the last mark with which it was met.
-    std::uint32_t* sideSeen;  ///< 1 per side: the last one with which a round about its edge was made.
+  /// A triangle that the flood met and found out of reach.
+  struct OutOfReach {
+    std::uint32_t cageTriangle;
+    float squared;
   };
 
   Group& groupWith(Corner* const (&corners)[3], int k, std::uint8_t (&inGroup)[3]) noexcept;
   Group& addGroup(Corner& own) noexcept;
   void setPoint(Group& group, std::uint32_t at, const Corner& corner) const noexcept;
-  void begin(Walk& walk) noexcept;
-  void look(Walk& walk) noexcept;
-  void meet(Walk& walk) noexcept;
-  void finish(Walk& walk) noexcept;
-  bool findNear(const Walk& walk) noexcept;
-  [[nodiscard]] bool isWithinReach(const Walk& walk, std::uint32_t t) const noexcept;
+  bool growGroup(const Group& group) noexcept;
+  void requeueWithin(float limit) noexcept;
+  void flood(const Group& group, double reach) noexcept;
+  template <typename Visit>
+  void visitFans(std::uint32_t cageTriangle, Visit visit) noexcept;
+  bool listCandidates(const Group& group, ChartPatch& patch) noexcept;
+  [[nodiscard]] double roundingAt(const Group& group, double reach) const noexcept;
 
   const Cage& cage_;
   const CageTree& tree_;
   const UvCharts& charts_;
   float fixedSlack_;
-  NearTriangle* rows_;  ///< 1 per triangle: all that a look needs in two cache lines, where a leaf has it in six.
-  Patch* patches_;
+  FlatTriangle* triangles_;  ///< 1 per cage triangle.
+  ChartPatch* patches_;
   Group* groups_;
-  std::uint32_t patchCount_ = 0, groupCount_ = 0;
-  std::uint32_t nextGroup_ = 0;  ///< To grow.
-  NearPoints* near_;             ///< Of one patch after the other,
-  std::uint32_t room_;           ///< so many at most,
-  std::uint32_t nearCount_ = 0;  ///< and so far.
-  Walk walks_[kWalks];
+  std::uint32_t patchCount_ = 0, groupCount_ = 0, grownGroups_ = 0;
+  PatchCandidate* candidates_;  ///< Of one patch after the other.
+  std::uint32_t candidateRoom_, candidateCount_ = 0;
+  // Of the group that is growing:
+  std::uint32_t* queue_;  ///< Cage triangles that the flood has met and not yet visited.
+  std::uint32_t queueEnd_ = 0;
+  std::uint32_t* members_;  ///< Cage triangles of the patch.
+  float* squares_;          ///< `kPoints` per member: squared distances.
+  std::uint32_t memberCount_ = 0;
+  OutOfReach* outside_;
+  std::uint32_t outsideCount_ = 0;
+  simd::f32x4 least_[kVectors];  ///< Squared distances of the points to the nearest member.
+  std::uint32_t mark_ = 0;       ///< The number of this flood.
+  std::uint32_t* met_;           ///< 1 per cage triangle: the last flood that met it.
+  std::uint32_t* edgeMet_;       ///< 1 per half-edge: the last flood that went around its fan.
 };
 
 }  // namespace cagecast
