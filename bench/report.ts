@@ -60,7 +60,7 @@ function markdown(results: Results): string {
   const parts = [
     `# Measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores; Node ${machine.node}${machine.compiler ? `, g++ ${machine.compiler}` : ''}${machine.chromium ? `, Chromium ${machine.chromium}` : ''}. Written by \`npm run bench\`; all numbers: [${date}.json](${date}.json). How good the answer is: [quality](quality.md).`,
-    'Every time is that of the whole work, from raw arrays to zones, single-threaded; medians, in ms: CPU time of the one thread that does it. A ratio is the median over pairs of runs, one right after the other.',
+    'Times are for the whole work, from raw arrays to zones: CPU time of the one thread that does it, in ms, medians. A ratio is the median over pairs of runs, one right after the other. [How it is measured](../README.md).',
     '![Totals by size](totals.svg)',
     '![Steps at 4.8k triangles](stages.svg)',
     '![Scaling](scaling.svg)',
@@ -112,7 +112,7 @@ function markdown(results: Results): string {
           (r.peakBytes / r.triangles).toFixed(0),
         ]),
       ),
-      `Embree 3.13, in the form in which it is fastest at this (bench/native/embree_peer.cpp says what was tried), computes the same zones, except at ${otherZones(native)}: it decides in float. nanoflann finds the nearest cage *vertex* and filters nothing.`,
+      `Embree 3.13 is used in the way that is fastest for this task (bench/native/embree_peer.cpp says what was tried). It computes the same zones, except at ${otherZones(native)}, because it decides in float. nanoflann finds the nearest cage *vertex* and filters nothing.`,
     );
     const sample = native['4.8k'];
     const embree = sample?.peers['embree'];
@@ -161,7 +161,7 @@ function markdown(results: Results): string {
           ];
         }),
       ),
-      `three-mesh-bvh in the form in which it is fastest at this (bench/web/bvh-peer.ts says what was tried), in the same page. Both write over the arrays of the answer before. Native Embree on the same core, in turn with Chromium, takes ${times(web.againstNativeEmbree.ratio)} the package’s time at 4.8k (${ms(web.againstNativeEmbree.embree)} and ${ms(web.againstNativeEmbree.cagecast)} ms).`,
+      `three-mesh-bvh is used in the way that is fastest for this task (bench/web/bvh-peer.ts says what was tried), in the same page. Both reuse the arrays of the previous result. Native Embree, run on the same core in turns with Chromium, takes ${times(web.againstNativeEmbree.ratio)} the package’s time at 4.8k (${ms(web.againstNativeEmbree.embree)} and ${ms(web.againstNativeEmbree.cagecast)} ms).`,
     );
   }
   if (presets) {
@@ -195,7 +195,7 @@ function markdown(results: Results): string {
           ...stagesOfDefault.map((stage) => ms(cost.stages[stage])),
         ]),
       ),
-      'Natively, all three in turn. 4.8k-many-islands is the sample with the texture of its cage cut as a box would be unfolded.',
+      'Native, all three in turns. 4.8k-many-islands is the sample with the UVs of its cage cut into many charts, as a box would be unfolded.',
     );
   }
   if (mobile) {
@@ -233,7 +233,7 @@ function markdown(results: Results): string {
           ];
         }),
       ),
-      'Wall time. Warm is the preset `paper`, the first use `default` unless it says otherwise, in a browser that never loaded the package: at rest, when the browser’s own start is over; at once, while its processes still start and share the two cores with the page.',
+      'Wall time. *Warm* is the preset `paper`. *First use* is the preset `default` unless the column says otherwise, in a browser that never loaded the package: *at rest* after the browser’s own start is over, *at once* while its processes still start and share the two cores with the page.',
     );
   }
   if (results.size) {

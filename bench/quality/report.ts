@@ -191,8 +191,8 @@ export function qualityReport(results: QualityResults): string {
     `# Quality, measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores, Node ${machine.node}. Written by \`npm run quality\`; all numbers: [quality.json](quality.json).`,
     `- *suppressed*: of the area that must not be painted, the share whose vertices are not; *kept*: of the area that is to be
-  painted, the share whose vertices are. Left out is what the truth leaves open (hidden, or a matter of taste), and of *kept*
-  what the cage does not speak of (its nearest place is on an open border).
+  painted, the share whose vertices are. Vertices that are hidden or a matter of taste are not scored; nor are, for *kept*,
+  those whose closest point is on a boundary loop of the cage, because the cage says nothing about them.
 - *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where
   none must be; *bare*: of those that show what is to be painted (in the same sense), those without.
 - *latency*: the package in Node, raw arrays in, answer out; CPU time, medians. The first rows are the first steps of \`paper\`.`,
@@ -200,7 +200,7 @@ export function qualityReport(results: QualityResults): string {
     missed.length === 0 ? 'All goals are reached.' : `Goals missed:\n\n${missed.map((line) => `- ${line}`).join('\n')}`,
     '![Suppressed and kept by threshold](quality-thresholds.svg)',
     '## Every model',
-    'Suppressed · kept. *Trap*: made to be difficult; *spoiled*: made to fail, as on the poster, and not held to any goal.',
+    'Suppressed · kept. A *trap* is made to be difficult. A *spoiled* model is made to fail, as on the poster, and not held to any goal.',
     byModel(models, ['', 'triangles', ...scoresHead], (quality) => [
       quality.kind,
       quality.triangles.toLocaleString('en'),
@@ -209,20 +209,20 @@ export function qualityReport(results: QualityResults): string {
     'In the picture: painted where forbidden · bare.',
     byModel(models, scoresHead, (quality) => methodScores(quality, byPixel)),
     '## Where it fails',
-    'As the poster says: where eyes are of one piece with the skin, and where the cage is out of place. `cagecast inspect` calls the second unfit.',
+    'Where eyes are of one piece with the skin, and where the cage is out of place, as the poster says. `cagecast inspect` calls such a cage unfit. [More](../../docs/evaluation.md#where-it-fails).',
     '![A face whose eyes are of one piece with its skin, and one under a cage that is turned and moved, by every method](../../docs/pictures/failures.jpg)',
-    '## Why vertices are left out, and what it takes',
-    `Vertices occluded / uncovered / culled; milliseconds; most memory beyond cage and target (the poster: “~20 MB”); painted area
-whose texture is smeared, with UVs per vertex, per corner, and with borders that are cut.`,
+    '## Why vertices are left out, and the cost',
+    `Vertices occluded / uncovered / culled; milliseconds; peak memory beyond cage and target (the poster: “~20 MB”); share of the
+painted area whose texture is smeared, with UVs per vertex, with UVs per corner, and with cut borders.`,
     costTable(results),
     '## `default` without one step',
-    `Suppressed · kept, where it differs from \`default\` as it is. \`groups\`: parts welded together; \`depth\`: the floor as it was at
-first; the others: that option as in \`paper\`.`,
+    `Suppressed · kept, where that differs from \`default\`. \`groups\`: all vertices in one group; \`depth\`: \`floor: 'area'\`; the
+others: that option as in \`paper\`.`,
     stepTable(models, byArea),
     'In the picture: painted where forbidden · bare.',
     stepTable(models, byPixel),
     '## How near the floor is',
-    'How many times what the floor asks a segment reaches, of those with F of at least 0.3; the five nearest to 1 of either kind.',
+    '*Reach* is the score without the threshold: a segment passes the floor from 1 on. Of the segments with F of at least 0.3, the five nearest to 1 of each kind.',
     floorTable(models),
   ];
   return `${parts.map((part) => part.trim()).join('\n\n')}\n`;
