@@ -18,7 +18,7 @@ const kWords = {
   'sunk\\w*Area': 'depthWeightedArea',
   copyOf: 'twinOf',
   'bared\\w*': 'hole contents',
-  restores: 'recovery',
+  '(?<=\\.)restores': 'recovery',
   'second look': 'recheck of occluded points',
   farRims: 'farLoops',
 };
