@@ -112,7 +112,7 @@ test('the model is saved as the command line says and makes it, and a link resto
     command: / --borders cut -o painted\.glb$/,
   };
   for (const [kind, expected] of Object.entries(words)) {
-    await page.locator(`#take input[value=${kind}]`).check({ force: true });
+    await page.locator(`#export input[value=${kind}]`).check({ force: true });
     assert.match((await page.getByTestId('code').textContent())!, expected);
   }
   const { bytes } = await saved(page, 'export-glb');

@@ -26,7 +26,7 @@ const kSizes = [
 
 /** Everything that is pressed or moved; for a box hidden behind its label, the label. */
 const kControls =
-  'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, .jump a, .rail label, .layer button, .paints button, .eye, .icon, #threshold, .knob, summary, #view';
+  'select, button:not([hidden]), .file, .segmented label, .toggle, .paints label, .section-nav a, .rail label, .layer button, .paints button, .eye, .icon, #threshold, .knob, summary, #view';
 
 /** Opens the cards that are closed at first. */
 async function openAll({ page }: Visit, open = true): Promise<void> {

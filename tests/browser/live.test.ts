@@ -5,7 +5,7 @@ import { init, type Mesh, transfer } from 'cagecast';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
 import { Box3, Vector3 } from 'three';
-import { type Deform, deform, kDeforms, type Room } from '../../web/src/live/deform';
+import { type Deform, deform, kDeforms, type Extent } from '../../web/src/live/deform';
 import { ball, islandCage, islandPaint } from './models';
 import { difference, frames, look, modelArea, shareOfHue, watch } from './picture';
 import { drop, Site, settled, shownCounts, shownError, type Upload } from './site';
@@ -39,11 +39,11 @@ async function meshOf({ buffer }: Upload): Promise<Mesh & { indices: Uint32Array
 }
 
 /** A mesh moved as the page moves it. */
-function moved(mesh: Mesh, how: Deform, amount: number, room: Room): Mesh {
+function moved(mesh: Mesh, how: Deform, amount: number, extent: Extent): Mesh {
   const positions = mesh.positions.slice();
   const point = new Vector3();
   for (let at = 0; at < positions.length; at += 3) {
-    deform(point.fromArray(positions, at), how, amount, room);
+    deform(point.fromArray(positions, at), how, amount, extent);
     point.toArray(positions, at);
   }
   return { ...mesh, positions };
@@ -59,14 +59,14 @@ test('a deformed model counts what a transfer of its moved vertices gives, with 
   assert.equal(await settled(page), 'ready', await shownError(page));
   const [target, cage] = [await meshOf(targetFile), await meshOf(cageFile)];
   const box = new Box3().setFromArray(target.positions as Float32Array);
-  const room = { center: box.getCenter(new Vector3()), half: (box.max.y - box.min.y) / 2 };
+  const extent = { center: box.getCenter(new Vector3()), half: (box.max.y - box.min.y) / 2 };
   const seen = new Set<string>();
   for (const how of kDeforms) {
     for (const along of [true, false]) {
       await page.getByTestId('deform').selectOption(how);
       await page.getByTestId('deform-cage').setChecked(along);
       await bend(page, -0.7);
-      const { zones } = transfer(moved(cage, how, along ? -0.7 : 0, room), moved(target, how, -0.7, room), {
+      const { zones } = transfer(moved(cage, how, along ? -0.7 : 0, extent), moved(target, how, -0.7, extent), {
         preset: 'paper',
       });
       const [cosmetic, occluded, uncovered, culled] = [0, 1, 2, 3].map(

@@ -64,10 +64,10 @@ async function morphed({ buffer }: Upload, weights: readonly number[], bend = 0)
         )
       ).positions as Float32Array,
     );
-    const room = { center: box.getCenter(new Vector3()), half: (box.max.y - box.min.y) / 2 };
+    const extent = { center: box.getCenter(new Vector3()), half: (box.max.y - box.min.y) / 2 };
     const point = new Vector3();
     for (let at = 0; at < moved.length; at += 3) {
-      deform(point.fromArray(moved, at), 'bend', bend, room);
+      deform(point.fromArray(moved, at), 'bend', bend, extent);
       point.toArray(moved, at);
     }
   }

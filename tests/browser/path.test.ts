@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import path from 'node:path';
 import { before, test } from 'node:test';
 import { init, presetOptions, project } from 'cagecast';
-import { Rims } from '../../web/src/explain/boundary-loops';
+import { BoundaryLoops } from '../../web/src/explain/boundary-loops';
 import { type Path, pathOf } from '../../web/src/explain/path';
 import { diagonalOf } from '../../web/src/scene/surface';
 import { modelFolders, readPlain } from '../js/scenes';
@@ -18,13 +18,13 @@ for (const folder of modelFolders()) {
     const [target, cage] = await Promise.all(
       ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
     );
-    const rims = new Rims(cage!);
+    const loops = new BoundaryLoops(cage!);
     const diagonal = diagonalOf(target!);
     for (const preset of ['default', 'paper'] as const) {
       const { zones, triangles, distances } = project(cage!, target!, { preset });
       const every = Math.max(1, Math.floor(zones.length / kAsked));
       for (let vertex = 0; vertex < zones.length; vertex += every) {
-        const way = pathOf(target!, cage!, rims, vertex, triangles[vertex]!, diagonal, presetOptions(preset));
+        const way = pathOf(target!, cage!, loops, vertex, triangles[vertex]!, diagonal, presetOptions(preset));
         assert.equal(kZones[way.outcome], zones[vertex], `${preset}: vertex ${vertex} is ${way.outcome}`);
         assert.ok(
           Math.abs(way.start.distanceTo(way.place) - distances[vertex]!) < 1e-6 * diagonal,

@@ -4,8 +4,8 @@ import type { BrushTool } from './brush-tool';
 import type { StickerTool } from './sticker-tool';
 
 /**
- * Lets the space bar press the tool in use on the middle of the picture. While it is held, the keys that turn the model
- * move the model under it.
+ * Applies the chosen tool at the centre of the view while the space bar is held. The keys that turn the model then move it
+ * under the tool.
  */
 export function paintByKeys(viewer: Viewer): { use(tool: BrushTool | StickerTool | undefined): void } {
   const canvas = element('view', HTMLCanvasElement);
@@ -15,21 +15,22 @@ export function paintByKeys(viewer: Viewer): { use(tool: BrushTool | StickerTool
   canvas.after(cross);
   let tool: BrushTool | StickerTool | undefined;
   let pressed: typeof tool;
+
   const release = (): void => {
     pressed?.up();
     pressed = undefined;
   };
 
-  // On the stage, where it is heard after the viewer has turned the model.
+  // On the stage, so that it runs after the viewer has turned the model.
   element('stage', HTMLElement).addEventListener('keydown', (keyEvent) => {
     if (keyEvent.target !== canvas || !tool || keyEvent.ctrlKey || keyEvent.metaKey || keyEvent.altKey) return;
-    const { x, y } = viewer.middle;
+    const { x, y } = viewer.center;
     const at = { clientX: x, clientY: y };
     if (keyEvent.key === ' ') {
       keyEvent.preventDefault();
       if (!keyEvent.repeat && !pressed && tool.down(viewer.pick(x, y), at)) pressed = tool;
     } else {
-      // The model has turned: on the screen the brush stayed where it was, on the model it moved.
+      // The model turned under the centre: extend the stroke to the new spot.
       pressed?.go(viewer.pick(x, y), at);
     }
   });

@@ -2,31 +2,31 @@ import { DataTexture, SRGBColorSpace, type Texture, Vector2, type WebGLRenderer,
 import type { Sheet } from '../layers/layer';
 import { isEmpty, type Rect } from '../layers/rect';
 
-/** Texels a side that paintings may have. */
+/** Sizes of paintings, in texels per side. */
 export const kPaintedSizes = [1024, 2048] as const;
 export type PaintedSize = (typeof kPaintedSizes)[number];
 
 // One transparent pixel.
 const kNoPicture = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEKAAEALAAAAAABAAEAAAICTAEAOw==';
 
-/** Storage on the GPU for what is painted: sRGB, its colours multiplied by their alpha, transparent at first. */
+/** A render target to paint on: sRGB, premultiplied alpha, transparent at first. */
 export function makePaintTarget(size: number): WebGLRenderTarget {
   return new WebGLRenderTarget(size, size, { colorSpace: SRGBColorSpace, depthBuffer: false });
 }
 
 /**
- * A sheet that is painted on. Its texels are kept twice: on the GPU, where strokes are laid, and as bytes, which undoing
- * copies about and from which the texture is made again when the graphics context was lost.
+ * A sheet to paint on. Its texels are kept twice: on the GPU, where strokes are drawn, and as bytes, for undo steps and to
+ * restore the texture after the graphics context was lost.
  */
 export class PaintedSheet implements Sheet {
   readonly premultiplied = true;
-  /** Where strokes are drawn to; tell `take` afterwards. */
+  /** Strokes are drawn here; call `readBack` afterwards. */
   readonly target: WebGLRenderTarget;
   readonly #bytes: Uint8Array;
   readonly bytes: number;
   picture = kNoPicture;
 
-  /** @param size Texels a side. */
+  /** @param size Texels per side. */
   constructor(readonly size: PaintedSize) {
     this.target = makePaintTarget(size);
     this.bytes = 4 * size * size;
@@ -44,8 +44,8 @@ export class PaintedSheet implements Sheet {
     return part;
   }
 
-  /** Notes what was drawn to a part of the target, and returns it. @param rect In texels. Waits for the GPU. */
-  take(renderer: WebGLRenderer, rect: Rect): Uint8Array {
+  /** Copies a part of the target into the bytes and returns it. @param rect In texels. Waits for the GPU. */
+  readBack(renderer: WebGLRenderer, rect: Rect): Uint8Array {
     const [width, height] = [rect.right - rect.left, rect.bottom - rect.top];
     const part = new Uint8Array(4 * width * height);
     renderer.readRenderTargetPixels(this.target, rect.left, rect.top, width, height, part);
@@ -53,13 +53,13 @@ export class PaintedSheet implements Sheet {
     return part;
   }
 
-  /** Puts texels back, as `bytes` or `take` gave them. */
+  /** Writes texels that `get` or `readBack` returned. */
   put(renderer: WebGLRenderer, rect: Rect, part: Uint8Array): void {
     this.#keep(rect, part);
     upload(renderer, this.target, rect, part);
   }
 
-  /** Makes the texture again from the bytes, after the graphics context was lost. */
+  /** Uploads the bytes again, after the graphics context was lost. */
   restore(renderer: WebGLRenderer): void {
     upload(renderer, this.target, { left: 0, top: 0, right: this.size, bottom: this.size }, this.#bytes);
   }
@@ -69,7 +69,7 @@ export class PaintedSheet implements Sheet {
   }
 }
 
-/** @param size Texels a side of the sheet. @param visit Called for each row with where it begins in the sheet's bytes and in the part's, and how long it is. */
+/** @param size Texels per side of the sheet. @param visit Receives for each row its offset in the sheet and in the part, and its length; all in bytes. */
 function eachRow(
   { left, top, right, bottom }: Rect,
   size: number,

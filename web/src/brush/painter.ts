@@ -9,16 +9,16 @@ import { showError } from '../platform/page';
 import type { Session, Shown } from '../scene/session';
 import type { Spot } from '../view/pick';
 import type { Viewer } from '../view/viewer';
-import { CageAtlas, type Capsule, type Place } from './atlas';
-import type { PaintOptions } from './options';
+import { CageTexels, type Capsule, type SurfacePoint } from './cage-texels';
+import type { PaintOptions } from './paint-options';
 import { PaintedSheet, type PaintedSize } from './painted-sheet';
 import type { StickerSheet, StickerStyle } from './sticker';
-import { type StrokeStyle, WetPaint } from './stroke-layer';
+import { StrokeLayer, type StrokeStyle } from './stroke-layer';
 
-const kPicture = 96; // pixels a side of a layer's picture
+const kPicture = 96; // pixels per side of a layer's thumbnail
 const kPictureDelay = 300; // milliseconds
 
-/** What is painted on, what shows it, and where it is noted. */
+/** The layers that are painted on, their composite, and the undo steps. */
 export interface Layers {
   stack: LayerStack;
   composite: Composite;
@@ -26,8 +26,7 @@ export interface Layers {
 }
 
 /**
- * Paints on the cage of what is on show: finds the place that is meant by a spot of the target, keeps what is wet, and makes
- * it part of a layer.
+ * Paints on the cage: maps spots of the target to points of the cage, holds the stroke in progress, and commits it to a layer.
  */
 export class Painter {
   readonly #session: Session;
@@ -36,16 +35,16 @@ export class Painter {
   readonly #composite: Composite;
   readonly #edits: Edits;
   readonly #options: PaintOptions;
-  /** For the cage of what is on show, by the texels a side. */
-  readonly #surfaces = new Map<PaintedSize, WetPaint>();
-  /** The one that is painted on, or was last. */
-  #wet: WetPaint | undefined;
+  /** For the current cage, by texture size. */
+  readonly #surfaces = new Map<PaintedSize, StrokeLayer>();
+  /** The one in use, or used last. */
+  #stroke: StrokeLayer | undefined;
   #cage: Shown['cage'] | undefined;
-  /** The layer that something wet lies on, and what undoing that is called. */
+  /** The layer under the stroke in progress, and the name of its undo step. */
   #layer: Layer | undefined;
   #name = '';
   #picturing: ReturnType<typeof setTimeout> | undefined;
-  /** All that may come back: on show, or removed and kept to be undone. */
+  /** All sheets that may be shown again: in the stack, or removed and kept by the undo history. */
   readonly #sheets: WeakRef<PaintedSheet>[] = [];
 
   constructor(session: Session, viewer: Viewer, { stack, composite, edits }: Layers, options: PaintOptions) {
@@ -61,30 +60,30 @@ export class Painter {
     });
   }
 
-  /** The cage of what is on show, unrolled. Cost: tens of milliseconds the first time for each cage and number of texels. */
-  get atlas(): CageAtlas | undefined {
-    return this.#surface()?.atlas;
+  /** The texel map of the current cage. Cost: tens of milliseconds the first time for each cage and size. */
+  get cageTexels(): CageTexels | undefined {
+    return this.#surface()?.cageTexels;
   }
 
-  /** How many triangles the target has. */
+  /** Number of triangles of the target. */
   get triangles(): number {
     return (this.#session.shown?.target.mesh.indices.length ?? 0) / 3;
   }
 
-  /** The place of the cage that a spot of the target takes its paint from; none where it takes none. */
-  placeOf(spot: Spot | undefined): Place | undefined {
+  /** The point of the cage that a spot of the target takes its paint from; undefined where nothing may be painted. */
+  surfacePointOf(spot: Spot | undefined): SurfacePoint | undefined {
     const { shown, classification } = this.#session;
     if (!spot || !shown || !classification?.cosmeticTriangles[spot.triangle]) return undefined;
-    return this.atlas?.at(...uvOf(spot, shown));
+    return this.cageTexels?.at(...uvOf(spot, shown));
   }
 
-  /** Begins to paint. @returns Whether there is a layer to do it on; the page says so if there is none. */
+  /** Begins a stroke. @returns False, after telling why, if there is no layer to paint on. */
   begin(name: string, style: StrokeStyle): boolean {
-    const wet = this.#surface();
+    const stroke = this.#surface();
     const painted = this.#paintedLayer();
-    if (!wet) return false;
+    if (!stroke) return false;
     if (!painted && (style.erases || this.#stack.full)) {
-      showError(style.erases ? 'Nothing was painted yet that could be erased.' : kFull);
+      showError(style.erases ? 'There is no painting to erase yet.' : kFull);
       return false;
     }
     this.#edits.begin();
@@ -92,38 +91,38 @@ export class Painter {
       const layer = painted ?? this.addLayer();
       this.#stack.select(layer);
       if (!layer.visible) this.#stack.restyle(layer, { visible: true });
-      wet.begin(layer.sheet as PaintedSheet, style);
+      stroke.begin(layer.sheet as PaintedSheet, style);
       this.#layer = layer;
     } catch (error) {
-      this.#edits.cancel(); // or it would be under way for ever
+      this.#edits.cancel(); // or the step would stay open
       throw error;
     }
     this.#name = name;
-    this.#wet = wet;
+    this.#stroke = stroke;
     return true;
   }
 
-  /** Goes on with a stroke. */
+  /** Extends the stroke. */
   stroke(capsules: readonly Capsule[]): void {
-    if (capsules.length > 0 && this.#layer) this.#show(this.#wet!.stroke(this.#viewer.renderer, capsules));
+    if (capsules.length > 0 && this.#layer) this.#show(this.#stroke!.stroke(this.#viewer.renderer, capsules));
   }
 
-  /** Sticks a picture on, in place of where it was stuck before in the same go. */
-  stick(place: Place, sheet: StickerSheet, style: StickerStyle, up: Vector3): void {
+  /** Places a sticker; it moves from where it was placed since `begin`. */
+  stick(place: SurfacePoint, sheet: StickerSheet, style: StickerStyle, up: Vector3): void {
     const { renderer } = this.#viewer;
-    if (this.#layer) this.#show(this.#wet!.stick(renderer, place, sheet.at(renderer, place, up, style)));
+    if (this.#layer) this.#show(this.#stroke!.stick(renderer, place, sheet.at(renderer, place, up, style)));
   }
 
-  /** Makes what was painted part of its layer. */
+  /** Commits the stroke to its layer, as an undo step. */
   end(): void {
     const layer = this.#layer;
     if (!layer) return;
     this.#layer = undefined;
     const { renderer } = this.#viewer;
     const sheet = layer.sheet as PaintedSheet;
-    let parts: ReturnType<WetPaint['settle']> = [];
+    let parts: ReturnType<StrokeLayer['commit']> = [];
     try {
-      parts = this.#wet!.settle(renderer);
+      parts = this.#stroke!.commit(renderer);
     } finally {
       if (parts.length === 0) this.#edits.cancel();
     }
@@ -146,11 +145,11 @@ export class Painter {
     );
   }
 
-  /** Takes back what is wet. */
+  /** Discards the stroke. */
   cancel(): void {
     if (!this.#layer) return;
     this.#layer = undefined;
-    this.#show(this.#wet!.end(this.#viewer.renderer));
+    this.#show(this.#stroke!.end(this.#viewer.renderer));
     this.#edits.cancel();
   }
 
@@ -163,7 +162,7 @@ export class Painter {
     return this.#stack.add(`Painting ${number}`, sheet);
   }
 
-  /** Makes all that was painted again, after the graphics context was lost. */
+  /** Uploads all paintings again, after the graphics context was lost. */
   restore(): void {
     for (const sheet of this.#sheets) sheet.deref()?.restore(this.#viewer.renderer);
     this.#composite.set(this.#stack.layers);
@@ -171,13 +170,13 @@ export class Painter {
   }
 
   #show(rects: readonly Rect[]): void {
-    this.#composite.touch(rects, this.#wet?.wet);
+    this.#composite.touch(rects, this.#stroke?.active);
     this.#viewer.redraw();
   }
 
   #changed(sheet: PaintedSheet, rects: readonly Rect[]): void {
     this.#show(rects.map((rect) => toShares(rect, sheet.size)));
-    // Its picture in the list can wait until the hand rests.
+    // The thumbnail in the list is updated once the strokes pause.
     clearTimeout(this.#picturing);
     this.#picturing = setTimeout(() => {
       sheet.picture = addressOf(readStraight(this.#viewer.renderer, sheet.texture, kPicture));
@@ -185,14 +184,14 @@ export class Painter {
     }, kPictureDelay);
   }
 
-  /** The layer that is painted on: the one worked on, or the uppermost painting, of those with the texels that are wanted. */
+  /** The layer to paint on: the selected one if it is a painting of the chosen size, else the uppermost such painting. */
   #paintedLayer(): Layer | undefined {
     const { selected, layers } = this.#stack;
     const fits = ({ sheet }: Layer): boolean => sheet instanceof PaintedSheet && sheet.size === this.#options.texels;
     return selected && fits(selected) ? selected : layers.findLast(fits);
   }
 
-  #surface(): WetPaint | undefined {
+  #surface(): StrokeLayer | undefined {
     const cage = this.#session.shown?.cage;
     if (cage !== this.#cage) {
       for (const surface of this.#surfaces.values()) surface.dispose();
@@ -202,13 +201,13 @@ export class Painter {
     const { positions, indices, uvs } = cage?.mesh ?? {};
     if (!positions || !indices || !uvs) return undefined;
     const { texels } = this.#options;
-    const surface = this.#surfaces.get(texels) ?? new WetPaint(new CageAtlas({ positions, indices, uvs }, texels));
+    const surface = this.#surfaces.get(texels) ?? new StrokeLayer(new CageTexels({ positions, indices, uvs }, texels));
     this.#surfaces.set(texels, surface);
     return surface;
   }
 }
 
-/** Where a spot lies in the paint. */
+/** The UVs of a spot. */
 function uvOf(
   { triangle, weights }: Spot,
   { target: { mesh }, projection: { uvs, cornerUvs } }: Shown,

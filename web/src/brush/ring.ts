@@ -1,6 +1,6 @@
 import { element } from '../platform/page';
 
-/** The outline of what would be painted, where the pointer is. */
+/** The outline of the brush at the pointer. */
 export class Ring {
   readonly #ring = document.createElement('div');
 
@@ -10,7 +10,7 @@ export class Ring {
     element('stage', HTMLElement).append(this.#ring);
   }
 
-  /** @param x,y In pixels of the window. @param diameter In pixels. */
+  /** @param x,y In client pixels. @param diameter In pixels. */
   show(x: number, y: number, diameter: number): void {
     const { left, top } = this.#ring.parentElement!.getBoundingClientRect();
     const { style } = this.#ring;

@@ -1,17 +1,17 @@
 import { element, showError } from '../platform/page';
 import { readImage } from '../scene/paint';
 import type { Session } from '../scene/session';
-import type { Offer, Tools } from '../view/tool-rail';
+import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
 import { BrushTool } from './brush-tool';
 import { paintByKeys } from './keys';
-import { type Kind, PaintOptions } from './options';
+import { type Kind, PaintOptions } from './paint-options';
 import { type Layers, Painter } from './painter';
 import { Ring } from './ring';
 import { StickerTool } from './sticker-tool';
 
-/** What each tool is called, the key that chooses it, and its icon. */
-const kOffers: Record<Kind, Pick<Offer, 'title' | 'key' | 'icon'>> = {
+/** Title, key and icon of each tool. */
+const kRailTools: Record<Kind, Pick<RailTool, 'title' | 'key' | 'icon'>> = {
   brush: {
     title: 'Brush',
     key: 'b',
@@ -21,7 +21,7 @@ const kOffers: Record<Kind, Pick<Offer, 'title' | 'key' | 'icon'>> = {
   sticker: { title: 'Sticker', key: 's', icon: 'M5 4h14v9l-6 7H5zM13 20v-7h6' },
 };
 
-/** Offers brush, eraser and stickers on the rail of tools, with their options below the layers. */
+/** Adds brush, eraser and stickers to the tool rail, with their options below the layers. */
 export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, layers: Layers): void {
   const options = new PaintOptions();
   const painter = new Painter(session, viewer, layers, options);
@@ -35,13 +35,13 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
   const keys = paintByKeys(viewer);
   for (const kind of ['brush', 'eraser', 'sticker'] as const) {
     tools.add({
-      ...kOffers[kind],
+      ...kRailTools[kind],
       tool: chosen[kind],
       onChoose(on) {
         options.show(on ? kind : undefined);
         keys.use(on ? chosen[kind] : undefined);
         ring.hide();
-        // Who paints wants to see it.
+        // Make sure that the paint is visible.
         const { mode } = session.view;
         if (on)
           session.setView({ paint: true, ...(mode === 'compare' || mode === 'result' ? {} : { mode: 'result' }) });
@@ -53,7 +53,7 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
   canvas.addEventListener('webglcontextlost', () => painter.cancel());
   canvas.addEventListener('webglcontextrestored', () => painter.restore());
   element('add-painting', HTMLButtonElement).addEventListener('click', () =>
-    layers.edits.do('adding of a painting', () => painter.addLayer()),
+    layers.edits.do('adding a painting', () => painter.addLayer()),
   );
   const image = element('sticker-image', HTMLInputElement);
   image.addEventListener('change', async () => {

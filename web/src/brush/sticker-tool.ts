@@ -1,12 +1,12 @@
 import type { Spot } from '../view/pick';
 import type { Tool } from '../view/pointing';
 import type { Viewer } from '../view/viewer';
-import type { PaintOptions } from './options';
+import type { PaintOptions } from './paint-options';
 import type { Painter } from './painter';
 import type { Ring } from './ring';
 import { type StickerPicture, StickerSheet } from './sticker';
 
-/** Sticks a text or an image on where a pointer is pressed; it follows the pointer until that is released. */
+/** Places a text or an image where the pointer is pressed; it follows the pointer until release. */
 export class StickerTool implements Tool {
   readonly #sheet = new StickerSheet();
   #image: ImageBitmap | undefined;
@@ -19,7 +19,7 @@ export class StickerTool implements Tool {
     private readonly ring: Ring,
   ) {}
 
-  /** Takes an image in place of the text, until there is a text again. */
+  /** Uses an image instead of the text, until a text is entered. */
   setImage(image: ImageBitmap): void {
     this.#image = image;
     this.options.text = '';
@@ -28,7 +28,7 @@ export class StickerTool implements Tool {
 
   down(spot: Spot | undefined): boolean {
     const picture = this.#picture();
-    if (!picture || !this.painter.placeOf(spot)) return false;
+    if (!picture || !this.painter.surfacePointOf(spot)) return false;
     const key = 'text' in picture ? `${picture.text} ${picture.color}` : 'image';
     if (key !== this.#drawn) this.#sheet.draw(picture);
     this.#drawn = key;
@@ -43,15 +43,15 @@ export class StickerTool implements Tool {
     this.hover(spot, event);
   }
 
-  /** Sticks it on there instead. */
+  /** Moves it. */
   go(spot: Spot | undefined): void {
-    const place = this.painter.placeOf(spot);
-    const { atlas } = this.painter;
-    if (!place || !atlas) return;
+    const point = this.painter.surfacePointOf(spot);
+    const { cageTexels: texels } = this.painter;
+    if (!point || !texels) return;
     this.painter.stick(
-      place,
+      point,
       this.#sheet,
-      { size: this.options.size * atlas.diagonal, angle: this.options.angle },
+      { size: this.options.size * texels.diagonal, angle: this.options.angle },
       this.viewer.up,
     );
   }
@@ -65,9 +65,9 @@ export class StickerTool implements Tool {
   }
 
   hover(spot: Spot | undefined, { clientX, clientY, pointerType }: PointerEvent): void {
-    const { atlas } = this.painter;
-    if (!atlas || !this.painter.placeOf(spot) || pointerType === 'touch') return this.ring.hide();
-    this.ring.show(clientX, clientY, this.options.size * atlas.diagonal * this.viewer.pixelsAt(spot!.seen));
+    const { cageTexels: texels } = this.painter;
+    if (!texels || !this.painter.surfacePointOf(spot) || pointerType === 'touch') this.ring.hide();
+    else this.ring.show(clientX, clientY, this.options.size * texels.diagonal * this.viewer.pixelsAt(spot!.seen));
   }
 
   #picture(): StickerPicture | undefined {

@@ -1,26 +1,26 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
 import { Composite } from '../layers/composite';
 import { kPlain } from '../layers/layer';
-import type { Place } from './atlas';
+import type { SurfacePoint } from './cage-texels';
 import type { Sticker } from './stroke-layer';
 
 /** What a sticker shows. */
 export type StickerPicture = { text: string; color: string } | { image: ImageBitmap };
 
-/** How a sticker lies. */
+/** Size and rotation of a sticker. */
 export interface StickerStyle {
   /** Its longer side, in the cage's space. */
   size: number;
-  /** Radians, clockwise as it is seen. */
+  /** Radians, clockwise as seen. */
   angle: number;
 }
 
 const kSide = 512; // pixels of the longer side
-const kMargin = 4; // transparent pixels around it: the texture repeats, and must not meet itself
+const kMargin = 4; // transparent pixels around it, so that filtering does not wrap around the repeating texture
 
-/** A picture, ready to be stuck on. */
+/** The texture of a sticker. */
 export class StickerSheet {
-  // A composite of one layer: with mipmaps, and colours multiplied by alpha, so that edges keep their colour.
+  // A composite of one layer brings mipmaps and premultiplied alpha, so that edges keep their colour.
   readonly #composite = new Composite();
   #canvas = document.createElement('canvas');
   #texture: CanvasTexture | undefined;
@@ -36,13 +36,13 @@ export class StickerSheet {
     this.#composite.set([{ ...kPlain, id: 0, name: '', sheet: { texture: this.#texture, picture: '' } }]);
   }
 
-  /** The sticker at a place of the cage, upright for someone for whom `up` is up. */
-  at(renderer: WebGLRenderer, { normal }: Place, up: Vector3, { size, angle }: StickerStyle): Sticker {
+  /** The sticker at a point of the cage, upright with respect to `up`. */
+  at(renderer: WebGLRenderer, { normal }: SurfacePoint, up: Vector3, { size, angle }: StickerStyle): Sticker {
     this.#composite.update(renderer);
     const { width, height } = this.#canvas;
     const scale = size / Math.max(width, height);
     const upright = new Vector3().copy(up).addScaledVector(normal, -up.dot(normal));
-    // Seen from straight above, anything is upright.
+    // Seen along `up`: any direction is upright.
     if (upright.lengthSq() < 1e-6)
       upright.set(normal.y, normal.z, normal.x).addScaledVector(normal, -normal.dot(upright));
     upright.normalize().applyAxisAngle(normal, -angle);

@@ -19,40 +19,40 @@ import {
   type WebGLRenderTarget,
   ZeroFactor,
 } from 'three';
-import type { Wet } from '../layers/composite';
+import type { ActiveStroke } from '../layers/composite';
 import { kMostRects, Pass } from '../layers/pass';
-import { apart, type Rect, toShares, toTexels } from '../layers/rect';
-import { type CageAtlas, type Capsule, kFacing, kPatchTexels, type Place } from './atlas';
+import { disjoint, type Rect, toShares, toTexels } from '../layers/rect';
+import { type CageTexels, type Capsule, kFacing, kPatchTexels, type SurfacePoint } from './cage-texels';
 import { makePaintTarget, type PaintedSheet } from './painted-sheet';
 
-/** What is laid on in one go, from a press to the release. */
+/** How one stroke or sticker is applied, from press to release. */
 export interface StrokeStyle {
   /** #rrggbb */
   color: string;
-  /** 0..1, of the stroke as a whole: where it crosses itself it does not get thicker. */
+  /** 0..1, of the whole stroke: it does not build up where the stroke crosses itself. */
   opacity: number;
-  /** 0..1: how much of the radius is paint in full. */
+  /** 0..1: the share of the radius with full paint; beyond it the edge fades. */
   hardness: number;
   erases: boolean;
 }
 
-/** A picture that is stuck on the cage. */
+/** An image projected onto the cage. */
 export interface Sticker {
   texture: Texture;
-  /** Its width, in the cage's space. */
+  /** In the cage's space, as `height`. */
   width: number;
   height: number;
-  /** Where its right and its top point. Of length 1. */
+  /** Unit vectors towards its right and its top edge. */
   right: Vector3;
   up: Vector3;
 }
 
 const kTableWidth = 1024; // a power of two
-const kWithin = 0.999; // the GPU reckons in single precision
-const kMostCapsules = 8; // in one pass
+const kWithin = 0.999; // a safety margin, as the GPU computes in single precision
+const kMostCapsules = 8; // per pass
 
 /** @param size Texels a side. */
-const placeShader = (size: number): string => /* glsl */ `
+const surfacePointShader = (size: number): string => /* glsl */ `
 uniform highp isampler2D owners;
 uniform sampler2D patches;
 const float kFacing = ${kFacing};
@@ -62,8 +62,8 @@ vec4 row(int patchIndex, int index) {
   return texelFetch(patches, ivec2(at & ${kTableWidth - 1}, at >> ${Math.log2(kTableWidth)}), 0);
 }
 
-// The place of the cage at this texel; around an island, the place on its border. False where there is none.
-bool place(out vec3 point, out vec3 normal) {
+// The point of the cage at this texel; in the gutter of a chart, the nearest point of its border. False where there is none.
+bool surfacePoint(out vec3 point, out vec3 normal) {
   int owner = texelFetch(owners, ivec2(gl_FragCoord.xy), 0).r;
   if (owner < 0) return false;
   vec4 a = row(owner, 0), b = row(owner, 1), c = row(owner, 2), growth = row(owner, 3);
@@ -77,7 +77,7 @@ bool place(out vec3 point, out vec3 normal) {
 `;
 
 const brushShader = (size: number): string => /* glsl */ `
-${placeShader(size)}
+${surfacePointShader(size)}
 uniform vec3 from[${kMostCapsules}];
 uniform vec3 to[${kMostCapsules}];
 uniform vec3 fromNormal[${kMostCapsules}];
@@ -90,7 +90,7 @@ out vec4 color;
 
 void main() {
   vec3 point, normal;
-  if (!place(point, normal)) discard;
+  if (!surfacePoint(point, normal)) discard;
   float cover = 0.0;
   for (int i = 0; i < count; i++) {
     vec3 way = to[i] - from[i];
@@ -104,41 +104,41 @@ void main() {
 `;
 
 const stickerShader = (size: number): string => /* glsl */ `
-${placeShader(size)}
+${surfacePointShader(size)}
 uniform sampler2D picture;
 uniform vec3 center;
 uniform vec3 outward;
 uniform vec3 right;
 uniform vec3 up;
 uniform vec2 extent;
-uniform float texel; // how large one of this texture is, in the picture's texels
+uniform float texel; // the size of a texel of this texture, in texels of the picture
 out vec4 color;
 
 void main() {
   vec3 point, normal;
-  if (!place(point, normal)) discard;
+  if (!surfacePoint(point, normal)) discard;
   vec3 from = point - center;
   vec2 at = vec2(dot(from, right), -dot(from, up)) / extent + 0.5;
-  // What faces away, or is far behind, is another thing that happens to lie below.
+  // Skip what faces away or lies far behind: it is another surface that happens to be underneath.
   if (dot(normal, outward) < 0.1 || abs(dot(from, outward)) > 0.5 * max(extent.x, extent.y)) discard;
   if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)))) discard;
   color = textureLod(picture, at, log2(max(texel, 1.0)));
 }
 `;
 
-const kSettleShader = /* glsl */ `
-uniform sampler2D wet;
+const kCommitShader = /* glsl */ `
+uniform sampler2D stroke;
 uniform float opacity;
 out vec4 color;
-void main() { color = opacity * texelFetch(wet, ivec2(gl_FragCoord.xy), 0); }
+void main() { color = opacity * texelFetch(stroke, ivec2(gl_FragCoord.xy), 0); }
 `;
 
-const kDryShader = /* glsl */ `
+const kClearShader = /* glsl */ `
 out vec4 color;
 void main() { color = vec4(0.0); }
 `;
 
-const joined = (
+const blending = (
   blendEquation: typeof AddEquation | typeof MaxEquation,
   src: typeof OneFactor | typeof ZeroFactor,
   dst: typeof OneFactor | typeof OneMinusSrcAlphaFactor,
@@ -149,28 +149,32 @@ const joined = (
   blendDst: dst,
 });
 
-/** Paint that is being laid on: it covers a sheet without being part of it, until it is settled. */
-export class WetPaint {
+/** The stroke in progress: it is shown over a sheet but not part of it until `commit`. */
+export class StrokeLayer {
   readonly #target: WebGLRenderTarget;
   readonly #brush: Pass<ReturnType<typeof brushUniforms>>;
   readonly #sticker: Pass<ReturnType<typeof stickerUniforms>>;
-  readonly #lay = new Pass(kSettleShader, settleUniforms(), joined(AddEquation, OneFactor, OneMinusSrcAlphaFactor));
-  readonly #erase = new Pass(kSettleShader, settleUniforms(), joined(AddEquation, ZeroFactor, OneMinusSrcAlphaFactor));
-  readonly #dry = new Pass(kDryShader, {});
+  readonly #lay = new Pass(kCommitShader, commitUniforms(), blending(AddEquation, OneFactor, OneMinusSrcAlphaFactor));
+  readonly #erase = new Pass(
+    kCommitShader,
+    commitUniforms(),
+    blending(AddEquation, ZeroFactor, OneMinusSrcAlphaFactor),
+  );
+  readonly #clear = new Pass(kClearShader, {});
   readonly #textures: readonly Texture[];
   #style: StrokeStyle = { color: '#000000', opacity: 1, hardness: 1, erases: false };
   #sheet: PaintedSheet | undefined;
-  /** What of the target is not empty, in texels. */
+  /** The parts of the target that are not empty, in texels. */
   #rects: Rect[] = [];
-  /** Patches of the cage that have paint in full: there is nothing to add. */
+  /** Patches of the cage that the stroke covers fully already; they are skipped. */
   readonly #full = new Set<number>();
 
-  constructor(readonly atlas: CageAtlas) {
-    const { size } = atlas;
+  constructor(readonly cageTexels: CageTexels) {
+    const { size } = cageTexels;
     this.#target = makePaintTarget(size);
-    const owners = new DataTexture(atlas.owners, size, size, RedIntegerFormat, IntType);
+    const owners = new DataTexture(cageTexels.owners, size, size, RedIntegerFormat, IntType);
     owners.internalFormat = 'R32I';
-    const numbers = atlas.table();
+    const numbers = cageTexels.table();
     const rows = Math.max(1, Math.ceil(numbers.length / (4 * kTableWidth)));
     const table = new Float32Array(4 * kTableWidth * rows);
     table.set(numbers);
@@ -184,25 +188,25 @@ export class WetPaint {
     this.#brush = new Pass(
       brushShader(size),
       brushUniforms(owners, patches),
-      joined(MaxEquation, OneFactor, OneFactor),
+      blending(MaxEquation, OneFactor, OneFactor),
     );
     this.#sticker = new Pass(stickerShader(size), stickerUniforms(owners, patches));
   }
 
-  /** What the composite is to show; nothing while nothing is laid. */
-  get wet(): Wet | undefined {
+  /** For the composite; undefined while no stroke is in progress. */
+  get active(): ActiveStroke | undefined {
     const { opacity, erases } = this.#style;
     return this.#sheet && { sheet: this.#sheet, texture: this.#target.texture, opacity, erases };
   }
 
-  /** Begins a stroke, or a sticker, over a sheet of as many texels. */
+  /** Begins a stroke or a sticker over a sheet of the same size. */
   begin(sheet: PaintedSheet, style: StrokeStyle): void {
     this.#sheet = sheet;
     this.#style = style;
     this.#full.clear();
   }
 
-  /** Draws a brush's way; all of one radius. @returns The parts it touched, in shares. */
+  /** Draws part of a brush stroke. @param capsules All of one radius. @returns The parts it touched, in shares. */
   stroke(renderer: WebGLRenderer, capsules: readonly Capsule[]): Rect[] {
     const rest = capsules.slice(kMostCapsules);
     if (rest.length > 0)
@@ -216,20 +220,20 @@ export class WetPaint {
       radius.value = capsule.radius;
     });
     count.value = capsules.length;
-    // The hardest edge is as soft as a texel is wide: no steps are seen.
-    hardness.value = Math.max(0, Math.min(this.#style.hardness, 1 - (1.5 * this.atlas.pitch) / radius.value));
+    // The hardest edge still fades over 1.5 texels, so that it shows no steps.
+    hardness.value = Math.max(0, Math.min(this.#style.hardness, 1 - (1.5 * this.cageTexels.pitch) / radius.value));
     const { r, g, b } = new Color(this.#style.color);
     paint.value.set(r, g, b);
-    const touched = capsules.flatMap((capsule) => this.atlas.touched(capsule, this.#full));
+    const touched = capsules.flatMap((capsule) => this.cageTexels.touched(capsule, this.#full));
     const core = kWithin * hardness.value * radius.value;
     for (const capsule of capsules)
-      for (const patch of this.atlas.enclosed({ ...capsule, radius: core })) this.#full.add(patch);
+      for (const patch of this.cageTexels.enclosed({ ...capsule, radius: core })) this.#full.add(patch);
     return this.#draw(renderer, this.#brush, touched);
   }
 
-  /** Puts a sticker in place of what is wet. @returns The parts that changed, in shares. */
-  stick(renderer: WebGLRenderer, center: Place, { texture, width, height, right, up }: Sticker): Rect[] {
-    const before = this.dry(renderer);
+  /** Draws a sticker in place of the stroke so far. @returns The parts that changed, in shares. */
+  stick(renderer: WebGLRenderer, center: SurfacePoint, { texture, width, height, right, up }: Sticker): Rect[] {
+    const before = this.clear(renderer);
     const { uniforms } = this.#sticker;
     uniforms.picture.value = texture;
     uniforms.center.value.copy(center.point);
@@ -237,57 +241,57 @@ export class WetPaint {
     uniforms.right.value.copy(right);
     uniforms.up.value.copy(up);
     uniforms.extent.value.set(width, height);
-    uniforms.texel.value = (this.atlas.pitch * (texture.image as { width: number }).width) / width;
+    uniforms.texel.value = (this.cageTexels.pitch * (texture.image as { width: number }).width) / width;
     const radius = Math.hypot(width, height, Math.max(width, height)) / 2;
-    const touched = this.atlas.touched({ from: center, to: center, radius }, new Set());
+    const touched = this.cageTexels.touched({ from: center, to: center, radius }, new Set());
     return [...before, ...this.#draw(renderer, this.#sticker, touched)];
   }
 
-  /** Takes all wet paint away. @returns The parts that had some, in shares. */
-  dry(renderer: WebGLRenderer): Rect[] {
+  /** Clears the stroke so far. @returns The parts that had paint, in shares. */
+  clear(renderer: WebGLRenderer): Rect[] {
     const rects = this.#rects;
     this.#rects = [];
-    this.#dry.run(renderer, this.#target, rects);
-    return rects.map((rect) => toShares(rect, this.atlas.size));
+    this.#clear.run(renderer, this.#target, rects);
+    return rects.map((rect) => toShares(rect, this.cageTexels.size));
   }
 
   /**
-   * Makes what is wet part of its sheet, and ends the stroke.
-   * @returns What it was and is, for each part that changed, in texels.
+   * Blends the stroke into its sheet and ends it.
+   * @returns The bytes of each changed part before and after; `rect` in texels.
    */
-  settle(renderer: WebGLRenderer): { rect: Rect; before: Uint8Array; after: Uint8Array }[] {
+  commit(renderer: WebGLRenderer): { rect: Rect; before: Uint8Array; after: Uint8Array }[] {
     const sheet = this.#sheet;
     if (!sheet) return [];
     const pass = this.#style.erases ? this.#erase : this.#lay;
-    pass.uniforms.wet.value = this.#target.texture;
+    pass.uniforms.stroke.value = this.#target.texture;
     pass.uniforms.opacity.value = this.#style.opacity;
     const rects = this.#rects;
     pass.run(renderer, sheet.target, rects);
     this.end(renderer);
-    return rects.map((rect) => ({ rect, before: sheet.get(rect), after: sheet.take(renderer, rect) }));
+    return rects.map((rect) => ({ rect, before: sheet.get(rect), after: sheet.readBack(renderer, rect) }));
   }
 
-  /** Ends the stroke without a trace. @returns The parts that had some, in shares. */
+  /** Discards the stroke. @returns The parts that had paint, in shares. */
   end(renderer: WebGLRenderer): Rect[] {
     this.#sheet = undefined;
-    return this.dry(renderer);
+    return this.clear(renderer);
   }
 
-  /** Frees its memory. */
+  /** Frees its GPU memory. */
   dispose(): void {
     this.#target.dispose();
     for (const texture of this.#textures) texture.dispose();
-    for (const pass of [this.#brush, this.#sticker, this.#lay, this.#erase, this.#dry]) pass.dispose();
+    for (const pass of [this.#brush, this.#sticker, this.#lay, this.#erase, this.#clear]) pass.dispose();
   }
 
   #draw(renderer: WebGLRenderer, pass: { run: Pass<never>['run'] }, touched: readonly Rect[]): Rect[] {
-    const rects = apart(
-      touched.map((rect) => toTexels(rect, this.atlas.size)),
+    const rects = disjoint(
+      touched.map((rect) => toTexels(rect, this.cageTexels.size)),
       kMostRects,
     );
     pass.run(renderer, this.#target, rects);
-    this.#rects = apart([...this.#rects, ...rects], kMostRects);
-    return rects.map((rect) => toShares(rect, this.atlas.size));
+    this.#rects = disjoint([...this.#rects, ...rects], kMostRects);
+    return rects.map((rect) => toShares(rect, this.cageTexels.size));
   }
 }
 
@@ -321,6 +325,6 @@ function stickerUniforms(owners: Texture, patches: Texture) {
   };
 }
 
-function settleUniforms() {
-  return { wet: { value: null as Texture | null }, opacity: { value: 1 } };
+function commitUniforms() {
+  return { stroke: { value: null as Texture | null }, opacity: { value: 1 } };
 }

@@ -1,60 +1,60 @@
-import type { CageAtlas, Capsule, Place } from './atlas';
+import type { CageTexels, Capsule, SurfacePoint } from './cage-texels';
 
-/** How a brush goes. */
-export interface Going {
+/** Size and symmetry of a stroke. */
+export interface StrokeShape {
   /** In the cage's space. */
   radius: number;
-  /** Whether the other half of the cage gets the same. */
+  /** Whether the stroke is mirrored to the other half of the cage. */
   mirror: boolean;
 }
 
-/** How many radii apart two places are at most that follow each other on the same surface; farther, the brush was lifted. */
+/** Two points further apart than this many radii are not connected: the pointer jumped to another surface. */
 const kFarthest = 4;
-// A straight way from place to place may leave the cage: pieces of it that are this long, in radii, are laid back on it.
+// A straight line may leave the cage: it is divided into pieces of this length, in radii, and each end is projected back.
 const kPiece = 1;
 const kMostPieces = 16;
 
-/** Turns the places a pointer goes through into what a brush touches between them. */
+/** Turns the points of a pointer path into the capsules that a brush touches. */
 export class Stroke {
-  #last: Place | undefined;
+  #last: SurfacePoint | undefined;
 
   constructor(
-    private readonly atlas: CageAtlas,
-    private readonly going: Going,
+    private readonly texels: CageTexels,
+    private readonly shape: StrokeShape,
   ) {}
 
   /**
-   * Goes on to a place, or off the paint where there is none.
-   * @param step How far apart, in the cage's space, two places are that follow each other, if the surface faces the viewer.
-   * @returns What is to be painted.
+   * Extends the stroke to a point, or interrupts it if there is none.
+   * @param step Expected distance of consecutive points in the cage's space, if the surface faces the viewer.
+   * @returns The capsules to paint.
    */
-  to(place: Place | undefined, step = 0): Capsule[] {
+  to(point: SurfacePoint | undefined, step = 0): Capsule[] {
     const last = this.#last;
-    this.#last = place;
-    if (!place) return [];
-    const { radius, mirror } = this.going;
-    // Past the edge of a nose lies a cheek: nobody means to paint the air between them.
-    const near = last && last.point.distanceTo(place.point) <= kFarthest * Math.max(radius, step);
-    const capsules = near ? this.#between(last, place) : [{ from: place, to: place, radius }];
+    this.#last = point;
+    if (!point) return [];
+    const { radius, mirror } = this.shape;
+    // Behind the edge of a nose lies the cheek: do not connect the two.
+    const near = last && last.point.distanceTo(point.point) <= kFarthest * Math.max(radius, step);
+    const capsules = near ? this.#between(last, point) : [{ from: point, to: point, radius }];
     if (!mirror) return capsules;
     return capsules.flatMap((capsule) => [
       capsule,
-      { from: this.atlas.mirrored(capsule.from), to: this.atlas.mirrored(capsule.to), radius },
+      { from: this.texels.mirrored(capsule.from), to: this.texels.mirrored(capsule.to), radius },
     ]);
   }
 
-  #between(first: Place, last: Place): Capsule[] {
-    const { radius } = this.going;
+  #between(first: SurfacePoint, last: SurfacePoint): Capsule[] {
+    const { radius } = this.shape;
     const pieces = Math.min(
       kMostPieces,
       Math.max(1, Math.ceil(first.point.distanceTo(last.point) / (kPiece * radius))),
     );
     const outside = first.normal.clone().add(last.normal);
-    const places = Array.from({ length: pieces + 1 }, (_, piece) => {
+    const points = Array.from({ length: pieces + 1 }, (_, piece) => {
       if (piece === 0) return first;
       if (piece === pieces) return last;
-      return this.atlas.nearest(first.point.clone().lerp(last.point, piece / pieces), outside) ?? first;
+      return this.texels.nearest(first.point.clone().lerp(last.point, piece / pieces), outside) ?? first;
     });
-    return places.slice(1).map((to, piece) => ({ from: places[piece]!, to, radius }));
+    return points.slice(1).map((to, piece) => ({ from: points[piece]!, to, radius }));
   }
 }

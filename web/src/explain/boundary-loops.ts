@@ -1,13 +1,13 @@
 import { Line3, Triangle, Vector3 } from 'three';
 import { cornersOf, type Surface } from '../scene/surface';
 
-/** The open edges of a cage: those of exactly one triangle that has an area. Vertices at equal places are one. */
-export class Rims {
+/** The boundary edges of a cage: those of exactly one triangle with area. Vertices at equal positions count as one. */
+export class BoundaryLoops {
   readonly #cage: Surface;
   readonly #point: Uint32Array;
-  readonly #open = new Set<string>();
+  readonly #boundary = new Set<string>();
   readonly #ends = new Set<number>();
-  /** Both ends of every open edge, one after the other. */
+  /** The ends of every boundary edge, in pairs. */
   readonly lines: Vector3[] = [];
 
   constructor(cage: Surface) {
@@ -15,10 +15,10 @@ export class Rims {
     const { positions, indices } = cage;
     const seen = new Map<string, number>();
     this.#point = Uint32Array.from({ length: positions.length / 3 }, (_, vertex) => {
-      // Adding 0 makes −0 the same as 0.
-      const place = [0, 1, 2].map((axis) => positions[3 * vertex + axis]! + 0).join();
-      if (!seen.has(place)) seen.set(place, vertex);
-      return seen.get(place)!;
+      // Adding 0 turns −0 into 0.
+      const position = [0, 1, 2].map((axis) => positions[3 * vertex + axis]! + 0).join();
+      if (!seen.has(position)) seen.set(position, vertex);
+      return seen.get(position)!;
     });
     const users = new Map<string, number[]>();
     for (let triangle = 0; 3 * triangle < indices.length; triangle++) {
@@ -30,7 +30,7 @@ export class Rims {
     }
     for (const [edge, [corner, another]] of users) {
       if (another !== undefined) continue;
-      this.#open.add(edge);
+      this.#boundary.add(edge);
       for (const end of this.#endsOf(corner!)) {
         this.#ends.add(end);
         this.lines.push(new Vector3().fromArray(positions, 3 * end));
@@ -38,19 +38,19 @@ export class Rims {
     }
   }
 
-  /** Whether a place on a triangle of the cage lies on an open edge of it, or at a corner where one ends. @param near How near is on. */
-  has(triangle: number, place: Vector3, near: number): boolean {
+  /** Whether a point of a cage triangle lies on one of its boundary edges, or at a corner of one. @param tolerance A distance. */
+  has(triangle: number, point: Vector3, tolerance: number): boolean {
     const corners = cornersOf(this.#cage, triangle);
     return corners.some((corner, c) => {
       const at = 3 * triangle + c;
-      if (this.#ends.has(this.#endsOf(at)[0]) && place.distanceTo(corner) <= near) return true;
-      if (!this.#open.has(this.#edge(at))) return false;
+      if (this.#ends.has(this.#endsOf(at)[0]) && point.distanceTo(corner) <= tolerance) return true;
+      if (!this.#boundary.has(this.#edge(at))) return false;
       const edge = new Line3(corner, corners[(c + 1) % 3]!);
-      return edge.closestPointToPoint(place, true, new Vector3()).distanceTo(place) <= near;
+      return edge.closestPointToPoint(point, true, new Vector3()).distanceTo(point) <= tolerance;
     });
   }
 
-  /** The ends of the edge that begins at a corner. */
+  /** The ends of the edge that starts at a corner, as welded vertices. */
   #endsOf(corner: number): [number, number] {
     const next = corner % 3 === 2 ? corner - 2 : corner + 1;
     const { indices } = this.#cage;

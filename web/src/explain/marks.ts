@@ -14,14 +14,14 @@ import {
   Vector3,
 } from 'three';
 import { cornersOf, type Surface } from '../scene/surface';
-import type { Rims } from './boundary-loops';
+import type { BoundaryLoops } from './boundary-loops';
+import type { Explanation } from './explanation';
 import type { Path } from './path';
-import type { Story } from './story';
 
 const kCageColor = '#19b394';
-/** What came of a spot, by zone: as in the picture, see overlay.ts, but what may be painted in the cage's colour. */
+/** Colours of the spot by zone, as in overlay-materials.ts; cosmetic is in the cage's colour. */
 const kSpotColors = [kCageColor, '#0072b2', '#e69f00', '#cc79a7'];
-/** What came of its ray, which need not be the last word: in the colour of the zone that it would be. */
+/** Colours of the ray by outcome, which later steps may overrule. */
 const kRayColors: Record<Path['outcome'], string> = {
   covered: kCageColor,
   pokesOut: kCageColor,
@@ -30,23 +30,27 @@ const kRayColors: Record<Path['outcome'], string> = {
 };
 const kInk = '#14181d';
 
-// Of the model's diagonal.
+// Shares of the model's diagonal.
 const kThick = 0.0028;
 const kThin = 0.0014;
 const kBall = 0.0085;
-const kAway = 0.22; // how long a ray is drawn that meets nothing
+const kAway = 0.22; // length of a ray that meets nothing
 
 /**
- * Draws a story in the space of the target: the spot, the nearest triangle of the cage, the ray, and what it hit and where;
- * the holes of the cage if it was lost through one.
- * Full where it is seen, faint behind the model.
+ * Draws an explanation in the space of the target: the spot, the closest cage triangle, the ray and what it hit, and the
+ * boundary loops of the cage if the ray left through a hole. Behind the model it is drawn faintly.
  */
-export class StoryMarks {
+export class ExplanationMarks {
   readonly object = new Group();
   readonly #materials: Material[] = [];
 
-  constructor({ zone, path, cageTriangle, diagonal }: Story, target: Surface, cage: Surface, rims: Rims) {
-    const { start, place, normal, outcome } = path;
+  constructor(
+    { zone, path, cageTriangle, diagonal }: Explanation,
+    target: Surface,
+    cage: Surface,
+    loops: BoundaryLoops,
+  ) {
+    const { start, closest, normal, outcome } = path;
     const color = kRayColors[outcome];
     const hit = outcome === 'hidden' ? path.model : outcome === 'covered' ? path.cage : undefined;
     const end = start.clone().addScaledVector(normal, hit ? Math.max(0, hit.length) : kAway * diagonal);
@@ -59,11 +63,11 @@ export class StoryMarks {
     this.#add(rod(start, end, kThick * diagonal), color, 1);
     if (hit) this.#add(ball(end, kBall * diagonal), color, 1);
     else this.#add(tip(end, normal, 3 * kThick * diagonal), color, 1);
-    if (outcome === 'lost') this.#outline(rims.lines, color);
-    // Where the cage is nearest is mostly where the ray meets it.
-    if (place.distanceTo(end) > kBall * diagonal) {
-      this.#add(rod(start, place, kThin * diagonal), kInk, 0.8);
-      this.#add(ball(place, (kBall / 2) * diagonal), kInk, 0.8);
+    if (outcome === 'lost') this.#outline(loops.lines, color);
+    // The closest point mostly coincides with the hit.
+    if (closest.distanceTo(end) > kBall * diagonal) {
+      this.#add(rod(start, closest, kThin * diagonal), kInk, 0.8);
+      this.#add(ball(closest, (kBall / 2) * diagonal), kInk, 0.8);
     }
     this.#add(ball(start, kBall * diagonal), '#ffffff', 1);
     this.#add(ball(start, 0.6 * kBall * diagonal), kSpotColors[zone]!, 1, true);
@@ -141,7 +145,7 @@ function ball(at: Vector3, radius: number): BufferGeometry {
   return new SphereGeometry(radius, 16, 12).translate(...at.toArray());
 }
 
-/** Turns what stands upright to point along a direction. */
+/** Rotates the y axis to a direction. */
 function turn(geometry: BufferGeometry, direction: Vector3): BufferGeometry {
   return geometry.applyQuaternion(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), direction));
 }

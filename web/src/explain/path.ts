@@ -1,27 +1,27 @@
 import { Vector3 } from 'three';
-import { placeOn, type Surface } from '../scene/surface';
-import type { Rims } from './boundary-loops';
+import { closestPointOnTriangle, type Surface } from '../scene/surface';
+import type { BoundaryLoops } from './boundary-loops';
 import { firstHit, type Hit } from './ray';
 
-/** The way from a vertex to the cage and along its ray, as steps 1 to 3 of the method go it. Lengths are in units of the model. */
+/** Steps 1 to 3 of the method for one vertex: the closest point on the cage, and the ray from there. Lengths are in model units. */
 export interface Path {
   /** The vertex itself. */
   start: Vector3;
-  /** Where the cage is nearest to it. */
-  place: Vector3;
-  /** Of the cage's triangle there, outward; the ray goes along it. */
+  /** The closest point on the cage. */
+  closest: Vector3;
+  /** The outward normal of the cage triangle there: the ray's direction. */
   normal: Vector3;
-  /** How far the vertex is outside the plane of that triangle; negative inside. */
+  /** Signed distance of the vertex from the plane of that triangle; negative inside. */
   outside: number;
   /** Where the ray meets the cage. */
   cage: Hit | undefined;
-  /** Where it first meets the model, whether or not that counts. */
+  /** Where it first meets the model, even if that is too far away to count. */
   model: Hit | undefined;
-  /** What came of it. */
+  /** Occluded, covered by the cage, just outside it, or neither. */
   outcome: 'hidden' | 'covered' | 'pokesOut' | 'lost';
 }
 
-/** Of the rules, what decides here; lengths are shares of the model's diagonal. */
+/** The options that matter here; shares of the model's diagonal. */
 export interface Reach {
   occlusionReach: number;
   pokeThrough: number;
@@ -29,33 +29,33 @@ export interface Reach {
 
 // Of the model's diagonal; docs/method.md.
 const kRayStart = 1e-5;
-const kOnRim = 1e-6;
+const kOnBoundary = 1e-6;
 
 /**
- * Goes the way of one vertex again, for people to see.
- * @param triangle The cage's triangle that the transfer found nearest.
- * @param diagonal Of the target's box.
- * Cost: every triangle of target and cage is looked at, twice.
+ * Repeats steps 1 to 3 for one vertex, to show them.
+ * @param triangle The closest cage triangle, as the transfer found it.
+ * @param diagonal Diagonal of the target's bounding box.
+ * Cost: visits all triangles of target and cage.
  */
 export function pathOf(
   target: Surface,
   cage: Surface,
-  rims: Rims,
+  loops: BoundaryLoops,
   vertex: number,
   triangle: number,
   diagonal: number,
   reach: Reach,
 ): Path {
   const start = new Vector3().fromArray(target.positions, 3 * vertex);
-  const { place, normal } = placeOn(cage, triangle, start);
-  const outside = start.clone().sub(place).dot(normal);
-  const ofCage = firstHit(cage, start, normal, -kRayStart * diagonal);
+  const { closest, normal } = closestPointOnTriangle(cage, triangle, start);
+  const outside = start.clone().sub(closest).dot(normal);
+  const cageHit = firstHit(cage, start, normal, -kRayStart * diagonal);
   const model = firstHit(target, start, normal, kRayStart * diagonal);
-  const end = ofCage ? Math.max(0, ofCage.length) + reach.occlusionReach * diagonal : Infinity;
+  const end = cageHit ? Math.max(0, cageHit.length) + reach.occlusionReach * diagonal : Infinity;
   const pokesOut =
     outside > 0 &&
-    start.distanceTo(place) <= reach.pokeThrough * diagonal &&
-    !rims.has(triangle, place, kOnRim * diagonal);
-  const outcome = model && model.length <= end ? 'hidden' : ofCage ? 'covered' : pokesOut ? 'pokesOut' : 'lost';
-  return { start, place, normal, outside, cage: ofCage, model, outcome };
+    start.distanceTo(closest) <= reach.pokeThrough * diagonal &&
+    !loops.has(triangle, closest, kOnBoundary * diagonal);
+  const outcome = model && model.length <= end ? 'hidden' : cageHit ? 'covered' : pokesOut ? 'pokesOut' : 'lost';
+  return { start, closest, normal, outside, cage: cageHit, model, outcome };
 }

@@ -4,15 +4,14 @@ import type { Surface } from '../scene/surface';
 /** Where a ray meets a surface. */
 export interface Hit {
   triangle: number;
-  /** Its length up to there. */
+  /** Distance along the ray, in lengths of its direction. */
   length: number;
 }
 
 /**
- * The first hit of a ray with a surface that is farther along than `after`, from either side. Triangles without area do not
- * count. It is watertight: what passes an edge of two triangles on one side of the one passes it on the other side of the
- * other, because both reckon with the same numbers.
- * Cost: every triangle is looked at, some 12 ms for half a million.
+ * The first hit of a ray with a surface beyond the distance `after`, from either side. Triangles without area are ignored.
+ * Watertight: both triangles of an edge compute the same side test, so a ray cannot slip between them.
+ * Cost: visits every triangle, about 12 ms for half a million.
  */
 export function firstHit(
   { positions, indices }: Surface,
@@ -30,7 +29,7 @@ export function firstHit(
     const [ax, ay, az] = [positions[a]! - ox, positions[a + 1]! - oy, positions[a + 2]! - oz];
     const [bx, by, bz] = [positions[b]! - ox, positions[b + 1]! - oy, positions[b + 2]! - oz];
     const [cx, cy, cz] = [positions[c]! - ox, positions[c + 1]! - oy, positions[c + 2]! - oz];
-    // On which side of each edge the ray passes.
+    // The side of each edge on which the ray passes.
     const u = dx * (cy * bz - cz * by) + dy * (cz * bx - cx * bz) + dz * (cx * by - cy * bx);
     const v = dx * (ay * cz - az * cy) + dy * (az * cx - ax * cz) + dz * (ax * cy - ay * cx);
     if (u * v < 0) continue;
@@ -38,14 +37,14 @@ export function firstHit(
     if (u * w < 0 || v * w < 0) continue;
     const [nx, ny, nz] = normalOf(bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az);
     const slope = nx * dx + ny * dy + nz * dz;
-    if (slope === 0) continue; // without area, or seen from its edge
+    if (slope === 0) continue; // without area, or parallel to the ray
     const length = (nx * ax + ny * ay + nz * az) / slope;
     if (length > after && (!nearest || length < nearest.length)) nearest = { triangle: corner / 3, length };
   }
   return nearest;
 }
 
-/** The normal of two edges, as long as their parallelogram is large. */
+/** The cross product. */
 function normalOf(ax: number, ay: number, az: number, bx: number, by: number, bz: number): [number, number, number] {
   return [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
 }

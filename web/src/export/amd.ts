@@ -1,6 +1,6 @@
 /**
- * Imports a script that hands what it makes to AMD's `define`: as it is, so that loaders of three's, which want it as text, and
- * this share one file. One at a time, and only in a worker of its own, whose `define` it takes.
+ * Imports an AMD script unmodified, so that it shares a file with the loaders of three.js, which read it as text. One at a time,
+ * and only in a dedicated worker, as it sets the global `define`.
  */
 export async function importAmd<Made>(address: string): Promise<Made> {
   const made = new Promise<Made>((resolve) => {

@@ -1,19 +1,19 @@
 import { type Lock, presetOptions } from 'cagecast';
 import type { Rules, Session, Shown } from '../scene/session';
 
-/** Code that does what the page shows. */
+/** Code that reproduces the view. */
 export interface Code {
   three: string;
   command: string;
 }
 
-/** Writes the code for what is shown: for a page with three.js, and for the command line. Needs `init`. */
+/** Generates code for the current scene and options, for three.js and for the command line. Needs `init`. */
 export function codeFor({ shown, rules, locks }: Session): Code {
   return { three: threeCode(shown!, rules, locks), command: commandLine(shown!, rules, locks) };
 }
 
 function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
-  const { preset, threshold, borders } = saidBy(rules);
+  const { preset, threshold, borders } = nonDefault(rules);
   const segments = Object.entries(locks).flatMap(([segment, lock]) =>
     lock === 'auto' ? [] : [`${segment}: '${lock}'`],
   );
@@ -41,7 +41,7 @@ scene.add(target.scene)`;
 }
 
 function commandLine(shown: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
-  const { preset, threshold, borders } = saidBy(rules);
+  const { preset, threshold, borders } = nonDefault(rules);
   const words = [
     'npx cagecast transfer',
     shell(shown.target.name),
@@ -58,11 +58,12 @@ function commandLine(shown: Shown, rules: Rules, locks: Readonly<Record<number, 
     for (const name of whole) words.push(`--${lock} ${shell(name)}`);
     partly.push(...some);
   }
-  const note = partly.length > 0 ? `# The command locks whole parts; of ${partly.join(', ')} you locked some.\n` : '';
+  const note =
+    partly.length > 0 ? `# The command can only lock whole parts; you locked pieces of ${partly.join(', ')}.\n` : '';
   return `${note}${words.join(' ')} -o painted.glb`;
 }
 
-/** The parts whose segments are locked so: all of them that have an area, or some. */
+/** The meshes with this lock on all of their segments that have area, or on some. */
 function partsLocked(
   { target, projection }: Shown,
   locks: Readonly<Record<number, Lock>>,
@@ -78,8 +79,8 @@ function partsLocked(
   };
 }
 
-/** What has to be said of the rules, because it is not so by itself. */
-function saidBy({ preset, threshold, borders }: Rules): Partial<Rules> {
+/** The options that differ from the defaults. */
+function nonDefault({ preset, threshold, borders }: Rules): Partial<Rules> {
   return {
     ...(preset !== 'default' && { preset }),
     ...(threshold !== presetOptions(preset).threshold && { threshold }),
@@ -87,6 +88,6 @@ function saidBy({ preset, threshold, borders }: Rules): Partial<Rules> {
   };
 }
 
-/** A word for a shell. */
+/** Quotes a word for a shell. */
 const shell = (word: string): string =>
   /^[\w.,:/@+-]+$/.test(word) ? word : `'${word.replaceAll("'", String.raw`'\''`)}'`;

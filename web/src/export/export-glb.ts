@@ -1,15 +1,15 @@
 import type { Mesh } from 'cagecast';
-import type { ExtractedMesh } from '../scene/extract';
+import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Session } from '../scene/session';
 import type { ExportReply, ExportRequest, PaintInto } from './export-messages';
 import type { Baked } from './texture/bake';
 
 /**
- * Writes the target that is shown as a GLB: all that its file has, the new UV set, its zones, and the paint, as `cagecast
- * transfer` does, in the shape of its file, by the rules and locks as they stand. A worker of its own does it, and ends with it.
+ * Writes the target as a GLB with the new UV set, its zones and the paint, as `cagecast transfer` does: undeformed, with the
+ * current options and locks. Runs in a temporary worker.
  * @param texture A PNG in the cage's UVs.
- * @param into    Where the paint goes: over the model, or into its own textures where it has some.
- * @returns The file, and what became of the paint if it was to go into textures.
+ * @param into    Paint as an overlay, or in the model's own textures where it has some.
+ * @returns The file, with a summary if paint was baked into textures.
  * @throws Error that begins with the file's name.
  */
 export async function exportGlb(
@@ -45,14 +45,11 @@ export async function exportGlb(
 
 async function read(file: File): Promise<ArrayBuffer> {
   return file.arrayBuffer().catch((cause) => {
-    throw new Error(
-      `${file.name}: it can no longer be read, as it has changed or is gone since it was opened; open it again`,
-      { cause },
-    );
+    throw new Error(`${file.name}: the file was changed or deleted after it was opened; open it again`, { cause });
   });
 }
 
-/** As in its file: so is the target. */
+/** The cage undeformed, like the target. */
 const cageOf = ({ positions, rest = positions, indices, uvs }: ExtractedMesh): Mesh => ({
   positions: rest,
   indices,

@@ -7,8 +7,8 @@ import { type Linked, linkOf } from './links';
 import type { Baked } from './texture/bake';
 import { zonesJson } from './zones';
 
-/** Lets what is shown be taken away: as a model, as zones, as code, as a link. */
-export class Take {
+/** The panel “Export”: the model, the zones, code and a link. */
+export class ExportPanel {
   readonly #session: Session;
   readonly #linked: Linked;
   readonly #png: () => Promise<Blob>;
@@ -16,22 +16,22 @@ export class Take {
   readonly #code = element('code', HTMLElement);
   #due = false;
 
-  /** @param png Makes a PNG of what the paints look like together, in the cage's UVs. */
+  /** @param png Encodes the composite of the layers, in the cage's UVs. */
   constructor(linked: Linked, png: () => Promise<Blob>) {
     const { session } = linked;
     this.#session = session;
     this.#linked = linked;
     this.#png = png;
-    const section = element('take', HTMLElement);
+    const section = element('export', HTMLElement);
     element('export-glb', HTMLButtonElement).addEventListener('click', () => this.#exportGlb());
     element('export-zones', HTMLButtonElement).addEventListener('click', () => {
       download(new Blob([zonesJson(session)], { type: 'application/json' }), `${this.#stem}-zones.json`);
     });
     this.#link.addEventListener('click', () => this.#copyLink());
-    // Before it is followed, dragged or copied by other means: the model may have been turned.
+    // Update the link before it is used: the camera may have moved.
     for (const event of ['pointerdown', 'focus'] as const) this.#link.addEventListener(event, () => this.#refresh());
     element('copy-code', HTMLButtonElement).addEventListener('click', () =>
-      this.#copy(this.#code.textContent!, 'The code is copied.'),
+      this.#copy(this.#code.textContent!, 'Code copied.'),
     );
     for (const input of section.querySelectorAll<HTMLInputElement>('[name=code]'))
       input.addEventListener('change', () => this.#refresh());
@@ -42,7 +42,7 @@ export class Take {
     session.on('zones', () => buttons.forEach((button) => (button.disabled = false)));
   }
 
-  /** Brings link and code up to date, but not for every step of what is dragged. */
+  /** Updates link and code; throttled. */
   refresh(): void {
     if (this.#due) return;
     this.#due = true;
@@ -54,29 +54,31 @@ export class Take {
 
   #refresh(): void {
     if (!this.#session.shown) return;
-    const kind = document.querySelector<HTMLInputElement>('#take [name=code]:checked')!.value as keyof Code;
+    const kind = document.querySelector<HTMLInputElement>('#export [name=code]:checked')!.value as keyof Code;
     this.#code.textContent = codeFor(this.#session)[kind];
 
     showNotice(
       'pose-note',
-      this.#session.moved ? 'Model and code are of the shape that the file has, zones of the one that you see.' : '',
+      this.#session.moved
+        ? 'The model and the code use the undeformed shape of the file, the zones the deformed one that you see.'
+        : '',
     );
     const link = linkOf(this.#linked);
     if (link) this.#link.href = link;
     else this.#link.removeAttribute('href');
     this.#link.ariaDisabled = link ? null : 'true';
-    element('take-hint', HTMLElement).textContent = !link
-      ? 'A link can only lead to samples: your own files stay on this device.'
-      : this.#linked.layers.left > 0
-        ? 'The link leaves out paints of your own: they stay on this device.'
-        : 'The link opens this sample with its paints, rules and view, seen from where you see it.';
+    element('link-hint', HTMLElement).textContent = !link
+      ? 'Links work for samples only, because your own files stay on this device.'
+      : this.#linked.layers.omitted > 0
+        ? 'The link does not include your own paints, because they stay on this device.'
+        : 'The link opens this sample with its paints, rules, view and camera.';
   }
 
   get #stem(): string {
     return this.#session.shown!.target.name.replace(/\.\w+$/, '');
   }
 
-  /** Lets the paint go into textures where the model has some. */
+  /** Enables baking into textures if the model has some. */
   #offerTextures(): void {
     const { parts } = this.#session.shown!.target.mesh;
     const textured = parts.some(
@@ -91,7 +93,7 @@ export class Take {
 
   async #exportGlb(): Promise<void> {
     const button = element('export-glb', HTMLButtonElement);
-    // Not disabled: that would take the keyboard from it.
+    // Not disabled, so that it keeps the focus.
     if (button.ariaBusy) return;
     button.ariaBusy = 'true';
     showNotice('export-note', '');
@@ -101,8 +103,8 @@ export class Take {
       const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto;
       const { glb, baked } = await exportGlb(this.#session, await this.#png(), into);
       download(glb, `${stem}-painted.glb`);
-      announce(`The model is saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`);
-      showNotice('export-note', baked ? sayBaked(baked) : '');
+      announce(`Model saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`);
+      showNotice('export-note', baked ? bakedNote(baked) : '');
     } catch (error) {
       showError(error instanceof Error ? error.message : String(error));
     } finally {
@@ -112,37 +114,38 @@ export class Take {
 
   #copyLink(): void {
     this.#refresh();
-    if (this.#link.hasAttribute('href')) this.#copy(this.#link.href, 'The link is copied.');
+    if (this.#link.hasAttribute('href')) this.#copy(this.#link.href, 'Link copied.');
   }
 
   async #copy(text: string, done: string): Promise<void> {
-    const note = element('take-note', HTMLElement);
+    const note = element('copy-note', HTMLElement);
     try {
       await navigator.clipboard.writeText(text);
       note.textContent = done;
     } catch {
-      note.textContent = 'This browser does not let the page copy: take it from the address bar, or select it.';
+      note.textContent =
+        'This browser does not allow copying. Copy the link from its context menu, or select the code.';
     }
     setTimeout(() => (note.textContent = ''), 4000);
   }
 }
 
 const kMostNames = 3;
-const kCrowded = 0.005; // less is seams that touch
+const kOverlapping = 0.005; // less is due to touching seams
 
-/** What became of the paint, in words. */
-function sayBaked({ textures, overlays, crowded }: Baked): string {
+/** A summary of the baking, for people. */
+function bakedNote({ textures, overlays, overlapping }: Baked): string {
   const names =
     overlays.length > kMostNames
       ? [...overlays.slice(0, kMostNames - 1), `${overlays.length - kMostNames + 1} more`]
       : overlays;
   const list = new Intl.ListFormat('en').format(names);
   return [
-    `The paint is in ${textures === 1 ? 'one texture' : `${textures || 'no'} textures`} of the model’s own.`,
-    ...(overlays.length > 0 ? [`Over ${list} it is an overlay, for want of a texture that can hold it.`] : []),
-    ...(crowded > kCrowded
+    `The paint is in ${textures === 1 ? 'one' : textures || 'none'} of the model’s own textures.`,
+    ...(overlays.length > 0 ? [`On ${list} it is an overlay, because there is no suitable texture.`] : []),
+    ...(overlapping > kOverlapping
       ? [
-          `The model’s own UVs overlap, as where halves are mirrored: ${(100 * crowded).toFixed(0)} % of the paint has no place of its own, and gave way.`,
+          `The model’s own UVs overlap, for example in mirrored halves, so ${(100 * overlapping).toFixed(0)} % of the paint was left out.`,
         ]
       : []),
   ].join(' ');

@@ -8,7 +8,7 @@ import type { ExportReply, ExportRequest } from './export-messages';
 import { paintIntoTextures } from './texture/bake';
 import { readPixels } from './texture/pixels';
 
-/** What a model is unpacked from on reading: the overlay shares its vertices, so it is written without. */
+/** Removed on export: the overlay shares vertices with the model, so both are written uncompressed. */
 const kCompressions = ['KHR_draco_mesh_compression', 'EXT_meshopt_compression', 'KHR_meshopt_compression'];
 
 addEventListener('message', async ({ data }: MessageEvent<ExportRequest>) => {
@@ -20,7 +20,7 @@ addEventListener('message', async ({ data }: MessageEvent<ExportRequest>) => {
   }
 });
 
-/** Writes a target as it is, with the new UV set, its zones, and the paint as an overlay or in its textures. */
+/** Writes the target with the new UV set, its zones, and the paint as an overlay or in its textures. */
 async function paintModel({
   files,
   cage,
@@ -49,7 +49,7 @@ async function paintModel({
   return { glb: await io.writeBinary(document), ...(baked && { baked }) };
 }
 
-/** Makes lists of triangles of strips and fans, as textures are painted by lists. */
+/** Converts strips and fans to triangle lists, which baking needs. */
 function expandStrips(document: Document): void {
   const { TRIANGLE_STRIP, TRIANGLE_FAN } = Primitive.Mode as Record<string, number>;
   for (const primitive of document

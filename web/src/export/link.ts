@@ -3,9 +3,9 @@ import { type Deform, kDeforms } from '../live/deform';
 import type { Locks, Rules } from '../scene/session';
 import { type Angle, kModes, type Mode, type View } from '../view/view';
 
-/** One of the paints a link carries, and how it is laid. */
+/** A layer in a link. */
 export interface LinkedLayer {
-  /** A paint that comes with the page: its file below the folder of samples, or `checker`. */
+  /** A paint that comes with the page: its path in the folder of samples, or `checker`. */
   paint: string;
   /** 0..1 */
   opacity: number;
@@ -15,32 +15,32 @@ export interface LinkedLayer {
   visible: boolean;
 }
 
-/** The shape a model was moved into. */
+/** The deformation of a model. */
 export interface LinkedShape {
   deform: Deform;
-  /** From −1 to 1; 0 leaves it as it is. */
+  /** From −1 to 1; 0 is the rest shape. */
   amount: number;
-  /** Whether the cage went along. */
+  /** Whether the cage is deformed too. */
   cage: boolean;
-  /** How far morphs are carried out, by name; the others are as the file has them. */
+  /** Morph weights by name; the others are as in the file. */
   morphs: ReadonlyMap<string, number>;
 }
 
-/** What a link restores. */
+/** The state that a link restores. */
 export interface LinkState {
   sample: string;
-  /** From the lowest to the uppermost; undefined where they are as the sample opens. */
+  /** From the lowest to the uppermost; undefined for the sample's default. */
   layers: LinkedLayer[] | undefined;
   rules: Rules;
   locks: Locks;
   view: View;
-  /** Absent where the model is as its file has it. */
+  /** Absent at rest. */
   shape?: LinkedShape | undefined;
-  /** Absent where all of the model is seen from its front. */
+  /** Absent for the default camera. */
   angle?: Angle | undefined;
 }
 
-/** Writes a state as the fragment of an address, without its `#`: readable, and only what it has to say. */
+/** Encodes a state as a URL fragment, without `#`. The format is public: people save links. */
 export function writeLink({ sample, layers, rules, locks, view, shape, angle }: LinkState): string {
   const words = new URLSearchParams({ sample });
   for (const { paint, opacity, tint, blend, visible } of layers ?? []) {
@@ -70,8 +70,8 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
 }
 
 /**
- * Reads a fragment. A link may be old, shortened or edited by hand: what is missing or makes no sense is as on a first visit.
- * @returns Nothing if it names no sample.
+ * Decodes a fragment. A link may be old, truncated or edited by hand: missing or invalid values get their defaults.
+ * @returns Undefined if it names no sample.
  */
 export function readLink(fragment: string): LinkState | undefined {
   const words = new URLSearchParams(fragment.replace(/^#/, ''));
@@ -135,7 +135,7 @@ function readAngle(word: string | null): Angle | undefined {
     : undefined;
 }
 
-/** A number from 0 to 1. */
+/** A number from 0 to 1, or the default. */
 function share(word: string | null, otherwise: number): number {
   const number = word === null || word === '' ? NaN : Number(word);
   return number >= 0 && number <= 1 ? number : otherwise;

@@ -2,7 +2,7 @@ import type { Edits } from '../layers/edits';
 import { type Blend, kBlends, type Layer, type Style } from '../layers/layer';
 import type { LayerStack } from '../layers/stack';
 import { pngOf } from '../platform/png';
-import type { Opener } from '../scene/open';
+import type { Opener } from '../scene/opener';
 import { type Paint, titleOf } from '../scene/paint';
 import { kChecker, paintName } from '../scene/samples';
 import type { Session } from '../scene/session';
@@ -10,23 +10,23 @@ import type { LinkedLayer } from './link';
 import type { LinkedLayers } from './links';
 
 /**
- * The layers, to be taken away.
- * @param png Makes a PNG of what they look like together; without it, where nothing can be drawn, the uppermost paint is taken.
+ * The paint to export: the layers for links, and a PNG.
+ * @param png Encodes the composite of the layers; by default, without WebGL, the uppermost visible paint.
  */
-export function paintOf(
+export function exportedPaint(
   session: Session,
   stack: LayerStack,
   edits: Edits,
   opener: Opener,
   png = () => latestPng(stack),
 ): { png(): Promise<Blob>; layers: LinkedLayers } {
-  /** What a link calls what is in a layer; nothing if it is the visitor's own. */
+  /** The name of a layer's paint in links; undefined for the user's own. */
   const nameOf = ({ sheet }: Layer): string | undefined => {
     if (sheet === session.checker) return kChecker;
     const name = paintName(sheet.picture);
     return opener.has(name) ? name : undefined;
   };
-  let wishes = 0;
+  let requests = 0;
   return {
     png,
     layers: {
@@ -37,20 +37,20 @@ export function paintOf(
           return paint ? [{ paint, opacity, tint, blend, visible }] : [];
         });
       },
-      get left() {
+      get omitted() {
         return stack.layers.filter((layer) => !nameOf(layer)).length;
       },
       restore(layers) {
         const before = session.shown?.target;
-        const wish = ++wishes;
+        const request = ++requests;
         const end = session.on('progress', async ({ state }) => {
           if (state === 'working') return;
           end();
-          // The sample was given up, or cannot be had, or another link was followed.
+          // The sample failed or was cancelled, or another link was followed.
           const target = session.shown?.target;
-          if (state !== 'ready' || target === before || wish !== wishes) return;
+          if (state !== 'ready' || target === before || request !== requests) return;
           const known = layers.filter(({ paint }) => opener.has(paint));
-          // The lowest of them is what the sample opened with, unless that was taken away.
+          // The lowest is the paint the sample opened with, unless that layer was removed.
           const isBase = stack.base !== undefined && nameOf(stack.base) === known[0]?.paint;
           const rest = isBase ? known.slice(1) : known;
           let paints: (Paint | undefined)[];
@@ -59,9 +59,9 @@ export function paintOf(
           } catch (error) {
             return session.fail(error);
           }
-          // Another sample or link may have come while they were read. From here on all is done in one go.
-          if (session.shown?.target !== target || wish !== wishes) return;
-          // The visitor's own stay: no link may cost anyone their work.
+          // Another sample or link may have been opened meanwhile. The rest is synchronous.
+          if (session.shown?.target !== target || request !== requests) return;
+          // Keep the user's own layers.
           for (const layer of stack.layers) if (layer !== stack.base && nameOf(layer)) stack.remove(layer.id);
           const { base } = stack;
           if (base && isBase) stack.restyle(base, styleOf(known[0]!));
@@ -70,7 +70,7 @@ export function paintOf(
             const paint = paints[i];
             if (paint && !stack.full) stack.add(titleOf(paint), paint, styleOf(layer));
           });
-          // What was done before it led to something else.
+          // Earlier undo steps do not apply any more.
           edits.forget();
         });
       },
@@ -84,6 +84,6 @@ function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Style {
 
 function latestPng({ layers }: LayerStack): Promise<Blob> {
   const layer = layers.findLast(({ visible }) => visible);
-  if (!layer) throw new Error('There is no paint.');
+  if (!layer) throw new Error('There is no visible paint.');
   return pngOf(layer.sheet.texture.image as ImageBitmap | HTMLCanvasElement);
 }

@@ -1,29 +1,29 @@
-import type { Live } from '../live/live';
-import type { Opener } from '../scene/open';
+import type { Live } from '../live/live-panel';
+import type { Opener } from '../scene/opener';
 import type { Session } from '../scene/session';
 import type { Viewer } from '../view/viewer';
 import { type LinkedLayer, type LinkState, readLink, writeLink } from './link';
 
-/** The layers, as a link can carry them. */
+/** The layers that a link can carry. */
 export interface LinkedLayers {
-  /** From the lowest to the uppermost; without the visitor's own. */
+  /** From the lowest to the uppermost; without the user's own paints. */
   readonly layers: LinkedLayer[];
-  /** How many are left out. */
-  readonly left: number;
-  /** Lays them once the sample is there, in place of its paint. What the page does not have is left out. */
+  /** Number of layers that a link leaves out. */
+  readonly omitted: number;
+  /** Restores them once the sample is loaded. Paints that the page does not have are left out. */
   restore(layers: LinkedLayer[]): void;
 }
 
-/** What a link is made of. */
+/** The sources of a link. */
 export interface Linked {
   session: Session;
   layers: LinkedLayers;
   live: Live;
-  /** What shows it, if anything can. */
+  /** Undefined without WebGL. */
   viewer: Viewer | undefined;
 }
 
-/** What a link to what is shown restores. @returns Nothing if it is not a sample. */
+/** The state for a link. @returns Undefined if the model is not a sample. */
 function stateOf({
   session: { shown, rules, locks, view },
   layers: { layers },
@@ -35,15 +35,15 @@ function stateOf({
   return { sample: sample.name, layers, rules, locks, view, shape: live.shape, angle: viewer?.angle };
 }
 
-/** The fragment that leads to what is shown, with its `#`. @returns Nothing if it is not a sample. */
+/** The URL fragment for the current state, with `#`. @returns Undefined if the model is not a sample. */
 export function linkOf(linked: Linked): string | undefined {
   const state = stateOf(linked);
   return state && `#${writeLink(state)}`;
 }
 
 /**
- * Restores what the page's address says, now and whenever it changes; now only if nothing was asked for yet.
- * @returns Whether there is anything to come.
+ * Restores the state in the page's URL, now (unless the user opened something already) and whenever it changes.
+ * @returns Whether anything is being opened.
  */
 export function followLinks(linked: Linked, opener: Opener): boolean {
   const { session, layers, live, viewer } = linked;
@@ -53,7 +53,7 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
     const { angle, shape } = state;
     const shown = stateOf(linked);
     if (shown && writeLink({ ...shown, angle: undefined }) === writeLink({ ...state, angle: undefined })) {
-      // As after a link was made of what is shown.
+      // The state is shown already, such as after copying the link.
       if (angle) viewer?.lookFrom(angle);
       return true;
     }
@@ -68,7 +68,7 @@ export function followLinks(linked: Linked, opener: Opener): boolean {
         if (angle) viewer?.lookFrom(angle);
         if (shape) live.move(shape);
       }),
-      // It came to nothing: what is opened next has nothing to do with it.
+      // The request failed or was cancelled.
       session.on('progress', ({ state }) => state !== 'working' && end()),
     ];
     const end = (): void => ends.forEach((off) => off());

@@ -1,6 +1,6 @@
 import type { Session } from '../scene/session';
 
-/** What the page found out, for tools: which vertex is in which zone, by what rules, and what became of each segment. */
+/** The result as JSON, for tools: options, zones per vertex, and segments. */
 export function zonesJson({ shown, classification, rules: { preset, threshold }, locks }: Session): string {
   const { target, cage, projection } = shown!;
   const { zones, segmentStats } = classification!;
@@ -22,7 +22,7 @@ export function zonesJson({ shown, classification, rules: { preset, threshold },
     segments: segmentStats.map((stats) => ({ part: target.mesh.parts[stats.group]!.name, ...stats })),
     /** Per vertex: 0 cosmetic, 1 occluded, 2 uncovered, 3 culled. */
     zones: [...zones],
-    /** Per vertex: the number of its segment. */
+    /** Per vertex: its segment. */
     segmentOfVertex: [...projection.segments],
   });
 }

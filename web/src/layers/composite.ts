@@ -13,23 +13,23 @@ import {
 import { kBlends, type Layer, type Sheet } from './layer';
 import { refreshMipmaps } from './mipmaps';
 import { kMostRects, Pass } from './pass';
-import { apart, kWhole, type Rect, toTexels } from './rect';
+import { disjoint, kWhole, type Rect, toTexels } from './rect';
 
 export const kMostLayers = 8;
-const kLeastSize = 1024; // texels a side
+const kLeastSize = 1024; // texels per side
 export const kMostSize = 2048;
 
-/** Paint that is still wet: what a stroke lays over one sheet, or takes off it, until it is settled. */
-export interface Wet {
+/** A stroke in progress: shown over one sheet, or erased from it, until it is committed. */
+export interface ActiveStroke {
   sheet: Sheet;
-  /** Premultiplied, in the size of the sheet. */
+  /** Premultiplied, of the same size as the sheet. */
   texture: Texture;
-  /** 0..1, of the stroke as a whole. */
+  /** 0..1, of the whole stroke. */
   opacity: number;
   erases: boolean;
 }
 
-// Each of the four is a separable blend mode of “Compositing and Blending Level 1” (W3C), in linear light, with colours
+// All four are separable blend modes of “Compositing and Blending Level 1” (W3C), in linear light, with colours
 // multiplied by alpha: layer·(1 − α below) + below·(1 − α layer) + α layer·α below·B, where B is, of the colours proper,
 // normal: layer, multiply: layer·below, screen: layer + below − layer·below, add: min(1, layer + below).
 const kFunctions = /* glsl */ `
@@ -42,8 +42,7 @@ vec4 whole(sampler2D sheet, bool isPremultiplied) {
   return texel(sheet, ivec2(gl_FragCoord.xy), isPremultiplied);
 }
 
-// Of a sheet with another number of texels. Colours are multiplied by alpha before they are mixed: what is transparent has
-// no colour to give.
+// For a sheet of another size: bilinear, with premultiplied colours, so that transparent texels add no colour.
 vec4 spread(sampler2D sheet, bool isPremultiplied) {
   ivec2 sides = textureSize(sheet, 0);
   vec2 at = gl_FragCoord.xy / float(size) * vec2(sides) - 0.5;
@@ -66,19 +65,19 @@ vec4 join(vec4 layer, vec4 below, int blend) {
 }
 `;
 
-/** How the texels of each layer are taken, from the lowest, and which of them may be wet: -1 for none. */
+/** How each layer is sampled, from the lowest, and which of them carries a stroke: -1 for none. */
 interface Recipe {
   takes: readonly ('whole' | 'spread')[];
-  wet: number;
+  stroke: number;
 }
 
-/** A shader for these layers and no others: a processor that draws goes through every branch of one, needed or not. */
-function fragmentShader({ takes, wet }: Recipe): string {
+/** A shader for exactly these layers: software renderers execute every branch, taken or not. */
+function fragmentShader({ takes, stroke }: Recipe): string {
   const most = Math.max(1, takes.length);
   const steps = takes.map(
     (take, index) => /* glsl */ `
   layer = ${take}(sheets[${index}], premultiplied[${index}]);
-  ${index === wet ? `soak = wetOpacity * ${take}(wet, true);\n  layer = layer * (1.0 - soak.a) + (wetErases ? vec4(0.0) : soak);` : ''}
+  ${index === stroke ? `soak = strokeOpacity * ${take}(stroke, true);\n  layer = layer * (1.0 - soak.a) + (strokeErases ? vec4(0.0) : soak);` : ''}
   layer *= vec4(tints[${index}].rgb, 1.0) * tints[${index}].a;
   color = join(layer, color, blends[${index}]);`,
   );
@@ -87,9 +86,9 @@ uniform sampler2D sheets[${most}];
 uniform vec4 tints[${most}]; // and the opacity
 uniform int blends[${most}];
 uniform bool premultiplied[${most}];
-uniform sampler2D wet;
-uniform float wetOpacity;
-uniform bool wetErases;
+uniform sampler2D stroke;
+uniform float strokeOpacity;
+uniform bool strokeErases;
 uniform int size;
 out vec4 color;
 ${kFunctions}
@@ -101,8 +100,8 @@ void main() {
 }
 
 /**
- * What layers look like together: a texture with mipmaps, its colours multiplied by alpha, as filtering wants them.
- * It is made when `update` is called after a change, and only as far as things changed.
+ * The layers blended into one texture, with mipmaps and premultiplied alpha. `update` redraws it after a change, and only the
+ * parts that changed.
  */
 export class Composite {
   readonly #target = new WebGLRenderTarget(kLeastSize, kLeastSize, {
@@ -120,31 +119,31 @@ export class Composite {
     tints: { value: Array.from({ length: kMostLayers }, () => new Vector4()) },
     blends: { value: new Array<number>(kMostLayers).fill(0) },
     premultiplied: { value: new Array<boolean>(kMostLayers).fill(false) },
-    wet: { value: null as Texture | null },
-    wetOpacity: { value: 1 },
-    wetErases: { value: false },
+    stroke: { value: null as Texture | null },
+    strokeOpacity: { value: 1 },
+    strokeErases: { value: false },
     size: { value: kLeastSize },
   };
   /** By recipe. */
   readonly #passes = new Map<string, Pass<Record<string, IUniform>>>();
   #layers: readonly Layer[] = [];
-  #wet: Wet | undefined;
-  /** What was wet last: it will be again. */
-  #wetSheet: Sheet | undefined;
-  /** What changed since the last update, in shares of the texture. */
+  #stroke: ActiveStroke | undefined;
+  /** The sheet of the last stroke: the next stroke is likely to use it, and its shader. */
+  #strokeSheet: Sheet | undefined;
+  /** The parts that changed since the last update, in shares. */
   #stale: Rect[] = [kWhole];
 
   constructor() {
-    // Done here, for the part that changed: the renderer would do all of it, after every stroke of a brush.
+    // `refreshMipmaps` updates the changed parts; the renderer would rebuild all levels for every stroke.
     this.#target.texture.mipmapsAutoUpdate = false;
   }
 
-  /** The same for as long as this lives. sRGB, premultiplied, its first row at v = 0. */
+  /** Always the same object. sRGB, premultiplied alpha, first row at v = 0. */
   get texture(): Texture {
     return this.#target.texture;
   }
 
-  /** Texels a side: as many as the largest of the layers asks for. */
+  /** Texels per side: as many as the largest layer needs. */
   get size(): number {
     return this.#target.width;
   }
@@ -155,14 +154,14 @@ export class Composite {
     this.#stale = [kWhole];
   }
 
-  /** Notes that texels of a sheet are others now. @param rects In shares. @param wet What lies wet on a sheet by now, if anything. */
-  touch(rects: readonly Rect[], wet?: Wet): void {
-    this.#wet = wet;
-    this.#wetSheet = wet?.sheet ?? this.#wetSheet;
+  /** Marks parts of a sheet as changed. @param rects In shares. @param stroke The stroke in progress, if any. */
+  touch(rects: readonly Rect[], stroke?: ActiveStroke): void {
+    this.#stroke = stroke;
+    this.#strokeSheet = stroke?.sheet ?? this.#strokeSheet;
     this.#stale.push(...rects);
   }
 
-  /** Makes again what is stale. @returns Whether anything was. */
+  /** Redraws what changed. @returns Whether anything did. */
   update(renderer: WebGLRenderer): boolean {
     if (this.#stale.length === 0) return false;
     const size = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize)
@@ -170,11 +169,11 @@ export class Composite {
       : kLeastSize;
     const whole = size !== this.size || this.#stale.includes(kWhole);
     this.#target.setSize(size, size);
-    // Texels more: a sheet with fewer of them than this spreads each over its neighbours.
+    // In texels: upsampling a smaller sheet spreads each of its texels over the neighbours.
     const margin = this.#layers.every(({ sheet }) => isSquare(sheet.texture, size)) ? 0 : 2;
     const rects = whole
       ? [toTexels(kWhole, size)]
-      : apart(
+      : disjoint(
           this.#stale.map((rect) => toTexels(rect, size, margin)),
           kMostRects,
         );
@@ -187,7 +186,7 @@ export class Composite {
 
   #pass(): Pass<Record<string, IUniform>> {
     const takes = this.#layers.map(({ sheet }) => (isSquare(sheet.texture, this.size) ? 'whole' : 'spread'));
-    const recipe = { takes, wet: this.#layers.findIndex(({ sheet }) => sheet === this.#wetSheet) };
+    const recipe = { takes, stroke: this.#layers.findIndex(({ sheet }) => sheet === this.#strokeSheet) };
     const key = JSON.stringify(recipe);
     let pass = this.#passes.get(key);
     if (!pass) this.#passes.set(key, (pass = new Pass(fragmentShader(recipe), this.#uniforms)));
@@ -195,8 +194,8 @@ export class Composite {
   }
 
   #fill(): void {
-    const { sheets, tints, blends, premultiplied, wet, wetOpacity, wetErases, size } = this.#uniforms;
-    // All of them are set: one left over from before could be the texture that is drawn to.
+    const { sheets, tints, blends, premultiplied, stroke, strokeOpacity, strokeErases, size } = this.#uniforms;
+    // Set all entries: a stale one could be the texture that is drawn to, which WebGL forbids.
     sheets.value = Array.from({ length: kMostLayers }, (_, index) => this.#layers[index]?.sheet.texture ?? null);
     this.#layers.forEach(({ sheet, tint, opacity, blend }, index) => {
       const { r, g, b } = new Color(tint);
@@ -204,9 +203,9 @@ export class Composite {
       blends.value[index] = kBlends.indexOf(blend);
       premultiplied.value[index] = sheet.premultiplied ?? false;
     });
-    wet.value = this.#wet?.texture ?? null;
-    wetOpacity.value = this.#wet?.opacity ?? 0;
-    wetErases.value = this.#wet?.erases ?? false;
+    stroke.value = this.#stroke?.texture ?? null;
+    strokeOpacity.value = this.#stroke?.opacity ?? 0;
+    strokeErases.value = this.#stroke?.erases ?? false;
     size.value = this.size;
   }
 }

@@ -1,10 +1,10 @@
-import type { Deed, History } from '../platform/history';
+import type { Command, History } from '../platform/history';
 import { areSame, type Layer } from './layer';
 import type { LayerStack } from './stack';
 
-const kOneGo = 600; // milliseconds: the same done again that soon, as by a key held down, is one step
+const kOneGo = 600; // milliseconds: equal edits in quick succession, such as a held key, become one step
 
-/** Notes in the history what the visitor does to the layers. */
+/** Records changes of the layers in the undo history. */
 export class Edits {
   readonly #stack: LayerStack;
   readonly #history: History;
@@ -16,42 +16,42 @@ export class Edits {
     this.#history = history;
   }
 
-  /** Begins a step, unless one is under way: all that is done until `end` is undone together, and nothing is undone before it. */
+  /** Begins a step, unless one is open: everything until `end` is undone together. Undo is blocked meanwhile. */
   begin(): void {
     this.#before ??= this.#stack.layers;
     this.#history.held = true;
   }
 
   /**
-   * Ends a step; one that changed nothing is not noted.
-   * @param name What undoing it is called. @param beside What was done in it beside changes of the stack.
+   * Ends a step; a step without changes is not recorded.
+   * @param name The name of the undo step. @param sideEffect What it did besides changing the stack.
    */
-  end(name: string, beside?: Beside): void {
+  end(name: string, sideEffect?: SideEffect): void {
     const [before, after] = [this.#close(), this.#stack.layers];
-    if (!before || (!beside && areSame(before, after))) return;
+    if (!before || (!sideEffect && areSame(before, after))) return;
     const [last, at] = [this.#last, performance.now()];
-    if (!beside && last && last.step === this.#history.last && last.step.name === name && at - last.at < kOneGo) {
+    if (!sideEffect && last && last.step === this.#history.last && last.step.name === name && at - last.at < kOneGo) {
       last.step.after = after;
       last.at = at;
       return;
     }
-    const step = new Step(name, this.#stack, before, after, beside);
-    this.#last = beside ? undefined : { step, at };
+    const step = new Step(name, this.#stack, before, after, sideEffect);
+    this.#last = sideEffect ? undefined : { step, at };
     this.#history.add(step);
   }
 
-  /** Takes back what was done since `begin`. */
+  /** Reverts the changes since `begin`. */
   cancel(): void {
     const before = this.#close();
     if (before) this.#stack.change(this.#stack.layers, before);
   }
 
-  /** Forgets which paints were chosen to lie under everything: another model has put its own there. */
+  /** Drops the steps that chose a base paint: another model has replaced it. */
   forgetChoices(): void {
-    this.#history.forget((deed) => deed instanceof Step && deed.isChoice);
+    this.#history.forget((command) => command instanceof Step && command.isChoice);
   }
 
-  /** Forgets all. */
+  /** Drops all steps. */
   forget(): void {
     this.#history.forget(() => true);
   }
@@ -63,7 +63,7 @@ export class Edits {
     return before;
   }
 
-  /** Does something to the layers as a step; as a part of the one that is under way, if one is. @param name What undoing it is called. */
+  /** Runs a change of the layers as a step, or as part of the open one. @param name The name of the undo step. */
   do<Result>(name: string, run: () => Result): Result {
     if (this.#before) return run();
     this.begin();
@@ -75,39 +75,39 @@ export class Edits {
   }
 }
 
-/** What is done in a step beside changes of the stack. */
-type Beside = Omit<Deed, 'name'>;
+/** What a step does besides changing the stack. */
+type SideEffect = Omit<Command, 'name'>;
 
-class Step implements Deed {
+class Step implements Command {
   constructor(
     readonly name: string,
     private readonly stack: LayerStack,
     private readonly before: readonly Layer[],
     public after: readonly Layer[],
-    private readonly beside?: Beside,
+    private readonly sideEffect?: SideEffect,
   ) {}
 
-  /** Whether a layer holds something else since. */
+  /** Whether it put another sheet into a layer. */
   get isChoice(): boolean {
     return this.before.some((layer) => this.after.some(({ id, sheet }) => id === layer.id && sheet !== layer.sheet));
   }
 
   get bytes(): number {
-    // Of the layers that are kept only to come back.
+    // Count the layers that only the history keeps alive.
     const isIn = (layers: readonly Layer[], { id }: Layer): boolean => layers.some((layer) => layer.id === id);
     const passing = [...this.before, ...this.after].filter(
       (layer) => !isIn(this.before, layer) || !isIn(this.after, layer),
     );
-    return passing.reduce((sum, { sheet }) => sum + (sheet.bytes ?? 0), this.beside?.bytes ?? 0);
+    return passing.reduce((sum, { sheet }) => sum + (sheet.bytes ?? 0), this.sideEffect?.bytes ?? 0);
   }
 
   undo(): void {
-    this.beside?.undo();
+    this.sideEffect?.undo();
     this.stack.change(this.after, this.before);
   }
 
   redo(): void {
     this.stack.change(this.before, this.after);
-    this.beside?.redo();
+    this.sideEffect?.redo();
   }
 }

@@ -5,7 +5,7 @@ import { Composite } from './composite';
 import type { Edits } from './edits';
 import type { LayerStack } from './stack';
 
-/** Puts the paint of the model on show under everything, and the visitor's own paints on top as they come. */
+/** Makes the paint of the current model the base layer, and adds the user's own paints on top. */
 export function followPaints(session: Session, stack: LayerStack, edits: Edits): void {
   const { checker } = session;
   const setBase = (paint: Paint): void => {
@@ -14,20 +14,20 @@ export function followPaints(session: Session, stack: LayerStack, edits: Edits):
   };
   session.on('transfer', ({ cage }) => {
     const base = stack.base?.sheet as Paint | undefined;
-    // A sample's paint means nothing on another cage: there the checker takes its place.
+    // A sample's paint does not fit another cage's UVs: show the checker instead.
     if (base?.sample && base.sample !== cage.sample) setBase(checker);
   });
   session.on('paint', (paint) => {
     if (paint === checker || paint.sample) return setBase(paint);
-    edits.do(`adding of ${titleOf(paint)}`, () => {
+    edits.do(`adding ${titleOf(paint)}`, () => {
       stack.add(titleOf(paint), paint);
-      // The checker stands in where there is no paint; here is one.
+      // The checker was only a placeholder.
       if (stack.base?.sheet === checker) stack.restyle(stack.base, { visible: false });
     });
   });
 }
 
-/** Lets the picture show what the layers look like together. */
+/** Shows the composite of the layers on the model. */
 export function showComposite(viewer: Viewer, stack: LayerStack): Composite {
   const composite = new Composite();
   viewer.setPaint(composite.texture);

@@ -23,14 +23,14 @@ interface Row {
   show(layer: Layer, selected: boolean): void;
 }
 
-/** The list of layers, the uppermost first: how each is laid, and in which order. */
+/** The list of layers, the uppermost first, with their styles; rows can be dragged to reorder. */
 export class LayerList {
   readonly #stack: LayerStack;
   readonly #edits: Edits;
   readonly #list = element('layer-list', HTMLOListElement);
   readonly #rows = new Map<number, Row>();
   #dragged: Layer | undefined;
-  /** The layer that is being laid in another way. */
+  /** The layer whose style is being changed. */
   #restyled: number | undefined;
 
   constructor(stack: LayerStack, edits: Edits) {
@@ -51,9 +51,9 @@ export class LayerList {
       if (layers.some((layer) => layer.id === id)) continue;
       item.remove();
       this.#rows.delete(id);
-      // Its controls do not tell any more that it is over.
+      // Its controls are gone and cannot end the edit any more.
       if (this.#dragged?.id === id) this.#drop();
-      if (this.#restyled === id) this.#restyledAs('style');
+      if (this.#restyled === id) this.#endRestyle('style');
     }
     const focused = document.activeElement;
     const items = layers.toReversed().map((layer) => {
@@ -63,7 +63,7 @@ export class LayerList {
     });
     if (items.some((item, index) => this.#list.children[index] !== item)) {
       this.#list.replaceChildren(...items);
-      // What is moved about loses the keyboard.
+      // Moving an element in the document drops its focus.
       if (focused instanceof HTMLElement && this.#list.contains(focused)) focused.focus({ preventScroll: true });
     }
     this.#list.hidden = items.length === 0;
@@ -71,11 +71,11 @@ export class LayerList {
     for (const name of ['add-image', 'add-painting']) element(name, HTMLButtonElement).disabled = this.#stack.full;
   }
 
-  /** Ends a step in which a layer was laid in another way. */
-  #restyledAs(what: string): void {
+  /** Ends the undo step of a style change. */
+  #endRestyle(what: string): void {
     const { name } = this.#stack.layers.find(({ id }) => id === this.#restyled) ?? { name: 'a layer' };
     this.#restyled = undefined;
-    this.#edits.end(`${what} of ${name}`);
+    this.#edits.end(`changing the ${what} of ${name}`);
   }
 
   #layerOf(id: number): Layer {
@@ -86,29 +86,29 @@ export class LayerList {
     const item = document.createElement('li');
     item.className = 'layer';
     item.innerHTML = kRow;
-    const part = <T extends Element>(name: string): T => item.querySelector<T>(`[name=${name}]`)!;
-    const grip = part<HTMLButtonElement>('move');
-    const [choose, remove] = [part<HTMLButtonElement>('choose'), part<HTMLButtonElement>('remove')];
-    const visible = part<HTMLInputElement>('visible');
-    const [opacity, tint, blend] = [
-      part<HTMLInputElement>('opacity'),
-      part<HTMLInputElement>('tint'),
-      part<HTMLSelectElement>('blend'),
-    ];
-    for (const name of kBlends) blend.add(new Option(kBlendTitles[name], name));
-    /** A drag says the same many times, and then that it is over. */
+    const controls = controlsOf(item);
+    for (const name of kBlends) controls.blend.add(new Option(kBlendTitles[name], name));
+    controls.choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)));
+    controls.remove.addEventListener('click', () => this.#remove(id));
+    this.#connectStyle(id, controls);
+    this.#connectGrip(id, item, controls.grip);
+    const row: Row = { item, show: (layer, selected) => showLayer(item, controls, layer, selected) };
+    this.#rows.set(id, row);
+    return row;
+  }
+
+  #connectStyle(id: number, { visible, opacity, tint, blend }: Controls): void {
+    // A drag sends many changes; the edit ends with it.
     const restyle = (style: Partial<Style>): void => {
       if (!this.#rows.has(id)) return;
       this.#restyled = id;
       this.#edits.begin();
       this.#stack.restyle(this.#layerOf(id), style);
     };
-
-    choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)));
     visible.addEventListener('change', () => {
       restyle({ visible: visible.checked });
-      this.#restyledAs(visible.checked ? 'showing' : 'hiding');
-      announce(`${this.#layerOf(id).name} is ${visible.checked ? 'shown' : 'hidden'}.`);
+      this.#endRestyle('visibility');
+      announce(`${this.#layerOf(id).name} ${visible.checked ? 'shown' : 'hidden'}.`);
     });
     opacity.addEventListener('input', () => restyle({ opacity: Number(opacity.value) / 100 }));
     tint.addEventListener('input', () => restyle({ tint: tint.value }));
@@ -118,11 +118,13 @@ export class LayerList {
       [tint, 'tint'],
       [blend, 'blending'],
     ] as const) {
-      // Where it is in the end as it was, nothing changes for a browser: there is no `change` then.
+      // Browsers send no `change` if the control ends where it began.
       for (const end of ['change', 'pointerup', 'pointercancel', 'blur'] as const)
-        control.addEventListener(end, () => this.#restyled === id && this.#restyledAs(what));
+        control.addEventListener(end, () => this.#restyled === id && this.#endRestyle(what));
     }
-    remove.addEventListener('click', () => this.#remove(id));
+  }
+
+  #connectGrip(id: number, item: HTMLElement, grip: HTMLElement): void {
     grip.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
       this.#dragged = this.#layerOf(id);
@@ -136,41 +138,16 @@ export class LayerList {
       if (step === undefined) return;
       event.preventDefault();
       const layer = this.#layerOf(id);
-      this.#edits.do(`move of ${layer.name}`, () => this.#move(layer, this.#stack.layers.indexOf(layer) + step));
+      this.#edits.do(`moving ${layer.name}`, () => this.#move(layer, this.#stack.layers.indexOf(layer) + step));
     });
-
-    const row: Row = {
-      item,
-      show(layer, selected) {
-        const { name } = layer;
-        item.classList.toggle('selected', selected);
-        item.querySelector('img')!.src = layer.sheet.picture;
-        item.querySelector('.name')!.textContent = choose.title = name;
-        choose.setAttribute('aria-pressed', String(selected));
-        grip.setAttribute('aria-label', `Reorder ${name}: up and down keys`);
-        remove.setAttribute('aria-label', `Remove ${name}`);
-        visible.setAttribute('aria-label', `Show ${name}`);
-        opacity.setAttribute('aria-label', `Opacity of ${name}`);
-        tint.setAttribute('aria-label', `Tint of ${name}`);
-        blend.setAttribute('aria-label', `Blending of ${name}`);
-        visible.checked = layer.visible;
-        opacity.value = String(Math.round(100 * layer.opacity));
-        opacity.ariaValueText = item.querySelector('output')!.value = `${opacity.value} %`;
-        tint.value = layer.tint;
-        blend.value = layer.blend;
-        item.querySelector<HTMLElement>('.style')!.hidden = !selected;
-      },
-    };
-    this.#rows.set(id, row);
-    return row;
   }
 
   #remove(id: number): void {
     const layer = this.#layerOf(id);
     const place = this.#stack.layers.length - 1 - this.#stack.layers.indexOf(layer);
-    this.#edits.do(`removal of ${layer.name}`, () => this.#stack.remove(id));
-    announce(`${layer.name} is removed.`);
-    // The keyboard goes on with the row that took its place.
+    this.#edits.do(`removing ${layer.name}`, () => this.#stack.remove(id));
+    announce(`${layer.name} removed.`);
+    // Focus the row that took its place.
     const next = this.#list.children[Math.min(place, this.#list.children.length - 1)] ?? this.#list.parentElement!;
     next.querySelector<HTMLElement>('[name=remove], button:enabled')?.focus();
   }
@@ -179,10 +156,10 @@ export class LayerList {
     const { layers } = this.#stack;
     if (place < 0 || place >= layers.length || layers[place]!.id === layer.id) return;
     this.#stack.move(layer, place);
-    announce(`${layer.name} is ${layers.length - place} of ${layers.length} from the top.`);
+    announce(`${layer.name} is now number ${layers.length - place} of ${layers.length} from the top.`);
   }
 
-  /** Changes places with a neighbour once the pointer is past its middle. */
+  /** Swaps with a neighbour once the pointer is past its middle. */
   #drag({ clientY }: PointerEvent): void {
     if (!this.#dragged) return;
     const { layers } = this.#stack;
@@ -199,7 +176,43 @@ export class LayerList {
   #drop(): void {
     if (!this.#dragged) return;
     this.#rows.get(this.#dragged.id)?.item.classList.remove('dragged');
-    this.#edits.end(`move of ${this.#dragged.name}`);
+    this.#edits.end(`moving ${this.#dragged.name}`);
     this.#dragged = undefined;
   }
+}
+
+function controlsOf(item: HTMLElement) {
+  const control = <T extends HTMLElement>(name: string): T => item.querySelector<T>(`[name=${name}]`)!;
+  return {
+    grip: control<HTMLButtonElement>('move'),
+    choose: control<HTMLButtonElement>('choose'),
+    remove: control<HTMLButtonElement>('remove'),
+    visible: control<HTMLInputElement>('visible'),
+    opacity: control<HTMLInputElement>('opacity'),
+    tint: control<HTMLInputElement>('tint'),
+    blend: control<HTMLSelectElement>('blend'),
+  };
+}
+
+type Controls = ReturnType<typeof controlsOf>;
+
+function showLayer(item: HTMLElement, controls: Controls, layer: Layer, selected: boolean): void {
+  const { grip, choose, remove, visible, opacity, tint, blend } = controls;
+  const { name } = layer;
+  item.classList.toggle('selected', selected);
+  item.querySelector('img')!.src = layer.sheet.picture;
+  item.querySelector('.name')!.textContent = choose.title = name;
+  choose.setAttribute('aria-pressed', String(selected));
+  grip.setAttribute('aria-label', `Reorder ${name} with the up and down keys`);
+  remove.setAttribute('aria-label', `Remove ${name}`);
+  visible.setAttribute('aria-label', `Show ${name}`);
+  opacity.setAttribute('aria-label', `Opacity of ${name}`);
+  tint.setAttribute('aria-label', `Tint of ${name}`);
+  blend.setAttribute('aria-label', `Blending of ${name}`);
+  visible.checked = layer.visible;
+  opacity.value = String(Math.round(100 * layer.opacity));
+  opacity.ariaValueText = item.querySelector('output')!.value = `${opacity.value} %`;
+  tint.value = layer.tint;
+  blend.value = layer.blend;
+  item.querySelector<HTMLElement>('.style')!.hidden = !selected;
 }

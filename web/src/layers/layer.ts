@@ -1,26 +1,26 @@
 import type { Texture } from 'three';
 
-/** How a layer is joined with what lies under it; `composite.ts` says the formulas. */
+/** How a layer is blended with the layers below; `composite.ts` has the formulas. */
 export const kBlends = ['normal', 'multiply', 'screen', 'add'] as const;
 export type Blend = (typeof kBlends)[number];
 
-/** What is in a layer: a texture in the cage's UV space. */
+/** The content of a layer: a texture in the cage's UV space. */
 export interface Sheet {
   /** sRGB; its first row is at v = 0. */
   readonly texture: Texture;
-  /** Whether its colours were multiplied by their alpha, in linear light; those of images were not. */
+  /** Whether its colours are premultiplied by alpha, in linear light; those of images are not. */
   readonly premultiplied?: boolean;
-  /** The address of a small picture of it. */
+  /** URL of a thumbnail. */
   readonly picture: string;
-  /** What keeping it takes beside its texture, in bytes. */
+  /** Bytes of memory besides the texture. */
   readonly bytes?: number;
 }
 
-/** How a layer is laid. */
+/** How a layer is blended. */
 export interface Style {
   /** 0..1 */
   opacity: number;
-  /** The colour that all of it is multiplied by, as #rrggbb; white leaves it as it is. */
+  /** #rrggbb; the sheet is multiplied by it. White changes nothing. */
   tint: string;
   blend: Blend;
   visible: boolean;
@@ -28,7 +28,7 @@ export interface Style {
 
 export const kPlain: Style = { opacity: 1, tint: '#ffffff', blend: 'normal', visible: true };
 
-/** One paint of several that lie over one another. */
+/** One layer of paint. */
 export interface Layer extends Readonly<Style> {
   readonly id: number;
   /** For people. */
@@ -38,15 +38,15 @@ export interface Layer extends Readonly<Style> {
 
 const kKeys = ['name', 'sheet', ...(Object.keys(kPlain) as (keyof Style)[])] as const;
 
-/** What another state of a layer has differently: the other's. */
-export function apart(layer: Layer, other: Layer): Partial<Layer> {
+/** The fields in which `other`, another state of the layer, differs from `layer`. */
+export function difference(layer: Layer, other: Layer): Partial<Layer> {
   const keys = kKeys.filter((key) => layer[key] !== other[key]);
   return Object.fromEntries(keys.map((key) => [key, other[key]]));
 }
 
-/** Whether the same layers lie in the same order, in the same way. */
+/** Whether two states of the stack are equal. */
 export function areSame(layers: readonly Layer[], others: readonly Layer[]): boolean {
   const isSame = (layer: Layer, other: Layer | undefined): boolean =>
-    layer.id === other?.id && Object.keys(apart(layer, other)).length === 0;
+    layer.id === other?.id && Object.keys(difference(layer, other)).length === 0;
   return layers.length === others.length && layers.every((layer, place) => isSame(layer, others[place]));
 }

@@ -1,14 +1,14 @@
 import type { WebGLRenderer, WebGLRenderTarget } from 'three';
-import { apart, type Rect } from './rect';
+import { disjoint, type Rect } from './rect';
 
-// Each part takes a call for every level: few that are larger cost less than many.
+// Each rectangle takes a call per level: a few large ones cost less than many small ones.
 const kMostParts = 8;
 const kTile = 256;
 
 /**
- * Makes the smaller levels of a texture again, under the parts of it that changed: each level is half of the one before.
+ * Rebuilds the mipmap levels of a texture where it changed; each level is half the size of the previous one.
  * @param target Square, of a power of two, with storage for its levels. @param rects In texels of its first level.
- * Cost: some calls for each part and level; little more than the parts' texels, where making all levels costs them all.
+ * Cost: one call per rectangle and level; proportional to the changed texels, not to the texture.
  */
 export function refreshMipmaps(renderer: WebGLRenderer, target: WebGLRenderTarget, rects: readonly Rect[]): void {
   const gl = renderer.getContext() as WebGL2RenderingContext;
@@ -17,9 +17,9 @@ export function refreshMipmaps(renderer: WebGLRenderer, target: WebGLRenderTarge
   const { state } = renderer;
   state.bindFramebuffer(gl.READ_FRAMEBUFFER, from);
   state.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
-  // Copies keep within the scissor, if there is one.
+  // Blits are clipped to the scissor.
   state.setScissorTest(false);
-  let parts = apart(rects, kMostParts, kTile);
+  let parts = disjoint(rects, kMostParts, kTile);
   for (let level = 1; target.width >> level > 0; level++) {
     gl.framebufferTexture2D(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, level - 1);
     gl.framebufferTexture2D(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, level);
@@ -52,7 +52,7 @@ const buffers = new WeakMap<WebGL2RenderingContext, [WebGLFramebuffer, WebGLFram
 
 function buffersOf(gl: WebGL2RenderingContext): [WebGLFramebuffer, WebGLFramebuffer] {
   const known = buffers.get(gl);
-  // After a context was lost its buffers are gone.
+  // A lost context takes its framebuffers with it.
   if (known && gl.isFramebuffer(known[0])) return known;
   const made: [WebGLFramebuffer, WebGLFramebuffer] = [gl.createFramebuffer()!, gl.createFramebuffer()!];
   buffers.set(gl, made);

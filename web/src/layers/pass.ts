@@ -15,7 +15,7 @@ import {
 } from 'three';
 import type { Rect } from './rect';
 
-/** Parts that one pass can be run over. */
+/** Rectangles that one pass can be run over. */
 export const kMostRects = 128;
 
 const kVertexShader = /* glsl */ `
@@ -23,7 +23,7 @@ in vec3 position;
 void main() { gl_Position = vec4(position, 1.0); }
 `;
 
-/** Computes the texels of a texture on the GPU: a fragment shader, run over parts of it. */
+/** Runs a fragment shader over rectangles of a render target. */
 export class Pass<Uniforms extends Record<string, IUniform>> {
   readonly #corners = new BufferAttribute(new Float32Array(6 * 3 * kMostRects), 3).setUsage(DynamicDrawUsage);
   readonly #geometry = new BufferGeometry().setAttribute('position', this.#corners);
@@ -33,7 +33,7 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
 
   /**
    * @param fragmentShader GLSL ES 3.0. It writes linear colour; the target's format encodes it.
-   * @param blending       How what it writes is joined with what is there; it replaces it unless this says otherwise.
+   * @param blending       How its output is blended with the target; it replaces it by default.
    */
   constructor(
     fragmentShader: string,

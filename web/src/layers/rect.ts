@@ -1,4 +1,4 @@
-/** A part of a texture: in shares of its sides, or in whole texels. The texture's first row is at `top` 0. */
+/** A rectangle of a texture: in shares of its sides (0..1), or in whole texels. The first row is at `top` 0. */
 export interface Rect {
   left: number;
   top: number;
@@ -6,10 +6,10 @@ export interface Rect {
   bottom: number;
 }
 
-/** All of a texture, in shares. */
+/** The whole texture, in shares. */
 export const kWhole: Rect = { left: 0, top: 0, right: 1, bottom: 1 };
 
-/** The whole texels that a part touches, and `margin` more on every side. @param size Texels a side. */
+/** The texels that a rectangle in shares touches, and `margin` more on every side. @param size Texels per side. */
 export function toTexels({ left, top, right, bottom }: Rect, size: number, margin = 0): Rect {
   return {
     left: Math.max(0, Math.floor(left * size) - margin),
@@ -19,7 +19,7 @@ export function toTexels({ left, top, right, bottom }: Rect, size: number, margi
   };
 }
 
-/** A part in whole texels, as shares. */
+/** Converts texels to shares. */
 export function toShares({ left, top, right, bottom }: Rect, size: number): Rect {
   return { left: left / size, top: top / size, right: right / size, bottom: bottom / size };
 }
@@ -28,7 +28,7 @@ export function isEmpty({ left, top, right, bottom }: Rect): boolean {
   return left >= right || top >= bottom;
 }
 
-/** The least part that holds both. */
+/** The smallest rectangle that contains both. */
 export function hull(a: Rect, b: Rect): Rect {
   return {
     left: Math.min(a.left, b.left),
@@ -39,11 +39,10 @@ export function hull(a: Rect, b: Rect): Rect {
 }
 
 /**
- * Parts that cover all of the given ones, share no texel, and are at most `most`: rows of tiles that the given ones touch, no
- * farther than these reach on the whole.
- * @param rects In texels. @param tile Texels a side; tiles are larger if there were too many parts.
+ * Covers rectangles by at most `most` disjoint ones: rows of the tiles that they touch, clipped to their bounding box.
+ * @param rects In texels. @param tile Texels per side; doubled until there are few enough rectangles.
  */
-export function apart(rects: readonly Rect[], most: number, tile = 32): Rect[] {
+export function disjoint(rects: readonly Rect[], most: number, tile = 32): Rect[] {
   const some = rects.filter((rect) => !isEmpty(rect));
   if (some.length === 0) return [];
   const all = some.reduce(hull);
@@ -68,7 +67,7 @@ export function apart(rects: readonly Rect[], most: number, tile = 32): Rect[] {
         Math.min(all.right, tile * (left + column)),
         Math.min(all.bottom, tile * (top + row + 1)),
       ];
-      // One that goes on below is the same part.
+      // Extend the rectangle above if it has the same columns.
       let rect = above.find((other) => other.left === first && other.right === last);
       if (rect) rect.bottom = bottom;
       else found.push((rect = { left: first, top: Math.max(all.top, tile * (top + row)), right: last, bottom }));
@@ -76,5 +75,5 @@ export function apart(rects: readonly Rect[], most: number, tile = 32): Rect[] {
     }
     above = here;
   }
-  return found.length > most ? apart(rects, most, 2 * tile) : found;
+  return found.length > most ? disjoint(rects, most, 2 * tile) : found;
 }

@@ -7,7 +7,7 @@ import type { Composite } from './composite';
 import { readStraight } from './straight';
 
 /**
- * Writes what the layers look like together as a PNG, in the cage's UV space: the texture to be drawn over any target.
+ * Encodes the composite of the layers as a PNG, in the cage's UV space.
  * @throws Error if the browser cannot encode it.
  */
 async function compositePng(renderer: WebGLRenderer, composite: Composite): Promise<Blob> {
@@ -15,7 +15,7 @@ async function compositePng(renderer: WebGLRenderer, composite: Composite): Prom
   return pngOf(readStraight(renderer, composite.texture, composite.size));
 }
 
-/** Lets the texture be saved. @returns What makes a PNG of it. */
+/** Connects the button that saves the texture. @returns A function that encodes it as a PNG. */
 export function setUpSaving({ renderer }: Viewer, composite: Composite): () => Promise<Blob> {
   const png = (): Promise<Blob> => compositePng(renderer, composite);
   element('save-texture', HTMLButtonElement).addEventListener('click', async () => {

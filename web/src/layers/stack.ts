@@ -1,20 +1,20 @@
 import { Emitter } from '../platform/events';
 import { kMostLayers } from './composite';
-import { apart, kPlain, type Layer, type Sheet, type Style } from './layer';
+import { difference, kPlain, type Layer, type Sheet, type Style } from './layer';
 
-/** What there is to be said when there is no room for another one. */
-export const kFull = `There are ${kMostLayers} layers, as many as there can be: remove one first.`;
+/** Message when there is no room for another layer. */
+export const kFull = `There are already ${kMostLayers} layers, the maximum. Remove one first.`;
 
 export interface StackEvents {
-  /** Layers came, went, moved, or are laid in another way. */
+  /** Layers were added, removed, moved or restyled. */
   change: readonly Layer[];
-  /** Pictures of layers are others now, and nothing else. */
+  /** Only thumbnails changed. */
   pictures: readonly Layer[];
-  /** Another layer is worked on, or none. */
+  /** Another layer was selected, or none. */
   select: Layer | undefined;
 }
 
-/** Up to eight paints over one another, from the lowest to the uppermost. It stays as it is when the model changes. */
+/** Up to eight layers of paint, from the lowest to the uppermost. It is kept when the model changes. */
 export class LayerStack extends Emitter<StackEvents> {
   #layers: readonly Layer[] = [];
   #selected: number | undefined;
@@ -25,7 +25,7 @@ export class LayerStack extends Emitter<StackEvents> {
     return this.#layers;
   }
 
-  /** The layer that is worked on. */
+  /** The selected layer. */
   get selected(): Layer | undefined {
     return this.#layers.find(({ id }) => id === this.#selected);
   }
@@ -34,22 +34,25 @@ export class LayerStack extends Emitter<StackEvents> {
     return this.#layers.length >= kMostLayers;
   }
 
-  /** Puts a paint under everything, in place of the one that was put there before. */
+  /** Sets the base layer, in place of the previous one. */
   setBase(name: string, sheet: Sheet): void {
     const { base } = this;
-    if (base) return this.#replace({ ...base, name, sheet, visible: true });
+    if (base) {
+      this.#replace({ ...base, name, sheet, visible: true });
+      return;
+    }
     if (this.full) throw new Error(kFull);
     const layer = this.#make(name, sheet, {}, 0);
     this.#base = layer.id;
     this.select(layer);
   }
 
-  /** The layer that a model's own paint is put in, unless it was removed. */
+  /** The layer with the model's own paint, unless it was removed. */
   get base(): Layer | undefined {
     return this.#layers.find(({ id }) => id === this.#base);
   }
 
-  /** Lays a paint over the others, and works on it. @throws Error if there are eight. */
+  /** Adds a layer on top and selects it. @throws Error if there are eight. */
   add(name: string, sheet: Sheet, style: Partial<Style> = {}): Layer {
     if (this.full) throw new Error(kFull);
     const layer = this.#make(name, sheet, style, this.#layers.length);
@@ -57,7 +60,7 @@ export class LayerStack extends Emitter<StackEvents> {
     return layer;
   }
 
-  /** Takes a layer away. */
+  /** Removes a layer. */
   remove(id: number): void {
     const place = this.#placeOf({ id });
     this.#set(this.#layers.toSpliced(place, 1));
@@ -65,8 +68,8 @@ export class LayerStack extends Emitter<StackEvents> {
   }
 
   /**
-   * Does again what led from one state of the stack to another, and works on what that concerns: layers come, go, take their
-   * places, and hold what they hold and are laid as in the other. Whatever is the same in both stays as it is by now.
+   * Applies the difference between two states of the stack to the current one, and selects the first layer it concerns.
+   * Whatever is equal in both states stays as it is now.
    * @throws Error if there would be more than eight.
    */
   change(from: readonly Layer[], to: readonly Layer[]): void {
@@ -75,12 +78,12 @@ export class LayerStack extends Emitter<StackEvents> {
     let concerned: Layer | undefined;
     const layers = to.flatMap((layer) => {
       const [before, now] = [find(from, layer), find(this.#layers, layer)];
-      if (before && !now) return []; // what went since stays away
-      const change = before ? apart(before, layer) : {};
+      if (before && !now) return []; // removed since: stays removed
+      const change = before ? difference(before, layer) : {};
       if (!before || Object.keys(change).length > 0) concerned ??= layer;
       return [{ ...(now ?? layer), ...change }];
     });
-    // What came since stays.
+    // Layers added since stay.
     this.#layers.forEach((layer, place) => {
       if (!find(from, layer) && !find(to, layer)) layers.splice(place, 0, layer);
     });
@@ -97,7 +100,7 @@ export class LayerStack extends Emitter<StackEvents> {
     if (from !== to) this.#set(this.#layers.toSpliced(from, 1).toSpliced(to, 0, this.#layers[from]!));
   }
 
-  /** Lays a layer in another way. */
+  /** Changes a layer's style. */
   restyle(layer: Layer, style: Partial<Style>): void {
     this.#replace({ ...this.#layers[this.#placeOf(layer)]!, ...style });
   }
@@ -108,7 +111,7 @@ export class LayerStack extends Emitter<StackEvents> {
     this.emit('select', this.selected);
   }
 
-  /** Tells that sheets have other pictures now. */
+  /** Announces new thumbnails. */
   pictured(): void {
     this.emit('pictures', this.#layers);
   }

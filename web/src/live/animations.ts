@@ -2,13 +2,13 @@ import type { AnimationClip } from 'three';
 import { element } from '../platform/page';
 import type { Viewer } from '../view/viewer';
 
-/** Lets a model's animations be played; the first of them plays by itself, unless the visitor wants no motion. */
+/** Plays a model's animations. The first starts by itself, unless the user prefers reduced motion. */
 export class Animations {
   readonly #viewer: Viewer;
   readonly #select = element('animation', HTMLSelectElement);
   #clips: readonly AnimationClip[] = [];
 
-  /** @param onPlay Is called before one plays because the visitor says so. */
+  /** @param onPlay Called before the user starts one. */
   constructor(viewer: Viewer, onPlay: () => void) {
     this.#viewer = viewer;
     this.#select.addEventListener('change', () => {
@@ -21,7 +21,7 @@ export class Animations {
     return Number(this.#select.value) >= 0;
   }
 
-  /** Offers those of another model. */
+  /** Lists the animations of another model. */
   offer(clips: readonly AnimationClip[]): void {
     this.#clips = clips;
     element('animation-field', HTMLElement).hidden = clips.length === 0;
@@ -32,7 +32,7 @@ export class Animations {
     this.#play();
   }
 
-  /** Brings the model back to rest. */
+  /** Returns the model to its rest pose. */
   stop(): void {
     if (!this.playing) return;
     this.#select.value = '-1';

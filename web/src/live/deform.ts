@@ -1,13 +1,13 @@
 import type { Vector3 } from 'three';
 
-/** Ways to move a model out of its shape. */
+/** Deformations of a model. */
 export const kDeforms = ['bend', 'twist', 'inflate'] as const;
 export type Deform = (typeof kDeforms)[number];
 
-/** The room that a deformation is measured by: the box of the model at rest. */
-export interface Room {
+/** The bounding box of the model at rest, which scales a deformation. */
+export interface Extent {
   center: Vector3;
-  /** Half of its height. */
+  /** Half its height. */
   half: number;
 }
 
@@ -16,19 +16,19 @@ const kTwist = 1.6;
 const kInflate = 0.3; // of the distance from the centre
 
 /**
- * Moves a point of the model, and keeps neighbours neighbours.
+ * Moves a point of the model; continuous, so that the surface does not tear.
  * @param amount From −1 to 1; 0 leaves it where it is.
  */
-export function deform(point: Vector3, how: Deform, amount: number, { center, half }: Room): void {
+export function deform(point: Vector3, how: Deform, amount: number, { center, half }: Extent): void {
   if (amount === 0) return;
   point.sub(center);
   const { x, y, z } = point;
-  const height = Math.max(-1, Math.min(1, y / half)); // beyond the box everything moves as its rim does
+  const height = Math.max(-1, Math.min(1, y / half)); // beyond the box points move with its top or bottom
   if (how === 'twist') {
     const turn = 0.5 * kTwist * amount * height;
     point.set(x * Math.cos(turn) + z * Math.sin(turn), y, z * Math.cos(turn) - x * Math.sin(turn));
   } else if (how === 'bend') {
-    // Around an axis far to the side, about which the middle stays where it is.
+    // A rotation about an axis at the side; points at half height stay in place.
     const turn = 0.5 * kBend * amount * height;
     const radius = half / (0.5 * kBend * amount);
     const beyond = y - height * half;

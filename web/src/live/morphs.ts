@@ -1,41 +1,41 @@
 import type { Mesh } from 'three';
 import { element } from '../platform/page';
-import type { ExtractedMesh } from '../scene/extract';
+import type { ExtractedMesh } from '../scene/extract-mesh';
 
-/** How far morphs are carried out, by name; those that are not in it are not. Meshes that have one of that name follow it together. */
+/** Morph weights by name; others are 0. Morphs of the same name in several meshes share a weight. */
 export type Weights = ReadonlyMap<string, number>;
 
-/** What a mesh's morphs are called, in their order; one without a name of its own by its number. */
+/** The names of a mesh's morphs, in order; “Morph 1” and so on for those without a name. */
 export function morphNames({ morphTargetDictionary, morphTargetInfluences = [] }: Mesh): string[] {
   const names = new Map(Object.entries(morphTargetDictionary ?? {}).map(([name, place]) => [place, name]));
-  // The loader calls those by their number, from 0, that the file says nothing of.
+  // The loader names morphs without a name by their index.
   return morphTargetInfluences.map((_, place) =>
     /^\d*$/.test(names.get(place) ?? '') ? `Morph ${place + 1}` : names.get(place)!,
   );
 }
 
-/** Lets a model's morphs be moved: a slider for each name. */
+/** A slider for each morph of a model. */
 export class Morphs {
   readonly #box = element('morphs', HTMLElement);
   readonly #list = element('morph-list', HTMLElement);
   readonly #reset = element('morphs-reset', HTMLButtonElement);
   readonly #onMove: () => void;
-  /** Where the file has them. */
+  /** The weights in the file. */
   #stored: Weights = new Map();
   #weights = new Map<string, number>();
 
-  /** @param onMove Is called when the visitor moved one. */
+  /** @param onMove Called when the user moved a slider. */
   constructor(onMove: () => void) {
     this.#onMove = onMove;
     this.#reset.addEventListener('click', () => {
       this.reset();
-      // Nothing is left for the button to do, but the keyboard is to stay with the morphs.
+      // The button is disabled now: keep the focus within the morphs.
       this.#list.querySelector('input')?.focus({ preventScroll: true });
       onMove();
     });
   }
 
-  /** Offers those of a model, which is as its file has it. */
+  /** Lists the morphs of a model at rest. */
   offer({ parts }: ExtractedMesh): void {
     const stored = new Map<string, number>();
     for (const { mesh } of parts) {
@@ -51,28 +51,28 @@ export class Morphs {
     this.#reset.disabled = true;
   }
 
-  /** Where the visitor has them; undefined while that is where the file has them. */
+  /** The current weights; undefined while they equal the file's. */
   get weights(): Weights | undefined {
     return this.moved.size > 0 ? new Map(this.#weights) : undefined;
   }
 
-  /** Those that are not where the file has them. */
+  /** The weights that differ from the file's. */
   get moved(): Weights {
     return new Map([...this.#weights].filter(([name, weight]) => this.#stored.get(name) !== weight));
   }
 
-  /** Puts them where the file has them. */
+  /** Restores the file's weights. */
   reset(): void {
     this.move(this.#stored);
   }
 
-  /** Moves those that are named, as far as they go. */
+  /** Sets the named weights, clamped to the range of their sliders. */
   move(weights: Weights): void {
     for (const input of this.#list.querySelectorAll('input')) {
       const weight = weights.get(input.name);
       if (weight === undefined) continue;
       input.valueAsNumber = weight;
-      this.#take(input);
+      this.#read(input);
     }
   }
 
@@ -95,13 +95,13 @@ export class Morphs {
     output.value = weight.toFixed(2);
     label.append(title, input, output);
     input.addEventListener('input', () => {
-      this.#take(input);
+      this.#read(input);
       this.#onMove();
     });
     return label;
   }
 
-  #take(input: HTMLInputElement): void {
+  #read(input: HTMLInputElement): void {
     this.#weights.set(input.name, input.valueAsNumber);
     (input.nextElementSibling as HTMLOutputElement).value = input.valueAsNumber.toFixed(2);
     this.#reset.disabled = !this.weights;

@@ -1,24 +1,24 @@
 import { Box3, BufferAttribute, type BufferGeometry, Matrix3, type Matrix4, Vector3 } from 'three';
-import type { ExtractedMesh, Part } from '../scene/extract';
-import { type Deform, deform, type Room } from './deform';
+import type { ExtractedMesh, Part } from '../scene/extract-mesh';
+import { type Deform, deform, type Extent } from './deform';
 import { morphNames, type Weights } from './morphs';
 
-const kStep = 1e-3; // of half the height: how far apart two points are moved to see how a normal turns
+const kStep = 1e-3; // of half the height: distance of the finite differences that turn a normal
 
-/** What becomes of a model's shape: it is morphed, then deformed. */
+/** A shape of a model: it is morphed, then deformed. */
 export interface Shape {
   how: Deform;
   /** From −1 to 1; 0 leaves it as it is. */
   amount: number;
-  room: Room;
-  /** Undefined leaves morphs to the file, or to the animation that plays. */
+  extent: Extent;
+  /** Undefined leaves the morphs to the file or the animation. */
   morphs: Weights | undefined;
 }
 
-/** Whether that is how the file has it. */
+/** Whether it is the rest shape. */
 export const isAtRest = ({ amount, morphs }: Shape): boolean => amount === 0 && !morphs;
 
-/** A model's shape: moves its vertices, in the arrays to transfer with and in the meshes on show, and brings them back. */
+/** Moves the vertices of a model, both in the arrays for the transfer and in the displayed meshes, and restores them. */
 export class Pose {
   readonly #mesh: ExtractedMesh;
   readonly #rest: Float32Array;
@@ -30,28 +30,28 @@ export class Pose {
     this.#parts = mesh.parts.map((part) => new PartPose(part));
   }
 
-  /** The box of the model at rest. */
-  get room(): Room {
+  /** The extent of the model at rest. */
+  get extent(): Extent {
     const box = new Box3().setFromArray(this.#rest);
     return { center: box.getCenter(new Vector3()), half: Math.max(0.5 * (box.max.y - box.min.y), Number.MIN_VALUE) };
   }
 
-  /** Where the vertices go. @returns 3 per vertex, in the scene's space. */
+  /** Computes the positions of a shape. @returns 3 per vertex, in the scene's space. */
   positions(shape: Shape): Float32Array {
     const moved = this.#rest.slice();
-    if (isAtRest(shape)) return moved; // to the last bit
+    if (isAtRest(shape)) return moved; // exactly
     if (shape.morphs) for (const part of this.#parts) part.morph(moved, shape.morphs);
     if (shape.amount === 0) return moved;
     const point = new Vector3();
     for (let at = 0; at < moved.length; at += 3) {
       point.fromArray(moved, at);
-      deform(point, shape.how, shape.amount, shape.room);
+      deform(point, shape.how, shape.amount, shape.extent);
       point.toArray(moved, at);
     }
     return moved;
   }
 
-  /** Moves the vertices there. */
+  /** Moves the vertices. */
   set(positions: Float32Array, shape: Shape): void {
     this.#mesh.positions.set(positions);
     for (const part of this.#parts) part.set(positions, shape);
@@ -60,7 +60,7 @@ export class Pose {
 
 type Name = 'position' | 'normal';
 
-/** One mesh of a model, and what its file says of its vertices. */
+/** One mesh of a model, with its vertices at rest. */
 class PartPose {
   readonly #part: Part;
   readonly #inverse: Matrix4;
@@ -86,7 +86,7 @@ class PartPose {
     this.#morphs = morphAttributes;
   }
 
-  /** Adds what morphs do to the part's vertices. @param positions Of the whole model, in the scene's space. */
+  /** Adds the morphs to the mesh's vertices. @param positions Of the whole model, in the scene's space. */
   morph(positions: Float32Array, morphs: Weights): void {
     const { firstVertex, vertexCount } = this.#part;
     const [change, delta] = [new Vector3(), new Vector3()];
@@ -102,7 +102,7 @@ class PartPose {
     }
   }
 
-  /** The morphs that change something, as glTF has them: by how much they move each vertex. */
+  /** The morphs of non-zero weight; their attributes are offsets, as in glTF. */
   #active(name: Name, morphs: Weights | undefined): { weight: number; attribute: BufferAttribute }[] {
     return morphNames(this.#part.mesh).flatMap((morph, place) => {
       const [weight, attribute] = [morphs?.get(morph) ?? 0, this.#morphs[name]?.[place]];
@@ -112,7 +112,7 @@ class PartPose {
 
   set(positions: Float32Array, shape: Shape): void {
     const { geometry } = this.#part.mesh;
-    // Those that are in the positions already are not to be added once more, nor copied along for every frame.
+    // The positions include the morphs already: do not let the renderer add them again.
     geometry.morphAttributes = shape.morphs ? {} : this.#morphs;
     if (isAtRest(shape)) {
       if (this.#moved) for (const { name, attribute } of this.#atRest) geometry.setAttribute(name, attribute);
@@ -126,7 +126,7 @@ class PartPose {
 
   #write(name: Name, rest: BufferAttribute, positions: Float32Array, shape: Shape): void {
     const { mesh, firstVertex, vertexCount } = this.#part;
-    // One that is quantised or interleaved cannot hold what moves.
+    // Quantised or interleaved attributes cannot hold moved vertices: use a float copy.
     if (!this.#moved) mesh.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertexCount), 3));
     const attribute = mesh.geometry.getAttribute(name) as BufferAttribute;
     const active = this.#active('normal', shape.morphs);
@@ -145,17 +145,17 @@ class PartPose {
     attribute.needsUpdate = true;
   }
 
-  /** Turns a normal with the surface: two neighbours of its point are moved as well. */
-  #turnNormal(normal: Vector3, vertex: number, { how, amount, room }: Shape): void {
+  /** Rotates a normal with the surface, by finite differences: two nearby points are deformed as well. */
+  #turnNormal(normal: Vector3, vertex: number, { how, amount, extent }: Shape): void {
     const { attribute } = this.#atRest[0]!;
     const point = new Vector3().fromBufferAttribute(attribute, vertex).applyMatrix4(this.#part.matrix);
     const n = normal.applyMatrix3(this.#toWorld).normalize();
     const across = Math.abs(n.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
     const right = across.cross(n).normalize();
     const up = new Vector3().crossVectors(n, right);
-    const step = kStep * room.half;
+    const step = kStep * extent.half;
     const [a, b] = [right, up].map((direction) => point.clone().addScaledVector(direction, step)) as [Vector3, Vector3];
-    for (const one of [point, a, b]) deform(one, how, amount, room);
+    for (const one of [point, a, b]) deform(one, how, amount, extent);
     normal.crossVectors(a.sub(point), b.sub(point)).applyMatrix3(this.#toLocal).normalize();
   }
 }

@@ -1,27 +1,27 @@
 import { element } from '../platform/page';
 
-/** A paint one can choose: what to call it, and the address of its picture. */
+/** A paint to choose: its title and the URL of its image. */
 export interface Choice {
   title: string;
   picture: string;
 }
 
-/** What is done with a paint, by its place in the row. */
+/** Actions on a paint, by its index in the row. */
 export interface Uses {
-  /** It is to lie under everything. */
+  /** Use it as the base layer. */
   onChoose(index: number): void;
-  /** It is to be laid over the others. */
+  /** Add it as a layer on top. */
   onAdd(index: number): void;
 }
 
 /**
- * Offers paints as a row of pictures.
- * @param chosen The place of the one that lies under everything.
+ * Shows paints as a row of images.
+ * @param chosen The index of the base layer.
  */
 export function offerPaints(choices: readonly Choice[], chosen: number, { onChoose, onAdd }: Uses): void {
   const row = element('paints', HTMLElement);
   const offered = JSON.stringify(choices);
-  // The same row stays where it is: the keyboard's focus may be in it.
+  // Keep an unchanged row, as it may have the focus.
   if (row.dataset.offered !== offered) row.replaceChildren(...choices.map(choiceOf));
   row.dataset.offered = offered;
   row.querySelectorAll('input').forEach((input, index) => {
@@ -49,7 +49,7 @@ function choiceOf({ title, picture }: Choice): HTMLElement {
   const add = document.createElement('button');
   add.type = 'button';
   add.name = 'add-paint';
-  add.title = 'Lay it over the others';
+  add.title = 'Add as a layer';
   add.ariaLabel = `Add ${title} as a layer`;
   add.textContent = '+';
   const choice = document.createElement('div');

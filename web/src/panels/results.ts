@@ -3,7 +3,7 @@ import { announce, element } from '../platform/page';
 import type { Session, Shown } from '../scene/session';
 
 const kZones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
-/** What each step is called. */
+/** Titles of the steps. */
 const kSteps = {
   weld: 'weld',
   build: 'build',
@@ -11,16 +11,16 @@ const kSteps = {
   occluded: 'occluded',
   covered: 'covered',
   segments: 'segments',
-  secondLook: 'look again',
+  secondLook: 'second look',
   holes: 'holes',
   seams: 'seams',
   classify: 'classify',
 } as const;
-/** So many times as long the first time is worth telling. */
+/** A first run that took longer by this factor is mentioned. */
 const kMuchLonger = 1.5;
 const kBeyondPaper: readonly string[] = ['secondLook', 'holes', 'seams'];
 
-/** Writes what came of each transfer: the zones in numbers, and how long it took. */
+/** Shows the number of vertices per zone, and the timings. */
 export function showResults(session: Session): void {
   const first = element('time-first', HTMLElement);
   let latest = 0;
@@ -29,15 +29,15 @@ export function showResults(session: Session): void {
     showCounts(classification);
     latest = showTimings(session.shown!, spent);
   });
-  session.on('again', ({ spent }) => {
+  session.on('retimed', ({ spent }) => {
     const before = latest;
     latest = showTimings(session.shown!, spent);
     first.hidden = before < kMuchLonger * latest;
-    first.textContent = `${round(before)} ms the first time, while the browser still compiled it.`;
+    first.textContent = `${round(before)} ms the first time, while the browser was still compiling.`;
   });
 }
 
-/** Writes how many vertices fall into each zone. */
+/** Shows the number of vertices per zone. */
 function showCounts({ zones, segmentStats }: Classification): void {
   const counts = [0, 0, 0, 0];
   for (const zone of zones) counts[zone]!++;
@@ -49,14 +49,14 @@ function showCounts({ zones, segmentStats }: Classification): void {
   });
   const culled = segmentStats.filter((segment) => segment.culled).length;
   announce(
-    `Done: ${counts[0]} of ${zones.length} vertices may be painted, ${counts[1]} are occluded, ${counts[2]} uncovered, ` +
+    `Done: ${counts[0]} of ${zones.length} vertices are cosmetic, ${counts[1]} are occluded, ${counts[2]} uncovered, ` +
       `${counts[3]} culled; ${culled} of ${segmentStats.length} parts are culled.`,
   );
 }
 
 /**
- * Writes how long the transfer took, step by step, as far as the preset takes them.
- * @returns The whole, in milliseconds.
+ * Shows the timings of the steps that the preset takes.
+ * @returns The total, in milliseconds.
  */
 function showTimings({ projection: { timings: projected, preset } }: Shown, spent: number): number {
   const timings: Timings = { ...projected, classify: spent, total: projected.total + spent };

@@ -3,7 +3,7 @@ import type { Borders } from 'cagecast/three';
 import { element } from '../platform/page';
 import type { Session } from '../scene/session';
 
-/** Lets the preset, the threshold, and how the paint ends be chosen. */
+/** Connects the fields for preset, threshold and exact borders. */
 export function setUpRules(session: Session): void {
   const preset = element('preset', HTMLSelectElement);
   const threshold = element('threshold', HTMLInputElement);
@@ -18,6 +18,6 @@ export function setUpRules(session: Session): void {
     threshold.value = String(rules.threshold);
     element('threshold-value', HTMLOutputElement).value = rules.threshold.toFixed(2);
   });
-  // A reloaded page keeps its fields as they were.
+  // Browsers keep the state of fields on reload.
   session.setRules({ preset: preset.value as Preset, threshold: Number(threshold.value), borders: chosenBorders() });
 }

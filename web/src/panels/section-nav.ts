@@ -1,10 +1,10 @@
 import { element } from '../platform/page';
 
-const kNear = 60; // pixels below the bar that a section may begin and still be the one in view
+const kNear = 60; // pixels: a section that starts this close below the bar counts as current
 
-/** Fills the bar that leads to the panel's sections, and marks the one in view. Sections that are hidden are left out. */
-export function setUpJump(): void {
-  const bar = element('jump', HTMLElement);
+/** Fills the navigation bar with the panel's visible sections, and marks the current one. */
+export function setUpSectionNav(): void {
+  const bar = element('section-nav', HTMLElement);
   const sections = [...document.querySelectorAll<HTMLElement>('.panel > [data-nav]:not([hidden])')];
   const links = new Map(sections.map((section) => [section, linkTo(section)]));
   bar.replaceChildren(...links.values());
@@ -20,7 +20,7 @@ export function setUpJump(): void {
     const link = links.get(current!)!;
     bar.scrollTo({ left: link.offsetLeft - bar.clientWidth / 2 + link.clientWidth / 2 });
   };
-  // On a phone the page scrolls, on a desk the panel does.
+  // On a phone the page scrolls, on a desktop the panel.
   addEventListener('scroll', follow, { capture: true, passive: true });
   addEventListener('resize', follow);
   follow();
@@ -31,11 +31,11 @@ function linkTo(section: HTMLElement): HTMLAnchorElement {
   link.href = `#${section.id}`;
   link.textContent = section.dataset.nav!;
   link.addEventListener('click', (event) => {
-    // The address says what is shown, not how far the panel is scrolled.
+    // The URL fragment is used for links to a view.
     event.preventDefault();
     if (section instanceof HTMLDetailsElement) section.open = true;
-    const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
-    section.scrollIntoView({ behavior: calm ? 'instant' : 'smooth', block: 'start' });
+    const reduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    section.scrollIntoView({ behavior: reduced ? 'instant' : 'smooth', block: 'start' });
     section.tabIndex = -1;
     section.focus({ preventScroll: true });
   });

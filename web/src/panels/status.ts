@@ -1,14 +1,14 @@
 import { clearError, element, showError, showNotice } from '../platform/page';
-import type { Model } from '../scene/load';
+import type { Model } from '../scene/load-model';
 import { kReading, type Progress, type Session } from '../scene/session';
 
 const kBlind =
-  'This browser draws no 3D here: WebGL 2 is missing or switched off. The transfer works all the same, its numbers are in the panel.';
+  'WebGL 2 is not available in this browser, so there is no 3D view. The transfer works all the same; see the numbers in the panel.';
 
-/** How far along the page is; the words are what people, and tests, read. */
+/** The text of the status badge, also read by tests. */
 type Status = 'loading' | 'working' | 'ready' | 'error';
 
-/** Tells how far along the session is, and what went wrong. @param blind Whether there is no picture, for want of WebGL. */
+/** Shows progress and errors. @param blind Whether there is no view, for lack of WebGL. */
 export function showStatus(session: Session, blind: boolean): void {
   const status = element('status', HTMLElement);
   const show = (to: Status): void => {
@@ -30,7 +30,7 @@ export function showStatus(session: Session, blind: boolean): void {
     bar.show(progress);
     switch (progress.state) {
       case 'working':
-        // What was said of files stays while what follows from them is worked on.
+        // Keep messages about the files while later stages run.
         if (progress.stage === kReading || status.dataset.state === 'error') clearError();
         return show('working');
       case 'ready':
@@ -41,15 +41,15 @@ export function showStatus(session: Session, blind: boolean): void {
         return show('loading');
       case 'failed':
         showError(progress.error.message);
-        if (!session.shown) showNotice('stage-notice', 'Nothing to show yet: drop a target and its cage here.');
+        if (!session.shown) showNotice('stage-notice', 'Nothing to show yet. Drop a target and its cage here.');
         return show('error');
     }
   });
 }
 
-const kPatience = 300; // milliseconds: what takes no longer needs no bar
+const kPatience = 300; // milliseconds before the bar appears
 
-/** How far along the work is that is under way, and the way to give it up: a button, and Escape. */
+/** The progress bar, and cancelling with its button or the Escape key. */
 class ProgressBar {
   readonly #box = element('progress', HTMLElement);
   readonly #bar = element('progress-bar', HTMLProgressElement);

@@ -1,10 +1,10 @@
 /**
- * Writes a PNG that has every byte of an image, which it uses up.
- * @param bitmap Its colours not multiplied by alpha.
+ * Encodes an image as a PNG without loss; closes the bitmap.
+ * @param bitmap Not premultiplied.
  */
 export function encodePng(bitmap: ImageBitmap): Promise<Blob> {
   const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
-  // This kind of canvas shows the image as it is; one in 2D would multiply its colours by alpha.
+  // A 2D canvas would premultiply the colours, which loses precision.
   canvas.getContext('bitmaprenderer')!.transferFromImageBitmap(bitmap);
   return canvas.convertToBlob({ type: 'image/png' });
 }

@@ -1,8 +1,8 @@
-/** Listeners to what happens to one thing, by the name of the event. */
+/** Typed events. */
 export class Emitter<Events> {
   readonly #listeners: { [Name in keyof Events]?: Set<(event: Events[Name]) => void> } = {};
 
-  /** Calls `listener` whenever `name` happens, in the order in which listeners came. @returns what ends it. */
+  /** Calls `listener` on every event `name`; listeners run in order of registration. @returns A function that removes it. */
   on<Name extends keyof Events>(name: Name, listener: (event: Events[Name]) => void): () => void {
     const listeners = (this.#listeners[name] ??= new Set());
     listeners.add(listener);

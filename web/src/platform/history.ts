@@ -1,10 +1,10 @@
 import { Emitter } from './events';
 
-/** Something that was done, and can be taken back. */
-export interface Deed {
-  /** For people: “stroke”, “sticker”. */
+/** An action that can be undone. */
+export interface Command {
+  /** For people, such as “stroke”. */
   name: string;
-  /** What keeping it takes, in bytes. */
+  /** Memory it holds, in bytes. */
   bytes: number;
   undo(): void;
   redo(): void;
@@ -12,58 +12,58 @@ export interface Deed {
 
 const kMostBytes = 128 * 2 ** 20;
 
-/** What was done, as far back as memory allows: the oldest deeds are forgotten first. */
-export class History extends Emitter<{ change: void }> {
-  #done: Deed[] = [];
-  #undone: Deed[] = [];
+/** The undo history, limited by memory: the oldest commands are dropped first. */
+export class History extends Emitter<{ change: undefined }> {
+  #done: Command[] = [];
+  #undone: Command[] = [];
 
-  /** Whether something is being done that will be added: until then nothing is undone or done again. */
+  /** Whether a command is in progress: undo and redo do nothing meanwhile. */
   held = false;
 
-  /** What `undo` would take back. */
-  get last(): Deed | undefined {
+  /** The command that `undo` would undo. */
+  get last(): Command | undefined {
     return this.#done.at(-1);
   }
 
-  /** What `redo` would do again. */
-  get next(): Deed | undefined {
+  /** The command that `redo` would repeat. */
+  get next(): Command | undefined {
     return this.#undone.at(-1);
   }
 
-  /** Keeps a deed that was just done; those that were taken back cannot be done again. */
-  add(deed: Deed): void {
-    this.#done.push(deed);
+  /** Adds a command that was just done; clears those that were undone. */
+  add(command: Command): void {
+    this.#done.push(command);
     this.#undone = [];
     let bytes = this.#done.reduce((sum, one) => sum + one.bytes, 0);
     while (bytes > kMostBytes) bytes -= this.#done.shift()!.bytes;
     this.emit('change', undefined);
   }
 
-  /** Forgets deeds, whether they are done or undone. */
-  forget(isOver: (deed: Deed) => boolean): void {
-    this.#done = this.#done.filter((deed) => !isOver(deed));
-    this.#undone = this.#undone.filter((deed) => !isOver(deed));
+  /** Drops commands, done or undone. */
+  forget(matches: (command: Command) => boolean): void {
+    this.#done = this.#done.filter((command) => !matches(command));
+    this.#undone = this.#undone.filter((command) => !matches(command));
     this.emit('change', undefined);
   }
 
-  /** @returns What was taken back, if anything was. */
-  undo(): Deed | undefined {
-    const deed = this.#done.at(-1);
-    if (!deed || this.held) return;
-    // First: what cannot be undone stays done.
-    deed.undo();
+  /** @returns The undone command, if any. */
+  undo(): Command | undefined {
+    const command = this.#done.at(-1);
+    if (!command || this.held) return;
+    // Before the pop: a command that throws stays done.
+    command.undo();
     this.#undone.push(this.#done.pop()!);
     this.emit('change', undefined);
-    return deed;
+    return command;
   }
 
-  /** @returns What was done again, if anything was. */
-  redo(): Deed | undefined {
-    const deed = this.#undone.at(-1);
-    if (!deed || this.held) return;
-    deed.redo();
+  /** @returns The repeated command, if any. */
+  redo(): Command | undefined {
+    const command = this.#undone.at(-1);
+    if (!command || this.held) return;
+    command.redo();
     this.#done.push(this.#undone.pop()!);
     this.emit('change', undefined);
-    return deed;
+    return command;
   }
 }

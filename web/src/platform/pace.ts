@@ -1,10 +1,10 @@
-const kLongest = 20; // milliseconds: more, and whoever drags something feels it
+const kLongest = 20; // milliseconds: longer tasks make dragging feel slow
 
-/** The pace of work on the main thread: what takes long rests now and then, so that the page answers and draws. */
+/** Divides long work on the main thread into short tasks, so that the page stays responsive. */
 export class Pace {
   #since = performance.now();
 
-  /** Lets the page go on if it has waited long enough for this; call it often. Cost: nothing worth counting, if it has not. */
+  /** Yields to the page if the current task has run long enough. Cheap: call it often. */
   async rest(): Promise<void> {
     if (performance.now() - this.#since < kLongest) return;
     await new Promise((done) => setTimeout(done));

@@ -1,4 +1,4 @@
-/** Finds an element the page cannot do without. @throws Error that names the id. */
+/** Finds an element by id. @throws Error if it is missing. */
 export function element<T extends HTMLElement>(id: string, type: new () => T): T {
   const found = document.getElementById(id);
   if (!(found instanceof type)) throw new Error(`the page has no ${type.name} #${id}`);
@@ -9,7 +9,7 @@ const alertBox = element('alert', HTMLElement);
 const alertText = element('error', HTMLElement);
 const summary = element('summary', HTMLElement);
 
-/** Tells what went wrong, until the next thing is tried or the message is dismissed. */
+/** Shows an error until the next request, or until it is dismissed. */
 export function showError(message: string): void {
   alertText.textContent = message;
   alertBox.hidden = false;
@@ -22,13 +22,13 @@ export function clearError(): void {
 
 let announcing: ReturnType<typeof setTimeout> | undefined;
 
-/** Says a sentence to screen readers, once nothing newer was said for half a second. */
+/** Announces a sentence to screen readers; only the last of several within half a second. */
 export function announce(sentence: string): void {
   clearTimeout(announcing);
   announcing = setTimeout(() => (summary.textContent = sentence), 500);
 }
 
-/** Puts a line into a `<p>` that is out of the way while it is empty. */
+/** Sets the text of a notice; hides it if empty. */
 export function showNotice(id: string, text: string): void {
   const notice = element(id, HTMLElement);
   notice.textContent = text;

@@ -1,10 +1,10 @@
-/** The file, or what went wrong. */
+/** The file, or an error message. */
 export type PngReply = Blob | { message: string };
 
 /**
- * Writes a PNG that has every byte of an image. A worker of its own does it, and ends with it: on the page's thread Chromium waits
- * until that has nothing else to do, which takes a second, or seven.
- * @throws Error if the browser cannot.
+ * Encodes an image as a PNG without loss, in a temporary worker: on the main thread Chromium encodes only when idle, which
+ * can take seconds.
+ * @throws Error if the browser cannot encode it.
  */
 export async function pngOf(image: ImageBitmapSource): Promise<Blob> {
   const bitmap = await createImageBitmap(image, { premultiplyAlpha: 'none' });
@@ -13,7 +13,7 @@ export async function pngOf(image: ImageBitmapSource): Promise<Blob> {
     const reply = await new Promise<PngReply>((resolve, reject) => {
       worker.onmessage = ({ data }: MessageEvent<PngReply>) => resolve(data);
       worker.onerror = (event) =>
-        reject(new Error(`the PNG could not be begun${event.message ? `: ${event.message}` : ''}`));
+        reject(new Error(`the PNG encoder could not be started${event.message ? `: ${event.message}` : ''}`));
       worker.postMessage(bitmap, [bitmap]);
     });
     if ('message' in reply) throw new Error(reply.message);

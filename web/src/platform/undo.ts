@@ -1,13 +1,13 @@
 import type { History } from './history';
 import { announce, element, showError } from './page';
 
-/** Lets what was done be undone and done again: by its buttons, and by the keys for it anywhere on the page. */
+/** Connects the undo and redo buttons, and their keys anywhere on the page. */
 export function setUpUndo(history: History): void {
   const [undo, redo] = [element('undo', HTMLButtonElement), element('redo', HTMLButtonElement)];
   const run = (step: 'undo' | 'redo'): void => {
     try {
-      const deed = history[step]();
-      if (deed) announce(`${deed.name} ${step === 'undo' ? 'undone' : 'done again'}.`);
+      const command = history[step]();
+      if (command) announce(`${command.name} ${step === 'undo' ? 'undone' : 'redone'}.`);
     } catch (error) {
       showError((error as Error).message);
     }
@@ -16,7 +16,7 @@ export function setUpUndo(history: History): void {
   redo.addEventListener('click', () => run('redo'));
   addEventListener('keydown', (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-    // A field of text has an undoing of its own.
+    // Text fields have their own undo.
     if (event.target instanceof HTMLInputElement && event.target.type === 'text') return;
     const key = event.key.toLowerCase();
     const step = key === 'z' ? (event.shiftKey ? 'redo' : 'undo') : key === 'y' ? 'redo' : undefined;
@@ -27,14 +27,14 @@ export function setUpUndo(history: History): void {
 
   const show = (): void => {
     const focused = document.activeElement;
-    for (const [button, word, deed] of [
+    for (const [button, word, command] of [
       [undo, 'Undo', history.last],
       [redo, 'Redo', history.next],
     ] as const) {
-      button.disabled = deed === undefined;
-      button.title = deed ? `${word}: ${deed.name}` : word;
+      button.disabled = command === undefined;
+      button.title = command ? `${word}: ${command.name}` : word;
     }
-    // The keyboard goes from what is at its end to what takes that back, not to nothing.
+    // A disabled button loses the focus: move it to the other one.
     if (focused === undo && undo.disabled) redo.focus({ preventScroll: true });
     if (focused === redo && redo.disabled) undo.focus({ preventScroll: true });
   };

@@ -1,11 +1,11 @@
-/** What the page needs to know of a glTF file before a loader sees it. */
+/** What the page reads from a glTF file before it loads it. */
 export interface GltfHead {
   /** Whether it is a GLB. */
   binary: boolean;
   json: object;
-  /** Extensions the file makes use of. */
+  /** Names of the extensions it uses. */
   extensions: string[];
-  /** Names of the files it refers to, relative to itself; none for a GLB that holds everything. */
+  /** URIs of the files it refers to; empty for a self-contained GLB. */
   uris: string[];
 }
 
@@ -17,7 +17,7 @@ const kChunkHeaderBytes = 8;
 /**
  * Checks that `bytes` are a complete GLB or glTF 2.0 file and reads its head.
  * @param bytes The whole file.
- * @throws Error in plain words, without the file's name.
+ * @throws Error with a message for people, without the file's name.
  */
 export function readGltfHead(bytes: ArrayBuffer): GltfHead {
   if (bytes.byteLength === 0) throw new Error('the file is empty');
@@ -66,11 +66,11 @@ function parse(text: Uint8Array, binary: boolean): GltfJson {
     const json: unknown = JSON.parse(new TextDecoder().decode(text));
     if (typeof json === 'object' && json !== null) return json;
   } catch {
-    // Told below, in words that say what was expected.
+    // Reported below.
   }
   throw new Error(
     binary
       ? 'the GLB is damaged: its JSON cannot be read'
-      : 'this is not a GLB or glTF file; models are wanted as these, paints as PNG, JPEG or WebP',
+      : 'this is not a GLB or glTF file; models must be GLB or glTF, paints PNG, JPEG or WebP',
   );
 }

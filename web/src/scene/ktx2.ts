@@ -3,7 +3,7 @@ import { KTX2Loader } from 'three/addons/loaders/KTX2Loader.js';
 
 /**
  * Makes a decoder of KTX2 textures, whose files come with the page. Dispose of it: it holds workers.
- * @param renderer What is to show them: it says which formats its GPU keeps them in. Without one they are left white.
+ * @param renderer Its GPU determines the texture format. Without a renderer, textures are white.
  */
 export function makeKtx2Loader(manager: LoadingManager, renderer: WebGLRenderer | undefined): KTX2Loader {
   return renderer

@@ -7,13 +7,13 @@ export interface Paint {
   /** The file's name, for people. */
   name: string;
   texture: Texture;
-  /** The address of its picture. */
+  /** URL of the image. */
   picture: string;
-  /** Which sample it belongs to; the visitor's own and the checker to none. */
+  /** The sample it belongs to; undefined for the user's own and the checker. */
   sample?: Sample;
 }
 
-/** What a paint is called in lists. */
+/** The title of a paint in lists. */
 export function titleOf({ name, picture, sample }: Paint): string {
   return sample?.paints.find(({ file }) => file === picture)?.title ?? name;
 }
@@ -22,25 +22,25 @@ const kLargest = kMostSize;
 
 /**
  * Reads an image to paint with.
- * @param picture Where the image can be shown from, if not from the file itself.
+ * @param picture URL of the image; an object URL of the file by default.
  * @throws Error that names the file.
  */
 export async function loadPaint(file: File, picture = URL.createObjectURL(file)): Promise<Paint> {
   const bitmap = await readImage(file);
   const texture = new Texture(bitmap);
-  // glTF puts the origin of UVs at the image's upper left corner.
+  // glTF's UV origin is the upper left corner of the image.
   texture.flipY = false;
   texture.needsUpdate = true;
   return { name: file.name, texture: prepare(texture), picture };
 }
 
-/** Reads an image, made smaller if it is very large. @throws Error that names the file. */
+/** Reads an image, reduced in size if it is very large. @throws Error that names the file. */
 export async function readImage(file: File): Promise<ImageBitmap> {
   let bitmap: ImageBitmap;
   try {
     bitmap = await createImageBitmap(file, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
   } catch {
-    throw new Error(`${file.name}: this is no image the browser can read; a PNG or JPEG is wanted`);
+    throw new Error(`${file.name}: the browser cannot read this image; use PNG, JPEG or WebP`);
   }
   const shrink = kLargest / Math.max(bitmap.width, bitmap.height);
   if (shrink >= 1) return bitmap;
@@ -49,20 +49,20 @@ export async function readImage(file: File): Promise<ImageBitmap> {
   return createImageBitmap(bitmap, { resizeWidth, resizeHeight, resizeQuality: 'high' });
 }
 
-/** Makes a lettered checker, which shows where each place of the texture lands and how it is stretched. */
+/** Makes a lettered checker, which shows where the texture lands and how it is stretched. */
 export function makeChecker(): Paint {
   let texture: Texture | undefined;
   return {
     name: 'UV checker',
     picture: checkerPicture(),
     get texture() {
-      // Drawn when it is wanted: a browser's first canvas and first font take 0.2 s.
+      // Drawn on demand: the first canvas and font take 0.2 s.
       return (texture ??= checkerTexture());
     },
   };
 }
 
-/** A cell of the checker, by its place in cells. */
+/** A cell of the checker. */
 interface Cell {
   row: number;
   column: number;
@@ -70,7 +70,7 @@ interface Cell {
   dark: boolean;
 }
 
-const kCells = 8; // to a side
+const kCells = 8; // per side
 
 const checkerCells: readonly Cell[] = Array.from({ length: kCells ** 2 }, (_, number) => {
   const [row, column] = [Math.floor(number / kCells), number % kCells];

@@ -1,4 +1,4 @@
-/** A model that comes with the page. Files are addresses. */
+/** A model that comes with the page. Files are URLs. */
 export interface Sample {
   name: string;
   title: string;
@@ -9,23 +9,23 @@ export interface Sample {
 
 const kFolder = new URL('samples/', document.baseURI);
 
-/** What links call the paint that every model has. */
+/** The name of the checker in links. */
 export const kChecker = 'checker';
 
-/** What links call a paint of a sample. @param file Its address. */
+/** The name of a sample's paint in links. @param file Its URL. */
 export function paintName(file: string): string {
   return file.startsWith(kFolder.href) ? file.slice(kFolder.href.length) : file;
 }
 
 /**
  * Reads the list of samples.
- * @throws Error in plain words if there is none.
+ * @throws Error if it is missing.
  */
 export async function loadSamples(): Promise<Sample[]> {
   const response = await fetch(new URL('index.json', kFolder)).catch(() => undefined);
   const list: Sample[] | undefined = response?.ok ? await response.json().catch(() => undefined) : undefined;
   if (!Array.isArray(list) || list.length === 0) {
-    throw new Error('The samples are missing from this page. You can still drop a target and a cage of your own.');
+    throw new Error('The samples could not be loaded. You can still drop a target and a cage of your own.');
   }
   const address = (path: string): string => new URL(path, kFolder).href;
   return list.map(({ name, title, target, cage, paints }) => ({
@@ -39,7 +39,7 @@ export async function loadSamples(): Promise<Sample[]> {
 
 const begun = new Map<string, Promise<Response | undefined>>();
 
-/** Begins to fetch what a sample opens with, before anything can be done with it. */
+/** Starts fetching the files of a sample before the page is ready for them. */
 export function fetchAhead({ target, cage, paints }: Sample): void {
   for (const address of [target, cage, ...paints.slice(0, 1).map(({ file }) => file)]) begun.set(address, ask(address));
 }
@@ -50,7 +50,7 @@ const ask = (address: string): Promise<Response | undefined> => fetch(address).c
 export async function fetchFile(address: string): Promise<File> {
   const name = new URL(address).pathname.split('/').slice(-2).join('/');
   const response = await (begun.get(address) ?? ask(address));
-  begun.delete(address); // its body can be read once
-  if (!response?.ok) throw new Error(`${name}: the file cannot be fetched`);
+  begun.delete(address); // a response body can be read only once
+  if (!response?.ok) throw new Error(`${name}: the file could not be loaded`);
   return new File([await response.blob()], name.split('/').at(-1)!);
 }

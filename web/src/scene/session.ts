@@ -3,108 +3,108 @@ import type { Borders } from 'cagecast/three';
 import { Emitter } from '../platform/events';
 import { Pace } from '../platform/pace';
 import { kFirstView, type View } from '../view/view';
-import type { Model } from './load';
+import type { Model } from './load-model';
 import { makeChecker, type Paint } from './paint';
 import { Superseded, TransferClient } from './transfer-client';
-import type { Placed } from './transfer-messages';
+import type { SplitProjection } from './transfer-messages';
 
-/** A target, its cage, and what to paint it with. */
+/** A target, its cage and a paint. */
 export interface Scene {
   target: Model;
   cage: Model;
   paint: Paint;
 }
 
-/** A scene that was transferred. */
+/** A scene and its transfer. */
 export interface Shown extends Scene {
-  projection: Placed;
+  projection: SplitProjection;
 }
 
-/** A scene while it is still being read. */
+/** A scene that is being loaded. */
 export type Wanted = { [Slot in keyof Scene]?: Promise<Scene[Slot]> };
 
-/** The rules of the transfer. */
+/** Options of the transfer. */
 export interface Rules {
   preset: Preset;
   threshold: number;
-  /** Whether paint ends at the target's own triangles, or these are cut where it does. */
+  /** Whether triangles are cut where the paint ends. */
   borders: Borders;
 }
 
-/** What the visitor said about segments of the target, by their number; nothing about all others. */
+/** Locks by segment; all others are `auto`. */
 export type Locks = Record<number, Lock>;
 
-/** Ends work under way, because the visitor said so, or something else was wanted. */
+/** Called when work is cancelled by the user, or superseded by a newer request. */
 type GiveUp = (why: 'cancelled' | 'superseded') => void;
 
 /** The stage in which files are read. */
 export const kReading = 'Reading';
 
-/** What became of the latest wish. */
+/** State of the latest request. */
 export type Progress =
-  /** `share` of the work is done, 0..1, and `stage` is under way. */
+  /** `share` of the work is done (0..1); `stage` names the current step. */
   | { state: 'working'; stage: string; share: number }
   | { state: 'ready' }
-  /** Nothing is wrong, but there is no transfer without these. */
+  /** Files are missing. */
   | { state: 'waiting'; missing: ('target' | 'cage')[] }
   | { state: 'failed'; error: Error };
 
-/** What happens in a session, in the order in which it does when another model is opened. */
+/** Events, in the order in which they occur when a model is opened. */
 export interface SessionEvents {
   progress: Progress;
-  /** Another target, cage or projection is shown. Its zones follow at once; its paint may have changed as well. */
+  /** Another target, cage or projection is shown. `zones` follows at once, then `paint` if it changed. */
   transfer: Shown;
-  /** What is shown has moved, and has this projection now. Its zones follow at once. */
-  frame: Placed;
-  /** The zones were decided: after a transfer, and for another threshold or lock. `spent` is in milliseconds. */
+  /** The model moved and has a new projection. `zones` follows at once. */
+  frame: SplitProjection;
+  /** The zones were computed, after a transfer or a change of threshold or locks. `spent` is in milliseconds. */
   zones: { classification: Classification; spent: number };
-  /** What is on show was timed again, a while after it was transferred: how long that takes now that the browser has compiled it. */
-  again: { timings: Timings; spent: number };
-  /** The scene on show has another paint; after `transfer` if both are new. */
+  /** The transfer was timed again, once the browser had compiled its code. */
+  retimed: { timings: Timings; spent: number };
+  /** The paint changed; after `transfer` if both did. */
   paint: Paint;
   rules: Rules;
   view: View;
 }
 
 /**
- * What the page is about: the scene on show, its transfer, the rules it is made by and how it is looked at. Features change
- * it by its methods, and follow it by its events; they do not know each other.
+ * The state of the page: the scene, its transfer, the options and the view. Features change it by its methods and follow it
+ * by its events; they do not know each other.
  */
 export class Session extends Emitter<SessionEvents> {
-  /** What a cage is painted with that has no paint of its own. */
+  /** The paint of models without a paint of their own. */
   readonly checker = makeChecker();
   readonly #client = new TransferClient();
   #wanted: Wanted = {};
-  /** What of it is of use only together. */
+  /** Those of the requested files that are useless without each other. */
   #together: Wanted = {};
   #shown: Shown | undefined;
-  /** What the worker answered last. */
-  #projected: Placed | undefined;
+  /** The worker's latest projection. */
+  #projected: SplitProjection | undefined;
   #classification: Classification | undefined;
   #rules: Rules = { preset: 'default', threshold: 0.5, borders: 'triangle' };
   #locks: Locks = {};
-  /** What is already said about the target that is wanted. */
+  /** Locks of the requested target. */
   #wantedLocks: Locks = {};
   #view = kFirstView;
   #runs = 0;
   #working = false;
-  /** Gives up what a feature does with what is on show. */
+  /** Cancels a feature's work on the current scene. */
   #giveUpWork: GiveUp | undefined;
   #moved = false;
-  /** The paint that was told of last. */
+  /** The paint of the latest `paint` event. */
   #painted: Paint | undefined;
 
   constructor() {
     super();
-    this.#client.onAgain = (timings) => this.#timeAgain(timings);
+    this.#client.onRetimed = (timings) => this.#setTimings(timings);
   }
 
-  /** What is on show; undefined before the first transfer. */
+  /** The current scene; undefined before the first transfer. */
   get shown(): Shown | undefined {
     return this.#shown;
   }
 
-  /** The zones of what is on show. */
+  /** The zones of the current scene. */
   get classification(): Classification | undefined {
     return this.#classification;
   }
@@ -126,61 +126,61 @@ export class Session extends Emitter<SessionEvents> {
     super.emit(name, event);
   }
 
-  /** Whether anything was asked for yet. */
+  /** Whether anything was requested yet. */
   get begun(): boolean {
     return this.#runs > 0;
   }
 
-  /** Which slots are filled, or being filled. */
+  /** Whether a slot is filled, or being loaded. */
   wants(slot: keyof Scene): boolean {
     return this.#wanted[slot] !== undefined;
   }
 
   /**
-   * Asks for other input; whatever was under way and is replaced by it no longer counts. Without a paint the checker is taken.
-   * @param locks    What is already said about segments of another target; of those that it does not have nothing.
-   * @param together Whether all of it is given up where one cannot be had. Else the others wait for another in its place.
+   * Requests other files; supersedes a request in progress. Without a paint the checker is used.
+   * @param locks    Locks of the new target; those of segments it does not have are ignored.
+   * @param together Whether all files are dropped if one of them fails. Otherwise the others wait for a replacement.
    */
   want(change: Wanted, locks: Locks = {}, together = false): void {
     if (change.target) this.#wantedLocks = locks;
     if (!change.target && !change.cage) this.#giveUpRest();
     if (together) this.#together = change;
-    for (const slot of Object.values(change)) slot.catch(() => {}); // told when it is waited for
+    for (const slot of Object.values(change)) slot.catch(() => {}); // reported where it is awaited
     this.#wanted = { paint: Promise.resolve(this.checker), ...this.#wanted, ...change };
     void this.#run();
   }
 
-  /** Takes the target for the cage, and the cage for the target. */
+  /** Exchanges target and cage. */
   swap(): void {
     const { target, cage } = this.#wanted;
     if (target && cage) this.want({ target: cage, cage: target });
   }
 
-  /** Goes by other rules. A threshold acts at once, another preset takes a transfer. */
+  /** Changes options. A threshold takes effect at once, another preset needs a transfer. */
   setRules(change: Partial<Rules>): void {
     const before = this.#rules;
     this.#rules = { ...before, ...change };
     this.emit('rules', this.#rules);
     if (this.#rules.preset !== before.preset) {
       this.#giveUpRest();
-      // Before anything was asked for there is nothing to do again.
+      // Before the first request there is nothing to repeat.
       if (this.begun) void this.#run();
     } else if (this.#shown) this.#classify();
   }
 
-  /** Says of segments whether they are to be painted; acts at once. */
+  /** Locks segments; takes effect at once. */
   lock(segments: readonly number[], lock: Lock): void {
     for (const segment of segments) this.#locks[segment] = lock;
     if (this.#shown) this.#classify();
   }
 
-  /** Whether the target is on show in another shape than its file has. */
+  /** Whether the target is deformed. */
   get moved(): boolean {
     return this.#moved;
   }
 
-  /** Shows the same target and cage as they have moved. @param projection Of where they are now. @param moved Whether the target is not at rest. */
-  showFrame(projection: Placed, moved: boolean): void {
+  /** Shows the same target and cage with other positions. @param moved Whether the target is deformed. */
+  showFrame(projection: SplitProjection, moved: boolean): void {
     if (!this.#shown) return;
     this.#moved = moved;
     this.#shown = { ...this.#shown, projection };
@@ -188,18 +188,18 @@ export class Session extends Emitter<SessionEvents> {
     this.#classify();
   }
 
-  /** Looks at the model in another way. */
+  /** Changes the view. */
   setView(change: Partial<View>): void {
     this.#view = { ...this.#view, ...change };
     this.emit('view', this.#view);
   }
 
-  /** Tells that something went wrong; what is on show stays. */
+  /** Reports an error; the current scene stays. */
   fail(error: unknown): void {
     this.emit('progress', { state: 'failed', error: error instanceof Error ? error : new Error(String(error)) });
   }
 
-  /** Gives up what is under way; what is on show stays. Nothing happens once its result is being laid on the model. */
+  /** Cancels the work in progress; the current scene stays. Too late once the result is being applied. */
   cancel(): void {
     if (!this.#working) return;
     this.#runs++;
@@ -211,9 +211,9 @@ export class Session extends Emitter<SessionEvents> {
   }
 
   /**
-   * Tells of work that a feature does with what is on show.
-   * @param giveUp Called if it is given up before it is over.
-   * @returns What is to be called when it is over.
+   * Announces a feature's work on the current scene.
+   * @param giveUp Called if the work is cancelled or superseded.
+   * @returns A function to call when the work is done.
    */
   work(stage: string, share: number, giveUp: GiveUp): () => void {
     this.#endWork('superseded');
@@ -250,15 +250,15 @@ export class Session extends Emitter<SessionEvents> {
         return this.emit('progress', { state: 'waiting', missing });
       }
       const before = this.#shown;
-      // A sample's paint means nothing on another cage: there the checker takes its place.
+      // A sample's paint does not fit another cage's UVs: show the checker instead.
       if (scene.paint.sample && scene.paint.sample !== scene.cage.sample) scene.paint = this.checker;
       const { preset } = this.#rules;
       const same = scene.target === before?.target && scene.cage === before.cage && preset === before.projection.preset;
       if (!same) this.#tell('Transferring', 0.3);
-      const pace = new Pace(); // from here on: to receive what the worker answers takes the page a while as well
+      const pace = new Pace(); // receiving the worker's answer blocks the page too
       const projection = same ? before.projection : await this.#project(scene, preset, superseded);
       if (superseded()) return;
-      // Segments are the target's alone: what was said about them holds for another cage and preset too.
+      // Segments depend on the target only: locks stay valid for another cage or preset.
       if (scene.target !== before?.target) {
         const known = Object.entries(this.#wantedLocks).filter(
           ([segment]) => Number(segment) < projection.segmentStats.length,
@@ -267,19 +267,19 @@ export class Session extends Emitter<SessionEvents> {
         this.#moved = false;
       }
       if (!same) {
-        this.#tell('Laying the paint', 0.9);
+        this.#tell('Applying the paint', 0.9);
         await pace.rest();
         if (superseded()) return;
       }
-      // From here on it is on show: too late to give it up.
+      // Too late to cancel from here on.
       this.#working = false;
       this.#shown = { ...scene, projection };
       if (!same) {
-        // The zones of what was on show are not those of this.
+        // The zones belong to the previous scene.
         this.#classification = undefined;
         this.emit('transfer', this.#shown);
         await pace.rest();
-        // Whatever superseded this goes by what is on show.
+        // Needed even if this run was superseded: the newer one builds on the current scene.
         if (!this.#classification) this.#classify();
         await pace.rest();
         if (superseded()) return;
@@ -296,7 +296,7 @@ export class Session extends Emitter<SessionEvents> {
     }
   }
 
-  /** Waits for the wanted files. One that cannot be read gives way to the one shown before it, and so do those that came together with it. */
+  /** Waits for the requested files. One that fails is replaced by the current one, as are those requested together with it. */
   async #read(superseded: () => boolean): Promise<Scene | undefined> {
     const { target, cage, paint } = this.#wanted;
     const results = await Promise.allSettled([target, cage, paint]);
@@ -317,9 +317,9 @@ export class Session extends Emitter<SessionEvents> {
     return t && c && p ? { target: t, cage: c, paint: p } : undefined;
   }
 
-  async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<Placed> {
+  async #project({ target, cage }: Scene, preset: Preset, superseded: () => boolean): Promise<SplitProjection> {
     try {
-      // The threshold is decided here on the page, the rest in the worker: both start at once.
+      // `classify` runs on the page, the rest in the worker: start both.
       const [projection] = await Promise.all([
         this.#client.ask('project', cage, target, { preset }, () => this.#tell('Splitting seams', 0.7)),
         init(),
@@ -329,7 +329,7 @@ export class Session extends Emitter<SessionEvents> {
     } catch (error) {
       if (!(error instanceof CagecastError) || superseded()) throw error;
       const blamed = /\b(cage|target)\b/.exec(error.message)?.[0] as 'cage' | 'target' | undefined;
-      // One that was accepted before stays: then it is the other that does not go with it, and a third file may come.
+      // Keep a model that was accepted before: the other one does not fit it, and may be replaced.
       const files = { target, cage };
       if (blamed && files[blamed] !== this.#shown?.[blamed]) this.#giveUp(blamed);
       const name = blamed ? files[blamed].name : `${target.name} with ${cage.name}`;
@@ -337,19 +337,19 @@ export class Session extends Emitter<SessionEvents> {
     }
   }
 
-  /** Goes back to what is shown, where what was wanted proved unusable. */
+  /** Falls back to the current file of a slot. */
   #giveUp(slot: keyof Scene): void {
     const { [slot]: _, ...rest } = this.#wanted;
     this.#wanted = rest;
     if (this.#shown) this.#wanted = { ...rest, [slot]: Promise.resolve(this.#shown[slot]) };
   }
 
-  /** Goes back to what is shown, where what was wanted still waits for something that could not be had. */
+  /** Falls back to the current files where a request still waits for one that failed. */
   #giveUpRest(): void {
     if (this.#shown && !this.#working) for (const slot of ['target', 'cage', 'paint'] as const) this.#giveUp(slot);
   }
 
-  /** Goes back to the preset of what is shown. */
+  /** Falls back to the preset of the current scene. */
   #giveUpPreset(): void {
     const { preset } = this.#shown?.projection ?? this.#rules;
     if (preset === this.#rules.preset) return;
@@ -357,14 +357,14 @@ export class Session extends Emitter<SessionEvents> {
     this.emit('rules', this.#rules);
   }
 
-  /** Decides by the threshold and the locks as they stand. */
+  /** Computes the zones from the current threshold and locks. */
   #classify(): void {
-    const decided = this.#decide();
-    this.#classification = decided.classification;
-    this.emit('zones', decided);
+    const zones = this.#timedZones();
+    this.#classification = zones.classification;
+    this.emit('zones', zones);
   }
 
-  #decide(): SessionEvents['zones'] {
+  #timedZones(): SessionEvents['zones'] {
     const started = performance.now();
     const classification = classify(this.#shown!.projection, {
       threshold: this.#rules.threshold,
@@ -373,11 +373,11 @@ export class Session extends Emitter<SessionEvents> {
     return { classification, spent: performance.now() - started };
   }
 
-  #timeAgain(timings: Timings): void {
-    // What has moved since was timed with each frame.
+  #setTimings(timings: Timings): void {
+    // Frames of a moving model are timed one by one.
     if (this.#working || !this.#shown || this.#shown.projection !== this.#projected) return;
     this.#shown.projection.timings = timings;
-    const { spent } = Array.from({ length: 9 }, () => this.#decide()).sort((a, b) => a.spent - b.spent)[4]!;
-    this.emit('again', { timings, spent });
+    const { spent } = Array.from({ length: 9 }, () => this.#timedZones()).sort((a, b) => a.spent - b.spent)[4]!;
+    this.emit('retimed', { timings, spent });
   }
 }

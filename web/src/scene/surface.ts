@@ -14,13 +14,17 @@ export function cornersOf({ positions, indices }: Surface, triangle: number): [V
   return [corner(0), corner(1), corner(2)];
 }
 
-/** The place on a triangle nearest to a point, and the triangle's normal. */
-export function placeOn(surface: Surface, triangle: number, point: Vector3): { place: Vector3; normal: Vector3 } {
+/** The closest point of a triangle, and the triangle's normal. */
+export function closestPointOnTriangle(
+  surface: Surface,
+  triangle: number,
+  point: Vector3,
+): { closest: Vector3; normal: Vector3 } {
   const corners = new Triangle(...cornersOf(surface, triangle));
-  return { place: corners.closestPointToPoint(point, new Vector3()), normal: corners.getNormal(new Vector3()) };
+  return { closest: corners.closestPointToPoint(point, new Vector3()), normal: corners.getNormal(new Vector3()) };
 }
 
-/** The diagonal of the box around all vertices. */
+/** The diagonal of the bounding box. */
 export function diagonalOf({ positions }: Surface): number {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];

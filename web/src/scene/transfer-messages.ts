@@ -11,36 +11,36 @@ import type {
 import type { CutTarget } from 'cagecast/borders';
 import type { Inspection, InspectOptions } from 'cagecast/inspect';
 
-/** A projection, and what the picture needs of it. */
-export interface Placed extends Projection {
-  /** The target's vertices, split at the seams of the paint; where there are no UVs per corner, nowhere. */
+/** A projection, and the split vertices that the view needs. */
+export interface SplitProjection extends Projection {
+  /** The target's vertices, split at UV seams; not split if there are no UVs per corner. */
   split: SplitVertices;
 }
 
-/** What is to be cut: what was decided about the target, and by which rules. */
+/** Input of exact borders: the zones of the target, and the options they were computed with. */
 export interface CutOptions {
   result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>;
   rules: TransferOptions;
 }
 
-/** What the worker can do, and what it answers. */
+/** Tasks of the worker, with their options and answers. */
 export interface Tasks {
-  project: { options: ProjectOptions; answer: Placed };
+  project: { options: ProjectOptions; answer: SplitProjection };
   cut: { options: CutOptions; answer: CutTarget };
   inspect: { options: InspectOptions; answer: Inspection };
 }
 
-/** What the page asks of the worker. */
+/** A message to the worker. */
 export type Request = {
   [Task in keyof Tasks]: { id: number; task: Task; cage: Mesh; target: Mesh; options: Tasks[Task]['options'] };
 }[keyof Tasks];
 
 /**
- * What the worker replies, with the id it was asked with; `half` when the first half of it is done. `again` comes a while after a
- * projection that was quick, if nothing else was asked since: how long it takes once the browser has compiled what it runs.
+ * A message from the worker, with the id of the request. `projected` comes before seams are split. `retimed` comes some time
+ * after a quick projection if no other request came: its timings once the browser has compiled the code.
  */
 export type Reply =
-  | { id: number; half: true }
+  | { id: number; projected: true }
   | { id: number; answer: Tasks[keyof Tasks]['answer'] }
   | { id: number; code: Code; message: string }
-  | { id: number; again: Timings };
+  | { id: number; retimed: Timings };

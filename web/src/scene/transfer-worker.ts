@@ -10,18 +10,18 @@ import {
 } from 'cagecast';
 import type { Reply, Request } from './transfer-messages';
 
-const kAtRest = 1000; // milliseconds without a request
-const kLongest = 200; // milliseconds: of longer ones little is compiling, and the next request would wait
-const kTiming = 200; // milliseconds, in slices, between which the next request comes through
+const kIdle = 1000; // milliseconds without a request before retiming
+const kLongest = 200; // milliseconds: longer transfers are not retimed, as compiling is a small part of them
+const kTiming = 200; // milliseconds in all, in slices that let the next request through
 const kSlice = 20;
 
-init().catch(() => {}); // begun before the first request; told with it
+init().catch(() => {}); // start early; errors are reported with the first request
 
-let rest: ReturnType<typeof setTimeout> | undefined;
+let timer: ReturnType<typeof setTimeout> | undefined;
 
 addEventListener('message', async ({ data: request }: MessageEvent<Request>) => {
   const { id } = request;
-  clearTimeout(rest);
+  clearTimeout(timer);
   try {
     await init();
     const answer = await answerTo(request);
@@ -29,7 +29,7 @@ addEventListener('message', async ({ data: request }: MessageEvent<Request>) => 
       transfer: buffersOf({ ...answer, ...('split' in answer && answer.split) }),
     });
     if (request.task === 'project' && 'timings' in answer && answer.timings.total < kLongest)
-      rest = setTimeout(timeAgain, kAtRest, request);
+      timer = setTimeout(retime, kIdle, request);
   } catch (error) {
     const code = error instanceof CagecastError ? error.code : 'internal';
     postMessage({ id, code, message: error instanceof Error ? error.message : String(error) } satisfies Reply);
@@ -39,7 +39,7 @@ addEventListener('message', async ({ data: request }: MessageEvent<Request>) => 
 async function answerTo({ id, task, cage, target, options }: Request) {
   if (task === 'project') {
     const projection = project(cage, target, options);
-    postMessage({ id, half: true } satisfies Reply);
+    postMessage({ id, projected: true } satisfies Reply);
     return { ...projection, split: splitAtSeams(target, projection) };
   }
   if (task === 'cut') {
@@ -51,25 +51,25 @@ async function answerTo({ id, task, cage, target, options }: Request) {
 }
 
 /**
- * Times a projection whose code the browser has compiled, now and then until it has been at it for long enough: the mean of the
- * quicker half of the runs, as the clocks of browsers are coarse, and others want the processor too.
+ * Times a projection once the browser has compiled its code: the mean of the quicker half of its runs, as browser clocks are
+ * coarse and other processes interfere.
  */
-function timeAgain(request: Request & { task: 'project' }, runs: Timings[] = [], spent = 0): void {
+function retime(request: Request & { task: 'project' }, runs: Timings[] = [], spent = 0): void {
   const { id, cage, target, options } = request;
   const started = performance.now();
   do runs.push(project(cage, target, options).timings);
   while (performance.now() - started < kSlice);
   spent += performance.now() - started;
   if (spent < kTiming) {
-    rest = setTimeout(timeAgain, kSlice, request, runs, spent);
+    timer = setTimeout(retime, kSlice, request, runs, spent);
     return;
   }
   runs.sort((a, b) => a.total - b.total);
   const quicker = runs.slice(0, Math.ceil(runs.length / 2));
-  const again = { ...runs[0]! };
-  for (const step of Object.keys(again) as (keyof Timings)[])
-    again[step] = quicker.reduce((sum, run) => sum + run[step], 0) / quicker.length;
-  postMessage({ id, again } satisfies Reply);
+  const retimed = { ...runs[0]! };
+  for (const step of Object.keys(retimed) as (keyof Timings)[])
+    retimed[step] = quicker.reduce((sum, run) => sum + run[step], 0) / quicker.length;
+  postMessage({ id, retimed } satisfies Reply);
 }
 
 function splitAtSeams(target: Mesh, { cornerUvs, uvs }: Projection): SplitVertices {
@@ -79,7 +79,7 @@ function splitAtSeams(target: Mesh, { cornerUvs, uvs }: Projection): SplitVertic
   return splitVertices(target, ofVertices);
 }
 
-/** The buffers of the arrays that an object holds: they are handed over instead of copied. */
+/** The buffers of all arrays in an object, to transfer instead of copy. */
 function buffersOf(holder: object): ArrayBuffer[] {
   const arrays = Object.values(holder).filter((value): value is ArrayBufferView<ArrayBuffer> =>
     ArrayBuffer.isView(value),

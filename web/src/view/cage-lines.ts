@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, WireframeGeometry } from 'three';
-import type { ExtractedMesh } from '../scene/extract';
+import type { ExtractedMesh } from '../scene/extract-mesh';
 
-/** The cage as a wireframe: clear in front of the target, faint behind it. */
+/** The cage as a wireframe; faint where the target is in front of it. */
 export class CageLines {
   readonly object = new Group();
   readonly #lines: WireframeGeometry;

@@ -1,38 +1,41 @@
 import type { Classification } from 'cagecast';
-import type { ExtractedMesh } from '../scene/extract';
+import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Shown } from '../scene/session';
 import { diagonalOf } from '../scene/surface';
 import { type ColorMap, colorAt, kDiverging, kSequential, type Rgb } from './colors';
 import { segmentColors } from './segments';
 
-/** What colours stand for: a scale from one end to the other. */
+/** The scale of a color map. */
 export interface Scale {
   title: string;
   map: ColorMap;
-  /** Evenly apart, from the first colour to the last. */
+  /** Evenly spaced labels, from the first colour to the last. */
   ticks: string[];
 }
 
-/** Colours for a target, 3 bytes per triangle corner, and what they stand for, where that can be said. */
-export interface Tint {
+/** Colours of a target, 3 bytes per triangle corner, with a scale if they have one. */
+export interface Coloring {
   colors: Uint8Array;
   scale?: Scale;
 }
 
-/** What may not be painted, where only paint is judged. */
+/** The colour of triangles that are not painted. */
 const kClay: Rgb = [154, 167, 179];
-const kFarthest = 0.98; // of what may be painted lies within the scale: an inside far away would make all of it look alike
-const kDoublings = 2; // either way, from the middle of the scale of stretch to its ends
+const kFarthest = 0.98; // quantile of the distances at the end of the scale, so that outliers do not compress it
+const kDoublings = 2; // from the middle of the stretch scale to either end
 
-/** Each segment in a colour of its own. */
-export function tintSegments(shown: Shown): Tint {
+/** Colours each segment differently. */
+export function colorBySegment(shown: Shown): Coloring {
   const colors = segmentColors(shown);
   const { segments } = shown.projection;
   return { colors: perCorner(shown.target.mesh, (vertex) => colors[segments[vertex]!]!) };
 }
 
-/** How far each vertex is from the cage. */
-export function tintDistance({ target: { mesh }, projection: { distances } }: Shown, { zones }: Classification): Tint {
+/** Colours vertices by their distance to the cage. */
+export function colorByDistance(
+  { target: { mesh }, projection: { distances } }: Shown,
+  { zones }: Classification,
+): Coloring {
   const diagonal = diagonalOf(mesh) || 1;
   const cosmetic = distances.filter((_, vertex) => zones[vertex] === 0);
   const sorted = (cosmetic.length > 0 ? cosmetic : distances).toSorted();
@@ -46,23 +49,26 @@ export function tintDistance({ target: { mesh }, projection: { distances } }: Sh
 }
 
 /**
- * How far the paint is stretched over each triangle that may be painted: how long one step in the texture becomes on the
- * model in the direction where that is longest, against what is usual there.
+ * Colours painted triangles by the stretch of the texture: the length on the model of a unit step in the texture, in the
+ * direction of the largest stretch, relative to the median.
  */
-export function tintStretch({ target: { mesh }, projection }: Shown, { cosmeticTriangles }: Classification): Tint {
+export function colorByStretch(
+  { target: { mesh }, projection }: Shown,
+  { cosmeticTriangles }: Classification,
+): Coloring {
   const stretch = stretches(mesh, projection);
-  const usual =
+  const median =
     medianOf(stretch.filter((value, triangle) => cosmeticTriangles[triangle] === 1 && Number.isFinite(value))) || 1;
   const ramp = rampOf(kDiverging);
   const colors = perCorner(mesh, (_, triangle) => {
     if (cosmeticTriangles[triangle] !== 1) return kClay;
-    return ramp(0.5 + Math.log2(stretch[triangle]! / usual) / (2 * kDoublings));
+    return ramp(0.5 + Math.log2(stretch[triangle]! / median) / (2 * kDoublings));
   });
   const ticks = ['≤ ¼×', '½×', '1×', '2×', '≥ 4×'];
-  return { colors, scale: { title: 'Stretch of the paint, against the usual', map: kDiverging, ticks } };
+  return { colors, scale: { title: 'Stretch of the paint, relative to the median', map: kDiverging, ticks } };
 }
 
-/** 1 per triangle: the larger singular value of the map from the texture to its surface; infinite where it has no area in the texture. */
+/** 1 per triangle: the larger singular value of the map from texture to surface; infinite without area in the texture. */
 function stretches({ positions, indices }: ExtractedMesh, { uvs, cornerUvs }: Shown['projection']): Float64Array {
   const ofCorners = cornerUvs.length > 0;
   const texture = ofCorners ? cornerUvs : uvs;
@@ -74,7 +80,7 @@ function stretches({ positions, indices }: ExtractedMesh, { uvs, cornerUvs }: Sh
     const [bu, bv] = [texture[2 * b]! - texture[2 * a]!, texture[2 * b + 1]! - texture[2 * a + 1]!];
     const [cu, cv] = [texture[2 * c]! - texture[2 * a]!, texture[2 * c + 1]! - texture[2 * a + 1]!];
     const area = bu * cv - cu * bv;
-    // How the place on the surface moves with u and with v; after Sander et al., Texture Mapping Progressive Meshes, 2001.
+    // Derivatives of the position by u and v; Sander et al., Texture Mapping Progressive Meshes, 2001.
     let [uu, uv, vv] = [0, 0, 0];
     for (let axis = 0; axis < 3; axis++) {
       const ab = positions[3 * j + axis]! - positions[3 * i + axis]!;
@@ -90,7 +96,7 @@ function stretches({ positions, indices }: ExtractedMesh, { uvs, cornerUvs }: Sh
   return stretch;
 }
 
-/** A colour map in as many steps as a screen can show: blending anew for each vertex takes ten times as long. */
+/** A lookup table of 256 colours: interpolating for each vertex takes ten times as long. */
 function rampOf(map: ColorMap): (share: number) => Rgb {
   const steps = Array.from({ length: 256 }, (_, step) => colorAt(map, step / 255));
   return (share) => steps[Math.round(255 * Math.min(1, Math.max(0, share)))]!;
@@ -111,7 +117,7 @@ function medianOf(values: Float64Array): number {
   return values.toSorted()[Math.floor(values.length / 2)] ?? 0;
 }
 
-/** The next of 1, 2, 4, 6, 8 and 10 times a power of ten: they part well in four. */
+/** The next of 1, 2, 4, 6, 8 and 10 times a power of ten, which divide well by four. */
 function roundedUp(value: number): number {
   if (!(value > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(value));

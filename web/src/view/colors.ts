@@ -1,14 +1,14 @@
 import { Color, MathUtils } from 'three';
 
-/** Red, green and blue in bytes, sRGB. */
+/** sRGB bytes. */
 export type Rgb = readonly [number, number, number];
 
-/** Colours from 0 to 1, evenly apart; what lies between two is blended. */
+/** A color map: evenly spaced colours for 0 to 1, interpolated linearly. */
 export type ColorMap = readonly Rgb[];
 
 const parse = (hex: string): Rgb => [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16)) as unknown as Rgb;
 
-/** Matplotlib's viridis: from dark to light, even to the eye, and readable for colour-blind eyes. */
+/** Matplotlib's viridis: perceptually uniform and colour-blind safe. */
 export const kSequential: ColorMap = [
   '#440154',
   '#482878',
@@ -22,12 +22,12 @@ export const kSequential: ColorMap = [
   '#fde725',
 ].map(parse);
 
-/** ColorBrewer's RdBu, turned: too little is blue, just right is white, too much is red. */
+/** ColorBrewer's RdBu, reversed: low is blue, the middle white, high red. */
 export const kDiverging: ColorMap = ['#2166ac', '#67a9cf', '#d1e5f0', '#f7f7f7', '#fddbc7', '#ef8a62', '#b2182b'].map(
   parse,
 );
 
-/** The colour at a place in a map; beyond its ends that of the end. */
+/** The colour of a value, clamped to 0..1. */
 export function colorAt(map: ColorMap, share: number): Rgb {
   const place = MathUtils.clamp(share, 0, 1) * (map.length - 1);
   const below = Math.min(Math.floor(place), map.length - 2);
@@ -36,7 +36,7 @@ export function colorAt(map: ColorMap, share: number): Rgb {
   ) as unknown as Rgb;
 }
 
-/** One of any number of colours of which the first are far apart: hues a golden section apart, in three lightnesses. */
+/** A colour for each index, the first ones most distinct: hues by the golden ratio, in three lightnesses. */
 export function distinctColor(number: number): Rgb {
   const hue = (0.55 + number * 0.618034) % 1;
   return parse(`#${new Color().setHSL(hue, 0.6, [0.5, 0.38, 0.62][number % 3]!).getHexString()}`);

@@ -3,8 +3,8 @@ import { element } from '../platform/page';
 const kStep = 0.05;
 
 /**
- * The line across the picture between the two looks: dragged with a pointer, moved with the keys of a slider.
- * @param onMove Called with its new place, 0 at the left edge and 1 at the right.
+ * The divider of the view “Compare”: dragged, or moved with the arrow keys.
+ * @param onMove Receives its position, 0 at the left edge and 1 at the right.
  */
 export function setUpDivider(onMove: (split: number) => void): { show(visible: boolean, split: number): void } {
   const divider = element('divider', HTMLElement);

@@ -2,29 +2,29 @@ import type { Classification } from 'cagecast';
 import { element } from '../platform/page';
 import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
-import type { Placed } from '../scene/transfer-messages';
+import type { SplitProjection } from '../scene/transfer-messages';
 import type { Viewer } from './viewer';
 
-const kPatience = 300; // milliseconds: while something is dragged, or moves by itself, nothing is cut
+const kPatience = 300; // milliseconds without a change before cutting
 
-/** What a target is cut by. */
+/** What a cut depends on. */
 interface Basis {
-  projection: Placed;
-  /** Which segments are culled; all else follows from the projection. */
+  projection: SplitProjection;
+  /** One digit per segment, 1 if culled; all else follows from the projection. */
   culled: string;
 }
 
 /**
- * Shows exact borders where the rules ask for them: once the model rests, a worker cuts it by what was decided, and the picture
- * shows that until something else is decided.
+ * Shows exact borders if they are switched on: once nothing changes any more, a worker cuts the target, and the view shows the
+ * cut target until the next change.
  */
 export class ExactBorders {
   readonly #session: Session;
   readonly #viewer: Viewer;
   readonly #note = element('borders-note', HTMLElement);
-  /** Started when it is needed. */
+  /** Started on demand. */
   #client: TransferClient | undefined;
-  /** Of what is shown as it was cut, or is about to be. */
+  /** Of the cut that is shown or in progress. */
   #basis: Basis | undefined;
   #due: ReturnType<typeof setTimeout> | undefined;
   #cutting = false;
@@ -34,8 +34,8 @@ export class ExactBorders {
     this.#viewer = viewer;
     session.on('zones', ({ classification }) => this.#follow(classification));
     session.on('progress', ({ state }) => {
-      if (state === 'working' && !this.#cutting && this.#due !== undefined) this.#forget();
-      // What gave way to something that did not change the decision, as another paint, is taken up again.
+      if (state === 'working' && !this.#cutting && this.#due !== undefined) this.#clear();
+      // Resume a cut that was superseded by something that does not affect it, such as another paint.
       else if (state === 'ready' && session.classification) this.#follow(session.classification);
     });
   }
@@ -47,14 +47,14 @@ export class ExactBorders {
         ? { projection: shown!.projection, culled: classification.segmentStats.map(({ culled }) => +culled).join('') }
         : undefined;
     if (wanted?.projection === this.#basis?.projection && wanted?.culled === this.#basis?.culled) return;
-    this.#forget();
+    this.#clear();
     if (!wanted) return;
     this.#basis = wanted;
     this.#due = setTimeout(() => void this.#cut(classification), kPatience);
   }
 
-  /** Goes back to the target's own triangles. */
-  #forget(): void {
+  /** Shows the target's own triangles again. */
+  #clear(): void {
     clearTimeout(this.#due);
     this.#due = undefined;
     this.#basis = undefined;
@@ -69,7 +69,7 @@ export class ExactBorders {
     const { target, cage, projection } = shown!;
     this.#cutting = true;
     const done = this.#session.work('Cutting borders', 0.3, (why) => {
-      this.#forget();
+      this.#clear();
       if (why === 'cancelled') this.#session.setRules({ borders: 'triangle' });
     });
     this.#cutting = false;
@@ -82,7 +82,7 @@ export class ExactBorders {
       });
       await this.#viewer.setCut(cut);
       const more = (cut.indices.length - target.mesh.indices.length) / 3;
-      this.#note.textContent = `${more.toLocaleString('en')} triangles more.`;
+      this.#note.textContent = `Adds ${more.toLocaleString('en')} triangles.`;
       done();
     } catch (error) {
       if (error instanceof Superseded) return done();

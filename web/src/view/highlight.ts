@@ -1,10 +1,11 @@
 import { BufferAttribute, DoubleSide, type Mesh, MeshBasicMaterial } from 'three';
-import type { ExtractedMesh } from '../scene/extract';
-import { leaveShared, onSurface, overlayMesh, shareVertices } from './overlay';
+import type { ExtractedMesh } from '../scene/extract-mesh';
+import { detachShared, overlayMesh, shareVertices } from './overlay-geometry';
+import { onSurface } from './overlay-materials';
 
 const kColor = '#22d3ff';
 
-/** Lights up some triangles of a target: full where they are seen, faint where something lies in front of them. */
+/** Highlights triangles of a target; faint where something is in front of them. */
 export class Highlight {
   readonly #meshes: Mesh[] = [];
   readonly #front = onSurface(new MeshBasicMaterial({ color: kColor, opacity: 0.5, side: DoubleSide }));
@@ -12,7 +13,7 @@ export class Highlight {
     new MeshBasicMaterial({ color: kColor, opacity: 0.35, side: DoubleSide, depthTest: false }),
   );
 
-  /** @param triangles Numbers of the target's triangles. */
+  /** @param triangles Indices of the target's triangles. */
   constructor({ parts, indices }: ExtractedMesh, triangles: readonly number[]) {
     for (const { mesh: base, firstVertex, firstTriangle, triangleCount } of parts) {
       const own = triangles.filter((triangle) => triangle >= firstTriangle && triangle < firstTriangle + triangleCount);
@@ -22,7 +23,7 @@ export class Highlight {
         (_, i) => indices[3 * own[Math.floor(i / 3)]! + (i % 3)]! - firstVertex,
       );
       const geometry = shareVertices(base.geometry).setIndex(new BufferAttribute(vertices, 1));
-      leaveShared(geometry, base.geometry);
+      detachShared(geometry, base.geometry);
       geometry.addGroup(0, vertices.length, 0);
       geometry.addGroup(0, vertices.length, 1);
       const mesh = overlayMesh(base, geometry);

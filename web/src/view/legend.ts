@@ -2,10 +2,10 @@ import { element } from '../platform/page';
 import type { Scale } from './color-maps';
 import { cssColor } from './colors';
 
-/** What the colours in the picture stand for: zones, or a scale. */
+/** The meaning of the colours in the view: zones, or a scale. */
 export type Legend = { scale: Scale } | { keys: string[] };
 
-/** Shows a legend on the picture, or none. */
+/** Shows a legend, or hides it. */
 export function showLegend(legend: Legend | undefined): void {
   const box = element('legend', HTMLElement);
   box.hidden = legend === undefined;

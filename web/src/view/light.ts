@@ -11,13 +11,13 @@ import {
   Vector3,
 } from 'three';
 
-/** A lamp with soft edges, far away: its radiance falls off with the angle to its middle. */
+/** A distant lamp with soft edges: a spherical Gaussian. */
 interface Lamp {
-  /** Towards it, of length 1. */
+  /** Unit vector towards the lamp. */
   direction: Vector3;
-  /** Radiance in the middle. */
+  /** Radiance at its centre. */
   strength: number;
-  /** How narrow it is: at an angle of √(2 / sharpness) there is 1/e of its strength left. */
+  /** Radiance falls to 1/e at an angle of √(2 / sharpness). */
   sharpness: number;
 }
 
@@ -27,7 +27,7 @@ const lamp = (x: number, y: number, z: number, strength: number, sharpness: numb
   sharpness,
 });
 
-/** A window on either side, a long one above, and light from behind that draws the outline. */
+/** Windows at both sides, a long one above, and a rim light from behind. */
 const kLamps = [
   lamp(-0.9, 0.55, 0.35, 2.7, 16),
   lamp(-0.95, 0.5, -0.3, 2.3, 16),
@@ -37,13 +37,13 @@ const kLamps = [
   lamp(0.15, 1, 0.1, 2.4, 12),
   lamp(-0.1, 1, -0.35, 1.9, 14),
 ];
-/** Radiance of the room itself: straight above and below, and evenly from one to the other. */
+/** Radiance of the room straight above and below; linear in between. */
 const kRoom = { ceiling: 0.23, floor: 0.13 };
 
-/** Texels a side for each level, from a mirror's to those of dull surfaces. Fewer than 8 cannot hold diffuse light. */
+/** Texels per side of each level, by increasing roughness. Diffuse light needs at least 8. */
 const kSizes = [64, 32, 16, 8];
 
-// What each face of a cube map looks along, and where its columns and rows go, in OpenGL's order.
+// Axis, column and row direction of each cube map face, in OpenGL's order.
 const kFaces: readonly [Vector3, Vector3, Vector3][] = [
   [new Vector3(1, 0, 0), new Vector3(0, 0, -1), new Vector3(0, -1, 0)],
   [new Vector3(-1, 0, 0), new Vector3(0, 0, 1), new Vector3(0, -1, 0)],
@@ -56,23 +56,23 @@ const kFaces: readonly [Vector3, Vector3, Vector3][] = [
 /**
  * Makes the light of a studio as a prefiltered environment map.
  *
- * The lamps are Gaussian on the sphere and the room is nearly even, so what a rough surface gathers of them is a formula:
- * no scene is rendered and nothing is integrated, which took four seconds where graphics are done in software.
- * Cost: some 5 ms, 260 KB.
+ * The lamps are spherical Gaussians and the room is almost uniform, so the light on a rough surface is a closed formula.
+ * Rendering and prefiltering a scene took four seconds with software rendering.
+ * Cost: about 5 ms, 260 KB.
  */
 export function studioLight(): Texture {
   const last = kSizes.length - 1;
   const faces = kFaces.map((face) => ({
     width: kSizes[0]!,
     height: kSizes[0]!,
-    // Levels are of these roughnesses by three's convention.
+    // three.js assigns these roughnesses to the levels.
     mipmaps: kSizes.map((size, level) => ({
       width: size,
       height: size,
       data: fill(face, size, 1 - Math.sqrt(1 - level / last)),
     })),
   }));
-  // Not compressed, but of the one kind of cube map that brings all of its levels along.
+  // Not compressed, but the only cube map class of three.js with explicit mipmaps.
   const light = new CompressedCubeTexture(faces, RGBAFormat as number as CompressedPixelFormat, HalfFloatType);
   light.colorSpace = LinearSRGBColorSpace;
   light.minFilter = LinearMipmapLinearFilter;
@@ -90,11 +90,11 @@ function fill(
 ): Uint16Array {
   const lobe = sharpnessOf(roughness);
   const lamps = kLamps.map(({ direction, strength, sharpness }) => {
-    // A Gaussian spread by a Gaussian is one again, wider and weaker.
+    // The convolution of two Gaussians is a wider and weaker Gaussian.
     const spread = (sharpness * lobe) / (sharpness + lobe);
     return { direction, sharpness: spread, strength: (strength * integralOf(sharpness)) / integralOf(spread) };
   });
-  const slope = 1 / Math.tanh(lobe) - 1 / lobe; // what a lobe leaves of an even rise
+  const slope = 1 / Math.tanh(lobe) - 1 / lobe; // attenuation of a linear gradient by the lobe
   const texels = new Uint16Array(4 * size * size).fill(DataUtils.toHalfFloat(1));
   const at = new Vector3();
   for (let row = 0; row < size; row++) {
@@ -103,7 +103,7 @@ function fill(
         .addScaledVector(right, (2 * column + 1) / size - 1)
         .addScaledVector(down, (2 * row + 1) / size - 1)
         .normalize();
-      // Three looks a cube map up mirrored.
+      // three.js mirrors cube map lookups.
       at.x = -at.x;
       let radiance = (kRoom.ceiling + kRoom.floor) / 2 + ((kRoom.ceiling - kRoom.floor) / 2) * slope * at.y;
       for (const { direction, sharpness, strength } of lamps)
@@ -114,12 +114,12 @@ function fill(
   return texels;
 }
 
-/** What a surface gathers around the direction of its reflection, as a Gaussian: GGX in the middle, a cosine when dull. */
+/** The reflection lobe as a Gaussian: GGX, tending to a cosine for rough surfaces. */
 function sharpnessOf(roughness: number): number {
   return 1.63 + 0.5 / Math.max(roughness, 0.05) ** 4;
 }
 
-/** Of a Gaussian on the sphere. */
+/** The integral of a spherical Gaussian. */
 function integralOf(sharpness: number): number {
   return (2 * Math.PI * (1 - Math.exp(-2 * sharpness))) / sharpness;
 }

@@ -1,22 +1,22 @@
 import { type Camera, type Intersection, Raycaster, Triangle, type Vector2, Vector3 } from 'three';
-import type { ExtractedMesh, Part } from '../scene/extract';
+import type { ExtractedMesh, Part } from '../scene/extract-mesh';
 
-/** A spot on the surface of a target. */
+/** A spot on the surface of the target. */
 export interface Spot {
-  /** The number of its triangle. */
+  /** Index of its triangle. */
   triangle: number;
-  /** What share each corner has in it, in the order of the target's indices. */
+  /** Barycentric weights, in the order of the target's indices. */
   weights: [number, number, number];
-  /** Where it is in the model as it was transferred, in its space. */
+  /** Its position in the transferred model, in model space. */
   point: Vector3;
-  /** Where it is seen, in the studio: elsewhere than `point` says if the model is posed. */
+  /** Its displayed position in the studio; it differs from `point` if the model is posed. */
   seen: Vector3;
 }
 
 /**
- * Finds what of a target is seen at a place of the picture, skins and morphs as they are posed.
- * @param at From −1 to 1 from the left to the right, and from the lower edge to the upper.
- * Cost: every triangle is looked at, some 16 ms for half a million.
+ * Finds the spot at a position of the view, with skins and morphs as posed.
+ * @param at Normalised device coordinates: −1 to 1, from left to right and from bottom to top.
+ * Cost: visits every triangle, about 16 ms for half a million.
  */
 export function pick(target: ExtractedMesh, camera: Camera, at: Vector2): Spot | undefined {
   const raycaster = new Raycaster();
@@ -36,7 +36,7 @@ function spotOf(
 ): Spot {
   const triangle = firstTriangle + faceIndex!;
   const corners = [0, 1, 2].map((corner) => indices[3 * triangle + corner]!) as [number, number, number];
-  // The corners as they are posed; in the order of the target's indices, which are turned where the part is mirrored.
+  // In the order of the target's indices, whose winding is reversed if the part is mirrored.
   const posed = corners.map((vertex) =>
     mesh.localToWorld(mesh.getVertexPosition(vertex - firstVertex, new Vector3())),
   ) as [Vector3, Vector3, Vector3];

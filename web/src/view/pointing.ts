@@ -1,45 +1,45 @@
 import type { Spot } from './pick';
 
-/** What takes the pointer on the model in place of turning it. `spot` is what of the target is under it. */
+/** A tool for the pointer on the model. `spot` is the spot of the target under the pointer. */
 export interface Tool {
-  /** A pointer is pressed. True takes it until `up`; otherwise it turns the model, and may still be a `tap`. */
+  /** A pointer is pressed. Return true to capture it until `up`; otherwise it turns the model, and may become a `tap`. */
   down?(spot: Spot | undefined, event: PointerEvent): boolean;
-  /** The pointer that was taken has moved. */
+  /** The captured pointer moved. */
   move?(spot: Spot | undefined, event: PointerEvent): void;
-  /** The pointer that was taken is released, or lost. */
+  /** The captured pointer was released or lost. */
   up?(event: PointerEvent): void;
-  /** What was begun is not meant: a second finger came, which turns the model. */
+  /** Discard what was begun: a second finger came down, to turn the model. */
   cancel?(): void;
-  /** A pointer that was not taken came down and up at the same place. */
+  /** A pointer that was not captured came down and up at the same position. */
   tap?(spot: Spot | undefined, event: PointerEvent): void;
-  /** A mouse or pen moves over the picture with nothing pressed, or leaves it; at most once a frame. */
+  /** A mouse or pen moves with nothing pressed, or leaves the view; at most once per frame. */
   hover?(spot: Spot | undefined, event: PointerEvent): void;
 }
 
-const kStill = 6; // pixels that a finger may move and still have tapped
+const kTapMove = 6; // pixels that a finger may move during a tap
 
-/** Gives a tool the pointers on a canvas. What the tool does not take, and two fingers, turn the model. */
+/** Passes pointers on the canvas to the tool. Pointers it does not capture, and two fingers, turn the model. */
 export class Pointing {
   tool: Tool | undefined;
   readonly #pick: (x: number, y: number) => Spot | undefined;
-  readonly #leave: (turns: boolean) => void;
-  #taken: { id: number; tool: Tool } | undefined;
+  readonly #setTurning: (turns: boolean) => void;
+  #captured: { id: number; tool: Tool } | undefined;
   #pressed: { id: number; x: number; y: number } | undefined;
   /** The fingers on the canvas. */
   readonly #fingers = new Set<number>();
   #hovering = 0;
 
   /**
-   * @param pick  Finds what of the target is at `clientX`, `clientY`.
-   * @param leave Called with whether the pointer that goes down is to turn the model.
+   * @param pick       Finds the spot at `clientX`, `clientY`.
+   * @param setTurning Receives whether the pressed pointer turns the model.
    */
   constructor(
     canvas: HTMLCanvasElement,
     pick: (x: number, y: number) => Spot | undefined,
-    leave: (turns: boolean) => void,
+    setTurning: (turns: boolean) => void,
   ) {
     this.#pick = pick;
-    this.#leave = leave;
+    this.#setTurning = setTurning;
     canvas.addEventListener('pointerdown', (event) => this.#down(canvas, event));
     canvas.addEventListener('pointermove', (event) => this.#move(event));
     canvas.addEventListener('pointerleave', (event) => this.#hover(event, false));
@@ -54,40 +54,40 @@ export class Pointing {
     if (event.pointerType === 'touch') {
       this.#fingers.add(event.pointerId);
       if (this.#fingers.size > 1) {
-        // What the first has begun, or may have tapped, is not meant.
-        this.#taken?.tool.cancel?.();
-        this.#taken = this.#pressed = undefined;
+        // Discard what the first finger began.
+        this.#captured?.tool.cancel?.();
+        this.#captured = this.#pressed = undefined;
         return;
       }
     }
-    if (this.#taken) return;
-    this.#leave(true);
+    if (this.#captured) return;
+    this.#setTurning(true);
     if (!this.tool || event.button !== 0) return;
     if (this.tool.down?.(this.#spot(event), event)) {
-      this.#taken = { id: event.pointerId, tool: this.tool };
+      this.#captured = { id: event.pointerId, tool: this.tool };
       canvas.setPointerCapture(event.pointerId);
-      // Who turns the model still hears of it: with a second finger both are theirs.
-      this.#leave(false);
+      // The controls still see this pointer, as a second finger may join to turn the model.
+      this.#setTurning(false);
     } else {
       this.#pressed = { id: event.pointerId, x: event.clientX, y: event.clientY };
     }
   }
 
   #move(event: PointerEvent): void {
-    if (this.#taken?.id === event.pointerId) this.#taken.tool.move?.(this.#spot(event), event);
+    if (this.#captured?.id === event.pointerId) this.#captured.tool.move?.(this.#spot(event), event);
     else if (event.buttons === 0 && event.pointerType !== 'touch') this.#hover(event, true);
   }
 
   #up(event: PointerEvent): void {
     this.#fingers.delete(event.pointerId);
-    if (this.#taken?.id === event.pointerId) {
-      this.#taken.tool.up?.(event);
-      this.#taken = undefined;
+    if (this.#captured?.id === event.pointerId) {
+      this.#captured.tool.up?.(event);
+      this.#captured = undefined;
     } else if (this.#pressed?.id === event.pointerId) {
       const { x, y } = this.#pressed;
       this.#pressed = undefined;
-      const still = Math.hypot(event.clientX - x, event.clientY - y) <= kStill;
-      if (still && event.type === 'pointerup') this.tool?.tap?.(this.#spot(event), event);
+      const tapped = Math.hypot(event.clientX - x, event.clientY - y) <= kTapMove;
+      if (tapped && event.type === 'pointerup') this.tool?.tap?.(this.#spot(event), event);
     }
   }
 

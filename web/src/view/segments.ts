@@ -1,7 +1,7 @@
 import type { Shown } from '../scene/session';
 import { distinctColor, type Rgb } from './colors';
 
-/** A colour for each segment, those of the largest far apart. @returns 1 per segment. */
+/** A colour for each segment; those of the largest are most distinct. */
 export function segmentColors({ projection: { segmentStats } }: Shown): Rgb[] {
   const bySize = segmentStats
     .map((_, segment) => segment)
@@ -17,7 +17,7 @@ export function trianglesOf({ target, projection }: Shown, segments: readonly nu
   if (segments.length === 0) return triangles;
   const chosen = new Set(segments);
   const { indices } = target.mesh;
-  // The corners of a triangle are of one segment.
+  // All corners of a triangle belong to one segment.
   for (let t = 0; 3 * t < indices.length; t++) if (chosen.has(projection.segments[indices[3 * t]!]!)) triangles.push(t);
   return triangles;
 }

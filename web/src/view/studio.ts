@@ -2,12 +2,12 @@ import { type Camera, DirectionalLight, Group, Mesh, PlaneGeometry, Scene, Shado
 import { studioLight } from './light';
 
 /**
- * The room a model is shown in: light from all around, a key light that stays over the viewer's shoulder, and a floor
- * that catches a soft shadow. Models of radius 1 about the origin fit it.
+ * The scene around a model: ambient light, a key light over the viewer's shoulder, and a floor with a soft shadow. It fits
+ * models of radius 1 at the origin.
  */
 export class Studio {
   readonly scene = new Scene();
-  /** What is shown goes in here. */
+  /** The group for the displayed objects. */
   readonly stage = new Group();
   readonly #floor = new Mesh(new PlaneGeometry(12, 12), new ShadowMaterial({ opacity: 0.28 }));
   readonly #key = new DirectionalLight(0xfff4e6, 2.1);
@@ -30,16 +30,16 @@ export class Studio {
     this.scene.add(this.stage, this.#floor, this.#key);
   }
 
-  /** Puts the floor under a model whose lowest point is at `height`. */
+  /** Places the floor under a model whose lowest point is at `height`. */
   setFloor(height: number): void {
     this.#floor.position.y = height - 0.01;
   }
 
-  /** Turns the light with the viewer, so that no side of the model is left in the dark. */
+  /** Rotates the lights with the camera, so that no side of the model is dark. */
   follow(camera: Camera): void {
     const turn = Math.atan2(camera.position.x, camera.position.z) - 0.6;
     this.#key.position.set(3 * Math.sin(turn), 4.6, 3 * Math.cos(turn));
-    // Its share of the room's light turns too.
+    // The environment rotates too.
     this.scene.environmentRotation.y = turn;
   }
 }

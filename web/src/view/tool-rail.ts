@@ -2,25 +2,25 @@ import { element } from '../platform/page';
 import type { Tool } from './pointing';
 import type { Viewer } from './viewer';
 
-/** A tool that can be chosen on the rail beside the picture. */
-export interface Offer {
-  /** For people and screen readers, one word. */
+/** A tool on the rail beside the view. */
+export interface RailTool {
+  /** One word. */
   title: string;
-  /** The one key that chooses it while the picture has the keyboard. */
+  /** The key that chooses it while the view has the focus. */
   key: string;
-  /** Path data of its icon, drawn with lines in a square of 24. */
+  /** SVG path data of its icon: lines in a 24 × 24 box. */
   icon: string;
   tool: Tool;
-  /** It was chosen (true), or another was: shows or hides its options. */
+  /** Called when it is chosen (true) or another one is; shows or hides its options. */
   onChoose(chosen: boolean): void;
 }
 
-/** The rail of tools: what a pointer on the model does. Turning it comes first, and is what the rail begins and ends with. */
+/** The rail of tools for the pointer on the model. Turning the model is the first entry and the default. */
 export class Tools {
   readonly #rail = element('tools', HTMLElement);
   readonly #viewer: Viewer;
-  readonly #offers: { offer: Offer | undefined; input: HTMLInputElement }[] = [];
-  #chosen: Offer | undefined;
+  readonly #railTools: { offer: RailTool | undefined; input: HTMLInputElement }[] = [];
+  #chosen: RailTool | undefined;
 
   constructor(viewer: Viewer, stage: HTMLElement) {
     this.#viewer = viewer;
@@ -28,25 +28,25 @@ export class Tools {
     stage.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === 'Escape') return this.choose(undefined);
-      const found = this.#offers.find(({ input }) => input.dataset.key === event.key.toLowerCase());
+      const found = this.#railTools.find(({ input }) => input.dataset.key === event.key.toLowerCase());
       if (found) this.choose(found.offer);
     });
   }
 
-  /** The tool that is chosen; undefined while the pointer turns the model. */
-  get chosen(): Offer | undefined {
+  /** The chosen tool; undefined while the pointer turns the model. */
+  get chosen(): RailTool | undefined {
     return this.#chosen;
   }
 
-  /** Adds a tool at the rail's end. */
-  add(offer: Offer): void {
+  /** Appends a tool. */
+  add(offer: RailTool): void {
     this.#add(offer, offer.title, offer.key, offer.icon);
     this.#rail.hidden = false;
   }
 
-  /** Chooses a tool, or to turn the model. */
-  choose(offer: Offer | undefined): void {
-    for (const { offer: other, input } of this.#offers) input.checked = other === offer;
+  /** Chooses a tool; undefined turns the model. */
+  choose(offer: RailTool | undefined): void {
+    for (const { offer: other, input } of this.#railTools) input.checked = other === offer;
     if (offer === this.#chosen) return;
     this.#chosen?.onChoose(false);
     this.#chosen = offer;
@@ -54,7 +54,7 @@ export class Tools {
     offer?.onChoose(true);
   }
 
-  #add(offer: Offer | undefined, title: string, key: string, icon: string): void {
+  #add(offer: RailTool | undefined, title: string, key: string, icon: string): void {
     const label = document.createElement('label');
     label.title = `${title} (${key.toUpperCase()})`;
     label.innerHTML =
@@ -65,7 +65,7 @@ export class Tools {
     input.dataset.key = key;
     input.checked = offer === undefined;
     input.addEventListener('change', () => this.choose(offer));
-    this.#offers.push({ offer, input });
+    this.#railTools.push({ offer, input });
     this.#rail.append(label);
   }
 }

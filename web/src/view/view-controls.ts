@@ -3,7 +3,7 @@ import type { Session } from '../scene/session';
 import { setUpDivider } from './divider';
 import { type Mode, showsPaint } from './view';
 
-/** Lets it be chosen what the picture shows. */
+/** Connects the controls of the view. */
 export function setUpViewControls(session: Session): void {
   const strip = element('view-mode', HTMLElement);
   const modes = [...strip.querySelectorAll('input')];
@@ -19,7 +19,7 @@ export function setUpViewControls(session: Session): void {
   session.on('view', (view) => {
     for (const input of modes) {
       input.checked = input.value === view.mode;
-      // The strip is longer than a phone is wide.
+      // On a phone the strip has to be scrolled.
       if (input.checked)
         strip.scrollTo({
           left: input.offsetParent instanceof HTMLElement ? input.offsetParent.offsetLeft - strip.clientWidth / 3 : 0,
@@ -29,7 +29,7 @@ export function setUpViewControls(session: Session): void {
     switches[0]!.input.disabled = !showsPaint(view.mode);
     divider.show(view.mode === 'compare', view.split);
   });
-  // A reloaded page keeps its fields as they were.
+  // Browsers keep the state of fields on reload.
   const mode = modes.find(({ checked }) => checked)!.value as Mode;
   session.setView({ mode, ...Object.fromEntries(switches.map(({ name, input }) => [name, input.checked])) });
 }

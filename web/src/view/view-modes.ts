@@ -1,21 +1,21 @@
 import type { Classification } from 'cagecast';
 import type { Session, Shown } from '../scene/session';
-import { type Tint, tintDistance, tintSegments, tintStretch } from './color-maps';
+import { type Coloring, colorByDistance, colorBySegment, colorByStretch } from './color-maps';
 import { type Legend, showLegend } from './legend';
 import type { Mode } from './view';
 import type { Viewer } from './viewer';
 
-const kTints: { [Name in Mode]?: (shown: Shown, classification: Classification) => Tint } = {
-  segments: tintSegments,
-  distance: tintDistance,
-  stretch: tintStretch,
+const kColorings: { [Name in Mode]?: (shown: Shown, classification: Classification) => Coloring } = {
+  segments: colorBySegment,
+  distance: colorByDistance,
+  stretch: colorByStretch,
 };
 
 const kZoneKeys: Legend = { keys: ['cosmetic', 'occluded', 'uncovered', 'culled'] };
 
-/** Colours the model for the modes of the picture that show something other than paint, and says what the colours mean. */
+/** Colours the model in the view modes without paint, and shows the legend. */
 export function showViewModes(session: Session, viewer: Viewer): void {
-  /** What the colours on show were made for: they are not made again while the view alone changes. */
+  /** What the current colours were computed for; a change of the view alone does not recompute them. */
   let made: { mode: Mode; classification: Classification } | undefined;
 
   const update = (): void => {
@@ -24,9 +24,9 @@ export function showViewModes(session: Session, viewer: Viewer): void {
     if (!shown || !classification || (made?.mode === mode && made.classification === classification)) return;
     made = { mode, classification };
     if (mode === 'checker') viewer.setChecker(session.checker.texture);
-    const tint = kTints[mode]?.(shown, classification);
-    if (tint) viewer.setTint(tint.colors);
-    showLegend(mode === 'zones' ? kZoneKeys : tint?.scale && { scale: tint.scale });
+    const coloring = kColorings[mode]?.(shown, classification);
+    if (coloring) viewer.setColors(coloring.colors);
+    showLegend(mode === 'zones' ? kZoneKeys : coloring?.scale && { scale: coloring.scale });
   };
   session.on('zones', update);
   session.on('view', update);

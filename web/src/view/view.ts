@@ -1,40 +1,40 @@
 import type { Look } from './overlay';
 
-/** What the picture can show; `compare` is naive and result with a line between them. */
+/** View modes; `compare` shows naive and result on either side of a divider. */
 export const kModes = ['compare', 'result', 'naive', 'zones', 'segments', 'checker', 'distance', 'stretch'] as const;
 export type Mode = (typeof kModes)[number];
 
-/** How the model is looked at. */
+/** State of the view. */
 export interface View {
   mode: Mode;
-  /** Where the line of `compare` is: 0 at the left edge, 1 at the right. */
+  /** Position of the divider in `compare`: 0 at the left edge, 1 at the right. */
   split: number;
   paint: boolean;
   cage: boolean;
 }
 
-/** Where the model is looked at from. */
+/** Direction and distance of the camera. */
 export interface Angle {
-  /** Around it, from its front, in degrees; counter-clockwise seen from above. */
+  /** Degrees around the model from its front; counter-clockwise seen from above. */
   turn: number;
-  /** From straight above, in degrees. */
+  /** Degrees from straight above. */
   tilt: number;
-  /** How many times nearer than where all of it is seen. */
+  /** Magnification, relative to the distance at which the whole model is visible. */
   near: number;
 }
 
 export const kFirstView: View = { mode: 'compare', split: 0.5, paint: true, cage: false };
 
-/** What lies over the model in each mode but `compare`. */
+/** The overlay of each mode other than `compare`. */
 export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {
   result: 'result',
   naive: 'naive',
   zones: 'zones',
-  segments: 'tint',
+  segments: 'colors',
   checker: 'checker',
-  distance: 'tint',
-  stretch: 'tint',
+  distance: 'colors',
+  stretch: 'colors',
 };
 
-/** Whether a mode shows the paint, which can then be switched off. */
+/** Whether a mode shows paint, which can be switched off. */
 export const showsPaint = (mode: Mode): boolean => mode === 'compare' || mode === 'result' || mode === 'naive';

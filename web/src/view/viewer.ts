@@ -19,8 +19,8 @@ import {
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { disposeModel, type Model } from '../scene/load';
-import type { Placed } from '../scene/transfer-messages';
+import { disposeModel, type Model } from '../scene/load-model';
+import type { SplitProjection } from '../scene/transfer-messages';
 import { CageLines } from './cage-lines';
 import { Highlight } from './highlight';
 import { type Look, Overlay } from './overlay';
@@ -31,19 +31,19 @@ import { type Angle, kFirstView, kLooks, showsPaint, type View } from './view';
 
 const kFieldOfView = 28; // degrees
 const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14));
-const kFill = 0.86; // below 1, as models seldom reach into the corners of their box
-const kToolbar = 96; // pixels of the picture's lower edge that controls lie on
-const kSway = MathUtils.degToRad(40); // how far the model turns to either side
-const kSwaySeconds = 16; // there and back
-const kLongestFrame = 0.25; // seconds that a model turns on in one frame, however long that took: it must not jump
+const kFill = 0.86; // below 1, as models rarely fill the corners of their bounding box
+const kToolbar = 96; // pixels at the lower edge that the toolbar covers
+const kSway = MathUtils.degToRad(40); // amplitude of the idle rotation
+const kSwaySeconds = 16; // its period
+const kLongestFrame = 0.25; // seconds: limits the rotation per frame, so that a slow frame causes no jump
 const kKeyStep = MathUtils.degToRad(6);
 const kKeyNearer = 1 / 1.1; // of the distance
 
-/** Shows one target with its paint and its cage on a canvas, and lets people turn it. Draws only when something changed. */
+/** Shows a target with its paint and its cage, and lets the user turn it. Draws only when something changed. */
 export class Viewer {
-  /** Draws the picture; features may draw textures with it, and call `redraw` when what is shown has changed. */
+  /** The renderer; features may use it to render textures. Call `redraw` afterwards. */
   readonly renderer: WebGLRenderer;
-  /** What features add to the picture, in the space of the target as it was transferred. */
+  /** Objects of features, in the space of the transferred target. */
   readonly marks = new Group();
   readonly #canvas: HTMLCanvasElement;
   readonly #studio: Studio;
@@ -59,12 +59,12 @@ export class Viewer {
   #frame = 0;
   #stale = true;
   readonly #preparations: (() => void)[] = [];
-  /** Seconds that the model has turned by itself; undefined when it does not. */
-  #turned: number | undefined;
+  /** Seconds of idle rotation so far; undefined if it is off. */
+  #swayed: number | undefined;
   #drawn = 0;
-  /** Whether it is looked at from where the visitor said. */
-  #taken = false;
-  /** From how far away all of it is seen, in a picture as large as it was last. */
+  /** Whether the user moved the camera. */
+  #moved = false;
+  /** The distance at which the whole model is visible, for the current size. */
   #far = 1;
   #mixer: AnimationMixer | undefined;
   #played = 0;
@@ -73,7 +73,7 @@ export class Viewer {
   constructor(canvas: HTMLCanvasElement) {
     this.#canvas = canvas;
     this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true });
-    // Asking for each shader's log waits until it is compiled: seconds, on a slow machine.
+    // Checking for errors waits for each shader to compile: seconds, on a slow machine.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.05;
@@ -83,11 +83,11 @@ export class Viewer {
     this.#studio = new Studio();
     this.#studio.stage.add(this.marks);
 
-    // Before the controls, which get what it leaves to them.
+    // Before the controls, so that it sees pointers first.
     this.#pointing = new Pointing(
       canvas,
       (x, y) => this.pick(x, y),
-      (turns) => this.#leave(turns),
+      (turns) => this.#setTurning(turns),
     );
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.touches.TWO = TOUCH.DOLLY_ROTATE;
@@ -98,16 +98,16 @@ export class Viewer {
     this.#controls.maxDistance = 12;
     this.#controls.maxPolarAngle = MathUtils.degToRad(150);
     this.#controls.addEventListener('change', () => this.redraw());
-    this.#controls.addEventListener('start', () => this.#take());
+    this.#controls.addEventListener('start', () => this.#markMoved());
     canvas.addEventListener('keydown', (event) => this.#onKey(event));
     canvas.addEventListener('webglcontextrestored', () => this.redraw());
     this.home();
-    // Tells the size at once.
+    // Fires at once with the current size.
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!);
   }
 
-  /** Shows another target; call `classify` for its zones. The one before it is freed, unless it is the same. */
-  setTarget(model: Model, projection: Placed): void {
+  /** Shows another target; call `classify` next. Frees the previous one, unless it is the same. */
+  setTarget(model: Model, projection: SplitProjection): void {
     this.highlight([]);
     this.#overlay?.dispose();
     if (model !== this.#model) this.#place(model);
@@ -115,15 +115,15 @@ export class Viewer {
     this.redraw();
   }
 
-  /** Shows the target that is shown as it has moved since, with its new place on the cage; call `classify` for its zones. */
-  move(projection: Placed): void {
+  /** Updates the projection of the current target, which has moved; call `classify` next. */
+  move(projection: SplitProjection): void {
     if (!this.#overlay) return;
     this.highlight([]);
-    this.#overlay.lay(projection);
+    this.#overlay.setProjection(projection);
     this.redraw();
   }
 
-  /** Plays an animation of the target, paint and all, in place of the one before; without one it goes back to rest. */
+  /** Plays an animation of the target in place of the current one; undefined returns to the rest pose. */
   play(clip: AnimationClip | undefined): void {
     this.#mixer?.stopAllAction();
     this.#mixer = undefined;
@@ -135,7 +135,7 @@ export class Viewer {
     this.redraw();
   }
 
-  /** Lights up triangles of the target, in place of those before. */
+  /** Highlights triangles of the target, in place of the current ones. */
   highlight(triangles: readonly number[]): void {
     if (triangles.length === 0 && !this.#highlight) return;
     this.#highlight?.dispose();
@@ -143,23 +143,23 @@ export class Viewer {
     this.redraw();
   }
 
-  /** Colours the target for the modes that show colours of their own. @param colors 3 bytes per triangle corner, sRGB. */
-  setTint(colors: Uint8Array): void {
-    this.#overlay?.setTint(colors);
+  /** Sets the colours for the look `colors`. @param colors 3 bytes per triangle corner, sRGB. */
+  setColors(colors: Uint8Array): void {
+    this.#overlay?.setColors(colors);
     this.redraw();
   }
 
-  /** Shows another texture in the mode that lays one over all of the target, painted or not. */
+  /** Sets the texture of the look `checker`. */
   setChecker(checker: Texture): void {
     this.#overlay?.setChecker(checker);
     this.redraw();
   }
 
-  /** What of the target is seen at a place on the screen. @param x,y As in a pointer's event: `clientX`, `clientY`. */
+  /** The spot of the target at a position on the screen. @param x,y Client coordinates. */
   pick(x: number, y: number): Spot | undefined {
     if (!this.#model) return undefined;
     const { left, top, width, height } = this.#canvas.getBoundingClientRect();
-    this.#camera.updateMatrixWorld(); // it may have moved since the last picture
+    this.#camera.updateMatrixWorld(); // it may have moved since the last frame
     return pick(
       this.#model.mesh,
       this.#camera,
@@ -167,7 +167,7 @@ export class Viewer {
     );
   }
 
-  /** How many pixels of the screen a length of 1 in the target's space takes. @param seen Where, in the studio: as a `Spot` has it. */
+  /** Screen pixels per unit of length of the target. @param seen A position in the studio, as in `Spot`. */
   pixelsAt(seen: Vector3): number {
     const depth = seen.clone().applyMatrix4(this.#camera.matrixWorldInverse).z;
     return (
@@ -176,26 +176,26 @@ export class Viewer {
     );
   }
 
-  /** Where the picture's upper edge is, as a direction of the target's space. */
+  /** The direction of the view's upper edge, in the target's space. */
   get up(): Vector3 {
     return new Vector3().setFromMatrixColumn(this.#camera.matrixWorld, 1);
   }
 
-  /** The place on the screen that the model stands at, as `pick` takes it. */
-  get middle(): { x: number; y: number } {
+  /** The centre of the view above the toolbar, in client coordinates. */
+  get center(): { x: number; y: number } {
     const { left, top, width, height } = this.#canvas.getBoundingClientRect();
     return { x: left + width / 2, y: top + (height - kToolbar) / 2 };
   }
 
-  /** Calls `prepare` before each picture is drawn: to bring textures up to date. */
+  /** Calls `prepare` before each frame, to update textures. */
   beforeDraw(prepare: () => void): void {
     this.#preparations.push(prepare);
   }
 
-  /** Hands the pointer to a tool; what the tool leaves alone turns the model. Without one everything does. */
+  /** Sets the tool for the pointer; undefined turns the model. */
   setTool(tool: Tool | undefined): void {
     this.#pointing.tool = tool;
-    if (tool) this.turn(false);
+    if (tool) this.sway(false);
   }
 
   /** Shows another cage, in the space of the target. */
@@ -206,20 +206,20 @@ export class Viewer {
     this.redraw();
   }
 
-  /** Shows another paint. It may be a render target's texture: call `redraw` when that was drawn anew. */
+  /** Sets the paint. If it is a render target's texture, call `redraw` after it changed. */
   setPaint(paint: Texture): void {
     this.#paint = paint;
     this.#overlay?.setPaint(paint);
     this.redraw();
   }
 
-  /** Shows the decision for another threshold. */
+  /** Shows the zones. */
   classify(classification: Classification): void {
     this.#overlay?.classify(classification);
     this.redraw();
   }
 
-  /** Shows the target as it was cut, until it moves or another is shown; without one its own triangles again. */
+  /** Shows the cut target until it moves or is replaced; undefined shows its own triangles. */
   async setCut(cut: CutTarget | undefined): Promise<void> {
     await this.#overlay?.setCut(cut);
     this.redraw();
@@ -230,35 +230,35 @@ export class Viewer {
     this.redraw();
   }
 
-  /** Turns the model slowly to and fro, until it is touched. */
-  turn(on: boolean): void {
-    if (on === (this.#turned !== undefined)) return;
-    this.#turned = on ? 0 : undefined;
+  /** Switches the idle rotation, which ends when the user moves the camera. */
+  sway(on: boolean): void {
+    if (on === (this.#swayed !== undefined)) return;
+    this.#swayed = on ? 0 : undefined;
     this.redraw();
   }
 
-  /** Looks at the model from where it is seen best, all of it. */
+  /** Resets the camera to show the whole model. */
   home(): void {
-    this.#taken = false;
-    this.#look({ ...kHome, radius: this.#farness });
+    this.#moved = false;
+    this.#look({ ...kHome, radius: this.#fullDistance });
   }
 
-  /** Where the visitor looks at the model from; undefined until it was turned. */
+  /** The camera angle chosen by the user; undefined by default. */
   get angle(): Angle | undefined {
-    if (!this.#taken) return undefined;
+    if (!this.#moved) return undefined;
     const { radius, phi, theta } = new Spherical().setFromVector3(this.#camera.position);
-    return { turn: MathUtils.radToDeg(theta), tilt: MathUtils.radToDeg(phi), near: this.#farness / radius };
+    return { turn: MathUtils.radToDeg(theta), tilt: MathUtils.radToDeg(phi), near: this.#fullDistance / radius };
   }
 
-  /** Looks at the model from there, as far as one can. */
+  /** Sets the camera angle, within the limits of the controls. */
   lookFrom({ turn, tilt, near }: Angle): void {
-    this.#take();
-    this.#look({ radius: this.#farness / near, phi: MathUtils.degToRad(tilt), theta: MathUtils.degToRad(turn) });
+    this.#markMoved();
+    this.#look({ radius: this.#fullDistance / near, phi: MathUtils.degToRad(tilt), theta: MathUtils.degToRad(turn) });
   }
 
-  /** How far away all of the model is seen. */
-  get #farness(): number {
-    // A tall picture is narrow: there the width decides.
+  /** The distance at which the whole model is visible. */
+  get #fullDistance(): number {
+    // In a tall view the width limits the model.
     const half = MathUtils.degToRad(kFieldOfView / 2);
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     const free = Math.max(1, height - kToolbar);
@@ -266,10 +266,10 @@ export class Viewer {
     return kFill / Math.sin(narrow);
   }
 
-  /** It is turned by the visitor from now on. */
-  #take(): void {
-    this.turn(false);
-    this.#taken = true;
+  /** The user moves the camera from now on. */
+  #markMoved(): void {
+    this.sway(false);
+    this.#moved = true;
   }
 
   #place(model: Model): void {
@@ -295,19 +295,19 @@ export class Viewer {
 
   #look({ radius, phi, theta }: Pick<Spherical, 'radius' | 'phi' | 'theta'>): void {
     this.#camera.position.setFromSphericalCoords(radius, phi, theta);
-    this.#atOnce(() => this.#controls.update());
+    this.#withoutDamping(() => this.#controls.update());
   }
 
-  /** Lets one finger, or the main button, turn the model, or nothing; two fingers do always. */
-  #leave(turns: boolean): void {
+  /** Sets whether one finger or the main button turns the model; two fingers always do. */
+  #setTurning(turns: boolean): void {
     this.#controls.touches.ONE = turns ? TOUCH.ROTATE : null;
     this.#controls.mouseButtons.LEFT = turns ? MOUSE.ROTATE : null;
   }
 
-  /** Moves the camera without the glide of a drag, and ends one under way. */
-  #atOnce(move: () => void): void {
+  /** Moves the camera without damping, and ends a glide in progress. */
+  #withoutDamping(move: () => void): void {
     this.#controls.enableDamping = false;
-    this.#controls.update(); // what is left of the glide, or it would be added to the move
+    this.#controls.update(); // otherwise the rest of the glide would be added to the move
     move();
     this.#controls.enableDamping = true;
     this.redraw();
@@ -327,8 +327,8 @@ export class Viewer {
     const action = actions[event.key];
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
-    this.#take();
-    this.#atOnce(action);
+    this.#markMoved();
+    this.#withoutDamping(action);
   }
 
   #resize(): void {
@@ -338,34 +338,34 @@ export class Viewer {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.#camera.aspect = width / height;
-    // The model stands in the middle of what the toolbar leaves free.
+    // Centre the model in the area above the toolbar.
     this.#camera.setViewOffset(width, height, 0, kToolbar / 2, width, height);
     const far = this.#far;
-    this.#far = this.#farness;
-    // As when a phone hides its address bar: the visitor's view stays, and as much of the model in it.
-    if (this.#taken) {
+    this.#far = this.#fullDistance;
+    // Such as when a phone hides its address bar: keep the user's angle and magnification.
+    if (this.#moved) {
       const { radius, phi, theta } = new Spherical().setFromVector3(this.#camera.position);
       this.#look({ radius: (radius * this.#far) / far, phi, theta });
     } else if (before !== this.#camera.aspect) this.home();
-    // At once: the canvas was cleared, and a frame's wait would flicker.
+    // Resizing cleared the canvas: draw now to avoid flicker.
     this.#draw();
   }
 
-  /** Waits until what was asked for so far is drawn. */
+  /** Waits until all requested changes are drawn. */
   async drawn(): Promise<void> {
     const frame = (): Promise<unknown> => new Promise((done) => requestAnimationFrame(done));
     await frame();
     await frame();
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    // A context that was lost has none, and draws no more.
+    // A lost context cannot sync, and draws nothing.
     if (!sync) return;
     gl.flush();
     while (gl.getSyncParameter(sync, gl.SYNC_STATUS) === gl.UNSIGNALED) await frame();
     gl.deleteSync(sync);
   }
 
-  /** Asks for a new picture in the next frame. */
+  /** Requests a new frame. */
   redraw(): void {
     this.#stale = true;
     this.#frame ||= requestAnimationFrame((now) => this.#onFrame(now));
@@ -373,11 +373,11 @@ export class Viewer {
 
   #onFrame(now: number): void {
     this.#frame = 0;
-    if (this.#turned !== undefined && this.#model) {
-      // From the first picture on.
-      if (this.#drawn > 0) this.#turned += Math.min(kLongestFrame, Math.max(0, now - this.#drawn) / 1000);
+    if (this.#swayed !== undefined && this.#model) {
+      // Starts with the first frame.
+      if (this.#drawn > 0) this.#swayed += Math.min(kLongestFrame, Math.max(0, now - this.#drawn) / 1000);
       this.#drawn = now;
-      const phase = Math.sin(this.#turned * ((2 * Math.PI) / kSwaySeconds));
+      const phase = Math.sin(this.#swayed * ((2 * Math.PI) / kSwaySeconds));
       const { radius, phi } = new Spherical().setFromVector3(this.#camera.position);
       this.#look({ radius, phi, theta: kHome.theta - kSway * phase });
     }
@@ -386,14 +386,14 @@ export class Viewer {
       this.#played = now;
       this.redraw();
     }
-    // Glides on for a few frames after a drag; each change asks for the next frame.
+    // Damping goes on for a few frames after a drag; each change requests the next frame.
     this.#controls.update();
     if (this.#stale) this.#draw();
   }
 
   #draw(): void {
     this.#stale = false;
-    if (!this.#model) return; // an empty room takes as long to draw as a full one
+    if (!this.#model) return; // an empty scene is not worth drawing
     for (const prepare of this.#preparations) prepare();
     const { mode, split, paint, cage } = this.#view;
     this.#studio.follow(this.#camera);
@@ -404,12 +404,14 @@ export class Viewer {
       this.#overlay?.show(look);
       this.renderer.render(this.#studio.scene, this.#camera);
     };
-    // The light moved with the camera; its shadow is the same on both sides of the line.
+    // The light moved with the camera. Both sides of the divider share its shadow.
     this.renderer.shadowMap.needsUpdate = true;
     this.renderer.setScissorTest(true);
     const look = (side: keyof typeof kLooks): Look => (paint || !showsPaint(side) ? kLooks[side] : 'bare');
-    if (mode !== 'compare') return draw(look(mode), 0, 1);
-    if (split > 0) draw(look('naive'), 0, split);
-    if (split < 1) draw(look('result'), split, 1);
+    if (mode !== 'compare') draw(look(mode), 0, 1);
+    else {
+      if (split > 0) draw(look('naive'), 0, split);
+      if (split < 1) draw(look('result'), split, 1);
+    }
   }
 }

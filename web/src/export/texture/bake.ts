@@ -10,34 +10,34 @@ import type { Transform } from '@gltf-transform/extensions';
 import { type Pixels, readPixels, writePng } from './pixels';
 import { Unwrapped, type Wrap } from './unwrapped';
 
-const kLeastSide = 1024; // texels, of the longer side
+const kLeastSide = 1024; // texels, longer side
 const kMostSide = 2048;
 
-/** More triangles than this without area in the texture, and it is a palette, which has no room for paint. */
+/** If more triangles than this have no area in the texture, it is a palette, which cannot hold paint. */
 const kMostFlat = 0.1; // of the painted triangles
 const kFlat = 0.01; // texels
-/** A texture that is laid over the surface more often than this is a pattern: mirrored halves lay it twice at most. */
-const kMostLaid = 2.5;
-const kMostCrowded = 0.6; // of the paint: the same, of a part of the texture
+/** A texture that is repeated more often than this is a pattern; mirrored halves use it twice at most. */
+const kMostRepeats = 2.5;
+const kMostOverlapping = 0.6; // of the paint; the same for a part of the texture
 
-/** What became of the paint. */
+/** Summary of the baking. */
 export interface Baked {
-  /** Textures that have it now. */
+  /** Number of painted textures. */
   textures: number;
-  /** What still has it as an overlay, for want of a texture that can hold it. */
+  /** Names of the parts that keep their overlay, for lack of a suitable texture. */
   overlays: string[];
-  /** What share of the paint has no place, as several places of the surface have the same texels. */
-  crowded: number;
+  /** Share of the paint that was left out, because several parts of the surface use the same texels. */
+  overlapping: number;
 }
 
-/** A part of the model, and the overlay on it, if there is anything to paint. */
+/** A primitive of the model, and its overlay if anything is painted. */
 interface Surface {
   name: string;
   base: Primitive;
   overlay: Primitive | undefined;
 }
 
-/** A texture, as materials of the same colour have it, and what it lies on. */
+/** A texture with a base colour factor, and the materials and surfaces that use it. */
 interface Sheet {
   texture: Texture;
   factor: [number, number, number];
@@ -46,10 +46,10 @@ interface Sheet {
 }
 
 /**
- * Paints what overlays show into the textures of the parts that they lie on, by the parts' own UVs, and takes those overlays
- * away. A part keeps its overlay if it has no texture, no UVs for it, colours at its vertices, or UVs that are no unwrapping.
- * @param document  As `cagecast` left it.
- * @param isOverlay Tells its overlays by their material.
+ * Bakes overlays into the textures of the primitives below, using their own UVs, and removes the overlays. A primitive keeps its
+ * overlay if it has no texture, no UVs for it, vertex colours, or UVs that are not an unwrapping.
+ * @param document  The output of `cagecast`.
+ * @param isOverlay Whether a material belongs to an overlay.
  * @param paint     In the cage's UVs.
  */
 export async function paintIntoTextures(
@@ -58,12 +58,12 @@ export async function paintIntoTextures(
   paint: Pixels,
 ): Promise<Baked> {
   const surfaces = listSurfaces(document, isOverlay);
-  const baked: Baked = { textures: 0, overlays: [], crowded: 0 };
+  const baked: Baked = { textures: 0, overlays: [], overlapping: 0 };
   for (const sheet of listSheets(surfaces)) {
     const unwrapped = await paintSheet(document, sheet, paint);
     if (!unwrapped) continue;
     baked.textures++;
-    baked.crowded = Math.max(baked.crowded, unwrapped.crowded);
+    baked.overlapping = Math.max(baked.overlapping, unwrapped.overlapping);
     for (const surface of sheet.surfaces) {
       surface.overlay?.dispose();
       surface.overlay = undefined;
@@ -75,7 +75,7 @@ export async function paintIntoTextures(
 }
 
 function listSurfaces(document: Document, isOverlay: (material: Material) => boolean): Surface[] {
-  const isLaid = (primitive: Primitive): boolean =>
+  const isOverlayOn = (primitive: Primitive): boolean =>
     primitive.getMaterial() !== null && isOverlay(primitive.getMaterial()!);
   const nodes = document.getRoot().listNodes();
   return document
@@ -84,12 +84,12 @@ function listSurfaces(document: Document, isOverlay: (material: Material) => boo
     .flatMap((mesh) => {
       const primitives = mesh.listPrimitives();
       const overlays = new Map(
-        primitives.filter(isLaid).map((overlay) => [overlay.getAttribute('TEXCOORD_0'), overlay]),
+        primitives.filter(isOverlayOn).map((overlay) => [overlay.getAttribute('TEXCOORD_0'), overlay]),
       );
-      const bases = primitives.filter((primitive) => !isLaid(primitive));
+      const bases = primitives.filter((primitive) => !isOverlayOn(primitive));
       const name = nodes.find((node) => node.getMesh() === mesh)?.getName() || mesh.getName() || 'a part';
       return bases.map((base) => {
-        // An overlay shares the cage's UVs with the primitive that it lies on.
+        // An overlay shares the accessor of the cage's UVs with its primitive.
         const overlay = base
           .listAttributes()
           .map((attribute) => overlays.get(attribute))
@@ -99,7 +99,7 @@ function listSurfaces(document: Document, isOverlay: (material: Material) => boo
     });
 }
 
-/** The textures that can be painted, with all that they lie on: also what stays bare has its texels. */
+/** The textures that can be painted, with all surfaces that use them, painted or not. */
 function listSheets(surfaces: readonly Surface[]): Sheet[] {
   const sheets = new Map<string, Sheet>();
   const numbers = new Map<Texture, number>();
@@ -119,7 +119,7 @@ function listSheets(surfaces: readonly Surface[]): Sheet[] {
   return [...sheets.values()].filter((sheet) => sheet.surfaces.some(({ overlay }) => overlay));
 }
 
-/** Gives a sheet's materials a painted copy of their texture. @returns Nothing if it cannot be painted. */
+/** Paints a copy of the texture for the materials of a sheet. @returns Undefined if it cannot be painted. */
 async function paintSheet(
   document: Document,
   { texture, factor, materials, surfaces }: Sheet,
@@ -132,13 +132,13 @@ async function paintSheet(
       () => undefined,
     ));
   if (!pixels) return undefined;
-  const layouts = surfaces.map(layOut);
+  const layouts = surfaces.map(layoutOf);
   const density = densityOf(layouts, pixels, paint);
   if (density === undefined) return undefined;
 
   const info = [...materials][0]!.getBaseColorTextureInfo()!;
   const unwrapped = new Unwrapped(pixels, [wrapOf(info.getWrapS()), wrapOf(info.getWrapT())], paint, density);
-  // What is seen one way round first, so that of mirrored halves one is painted whole.
+  // By orientation, so that one of two mirrored halves is painted completely.
   for (const way of [1, -1]) {
     for (const layout of layouts) {
       layout.painted.forEach((isPainted, triangle) => {
@@ -148,8 +148,8 @@ async function paintSheet(
       });
     }
   }
-  if (unwrapped.crowded > kMostCrowded) return undefined;
-  unwrapped.layOver(pixels, factor);
+  if (unwrapped.overlapping > kMostOverlapping) return undefined;
+  unwrapped.blendInto(pixels, factor);
 
   const painted = document
     .createTexture(texture.getName())
@@ -171,28 +171,28 @@ const { CLAMP_TO_EDGE, MIRRORED_REPEAT } = TextureInfo.WrapMode as Record<string
 const wrapOf = (wrap: number): Wrap =>
   wrap === CLAMP_TO_EDGE ? 'clamp' : wrap === MIRRORED_REPEAT ? 'mirror' : 'repeat';
 
-/** The triangles of a surface as they lie in its own texture, and in the cage's. */
+/** The triangles of a surface in its own UVs and in the cage's. */
 interface Layout {
   /** 3 per triangle. */
   corners: ArrayLike<number>;
   /** 2 per vertex. */
   own: Float64Array;
-  /** 2 per vertex; none if nothing is painted. */
+  /** 2 per vertex; empty if nothing is painted. */
   cage: Float64Array;
   /** 1 per triangle. */
   painted: Uint8Array;
 }
 
-function layOut({ base, overlay }: Surface): Layout {
+function layoutOf({ base, overlay }: Surface): Layout {
   const material = base.getMaterial()!;
   const uvs = uvsOf(base, material)!;
-  const own = placeBy(material, floatsOf(uvs));
+  const own = transformed(material, floatsOf(uvs));
   const corners = base.getIndices()?.getArray() ?? Uint32Array.from({ length: uvs.getCount() }, (_, vertex) => vertex);
   const painted = new Uint8Array(corners.length / 3);
-  const some = overlay?.getIndices()!.getArray() ?? [];
+  const some = overlay?.getIndices()?.getArray() ?? [];
   let next = 0;
   for (let triangle = 0; triangle < painted.length && next < some.length; triangle++) {
-    // The painted triangles are some of all, in the same order.
+    // The overlay has a subset of the triangles, in the same order.
     if ([0, 1, 2].some((corner) => some[next + corner] !== corners[3 * triangle + corner])) continue;
     painted[triangle] = 1;
     next += 3;
@@ -208,7 +208,7 @@ function cornersOf({ corners }: Layout, uvs: Float64Array, triangle: number): Si
 
 type Six = [number, number, number, number, number, number];
 
-/** All values of an accessor, those decoded that are normalised. */
+/** All values of an accessor, with normalised integers decoded. */
 function floatsOf(accessor: Accessor): Float64Array {
   const size = accessor.getElementSize();
   const out = new Float64Array(size * accessor.getCount());
@@ -217,7 +217,7 @@ function floatsOf(accessor: Accessor): Float64Array {
   return out;
 }
 
-/** The UVs that a primitive has for its own texture. */
+/** A primitive's UVs for its own texture. */
 function uvsOf(primitive: Primitive, material: Material): Accessor | null {
   const info = material.getBaseColorTextureInfo()!;
   return primitive.getAttribute(`TEXCOORD_${transformOf(info)?.getTexCoord() ?? info.getTexCoord()}`);
@@ -225,8 +225,8 @@ function uvsOf(primitive: Primitive, material: Material): Accessor | null {
 
 const transformOf = (info: TextureInfo): Transform | null => info.getExtension<Transform>('KHR_texture_transform');
 
-/** Moves UVs as the material says: `KHR_texture_transform`. @returns The same array. */
-function placeBy(material: Material, uvs: Float64Array): Float64Array {
+/** Applies `KHR_texture_transform` in place. @returns The same array. */
+function transformed(material: Material, uvs: Float64Array): Float64Array {
   const transform = transformOf(material.getBaseColorTextureInfo()!);
   if (!transform) return uvs;
   const [[left, top], [width, height], turn] = [transform.getOffset(), transform.getScale(), transform.getRotation()];
@@ -239,10 +239,10 @@ function placeBy(material: Material, uvs: Float64Array): Float64Array {
   return uvs;
 }
 
-/** In shares of the texture; negative where it is seen mirrored. */
+/** Signed area, as a share of the texture; negative if mirrored. */
 const areaOf = ([u0, v0, u1, v1, u2, v2]: Six): number => 0.5 * ((u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0));
 
-/** How many texels of the paint come to one of the texture, along a side. @returns Nothing if the UVs are no unwrapping. */
+/** Texels of the paint per texel of the texture, in one direction. @returns Undefined if the UVs are not an unwrapping. */
 function densityOf(layouts: readonly Layout[], texture: Pixels, paint: Pixels): number | undefined {
   const texels = texture.width * texture.height;
   let [laid, flat, count, own, cage] = [0, 0, 0, 0, 0];
@@ -257,7 +257,7 @@ function densityOf(layouts: readonly Layout[], texture: Pixels, paint: Pixels): 
       cage += Math.abs(areaOf(cornersOf(layout, layout.cage, triangle))) * paint.width * paint.height;
     });
   }
-  return laid > kMostLaid || flat > kMostFlat * count || own === 0 ? undefined : Math.sqrt(cage / own);
+  return laid > kMostRepeats || flat > kMostFlat * count || own === 0 ? undefined : Math.sqrt(cage / own);
 }
 
 function dropOverlays(document: Document, isOverlay: (material: Material) => boolean): void {

@@ -2,7 +2,7 @@ import transcoder from 'three/addons/libs/basis/basis_transcoder.js?url';
 import wasm from 'three/addons/libs/basis/basis_transcoder.wasm?url';
 import { importAmd } from '../amd';
 
-/** As far as it is used here. */
+/** The part of the transcoder that is used here. */
 interface Basis {
   initializeBasis(): void;
   KTX2File: new (
@@ -28,7 +28,7 @@ interface Basis {
   };
 }
 
-const kRgba = 13; // the transcoder's name for 8 bits a channel, uncompressed
+const kRgba = 13; // the transcoder's constant for uncompressed 8-bit RGBA
 
 let started: Promise<Basis> | undefined;
 
@@ -39,16 +39,15 @@ async function start(): Promise<Basis> {
   return module;
 }
 
-/** Decodes the first image of a KTX2 file, to the byte as the transcoder gives it. @throws Error in plain words, without a name. */
+/** Decodes the first image of a KTX2 file. @throws Error without a file name. */
 export async function readKtx2(bytes: ArrayBuffer): Promise<ImageData> {
   const { KTX2File } = await (started ??= start());
   const file = new KTX2File(new Uint8Array(bytes));
   try {
-    if (!file.isValid() || !file.startTranscoding()) throw new Error('there is a KTX2 image that cannot be decoded');
+    if (!file.isValid() || !file.startTranscoding()) throw new Error('a KTX2 image cannot be decoded');
     const image = new ImageData(file.getWidth(), file.getHeight());
     const data = new Uint8Array(file.getImageTranscodedSizeInBytes(0, 0, 0, kRgba));
-    if (!file.transcodeImage(data, 0, 0, 0, kRgba, 0, -1, -1))
-      throw new Error('there is a KTX2 image that cannot be decoded');
+    if (!file.transcodeImage(data, 0, 0, 0, kRgba, 0, -1, -1)) throw new Error('a KTX2 image cannot be decoded');
     image.data.set(data);
     return image;
   } finally {

@@ -1,7 +1,7 @@
 import { encodePng } from '../../platform/encode-png';
 import { readKtx2 } from './ktx2';
 
-/** An image: 4 bytes per pixel, sRGB and alpha, colours not multiplied by it; its upper row first, as glTF's UVs have it. */
+/** An image: 4 bytes per pixel, sRGB, straight alpha, upper row first, as in glTF's UV space. */
 export interface Pixels {
   width: number;
   height: number;
@@ -9,9 +9,9 @@ export interface Pixels {
 }
 
 /**
- * Reads an image file, KTX2 too, to the byte, also what is transparent: through WebGL, as a canvas in 2D multiplies colours by alpha.
- * @param fit Chooses the size to read it in by the size it has, 8 bits a channel.
- * @throws Error in plain words, without a name, if the browser cannot.
+ * Reads an image file, including KTX2, without loss: through WebGL, as a 2D canvas premultiplies colours.
+ * @param fit Chooses the size from the original size.
+ * @throws Error without a file name, if the browser cannot read it.
  */
 export async function readPixels(
   file: Blob,
@@ -20,7 +20,7 @@ export async function readPixels(
   const asItIs: ImageBitmapOptions = { premultiplyAlpha: 'none', colorSpaceConversion: 'none' };
   const source = file.type === 'image/ktx2' ? await readKtx2(await file.arrayBuffer()) : file;
   let bitmap = await createImageBitmap(source, asItIs).catch(() => {
-    throw new Error('there is an image the browser cannot read');
+    throw new Error('the browser cannot read an image');
   });
   const [width, height] = fit(bitmap.width, bitmap.height);
   if (width !== bitmap.width || height !== bitmap.height) {
@@ -32,7 +32,7 @@ export async function readPixels(
     });
   }
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
-  if (!gl) throw new Error('textures cannot be read here, for want of WebGL 2');
+  if (!gl) throw new Error('reading textures needs WebGL 2');
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
@@ -49,11 +49,11 @@ export async function readPixels(
   const error = gl.getError();
   gl.getExtension('WEBGL_lose_context')?.loseContext();
   bitmap.close();
-  if (error !== gl.NO_ERROR) throw new Error(`a texture of ${width} × ${height} pixels cannot be read here`);
+  if (error !== gl.NO_ERROR) throw new Error(`this device cannot read a texture of ${width} × ${height} pixels`);
   return { width, height, data };
 }
 
-/** Writes a PNG that has every byte of the image. */
+/** Encodes a PNG without loss. */
 export async function writePng({ width, height, data }: Pixels): Promise<Uint8Array<ArrayBuffer>> {
   const bitmap = await createImageBitmap(new ImageData(data, width, height), { premultiplyAlpha: 'none' });
   return new Uint8Array(await (await encodePng(bitmap)).arrayBuffer());

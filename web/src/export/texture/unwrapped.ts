@@ -1,11 +1,11 @@
 import type { Pixels } from './pixels';
 
-/** How a texture goes on beyond its edges. */
+/** Wrap mode of a texture. */
 export type Wrap = 'repeat' | 'mirror' | 'clamp';
 
-const kFewestSamples = 2; // per texel and direction: an edge of the paint is soft then
+const kFewestSamples = 2; // per texel and direction, for antialiased edges
 const kMostSamples = 4;
-const kMargin = 1 / 64; // of the longer side: what is painted around islands, for what filters and shrinks the texture
+const kMargin = 1 / 64; // of the longer side: the margin painted around UV charts, for filtering and mipmaps
 
 /** Linear light, 0..1, for each byte of sRGB. */
 const kLinear = Float32Array.from({ length: 256 }, (_, byte) =>
@@ -16,8 +16,8 @@ const toByte = (linear: number): number =>
   255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
 
 /**
- * The paint on a model's surface, unwrapped by the model's own UVs: put together triangle by triangle, then laid over the
- * model's own texture. Of places that share a texel, the one that comes first has it.
+ * The paint resampled into a model's own UVs, triangle by triangle, and then blended into the model's texture. Where triangles
+ * overlap in UV space, the first one wins.
  */
 export class Unwrapped {
   readonly #width: number;
@@ -26,17 +26,17 @@ export class Unwrapped {
   readonly #samples: number;
   readonly #columnOf: (column: number) => number;
   readonly #rowOf: (row: number) => number;
-  /** 4 per texel: colour in linear light, multiplied by alpha, and alpha; sums over samples, later means. */
+  /** 4 per texel: premultiplied linear RGBA; sums over samples, then means. */
   readonly #colors: Float32Array;
-  /** 1 per texel: the share of it that lies on the surface. */
+  /** 1 per texel: the covered share. */
   readonly #covered: Float32Array;
   #refused = 0;
   #painted = 0;
 
   /**
-   * @param size    Of the texture, in texels.
+   * @param size    Size of the texture, in texels.
    * @param paint   In the cage's UVs; it repeats.
-   * @param density How many texels of the paint come to one of the texture, along a side.
+   * @param density Texels of the paint per texel of the texture, in one direction.
    */
   constructor(
     { width, height }: { width: number; height: number },
@@ -48,31 +48,31 @@ export class Unwrapped {
     this.#height = height;
     this.#paint = paint;
     this.#samples = Math.max(kFewestSamples, Math.min(kMostSamples, Math.ceil(density)));
-    this.#columnOf = placeIn(width, wraps[0]);
-    this.#rowOf = placeIn(height, wraps[1]);
+    this.#columnOf = wrapper(width, wraps[0]);
+    this.#rowOf = wrapper(height, wraps[1]);
     this.#colors = new Float32Array(4 * width * height);
     this.#covered = new Float32Array(width * height);
   }
 
-  /** What share of the paint has no place, because another place of the surface has its texels. */
-  get crowded(): number {
+  /** Share of the paint that was left out, because its texels were taken. */
+  get overlapping(): number {
     return this.#refused === 0 ? 0 : this.#refused / (this.#refused + this.#painted);
   }
 
   /**
-   * Lays a triangle of the surface. Samples on an edge belong to one of the two triangles that share it.
+   * Rasterises a triangle. Samples on a shared edge belong to exactly one triangle.
    * @param own  6 numbers: the model's own UVs.
-   * @param cage 6 numbers: the cage's UVs; undefined where there is to be no paint.
+   * @param cage 6 numbers: the cage's UVs; undefined for unpainted triangles.
    */
   draw(own: ArrayLike<number>, cage: ArrayLike<number> | undefined): void {
     const n = this.#samples;
-    // In a grid of samples, whose places are whole numbers.
+    // In sample coordinates: samples lie at integers.
     const [x0, x1, x2] = [0, 2, 4].map((at) => own[at]! * this.#width * n - 0.5) as [number, number, number];
     const [y0, y1, y2] = [1, 3, 5].map((at) => own[at]! * this.#height * n - 0.5) as [number, number, number];
     const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
     if (area === 0) return;
     const slopes = cage && [0, 1].map((k) => slopeOf(cage[k]!, cage[2 + k]!, cage[4 + k]!));
-    /** Of a number that is linear on the triangle: how it grows to the right and downwards. */
+    /** The gradient of a value that is linear on the triangle. */
     function slopeOf(v0: number, v1: number, v2: number): [number, number] {
       return [
         ((v1 - v0) * (y2 - y0) - (v2 - v0) * (y1 - y0)) / area,
@@ -88,7 +88,7 @@ export class Unwrapped {
     for (let y = Math.ceil(Math.min(y0, y1, y2)); y < end; y++) {
       let [left, right] = [Infinity, -Infinity];
       for (const [ax, ay, bx, by] of edges) {
-        // The same for both triangles of an edge, whichever way they go along it.
+        // Independent of the direction of the edge, so equal for both of its triangles.
         const [px, py, qx, qy] = ay < by ? [ax, ay, bx, by] : [bx, by, ax, ay];
         if (!(py <= y && y < qy)) continue;
         const x = px + ((qx - px) * (y - py)) / (qy - py);
@@ -112,7 +112,7 @@ export class Unwrapped {
     }
   }
 
-  /** Adds a sample to a texel, unless that is full. @param u,v Its place in the paint, if it has any. */
+  /** Adds a sample to a texel, unless that is fully covered. @param u,v UVs in the paint; absent for unpainted triangles. */
   #add(texel: number, u?: number, v?: number): void {
     const share = 1 / this.#samples ** 2;
     if (this.#covered[texel]! > 1 - 0.5 * share) {
@@ -125,7 +125,7 @@ export class Unwrapped {
     this.#addPaint(4 * texel, u, v!, share);
   }
 
-  /** Adds the paint at a place, between its four nearest texels. */
+  /** Adds a bilinear sample of the paint. */
   #addPaint(to: number, u: number, v: number, share: number): void {
     const { width, height, data } = this.#paint;
     const [x, y] = [u * width - 0.5, v * height - 0.5];
@@ -142,11 +142,11 @@ export class Unwrapped {
   }
 
   /**
-   * Lays the paint over a texture of this size, in its place; its alpha stays. What is not painted stays to the byte, unless
-   * there is a factor. Islands get a margin of what is at their edge. To be called once.
-   * @param factor What the texture's colours are multiplied by, in linear light.
+   * Blends the paint into a texture of this size, in place; its alpha is kept. Unpainted texels are unchanged, unless there is a
+   * factor. Charts get a margin in the colour of their edge. Call it once.
+   * @param factor The texture's base colour factor, in linear light.
    */
-  layOver({ data }: Pixels, factor: readonly [number, number, number]): void {
+  blendInto({ data }: Pixels, factor: readonly [number, number, number]): void {
     this.#average();
     this.#spread();
     const plain = factor.every((share) => share === 1);
@@ -159,7 +159,7 @@ export class Unwrapped {
     }
   }
 
-  /** A texel at the edge of an island gets all of what it has a part of. */
+  /** Normalises partly covered texels at the edges of charts. */
   #average(): void {
     this.#covered.forEach((share, texel) => {
       if (share === 0 || share === 1) return;
@@ -167,7 +167,7 @@ export class Unwrapped {
     });
   }
 
-  /** Paints a margin around the islands, ring by ring: each texel of it is the mean of its neighbours further in. */
+  /** Paints a margin around the charts, ring by ring: each texel is the mean of its neighbours in the ring before. */
   #spread(): void {
     const width = Math.ceil(kMargin * Math.max(this.#width, this.#height));
     let ring = this.#ringAround(Uint32Array.from(this.#covered.keys()));
@@ -184,7 +184,7 @@ export class Unwrapped {
     }
   }
 
-  /** The texels without a place on the surface that are next to those that have one. */
+  /** The uncovered texels next to covered ones. */
   #ringAround(texels: Iterable<number>): number[] {
     const found = new Set<number>();
     for (const texel of texels) {
@@ -217,8 +217,8 @@ export class Unwrapped {
 
 const modulo = (a: number, b: number): number => a - b * Math.floor(a / b);
 
-/** What finds the place of a texel that may lie beyond the edges; −1 for none. */
-function placeIn(size: number, wrap: Wrap): (place: number) => number {
+/** Maps a texel coordinate that may lie outside the texture into it; −1 for none. */
+function wrapper(size: number, wrap: Wrap): (place: number) => number {
   if (wrap === 'repeat') return (place) => modulo(place, size);
   if (wrap === 'clamp') return (place) => (place >= 0 && place < size ? place : -1);
   return (place) => {

@@ -1,14 +1,14 @@
 import { element } from '../platform/page';
 import { kPaintedSizes, type PaintedSize } from './painted-sheet';
 
-/** What a tool of painting is; each shows the options that concern it. */
+/** The painting tools; each shows its own options. */
 export type Kind = 'brush' | 'eraser' | 'sticker';
 
-// What the slider of sizes goes from and to, as shares of the diagonal of the cage.
+// The range of the size slider, as shares of the diagonal of the cage.
 const kLeastSize = 0.004;
 const kMostSize = 0.4;
 
-/** What is chosen below the list of layers for the tools to paint with. */
+/** The tool options below the list of layers. */
 export class PaintOptions {
   readonly #slot = element('tool-options', HTMLElement);
   readonly #color = element('brush-color', HTMLInputElement);
@@ -30,9 +30,9 @@ export class PaintOptions {
     return this.#color.value;
   }
 
-  /** A share of the diagonal of the cage: across the brush, or along the longer side of a sticker. */
+  /** The brush's diameter, or the longer side of a sticker, as a share of the diagonal of the cage. */
   get size(): number {
-    // Even steps of the slider are even ratios.
+    // The slider is logarithmic.
     return kLeastSize * (kMostSize / kLeastSize) ** (Number(this.#size.value) / 100);
   }
 
@@ -50,7 +50,7 @@ export class PaintOptions {
     return this.#mirror.checked;
   }
 
-  /** Texels a side of what is painted on. */
+  /** Texture size of the painting, in texels per side. */
   get texels(): PaintedSize {
     return kPaintedSizes[this.#fine.checked ? 1 : 0];
   }

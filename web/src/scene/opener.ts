@@ -4,14 +4,14 @@ import type { LayerStack } from '../layers/stack';
 import { type Choice, offerPaints } from '../panels/paint-picker';
 import { element, showError } from '../platform/page';
 import { type Intake, setUpFiles } from './files';
-import { loadModel, type Model } from './load';
+import { loadModel, type Model } from './load-model';
 import { loadPaint, type Paint, titleOf } from './paint';
 import { fetchFile, kChecker, paintName, type Sample } from './samples';
 import { kReading, type Locks, type Session, type Shown, type Wanted } from './session';
 
 const kOwn = 'own';
 
-/** Opens samples and the visitor's own files, and says what is open. */
+/** Opens samples and the user's own files, and shows what is open. */
 export class Opener {
   readonly #session: Session;
   readonly #stack: LayerStack;
@@ -19,26 +19,26 @@ export class Opener {
   readonly #select = element('sample-select', HTMLSelectElement);
   readonly #renderer: WebGLRenderer | undefined;
   #samples: Sample[] = [];
-  /** What is to be said of the files that came in last, once they are on show. */
-  #doubts: readonly string[] = [];
+  /** Warnings about the latest files, shown once these are loaded. */
+  #warnings: readonly string[] = [];
 
-  /** @param renderer What shows them, if anything can. */
+  /** @param renderer Undefined without WebGL. */
   constructor(session: Session, stack: LayerStack, edits: Edits, renderer: WebGLRenderer | undefined) {
     this.#session = session;
     this.#stack = stack;
     this.#edits = edits;
     this.#renderer = renderer;
-    setUpFiles((intake) => this.#take(intake));
+    setUpFiles((intake) => this.#open(intake));
     this.#select.addEventListener('change', () => this.openSample(this.#select.value));
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap());
     session.on('progress', ({ state }) => {
       if (state === 'working') return;
       if (session.shown) this.#describe(session.shown);
-      // Another that was chosen may have been given up, or cannot be had.
+      // The chosen one may have been cancelled or failed to load.
       const { sample } = session.shown?.target ?? {};
       if (sample && sample === session.shown?.cage.sample) this.#select.value = sample.name;
-      if (state !== 'failed' && this.#doubts.length > 0) showError(this.#doubts.join(' '));
-      this.#doubts = [];
+      if (state !== 'failed' && this.#warnings.length > 0) showError(this.#warnings.join(' '));
+      this.#warnings = [];
     });
     stack.on('change', () => session.shown && this.#describe(session.shown));
   }
@@ -47,22 +47,22 @@ export class Opener {
     return this.#samples;
   }
 
-  /** Lists the samples to choose from. */
+  /** Fills the list of samples. */
   listSamples(samples: Sample[]): void {
     this.#samples = samples;
     this.#select.replaceChildren(...samples.map(({ name, title }) => new Option(title, name)));
   }
 
   /**
-   * Opens the sample of that name; there may be none of that name.
-   * @param paint Which of its paints, by `paintName`: the first, if it has none of that name.
-   * @param locks What is already said about its segments.
+   * Opens a sample by name; does nothing if there is none.
+   * @param paint One of its paints, by `paintName`; the first by default.
+   * @param locks Locks of its segments.
    */
   openSample(name: string, paint?: string, locks: Locks = {}): void {
     const sample = this.#samples.find((candidate) => candidate.name === name);
     if (!sample) return;
     this.#select.value = name;
-    this.#doubts = [];
+    this.#warnings = [];
     const { target, cage, paints } = sample;
     const chosen = paint === kChecker ? undefined : (paints.find(({ file }) => paintName(file) === paint) ?? paints[0]);
     const model = async (address: string): Promise<Model> => ({
@@ -76,7 +76,7 @@ export class Opener {
     );
   }
 
-  /** Reads a paint of any sample. @param name By `paintName`. @returns Nothing if there is none of that name. */
+  /** Loads a paint of any sample. @param name By `paintName`. @returns Undefined if there is none. */
   async paint(name: string): Promise<Paint | undefined> {
     if (name === kChecker) return this.#session.checker;
     const found = this.#find(name);
@@ -98,15 +98,15 @@ export class Opener {
     return paint ? { ...(await loadPaint(await fetchFile(paint.file), paint.file)), sample } : this.#session.checker;
   }
 
-  /** Takes in files of the visitor's own. */
-  #take({ target, cage, texture, unclear, doubts, all }: Intake): void {
+  /** Opens the user's own files. */
+  #open({ target, cage, texture, unclear, warnings, all }: Intake): void {
     const wanted: Wanted = {};
     const load = (file: File): Promise<Model> => loadModel(file, this.#renderer, all);
     if (target) wanted.target = load(target);
     if (cage) wanted.cage = load(cage);
     const [one, other] = unclear;
     if (one && other) {
-      // Nothing in their names tells: the cage is the one with fewer triangles.
+      // Their names do not tell them apart: the cage is the one with fewer triangles.
       const pair = Promise.all([load(one), load(other)]).then((models) =>
         models.sort((a, b) => b.mesh.indices.length - a.mesh.indices.length),
       );
@@ -114,12 +114,12 @@ export class Opener {
       wanted.cage = pair.then(([, smaller]) => smaller!);
     }
     if (texture) wanted.paint = loadPaint(texture);
-    this.#doubts = doubts;
+    this.#warnings = warnings;
     this.#session.want(wanted);
   }
 
   #describe({ target, cage, paint }: Shown): void {
-    // Another may have been chosen since, or all been removed.
+    // The paint may have been replaced or removed since.
     const { layers, base } = this.#stack;
     const isOwn = !paint.sample && paint !== this.#session.checker && layers.some(({ sheet }) => sheet === paint);
     const texture = isOwn ? paint : ((base?.sheet as Paint | undefined) ?? { name: 'none' });
@@ -133,7 +133,7 @@ export class Opener {
     this.#offerPaints({ cage });
   }
 
-  /** Tells what is still a sample's among files of one's own. */
+  /** Tells which of the models still belongs to a sample. */
   #describeOrigin(target: boolean, cage: boolean): void {
     const own = this.#select.querySelector<HTMLOptionElement>(`option[value=${kOwn}]`);
     if (target && cage) own?.remove();
@@ -144,20 +144,20 @@ export class Opener {
     element('swap', HTMLButtonElement).hidden = target || cage;
     element('hint', HTMLElement).textContent =
       target === cage
-        ? 'Choose your own, or drop files anywhere on the page. They stay on this device.'
+        ? 'Choose your own files, or drop them anywhere on the page. They stay on this device.'
         : target
-          ? 'The cage is yours, the target is still the sample’s: add the target this cage was made for.'
-          : 'The target is yours, the cage is still the sample’s: add the cage made for it.';
+          ? 'The cage is yours, but the target is still the sample’s. Add the target that your cage was made for.'
+          : 'The target is yours, but the cage is still the sample’s. Add the cage that was made for your target.';
   }
 
-  /** Puts another paint under everything, as a step that can be undone. */
+  /** Sets the base paint, as an undo step. */
   async #choose(loaded: Promise<Paint>): Promise<void> {
     let wanted = true;
     const done = this.#session.work(kReading, 0, () => (wanted = false));
     try {
       const paint = await loaded;
       if (!wanted) return;
-      this.#edits.do(`choice of ${titleOf(paint)}`, () => this.#stack.setBase(titleOf(paint), paint));
+      this.#edits.do(`choosing ${titleOf(paint)}`, () => this.#stack.setBase(titleOf(paint), paint));
       done();
     } catch (error) {
       if (wanted) this.#session.fail(error);
@@ -165,7 +165,7 @@ export class Opener {
     }
   }
 
-  /** Offers what may lie under everything: the sample's paints, and the checker. */
+  /** Lists the base paints: the sample's, and the checker. */
   #offerPaints({ cage: { sample } }: Pick<Shown, 'cage'>): void {
     const { checker } = this.#session;
     const choices: (Choice & { load(): Promise<Paint> })[] = [
@@ -182,7 +182,7 @@ export class Opener {
       onAdd: async (index) => {
         try {
           const paint = await choices[index]!.load();
-          this.#edits.do(`adding of ${titleOf(paint)}`, () => this.#stack.add(titleOf(paint), paint));
+          this.#edits.do(`adding ${titleOf(paint)}`, () => this.#stack.add(titleOf(paint), paint));
         } catch (error) {
           showError((error as Error).message);
         }

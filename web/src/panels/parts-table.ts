@@ -1,17 +1,17 @@
 import type { Classification, Lock, SegmentStats } from 'cagecast';
 import { element } from '../platform/page';
-import type { Part } from '../scene/extract';
+import type { Part } from '../scene/extract-mesh';
 import type { Locks, Session, Shown } from '../scene/session';
 import { cssColor, type Rgb } from '../view/colors';
 import { segmentColors, trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 
-/** Rows enough to read; a scan may fall into thousands of pieces. */
+/** A scan may consist of thousands of segments. */
 const kMostRows = 50;
-const kMostColors = 3; // of those that share a row
+const kMostColors = 3; // per row
 const kLocks: Record<Lock, string> = { auto: 'auto', keep: 'keep', exclude: 'exclude' };
 
-/** Segments that are listed as one, and their numbers together. */
+/** Segments that share a row, and their sums. */
 interface Entry {
   name: string;
   segments: number[];
@@ -31,8 +31,8 @@ interface Row {
 }
 
 /**
- * The table of a target's segments, which its panel calls parts: how each fared, and what the visitor says about it.
- * Segments of one mesh of which the cage covers nothing, as thirty teeth in a mouth, share a row.
+ * The table of a target's segments, called parts on the page: their verdicts, and the user's overrides.
+ * Segments of one mesh that the cage does not cover at all, such as thirty teeth, share a row.
  */
 export class PartsTable {
   readonly #body = element('segment-rows', HTMLTableSectionElement);
@@ -43,45 +43,45 @@ export class PartsTable {
   constructor(session: Session, viewer: Viewer | undefined) {
     this.#session = session;
     this.#viewer = viewer;
-    // A finger that was lifted still points, until it touches something else.
-    this.#body.addEventListener('pointerleave', ({ pointerType }) => pointerType === 'touch' || this.#light([]));
-    addEventListener('pointerdown', ({ target }) => this.#body.contains(target as Node) || this.#light([]));
-    this.#body.addEventListener('focusout', () => this.#light([]));
-    // A card that is closed under the pointer no longer points at anything.
+    // Keep the highlight of a tapped row until something else is touched.
+    this.#body.addEventListener('pointerleave', ({ pointerType }) => pointerType === 'touch' || this.#highlight([]));
+    addEventListener('pointerdown', ({ target }) => this.#body.contains(target as Node) || this.#highlight([]));
+    this.#body.addEventListener('focusout', () => this.#highlight([]));
+    // Closing the card removes its rows from under the pointer.
     const card = element('parts', HTMLDetailsElement);
-    card.addEventListener('toggle', () => card.open || this.#light([]));
+    card.addEventListener('toggle', () => card.open || this.#highlight([]));
     session.on('transfer', (shown) => this.#list(shown, session.locks));
     session.on('zones', ({ classification }) => {
-      // Something else than the table may have locked parts, even some that share a row.
-      const told = this.#rows.every(({ segments, choice }) =>
+      // Locks may have been set elsewhere, even for some segments of a row only.
+      const upToDate = this.#rows.every(({ segments, choice }) =>
         segments.every((segment) => (session.locks[segment] ?? 'auto') === choice.value),
       );
-      if (!told) this.#list(session.shown!, session.locks);
+      if (!upToDate) this.#list(session.shown!, session.locks);
       this.#showVerdicts(classification);
     });
   }
 
-  /** Lists the segments of another target, or of another projection of it: the largest, those that are covered least first. */
+  /** Lists the largest segments of a projection, the least covered first. */
   #list(shown: Shown, locks: Locks): void {
     const entries = entriesOf(shown.projection.segmentStats, shown.target.mesh.parts, locks);
     const colors = segmentColors(shown);
     const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMostRows));
-    // Sorting is stable: the larger of two that are covered alike stays before the smaller.
+    // Sorting is stable: of two with equal coverage the larger comes first.
     const listed = largest.toSorted((a, b) => coverageOf(a) - coverageOf(b));
     this.#rows = listed.map((entry) => this.#row(entry, colors));
     this.#body.replaceChildren(...this.#rows.map(({ row }) => row));
     element('segment-caption', HTMLElement).textContent =
       listed.length < entries.length
-        ? `The ${listed.length} largest of ${entries.length.toLocaleString('en')} connected parts, those the cage covers least first.`
-        : 'Each connected part, those the cage covers least first.';
+        ? `The ${listed.length} largest of ${entries.length.toLocaleString('en')} connected parts, the least covered first.`
+        : 'All connected parts, the least covered first.';
   }
 
-  /** Writes which segments may be painted, and which may not. */
+  /** Shows the verdict of each row. */
   #showVerdicts({ segmentStats }: Classification): void {
     for (const { segments, cover, verdict } of this.#rows) {
-      // It changes with every frame of a model that moves.
+      // It changes with every frame of a moving model.
       cover.textContent = coverOf(segments.map((segment) => segmentStats[segment]!));
-      // Those that share a row share its verdict: nothing of any of them is covered, and the same was said about all.
+      // Segments that share a row are all uncovered and have the same lock, hence the same verdict.
       const { culled } = segmentStats[segments[0]!]!;
       verdict.textContent = culled ? 'culled' : 'passes';
       verdict.dataset.verdict = verdict.textContent;
@@ -104,28 +104,28 @@ export class PartsTable {
     last.append(choice);
     const cover = cell('td', '');
     row.append(head, cell('td', points.toLocaleString('en')), cover, verdict, last);
-    row.addEventListener('pointerenter', () => this.#light(segments));
-    row.addEventListener('focusin', () => this.#light(segments));
+    row.addEventListener('pointerenter', () => this.#highlight(segments));
+    row.addEventListener('focusin', () => this.#highlight(segments));
     return { segments, row, cover, verdict, choice };
   }
 
   #select({ name, segments, lock }: Entry): HTMLSelectElement {
     const select = document.createElement('select');
     select.name = 'lock';
-    select.setAttribute('aria-label', `Say about ${name}`);
+    select.setAttribute('aria-label', `Override for ${name}`);
     for (const [value, text] of Object.entries(kLocks)) select.add(new Option(text, value, false, value === lock));
     select.addEventListener('change', () => this.#session.lock(segments, select.value as Lock));
     return select;
   }
 
-  /** Lights up segments of the target, or none. */
-  #light(segments: readonly number[]): void {
+  /** Highlights segments of the target. */
+  #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
     this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : []);
   }
 }
 
-/** The segments that have triangles, as they are listed, in the order of their vertices. */
+/** The segments with area, grouped into rows. */
 function entriesOf(stats: readonly SegmentStats[], parts: readonly Part[], locks: Locks): Entry[] {
   const entries = new Map<string, Entry>();
   stats.forEach(({ points, area, exposedArea, coveredArea, group }, segment) => {
@@ -151,7 +151,7 @@ function entriesOf(stats: readonly SegmentStats[], parts: readonly Part[], locks
   return [...entries.values()];
 }
 
-/** Numbers those of one name, in the order they come in, and says how many pieces each is of. */
+/** Numbers entries of the same name, and adds how many pieces each has. */
 function named(entries: Entry[]): Entry[] {
   return entries.map((entry) => {
     const namesakes = entries.filter(({ name }) => name === entry.name);
@@ -161,7 +161,7 @@ function named(entries: Entry[]): Entry[] {
   });
 }
 
-/** What share of the exposed area of segments is covered, in words. */
+/** The covered share of the exposed area of segments, as text. */
 function coverOf(stats: readonly SegmentStats[]): string {
   const sum = (area: 'exposedArea' | 'coveredArea'): number =>
     stats.reduce((total, segment) => total + segment[area], 0);
@@ -173,7 +173,7 @@ function coverageOf({ exposedArea, coveredArea }: Entry): number {
   return exposedArea > 0 ? coveredArea / exposedArea : 0;
 }
 
-/** The colours of segments in the picture that shows each in its own, side by side. */
+/** The colours of segments in the view “Parts”, side by side. */
 function swatch(colors: readonly Rgb[]): HTMLElement {
   const made = document.createElement('i');
   made.className = 'swatch';
@@ -190,7 +190,7 @@ function cell(type: 'td' | 'th', text: string): HTMLTableCellElement {
   return made;
 }
 
-/** Up to 100 % only where nothing is missing, and 0 % only where nothing is there. */
+/** Rounded down: 100 % only if nothing is missing, and 0 % only if there is nothing. */
 function percent(share: number): string {
   if (share > 0 && share < 0.01) return '< 1 %';
   return `${Math.floor(100 * share)} %`;

@@ -1,31 +1,31 @@
 import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { damageOf } from './damage';
-import { type ExtractedMesh, extractMesh } from './extract';
+import { type ExtractedMesh, extractMesh } from './extract-mesh';
 import { readGltfHead } from './gltf-file';
+import { damageOf } from './image-damage';
 import type { Sample } from './samples';
 
-/** A model that was read: the scene to show, and its triangles to transfer with. */
+/** A loaded model: the scene to show, and its triangles for the transfer. */
 export interface Model {
   /** The file's name, for people. */
   name: string;
-  /** The file, and after it those that came with it. */
+  /** The file, then those it refers to. */
   files: readonly File[];
   scene: Object3D;
   animations: readonly AnimationClip[];
   mesh: ExtractedMesh;
-  /** What of its images cannot be shown, and why: a sentence. The model works all the same. */
+  /** A message about images that cannot be shown; the model is usable all the same. */
   damage?: string;
-  /** Which sample it belongs to; the visitor's own to none. */
+  /** The sample it belongs to; undefined for the user's own files. */
   sample?: Sample;
 }
 
 /**
  * Reads a GLB or glTF model, Draco, meshopt, KTX2 and quantised data included.
  * @param file       The model.
- * @param renderer   What is to show it, if anything can.
+ * @param renderer   Undefined without WebGL.
  * @param companions Files a .gltf may refer to (its .bin, its images), found by name.
- * @throws Error of one sentence that begins with the file's name.
+ * @throws Error with a message that begins with the file's name.
  */
 export async function loadModel(
   file: File,
@@ -36,7 +36,7 @@ export async function loadModel(
   try {
     const bytes = await file.arrayBuffer().catch(() => {
       throw new Error(
-        `the browser cannot read this file of ${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB; it may be too large, or gone`,
+        `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
       );
     });
     const head = readGltfHead(bytes);
@@ -63,13 +63,13 @@ export async function loadModel(
       release();
     }
   } catch (error) {
-    throw new Error(`${file.name}: ${plainWords(error)}`, { cause: error });
+    throw new Error(`${file.name}: ${messageOf(error)}`, { cause: error });
   } finally {
     for (const url of urls.values()) URL.revokeObjectURL(url);
   }
 }
 
-/** Frees the graphics memory of a model that is no longer shown. */
+/** Frees the GPU memory of a model. */
 export function disposeModel({ mesh }: Model): void {
   for (const part of mesh.parts) {
     part.mesh.geometry.dispose();
@@ -80,18 +80,18 @@ export function disposeModel({ mesh }: Model): void {
   }
 }
 
-/** The default scene; all nodes of a file without scenes. Nodes get their matrices exactly as the file has them. */
+/** The default scene, or all nodes of a file without scenes; with exactly the file's node matrices. */
 async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
   const nodes: Object3D[] = scene ? [] : await parser.getDependencies('node');
   const root = scene ?? new Group().add(...nodes.filter((node) => !node.parent));
   root.traverse((object) => {
     const matrix: number[] | undefined = parser.json.nodes?.[parser.associations.get(object)?.nodes ?? -1]?.matrix;
     if (!matrix) return;
-    // The loader takes it apart into a translation, a rotation and a scale, which rounds, and loses a shear.
+    // The loader decomposes matrices, which rounds them and loses shear.
     object.matrixAutoUpdate = false;
     object.matrix.fromArray(matrix);
   });
-  // What an earlier transfer laid over the model, as `cagecast transfer` marks it, is no part of it.
+  // Ignore overlays that an earlier transfer added; `cagecast transfer` marks them.
   const overlays: Object3D[] = [];
   root.traverse((object) => {
     if (object instanceof Mesh && object.geometry.userData.cagecastOverlay === true) overlays.push(object);
@@ -100,12 +100,12 @@ async function sceneOf({ scene, parser }: GLTF): Promise<Object3D> {
   return root;
 }
 
-/** The name of a mesh's node as the file has it, with its material's where a node has several: as the command line says it. */
+/** The name of a mesh as the command line reports it: its node's, and its material's if the node has several primitives. */
 function nameOf(mesh: Mesh, { parser }: GLTF): string | undefined {
   const { nodes = [], meshes = [], materials = [] } = parser.json;
   const place = parser.associations.get(mesh);
   const primitives: { material?: number }[] = meshes[place?.meshes ?? -1]?.primitives ?? [];
-  // The loader makes one object of a node and its mesh, unless that has several primitives.
+  // The loader merges a node with its mesh, unless that has several primitives.
   const node = nodes[place?.nodes ?? (mesh.parent && parser.associations.get(mesh.parent)?.nodes) ?? -1];
   const name: string | undefined = node?.name ?? meshes[place?.meshes ?? -1]?.name;
   const material: string | undefined = materials[primitives[place?.primitives ?? -1]?.material ?? -1]?.name;
@@ -117,11 +117,11 @@ function nameOf(mesh: Mesh, { parser }: GLTF): string | undefined {
 function findCompanion(uri: string, companions: readonly File[]): File {
   const name = uri.split('/').at(-1);
   const found = companions.find((file) => file.name === name);
-  if (!found) throw new Error(`the model needs the file ${uri}; choose or drop it together with the model`);
+  if (!found) throw new Error(`the model needs the file ${uri}; choose or drop both together`);
   return found;
 }
 
-/** Gives the loader the decoders this file asks for; they are fetched only then. Returns what frees them. */
+/** Adds the decoders that the file needs, fetched on demand. @returns A function that frees them. */
 async function addDecoders(
   loader: GLTFLoader,
   manager: LoadingManager,
@@ -148,11 +148,11 @@ async function addDecoders(
   return () => held.forEach((decoder) => decoder.dispose());
 }
 
-function plainWords(error: unknown): string {
-  // What reading past the end of a buffer looks like from inside the loader.
+function messageOf(error: unknown): string {
+  // The loader fails like this when it reads past the end of a buffer.
   if (error instanceof RangeError || error instanceof TypeError)
-    return 'the file is damaged: it refers to data it does not hold';
+    return 'the file is damaged: it refers to data it does not contain';
   if (error instanceof Error) return error.message.replace(/^THREE\.\w+: /, '');
-  // Decoders reject with a bare message or event.
+  // Decoders reject with a message or an event.
   return (error as { error?: string })?.error ?? 'the file cannot be decoded';
 }

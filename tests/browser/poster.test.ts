@@ -14,7 +14,7 @@ const kOrange = 24;
 
 /** The picture alone, without what lies on it. */
 async function picture(page: Page): Promise<PNG> {
-  await page.addStyleTag({ content: '#stage > :not(#view, #still) { opacity: 0 }' });
+  await page.addStyleTag({ content: '#stage > :not(#view, #poster) { opacity: 0 }' });
   return PNG.sync.read(await page.screenshot({ clip: await modelArea(page) }));
 }
 
@@ -55,11 +55,11 @@ for (const [screen, viewport, most] of [
     const { page, complaints } = await site.visit({ viewport, deviceScaleFactor: 1 }, async (page) => {
       const letGo = await hold(page, kScript);
       void page
-        .waitForFunction(() => document.querySelector<HTMLImageElement>('#still')?.complete)
+        .waitForFunction(() => document.querySelector<HTMLImageElement>('#poster')?.complete)
         .then(async () => (early = await picture(page)))
         .finally(letGo);
     });
-    await page.locator('#still').waitFor({ state: 'detached' });
+    await page.locator('#poster').waitFor({ state: 'detached' });
     const drawn = await picture(page);
     assert.ok(early && shareOfHue(early, kOrange) > 0.05, 'a painted lizard');
     const apart = difference(coarse(early), coarse(drawn));
@@ -79,12 +79,12 @@ test('nothing that tells of loading lies over the still, be it that scripts are 
       const orangeUnder = async (id: string): Promise<void> => {
         await page.locator(id).waitFor();
         const clip = (await page.locator(id).boundingBox())!;
-        const style = await page.addStyleTag({ content: '#stage > :not(#view, #still) { opacity: 0 }' });
+        const style = await page.addStyleTag({ content: '#stage > :not(#view, #poster) { opacity: 0 }' });
         told.push([id, shareOfHue(PNG.sync.read(await page.screenshot({ clip })), kOrange)]);
         await style.evaluate((element) => (element as Element).remove());
       };
       void page
-        .waitForFunction(() => document.querySelector<HTMLImageElement>('#still')?.complete)
+        .waitForFunction(() => document.querySelector<HTMLImageElement>('#poster')?.complete)
         .then(() => orangeUnder('#stage-notice'))
         .finally(script)
         .then(() => orangeUnder('#progress'))
@@ -109,7 +109,7 @@ test('on a processor slowed to a quarter the still is on the screen before anyth
       const times = ((globalThis as unknown as { times: object }).times = {} as { still?: number; drawn?: number });
       new PerformanceObserver((list) => {
         for (const entry of list.getEntries() as (PerformanceEntry & { element?: Element })[])
-          if (entry.element?.id === 'still') times.still ??= entry.startTime;
+          if (entry.element?.id === 'poster') times.poster ??= entry.startTime;
       }).observe({ type: 'largest-contentful-paint', buffered: true });
       const { drawElements } = WebGL2RenderingContext.prototype;
       WebGL2RenderingContext.prototype.drawElements = function (...args) {
@@ -158,10 +158,10 @@ test('it fades into the drawing, and gives way at once for those who want no mot
       { reducedMotion },
       `globalThis.fades = 0
     Element.prototype.animate = new Proxy(Element.prototype.animate, {
-      apply: (original, element, args) => ((globalThis.fades += element.id === 'still' ? 1 : 0), Reflect.apply(original, element, args)),
+      apply: (original, element, args) => ((globalThis.fades += element.id === 'poster' ? 1 : 0), Reflect.apply(original, element, args)),
     })`,
     );
-    await page.locator('#still').waitFor({ state: 'detached' });
+    await page.locator('#poster').waitFor({ state: 'detached' });
     assert.equal(await page.evaluate('fades'), fades, reducedMotion);
   }
 });
@@ -174,7 +174,7 @@ test('who comes by a link to another sample does not see the first one', async (
       const letGo = await hold(page, /\/samples\/.*\.glb$/);
       void page
         .waitForFunction(() => document.querySelector('[data-testid=status]')?.textContent === 'working')
-        .then(async () => (seen = await page.locator('#still').count()))
+        .then(async () => (seen = await page.locator('#poster').count()))
         .finally(letGo);
     },
     '#sample=car',

@@ -1,9 +1,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BoxGeometry, type BufferGeometry, SphereGeometry, Vector3 } from 'three';
-import { CageAtlas, type CageMesh, kFacing, type Place } from '../../web/src/brush/atlas';
+import { CageTexels, type CageMesh, kFacing, type SurfacePoint } from '../../web/src/brush/cage-texels';
 import { Stroke } from '../../web/src/brush/stroke';
-import { apart, type Rect } from '../../web/src/layers/rect';
+import { disjoint, type Rect } from '../../web/src/layers/rect';
 import { History } from '../../web/src/platform/history';
 
 const kSize = 128;
@@ -41,20 +41,20 @@ function random(seed: number): () => number {
 }
 
 test('each texel of an island knows its place on the cage, and those just around it a place on the border', () => {
-  const atlas = new CageAtlas(cageOf(box()), kSize);
+  const texels = new CageTexels(cageOf(box()), kSize);
   // The middle of the fifth side, which faces +z.
-  const { point, normal } = atlas.at(1.5 / 3, 1.5 / 2)!;
+  const { point, normal } = texels.at(1.5 / 3, 1.5 / 2)!;
   assert.ok(point.distanceTo(new Vector3(0, 0, 1)) < 1e-6 && normal.distanceTo(new Vector3(0, 0, 1)) < 1e-6);
   const left = (1 + 0.2) / 3;
-  const border = atlas.at(left - 2.5 / kSize, 1.5 / 2)!;
+  const border = texels.at(left - 2.5 / kSize, 1.5 / 2)!;
   const { x, y, z } = border.point;
   const texel = 2 / (0.2 * kSize);
   assert.ok(x === -1 && z === 1 && Math.abs(y) < 1.5 * texel, `${x}, ${y}, ${z}`);
-  assert.equal(atlas.at(left - 6 / kSize, 1.5 / 2), undefined, 'nothing is there');
+  assert.equal(texels.at(left - 6 / kSize, 1.5 / 2), undefined, 'nothing is there');
 });
 
 test('UVs outside 0..1 are repeated, as the texture is', () => {
-  const [inside, outside] = [0, 2.5].map((move) => new CageAtlas(cageOf(new SphereGeometry(1, 24, 16), move), kSize));
+  const [inside, outside] = [0, 2.5].map((move) => new CageTexels(cageOf(new SphereGeometry(1, 24, 16), move), kSize));
   for (let i = 0; i < 50; i++) {
     const [u, v] = [(i * 0.379) % 1, 0.2 + ((i * 0.713) % 0.6)];
     const [a, b] = [inside!.at(u, v), outside!.at(u + 2.5, v + 2.5)];
@@ -66,12 +66,12 @@ test('what a brush is said to touch holds every texel whose place is near its wa
   const next = random(7);
   let enclosed = 0;
   for (const geometry of [box(), new SphereGeometry(1, 24, 16)]) {
-    const atlas = new CageAtlas(cageOf(geometry), kSize);
-    const places: [u: number, v: number, place: Place][] = [];
+    const texels = new CageTexels(cageOf(geometry), kSize);
+    const places: [u: number, v: number, place: SurfacePoint][] = [];
     for (let row = 0; row < kSize; row++) {
       for (let column = 0; column < kSize; column++) {
         const [u, v] = [(column + 0.5) / kSize, (row + 0.5) / kSize];
-        const place = atlas.at(u, v);
+        const place = texels.at(u, v);
         if (place) places.push([u, v, place]);
       }
     }
@@ -80,13 +80,13 @@ test('what a brush is said to touch holds every texel whose place is near its wa
       const from = places[Math.floor(next() * places.length)]![2];
       const to =
         places.find(([, , { point }]) => point !== from.point && point.distanceTo(from.point) < 0.3)?.[2] ?? from;
-      const rects = atlas.touched({ from, to, radius }, new Set());
+      const rects = texels.touched({ from, to, radius }, new Set());
       const way = new Vector3().subVectors(to.point, from.point);
-      const patches = new Set(atlas.enclosed({ from, to, radius }));
+      const patches = new Set(texels.enclosed({ from, to, radius }));
       enclosed += patches.size;
-      assert.equal(atlas.touched({ from, to, radius }, patches).length, rects.length - patches.size);
+      assert.equal(texels.touched({ from, to, radius }, patches).length, rects.length - patches.size);
       for (const [u, v, { point, normal }] of places) {
-        const isEnclosed = patches.has(atlas.owners[Math.floor(v * kSize) * kSize + Math.floor(u * kSize)]!);
+        const isEnclosed = patches.has(texels.owners[Math.floor(v * kSize) * kSize + Math.floor(u * kSize)]!);
         const facing = [normal.dot(from.normal), normal.dot(to.normal)];
         if (isEnclosed) assert.ok(Math.min(...facing) >= kFacing, 'all along');
         if (Math.max(...facing) < kFacing) continue;
@@ -114,7 +114,7 @@ test('parts of a texture are joined until none overlap, and cover what they did'
     return { left, top, right: left + Math.ceil(12 * next()), bottom: top + Math.ceil(12 * next()) };
   });
   for (const most of [100, 3]) {
-    const found = apart(rects, most);
+    const found = disjoint(rects, most);
     assert.ok(found.length <= most);
     const within = (x: number, y: number, list: Rect[]): number =>
       list.filter(({ left, top, right, bottom }) => x >= left && x < right && y >= top && y < bottom).length;
@@ -127,22 +127,22 @@ test('parts of a texture are joined until none overlap, and cover what they did'
   }
 });
 
-test('the history forgets the oldest deeds where memory ends, and what was undone once something else is done', () => {
+test('the history forgets the oldest commands where memory ends, and what was undone once something else is done', () => {
   const history = new History();
   const log: string[] = [];
-  const deed = (name: string, megabytes = 0) => ({
+  const command = (name: string, megabytes = 0) => ({
     name,
     bytes: megabytes * 2 ** 20,
     undo: () => log.push(`-${name}`),
     redo: () => log.push(`+${name}`),
   });
-  history.add(deed('a', 60));
-  history.add(deed('b', 60));
-  history.add(deed('c', 60));
+  history.add(command('a', 60));
+  history.add(command('b', 60));
+  history.add(command('c', 60));
   while (history.undo()) {}
   assert.deepEqual(log, ['-c', '-b']);
   history.redo();
-  history.add(deed('d'));
+  history.add(command('d'));
   assert.equal(history.redo(), undefined);
   assert.deepEqual(log, ['-c', '-b', '+b']);
   assert.equal(history.last!.name, 'd');
@@ -160,10 +160,10 @@ test('the history forgets the oldest deeds where memory ends, and what was undon
 });
 
 test('between two places around an edge of the cage a stroke keeps to the cage, and leaps over no air', () => {
-  const atlas = new CageAtlas(cageOf(box()), kSize);
-  const [front, right] = [atlas.at((1 + 0.2 + 0.6 * 0.9) / 3, 1.5 / 2)!, atlas.at((0.2 + 0.6 * 0.1) / 3, 0.5 / 2)!];
+  const texels = new CageTexels(cageOf(box()), kSize);
+  const [front, right] = [texels.at((1 + 0.2 + 0.6 * 0.9) / 3, 1.5 / 2)!, texels.at((0.2 + 0.6 * 0.1) / 3, 0.5 / 2)!];
   assert.ok(Math.abs(front.point.z - 1) < 1e-6 && Math.abs(right.point.x - 1) < 1e-6, 'on two sides of one edge');
-  const stroke = new Stroke(atlas, { radius: 0.05, mirror: false });
+  const stroke = new Stroke(texels, { radius: 0.05, mirror: false });
   stroke.to(front);
   const capsules = stroke.to(right, 0.3);
   assert.ok(capsules.length >= 4);

@@ -2,9 +2,9 @@ import { placeOf } from 'cagecast/three';
 import { type BufferAttribute, type InterleavedBufferAttribute, Matrix4, Mesh, type Object3D, Vector3 } from 'three';
 import { Pace } from '../platform/pace';
 
-/** One triangle mesh of the scene, and where its elements lie in the concatenated arrays. */
+/** One triangle mesh of the scene, and the ranges of its elements in the concatenated arrays. */
 export interface Part {
-  /** The mesh these elements were read from. */
+  /** The three.js mesh. */
   mesh: Mesh;
   /** Its name, for people. */
   name: string;
@@ -12,39 +12,39 @@ export interface Part {
   vertexCount: number;
   firstTriangle: number;
   triangleCount: number;
-  /** From its own space to the scene's: where it lay when it was read. */
+  /** From its own space to the scene's, at the time it was read. */
   matrix: Matrix4;
-  /** Whether its winding was turned, as its place in the scene mirrors it. */
+  /** Whether its matrix mirrors it; its winding is reversed then. */
   mirrored: boolean;
 }
 
-/** All triangles of a scene as raw arrays in world space, in the shape the transfer takes. */
+/** All triangles of a scene as arrays in world space, as the transfer takes them. */
 export interface ExtractedMesh {
-  /** 3 per vertex, in the scene's space. They may move; `rest` keeps where they were then. */
+  /** 3 per vertex, in the scene's space; they may be deformed. */
   positions: Float32Array;
-  /** The positions as the file has them, if they have moved. */
+  /** The positions in the file, if `positions` may have been deformed. */
   rest?: Float32Array;
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array;
   /** 2 per vertex, from the first UV set; absent unless every part has one. */
   uvs?: Float32Array;
-  /** 1 per vertex: the number of its part, so that only vertices of one part are welded. */
+  /** 1 per vertex: the index of its part. Only vertices of the same part are welded. */
   groups: Uint32Array;
   parts: Part[];
 }
 
 const kIdentity = new Matrix4();
-const kSlice = 16384; // vertices or triangles that are read at a stretch: some milliseconds
+const kSlice = 16384; // vertices or triangles per slice, which takes a few milliseconds
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
 /**
  * Reads all triangle meshes below `root`, depth first, into one set of arrays.
- * Vertices keep their number and order; world matrices are applied in double precision and rounded last; the winding of
- * mirrored parts is flipped, so that every triangle keeps its outside.
+ * Vertices keep their order. World matrices are applied in double precision, and the result is rounded once. The winding of
+ * mirrored parts is reversed, so that triangles keep facing outward.
  * @param root   A scene that has not been moved since it was loaded.
- * @param nameOf What its file calls a mesh, if it does.
- * @throws Error that names the part and the element, where a part cannot be read on its own; or if there is none.
+ * @param nameOf The name of a mesh in its file, if any.
+ * @throws Error that names the part and the element that cannot be read; or if there are no triangles.
  */
 export async function extractMesh(
   root: Object3D,
@@ -52,8 +52,7 @@ export async function extractMesh(
 ): Promise<ExtractedMesh> {
   root.updateMatrixWorld(true);
   const parts = listParts(root, nameOf);
-  if (parts.length === 0)
-    throw new Error('there are no triangles in it: a mesh is wanted, not points, lines or an empty scene');
+  if (parts.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
   const last = parts.at(-1);
   const vertexCount = last ? last.firstVertex + last.vertexCount : 0;
   const triangleCount = last ? last.firstTriangle + last.triangleCount : 0;
@@ -78,7 +77,7 @@ export async function extractMesh(
   return { positions, indices, groups, parts, ...(hasUvs && { uvs: copyUvs(parts, vertexCount) }) };
 }
 
-/** Ranges that a count is taken in, one after the other. */
+/** Splits a count into ranges of `kSlice`. */
 function* slices(count: number): Iterable<[number, number]> {
   for (let from = 0; from < count; from += kSlice) yield [from, Math.min(from + kSlice, count)];
 }
@@ -91,7 +90,7 @@ function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): 
     if (!(object instanceof Mesh)) return;
     const name = nameOf(object) || object.name || object.parent?.name || `part ${parts.length}`;
     if ('isInstancedMesh' in object)
-      throw new Error(`“${name}” is shown in many places at once (instances); give each a node of its own first`);
+      throw new Error(`“${name}” uses instancing, which is not supported; give each instance a node of its own`);
     const { index, attributes } = object.geometry as Mesh['geometry'];
     const vertexCount = attributes.position?.count ?? 0;
     const cornerCount = index ? index.count : vertexCount;
@@ -121,7 +120,7 @@ function copyPositions({ mesh, firstVertex, matrix }: Part, out: Float32Array, f
   const point = new Vector3();
   const identity = matrix.equals(kIdentity);
   for (let i = from; i < to; i++) {
-    // A quantised position decodes to a float before the matrix is applied, as every glTF reader stores it.
+    // Decode quantised positions to floats before applying the matrix, as other glTF readers do.
     point.set(Math.fround(position.getX(i)), Math.fround(position.getY(i)), Math.fround(position.getZ(i)));
     if (!identity) point.applyMatrix4(matrix);
     point.toArray(out, 3 * (firstVertex + i));
@@ -138,17 +137,17 @@ function copyIndices(
   const base = 3 * firstTriangle;
   for (let corner = from; corner < to; corner++) {
     const vertex = index ? index.getX(corner) : corner;
-    // Checked per part: once concatenated, an index too large would point into the next part.
+    // Check per part: after concatenation, an index out of range would point into the next part.
     if (vertex >= vertexCount) {
       throw new Error(`indices[${corner}] = ${vertex} of “${name}” is out of range (${vertexCount} vertices)`);
     }
     out[base + corner] = firstVertex + vertex;
   }
-  if (mirrored) turnWinding(out.subarray(base + from, base + to));
+  if (mirrored) reverseWinding(out.subarray(base + from, base + to));
 }
 
 /** Swaps the last two corners of every triangle. */
-export function turnWinding(indices: Uint32Array): void {
+export function reverseWinding(indices: Uint32Array): void {
   for (let at = 0; at < indices.length; at += 3) {
     const second = indices[at + 1]!;
     indices[at + 1] = indices[at + 2]!;

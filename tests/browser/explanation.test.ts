@@ -2,8 +2,8 @@ import assert from 'node:assert/strict';
 import path from 'node:path';
 import { before, test } from 'node:test';
 import { type ClassifyOptions, classify, init, type Mesh, project } from 'cagecast';
-import { Rims } from '../../web/src/explain/boundary-loops';
-import { tell } from '../../web/src/explain/story';
+import { BoundaryLoops } from '../../web/src/explain/boundary-loops';
+import { explain } from '../../web/src/explain/explanation';
 import type { Shown } from '../../web/src/scene/session';
 import { modelFolders, readPlain, smallHole } from '../js/scenes';
 
@@ -32,7 +32,7 @@ for (const folder of modelFolders()) {
     const [target, cage] = await Promise.all(
       ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
     );
-    const rims = new Rims(cage!);
+    const loops = new BoundaryLoops(cage!);
     for (const preset of ['default', 'paper'] as const) {
       const projection = project(cage!, target!, { preset });
       // Of the models only their meshes are asked for.
@@ -45,8 +45,8 @@ for (const folder of modelFolders()) {
       for (const threshold of [0.3, 0.5, 0.8]) {
         const classification = classify(projection, { threshold });
         for (const [segment, triangle] of triangles) {
-          const facts = { shown, classification, rules: { preset, threshold }, locks: {}, rims };
-          const { verdict, steps, part, zone } = tell(facts, triangle, [1, 0, 0]);
+          const facts = { shown, classification, rules: { preset, threshold }, locks: {}, loops };
+          const { verdict, steps, part, zone } = explain(facts, triangle, [1, 0, 0]);
           const { culled, coverage } = classification.segmentStats[segment]!;
           const where = `${preset}, ${threshold}, segment ${segment}: ${steps.at(-1)!.sentence}`;
           assert.equal(verdict === 'Painted', classification.cosmeticTriangles[triangle] === 1, where);
@@ -80,9 +80,9 @@ test('of a part that a hole is meant for that is told, and by the other rules it
       classification: classify(projection, options),
       rules: { preset: 'default', threshold: 0.5 } as const,
       locks: {},
-      rims: new Rims(cage),
+      loops: new BoundaryLoops(cage),
     };
-    const { verdict, because, steps } = tell(facts, covered, [1, 0, 0]);
+    const { verdict, because, steps } = explain(facts, covered, [1, 0, 0]);
     return `${verdict}: ${because}. ${steps.at(-1)!.sentence}`;
   };
   assert.match(
@@ -103,8 +103,8 @@ test('of a part that is locked only that is told', async () => {
     const locks = { [segment]: lock };
     const classification = classify(projection, { locks: { segments: locks } });
     const shown = { target: { mesh: withParts(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
-    const { steps } = tell(
-      { shown, classification, rules: { preset: 'default', threshold: 0.5 }, locks, rims: new Rims(cage!) },
+    const { steps } = explain(
+      { shown, classification, rules: { preset: 'default', threshold: 0.5 }, locks, loops: new BoundaryLoops(cage!) },
       0,
       [1, 0, 0],
     );

@@ -64,7 +64,7 @@ test('the model is saved as the command line saves it: zones, UVs, an overlay wi
   assert.equal(name, 'target-painted.glb');
   const document = await validModel(bytes);
 
-  await page.locator('#take input[value=command]').check({ force: true });
+  await page.locator('#export input[value=command]').check({ force: true });
   const line = (await page.getByTestId('code').textContent())!;
   assert.match(line, /--preset paper --threshold 0.3 --exclude skin -o painted.glb$/);
   const expected = await validModel(await readFile(await runCommand(line)));
@@ -219,13 +219,13 @@ test('a link that is damaged, or names what is not there, opens what there is', 
 test('the link is copied by a click; for files of one’s own there is none, and the page says why', async () => {
   const { page } = await site.visit({ permissions: ['clipboard-read', 'clipboard-write'] });
   await page.getByTestId('share-link').click();
-  await page.locator('#take-note', { hasText: 'copied' }).waitFor();
+  await page.locator('#copy-note', { hasText: 'copied' }).waitFor();
   const copied = await page.evaluate(() => navigator.clipboard.readText());
   assert.equal(copied, page.url());
   assert.match(copied, /#sample=lizard&/);
   await drop(page, [glb('cage.glb', writeGlb(tetrahedron(2))), glb('target.glb', writeGlb(tetrahedron()))]);
   await settled(page);
-  await page.locator('#take-hint', { hasText: 'stay on this device' }).waitFor();
+  await page.locator('#link-hint', { hasText: 'stay on this device' }).waitFor();
   assert.equal(await page.getByTestId('share-link').getAttribute('href'), null);
 });
 

@@ -6,18 +6,18 @@ import { Superseded, TransferClient } from '../scene/transfer-client';
 import { trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
 
-const kCalm = 800; // milliseconds without a change before a cage is inspected: until then other things matter more
-const kMost = 60_000; // triangles that are inspected unasked; twice as many take twice as long
-const kSoon = 'It is inspected as soon as there is time.';
+const kCalm = 800; // milliseconds without a change before the cage is inspected
+const kMost = 60_000; // triangles that are inspected automatically; the time grows with their number
+const kSoon = 'The cage will be inspected in a moment.';
 const kVerdicts: Record<Inspection['verdict'], string> = {
-  good: 'The cage fits this model as it should.',
-  usable: 'The cage can be used, with reservations.',
+  good: 'The cage fits this model.',
+  usable: 'The cage is usable, with reservations.',
   unfit: 'The cage does not fit this model.',
 };
 
 /**
- * Says whether the cage fits the target, why not, and what to do: what `cagecast inspect` says, in a worker of its own. Parts
- * that a finding is about light up with it, and can be locked as it proposes.
+ * Shows whether the cage fits the target, and what to do if not: the findings of `cagecast inspect`, computed in a worker of
+ * its own. A finding highlights its parts, and can lock them as it proposes.
  */
 export class FitPanel {
   readonly #session: Session;
@@ -36,14 +36,14 @@ export class FitPanel {
     this.#button.addEventListener('click', () => void this.#inspect());
   }
 
-  /** What was found holds no longer. */
+  /** The findings are outdated. */
   #onChange(): void {
     const { target, cage } = this.#session.shown!;
     const triangles = (target.mesh.indices.length + cage.mesh.indices.length) / 3;
     clearTimeout(this.#waiting);
     this.#client?.cancel();
     if (triangles <= kMost) this.#waiting = setTimeout(() => void this.#inspect(), kCalm);
-    else this.#show('', [text('p', 'This model is large: inspecting it takes a while.')]);
+    else this.#show('', [text('p', 'This model is large; inspecting it takes a while.')]);
     this.#button.hidden = triangles <= kMost;
   }
 
@@ -64,7 +64,7 @@ export class FitPanel {
       );
     } catch (error) {
       if (error instanceof Superseded) return;
-      this.#show('', [text('p', `The cage cannot be inspected: ${error instanceof Error ? error.message : error}`)]);
+      this.#show('', [text('p', `The cage could not be inspected: ${error instanceof Error ? error.message : error}`)]);
     }
   }
 
@@ -84,8 +84,8 @@ export class FitPanel {
     item.append(text('p', `${sentence}.`), text('p', advice));
     const segments = places.map(({ segment }) => segment);
     if (segments.length > 0) {
-      for (const begin of ['pointerenter', 'focusin']) item.addEventListener(begin, () => this.#light(segments));
-      for (const end of ['pointerleave', 'focusout']) item.addEventListener(end, () => this.#light([]));
+      for (const begin of ['pointerenter', 'focusin']) item.addEventListener(begin, () => this.#highlight(segments));
+      for (const end of ['pointerleave', 'focusout']) item.addEventListener(end, () => this.#highlight([]));
     }
     const entries = Object.entries(locks?.segments ?? {});
     for (const lock of ['keep', 'exclude'] as const) {
@@ -105,7 +105,7 @@ export class FitPanel {
     return button;
   }
 
-  #light(segments: readonly number[]): void {
+  #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
     this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : []);
   }

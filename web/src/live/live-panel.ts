@@ -1,6 +1,6 @@
 import type { LinkedShape } from '../export/link';
 import { announce, element } from '../platform/page';
-import type { ExtractedMesh } from '../scene/extract';
+import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Session, Shown } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
 import type { Viewer } from '../view/viewer';
@@ -9,15 +9,15 @@ import { type Deform, kDeforms } from './deform';
 import { Morphs } from './morphs';
 import { isAtRest, Pose, type Shape } from './pose';
 
-const kSeconds = 4; // there and back, of what moves by itself
+const kSeconds = 4; // period of “Animate”
 
 /**
- * Moves the model and transfers it again for every frame: the paint follows, whatever becomes of the shape. A new frame
- * is begun when the one before is on show, so that a slow device shows fewer of them, and none too late.
+ * Deforms the model and repeats the transfer for every frame, so that the paint follows. A frame starts when the previous one
+ * is shown: a slow device shows fewer frames, but no outdated ones.
  */
 export class Live {
   readonly #session: Session;
-  /** Busy while frames are under way. */
+  /** `aria-busy` while frames are computed. */
   readonly #section = element('live', HTMLElement);
   readonly #deform = element('deform', HTMLSelectElement);
   readonly #amount = element('amount', HTMLInputElement);
@@ -28,7 +28,7 @@ export class Live {
   #client: TransferClient | undefined;
   #shown: Shown | undefined;
   readonly #poses = new WeakMap<ExtractedMesh, Pose>();
-  /** Whether what is on show, or went before it, is not as its file has it. */
+  /** Whether the current model, or the one before it, is not in its rest shape. */
   #moved = false;
   #stale = false;
   #started: number | undefined;
@@ -42,7 +42,7 @@ export class Live {
     });
     for (const input of [this.#deform, this.#along]) input.addEventListener('change', () => this.#next());
     this.#moves.addEventListener('change', () => (this.#moves.checked ? this.#start() : this.#stop()));
-    // An animation may move the same morphs: it is the one or the other.
+    // An animation may drive the same morphs: they exclude each other.
     this.#morphs = new Morphs(() => {
       this.#animations?.stop();
       this.#next();
@@ -51,14 +51,14 @@ export class Live {
     session.on('transfer', (shown) => this.#onTransfer(shown));
   }
 
-  /** The shape the visitor moved the model into; undefined while it is as its file has it. */
+  /** The shape chosen by the user; undefined at rest. */
   get shape(): LinkedShape | undefined {
     const [amount, morphs] = [Number(this.#amount.value), this.#morphs.weights];
     if (amount === 0 && !morphs) return undefined;
     return { deform: this.#deform.value as Deform, amount, cage: this.#along.checked, morphs: this.#morphs.moved };
   }
 
-  /** Moves the model into a shape. */
+  /** Sets the shape. */
   move({ deform, amount, cage, morphs }: LinkedShape): void {
     this.#stop();
     this.#deform.value = deform;
@@ -74,7 +74,7 @@ export class Live {
   #onTransfer(shown: Shown): void {
     const before = this.#shown;
     this.#shown = shown;
-    if (shown.target === before?.target && shown.cage === before.cage) return; // another preset, of what is moved as it is
+    if (shown.target === before?.target && shown.cage === before.cage) return; // only the preset changed
     if (shown.target !== before?.target) {
       this.#stop();
       this.#amount.value = '0';
@@ -82,7 +82,7 @@ export class Live {
       this.#morphs.offer(shown.target.mesh);
       this.#animations?.offer(shown.target.animations);
     }
-    // The one that stays is to go where the other is.
+    // Deform the new one like the old.
     if (this.#moved) this.#next();
   }
 
@@ -94,7 +94,7 @@ export class Live {
 
   #start(): void {
     this.#started = performance.now();
-    announce('The model moves, and is transferred anew for every frame.');
+    announce('The model moves; the transfer is repeated for every frame.');
     this.#next();
   }
 
@@ -103,7 +103,7 @@ export class Live {
     this.#moves.checked = false;
   }
 
-  /** Asks for another frame; while one is under way, for one more after it. */
+  /** Requests a frame; if one is being computed, another one follows it. */
   #next(): void {
     this.#stale = true;
     if (this.#section.ariaBusy !== 'true') void this.#run();
@@ -115,7 +115,7 @@ export class Live {
       while (this.#stale && this.#shown) {
         this.#stale = this.#started !== undefined;
         await this.#frame(this.#shown);
-        // A page in the background has no frames, and needs none.
+        // Pauses while the page is in the background.
         await new Promise(requestAnimationFrame);
       }
     } catch (error) {
@@ -133,7 +133,12 @@ export class Live {
     }
     const [target, cage] = [this.#poseOf(shown.target), this.#poseOf(shown.cage)];
     const amount = Number(this.#amount.value);
-    const shape: Shape = { how: this.#deform.value as Deform, amount, room: target.room, morphs: this.#morphs.weights };
+    const shape: Shape = {
+      how: this.#deform.value as Deform,
+      amount,
+      extent: target.extent,
+      morphs: this.#morphs.weights,
+    };
     const cageShape: Shape = { ...shape, amount: this.#along.checked ? amount : 0, morphs: undefined };
     const [targetPositions, cagePositions] = [target.positions(shape), cage.positions(cageShape)];
     const moved = <T extends Shown['target']>(model: T, positions: Float32Array): T => ({
@@ -148,7 +153,7 @@ export class Live {
       moved(shown.target, targetPositions),
       { preset },
     );
-    // Something else may be on show by now.
+    // Another model or preset may have been chosen meanwhile.
     if (this.#shown !== shown || preset !== this.#session.rules.preset) return;
     target.set(targetPositions, shape);
     cage.set(cagePositions, cageShape);

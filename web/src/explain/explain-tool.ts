@@ -1,113 +1,113 @@
 import { announce, element } from '../platform/page';
 import type { Session } from '../scene/session';
 import type { Spot } from '../view/pick';
-import type { Offer, Tools } from '../view/tool-rail';
+import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
-import { Rims } from './boundary-loops';
-import { StoryMarks } from './marks';
-import { type PartFacts, percent, type Story, tell } from './story';
+import { BoundaryLoops } from './boundary-loops';
+import { type Explanation, explain, type PartFacts, percent } from './explanation';
+import { ExplanationMarks } from './marks';
 
 const kZoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'];
 
 /**
- * The tool that tells why a spot is painted or not: under the mouse, where one taps or clicks to keep it, and in the middle of
- * the picture by the Enter key. A story that is kept follows the threshold and all other rules.
+ * The tool that explains why a spot is painted or not: under the mouse, pinned by a click or tap, or at the centre of the view
+ * with the Enter key. A pinned explanation follows changes of the rules.
  */
-export class Why {
+export class Explain {
   readonly #session: Session;
   readonly #viewer: Viewer;
   readonly #tools: Tools;
-  readonly #offer: Offer;
-  readonly #panel = element('why-story', HTMLElement);
-  readonly #bubble = element('why-bubble', HTMLElement);
-  #rims: Rims | undefined;
-  #marks: StoryMarks | undefined;
-  /** The spot whose story is told, and whether it stays when the mouse moves on. */
+  readonly #offer: RailTool;
+  readonly #panel = element('explain-text', HTMLElement);
+  readonly #bubble = element('explain-bubble', HTMLElement);
+  #loops: BoundaryLoops | undefined;
+  #marks: ExplanationMarks | undefined;
+  /** The explained spot, and whether it is pinned. */
   #spot: Pick<Spot, 'triangle' | 'weights'> | undefined;
-  #kept = false;
+  #pinned = false;
 
   constructor(session: Session, viewer: Viewer, tools: Tools) {
     this.#session = session;
     this.#viewer = viewer;
     this.#tools = tools;
     this.#offer = {
-      title: 'Why?',
-      key: 'w',
+      title: 'Explain',
+      key: 'x',
       icon: 'M9 9a3 3 0 1 1 4.6 2.5c-1 .7-1.600 1.300-1.600 2.500M12 17.500v.1M21 12a9 9 0 1 1-18 0 9 9 0 0 1 18 0z',
       tool: {
-        tap: (spot) => this.ask(spot),
-        hover: (spot) => this.#kept || this.#tell(spot),
+        tap: (spot) => this.pin(spot),
+        hover: (spot) => this.#pinned || this.#explain(spot),
       },
       onChoose: (chosen) => this.#onChoose(chosen),
     };
     tools.add(this.#offer);
     session.on('transfer', () => {
-      this.#rims = undefined;
-      this.#forget();
+      this.#loops = undefined;
+      this.#clear();
     });
-    session.on('frame', () => (this.#rims = undefined)); // the cage may have moved along
-    session.on('zones', () => this.#kept && this.#tell(this.#spot));
-    element('why-ask', HTMLButtonElement).addEventListener('click', () => this.#askMiddle());
+    session.on('frame', () => (this.#loops = undefined)); // the cage may have moved too
+    session.on('zones', () => this.#pinned && this.#explain(this.#spot));
+    element('explain-center', HTMLButtonElement).addEventListener('click', () => this.#explainCenter());
     element('view', HTMLCanvasElement).addEventListener('keydown', (event) => {
-      if (event.key === 'Enter' && tools.chosen === this.#offer) this.#askMiddle();
+      if (event.key === 'Enter' && tools.chosen === this.#offer) this.#explainCenter();
     });
   }
 
-  /** Tells the story of a spot and keeps it; of none, lets go of the one that is kept. */
-  ask(spot: Spot | undefined): void {
-    this.#kept = spot !== undefined;
-    const story = this.#tell(spot);
+  /** Explains a spot and pins the explanation; without a spot, removes the pinned one. */
+  pin(spot: Spot | undefined): void {
+    this.#pinned = spot !== undefined;
+    const explanation = this.#explain(spot);
     announce(
-      story
-        ? `${story.verdict}: ${story.because}. ${story.steps.map(({ sentence }) => sentence).join(' ')}`
-        : 'There is nothing of the model here.',
+      explanation
+        ? `${explanation.verdict}: ${explanation.because}. ${explanation.steps.map(({ sentence }) => sentence).join(' ')}`
+        : 'The model is not here.',
     );
   }
 
-  #askMiddle(): void {
+  #explainCenter(): void {
     this.#tools.choose(this.#offer);
-    const { x, y } = this.#viewer.middle;
-    this.ask(this.#viewer.pick(x, y));
+    const { x, y } = this.#viewer.center;
+    this.pin(this.#viewer.pick(x, y));
   }
 
   #onChoose(chosen: boolean): void {
-    element('stage', HTMLElement).classList.toggle('asking', chosen);
-    if (!chosen) this.#forget();
+    element('stage', HTMLElement).classList.toggle('explaining', chosen);
+    if (!chosen) this.#clear();
   }
 
-  #forget(): void {
-    this.#kept = false;
-    this.#tell(undefined);
+  #clear(): void {
+    this.#pinned = false;
+    this.#explain(undefined);
   }
 
-  #tell(spot: Pick<Spot, 'triangle' | 'weights'> | undefined): Story | undefined {
+  #explain(spot: Pick<Spot, 'triangle' | 'weights'> | undefined): Explanation | undefined {
     const { shown, classification, rules, locks } = this.#session;
     const hadMarks = this.#marks !== undefined;
     this.#marks?.dispose();
     this.#marks = undefined;
     this.#spot = spot;
-    const story =
+    const explanation =
       spot && shown && classification
-        ? tell(
-            { shown, classification, rules, locks, rims: (this.#rims ??= new Rims(shown.cage.mesh)) },
+        ? explain(
+            { shown, classification, rules, locks, loops: (this.#loops ??= new BoundaryLoops(shown.cage.mesh)) },
             spot.triangle,
             spot.weights,
           )
         : undefined;
-    if (story) {
-      this.#marks = new StoryMarks(story, shown!.target.mesh, shown!.cage.mesh, this.#rims!);
+    if (explanation) {
+      this.#marks = new ExplanationMarks(explanation, shown!.target.mesh, shown!.cage.mesh, this.#loops!);
       this.#viewer.marks.add(this.#marks.object);
     }
-    if (story || hadMarks) this.#viewer.redraw();
-    this.#write(story);
-    return story;
+    if (explanation || hadMarks) this.#viewer.redraw();
+    this.#write(explanation);
+    return explanation;
   }
 
-  #write(story: Story | undefined): void {
-    this.#bubble.hidden = this.#panel.hidden = story === undefined;
-    element('why-hint', HTMLElement).hidden = story !== undefined;
-    if (!story) return;
-    const { zone, verdict, because, steps, part } = story;
+  #write(explanation: Explanation | undefined): void {
+    this.#bubble.hidden = this.#panel.hidden = explanation === undefined;
+    element('explain-hint', HTMLElement).hidden = explanation !== undefined;
+    if (!explanation) return;
+    const { zone, verdict, because, steps, part } = explanation;
     this.#bubble.replaceChildren(swatch(zone), text('b', verdict), text('span', because));
     const list = document.createElement('ol');
     for (const { title, sentence } of steps) {
@@ -122,8 +122,8 @@ export class Why {
   }
 }
 
-/** The areas of a part as a bar: what is exposed of it, what of that is covered, and where the threshold lies. */
-function areasOf({ exposed, covered, coverage, threshold, margin, passes }: PartFacts): HTMLElement {
+/** The areas of a part as a bar: exposed, covered, and the threshold. */
+function areasOf({ exposed, covered, coverage, threshold, score, passes }: PartFacts): HTMLElement {
   const figure = document.createElement('figure');
   figure.className = 'areas';
   const bar = document.createElement('div');
@@ -137,7 +137,7 @@ function areasOf({ exposed, covered, coverage, threshold, margin, passes }: Part
   fact('C covered', percent(covered));
   fact('F = C / E', `${percent(coverage)}, ${passes ? 'passes' : 'culled'}`);
   fact('Threshold', percent(threshold));
-  if (Number.isFinite(margin)) fact('Reached of what is asked', percent(margin));
+  if (Number.isFinite(score)) fact('Score (kept from 1)', score.toFixed(2));
   figure.append(bar, facts);
   return figure;
 }

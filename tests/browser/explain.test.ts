@@ -17,8 +17,8 @@ before(async () => {
 after(() => site?.close());
 
 const kLizard = (file: string): string => inRepository('build/assets/lizard', `${file}.glb`);
-const bubble = (page: Page): Promise<string> => page.getByTestId('why-bubble').innerText();
-const story = (page: Page): Promise<string> => page.getByTestId('why-story').innerText();
+const bubble = (page: Page): Promise<string> => page.getByTestId('explain-bubble').innerText();
+const story = (page: Page): Promise<string> => page.getByTestId('explain-text').innerText();
 const choose = (page: Page, title: string): Promise<void> =>
   page.getByRole('radio', { name: title, exact: true }).check({ force: true });
 const mode = (page: Page, value: string): Promise<void> =>
@@ -27,7 +27,7 @@ const mode = (page: Page, value: string): Promise<void> =>
 /** Asks about a spot, and returns what the bubble says; nothing beside the model. */
 async function ask(page: Page, x: number, y: number): Promise<string> {
   await page.mouse.click(x, y);
-  return (await page.getByTestId('why-bubble').isVisible()) ? bubble(page) : '';
+  return (await page.getByTestId('explain-bubble').isVisible()) ? bubble(page) : '';
 }
 
 test('what is told of a spot is what the picture shows there', async () => {
@@ -92,7 +92,7 @@ test('the story follows the mouse, stays with a click, follows the threshold, an
 
   await page.locator('#view').focus();
   await page.keyboard.press('Escape');
-  assert.equal(await page.getByTestId('why-bubble').isVisible(), false);
+  assert.equal(await page.getByTestId('explain-bubble').isVisible(), false);
   assert.equal(await page.getByRole('radio', { name: 'Turn' }).isChecked(), true);
   assert.ok(difference(before, await look(page, area)) < 0.0005, 'no trace is left');
 });

@@ -1,72 +1,72 @@
 import { type Classification, type Lock, type PresetOptions, presetOptions, Zone } from 'cagecast';
 import type { Locks, Rules, Shown } from '../scene/session';
 import { diagonalOf } from '../scene/surface';
-import type { Rims } from './boundary-loops';
+import type { BoundaryLoops } from './boundary-loops';
 import { type Path, pathOf } from './path';
 
-/** Why a spot of the target is painted, or why not. */
-export interface Story {
-  /** The reason that the picture shows for its triangle: 0 if that is painted. */
+/** Why a spot of the target is painted or not. */
+export interface Explanation {
+  /** The zone of its triangle, as shown in the view; 0 if painted. */
   zone: number;
-  /** The corner of the triangle that decided it, and its way to the cage. */
+  /** The corner that decided the triangle's zone, and its path to the cage. */
   vertex: number;
   path: Path;
   cageTriangle: number;
   diagonal: number;
   part: PartFacts;
-  /** What came of it, in a word, and why, in half a sentence. */
+  /** The result in a word or two, and its reason as half a sentence. */
   verdict: string;
   because: string;
-  /** The whole story, in the order of the method. */
+  /** One entry per step of the method, in order. */
   steps: { title: string; sentence: string }[];
 }
 
-/** The segment of a spot; shares are of 1. */
+/** The segment of a spot; shares are 0..1. */
 export interface PartFacts {
   name: string;
   segment: number;
-  /** E, of the whole area. */
+  /** Exposed share of the area (E). */
   exposed: number;
-  /** C, of the whole area. */
+  /** Covered share of the area (C). */
   covered: number;
   /** F = C / E. */
   coverage: number;
   threshold: number;
-  /** How many times what the rules ask of it, threshold and floor, it reaches; infinite if nothing is asked. */
-  margin: number;
+  /** Kept from 1 on; infinite if nothing is required. */
+  score: number;
   passes: boolean;
 }
 
-/** What a story is told from. */
+/** What an explanation is derived from. */
 export interface Facts {
   shown: Shown;
   classification: Classification;
   rules: Pick<Rules, 'preset' | 'threshold'>;
   locks: Locks;
-  rims: Rims;
+  loops: BoundaryLoops;
 }
 
 const kVerdicts = ['Painted', 'Not painted: occluded', 'Not painted: uncovered', 'Not painted: culled'];
 
 /**
- * Tells the story of a spot.
- * @param triangle The target's triangle.
- * @param weights  What share each of its corners has in the spot.
+ * Explains a spot.
+ * @param triangle A triangle of the target.
+ * @param weights  The barycentric weights of the spot in it.
  */
-export function tell(facts: Facts, triangle: number, weights: readonly number[]): Story {
+export function explain(facts: Facts, triangle: number, weights: readonly number[]): Explanation {
   const { target, cage, projection } = facts.shown;
   const { zone, vertex } = decidedBy(facts, triangle, weights);
   const cageTriangle = projection.triangles[vertex]!;
   const diagonal = diagonalOf(target.mesh) || 1;
   const options = presetOptions(facts.rules.preset);
-  const path = pathOf(target.mesh, cage.mesh, facts.rims, vertex, cageTriangle, diagonal, options);
+  const path = pathOf(target.mesh, cage.mesh, facts.loops, vertex, cageTriangle, diagonal, options);
   const part = partOf(facts, vertex);
-  const again = tellAgain(facts, vertex);
+  const secondLook = secondLookStep(facts, vertex);
   const steps = [
-    { title: 'Nearest', sentence: tellPlace(path, cageTriangle, diagonal) },
-    { title: 'Ray', sentence: tellRay(facts, path, diagonal) },
-    ...(again ? [{ title: 'Again', sentence: again }] : []),
-    { title: 'Part', sentence: tellPart(facts, part, options) },
+    { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
+    { title: 'Ray', sentence: rayStep(facts, path, diagonal) },
+    ...(secondLook ? [{ title: 'Second look', sentence: secondLook }] : []),
+    { title: 'Part', sentence: partStep(facts, part, options) },
   ];
   return {
     zone,
@@ -81,7 +81,7 @@ export function tell(facts: Facts, triangle: number, weights: readonly number[])
   };
 }
 
-/** The reason of a triangle, and of the corners that gave it the one nearest to the spot. */
+/** The zone of a triangle and, of the corners with that zone, the one closest to the spot. */
 function decidedBy(
   { shown, classification }: Facts,
   triangle: number,
@@ -109,84 +109,83 @@ function partOf({ shown, classification, rules }: Facts, vertex: number): PartFa
     covered: of(coveredArea),
     coverage,
     threshold: rules.threshold,
-    margin,
+    score: margin,
     passes: !culled,
   };
 }
 
-function tellPlace({ start, place, outside }: Path, cageTriangle: number, diagonal: number): string {
-  const away = start.distanceTo(place) / diagonal;
-  const side = outside > 0 && away > 0 ? 'The spot lies outside it.' : 'What is painted there goes here.';
-  return `Triangle ${cageTriangle.toLocaleString('en')} of the cage is nearest, ${percent(away)} of the model’s diagonal away. ${side}`;
+function closestStep({ start, closest, outside }: Path, cageTriangle: number, diagonal: number): string {
+  const distance = start.distanceTo(closest) / diagonal;
+  const side = outside > 0 && distance > 0 ? 'The spot lies outside the cage.' : 'The spot takes its paint from there.';
+  return `The closest cage triangle is number ${cageTriangle.toLocaleString('en')}, ${percent(distance)} of the model’s diagonal away. ${side}`;
 }
 
-function tellRay({ shown }: Facts, { outcome, cage, model, outside }: Path, diagonal: number): string {
-  const ray = 'A ray from here, along the normal of that triangle,';
+function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diagonal: number): string {
+  const ray = 'A ray from here along the normal of that triangle';
   const far = (length: number): string => percent(Math.max(0, length) / diagonal);
   const what = model && `the model’s own ${nameAt(shown, model.triangle)}`;
   switch (outcome) {
     case 'hidden': {
       const beyond = cage && model!.length > cage.length;
       const before = beyond
-        ? ` and ${far(model!.length - cage.length)} beyond the cage, which still counts`
+        ? `, ${far(model!.length - cage.length)} beyond the cage, which still counts`
         : ', before it reaches the cage';
-      return `${ray} meets ${what} after ${far(model!.length)}${before}: the model lies over it.`;
+      return `${ray} meets ${what} after ${far(model!.length)}${before}: the model covers this spot.`;
     }
     case 'covered': {
       const later = model
-        ? ` It meets ${what} only ${far(model.length - cage!.length)} beyond the cage: too far out to hide anything.`
+        ? ` It meets ${what} only ${far(model.length - cage!.length)} beyond the cage, too far away to count.`
         : '';
-      return `${ray} meets the cage after ${far(cage!.length)}, and nothing of the model before it.${later}`;
+      return `${ray} meets the cage after ${far(cage!.length)}, with nothing of the model before it.${later}`;
     }
     case 'pokesOut':
-      return `${ray} misses the cage, but the spot pokes out of it by no more than ${far(outside)}, which counts as covered.`;
+      return `${ray} misses the cage, but the spot pokes out of it by only ${far(outside)}, which counts as covered.`;
     case 'lost':
       return outside > 0
-        ? `${ray} leads away from the cage, outside of which the spot lies: it is not covered.`
-        : `${ray} leaves through a hole in the cage: who made it wants no paint here.`;
+        ? `${ray} leads away from the cage: the spot lies outside the cage and is not covered.`
+        : `${ray} leaves through a hole in the cage, where no paint is wanted.`;
   }
 }
 
-/** What the second look and the rule about holes say of what seemed hidden or uncovered; empty if they were not asked, or had no say. */
-function tellAgain({ shown: { projection }, classification }: Facts, vertex: number): string {
+/** What the second look and the hole rule decided; empty if they do not apply. */
+function secondLookStep({ shown: { projection }, classification }: Facts, vertex: number): string {
   const first = projection.zones[vertex]!;
-  const restores = projection.restores[vertex] ?? 0;
-  if (first === Zone.Cosmetic || restores === 0) return '';
-  const back = classification.zones[vertex] === Zone.Cosmetic;
+  const recovery = projection.restores[vertex] ?? 0;
+  if (first === Zone.Cosmetic || recovery === 0) return '';
   if (classification.segmentStats[projection.segments[vertex]!]!.culled)
-    return 'A closer look would give it back, were its part not culled.';
-  if (first === Zone.Occluded) return 'In other directions it sees the cage freely: the second look gives it back.';
-  if (restores === 1) return 'But the edge of the hole is not what is nearest, or hardly overhung: it is given back.';
-  return back
-    ? 'But the hole is meant for what lies behind it, and not for its rim: that is given back.'
-    : 'Nothing that fails lies behind this hole to explain it, so its rim is obeyed.';
+    return 'The second look would restore it, but its part is culled.';
+  if (first === Zone.Occluded) return 'Rays in other directions reach the cage freely, so the second look restores it.';
+  if (recovery === 1)
+    return 'The edge of the hole is not the closest point of the cage, or the spot lies hardly beyond it, so it is restored.';
+  return classification.zones[vertex] === Zone.Cosmetic
+    ? 'The hole is meant for the part behind it, not for this rim, so the rim is restored.'
+    : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
 }
 
-function tellPart({ classification, locks }: Facts, part: PartFacts, options: PresetOptions): string {
+function partStep({ classification, locks }: Facts, part: PartFacts, options: PresetOptions): string {
   const { name, segment, coverage, threshold, passes } = part;
   const { area, exposedArea, coveredArea, sunkArea, bared } = classification.segmentStats[segment]!;
   const lock: Lock = locks[segment] ?? 'auto';
   const whole = `It belongs to ${name}.`;
   if (lock !== 'auto')
-    return `${whole} You said to ${lock} it, whatever its areas: ${passes ? 'it passes' : 'it is culled'}.`;
-  if (exposedArea === 0) return `${whole} Nothing of it is exposed${passes ? '.' : ': it is culled as a whole.'}`;
-  const share = `${whole} Of what the model leaves exposed of it, the cage covers ${percent(coverage)}`;
+    return `${whole} You chose to ${lock} it, regardless of its areas: it ${passes ? 'passes' : 'is culled'}.`;
+  if (exposedArea === 0) return `${whole} Nothing of it is exposed${passes ? '.' : ', so it is culled as a whole.'}`;
+  const share = `${whole} The cage covers ${percent(coverage)} of its exposed area`;
   const enough = coverage >= threshold;
   if (enough && passes) return `${share}, at least the threshold of ${percent(threshold)}: it passes.`;
   if (!enough && !passes) return `${share}, less than the threshold of ${percent(threshold)}: it is culled as a whole.`;
   if (passes)
-    return `${share}, less than the threshold of ${percent(threshold)}; but it is judged together with parts that are copies of it, and they pass.`;
+    return `${share}, less than the threshold of ${percent(threshold)}; but it is judged together with its twins, which have the same shape, and they pass.`;
   if (bared)
-    return `${share}, enough; but a hole of the cage seems to be meant for it: it is small, and much of it lies bare there, or hidden. It is culled as a whole.`;
+    return `${share}, which is enough. But it is small, and much of it is hidden or lies under a hole of the cage, which therefore seems to be meant for it. It is culled as a whole.`;
   const counted = options.floor === 'depth' ? sunkArea * coverage : coveredArea;
-  const floor = options.minCovered * area;
-  if (counted >= floor)
-    return `${share}, enough; but it is judged together with parts that are copies of it, and they do not pass.`;
+  if (counted >= options.minCovered * area)
+    return `${share}, which is enough; but it is judged together with its twins, which have the same shape, and they do not pass.`;
   const deep =
     options.floor === 'depth' && sunkArea < coveredArea / 2
-      ? ' and lies deeper under the cage than its neighbours'
+      ? ' and lies deeper under the cage than its surroundings'
       : '';
-  return `${share}, enough; but that is little of it${deep}: it counts for ${percent(counted / area)} of its area where ${percent(options.minCovered)} are asked. It is culled as a whole.`;
+  return `${share}, which is enough. But the covered area is small${deep}: it counts as ${percent(counted / area)} of the whole area, and at least ${percent(options.minCovered)} is required. It is culled as a whole.`;
 }
 
 function brief(
@@ -199,10 +198,10 @@ function brief(
   switch (zone) {
     case Zone.Cosmetic:
       if (shown.projection.zones[vertex] !== Zone.Cosmetic)
-        return 'it seemed not to be, but a closer look gave it back';
+        return 'it seemed hidden or uncovered at first, but the second look restored it';
       return outcome === 'pokesOut'
         ? 'it pokes out of the cage a little, which counts as covered'
-        : 'the cage is over it and nothing of the model between';
+        : 'the cage covers it, and nothing of the model lies between';
     case Zone.Occluded:
       return model ? `${nameAt(shown, model.triangle)} lies over it` : 'the model lies over it';
     case Zone.Uncovered:
@@ -212,17 +211,17 @@ function brief(
       if (classification.segmentStats[part.segment]!.bared)
         return `a hole of the cage seems to be meant for ${part.name}`;
       return part.coverage < part.threshold
-        ? `of ${part.name} the cage covers ${percent(part.coverage)} where ${percent(part.threshold)} are asked`
+        ? `the cage covers ${percent(part.coverage)} of the exposed area of ${part.name}, less than the threshold of ${percent(part.threshold)}`
         : `too little of ${part.name} is covered`;
   }
 }
 
-/** The name of the part of the model that a triangle is of. */
+/** The name of the mesh that a triangle belongs to. */
 function nameAt({ target: { mesh } }: Shown, triangle: number): string {
   return `“${mesh.parts.findLast(({ firstTriangle }) => firstTriangle <= triangle)!.name}”`;
 }
 
-/** In two digits, as many as people compare. */
+/** With two significant digits. */
 export function percent(share: number): string {
   const value = 100 * share;
   if (value > 0 && value < 0.01) return '< 0.01 %';

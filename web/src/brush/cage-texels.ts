@@ -1,7 +1,7 @@
 import { Line3, Triangle, Vector3 } from 'three';
 import type { Rect } from '../layers/rect';
 
-/** A cage, as far as painting on it wants to know it. */
+/** The arrays of a cage that painting needs. */
 export interface CageMesh {
   /** 3 per vertex. */
   positions: Float32Array;
@@ -11,63 +11,63 @@ export interface CageMesh {
   uvs: Float32Array;
 }
 
-/** A place on the cage, and the side of it that is outside. */
-export interface Place {
+/** A point on the cage, and its outward normal. */
+export interface SurfacePoint {
   point: Vector3;
   /** Of length 1. */
   normal: Vector3;
 }
 
-/** What a brush touches as it moves from one place to another: all within `radius` of the line between them. */
+/** What a brush touches between two points: everything within `radius` of the line segment between them. */
 export interface Capsule {
-  from: Place;
-  to: Place;
+  from: SurfacePoint;
+  to: SurfacePoint;
   radius: number;
 }
 
-// Texels around an island that hold what its border holds. With two, bilinear filtering never reaches past them; the
-// others serve the first smaller levels of the texture.
+// Width of the gutter around a UV chart, in texels, filled with the colour of its border. Bilinear filtering needs two; the
+// others serve the first mipmap levels.
 const kGutter = 4;
-// A triangle that lies in more tiles than that, in either direction, has UVs that mean something else.
+// At most this many repetitions of the texture are painted for one triangle, in either direction.
 const kMostTiles = 16;
-/** The least cosine between a brush's normal and that of what it paints: beyond lies the other side of something thin. */
+/** The least cosine between the brush's normal and a surface it paints: below it, the surface is the far side of a thin part. */
 export const kFacing = -0.25;
-/** Numbers for each patch in `table`, four by four. */
+/** Texels of 4 numbers for each patch in `table`. */
 export const kPatchTexels = 5;
 
-/** A triangle of the cage as it lies in the texture; once for each tile, where its UVs leave 0..1. */
+/** A triangle of the cage in the texture; one for each repetition of the texture it reaches, if its UVs leave 0..1. */
 interface Patch {
   points: readonly [Vector3, Vector3, Vector3];
   normal: Vector3;
-  /** Where the first corner lies. */
+  /** UVs of the first corner. */
   u: number;
   v: number;
-  /** How the shares of the second and third corner grow with u and v. */
+  /** Derivatives of the barycentric weights of corners b and c by u and v. */
   shares: readonly [bu: number, bv: number, cu: number, cv: number];
-  /** How u and v grow in the triangle's plane. */
+  /** Gradients of u and v in the triangle's plane. */
   alongU: Vector3;
   alongV: Vector3;
   box: Rect;
 }
 
 /**
- * The cage, unrolled: for each texel of a texture, which triangle of the cage lies there, and so which place. With it a
- * brush can be a ball in space: what it touches is the same on both sides of a seam, and of one size everywhere.
+ * Maps each texel of a texture to the triangle of the cage that lies there, and so to a point of the cage. This lets a brush
+ * be a ball in space: it paints both sides of a UV seam alike, and has the same size everywhere.
  */
-export class CageAtlas {
+export class CageTexels {
   readonly #patches: Patch[];
-  /** Per texel the patch that lies there, or around whose border it lies; -1 for none. Row by row from v = 0. */
+  /** Per texel the patch that lies there, or in whose gutter it lies; -1 for none. Rows from v = 0. */
   readonly owners: Int32Array;
-  /** The cage's x where left meets right. */
+  /** x of the cage's plane of symmetry. */
   readonly middle: number;
-  /** The diagonal of the cage's box. */
+  /** Diagonal of the cage's bounding box. */
   readonly diagonal: number;
-  /** How far apart neighbouring texels are, in the cage's space and on the whole. */
+  /** Mean distance of neighbouring texels, in the cage's space. */
   readonly pitch: number;
 
   /**
-   * @param size Texels a side.
-   * Cost: some tens of milliseconds at 1024, and 4 bytes a texel.
+   * @param size Texels per side.
+   * Cost: tens of milliseconds at 1024, and 4 bytes per texel.
    */
   constructor(
     cage: CageMesh,
@@ -83,8 +83,8 @@ export class CageAtlas {
     this.pitch = pitchOf(this.#patches) / size;
   }
 
-  /** The place of the cage at a place of the texture; none where no island lies. @param u, v Repeated outside 0..1. */
-  at(u: number, v: number): Place | undefined {
+  /** The point of the cage at a UV; undefined between charts. @param u, v Repeated outside 0..1. */
+  at(u: number, v: number): SurfacePoint | undefined {
     const [insideU, insideV] = [u - Math.floor(u), v - Math.floor(v)];
     const column = Math.min(this.size - 1, Math.floor(insideU * this.size));
     const row = Math.min(this.size - 1, Math.floor(insideV * this.size));
@@ -92,14 +92,14 @@ export class CageAtlas {
     return patch && { point: pointOf(patch, insideU, insideV), normal: patch.normal.clone() };
   }
 
-  /** The place of the cage that is nearest to a point, on what faces `outside`. Cost: goes through all triangles. */
-  nearest(point: Vector3, outside: Vector3): Place | undefined {
+  /** The closest point of the triangles that face `outside`. Cost: visits all triangles. */
+  nearest(point: Vector3, outside: Vector3): SurfacePoint | undefined {
     const triangle = new Triangle();
     const found = new Vector3();
-    let nearest: Place | undefined;
+    let nearest: SurfacePoint | undefined;
     let least = Infinity;
     for (const { points, normal } of this.#patches) {
-      // A triangle is no nearer than its plane.
+      // The distance to the plane bounds the distance to the triangle.
       if (normal.dot(outside) <= 0 || Math.abs(found.subVectors(point, points[0]).dot(normal)) >= least) continue;
       triangle.set(...points).closestPointToPoint(point, found);
       const distance = found.distanceTo(point);
@@ -108,15 +108,15 @@ export class CageAtlas {
     return nearest;
   }
 
-  /** The same place on the other side of the middle. */
-  mirrored({ point, normal }: Place): Place {
+  /** The point mirrored at the plane of symmetry. */
+  mirrored({ point, normal }: SurfacePoint): SurfacePoint {
     return {
       point: new Vector3(2 * this.middle - point.x, point.y, point.z),
       normal: new Vector3(-normal.x, normal.y, normal.z),
     };
   }
 
-  /** The patches for a shader: of each, 4 numbers `kPatchTexels` times: a, u; b, v; c, 0; shares; normal, 0. */
+  /** The patches for a shader, `kPatchTexels` × 4 numbers each: a, u; b, v; c, 0; shares; normal, 0. */
   table(): Float32Array {
     return Float32Array.from(
       this.#patches.flatMap(({ points: [a, b, c], normal, u, v, shares }) => [
@@ -134,8 +134,8 @@ export class CageAtlas {
   }
 
   /**
-   * The parts of the texture that a brush touches, in shares; they may be a little larger, and overlap.
-   * @param without Patches that are left out, by their number.
+   * The parts of the texture that a brush touches, in shares; conservative, and they may overlap.
+   * @param without Indices of patches to leave out.
    */
   touched({ from, to, radius }: Capsule, without: ReadonlySet<number>): Rect[] {
     const rects: Rect[] = [];
@@ -151,7 +151,7 @@ export class CageAtlas {
       b.subVectors(to.point, points[0]);
       const [heightA, heightB] = [a.dot(normal), b.dot(normal)];
       if (Math.min(heightA, heightB) > radius || Math.max(heightA, heightB) < -radius) continue;
-      // In the triangle's plane u and v are linear: the ball's shadow there gives their bounds.
+      // u and v are linear in the triangle's plane: the ball's projection bounds them.
       const [reachU, reachV] = [radius * alongU.length(), radius * alongV.length()];
       const [uA, uB, vA, vB] = [u + a.dot(alongU), u + b.dot(alongU), v + a.dot(alongV), v + b.dot(alongV)];
       const left = Math.max(box.left, Math.min(uA, uB) - reachU);
@@ -176,18 +176,18 @@ export class CageAtlas {
     return rects;
   }
 
-  /** The patches, by their number, of which all that belongs to them lies within a brush's way, and faces it all along. */
+  /** Indices of the patches that lie entirely within a capsule and face it along its whole length. */
   enclosed({ from, to, radius }: Capsule): number[] {
     const way = new Line3(from.point, to.point);
     const found = new Vector3();
-    // A capsule that holds the corners of a triangle holds all of it.
+    // A capsule is convex: it contains a triangle if it contains the corners.
     const isNear = (point: Vector3): boolean => way.closestPointToPoint(point, true, found).distanceTo(point) <= radius;
     return this.#patches.flatMap(({ points, normal }, index) =>
       Math.min(normal.dot(from.normal), normal.dot(to.normal)) >= kFacing && points.every(isNear) ? index : [],
     );
   }
 
-  /** Claims the texels whose centres lie in a patch. */
+  /** Assigns the texels whose centres lie in a patch. */
   #fill({ u, v, shares: [bu, bv, cu, cv], box }: Patch, index: number): void {
     const { size, owners } = this;
     const first = (share: number): number => Math.max(0, Math.ceil(share * size - 0.5));
@@ -204,7 +204,7 @@ export class CageAtlas {
     }
   }
 
-  /** Gives the texels around an island to its border, ring by ring. */
+  /** Fills the gutters: assigns texels around a chart to the patches at its border, ring by ring. */
   #widen(): void {
     const { size, owners } = this;
     let ring: number[] = [];
@@ -243,7 +243,7 @@ function patchesOf({ positions, indices, uvs }: CageMesh): Patch[] {
     const area = ub * vc - uc * vb;
     const [alongB, alongC] = [points[1].clone().sub(points[0]), points[2].clone().sub(points[0])];
     const normal = alongB.clone().cross(alongC);
-    // What has no area, in space or in the texture, cannot be painted.
+    // Triangles without area in space or in the texture cannot be painted.
     if (normal.lengthSq() === 0 || area === 0) continue;
     const [bb, bc, cc, scale] = [alongB.lengthSq(), alongB.dot(alongC), alongC.lengthSq(), 1 / normal.lengthSq()];
     /** The direction g of the plane with g·alongB = atB and g·alongC = atC. */
@@ -271,13 +271,13 @@ function patchesOf({ positions, indices, uvs }: CageMesh): Patch[] {
   return patches;
 }
 
-/** The tiles of the texture's repetition that are met between two places, in one direction. */
+/** The repetitions of the texture between two coordinates, in one direction. */
 function tilesOf(from: number, to: number): number[] {
   const first = Math.floor(from);
   return Array.from({ length: Math.max(1, Math.min(kMostTiles, Math.ceil(to) - first)) }, (_, step) => first + step);
 }
 
-/** The place of a patch at a place of the texture; beyond its border, a place on the border. */
+/** The point of a patch at a UV; outside the patch, a point on its border. */
 function pointOf({ points, u, v, shares: [bu, bv, cu, cv] }: Patch, atU: number, atV: number): Vector3 {
   const [du, dv] = [atU - u, atV - v];
   const [shareB, shareC] = [du * bu + dv * bv, du * cu + dv * cv];
@@ -299,7 +299,7 @@ function boxOf(positions: Float32Array): { least: Vector3; most: Vector3 } {
   return { least, most };
 }
 
-/** How much longer a way is in space than in the texture, on the whole. */
+/** The mean ratio of lengths in space to lengths in the texture. */
 function pitchOf(patches: readonly Patch[]): number {
   let [inSpace, inTexture] = [0, 0];
   const normal = new Vector3();

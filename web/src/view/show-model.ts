@@ -1,8 +1,8 @@
 import type { Session } from '../scene/session';
 import type { Viewer } from './viewer';
 
-/** Lets the picture follow the session. */
-export function showPicture(session: Session, viewer: Viewer): void {
+/** Updates the viewer on events of the session. */
+export function showModel(session: Session, viewer: Viewer): void {
   session.on('transfer', ({ target, cage, projection }) => {
     viewer.setTarget(target, projection);
     viewer.setCage(cage);
@@ -11,7 +11,7 @@ export function showPicture(session: Session, viewer: Viewer): void {
   session.on('zones', ({ classification }) => viewer.classify(classification));
   session.on('view', (view) => viewer.setView(view));
 
-  const still = matchMedia('(prefers-reduced-motion: reduce)');
-  viewer.turn(!still.matches);
-  still.addEventListener('change', () => still.matches && viewer.turn(false));
+  const reduced = matchMedia('(prefers-reduced-motion: reduce)');
+  viewer.sway(!reduced.matches);
+  reduced.addEventListener('change', () => reduced.matches && viewer.sway(false));
 }

@@ -1,15 +1,15 @@
 import type { GLTF } from 'three/addons/loaders/GLTFLoader.js';
 
-/** What tells one kind of image from others, and a whole one from one that is cut short. */
+/** How to recognise an image format, and truncated files. */
 interface Kind {
   title: string;
   name: RegExp;
   begins: string;
-  /** Where its last byte should be, or before. */
+  /** Whether the end of the file is there. */
   isWhole(bytes: Uint8Array): boolean;
 }
 
-/** What glTF has images in, by their media types. */
+/** Image formats in glTF, by media type. */
 const kKinds: Record<string, Kind> = {
   'image/png': {
     title: 'PNG',
@@ -40,9 +40,9 @@ interface ImageJson {
 }
 
 /**
- * Looks for images of a model that could not be decoded; the loader leaves white what they belong to.
+ * Finds images of a model that could not be decoded; the loader shows white in their place.
  * @param read Reads a file that the model refers to.
- * @returns One sentence, without the model's name, of the first of them and of how many there are; nothing if all are sound.
+ * @returns A message about the first of them and their number, without the model's name; undefined if all are intact.
  */
 export async function damageOf(
   { parser }: GLTF,
@@ -65,8 +65,8 @@ export async function damageOf(
   const bytes = bufferView !== undefined ? await parser.getDependency('bufferView', bufferView) : await read(uri ?? '');
   const file = uri?.startsWith('data:') ? undefined : uri;
   const title = name || file ? `image “${name || file}”` : `image ${first}`;
-  const others = damaged.size > 1 ? `, nor can ${damaged.size - 1} more` : '';
-  return `${title} cannot be shown${others}: ${faultOf(new Uint8Array(bytes), kindOf(mimeType, uri))}. What it belongs to stays white.`;
+  const others = damaged.size > 1 ? ` (nor can ${damaged.size - 1} more)` : '';
+  return `${title} cannot be shown${others}: ${faultOf(new Uint8Array(bytes), kindOf(mimeType, uri))}. White is shown in its place.`;
 }
 
 function kindOf(mimeType: string | undefined, uri = ''): Kind | undefined {
@@ -78,11 +78,11 @@ function kindOf(mimeType: string | undefined, uri = ''): Kind | undefined {
 
 function faultOf(bytes: Uint8Array, kind: Kind | undefined): string {
   if (bytes.length === 0) return 'it is empty';
-  if (!kind) return 'the browser does not read its kind';
-  if (!textOf(bytes.subarray(0, 12)).startsWith(kind.begins)) return `it is no ${kind.title}`;
+  if (!kind) return 'the browser does not support its format';
+  if (!textOf(bytes.subarray(0, 12)).startsWith(kind.begins)) return `it is not a ${kind.title} file`;
   return kind.isWhole(bytes)
-    ? `its ${kind.title} is damaged`
-    : `its ${kind.title} is cut short, after ${bytes.length} bytes`;
+    ? `the ${kind.title} file is damaged`
+    : `the ${kind.title} file is cut short after ${bytes.length} bytes`;
 }
 
 function isWholeKtx2(bytes: Uint8Array): boolean {
@@ -100,5 +100,5 @@ function isWholeKtx2(bytes: Uint8Array): boolean {
 const viewOf = ({ buffer, byteOffset, byteLength }: Uint8Array): DataView =>
   new DataView(buffer, byteOffset, byteLength);
 
-/** Bytes as letters of the same numbers. */
+/** Bytes as a string of the same character codes. */
 const textOf = (bytes: Uint8Array): string => String.fromCharCode(...bytes);
