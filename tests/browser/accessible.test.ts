@@ -39,7 +39,7 @@ for (const { name, ...options } of kVisits) {
 
     await page.locator('details').evaluateAll((all) => all.forEach((details) => details.setAttribute('open', '')));
     await page.locator('#view-mode input[value=distance]').check({ force: true });
-    await page.getByRole('button', { name: 'Ask the middle' }).click();
+    await page.getByRole('button', { name: 'Explain the centre' }).click();
     await page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '');
     assert.deepEqual(await faults(page), [], 'with all cards open, a legend, a story, and a verdict on the cage');
 

@@ -95,13 +95,13 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
     what: 'a model of points',
     input: 'target',
     file: glb('cloud.glb', writeGlb({ ...sound, mode: 0 })),
-    says: /cloud\.glb: there are no triangles in it/,
+    says: /cloud\.glb: the file contains no triangles/,
   },
   {
     what: 'a texture that is no image',
     input: 'texture',
     file: { name: 'text.png', mimeType: 'image/png', buffer: Buffer.from('no image') },
-    says: /text\.png: .*no image/,
+    says: /text\.png: the browser cannot read this image/,
   },
 ];
 
@@ -142,13 +142,13 @@ test('a target whose image is damaged is shown in white, and one line says which
       'of another kind',
       'image/jpeg',
       Buffer.from('what was meant to be an image'),
-      /^box\.glb: image “own” cannot be shown: it is no JPEG\./,
+      /^box\.glb: image “own” cannot be shown: it is not a JPEG file\./,
     ],
     [
       'cut short',
       'image/jpeg',
       Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 16]),
-      /^box\.glb: image “own” cannot be shown: its JPEG is cut short, after 6 bytes\./,
+      /^box\.glb: image “own” cannot be shown: the JPEG file is cut short after 6 bytes\./,
     ],
     ['damaged', 'image/png', flipped, /^box\.glb: image “own” cannot be shown: its PNG is damaged\./],
   ] as const) {
@@ -158,7 +158,7 @@ test('a target whose image is damaged is shown in white, and one line says which
     await page.getByTestId('target-input').setInputFiles(glb('box.glb', Buffer.from(await io.writeBinary(document))));
     assert.equal(await settled(page), 'ready', await shownError(page));
     assert.match(await shownError(page), says, kind);
-    assert.match(await shownError(page), / What it belongs to stays white\.$/);
+    assert.match(await shownError(page), / White is shown in its place\.$/);
     assert.ok((await shownCounts(page)).cosmetic > 0);
   }
   // It was read, and need not be said again.
@@ -194,12 +194,12 @@ test('of what is dropped the page takes what it knows, and says what it does not
     [
       [small, large],
       ['cage-b.glb', 'cage-a.glb'],
-      'cage-a.glb and cage-b.glb are both called cages: the one with more triangles is taken for the target.',
+      'cage-a.glb and cage-b.glb are both named as cages; the one with more triangles is used as the target.',
     ],
     [
       [{ ...small, name: 'a.glb' }, cage, text, { ...small, name: 'c.glb' }],
       ['a.glb', 'cage.glb'],
-      'notes.txt and 1 more are left out: one target, one cage and one paint are taken at a time.',
+      'notes.txt and 1 more were ignored: only one target, one cage and one paint can be opened at a time.',
     ],
   ] as const) {
     await drop(page, [...files]);
@@ -256,7 +256,7 @@ test('a page without its samples says so and takes files all the same', async ()
     globalThis.fetch = (input, options) => String(input).endsWith('index.json') ? Promise.resolve(new Response('', { status: 404 })) : fetched(input, options)`,
   );
   assert.equal(await page.getByTestId('status').textContent(), 'error');
-  assert.match(await shownError(page), /samples are missing/);
+  assert.match(await shownError(page), /samples could not be loaded/);
   await page.getByTestId('target-input').setInputFiles(glb('thing.glb', writeGlb(sound)));
   await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))));
   assert.equal(await settled(page), 'ready', await shownError(page));
@@ -323,5 +323,5 @@ test('what is said of files stays while borders are cut', async () => {
   assert.equal(await settled(page), 'ready');
   await page.waitForTimeout(1500);
   assert.equal(await settled(page), 'ready');
-  assert.match(await shownError(page), / is left out: /);
+  assert.match(await shownError(page), / was ignored: /);
 });

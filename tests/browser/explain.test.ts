@@ -18,7 +18,7 @@ after(() => site?.close());
 
 const kLizard = (file: string): string => inRepository('build/assets/lizard', `${file}.glb`);
 const bubble = (page: Page): Promise<string> => page.getByTestId('explain-bubble').innerText();
-const story = (page: Page): Promise<string> => page.getByTestId('explain-text').innerText();
+const explanation = (page: Page): Promise<string> => page.getByTestId('explain-text').innerText();
 const choose = (page: Page, title: string): Promise<void> =>
   page.getByRole('radio', { name: title, exact: true }).check({ force: true });
 const mode = (page: Page, value: string): Promise<void> =>
@@ -30,7 +30,7 @@ async function ask(page: Page, x: number, y: number): Promise<string> {
   return (await page.getByTestId('explain-bubble').isVisible()) ? bubble(page) : '';
 }
 
-test('what is told of a spot is what the picture shows there', async () => {
+test('the explanation of a spot is what the picture shows there', async () => {
   const { page, complaints } = visit;
   const area = await modelArea(page);
   const violet = new PNG({ width: 8, height: 8 });
@@ -44,7 +44,7 @@ test('what is told of a spot is what the picture shows there', async () => {
   await mode(page, 'result');
   const result = await look(page, area);
 
-  await choose(page, 'Why?');
+  await choose(page, 'Explain');
   const seen = new Set<string>();
   for (let row = 1; row < 9; row += 2) {
     for (let column = 3; column < 9; column++) {
@@ -65,17 +65,17 @@ test('what is told of a spot is what the picture shows there', async () => {
   assert.deepEqual(complaints, []);
 });
 
-test('the story follows the mouse, stays with a click, follows the threshold, and ends with Escape as if it had not been', async () => {
+test('the explanation follows the mouse, stays with a click, follows the threshold, and ends with Escape as if it had not been', async () => {
   const { page } = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 });
   visit.page = page;
   await mode(page, 'result');
   const area = await modelArea(page);
   const before = await look(page, area);
-  await choose(page, 'Why?');
+  await choose(page, 'Explain');
   const eye = await findEye(page, area);
-  assert.match(await story(page), /Part\s+It belongs to “l-eye”/);
+  assert.match(await explanation(page), /Part\s+It belongs to “l-eye”/);
   assert.ok(shareOfHue(await look(page, area), 41) > 0.002, 'its ray is orange');
-  assert.ok(difference(before, await look(page, area)) > 0.005, 'the story is drawn');
+  assert.ok(difference(before, await look(page, area)) > 0.005, 'the explanation is drawn');
 
   const told = await bubble(page);
   await page.mouse.move(eye.x - 60, eye.y + 40);
@@ -85,9 +85,9 @@ test('the story follows the mouse, stays with a click, follows the threshold, an
   const { segments } = await report(kLizard('target'), kLizard('cage'));
   const facts = segments.find(({ part }: Report['segments'][number]) => part === 'l-eye')!;
   const coverage = Math.round((100 * facts.coveredArea) / facts.exposedArea);
-  assert.match(await story(page), new RegExp(`F = C / E\\s+${coverage} %, culled`));
+  assert.match(await explanation(page), new RegExp(`F = C / E\\s+${coverage} %, culled`));
   await setThreshold(page, (coverage - 5) / 100);
-  assert.match(await story(page), new RegExp(`Threshold\\s+${coverage - 5} %`));
+  assert.match(await explanation(page), new RegExp(`Threshold\\s+${coverage - 5} %`));
   await setThreshold(page, 0.5);
 
   await page.locator('#view').focus();
@@ -100,7 +100,7 @@ test('the story follows the mouse, stays with a click, follows the threshold, an
 /** Asks about the eye: its row in the table lights it up, and tells where it is. */
 async function findEye(page: Page, area: Area): Promise<{ x: number; y: number }> {
   await page.locator('#parts summary').click();
-  const row = page.getByTestId('segment-table').getByRole('combobox', { name: 'Say about l-eye', exact: true });
+  const row = page.getByTestId('segment-table').getByRole('combobox', { name: 'Override for l-eye', exact: true });
   await row.focus();
   const lit = await look(page, area);
   await row.blur();
@@ -112,32 +112,32 @@ async function findEye(page: Page, area: Area): Promise<{ x: number; y: number }
   for (let i = 0; i < pixels.length; i += Math.ceil(pixels.length / 20)) {
     const at = { x: area.x + (pixels[i]! % lit.width), y: area.y + Math.floor(pixels[i]! / lit.width) };
     await ask(page, at.x, at.y);
-    if (/“l-eye”/.test(await story(page))) return at;
+    if (/“l-eye”/.test(await explanation(page))) return at;
   }
   throw new Error(`none of ${pixels.length} pixels is on the eye`);
 }
 
-test('by keyboard: W asks, Enter tells of the middle, and a screen reader is told the whole of it', async () => {
+test('by keyboard: X chooses the tool, Enter explains the centre, and a screen reader is told all of it', async () => {
   const { page } = visit;
   await drop(page, [await ball(), await islandCage(1)]);
   assert.equal(await settled(page), 'ready', await shownError(page));
   await page.locator('#view').focus();
-  await page.keyboard.press('w');
-  assert.equal(await page.getByRole('radio', { name: 'Why?' }).isChecked(), true);
+  await page.keyboard.press('x');
+  assert.equal(await page.getByRole('radio', { name: 'Explain' }).isChecked(), true);
   assert.equal(await page.locator('.crosshair').isVisible(), true);
   await page.keyboard.press('Enter');
   assert.match(await bubble(page), /^Painted/);
-  assert.match(await story(page), /meets the cage after \d.* %, and nothing of the model before it/);
+  assert.match(await explanation(page), /meets the cage after \d.* %, with nothing of the model before it/);
   await page.waitForFunction(() => /^Painted: .*meets the cage/.test(document.querySelector('#summary')!.textContent!));
   await page.keyboard.press('ArrowRight');
   await page.keyboard.press('Enter');
   assert.match(await bubble(page), /^Painted/);
 });
 
-test('a story that is kept follows the model as it moves', async () => {
+test('a pinned explanation follows the model as it moves', async () => {
   const { page } = visit;
-  await page.getByRole('button', { name: 'Ask the middle' }).click();
-  const still = await story(page);
+  await page.getByRole('button', { name: 'Explain the centre' }).click();
+  const still = await explanation(page);
   const inflate = async (amount: string): Promise<void> => {
     await page.locator('#deform').selectOption('inflate');
     await page.getByTestId('amount').fill(amount);
@@ -149,10 +149,10 @@ test('a story that is kept follows the model as it moves', async () => {
     );
   };
   await inflate('-0.8');
-  const away = (told: string): number => Number.parseFloat(/nearest, (\S+) %/.exec(told)![1]!);
-  assert.ok(away(await story(page)) > away(still) + 1, `${away(still)} % away, then ${away(await story(page))} %`);
+  const away = (told: string): number => Number.parseFloat(/, (\S+) % of the model’s diagonal away/.exec(told)![1]!);
+  assert.ok(away(await explanation(page)) > away(still) + 1, `${away(still)} % away, then ${away(await explanation(page))} %`);
   await inflate('0');
-  assert.equal(await story(page), still);
+  assert.equal(await explanation(page), still);
 });
 
 for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
@@ -161,11 +161,11 @@ for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'sk
     const nearest = async (target: Upload): Promise<string> => {
       await drop(page, [target, await islandCage(1)]);
       assert.equal(await settled(page), 'ready', await shownError(page));
-      await page.getByRole('button', { name: 'Ask the middle' }).click();
-      return /Triangle \d+ of the cage/.exec(await story(page))![0];
+      await page.getByRole('button', { name: 'Explain the centre' }).click();
+      return /triangle is number \d+,/.exec(await explanation(page))![0];
     };
     // The side of the cage that faces the viewer is the fifth; each side is of two triangles.
-    assert.match(await nearest(await ball(options)), /Triangle (8|9) /);
+    assert.match(await nearest(await ball(options)), /triangle is number (8|9),/);
   });
 }
 
@@ -174,8 +174,8 @@ test('each way to be left out, and each to be let in, has words of its own', asy
   const open = async (size: number): Promise<string> => {
     await drop(page, [glb('thing.glb', writeGlb(tetrahedron(size))), glb('cage.glb', writeGlb(tetrahedron(2)))]);
     assert.equal(await settled(page), 'ready', await shownError(page));
-    await page.getByRole('button', { name: 'Ask the middle' }).click();
-    return `${await bubble(page)} ${await story(page)}`;
+    await page.getByRole('button', { name: 'Explain the centre' }).click();
+    return `${await bubble(page)} ${await explanation(page)}`;
   };
   assert.match(await open(1), /Painted.*the cage is over it and nothing of the model between/s);
   assert.match(await open(4), /Not painted: uncovered.*it lies outside the cage/s);
@@ -195,7 +195,7 @@ test('each way to be left out, and each to be let in, has words of its own', asy
 
 test('on a phone a tap asks, and a swipe still turns the model', async () => {
   const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
-  await choose(page, 'Why?');
+  await choose(page, 'Explain');
   const area = await modelArea(page);
   await page.touchscreen.tap(area.x + area.width / 2, area.y + area.height / 2);
   assert.match(await bubble(page), /painted/i);

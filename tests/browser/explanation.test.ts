@@ -53,13 +53,13 @@ for (const folder of modelFolders()) {
           assert.equal(zone === 0, verdict === 'Painted');
           assert.match(
             steps.at(-1)!.sentence,
-            culled ? /culled as a whole|do not pass|exposed: it is culled/ : /passes\.|they pass|is exposed\./,
+            culled ? /culled as a whole|do not pass|exposed, so it is culled/ : /passes\.|they pass|is exposed\./,
             where,
           );
           assert.equal(part.passes, !culled);
           // Whatever is culled although it is covered well enough is told apart from what is not.
           if (culled && coverage >= threshold && part.exposed > 0)
-            assert.match(steps.at(-1)!.sentence, /little of it|copies|meant for it/, where);
+            assert.match(steps.at(-1)!.sentence, /area is small|twins|meant for it/, where);
         }
       }
     }
@@ -87,9 +87,9 @@ test('of a part that a hole is meant for that is told, and by the other rules it
   };
   assert.match(
     told({}),
-    /^Not painted: culled: a hole of the cage seems to be meant for “part 1”\. .* covers 69 %, enough; but a hole .* meant for it: it is small, /,
+    /^Not painted: culled: a hole of the cage seems to be meant for “part 1”\. .* covers 69 % of its exposed area, which is enough\. But it is small, .* meant for it\./,
   );
-  assert.match(told({ baredParts: false }), /^Painted: .* covers 69 %, at least the threshold of 50 %: it passes\.$/);
+  assert.match(told({ baredParts: false }), /^Painted: .* covers 69 % of its exposed area, at least the threshold of 50 %: it passes\.$/);
 });
 
 test('of a part that is locked only that is told', async () => {
@@ -110,7 +110,7 @@ test('of a part that is locked only that is told', async () => {
     );
     assert.match(
       steps.at(-1)!.sentence,
-      new RegExp(`You said to ${lock} it.*${lock === 'keep' ? 'it passes' : 'it is culled'}`),
+      new RegExp(`You chose to ${lock} it.*${lock === 'keep' ? 'it passes' : 'it is culled'}`),
     );
   }
 });

@@ -138,7 +138,7 @@ test('a damaged KTX2 texture leaves its model white, and the page says so', asyn
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.equal(
     await shownError(page),
-    'target.glb: image “colour” cannot be shown: its KTX2 is cut short, after 150 bytes. What it belongs to stays white.',
+    'target.glb: image “colour” cannot be shown: the KTX2 file is cut short after 150 bytes. White is shown in its place.',
   );
   assert.ok((await shownCounts(page)).cosmetic > 0);
   await page.locator('#show-paint').uncheck({ force: true });

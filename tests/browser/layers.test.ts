@@ -304,6 +304,6 @@ test('where a link’s paint cannot be had, that is told, and what lies there st
         'sample=lizard&layer=lizard/paint-tiger.png,0.5,ffffff,normal&layer=lizard/paint-war-paint.png,1,ffffff,normal'),
   );
   await page.getByTestId('error').waitFor();
-  assert.match(await shownError(page), /^lizard\/paint-war-paint\.png: the file cannot be fetched$/);
+  assert.match(await shownError(page), /^lizard\/paint-war-paint\.png: the file could not be loaded$/);
   assert.equal((await names(page)).length, before.length);
 });

@@ -36,7 +36,7 @@ const counted = (flags: { keep?: string; exclude?: string }) =>
   });
 /** The choice in a row, found by what a screen reader says. */
 const choice = ({ name }: ShownPart): Locator =>
-  table().getByRole('combobox', { name: `Say about ${name}`, exact: true });
+  table().getByRole('combobox', { name: `Override for ${name}`, exact: true });
 
 test('the table lists the parts by name, those that are covered least first, with a verdict for each', async () => {
   const parts = await shownParts(visit.page);
@@ -163,7 +163,7 @@ test('the keyboard opens the table, and chooses in it', async () => {
   const first = (await shownParts(page))[0]!;
   assert.equal(
     await page.evaluate(() => document.activeElement!.getAttribute('aria-label')),
-    `Say about ${first.name}`,
+    `Override for ${first.name}`,
   );
   await page.keyboard.press('ArrowDown');
   assert.equal((await shownParts(page))[0]!.lock, 'keep');

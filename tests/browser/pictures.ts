@@ -106,7 +106,7 @@ async function why(site: Site): Promise<void> {
   const shots: string[] = [];
   const { page } = await site.visit({ viewport: { width: 1200, height: 760 }, deviceScaleFactor: 1 });
   await page.locator('#view-mode input[value=result]').check({ force: true });
-  await page.getByRole('radio', { name: 'Why?' }).check({ force: true });
+  await page.getByRole('radio', { name: 'Explain' }).check({ force: true });
   const stage = (await page.locator('#stage').boundingBox())!;
   for (const [x, y] of [
     [0.6, 0.35],

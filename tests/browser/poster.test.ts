@@ -68,7 +68,7 @@ for (const [screen, viewport, most] of [
   });
 }
 
-test('nothing that tells of loading lies over the still, be it that scripts are waited for or the model', async () => {
+test('nothing that tells of loading lies over the poster image, be it that scripts are waited for or the model', async () => {
   for (const viewport of [
     { width: 390, height: 844 },
     { width: 1440, height: 900 },
@@ -101,12 +101,12 @@ test('nothing that tells of loading lies over the still, be it that scripts are 
   }
 });
 
-test('on a processor slowed to a quarter the still is on the screen before anything is drawn in 3D', async () => {
+test('on a processor slowed to a quarter the poster image is on the screen before anything is drawn in 3D', async () => {
   const { page } = await site.visit({}, async (page) => {
     const session = await page.context().newCDPSession(page);
     await session.send('Emulation.setCPUThrottlingRate', { rate: 4 });
     await page.addInitScript(() => {
-      const times = ((globalThis as unknown as { times: object }).times = {} as { still?: number; drawn?: number });
+      const times = ((globalThis as unknown as { times: object }).times = {} as { poster?: number; drawn?: number });
       new PerformanceObserver((list) => {
         for (const entry of list.getEntries() as (PerformanceEntry & { element?: Element })[])
           if (entry.element?.id === 'poster') times.poster ??= entry.startTime;
@@ -118,14 +118,14 @@ test('on a processor slowed to a quarter the still is on the screen before anyth
       };
     });
   });
-  const { still, drawn } = (await page.evaluate('times')) as { still?: number; drawn?: number };
+  const { poster, drawn } = (await page.evaluate('times')) as { poster?: number; drawn?: number };
   assert.ok(
-    still !== undefined && drawn !== undefined && still < drawn,
-    `the still after ${still} ms, the drawing after ${drawn} ms`,
+    poster !== undefined && drawn !== undefined && poster < drawn,
+    `the poster after ${poster} ms, the drawing after ${drawn} ms`,
   );
 });
 
-test('until the still is on the screen the page computes for less than a second, slowed to a quarter', async () => {
+test('until the poster image is on the screen the page computes for less than a second, slowed to a quarter', async () => {
   const { page } = await site.visit();
   // By processor time, as a busy machine stretches any other, and against what always takes the same, as it stretches even that.
   const reload = async (): Promise<void> => {

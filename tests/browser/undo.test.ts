@@ -48,7 +48,7 @@ async function state(): Promise<object> {
 /** Two things that a hand does are not done within a moment. */
 const pause = (): Promise<void> => visit.page.waitForTimeout(700);
 
-test('whatever is done to a layer is a step: undone and done again in turn, with strokes between', async () => {
+test('whatever is done to a layer is a step: undone and redone in turn, with strokes between', async () => {
   const { page, complaints } = visit;
   const tint = (color: string): Promise<void> => page.getByLabel('Tint of blue.png').fill(color);
   const area = await modelArea(page);
@@ -60,30 +60,30 @@ test('whatever is done to a layer is a step: undone and done again in turn, with
     await page.mouse.up();
   };
   const steps: [string, () => Promise<unknown>][] = [
-    ['opacity of blue.png', () => control('slider', 'Opacity of blue.png').fill('40')],
-    ['tint of blue.png', () => tint('#ff8020')],
-    ['blending of blue.png', () => control('combobox', 'Blending of blue.png').selectOption('multiply')],
-    ['hiding of red.png', () => control('checkbox', 'Show red.png').uncheck({ force: true })],
+    ['changing the opacity of blue.png', () => control('slider', 'Opacity of blue.png').fill('40')],
+    ['changing the tint of blue.png', () => tint('#ff8020')],
+    ['changing the blending of blue.png', () => control('combobox', 'Blending of blue.png').selectOption('multiply')],
+    ['changing the visibility of red.png', () => control('checkbox', 'Show red.png').uncheck({ force: true })],
     ['stroke', stroke],
-    ['move of blue.png', () => control('button', 'Reorder blue.png').press('ArrowDown')],
+    ['moving blue.png', () => control('button', 'Reorder blue.png').press('ArrowDown')],
     [
-      'adding of War paint',
+      'adding War paint',
       async () => {
         await page.getByRole('button', { name: 'Add War paint as a layer' }).click();
         await rows(page).filter({ hasText: 'War paint' }).waitFor();
       },
     ],
     [
-      'choice of UV checker',
+      'choosing UV checker',
       async () => {
         await page.getByRole('radio', { name: 'UV checker' }).check({ force: true });
         assert.equal(await settled(page), 'ready', await shownError(page));
       },
     ],
-    ['adding of a painting', () => page.getByTestId('add-painting').click()],
-    ['removal of red.png', () => control('button', 'Remove red.png').click()],
+    ['adding a painting', () => page.getByTestId('add-painting').click()],
+    ['removing red.png', () => control('button', 'Remove red.png').click()],
     [
-      'showing of red.png',
+      'changing the visibility of red.png',
       async () => {
         await page.keyboard.press('Control+z');
         await control('checkbox', 'Show red.png').check({ force: true });
@@ -98,19 +98,19 @@ test('whatever is done to a layer is a step: undone and done again in turn, with
   }
   // The last but one was undone for the sake of the last.
   states.splice(-2, 1);
-  const done = steps.filter(([name]) => name !== 'removal of red.png');
+  const done = steps.filter(([name]) => name !== 'removing red.png');
   for (const [at, [name]] of [...done.entries()].toReversed()) {
     assert.notDeepEqual(states[at], states[at + 1], `${name} does something`);
     await page.keyboard.press('Control+z');
     assert.deepEqual(await state(), states[at], `${name}, undone`);
   }
-  assert.match(await undoTitle(), /adding of blue.png/);
+  assert.match(await undoTitle(), /adding blue.png/);
   for (const [at, [name]] of done.entries()) {
     await page.getByTestId('redo').click();
-    assert.deepEqual(await state(), states[at + 1], `${name}, done again`);
+    assert.deepEqual(await state(), states[at + 1], `${name}, redone`);
   }
   await page.waitForFunction(
-    () => document.querySelector('#summary')!.textContent === 'showing of red.png done again.',
+    () => document.querySelector('#summary')!.textContent === 'Redone: changing the visibility of red.png.',
   );
   assert.deepEqual(complaints, []);
 });
@@ -157,7 +157,7 @@ test('a drag is one step, and so is a key held down', async () => {
   await page.mouse.up();
   assert.equal((await names(page))[2], first);
   const title = await undoTitle();
-  assert.match(title, /move of/);
+  assert.match(title, /moving/);
   await page.mouse.move(...(await middle(third)));
   await page.mouse.down();
   await page.mouse.move(x, y + 30, { steps: 8 });
@@ -197,7 +197,7 @@ test('nothing is undone while a hand is at it, and nothing of what it does is lo
   for (let time = 0; time < 3; time++) await page.keyboard.press('Control+z');
   await page.mouse.move(grip.x + grip.width / 2, grip.y + 300, { steps: 5 });
   await page.mouse.up();
-  assert.match(await undoTitle(), /: move of blue.png$/);
+  assert.match(await undoTitle(), /: moving blue.png$/);
   await page.keyboard.press('Control+z');
   assert.deepEqual([await undoTitle(), await state()], before);
 

@@ -7,7 +7,7 @@ export function setUpUndo(history: History): void {
   const run = (step: 'undo' | 'redo'): void => {
     try {
       const command = history[step]();
-      if (command) announce(`${command.name} ${step === 'undo' ? 'undone' : 'redone'}.`);
+      if (command) announce(`${step === 'undo' ? 'Undone' : 'Redone'}: ${command.name}.`);
     } catch (error) {
       showError((error as Error).message);
     }
