@@ -5,7 +5,7 @@ import type { AddressInfo } from 'node:net';
 import type { Preset } from 'cagecast';
 import { build } from 'esbuild';
 import type { Browser, CDPSession, Page } from 'playwright-core';
-import { launchChromium } from '../tests/chromium.js';
+import { launchChromium } from '../tests/support/chromium.js';
 import { measureNative, output, root, type Spread } from './native.js';
 import { cpuTime, type RaceOptions, type RaceResult, type Realm, race, turn, warmUp } from './race.js';
 import type { BenchScene } from './scenes.js';

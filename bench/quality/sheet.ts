@@ -1,7 +1,7 @@
 import { mkdir, readFile } from 'node:fs/promises';
 import { dirname } from 'node:path';
 import { build } from 'esbuild';
-import { launchChromium } from '../../tests/chromium.js';
+import { launchChromium } from '../../tests/support/chromium.js';
 import { root } from '../native.js';
 import type { Model } from './models.js';
 import type { Look, Row } from './sheet-page.js';

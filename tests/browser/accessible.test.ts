@@ -3,11 +3,10 @@ import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { AxeResults } from 'axe-core';
 import type { Page } from 'playwright-core';
-import { glb } from './glb';
-import { islandCage, morphingBalls } from './models';
-import { saved } from './saved';
-import { drop, inRepository, Site, settled, shownError } from './site';
-import { image } from './texture';
+import { image } from '../support/layers';
+import { islandCage, morphingBalls } from '../support/models';
+import { saved } from '../support/saved';
+import { drop, glb, inRepository, Site, settled, shownError } from '../support/site';
 
 const kAxe = readFileSync(inRepository('node_modules/axe-core/axe.min.js'), 'utf8');
 

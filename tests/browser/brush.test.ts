@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { PNG } from 'pngjs';
-import { ball, islandCage } from './models';
-import { type Area, difference, look, modelArea, shareOfHue } from './picture';
-import { drop, Site, settled, shownError, type Visit } from './site';
-import { filled, names, savedTexture, texel } from './texture';
+import { filled, names, savedTexture, texel } from '../support/layers';
+import { ball, islandCage } from '../support/models';
+import { type Area, difference, look, modelArea, shareOfHue } from '../support/picture';
+import { drop, Site, settled, shownError, type Visit } from '../support/site';
 
 const kWindow = { width: 900, height: 500 };
 let site: Site;

@@ -6,9 +6,19 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { PNG } from 'pngjs';
-import { glb, tetrahedron, writeGlb } from './glb';
-import { texturedBox } from './models';
-import { drop, inRepository, Site, settled, shownCounts, shownError, type Upload, type Visit } from './site';
+import { glbOf, tetrahedron } from '../support/glb';
+import { texturedBox } from '../support/models';
+import {
+  drop,
+  glb,
+  inRepository,
+  Site,
+  settled,
+  shownCounts,
+  shownError,
+  type Upload,
+  type Visit,
+} from '../support/site';
 
 let site: Site;
 // One page for all of it: it must come through everything.
@@ -30,31 +40,31 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
   {
     what: 'a position that is NaN',
     input: 'target',
-    file: glb('nan.glb', writeGlb({ ...sound, positions: positions(7, NaN) })),
+    file: glb('nan.glb', glbOf({ ...sound, positions: positions(7, NaN) }, 'thing')),
     says: /nan\.glb: .*positions\[7\] = NaN is not a finite number/,
   },
   {
     what: 'a position that is infinite',
     input: 'cage',
-    file: glb('far.glb', writeGlb({ ...sound, positions: positions(4, Infinity) })),
+    file: glb('far.glb', glbOf({ ...sound, positions: positions(4, Infinity) }, 'thing')),
     says: /far\.glb: .*positions\[4\] = Infinity is not a finite number/,
   },
   {
     what: 'an index out of range',
     input: 'target',
-    file: glb('index.glb', writeGlb({ ...sound, indices: Uint16Array.of(0, 2, 1, 0, 1, 9) })),
+    file: glb('index.glb', glbOf({ ...sound, indices: Uint16Array.of(0, 2, 1, 0, 1, 9) }, 'thing')),
     says: /index\.glb: .*indices\[5\] = 9 .*out of range \(4 vertices\)/,
   },
   {
     what: 'a cage without UVs',
     input: 'cage',
-    file: glb('bare.glb', writeGlb(withoutUvs)),
+    file: glb('bare.glb', glbOf(withoutUvs, 'thing')),
     says: /bare\.glb: .*cage\.uvs is missing/,
   },
   {
     what: 'a mesh without triangles',
     input: 'target',
-    file: glb('empty.glb', writeGlb({ ...sound, indices: new Uint16Array() })),
+    file: glb('empty.glb', glbOf({ ...sound, indices: new Uint16Array() }, 'thing')),
     says: /empty\.glb: .*no triangles/,
   },
   {
@@ -62,7 +72,7 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
     input: 'cage',
     file: glb(
       'void.glb',
-      writeGlb({ positions: new Float32Array(), indices: new Uint16Array(), uvs: new Float32Array() }),
+      glbOf({ positions: new Float32Array(), indices: new Uint16Array(), uvs: new Float32Array() }, 'thing'),
     ),
     says: /void\.glb: .*no vertices/,
   },
@@ -94,7 +104,7 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
   {
     what: 'a model of points',
     input: 'target',
-    file: glb('cloud.glb', writeGlb({ ...sound, mode: 0 })),
+    file: glb('cloud.glb', glbOf({ ...sound, mode: 0 }, 'thing')),
     says: /cloud\.glb: the file contains no triangles/,
   },
   {
@@ -114,8 +124,8 @@ for (const { what, input, file, says } of kBad) {
     assert.match(await shownError(page), says);
     assert.deepEqual(await shownCounts(page), before, 'what was shown stays');
 
-    await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))));
-    await page.getByTestId('target-input').setInputFiles(glb('thing.glb', writeGlb(sound)));
+    await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(2), 'thing')));
+    await page.getByTestId('target-input').setInputFiles(glb('thing.glb', glbOf(sound, 'thing')));
     assert.equal(await settled(page), 'ready', await shownError(page));
     assert.equal(await shownError(page), '');
     assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
@@ -129,7 +139,7 @@ for (const { what, input, file, says } of kBad) {
 
 test('a target whose image is damaged is shown in white, and one line says which and what is wrong with it', async () => {
   const { page, complaints } = visit;
-  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(4))));
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(4), 'thing')));
   const png = PNG.sync.write(
     Object.assign(new PNG({ width: 64, height: 64 }), {
       data: Buffer.from(Uint8Array.from({ length: 4 * 64 * 64 }, (_, at) => (at * at) >> 3)),
@@ -186,9 +196,9 @@ test('of what is dropped the page takes what it knows, and says what it does not
   assert.equal(await shownError(page), '');
 
   const [small, large, cage] = [
-    glb('cage-a.glb', writeGlb(tetrahedron())),
+    glb('cage-a.glb', glbOf(tetrahedron(), 'thing')),
     glb('cage-b.glb', lizard),
-    glb('cage.glb', writeGlb(tetrahedron(2))),
+    glb('cage.glb', glbOf(tetrahedron(2), 'thing')),
   ];
   for (const [files, slots, says] of [
     [
@@ -228,7 +238,7 @@ test('folders may be dropped, with what lies in them; an empty one is told of, a
     assert.equal(await shownError(page), 'nothing: this folder is empty');
     await mkdir(path.join(folder, 'avatar/fitting'), { recursive: true });
     await writeFile(path.join(folder, 'avatar/head.glb'), lizard);
-    await writeFile(path.join(folder, 'avatar/fitting/cage.glb'), writeGlb(tetrahedron(9)));
+    await writeFile(path.join(folder, 'avatar/fitting/cage.glb'), glbOf(tetrahedron(9), 'thing'));
     await dropFolder('avatar');
     await page.locator('#target-name', { hasText: 'head.glb' }).waitFor();
     assert.equal(await settled(page), 'ready', await shownError(page));
@@ -257,8 +267,8 @@ test('a page without its samples says so and takes files all the same', async ()
   );
   assert.equal(await page.getByTestId('status').textContent(), 'error');
   assert.match(await shownError(page), /samples could not be loaded/);
-  await page.getByTestId('target-input').setInputFiles(glb('thing.glb', writeGlb(sound)));
-  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))));
+  await page.getByTestId('target-input').setInputFiles(glb('thing.glb', glbOf(sound, 'thing')));
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(2), 'thing')));
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
 });
@@ -293,7 +303,7 @@ test('a sample of which a file cannot be had leaves nothing behind, and files th
   assert.equal(await settled(page), 'error');
   assert.match(await shownError(page), /^car\/target\.glb: /);
   assert.deepEqual(await again(), before);
-  await drop(page, [glb('target.glb', Buffer.from('glTF')), glb('cage.glb', writeGlb(tetrahedron(4)))]);
+  await drop(page, [glb('target.glb', Buffer.from('glTF')), glb('cage.glb', glbOf(tetrahedron(4), 'thing'))]);
   assert.equal(await settled(page), 'error');
   assert.deepEqual(await again(), before);
 
@@ -316,9 +326,9 @@ test('what is said of files stays while borders are cut', async () => {
   await page.getByTestId('exact-borders').check({ force: true });
   assert.equal(await settled(page), 'ready');
   await drop(page, [
-    glb('a.glb', writeGlb(tetrahedron(1))),
-    glb('b.glb', writeGlb(tetrahedron(2))),
-    glb('cage.glb', writeGlb(tetrahedron(4))),
+    glb('a.glb', glbOf(tetrahedron(1), 'thing')),
+    glb('b.glb', glbOf(tetrahedron(2), 'thing')),
+    glb('cage.glb', glbOf(tetrahedron(4), 'thing')),
   ]);
   assert.equal(await settled(page), 'ready');
   await page.waitForTimeout(1500);

@@ -6,11 +6,11 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { promisify } from 'node:util';
 import type { Page } from 'playwright-core';
-import { giveUpOnceShown, kSlowWorker } from './give-up';
-import { ball, islandCage, islandPaint } from './models';
-import { difference, look, modelArea, shareOfHue } from './picture';
-import { primitivesOf, saved, validModel } from './saved';
-import { drop, inRepository, Site, setThreshold, settled, shownCounts, shownError, type Visit } from './site';
+import { giveUpOnceShown, kSlowWorker } from '../support/cancel';
+import { ball, islandCage, islandPaint } from '../support/models';
+import { difference, look, modelArea, shareOfHue } from '../support/picture';
+import { primitivesOf, saved, validModel } from '../support/saved';
+import { drop, inRepository, Site, setThreshold, settled, shownCounts, shownError, type Visit } from '../support/site';
 
 const lizard = (name: string): string => inRepository('build/assets/lizard', name);
 

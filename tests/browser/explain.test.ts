@@ -2,11 +2,21 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { type Report, report } from './cli';
-import { glb, tetrahedron, writeGlb } from './glb';
-import { ball, islandCage } from './models';
-import { type Area, difference, frames, look, modelArea, shareOfHue } from './picture';
-import { drop, inRepository, Site, setThreshold, settled, shownError, type Upload, type Visit } from './site';
+import { type Report, report } from '../support/command';
+import { glbOf, tetrahedron } from '../support/glb';
+import { ball, islandCage } from '../support/models';
+import { type Area, difference, frames, look, modelArea, shareOfHue } from '../support/picture';
+import {
+  drop,
+  glb,
+  inRepository,
+  Site,
+  setThreshold,
+  settled,
+  shownError,
+  type Upload,
+  type Visit,
+} from '../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -150,7 +160,10 @@ test('a pinned explanation follows the model as it moves', async () => {
   };
   await inflate('-0.8');
   const away = (told: string): number => Number.parseFloat(/, (\S+) % of the model’s diagonal away/.exec(told)![1]!);
-  assert.ok(away(await explanation(page)) > away(still) + 1, `${away(still)} % away, then ${away(await explanation(page))} %`);
+  assert.ok(
+    away(await explanation(page)) > away(still) + 1,
+    `${away(still)} % away, then ${away(await explanation(page))} %`,
+  );
   await inflate('0');
   assert.equal(await explanation(page), still);
 });
@@ -172,7 +185,10 @@ for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'sk
 test('each way to be left out, and each to be let in, has words of its own', async () => {
   const { page } = visit;
   const open = async (size: number): Promise<string> => {
-    await drop(page, [glb('thing.glb', writeGlb(tetrahedron(size))), glb('cage.glb', writeGlb(tetrahedron(2)))]);
+    await drop(page, [
+      glb('thing.glb', glbOf(tetrahedron(size), 'thing')),
+      glb('cage.glb', glbOf(tetrahedron(2), 'thing')),
+    ]);
     assert.equal(await settled(page), 'ready', await shownError(page));
     await page.getByRole('button', { name: 'Explain the centre' }).click();
     return `${await bubble(page)} ${await explanation(page)}`;

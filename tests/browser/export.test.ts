@@ -10,11 +10,21 @@ import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
 import draco3d from 'draco3dgltf';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { glb, tetrahedron, writeGlb } from './glb';
-import { ball, islandCage } from './models';
-import { difference, look, modelArea } from './picture';
-import { primitivesOf, saved, validModel } from './saved';
-import { drop, inRepository, Site, setThreshold, settled, shownCounts, shownError, shownParts } from './site';
+import { glbOf, tetrahedron } from '../support/glb';
+import { ball, islandCage } from '../support/models';
+import { difference, look, modelArea } from '../support/picture';
+import { primitivesOf, saved, validModel } from '../support/saved';
+import {
+  drop,
+  glb,
+  inRepository,
+  Site,
+  setThreshold,
+  settled,
+  shownCounts,
+  shownError,
+  shownParts,
+} from '../support/site';
 
 let site: Site;
 let folder: string;
@@ -101,7 +111,7 @@ test('what is saved keeps skins, morphs and animations; models of several files 
   assert.equal(overlay!.listTargets().length, 1);
   assert.ok(overlay!.getAttribute('JOINTS_0') && overlay!.getAttribute('WEIGHTS_0'));
 
-  const whole = writeGlb(tetrahedron(0.9));
+  const whole = glbOf(tetrahedron(0.9), 'thing');
   const jsonLength = whole.readUInt32LE(12);
   const json = JSON.parse(whole.subarray(20, 20 + jsonLength).toString());
   json.buffers[0].uri = 'thing%20data.bin';
@@ -223,7 +233,7 @@ test('the link is copied by a click; for files of one’s own there is none, and
   const copied = await page.evaluate(() => navigator.clipboard.readText());
   assert.equal(copied, page.url());
   assert.match(copied, /#sample=lizard&/);
-  await drop(page, [glb('cage.glb', writeGlb(tetrahedron(2))), glb('target.glb', writeGlb(tetrahedron()))]);
+  await drop(page, [glb('cage.glb', glbOf(tetrahedron(2), 'thing')), glb('target.glb', glbOf(tetrahedron(), 'thing'))]);
   await settled(page);
   await page.locator('#link-hint', { hasText: 'stay on this device' }).waitFor();
   assert.equal(await page.getByTestId('share-link').getAttribute('href'), null);

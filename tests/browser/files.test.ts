@@ -8,11 +8,12 @@ import { after, before, test } from 'node:test';
 import { promisify } from 'node:util';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { type Report, report, reportedCounts } from './cli';
-import { glb, tetrahedron, writeGlb } from './glb';
-import { difference, look, modelArea, shareOfHue } from './picture';
+import { type Report, report, reportedCounts } from '../support/command';
+import { glbOf, tetrahedron } from '../support/glb';
+import { difference, look, modelArea, shareOfHue } from '../support/picture';
 import {
   drop,
+  glb,
   inRepository,
   Site,
   setThreshold,
@@ -22,7 +23,7 @@ import {
   shownParts,
   type Upload,
   type Visit,
-} from './site';
+} from '../support/site';
 
 /** Pairs of a target and its cage: the samples, and the folders of env CAGECAST_ASSETS that hold one. */
 function pairs(): { name: string; target: string; cage: string }[] {
@@ -145,11 +146,11 @@ test('a sample can be chosen again after files of one’s own, and everything is
   const before = await shownCounts(page);
   const area = await modelArea(page);
   const picture = await look(page, area);
-  await page.getByTestId('target-input').setInputFiles(glb('thing.glb', writeGlb(tetrahedron())));
+  await page.getByTestId('target-input').setInputFiles(glb('thing.glb', glbOf(tetrahedron(), 'thing')));
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.equal(await page.getByTestId('sample-select').inputValue(), 'own');
   assert.notDeepEqual(await shownCounts(page), before);
-  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))));
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(2), 'thing')));
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
 
@@ -178,9 +179,9 @@ test('of two models dropped together whose names say nothing, the simpler one is
 test('the last of several files in a row wins', async () => {
   const { page } = await fresh();
   const input = page.getByTestId('target-input');
-  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))));
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(2), 'thing')));
   for (let i = 0; i < 3; i++) await input.setInputFiles(read(path.join(kLizard, 'target.glb')));
-  await input.setInputFiles(glb('thing.glb', writeGlb(tetrahedron())));
+  await input.setInputFiles(glb('thing.glb', glbOf(tetrahedron(), 'thing')));
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
 });
@@ -218,7 +219,7 @@ test('a paint of one’s own, PNG or JPEG, is drawn on the model', async () => {
 
 test('a glTF takes its buffer from a file dropped with it, and asks for it when it is missing', async () => {
   const { page } = await fresh();
-  const whole = writeGlb(tetrahedron());
+  const whole = glbOf(tetrahedron(), 'thing');
   const jsonLength = whole.readUInt32LE(12);
   const json = JSON.parse(whole.subarray(20, 20 + jsonLength).toString());
   json.buffers[0].uri = 'thing data.bin';
@@ -228,7 +229,7 @@ test('a glTF takes its buffer from a file dropped with it, and asks for it when 
     buffer: Buffer.from(JSON.stringify({ ...json, buffers: [{ ...json.buffers[0], uri: 'thing%20data.bin' }] })),
   };
   const bin = { name: 'thing data.bin', mimeType: 'application/octet-stream', buffer: whole.subarray(28 + jsonLength) };
-  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', writeGlb(tetrahedron(2))));
+  await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(2), 'thing')));
   await settled(page);
   await drop(page, [gltf]);
   assert.equal(await settled(page), 'error');

@@ -1,11 +1,12 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { inspection, reportedCounts } from './cli';
-import { glb, tetrahedron, writeGlb } from './glb';
-import { difference, look, modelArea } from './picture';
+import { inspection, reportedCounts } from '../support/command';
+import { glbOf, tetrahedron } from '../support/glb';
+import { difference, look, modelArea } from '../support/picture';
 import {
   drop,
+  glb,
   inRepository,
   Site,
   setThreshold,
@@ -14,7 +15,7 @@ import {
   shownError,
   shownParts,
   type Visit,
-} from './site';
+} from '../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -96,7 +97,10 @@ test('a large model is inspected when that is asked for', async () => {
   const small = tetrahedron();
   // Most of them without area, which cost no time to draw.
   const indices = Uint16Array.from({ length: 3 * 70_000 }, (_, i) => small.indices[i] ?? 0);
-  await drop(page, [glb('target.glb', writeGlb({ ...small, indices })), glb('cage.glb', writeGlb(tetrahedron(2)))]);
+  await drop(page, [
+    glb('target.glb', glbOf({ ...small, indices }, 'thing')),
+    glb('cage.glb', glbOf(tetrahedron(2), 'thing')),
+  ]);
   assert.equal(await settled(page), 'ready', await shownError(page));
   await page.waitForTimeout(1500);
   assert.equal(await page.locator('#fit-verdict').textContent(), '');

@@ -5,7 +5,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
-import { inRepository, Site, settled, shownCounts, shownError } from './site';
+import { inRepository, Site, settled, shownCounts, shownError } from '../support/site';
 
 let site: Site;
 let folder: string;

@@ -3,12 +3,11 @@ import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { KHRTextureBasisu } from '@gltf-transform/extensions';
 import { PNG } from 'pngjs';
-import { glb } from './glb';
-import { islandCage, lumpyBall } from './models';
-import { look, modelArea, shareOfHue } from './picture';
-import { saved, validModel } from './saved';
-import { inRepository, Site, settled, shownCounts, shownError, type Upload } from './site';
-import { texel } from './texture';
+import { texel } from '../support/layers';
+import { islandCage, lumpyBall } from '../support/models';
+import { look, modelArea, shareOfHue } from '../support/picture';
+import { saved, validModel } from '../support/saved';
+import { glb, inRepository, Site, settled, shownCounts, shownError, type Upload } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

@@ -4,13 +4,12 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { giveUpOnceShown, kSlowWorker } from './give-up';
-import { islandCage, islandPaint, lumpyBall } from './models';
-import { compute, kComputation, mainThreadWork, Site, settled, shownCounts, shownError } from './site';
-import { names } from './texture';
+import { giveUpOnceShown, kSlowWorker } from '../support/cancel';
+import { names } from '../support/layers';
+import { islandCage, islandPaint, lumpyBall } from '../support/models';
+import { Site, settled, shownCounts, shownError } from '../support/site';
 
-const kSide = 500; // 500,000 triangles
-const kMostMs = 100;
+const kSide = 150; // 45,000 triangles; bench/web/page measures with 500,000
 
 let site: Site;
 let folder: string;
@@ -39,69 +38,17 @@ async function watchProgress(page: Page): Promise<() => Promise<string[]>> {
   return () => page.evaluate(() => [...new Set((globalThis as unknown as { stages: string[] }).stages)]);
 }
 
-/**
- * The processor time of the longest task of what is done, in ms: the least of up to three, as what others do on the same processor
- * only adds to it. Where a computation in tasks of 30 ms takes longer right after, less in that proportion.
- * @param undo  So that it can be done again.
- */
-async function longestTask(page: Page, action: () => Promise<unknown>, undo: () => Promise<unknown>): Promise<number> {
-  const kTasks = 10;
-  const once = async (): Promise<number> => {
-    const { longest } = await mainThreadWork(page, action);
-    const same = await mainThreadWork(page, () => compute(page, kTasks));
-    return longest / Math.max(1, same.longest / (kComputation / kTasks));
-  };
-  let longest = await once();
-  for (let more = 2; longest >= kMostMs && more > 0; --more) {
-    await undo();
-    longest = Math.min(longest, await once());
-  }
-  return longest;
-}
-
-test('while half a million triangles are transferred, no task keeps the page from answering for 100 ms, and progress is shown', async () => {
+test('while a large model is transferred, progress is shown', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
   await page.getByTestId('cage-input').setInputFiles(await islandCage(1));
   await settled(page);
   const stages = await watchProgress(page);
-  const open = async (): Promise<void> => {
-    await page.getByTestId('target-input').setInputFiles(target);
-    assert.equal(await settled(page), 'ready', await shownError(page));
-    // Its first picture as well.
-    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  };
-  const longest = await longestTask(page, open, async () => {});
-  const { cosmetic, occluded, uncovered, culled } = await shownCounts(page);
-  assert.ok(cosmetic + occluded + uncovered + culled > 250_000);
-  assert.ok((await stages()).length >= 2, (await stages()).join());
-  assert.equal(await page.getByTestId('progress').isVisible(), false);
-  assert.ok(longest < kMostMs, `the longest task takes ${longest} ms`);
-  assert.deepEqual(complaints, []);
-});
-
-test('while half a million triangles are cut at exact borders, the page answers', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } });
-  await page.getByTestId('cage-input').setInputFiles(await islandCage(1));
-  await settled(page);
   await page.getByTestId('target-input').setInputFiles(target);
   assert.equal(await settled(page), 'ready', await shownError(page));
-  const note = page.getByTestId('borders-note');
-  const noteIs = (empty: boolean): Promise<unknown> =>
-    page.waitForFunction(
-      (empty) => (document.querySelector('[data-testid=borders-note]')!.textContent === '') === empty,
-      empty,
-    );
-  const cut = async (): Promise<void> => {
-    await page.getByTestId('exact-borders').check();
-    await noteIs(false);
-    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  };
-  const longest = await longestTask(page, cut, async () => {
-    await page.getByTestId('exact-borders').uncheck();
-    await noteIs(true);
-  });
-  assert.match((await note.textContent())!, /^[\d,]+ triangles more\.$/);
-  assert.ok(longest < kMostMs, `the longest task takes ${longest} ms`);
+  const { cosmetic, occluded, uncovered, culled } = await shownCounts(page);
+  assert.ok(cosmetic + occluded + uncovered + culled > kSide ** 2);
+  assert.ok((await stages()).length >= 2, (await stages()).join());
+  assert.equal(await page.getByTestId('progress').isVisible(), false);
   assert.deepEqual(complaints, []);
 });
 

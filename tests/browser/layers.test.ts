@@ -2,11 +2,11 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { giveUpOnceShown, kSlowWorker } from './give-up';
-import { difference, look, modelArea } from './picture';
-import { saved, validModel } from './saved';
-import { Site, settled, shownError, type Upload, type Visit } from './site';
-import { filled, image, names, rows, savedTexture, texel } from './texture';
+import { giveUpOnceShown, kSlowWorker } from '../support/cancel';
+import { filled, image, names, rows, savedTexture, texel } from '../support/layers';
+import { difference, look, modelArea } from '../support/picture';
+import { saved, validModel } from '../support/saved';
+import { Site, settled, shownError, type Upload, type Visit } from '../support/site';
 
 let site: Site;
 let visit: Visit;

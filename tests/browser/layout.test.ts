@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
-import { difference, look, modelArea } from './picture';
-import { Site, type Visit } from './site';
+import { difference, look, modelArea } from '../support/picture';
+import { Site, type Visit } from '../support/site';
 
 let site: Site;
 let visit: Visit;

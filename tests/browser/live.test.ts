@@ -5,10 +5,10 @@ import { init, type Mesh, transfer } from 'cagecast';
 import type { Page } from 'playwright-core';
 import type { PNG } from 'pngjs';
 import { Box3, Vector3 } from 'three';
-import { type Deform, deform, kDeforms, type Extent } from '../../web/src/live/deform';
-import { ball, islandCage, islandPaint } from './models';
-import { difference, frames, look, modelArea, shareOfHue, watch } from './picture';
-import { drop, Site, settled, shownCounts, shownError, type Upload } from './site';
+import { type Deform, deform, type Extent, kDeforms } from '../../web/src/live/deform';
+import { ball, islandCage, islandPaint } from '../support/models';
+import { difference, frames, look, modelArea, shareOfHue, watch } from '../support/picture';
+import { drop, Site, settled, shownCounts, shownError, type Upload } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

@@ -5,10 +5,10 @@ import { init, type Mesh, transfer } from 'cagecast';
 import type { Page } from 'playwright-core';
 import { Box3, Vector3 } from 'three';
 import { deform } from '../../web/src/live/deform';
-import { islandCage, islandPaint, morphingBalls } from './models';
-import { difference, frames, look, modelArea, shareOfHue, watch } from './picture';
-import { primitivesOf, saved, validModel } from './saved';
-import { drop, Site, settled, shownCounts, shownError, type Upload } from './site';
+import { islandCage, islandPaint, morphingBalls } from '../support/models';
+import { difference, frames, look, modelArea, shareOfHue, watch } from '../support/picture';
+import { primitivesOf, saved, validModel } from '../support/saved';
+import { drop, Site, settled, shownCounts, shownError, type Upload } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readdirSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { Site, settled, shownCounts, shownError } from './site';
+import { Site, settled, shownCounts, shownError } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

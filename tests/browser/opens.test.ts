@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { columns, difference, frames, look, modelArea, shareOfHue, watch } from './picture';
-import { Site, setThreshold, shownCounts, shownError, type Visit } from './site';
+import { columns, difference, frames, look, modelArea, shareOfHue, watch } from '../support/picture';
+import { Site, setThreshold, shownCounts, shownError, type Visit } from '../support/site';
 
 const kFrames = 30; // in which whatever moves does
 

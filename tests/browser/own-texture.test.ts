@@ -5,12 +5,11 @@ import { type Document, type Material, NodeIO, type Primitive } from '@gltf-tran
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { Color, SRGBColorSpace } from 'three';
-import { glb } from './glb';
-import { ball, islandAt, islandCage, texturedBox } from './models';
-import { difference, look, modelArea } from './picture';
-import { primitivesOf, saved, validModel } from './saved';
-import { drop, inRepository, Site, settled, shownError, type Upload } from './site';
-import { image, texel } from './texture';
+import { image, texel } from '../support/layers';
+import { ball, islandAt, islandCage, texturedBox } from '../support/models';
+import { difference, look, modelArea } from '../support/picture';
+import { primitivesOf, saved, validModel } from '../support/saved';
+import { drop, glb, inRepository, Site, settled, shownError, type Upload } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

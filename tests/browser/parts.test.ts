@@ -1,12 +1,13 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
-import { reportedCounts } from './cli';
-import { glb, tetrahedron, writeGlb } from './glb';
-import { balls, islandCage } from './models';
-import { difference, look, modelArea } from './picture';
+import { reportedCounts } from '../support/command';
+import { glbOf, tetrahedron } from '../support/glb';
+import { balls, islandCage } from '../support/models';
+import { difference, look, modelArea } from '../support/picture';
 import {
   drop,
+  glb,
   inRepository,
   type ShownPart,
   Site,
@@ -16,7 +17,7 @@ import {
   shownError,
   shownParts,
   type Visit,
-} from './site';
+} from '../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -210,7 +211,7 @@ test('of a model in very many parts the largest fifty are listed; what was said 
   );
   assert.match((await table().locator('caption').textContent())!, /50 largest of 130/);
 
-  await page.getByTestId('target-input').setInputFiles(glb('thing.glb', writeGlb(tetrahedron(0.5))));
+  await page.getByTestId('target-input').setInputFiles(glb('thing.glb', glbOf(tetrahedron(0.5), 'thing')));
   assert.equal(await settled(page), 'ready', await shownError(page));
   assert.deepEqual(await shownParts(page), [
     { name: 'thing', points: 4, covered: '100 %', culled: false, lock: 'auto' },

@@ -2,8 +2,8 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { difference, modelArea, shareOfHue } from './picture';
-import { compute, kComputation, mainThreadWork, Site, settled } from './site';
+import { difference, modelArea, shareOfHue } from '../support/picture';
+import { Site, settled } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -122,30 +122,6 @@ test('on a processor slowed to a quarter the poster image is on the screen befor
   assert.ok(
     poster !== undefined && drawn !== undefined && poster < drawn,
     `the poster after ${poster} ms, the drawing after ${drawn} ms`,
-  );
-});
-
-test('until the poster image is on the screen the page computes for less than a second, slowed to a quarter', async () => {
-  const { page } = await site.visit();
-  // By processor time, as a busy machine stretches any other, and against what always takes the same, as it stretches even that.
-  const reload = async (): Promise<void> => {
-    await page.reload();
-    await settled(page);
-    // The page may be through before the browser has told what was the first to be seen.
-    await page.evaluate(
-      () =>
-        new Promise<void>((done) => {
-          new PerformanceObserver(() => done()).observe({ type: 'largest-contentful-paint', buffered: true });
-          setTimeout(done, 10_000);
-        }),
-    );
-  };
-  const { total } = await mainThreadWork(page, reload, 'largestContentfulPaint::Candidate');
-  const same = await mainThreadWork(page, () => compute(page));
-  const usual = total / Math.max(1, same.total / kComputation);
-  assert.ok(
-    usual > 1 && 4 * usual < 1000,
-    `4 × ${usual.toFixed(0)} ms: ${total.toFixed(0)} where the computation takes ${same.total.toFixed(0)}`,
   );
 });
 

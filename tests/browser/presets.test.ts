@@ -1,9 +1,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { reportedCounts } from './cli';
-import { ball, islandCage, islandPaint } from './models';
-import { difference, look, modelArea, shareOfHue } from './picture';
+import { reportedCounts } from '../support/command';
+import { ball, islandCage, islandPaint } from '../support/models';
+import { difference, look, modelArea, shareOfHue } from '../support/picture';
 import {
   drop,
   inRepository,
@@ -14,7 +14,7 @@ import {
   shownError,
   type Upload,
   type Visit,
-} from './site';
+} from '../support/site';
 
 const kViolet = 295; // between the islands of the paint
 const kBlue = 237; // the ball that is painted

@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { CDPSession } from 'playwright-core';
 import type { PNG } from 'pngjs';
-import { difference, look, modelArea, shareOfHue } from './picture';
-import { Site, type Visit } from './site';
-import { filled, image, names, savedTexture } from './texture';
+import { filled, image, names, savedTexture } from '../support/layers';
+import { difference, look, modelArea, shareOfHue } from '../support/picture';
+import { Site, type Visit } from '../support/site';
 
 let site: Site;
 let visit: Visit;

@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
-import { modelArea } from './picture';
-import { Site, settled, shownError, type Visit } from './site';
-import { image, names, rows, savedTexture } from './texture';
+import { image, names, rows, savedTexture } from '../support/layers';
+import { modelArea } from '../support/picture';
+import { Site, settled, shownError, type Visit } from '../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -236,7 +236,7 @@ test('undoing leaves alone what came of another model since', async () => {
   const { page } = visit;
   await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true });
   assert.equal(await settled(page), 'ready', await shownError(page));
-  assert.match(await undoTitle(), /choice of Tiger stripes/);
+  assert.match(await undoTitle(), /choosing Tiger stripes/);
   await control('button', 'Reorder red.png').focus();
   const before = await names(page);
   await page.keyboard.press('ArrowDown');

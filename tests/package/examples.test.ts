@@ -8,8 +8,8 @@ import { after, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { build } from 'esbuild';
 import { PNG } from 'pngjs';
-import { launchChromium } from '../chromium.js';
 import { validate } from '../js/glb.js';
+import { launchChromium } from '../support/chromium.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-examples-'));
 const sample = 'build/assets/lizard';

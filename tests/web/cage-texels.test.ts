@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BoxGeometry, type BufferGeometry, SphereGeometry, Vector3 } from 'three';
-import { CageTexels, type CageMesh, kFacing, type SurfacePoint } from '../../web/src/brush/cage-texels';
+import { type CageMesh, CageTexels, kFacing, type SurfacePoint } from '../../web/src/brush/cage-texels';
 import { Stroke } from '../../web/src/brush/stroke';
 import { disjoint, type Rect } from '../../web/src/layers/rect';
 import { History } from '../../web/src/platform/history';

@@ -2,7 +2,7 @@
 
 import { mkdir, writeFile } from 'node:fs/promises';
 import type { Page } from 'playwright-core';
-import { inRepository, Site, settled } from './site.js';
+import { inRepository, Site, settled } from './site';
 
 const kFolder = inRepository('docs/pictures');
 const kModels = ['Lizard head', 'Human bust', 'Saloon car'];

@@ -2,8 +2,8 @@ import { mkdtemp, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import type { Browser, BrowserContext, BrowserContextOptions, CDPSession, Page } from 'playwright-core';
-import { launchChromium } from '../chromium';
+import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
+import { launchChromium } from './chromium';
 
 const kRoot = fileURLToPath(new URL('../..', import.meta.url));
 const kConfig = path.join(kRoot, 'web/vite.config.ts');
@@ -114,129 +114,6 @@ export class Site {
   }
 }
 
-/** What the page's main thread did. Milliseconds of its own processor time: a busy machine does not count against it. */
-export interface Work {
-  /** Of the longest task; between tasks the page takes input and draws. */
-  longest: number;
-  total: number;
-}
-
-/**
- * Measures the tasks of the page's main thread while something is done.
- * @param until Something that the browser notes as it loads a page, by its name in traces: what comes after it does not count.
- */
-export async function mainThreadWork(page: Page, action: () => Promise<unknown>, until?: string): Promise<Work> {
-  const browser = page.context().browser()!;
-  await browser.startTracing(page, { categories: ['toplevel', 'loading'] });
-  let trace: { traceEvents: TraceEvent[] };
-  try {
-    await action();
-  } finally {
-    trace = JSON.parse((await browser.stopTracing()).toString());
-  }
-  const threads = trace.traceEvents.filter(
-    ({ name, args }) => name === 'thread_name' && args?.name === 'CrRendererMain',
-  );
-  const isMain = ({ pid, tid }: TraceEvent): boolean =>
-    threads.some((thread) => thread.pid === pid && thread.tid === tid);
-  const end = until === undefined ? Infinity : trace.traceEvents.find(({ name }) => name === until)?.ts;
-  if (end === undefined) throw new Error(`the trace has no ${until}`);
-  // The page's own process is the busiest of its kind.
-  const byProcess = new Map<number, number[]>();
-  for (const event of trace.traceEvents) {
-    if (event.name !== 'ThreadControllerImpl::RunTask' || event.tdur === undefined || event.ts > end || !isMain(event))
-      continue;
-    byProcess.set(event.pid, [...(byProcess.get(event.pid) ?? []), event.tdur / 1000]);
-  }
-  const work = [...byProcess.values()].map((tasks) => ({
-    longest: Math.max(...tasks),
-    total: tasks.reduce((sum, task) => sum + task, 0),
-  }));
-  const busiest = work.toSorted((a, b) => b.total - a.total)[0];
-  if (!busiest) throw new Error('the trace has no tasks of a main thread');
-  return busiest;
-}
-
-/** Milliseconds of processor time that `compute` takes where tests' limits in milliseconds were set. */
-export const kComputation = 300;
-
-/**
- * Computes what always takes the page's thread the same: others on the same processor stretch even processor time, and what is
- * measured can be held against this.
- * @param tasks So many, of equal length.
- */
-export function compute(page: Page, tasks = 1): Promise<unknown> {
-  return page.evaluate(async (tasks) => {
-    let [a, b, c, d] = [1, 2, 3, 4];
-    for (let task = 0; task < tasks; task++) {
-      for (let i = 0; i < 50_000_000 / tasks; i++) {
-        a = (Math.imul(a, 1_664_525) + 1_013_904_223) | 0;
-        b = (Math.imul(b, 22_695_477) + 12_345) | 0;
-        c = ((c ^ (c << 7)) + i) | 0;
-        d = ((d ^ (d >>> 3)) + i) | 0;
-      }
-      await new Promise((done) => setTimeout(done));
-    }
-    return a ^ b ^ c ^ d;
-  }, tasks);
-}
-
-/**
- * Opens the page and returns the seconds of processor time until its first picture: of the page's thread, and of the graphics process.
- * And what is always the same: a computation of the page's thread, and each of the next pictures.
- */
-export async function processorTime(
-  site: Site,
-): Promise<{ page: number; graphics: number; computation: number; picture: number }> {
-  const { browser } = site;
-  const system = await browser.newBrowserCDPSession();
-  const graphics = async (): Promise<number> => {
-    const { processInfo } = await system.send('SystemInfo.getProcessInfo');
-    return processInfo.find(({ type }) => type === 'GPU')?.cpuTime ?? 0;
-  };
-  const before = await graphics();
-  let session: CDPSession | undefined;
-  const { page } = await site.visit({ deviceScaleFactor: 1 }, async (page) => {
-    session = await page.context().newCDPSession(page);
-    await session.send('Performance.enable', { timeDomain: 'threadTicks' });
-  });
-  // Reading a pixel waits until everything before it is drawn.
-  const drawn = (turns: number): Promise<void> =>
-    page.evaluate(async (turns) => {
-      const canvas = document.querySelector('canvas')!;
-      for (let turn = 0; turn < turns; turn++) {
-        canvas.dispatchEvent(
-          new KeyboardEvent('keydown', { key: turn % 2 === 0 ? 'ArrowRight' : 'ArrowLeft', bubbles: true }),
-        );
-        await new Promise(requestAnimationFrame);
-      }
-      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-      const gl = canvas.getContext('webgl2')!;
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-    }, turns);
-  await drawn(0);
-  const first = await graphics();
-  const ofPage = async (): Promise<number> =>
-    (await session!.send('Performance.getMetrics')).metrics.find(({ name }) => name === 'ThreadTime')!.value;
-  const firstOfPage = await ofPage();
-  await compute(page);
-  const computation = (await ofPage()) - firstOfPage;
-  const kTurns = 4;
-  await drawn(kTurns);
-  return { page: firstOfPage, graphics: first - before, computation, picture: ((await graphics()) - first) / kTurns };
-}
-
-interface TraceEvent {
-  name: string;
-  pid: number;
-  tid: number;
-  /** When it began, in microseconds. */
-  ts: number;
-  /** Processor time, in microseconds. */
-  tdur?: number;
-  args?: { name?: string };
-}
-
 /** Waits until the page neither loads nor works, and returns its status. */
 export async function settled(page: Page): Promise<string> {
   // What was found, not what is there by the time one asks again: it may be at work again.
@@ -316,6 +193,11 @@ export interface Upload {
   name: string;
   mimeType: string;
   buffer: Buffer;
+}
+
+/** A GLB to give to the page. */
+export function glb(name: string, buffer: Buffer): Upload {
+  return { name, mimeType: 'model/gltf-binary', buffer };
 }
 
 /** Drops files on the page, all at once. */

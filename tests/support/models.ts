@@ -2,8 +2,8 @@ import { Document, NodeIO } from '@gltf-transform/core';
 import { KHRTextureTransform } from '@gltf-transform/extensions';
 import { PNG } from 'pngjs';
 import { BoxGeometry, type BufferGeometry, SphereGeometry } from 'three';
-import { glb } from './glb';
 import type { Upload } from './site';
+import { glb } from './site';
 
 /** The margins around an island, as shares of its cell in the atlas: what it is painted beyond its border, and all of it. */
 const kBleed = 0.1;

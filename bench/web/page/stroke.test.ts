@@ -1,8 +1,10 @@
+// Processor time from a pointer's move to painted texels, drawing included.
+
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { CDPSession, Page } from 'playwright-core';
-import { look, modelArea } from './picture';
-import { Site } from './site';
+import { look, modelArea } from '../../../tests/support/picture';
+import { Site } from '../../../tests/support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

@@ -24,10 +24,10 @@ for (const folder of modelFolders()) {
       const { zones, triangles, distances } = project(cage!, target!, { preset });
       const every = Math.max(1, Math.floor(zones.length / kAsked));
       for (let vertex = 0; vertex < zones.length; vertex += every) {
-        const way = pathOf(target!, cage!, loops, vertex, triangles[vertex]!, diagonal, presetOptions(preset));
-        assert.equal(kZones[way.outcome], zones[vertex], `${preset}: vertex ${vertex} is ${way.outcome}`);
+        const path = pathOf(target!, cage!, loops, vertex, triangles[vertex]!, diagonal, presetOptions(preset));
+        assert.equal(kZones[path.outcome], zones[vertex], `${preset}: vertex ${vertex} is ${path.outcome}`);
         assert.ok(
-          Math.abs(way.start.distanceTo(way.place) - distances[vertex]!) < 1e-6 * diagonal,
+          Math.abs(path.start.distanceTo(path.closest) - distances[vertex]!) < 1e-6 * diagonal,
           `${preset}: vertex ${vertex} is as far away`,
         );
       }

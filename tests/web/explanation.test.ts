@@ -89,7 +89,10 @@ test('of a part that a hole is meant for that is told, and by the other rules it
     told({}),
     /^Not painted: culled: a hole of the cage seems to be meant for “part 1”\. .* covers 69 % of its exposed area, which is enough\. But it is small, .* meant for it\./,
   );
-  assert.match(told({ baredParts: false }), /^Painted: .* covers 69 % of its exposed area, at least the threshold of 50 %: it passes\.$/);
+  assert.match(
+    told({ baredParts: false }),
+    /^Painted: .* covers 69 % of its exposed area, at least the threshold of 50 %: it passes\.$/,
+  );
 });
 
 test('of a part that is locked only that is told', async () => {

@@ -1,7 +1,7 @@
 import { execFile } from 'node:child_process';
 import { test } from 'node:test';
 import { promisify } from 'node:util';
-import { inRepository } from './site';
+import { inRepository } from '../support/site';
 
 for (const project of ['web', 'web/service-worker', 'tests/browser']) {
   test(`${project}: the types are right, also those of the package it uses`, async () => {

@@ -1,0 +1,21 @@
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import path from 'node:path';
+import { test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+import { inRepository } from '../support/site';
+
+/** The built page; tests/run.mjs builds it. */
+const kPage = process.env.CAGECAST_PAGE ?? inRepository('build/web');
+
+test('all scripts of the page together are at most 400 KB gzipped', () => {
+  const scripts = readdirSync(kPage, { recursive: true, withFileTypes: true }).filter(({ name }) =>
+    name.endsWith('.js'),
+  );
+  const sizes = scripts.map(
+    ({ parentPath, name }) => [name, gzipSync(readFileSync(path.join(parentPath, name)), { level: 9 }).length] as const,
+  );
+  const total = sizes.reduce((sum, [, size]) => sum + size, 0);
+  assert.ok(total > 100_000, 'they were found');
+  assert.ok(total <= 400_000, `${total} bytes: ${sizes.map((size) => size.join(' ')).join(', ')}`);
+});
