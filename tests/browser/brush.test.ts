@@ -106,7 +106,7 @@ test('a stroke appears on the model as it is drawn, on a layer of its own, and u
   await page.getByTestId('undo').click();
   await away();
   assert.ok(difference(bare, await look(page, area)) < 0.0005, 'nothing is left on the model either');
-  assert.match((await page.getByTestId('undo').getAttribute('title'))!, /removal/, 'what came before the strokes');
+  assert.match((await page.getByTestId('undo').getAttribute('title'))!, /removing/, 'what came before the strokes');
   assert.deepEqual(complaints, []);
 });
 
@@ -329,5 +329,5 @@ test('where nothing was painted there is nothing to erase, and the page says so'
     [0.48, 0.4],
     [0.5, 0.4],
   ]);
-  assert.match(await shownError(page), /Nothing was painted/);
+  assert.match(await shownError(page), /no painting to erase/);
 });

@@ -6,7 +6,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { promisify } from 'node:util';
 import type { Page } from 'playwright-core';
-import { giveUpOnceShown, kSlowWorker } from '../support/cancel';
+import { cancelOnceShown, kSlowWorker } from '../support/cancel';
 import { ball, islandCage, islandPaint } from '../support/models';
 import { difference, look, modelArea, shareOfHue } from '../support/picture';
 import { primitivesOf, saved, validModel } from '../support/saved';
@@ -29,16 +29,14 @@ after(async () => {
   await rm(folder, { recursive: true, force: true });
 });
 
-const isCut = /^[\d,]+ triangles more\.$/;
+const isCut = /^Adds [\d,]+ triangles\.$/;
 const note = (page: Page): Promise<string | null> => page.getByTestId('borders-note').textContent();
 const chooseMode = (page: Page, value: string): Promise<void> =>
   page.locator(`input[value=${value}]`).check({ force: true });
 
 /** Waits until the model is shown as it was cut. */
 async function cut(page: Page): Promise<void> {
-  await page.waitForFunction(() =>
-    /triangles more/.test(document.querySelector('[data-testid=borders-note]')!.textContent!),
-  );
+  await page.waitForFunction(() => /Adds/.test(document.querySelector('[data-testid=borders-note]')!.textContent!));
   assert.equal(await settled(page), 'ready', await shownError(page));
 }
 
@@ -154,7 +152,7 @@ test('cutting can be given up: the switch goes off, and what was on show stays',
   await chooseMode(page, 'result');
   const area = await modelArea(page);
   const before = await look(page, area);
-  const givenUp = giveUpOnceShown(page, 'Escape');
+  const givenUp = cancelOnceShown(page, 'Escape');
   await page.getByTestId('exact-borders').check();
   await givenUp;
   assert.equal(await page.getByTestId('status').textContent(), 'ready');

@@ -4,7 +4,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { giveUpOnceShown, kSlowWorker } from '../support/cancel';
+import { cancelOnceShown, kSlowWorker } from '../support/cancel';
 import { names } from '../support/layers';
 import { islandCage, islandPaint, lumpyBall } from '../support/models';
 import { Site, settled, shownCounts, shownError } from '../support/site';
@@ -56,7 +56,7 @@ for (const way of ['button', 'Escape'] as const) {
   test(`what takes long can be given up by ${way}, and what was on show stays`, async () => {
     const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
     const before = await shownCounts(page);
-    const givenUp = giveUpOnceShown(page, way);
+    const givenUp = cancelOnceShown(page, way);
     await page.getByTestId('target-input').setInputFiles(target);
     await givenUp;
     assert.equal(await page.getByTestId('status').textContent(), 'ready');
@@ -75,7 +75,7 @@ for (const way of ['button', 'Escape'] as const) {
 test('a preset that is given up is not the one that is said and saved', async () => {
   const { page } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
   const before = await shownCounts(page);
-  const givenUp = giveUpOnceShown(page, 'button');
+  const givenUp = cancelOnceShown(page, 'button');
   await page.getByTestId('preset').selectOption('paper');
   await givenUp;
   assert.equal(await page.getByTestId('preset').inputValue(), 'default');
@@ -89,7 +89,7 @@ test('a sample that is given up is not the one that is named', async () => {
   const { page } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
   const samples = page.getByTestId('sample-select');
   const name = await samples.inputValue();
-  const givenUp = giveUpOnceShown(page, 'button');
+  const givenUp = cancelOnceShown(page, 'button');
   await samples.selectOption({ index: 1 });
   await givenUp;
   assert.equal(await samples.inputValue(), name);

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { PNG } from 'pngjs';
-import { giveUpOnceShown, kSlowWorker } from '../support/cancel';
+import { cancelOnceShown, kSlowWorker } from '../support/cancel';
 import { filled, image, names, rows, savedTexture, texel } from '../support/layers';
 import { difference, look, modelArea } from '../support/picture';
 import { saved, validModel } from '../support/saved';
@@ -152,7 +152,7 @@ test('the order changes by the keys of a layer’s grip, which stays under them,
   await page.keyboard.press('ArrowDown');
   assert.deepEqual(await names(page), ['below.png', 'above.png']);
   await page.waitForFunction(
-    () => document.querySelector('#summary')!.textContent === 'above.png is 2 of 2 from the top.',
+    () => document.querySelector('#summary')!.textContent === 'above.png is now number 2 of 2 from the top.',
   );
   await page.keyboard.press('ArrowDown');
   assert.deepEqual(await names(page), ['below.png', 'above.png'], 'the lowest stays the lowest');
@@ -240,7 +240,7 @@ test('there are eight layers at most; one more is refused in words', async () =>
   assert.equal(await page.getByTestId('add-painting').isDisabled(), true);
   await page.getByTestId('texture-input').setInputFiles(image('ninth.png', 4, () => [0, 0, 0, 255]));
   await page.getByTestId('error').waitFor();
-  assert.match(await shownError(page), /8 layers.*remove one/);
+  assert.match(await shownError(page), /8 layers.*Remove one/);
   assert.equal((await names(page)).length, 8);
   assert.deepEqual(complaints, []);
 });
@@ -283,7 +283,7 @@ test('a link that is given up takes no layer away and brings none', async () => 
   await page.getByRole('button', { name: 'Add War paint as a layer' }).click();
   await rows(page).filter({ hasText: 'War paint' }).waitFor();
   const before = await names(page);
-  const givenUp = giveUpOnceShown(page, 'button');
+  const givenUp = cancelOnceShown(page, 'button');
   await page
     .getByTestId('sample-select')
     .evaluate((select) => (location.hash = `sample=${(select as HTMLSelectElement).options[1]!.value}&layer=none`));

@@ -121,9 +121,7 @@ test('exact borders go into the texture as well', async () => {
     );
   const whole = await savedInTexture(page);
   await page.getByTestId('exact-borders').check();
-  await page.waitForFunction(() =>
-    /triangles more/.test(document.querySelector('[data-testid=borders-note]')!.textContent!),
-  );
+  await page.waitForFunction(() => /Adds/.test(document.querySelector('[data-testid=borders-note]')!.textContent!));
   assert.equal(await settled(page), 'ready', await shownError(page));
   const cut = await savedInTexture(page);
   assert.equal(cut.note, whole.note);
@@ -198,7 +196,7 @@ test('halves that share their texels are told of; one of them is painted whole',
   ]);
   assert.equal(await settled(page), 'ready', await shownError(page));
   const { document, note } = await savedInTexture(page);
-  assert.match(note, /own UVs overlap, as where halves are mirrored: 17 % of the paint has no place/);
+  assert.match(note, /own UVs overlap, for example in mirrored halves, so 17 % of the paint was left out/);
   const after = textureOf(primitivesOf(document)[0]!.getMaterial());
   // Of the first of the islands.
   const seen = new Set<string>();
@@ -265,7 +263,7 @@ test('what has no texture keeps an overlay, and is named; without any there is n
   const { document, note } = await savedInTexture(page);
   assert.match(
     note,
-    /^The paint is in one texture of the model’s own\. Over [\w, -]*bumpers[\w, -]* it is an overlay, for want of a texture that can hold it\.$/,
+    /^The paint is in one of the model’s own textures\. On [\w, -]*bumpers[\w, -]* it is an overlay, because there is no suitable texture\.$/,
   );
   const overlays = primitivesOf(document).filter(isOverlay);
   assert.ok(overlays.length > 0);

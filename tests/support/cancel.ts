@@ -1,7 +1,7 @@
 import type { Page } from 'playwright-core';
 
-/** Gives the work up as soon as the bar shows it. Within the page: a key or a click from outside waits for frames, and comes late. */
-export function giveUpOnceShown(page: Page, way: 'button' | 'Escape'): Promise<void> {
+/** Cancels as soon as the progress bar appears. Runs in the page: input from outside waits for frames and would be late. */
+export function cancelOnceShown(page: Page, way: 'button' | 'Escape'): Promise<void> {
   return page.evaluate(
     (chosen) =>
       new Promise<void>((done) => {
@@ -19,7 +19,7 @@ export function giveUpOnceShown(page: Page, way: 'button' | 'Escape'): Promise<v
   );
 }
 
-/** A worker that is slow to begin: however quick the machine, there is time to see it work, and to give it up. Sending costs what it does. */
+/** A script that delays messages to workers by a second, so that tests can see progress and cancel. */
 export const kSlowWorker = `
   const { postMessage } = Worker.prototype
   Worker.prototype.postMessage = function (message, options) {

@@ -1,7 +1,7 @@
 import { execFileSync } from 'node:child_process';
 import { type Browser, chromium } from 'playwright-core';
 
-/** Nothing asked of other hosts, nothing that differs from one start to the next. */
+/** No background traffic, no first-run behaviour. */
 const kQuiet = [
   '--no-sandbox',
   '--disable-quic',
@@ -10,7 +10,7 @@ const kQuiet = [
   '--disable-component-update',
   '--disable-sync',
 ];
-/** What draws 3D where no graphics card does. */
+/** Software rendering. */
 const kDrawing = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'];
 
 /**

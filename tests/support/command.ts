@@ -13,13 +13,13 @@ export interface Flags {
   exclude?: string;
 }
 
-/** What of a report the page shows as well. */
+/** The part of a report that the page shows too. */
 export interface Report {
   counts: Counts;
   segments: { part: string; points: number; area: number; exposedArea: number; coveredArea: number; culled: boolean }[];
 }
 
-/** What `cagecast transfer` reports for two files. */
+/** The report of `cagecast transfer`. */
 export async function report(target: string, cage: string, flags: Flags = {}): Promise<Report> {
   const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-report-'));
   try {
@@ -41,19 +41,19 @@ export async function report(target: string, cage: string, flags: Flags = {}): P
   }
 }
 
-/** The counts that `cagecast transfer` reports for two files. */
+/** The counts in the report of `cagecast transfer`. */
 export async function reportedCounts(target: string, cage: string, flags: Flags = {}): Promise<Counts> {
   const { cosmetic, occluded, uncovered, culled } = (await report(target, cage, flags)).counts;
   return { cosmetic, occluded, uncovered, culled };
 }
 
-/** What `cagecast inspect` says of two files. */
+/** The answer of `cagecast inspect`. */
 export async function inspection(
   target: string,
   cage: string,
 ): Promise<{ verdict: string; findings: { sentence: string; advice: string }[] }> {
   const words = [inRepository('dist/cli.js'), 'inspect', target, '--cage', cage, '--json'];
-  // It ends with 3 where the cage is unfit.
+  // Exit code 3: the cage is unfit.
   const { stdout } = await promisify(execFile)(process.execPath, words).catch(
     (error: { code: number; stdout: string }) => {
       if (error.code === 3) return error;

@@ -3,14 +3,14 @@ import type { Locator, Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import type { Upload } from './site';
 
-/** A picture to lie in a layer. @param colorAt 0..255 each: red, green, blue, alpha. */
+/** A PNG file. @param colorAt Red, green, blue, alpha; 0..255. */
 export function image(name: string, size: number, colorAt: (x: number, y: number) => readonly number[]): Upload {
   const png = new PNG({ width: size, height: size });
   for (let y = 0; y < size; y++) for (let x = 0; x < size; x++) png.data.set(colorAt(x, y), 4 * (y * size + x));
   return { name, mimeType: 'image/png', buffer: PNG.sync.write(png) };
 }
 
-/** What the layers look like together, as the page saves it: by a key, as the mouse may be in use. */
+/** The composite of the layers as saved by the page; by a key, as the mouse may be in use. */
 export async function savedTexture(page: Page): Promise<PNG> {
   const [download] = await Promise.all([
     page.waitForEvent('download'),
@@ -19,12 +19,12 @@ export async function savedTexture(page: Page): Promise<PNG> {
   return PNG.sync.read(await readFile(await download.path()));
 }
 
-/** A texel's red, green, blue and alpha, 0..255. */
+/** Red, green, blue and alpha of a texel, 0..255. */
 export function texel({ data, width }: PNG, x: number, y: number): number[] {
   return [...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 4)];
 }
 
-/** The number of texels of which there is anything. */
+/** The number of texels that are not transparent. */
 export function filled({ data }: PNG): number {
   let count = 0;
   for (let at = 3; at < data.length; at += 4) if (data[at]! > 0) count++;

@@ -9,24 +9,24 @@ export interface Area {
   height: number;
 }
 
-/** The middle of the picture, free of the controls that lie on it. */
+/** The part of the view without controls. */
 export async function modelArea(page: Page): Promise<Area> {
   const box = (await page.locator('#view').boundingBox())!;
   return { x: box.x + 0.1 * box.width, y: box.y + 0.14 * box.height, width: 0.8 * box.width, height: 0.5 * box.height };
 }
 
-/** Waits for frames of the page, in each of which it may draw; as slow as the machine is. */
+/** Waits for a number of frames. */
 export function frames(page: Page, count: number): Promise<void> {
   return page.evaluate(async (count) => {
     for (let i = 0; i < count; i++) await new Promise(requestAnimationFrame);
   }, count);
 }
 
-/** What is to be seen in an area of the page, two frames from now, when they are drawn. */
+/** A screenshot of an area, two frames from now, when they are drawn. */
 export async function look(page: Page, area: Area): Promise<PNG> {
   await frames(page, 2);
   await page.evaluate(async () => {
-    // What draws behind the page may take longer. Reading a pixel would wait as well, but leave an empty picture behind.
+    // The GPU process may lag behind. Reading a pixel would wait too, but clears the picture.
     const gl = document.querySelector<HTMLCanvasElement>('#view')!.getContext('webgl2');
     const sync = gl?.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     if (!gl || !sync) return;
@@ -37,13 +37,13 @@ export async function look(page: Page, area: Area): Promise<PNG> {
   return PNG.sync.read(await page.screenshot({ clip: area }));
 }
 
-/** Looks at an area again and again, until something is to be seen there. @throws Error if it is not within a minute. */
+/** Takes screenshots until one matches. @throws Error after a minute. */
 export async function watch(page: Page, area: Area, seen: (picture: PNG) => boolean): Promise<void> {
   for (const deadline = Date.now() + 60_000; !seen(await look(page, area)); )
     if (Date.now() > deadline) throw new Error('it is not seen');
 }
 
-/** The share of pixels that differ visibly between two pictures of one size, 0..1. */
+/** The share of pixels that differ visibly, 0..1. */
 export function difference(a: PNG, b: PNG): number {
   if (a.width !== b.width || a.height !== b.height) throw new Error('the pictures differ in size');
   let differing = 0;

@@ -5,12 +5,12 @@ import { type Document, NodeIO, type Primitive } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import type { Page } from 'playwright-core';
 
-/** As far as it is used here; the package brings no types. */
+/** The package has no types. */
 const { validateBytes } = createRequire(import.meta.url)('gltf-validator') as {
   validateBytes(bytes: Uint8Array): Promise<{ issues: { numErrors: number; messages: unknown[] } }>;
 };
 
-/** What a button of the page saves. */
+/** The file that a button saves. */
 export async function saved(page: Page, button: string): Promise<{ name: string; bytes: Buffer }> {
   const coming = page.waitForEvent('download');
   await page.getByTestId(button).click();
@@ -18,7 +18,7 @@ export async function saved(page: Page, button: string): Promise<{ name: string;
   return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
 }
 
-/** Reads a model, after the validator found no fault with it. */
+/** Reads a model and asserts that it is valid glTF. */
 export async function validModel(bytes: Uint8Array): Promise<Document> {
   const { issues } = await validateBytes(new Uint8Array(bytes));
   assert.equal(issues.numErrors, 0, JSON.stringify(issues.messages.slice(0, 3)));

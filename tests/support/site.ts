@@ -7,25 +7,25 @@ import { launchChromium } from './chromium';
 
 const kRoot = fileURLToPath(new URL('../..', import.meta.url));
 const kConfig = path.join(kRoot, 'web/vite.config.ts');
-/** Long enough for software rendering on a busy machine; a page that hangs still ends the test. */
+/** Milliseconds. Long enough for software rendering on a busy machine, but ends tests of a page that hangs. */
 const kPatience = 60_000;
-/** What Playwright itself logs where a visit has no service workers. */
+/** Logged by Playwright when service workers are blocked. */
 const kBlocked = 'Service Worker registration blocked by Playwright';
 
 /** A file inside the repository. */
 export const inRepository = (...names: string[]): string => path.join(kRoot, ...names);
 
-/** The page in a browser, and everything it complained about or asked other hosts for. */
+/** An open page, with its complaints and its requests to other hosts. */
 export interface Visit {
   page: Page;
-  /** Errors and warnings on the console, exceptions, breaches of the content security policy. */
+  /** Console errors and warnings, exceptions, and violations of the content security policy. */
   complaints: string[];
-  /** Addresses asked for that are not the site's own. */
+  /** URLs of requests to other origins. */
   foreign: string[];
 }
 
 async function serve(): Promise<{ url: string; folder: string; stop(): Promise<void> }> {
-  const { build, preview } = await import('vite'); // half a second, for those who serve
+  const { build, preview } = await import('vite'); // takes half a second, so only when needed
   const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-page-'));
   await build({ configFile: kConfig, logLevel: 'error', build: { outDir: folder } });
   const server = await preview({
@@ -41,21 +41,21 @@ async function serve(): Promise<{ url: string; folder: string; stop(): Promise<v
   return { url: server.resolvedUrls!.local[0]!, folder, stop };
 }
 
-/** The built page, served, and a browser to visit it with. */
+/** The built page, served, and a browser. */
 export class Site {
   private visitor: BrowserContext | undefined;
 
   private constructor(
     readonly url: string,
-    /** Where the built page lies. */
+    /** The folder of the built page. */
     readonly folder: string,
     readonly browser: Browser,
     private readonly stop: () => Promise<void>,
   ) {}
 
   /**
-   * Starts Chromium, and builds and serves the page as it is published, on a free port. Whoever runs many files of tests has done
-   * that once for all: the environment variables CAGECAST_SITE and CAGECAST_PAGE are the address and the folder of the built page.
+   * Starts Chromium, and builds and serves the page on a free port, unless the environment variables CAGECAST_SITE and
+   * CAGECAST_PAGE give the URL and the folder of a page that is served already.
    */
   static async open(): Promise<Site> {
     const { CAGECAST_SITE: url, CAGECAST_PAGE: folder } = process.env;
@@ -74,11 +74,11 @@ export class Site {
   }
 
   /**
-   * Opens the page and waits until it shows the first sample. One visit at a time: a new one ends the last.
-   * @param options   A still picture 1000 × 700 in light colours, of half as many pixels each way, as drawing takes most of the
-   *                  time; nothing kept for later; unless they say otherwise.
-   * @param prepare   A script that runs in the page before its own, or what is to be done with the page before it goes there.
-   * @param fragment  What the address ends with, from its `#` on.
+   * Opens the page and waits until it shows the first sample. Ends the previous visit.
+   * @param options   Defaults: 1000 × 700, light, reduced motion, no service worker, and a low pixel ratio, as software rendering
+   *                  takes most of the time.
+   * @param prepare   A script to run before the page's own, or a function to call before navigation.
+   * @param fragment  The URL fragment, with `#`.
    */
   async visit(
     options: BrowserContextOptions = {},
@@ -88,7 +88,7 @@ export class Site {
     await this.visitor?.close();
     this.visitor = await this.browser.newContext({
       viewport: { width: 1000, height: 700 },
-      deviceScaleFactor: 0.5,
+      deviceScaleFactor: 0.35,
       colorScheme: 'light',
       reducedMotion: 'reduce',
       serviceWorkers: 'block',
@@ -114,9 +114,9 @@ export class Site {
   }
 }
 
-/** Waits until the page neither loads nor works, and returns its status. */
+/** Waits until the page is idle, and returns its status. */
 export async function settled(page: Page): Promise<string> {
-  // What was found, not what is there by the time one asks again: it may be at work again.
+  // Return the status that was found: it may have changed since.
   const status = await page.waitForFunction(
     () => ['ready', 'error'].find((status) => status === document.querySelector('[data-testid=status]')?.textContent),
     undefined,
@@ -125,7 +125,7 @@ export async function settled(page: Page): Promise<string> {
   return (await status.jsonValue())!;
 }
 
-/** Numbers of target vertices by zone. */
+/** Number of target vertices per zone. */
 export interface Counts {
   cosmetic: number;
   occluded: number;
@@ -133,7 +133,7 @@ export interface Counts {
   culled: number;
 }
 
-/** The counts as the page shows them. */
+/** The counts shown on the page. */
 export async function shownCounts(page: Page): Promise<Counts> {
   const count = async (zone: string): Promise<number> => {
     const text = (await page.getByTestId(`count-${zone}`).textContent())!;
@@ -148,17 +148,17 @@ export async function shownCounts(page: Page): Promise<Counts> {
   };
 }
 
-/** A row of the table of parts, as the page shows it. */
+/** A row of the table of parts. */
 export interface ShownPart {
   name: string;
   points: number;
-  /** As a text, such as “97 %”. */
+  /** Such as “97 %”. */
   covered: string;
   culled: boolean;
   lock: string;
 }
 
-/** The table of parts, from top to bottom; it may be closed. */
+/** The table of parts, even if it is collapsed. */
 export function shownParts(page: Page): Promise<ShownPart[]> {
   return page
     .getByTestId('segment-table')
@@ -177,13 +177,13 @@ export function shownParts(page: Page): Promise<ShownPart[]> {
     );
 }
 
-/** The message the page shows, or an empty string. */
+/** The error message on the page, or an empty string. */
 export async function shownError(page: Page): Promise<string> {
   const error = page.getByTestId('error');
   return (await error.isVisible()) ? (await error.textContent())! : '';
 }
 
-/** Moves the threshold's slider, as a hand would. */
+/** Moves the threshold slider. */
 export async function setThreshold(page: Page, threshold: number): Promise<void> {
   await page.getByTestId('threshold').fill(String(threshold));
 }
@@ -200,7 +200,7 @@ export function glb(name: string, buffer: Buffer): Upload {
   return { name, mimeType: 'model/gltf-binary', buffer };
 }
 
-/** Drops files on the page, all at once. */
+/** Drops files on the page together. */
 export async function drop(page: Page, uploads: Upload[]): Promise<void> {
   const files = uploads.map(({ name, mimeType, buffer }) => ({ name, mimeType, base64: buffer.toString('base64') }));
   await page.evaluate(async (files) => {
