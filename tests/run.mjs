@@ -1,148 +1,224 @@
-// Builds everything and runs all tests; ends with how many of each suite passed.
+// Builds everything and runs all tests; ends with how many of each suite passed, and what took how long.
 //
-//   node tests/run.mjs [suite …]        suites: lint, core, package, browser
+//   node tests/run.mjs [suite …]
+//     lint, core, package, browser    what `npm test` runs
+//     cost                            processor time on the page: for a quiet machine, so only when named
 
 import { spawn } from 'node:child_process';
-import { readdirSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
+const kDefault = ['lint', 'core', 'package', 'browser'];
+const kSuites = [...kDefault, 'cost'];
 
-/** Runs a command, shows its output, and returns it. */
-function run(program, args, env = {}) {
-  console.log(`\n$ ${[program, ...args].join(' ')}`);
+const phases = [];
+
+/** Notes how long something takes. */
+async function timed(name, work) {
+  const began = Date.now();
+  try {
+    return await work();
+  } finally {
+    phases.push({ name, seconds: (Date.now() - began) / 1000 });
+  }
+}
+
+/** Runs a command and shows its output, all at once where others run at the same time. */
+function run(program, args, { env = {}, atOnce = false } = {}) {
+  const title = `\n$ ${[program, ...args].join(' ')}\n`;
+  if (!atOnce) process.stdout.write(title);
   return new Promise((resolve, reject) => {
     const child = spawn(program, args, {
       cwd: root,
       env: { ...process.env, ...env },
-      stdio: ['ignore', 'pipe', 'inherit'],
+      stdio: ['ignore', 'pipe', 'pipe'],
     });
     let output = '';
-    child.stdout.on('data', (data) => {
-      output += data;
-      process.stdout.write(data);
-    });
+    for (const stream of [child.stdout, child.stderr]) {
+      stream.setEncoding('utf8').on('data', (text) => {
+        output += text;
+        if (!atOnce) process.stdout.write(text);
+      });
+    }
     child.on('error', reject);
-    child.on('close', (status) => resolve({ status, output }));
+    child.on('close', (status) => {
+      if (atOnce) process.stdout.write(title + output);
+      resolve({ status, output });
+    });
   });
 }
 
-async function mustRun(...args) {
-  const { status } = await run(...args);
-  if (status !== 0) throw new Error(`${args[0]} ${args[1].join(' ')} failed (exit ${status})`);
+async function mustRun(program, args, options) {
+  const { status } = await run(program, args, options);
+  if (status !== 0) throw new Error(`${program} ${args.join(' ')} failed (exit ${status})`);
 }
 
-async function ctest(preset) {
-  await mustRun('cmake', ['--preset', preset, '-Wno-dev', '--log-level=WARNING']);
-  await mustRun('cmake', ['--build', '--preset', preset]);
-  const { status, output } = await run('ctest', ['--preset', preset, '--progress', '-j2']);
+const matches = (text, pattern) => text.match(pattern)?.length ?? 0;
+
+async function lint() {
+  const { status, output } = await run(process.execPath, ['wasm/tools/lint/run.mjs']);
+  const failed = matches(output, /^lint \w+ +FAILED/gm) || Number(status !== 0);
+  return { passed: matches(output, /^lint \w+ +ok/gm), failed };
+}
+
+/** The core with all its tests, or only what the package's tests need: the reference, and what counts instructions. */
+async function buildNative(withTests) {
+  const only = ['--target', 'cagecast_reference', 'cagecast_bench', 'cagecast_count_instructions'];
+  await mustRun('cmake', ['--preset', 'release', '-Wno-dev', '--log-level=WARNING'], { atOnce: true });
+  await mustRun('cmake', ['--build', '--preset', 'release', ...(withTests ? [] : only)], { atOnce: true });
+}
+
+/** The package, its twin without SIMD that tests compare it with, and the sample models. */
+async function buildPackage() {
+  await mustRun('npm', ['run', '--silent', 'assets'], { atOnce: true });
+  await mustRun('npm', ['run', '--silent', 'build'], { atOnce: true });
+  await mustRun(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { atOnce: true });
+}
+
+async function testCore() {
+  const { status, output } = await run('ctest', ['--preset', 'release', '--progress', `-j${availableParallelism()}`]);
   const [failed, all] = /(\d+) tests failed out of (\d+)/.exec(output)?.slice(1) ?? [1, 1];
   return { passed: all - failed, failed: Number(failed) || Number(status !== 0) };
 }
 
-async function nodeTests(folder, { atOnce = 1, env } = {}) {
-  const files = readdirSync(new URL(folder, import.meta.url)).filter((name) => name.endsWith('.test.ts'));
-  const { status, output } = await run(
-    process.execPath,
-    [
-      '--import',
-      'tsx',
-      '--test',
-      '--test-reporter=spec',
-      `--test-concurrency=${atOnce}`,
-      ...files.map((name) => `tests/${folder}/${name}`),
-    ],
-    env,
-  );
-  const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
-  return {
-    passed: count('pass'),
-    failed: count('fail') + count('cancelled') || Number(status !== 0),
-    skipped: count('skipped'),
+/** Builds the page and serves it; what tests find it by. */
+async function servePage() {
+  const { build, preview } = await import('vite');
+  const page = fileURLToPath(new URL('../build/web', import.meta.url));
+  const options = {
+    configFile: fileURLToPath(new URL('../web/vite.config.ts', import.meta.url)),
+    logLevel: 'error',
+    build: { outDir: page },
   };
+  await build(options);
+  const server = await preview({ ...options, preview: { host: '127.0.0.1', port: 0 } });
+  return { close: () => server.close(), env: { CAGECAST_SITE: server.resolvedUrls.local[0], CAGECAST_PAGE: page } };
 }
 
-/** Each suite builds what it needs. In the order in which a mistake is cheapest to find. */
-const kSuites = {
-  lint: async () => {
-    const { status, output } = await run(process.execPath, ['wasm/tools/lint/run.mjs']);
-    const count = (word) => output.match(new RegExp(`^lint \\w+ +${word}`, 'gm'))?.length ?? 0;
-    return { passed: count('ok'), failed: count('FAILED') || Number(status !== 0) };
-  },
-  core: async () => {
-    const lanes = [await ctest('release'), await ctest('scalar'), await ctest('dev')];
-    return {
-      passed: lanes.reduce((sum, lane) => sum + lane.passed, 0),
-      failed: lanes.reduce((sum, lane) => sum + lane.failed, 0),
-    };
-  },
-  package: async () => {
-    await mustRun('npm', ['run', '--silent', 'assets']);
-    await mustRun('npm', ['run', '--silent', 'build']);
-    // What several files need is built before: two that build it at once get in each other's way.
-    await mustRun(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar']);
-    await mustRun('cmake', ['--preset', 'release', '-Wno-dev', '--log-level=WARNING']);
-    await mustRun('cmake', ['--build', '--preset', 'release', '--target', 'cagecast_reference']);
-    const env = {
-      CAGECAST_SCALAR: 'build/wasm-scalar/package',
-      CAGECAST_REFERENCE: 'build/release/tests/core/cagecast_reference',
-    };
-    const js = await nodeTests('js', { atOnce: 2, env });
-    const packed = await nodeTests('package');
-    return {
-      passed: js.passed + packed.passed,
-      failed: js.failed + packed.failed,
-      skipped: js.skipped + packed.skipped,
-    };
-  },
-  browser: async () => {
-    await mustRun('npm', ['run', '--silent', 'assets']);
-    await mustRun('npm', ['run', '--silent', 'build']);
-    const { build, preview } = await import('vite');
-    const page = fileURLToPath(new URL('../build/web', import.meta.url));
-    const options = {
-      configFile: fileURLToPath(new URL('../web/vite.config.ts', import.meta.url)),
-      logLevel: 'error',
-      build: { outDir: page },
-    };
-    await build(options);
-    const server = await preview({ ...options, preview: { host: '127.0.0.1', port: 0 } });
-    try {
-      // On two cores two browsers that draw by the processor take 0.77 of the time of one after the other.
-      const env = { CAGECAST_SITE: server.resolvedUrls.local[0], CAGECAST_PAGE: page };
-      const browser = await nodeTests('browser', { atOnce: 2, env });
-      const web = await nodeTests('web', { atOnce: 2, env });
-      return {
-        passed: browser.passed + web.passed,
-        failed: browser.failed + web.failed,
-        skipped: browser.skipped + web.skipped,
-      };
-    } finally {
-      await server.close();
+const times = fileURLToPath(new URL('../build/test-times.json', import.meta.url));
+
+/** The files of some folders, the longest first: as they were the last time, or by their size. */
+function testFiles(folders) {
+  const last = existsSync(times) ? JSON.parse(readFileSync(times, 'utf8')) : {};
+  const length = (file) => last[file] ?? statSync(`${root}${file}`).size / 1000;
+  return folders
+    .flatMap((folder) => readdirSync(root + folder).map((name) => `${folder}/${name}`))
+    .filter((file) => file.endsWith('.test.ts'))
+    .sort((a, b) => length(b) - length(a));
+}
+
+/**
+ * Runs test files, as many at once as there are cores. On two cores two browsers that draw by the processor take 0.77 of the time
+ * of one after the other.
+ * @return What passed, by folder.
+ */
+async function testFolders(folders, env, atOnce = availableParallelism()) {
+  const waiting = testFiles(folders);
+  const counts = Object.fromEntries(folders.map((folder) => [folder, { passed: 0, failed: 0, skipped: 0 }]));
+  const durations = {};
+  const work = async () => {
+    for (let file = waiting.shift(); file; file = waiting.shift()) {
+      const began = Date.now();
+      const args = ['--import', 'tsx', '--test-reporter=spec', '--test-reporter-destination=stdout', file];
+      const { status, output } = await run(process.execPath, args, { env, atOnce: true });
+      durations[file] = (Date.now() - began) / 1000;
+      const count = (word) => Number(new RegExp(`^ℹ ${word} (\\d+)`, 'm').exec(output)?.[1] ?? 0);
+      const all = counts[folders.find((folder) => file.startsWith(`${folder}/`))];
+      all.passed += count('pass');
+      all.failed += count('fail') + count('cancelled') || Number(status !== 0 || count('tests') === 0);
+      all.skipped += count('skipped');
     }
-  },
-};
-
-const chosen = process.argv.length > 2 ? process.argv.slice(2) : Object.keys(kSuites);
-const unknown = chosen.find((name) => !(name in kSuites));
-if (unknown) {
-  console.error(`no suite "${unknown}"; there are: ${Object.keys(kSuites).join(', ')}`);
-  process.exit(2);
+  };
+  await Promise.all(Array.from({ length: atOnce }, work));
+  mkdirSync(`${root}build`, { recursive: true });
+  const last = existsSync(times) ? JSON.parse(readFileSync(times, 'utf8')) : {};
+  writeFileSync(times, JSON.stringify({ ...last, ...durations }, null, 1));
+  return counts;
 }
-const rows = [];
-for (const name of chosen) {
+
+/** Runs the tests that are written in TypeScript: those of all suites at once, as some leave a core idle. */
+async function testScripts(chosen) {
+  const folders = {
+    package: ['tests/js', 'tests/package'],
+    browser: ['tests/browser', 'tests/web'],
+    cost: ['bench/web/page'],
+  };
+  const names = Object.keys(folders).filter((name) => chosen.includes(name));
+  const needsPage = names.includes('browser') || names.includes('cost');
+  const page = needsPage ? await timed('build the page', servePage) : undefined;
+  const env = {
+    ...page?.env,
+    CAGECAST_SCALAR: 'build/wasm-scalar/package',
+    CAGECAST_REFERENCE: 'build/release/tests/core/cagecast_reference',
+  };
   try {
-    rows.push({ name, skipped: 0, ...(await kSuites[name]()) });
-  } catch (error) {
-    console.error(error.message);
-    rows.push({ name, passed: 0, failed: 1, skipped: 0 });
+    const together = names.filter((name) => name !== 'cost');
+    const counts = {
+      ...(await timed('test scripts', () =>
+        testFolders(
+          together.flatMap((name) => folders[name]),
+          env,
+        ),
+      )),
+      // Processor time is only worth measuring with nothing beside it.
+      ...(names.includes('cost') && (await timed('test cost', () => testFolders(folders.cost, env, 1)))),
+    };
+    const sum = (name, field) => folders[name].reduce((total, folder) => total + counts[folder][field], 0);
+    return names.map((name) => ({
+      name,
+      passed: sum(name, 'passed'),
+      failed: sum(name, 'failed'),
+      skipped: sum(name, 'skipped'),
+    }));
+  } finally {
+    await page?.close();
   }
 }
+
+const rows = [];
+
+/** Adds what some work came to; where it throws, its suites have failed. */
+async function add(names, work) {
+  try {
+    const found = await work();
+    rows.push(...(Array.isArray(found) ? found : [{ name: names[0], ...found }]));
+  } catch (error) {
+    console.error(error.message);
+    rows.push(...names.map((name) => ({ name, passed: 0, failed: 1 })));
+  }
+}
+
+const chosen = process.argv.length > 2 ? process.argv.slice(2) : kDefault;
+const unknown = chosen.find((name) => !kSuites.includes(name));
+if (unknown) {
+  console.error(`no suite "${unknown}"; there are: ${kSuites.join(', ')}`);
+  process.exit(2);
+}
+const scripts = chosen.filter((name) => name !== 'lint' && name !== 'core');
+if (chosen.includes('lint')) await add(['lint'], () => timed('lint', lint));
+// The builds take turns at being held up by a single process, so they run at the same time.
+const native = timed('build native', () =>
+  chosen.includes('core') || scripts.includes('package') ? buildNative() : 0,
+);
+const wasm = timed('build package', () => (scripts.length > 0 ? buildPackage() : 0));
+const built = await Promise.allSettled([native, wasm]);
+if (chosen.includes('core')) await add(['core'], () => native.then(() => timed('test core', testCore)));
+if (scripts.length > 0) {
+  await add(scripts, () => {
+    for (const { reason } of built) if (reason) throw reason;
+    return testScripts(scripts);
+  });
+}
+
+console.log('');
+for (const { name, seconds } of phases) if (seconds >= 1) console.log(`${seconds.toFixed(0).padStart(5)} s  ${name}`);
 console.log('');
 // A suite that ran nothing has not passed.
 for (const row of rows) if (row.passed === 0 && row.failed === 0) row.failed = 1;
-for (const { name, passed, failed, skipped } of rows)
+for (const { name, passed, failed, skipped = 0 } of rows)
   console.log(`${name.padEnd(8)} ${passed} passed, ${failed} failed, ${skipped} skipped`);
-const sum = (field) => rows.reduce((total, row) => total + row[field], 0);
+const sum = (field) => rows.reduce((total, row) => total + (row[field] ?? 0), 0);
 console.log(`\nall: ${sum('passed')} passed, ${sum('failed')} failed, ${sum('skipped')} skipped`);
 process.exit(sum('failed') === 0 ? 0 : 1);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -710,6 +711,78 @@ void nearestVertex(const MeshView& cage, const Scene& scene, Result& result) {
   }
 }
 
+// ---------------------------------------------------------------------------------------------------------- Steps 1 to
+// 3
+
+/// A scene with what steps 1 to 3 find in it. They take most of the time and depend on few of the options, so that
+/// tests of many options on one scene take them once.
+class LastScene {
+ public:
+  LastScene(const MeshView& cage, const MeshView& target, const Options& options)
+      : scene(makeScene(cage, target, options)), key_(keyOf(cage, target, options)) {}
+  LastScene(const LastScene&) = delete;  // Places point into the scene.
+  LastScene& operator=(const LastScene&) = delete;
+
+  [[nodiscard]] bool is(const MeshView& cage, const MeshView& target, const Options& options) const {
+    return key_ == keyOf(cage, target, options);
+  }
+
+  /// Step 1, for each point.
+  const std::vector<ClosestPoint>& places() {
+    if (places_.empty())
+      for (const Vec& position : scene.points.positions) places_.push_back(project(scene, position));
+    return places_;
+  }
+
+  /// The open loop of the cage that each point's place is on, or -1.
+  const std::vector<std::int32_t>& loops() {
+    if (loops_.empty())
+      for (const ClosestPoint& place : places()) loops_.push_back(loopAt(scene, place));
+    return loops_;
+  }
+
+  /// Steps 2 and 3, for each point.
+  const std::vector<Finding>& findings(const Options& options) {
+    std::vector<Finding>& found = findings_[{options.endOfSelfRay, options.occlusionReach, options.pokes,
+                                             options.pokeThrough, options.stability}];
+    for (std::size_t p = found.size(); p < scene.points.count(); ++p) {
+      const ClosestPoint& place = places()[p];
+      const Sight sight = look(scene, options, scene.points.positions[p], place, [&](std::size_t t) {
+        return std::find(scene.corners[t].begin(), scene.corners[t].end(), p) != scene.corners[t].end();
+      });
+      found.push_back(judge(scene, options, sight, place));
+    }
+    return found;
+  }
+
+  const Scene scene;
+
+ private:
+  /// Everything that `makeScene` reads.
+  using Key = std::tuple<std::vector<float>, std::vector<std::uint32_t>, std::vector<float>, std::vector<std::uint32_t>,
+                         std::vector<std::uint32_t>, double, bool>;
+  static Key keyOf(const MeshView& cage, const MeshView& target, const Options& options) {
+    return {{cage.positions.begin(), cage.positions.end()},
+            {cage.indices.begin(), cage.indices.end()},
+            {target.positions.begin(), target.positions.end()},
+            {target.indices.begin(), target.indices.end()},
+            {target.groups.begin(), target.groups.end()},
+            options.weldTolerance,
+            options.groups};
+  }
+
+  const Key key_;
+  std::vector<ClosestPoint> places_;
+  std::vector<std::int32_t> loops_;
+  std::map<std::tuple<bool, double, bool, double, bool>, std::vector<Finding>> findings_;
+};
+
+LastScene& lastScene(const MeshView& cage, const MeshView& target, const Options& options) {
+  static std::unique_ptr<LastScene> last;
+  if (!last || !last->is(cage, target, options)) last = std::make_unique<LastScene>(cage, target, options);
+  return *last;
+}
+
 }  // namespace
 
 Options Options::paper() { return {}; }
@@ -731,22 +804,19 @@ Options Options::earlier() {
 }
 
 Result transfer(const MeshView& cage, const MeshView& target, const Options& options) {
-  const Scene scene = makeScene(cage, target, options);
-  const std::size_t pointCount = scene.points.count(), vertexCount = target.positions.size() / 3;
   const bool filtered = options.projection == ProjectionMode::nearestPoint;
+  LastScene& last = lastScene(cage, target, options);
+  const Scene& scene = last.scene;
+  const std::size_t pointCount = scene.points.count(), vertexCount = target.positions.size() / 3;
 
   State state;
   state.places.resize(pointCount);
   state.findings.resize(pointCount);
   state.loops.assign(pointCount, -1);
-  for (std::uint32_t p = 0; filtered && p < pointCount; ++p) {
-    const Vec position = scene.points.positions[p];
-    state.places[p] = project(scene, position);
-    const Sight sight = look(scene, options, position, state.places[p], [&](std::size_t t) {
-      return std::find(scene.corners[t].begin(), scene.corners[t].end(), p) != scene.corners[t].end();
-    });
-    state.findings[p] = judge(scene, options, sight, state.places[p]);
-    state.loops[p] = loopAt(scene, state.places[p]);
+  if (filtered) {
+    state.places = last.places();
+    state.findings = last.findings(options);
+    state.loops = last.loops();
   }
 
   Result result;
