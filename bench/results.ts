@@ -45,7 +45,7 @@ export interface PresetCost {
   triangles: number;
   cageTriangles: number;
   /** How many pieces the cage's texture is in. */
-  islands: number;
+  charts: number;
   paper: number;
   default: Record<'vertex' | 'corner', number>;
   /** Of the one without UVs per corner ÷ `paper`: the median over pairs of runs. */

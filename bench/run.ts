@@ -3,7 +3,7 @@
 //   npm run bench [-- options]
 //     --only native,presets,web,mobile,size   only these parts; what else is known of today stays in the results
 //     --quick                         few runs, up to 50k triangles: to see whether it works, not how fast it is
-//     --record                        record the instruction counts of now as the budget of later ones, and stop
+//     --record                        make the instruction counts and sizes of now the budget, and stop
 //     --check                         hold instruction counts and sizes against the budget, and stop
 //
 // With CAGECAST_ASSETS naming a folder of models (each a folder with target.glb and cage.glb) those are measured too.
@@ -15,7 +15,6 @@ import { parseArgs } from 'node:util';
 import { checkInstructions, checkSizes, recordBudget } from './budget.js';
 import { goalsOf, isReached } from './goals.js';
 import { countAarch64, countWasm, countX86, hashOnAarch64 } from './instructions.js';
-import { islandCount, unfolded } from './islands.js';
 import { buildNative, measureNative, root, saveScene } from './native.js';
 import { writeReport } from './report.js';
 import { type PresetCost, type Results, readResults, resultsFolder, writeResults } from './results.js';
@@ -23,6 +22,7 @@ import { readScene, writeScene } from './scene-file.js';
 import { type BenchScene, makeScenes, sampleScene, scenes } from './scenes.js';
 import { measureSizes } from './size.js';
 import { median } from './statistics.js';
+import { chartCount, unfolded } from './uv-charts.js';
 import type { FirstUse } from './web/first-page.js';
 import { buildWeb, countBundle, raceInNode, WebBench } from './web.js';
 
@@ -77,74 +77,55 @@ function runsFor(triangles: number, quick: boolean): number {
   return quick ? Math.max(3, Math.round(runs / 10)) : runs;
 }
 
+/** Makes what is measured now the budget. */
+async function record(): Promise<void> {
+  const { instructions, gz } = await recordBudget();
+  for (const [preset, counts] of Object.entries(instructions)) {
+    for (const [processor, { perRun, compiler }] of Object.entries(counts))
+      say(`${preset}, ${processor}: ${perRun} instructions a transfer, compiler ${compiler}: recorded`);
+  }
+  for (const [name, bytes] of Object.entries(gz)) say(`${name}: ${bytes} bytes gzipped: recorded`);
+}
+
+/** Holds instruction counts and sizes against the budget; whether they are within it. */
+async function check(): Promise<boolean> {
+  const counts: string[] = [];
+  for (const preset of ['paper', 'default'] as const) {
+    for (const processor of ['x86_64', 'aarch64'] as const) counts.push(await checkInstructions(processor, preset));
+  }
+  const problems = [...counts, await checkSizes()].filter((problem) => problem !== '');
+  for (const problem of problems) console.error(problem);
+  say(problems.length === 0 ? 'within the budget' : 'over the budget');
+  return problems.length === 0;
+}
+
 async function main(): Promise<void> {
-  const { only, quick, record, check } = options();
+  const given = options();
   say('building');
   await buildNative();
-  if (record) {
-    const { instructions } = await recordBudget();
-    for (const [preset, counts] of Object.entries(instructions)) {
-      for (const [processor, { perRun, compiler }] of Object.entries(counts))
-        say(`${preset}, ${processor}: ${perRun} instructions a transfer, compiler ${compiler}: recorded`);
-    }
-    return;
-  }
-  if (check) {
-    const counts: string[] = [];
-    for (const preset of ['paper', 'default'] as const) {
-      for (const processor of ['x86_64', 'aarch64'] as const) counts.push(await checkInstructions(processor, preset));
-    }
-    const problems = [...counts, await checkSizes()].filter((problem) => problem !== '');
-    for (const problem of problems) console.error(problem);
-    say(problems.length === 0 ? 'within the budget' : 'over the budget');
-    process.exit(problems.length === 0 ? 0 : 1);
-  }
+  if (given.record) return record();
+  if (given.check) process.exit((await check()) ? 0 : 1);
+  await measure(given.only, given.quick);
+}
 
+/** What is known of today, to be measured anew in part. */
+async function resultsOfToday(): Promise<Results> {
+  const date = new Date().toISOString().slice(0, 10);
+  const earlier = await readResults(date);
+  const [processor] = cpus();
+  const machine = { processor: processor!.model, cores: cpus().length, node: process.versions.node };
+  return { ...earlier, date, machine: { ...earlier?.machine, ...machine } };
+}
+
+async function measure(only: readonly string[], quick: boolean): Promise<void> {
   const wanted = scenes.filter(({ triangles }) => !quick || triangles <= 50_000);
   await makeScenes(wanted, say);
   const models = await sharedScenes();
-  const date = new Date().toISOString().slice(0, 10);
-  const [processor] = cpus();
-  const results: Results = {
-    ...(await readResults(date)),
-    date,
-    machine: {
-      ...(await readResults(date))?.machine,
-      processor: processor!.model,
-      cores: cpus().length,
-      node: process.versions.node,
-    },
-  };
-
-  if (only.includes('native')) {
-    results.native = {};
-    delete results.shuffled;
-    for (const scene of [...wanted, ...models]) {
-      say(`native: ${scene.name}`);
-      const result = await measureNative(scene.path, runsFor(scene.triangles, quick), ['embree', 'nanoflann']);
-      results.native[scene.name] = result;
-      results.machine.compiler = result.compiler;
-      say(
-        `  ${result.cagecast.total.median.toFixed(3)} ms, ${result.peers['embree']!.ratios.total!.toFixed(3)} of Embree's`,
-      );
-    }
-    const [ordered, shuffled] = ['500k', '500k-shuffled'].map(
-      (name) => wanted.find((scene) => scene.name === name)?.path,
-    );
-    if (ordered !== undefined && shuffled !== undefined) {
-      say('native: 500k shuffled and not, in turn');
-      const total = async (path: string): Promise<number> => (await measureNative(path, 5, [])).cagecast.total.median;
-      const ratios: number[] = [];
-      for (let i = 0; i < 7; ++i) {
-        const before = await total(ordered);
-        ratios.push((await total(shuffled)) / before);
-      }
-      results.shuffled = median(ratios);
-    }
-  }
+  const results = await resultsOfToday();
+  if (only.includes('native')) await measureNatively(results, wanted, models, quick);
   if (only.includes('presets')) {
     results.presets = {};
-    for (const scene of [sampleScene, await manyIslands(), ...models]) {
+    for (const scene of [sampleScene, await manyCharts(), ...models]) {
       say(`presets: ${scene.name}`);
       results.presets[scene.name] = await measurePresets(scene, runsFor(scene.triangles, quick));
       const { ratio, default: both } = results.presets[scene.name]!;
@@ -156,24 +137,7 @@ async function main(): Promise<void> {
   if (only.includes('size')) results.size = await measureSizes();
   // What is known is kept, whatever happens to the rest.
   await writeResults(results);
-  if (only.includes('web') || only.includes('mobile')) {
-    await buildWeb();
-    const bench = await WebBench.start();
-    try {
-      results.machine.chromium = bench.version;
-      if (only.includes('web'))
-        results.web = await measureWeb(
-          bench,
-          [...wanted.filter(({ cage, shuffled }) => cage === 'grown' && !shuffled), ...models],
-          quick,
-        );
-      await writeResults(results);
-      if (only.includes('mobile')) results.mobile = await measureMobile(bench, quick);
-    } finally {
-      await bench.stop();
-    }
-  }
-
+  if (only.includes('web') || only.includes('mobile')) await measureInBrowser(results, only, wanted, models, quick);
   await writeResults(results);
   await writeReport(results);
   for (const goal of goalsOf(results)) {
@@ -186,12 +150,63 @@ async function main(): Promise<void> {
   say(`written to ${resultsFolder.slice(root.length)}`);
 }
 
-/** The sample, its cage with a texture of many islands. */
-async function manyIslands(): Promise<BenchScene> {
+async function measureNatively(
+  results: Results,
+  wanted: readonly BenchScene[],
+  models: readonly BenchScene[],
+  quick: boolean,
+): Promise<void> {
+  results.native = {};
+  delete results.shuffled;
+  for (const scene of [...wanted, ...models]) {
+    say(`native: ${scene.name}`);
+    const result = await measureNative(scene.path, runsFor(scene.triangles, quick), ['embree', 'nanoflann']);
+    results.native[scene.name] = result;
+    results.machine.compiler = result.compiler;
+    say(
+      `  ${result.cagecast.total.median.toFixed(3)} ms, ${result.peers['embree']!.ratios.total!.toFixed(3)} of Embree's`,
+    );
+  }
+  const [ordered, shuffled] = ['500k', '500k-shuffled'].map(
+    (name) => wanted.find((scene) => scene.name === name)?.path,
+  );
+  if (ordered === undefined || shuffled === undefined) return;
+  say('native: 500k shuffled and not, in turn');
+  const total = async (path: string): Promise<number> => (await measureNative(path, 5, [])).cagecast.total.median;
+  const ratios: number[] = [];
+  for (let i = 0; i < 7; ++i) {
+    const before = await total(ordered);
+    ratios.push((await total(shuffled)) / before);
+  }
+  results.shuffled = median(ratios);
+}
+
+async function measureInBrowser(
+  results: Results,
+  only: readonly string[],
+  wanted: readonly BenchScene[],
+  models: readonly BenchScene[],
+  quick: boolean,
+): Promise<void> {
+  await buildWeb();
+  const bench = await WebBench.start();
+  try {
+    results.machine.chromium = bench.version;
+    const grown = wanted.filter(({ cage, shuffled }) => cage === 'grown' && !shuffled);
+    if (only.includes('web')) results.web = await measureWeb(bench, [...grown, ...models], quick);
+    await writeResults(results);
+    if (only.includes('mobile')) results.mobile = await measureMobile(bench, quick);
+  } finally {
+    await bench.stop();
+  }
+}
+
+/** The sample, its cage with a texture of many UV charts. */
+async function manyCharts(): Promise<BenchScene> {
   const scene = {
     ...sampleScene,
-    name: `${sampleScene.name}-many-islands`,
-    path: `${root}build/bench/scenes/${sampleScene.name}-many-islands.scene`,
+    name: `${sampleScene.name}-many-charts`,
+    path: `${root}build/bench/scenes/${sampleScene.name}-many-charts.scene`,
   };
   const { cage, target } = readScene((await readFile(sampleScene.path)).buffer);
   await writeFile(scene.path, writeScene({ cage: unfolded(cage), target }));
@@ -210,7 +225,7 @@ async function measurePresets(scene: BenchScene, runs: number): Promise<PresetCo
   return {
     triangles,
     cageTriangles,
-    islands: islandCount(cage),
+    charts: chartCount(cage),
     paper: paper.times.total.median,
     default: { vertex: cagecast.total.median, corner: corner.times.total.median },
     ratio: paper.ratios.total!,

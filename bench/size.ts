@@ -11,8 +11,7 @@ export interface Size {
 /** The files whose size counts. */
 export const sizedFiles = {
   'cagecast.wasm': 'dist/cagecast.wasm',
-  'cagecast-borders.wasm': 'dist/cagecast-borders.wasm',
-  'cagecast (wasm, glue and API in one)': 'dist/index.js',
+  'cagecast (WebAssembly inlined)': 'dist/index.js',
 } as const;
 
 export async function measureSizes(): Promise<Record<string, Size>> {

@@ -1,8 +1,6 @@
 // Builds everything and runs all tests; ends with how many of each suite passed, and what took how long.
 //
-//   node tests/run.mjs [suite …]
-//     lint, core, package, browser    what `npm test` runs
-//     cost                            processor time on the page: for a quiet machine, so only when named
+//   node tests/run.mjs [suite …]        suites: lint, core, package, browser
 
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
@@ -10,8 +8,7 @@ import { availableParallelism } from 'node:os';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
-const kDefault = ['lint', 'core', 'package', 'browser'];
-const kSuites = [...kDefault, 'cost'];
+const kSuites = ['lint', 'core', 'package', 'browser'];
 
 const phases = [];
 
@@ -114,7 +111,7 @@ function testFiles(folders) {
  * of one after the other.
  * @return What passed, by folder.
  */
-async function testFolders(folders, env, atOnce = availableParallelism()) {
+async function testFolders(folders, env) {
   const waiting = testFiles(folders);
   const counts = Object.fromEntries(folders.map((folder) => [folder, { passed: 0, failed: 0, skipped: 0 }]));
   const durations = {};
@@ -131,7 +128,7 @@ async function testFolders(folders, env, atOnce = availableParallelism()) {
       all.skipped += count('skipped');
     }
   };
-  await Promise.all(Array.from({ length: atOnce }, work));
+  await Promise.all(Array.from({ length: availableParallelism() }, work));
   mkdirSync(`${root}build`, { recursive: true });
   const last = existsSync(times) ? JSON.parse(readFileSync(times, 'utf8')) : {};
   writeFileSync(times, JSON.stringify({ ...last, ...durations }, null, 1));
@@ -139,32 +136,17 @@ async function testFolders(folders, env, atOnce = availableParallelism()) {
 }
 
 /** Runs the tests that are written in TypeScript: those of all suites at once, as some leave a core idle. */
-async function testScripts(chosen) {
-  const folders = {
-    package: ['tests/js', 'tests/package'],
-    browser: ['tests/browser', 'tests/web'],
-    cost: ['bench/web/page'],
-  };
-  const names = Object.keys(folders).filter((name) => chosen.includes(name));
-  const needsPage = names.includes('browser') || names.includes('cost');
-  const page = needsPage ? await timed('build the page', servePage) : undefined;
+async function testScripts(names) {
+  const folders = { package: ['tests/js', 'tests/package'], browser: ['tests/browser', 'tests/web'] };
+  const page = names.includes('browser') ? await timed('build the page', servePage) : undefined;
   const env = {
     ...page?.env,
     CAGECAST_SCALAR: 'build/wasm-scalar/package',
     CAGECAST_REFERENCE: 'build/release/tests/core/cagecast_reference',
   };
   try {
-    const together = names.filter((name) => name !== 'cost');
-    const counts = {
-      ...(await timed('test scripts', () =>
-        testFolders(
-          together.flatMap((name) => folders[name]),
-          env,
-        ),
-      )),
-      // Processor time is only worth measuring with nothing beside it.
-      ...(names.includes('cost') && (await timed('test cost', () => testFolders(folders.cost, env, 1)))),
-    };
+    const all = names.flatMap((name) => folders[name]);
+    const counts = await timed('test scripts', () => testFolders(all, env));
     const sum = (name, field) => folders[name].reduce((total, folder) => total + counts[folder][field], 0);
     return names.map((name) => ({
       name,
@@ -190,7 +172,7 @@ async function add(names, work) {
   }
 }
 
-const chosen = process.argv.length > 2 ? process.argv.slice(2) : kDefault;
+const chosen = process.argv.length > 2 ? process.argv.slice(2) : kSuites;
 const unknown = chosen.find((name) => !kSuites.includes(name));
 if (unknown) {
   console.error(`no suite "${unknown}"; there are: ${kSuites.join(', ')}`);

@@ -7,22 +7,17 @@ const lacks = (...commands: string[]): string | false =>
   commands.find((command) => spawnSync('sh', ['-c', `command -v ${command}`]).status !== 0) ?? false;
 const skipWithout = (missing: string | false): string | false => missing && `${missing} is not installed`;
 
+// On 64-bit ARM they are counted by `npm run bench -- --check`, which builds the core for it.
 describe('budget', () => {
   for (const preset of ['paper', 'default'] as const) {
-    test(`a transfer of the sample with the preset ${preset} takes no more x86-64 instructions than recorded`, {
+    test(`a transfer of the sample with the preset ${preset} takes no more x86-64 instructions than the budget allows`, {
       skip: process.arch === 'x64' ? skipWithout(lacks('valgrind')) : `this is ${process.arch}`,
     }, async () => {
       assert.equal(await checkInstructions('x86_64', preset), '');
     });
-
-    test(`a transfer of the sample with the preset ${preset} takes no more 64-bit ARM instructions than recorded`, {
-      skip: skipWithout(lacks('qemu-aarch64', 'aarch64-linux-gnu-g++')),
-    }, async () => {
-      assert.equal(await checkInstructions('aarch64', preset), '');
-    });
   }
 
-  test('the package is no larger, gzipped, than a page can afford', async () => {
+  test('the package is no larger, gzipped, than the budget allows', async () => {
     assert.equal(await checkSizes(), '');
   });
 });

@@ -3,7 +3,7 @@ import type { SceneMesh } from './scene-file.js';
 type Mesh = Required<Pick<SceneMesh, 'positions' | 'indices' | 'uvs'>>;
 
 /** How many pieces the texture of a mesh is in: components over edges with equal position and UV at both ends. */
-export function islandCount(mesh: SceneMesh): number {
+export function chartCount(mesh: SceneMesh): number {
   const { positions, indices, uvs } = withUvs(mesh);
   const site = (v: number): string =>
     [...positions.subarray(3 * v, 3 * v + 3), ...uvs.subarray(2 * v, 2 * v + 2)].join();
