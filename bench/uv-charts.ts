@@ -27,7 +27,7 @@ export function chartCount(mesh: SceneMesh): number {
 
 /**
  * The same shape with the texture that a box would have: each triangle is seen along the axis that its normal is nearest to, from
- * one of six sides, which lie side by side in two rows. An ear or a fold is then an island of its own.
+ * one of six sides, which lie side by side in two rows. An ear or a fold is then a chart of its own.
  */
 export function unfolded(mesh: SceneMesh): SceneMesh {
   const { positions } = mesh;
@@ -67,6 +67,6 @@ export function unfolded(mesh: SceneMesh): SceneMesh {
 }
 
 function withUvs({ positions, indices, uvs }: SceneMesh): Mesh {
-  if (uvs === undefined) throw new Error('a mesh without UVs has no islands');
+  if (uvs === undefined) throw new Error('a mesh without UVs has no UV charts');
   return { positions, indices, uvs };
 }
