@@ -59,7 +59,11 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
   const cageTriangle = projection.triangles[vertex]!;
   const diagonal = diagonalOf(target.mesh) || 1;
   const options = presetOptions(facts.rules.preset);
-  const path = pathOf(target.mesh, cage.mesh, facts.loops, vertex, cageTriangle, diagonal, options);
+  const path = pathOf(
+    { target: target.mesh, cage: cage.mesh, loops: facts.loops },
+    { vertex, triangle: cageTriangle, diagonal },
+    options,
+  );
   const part = segmentOf(facts, vertex);
   const secondLook = secondLookStep(facts, vertex);
   const steps = [
