@@ -1,4 +1,4 @@
-import type { Mesh } from '../wasm/src/mesh.js';
+import type { Mesh } from '../wasm/src/api/mesh.js';
 
 /** A mesh whose arrays have the types of a scene file. */
 export interface SceneMesh extends Mesh {

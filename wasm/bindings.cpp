@@ -1,151 +1,326 @@
-/// The bridge from JavaScript. What a call leaves stays until `release` (bridge.hpp). Nothing is decided here; names,
-/// defaults and messages for people are the package's.
+/// The JavaScript interface of the core, made with embind: copies arrays in, calls a function, and returns views of
+/// what it left in memory. Nothing is decided here.
 
+#include <emscripten/bind.h>
+#include <emscripten/val.h>
+#include <cagecast/clip.hpp>
 #include <cagecast/split.hpp>
+#include <cagecast/transfer.hpp>
 
-#include "bridge.hpp"
-
-namespace cagecast {
-
-/// This and the next ones in the order of wasm/src/transfer.ts.
-template <typename Visit>
-void eachField(SegmentStats& s, const Visit& visit) {
-  visit(s.points), visit(s.area), visit(s.exposedArea), visit(s.coveredArea), visit(s.depthWeightedArea),
-      visit(s.group), visit(s.twinOf);
-}
-
-template <typename Visit>
-void eachField(HoleShare& s, const Visit& visit) {
-  visit(s.hole), visit(s.segment), visit(s.exposedArea), visit(s.uncoveredArea), visit(s.hiddenArea);
-}
-
-template <typename Visit>
-void eachField(Projection& p, const Visit& visit) {
-  Timings& t = p.timings;
-  visit(t.weld), visit(t.build), visit(t.project), visit(t.occluded), visit(t.covered), visit(t.segments),
-      visit(t.secondLook);
-  visit(t.holes), visit(t.seams), visit(t.classify), visit(t.total), visit(p.peakBytes);
-}
-
-}  // namespace cagecast
+#include <string>
+#include <type_traits>
 
 namespace {
 
-using namespace cagecast::bridge;
-using cagecast::Array;
-using cagecast::Status;
-using cagecast::Zone;
+using namespace cagecast;
+using emscripten::val;
 
-/// What a call leaves for JavaScript.
-struct Call {
-  cagecast::TransferResult result;
-  cagecast::SplitVertices split;
-  Array<double> stats, shares, numbers;
-  Array<cagecast::LockEntry> locks;
+constexpr Status kOutOfMemory{Code::outOfMemory};
+
+/// The element type that a typed array has for T: the number behind an enumeration.
+template <typename T, bool kIsEnum = std::is_enum_v<T>>
+struct ElementOf {
+  using type = T;
+};
+template <typename T>
+struct ElementOf<T, true> {
+  using type = std::underlying_type_t<T>;
 };
 
-[[clang::no_destroy]] Call call;
-[[clang::no_destroy]] cagecast::Workspace workspace;
+/// A typed array that shows C++ memory. It is valid until the next call into C++.
+template <typename T>
+val view(const Array<T>& array) {
+  return val(
+      emscripten::typed_memory_view(array.size(), reinterpret_cast<const typename ElementOf<T>::type*>(array.data())));
+}
 
-/// Of one lock per segment, or none.
-cagecast::TransferOptions optionsWithLocks(std::size_t place) {
-  cagecast::TransferOptions options = givenOptions();
-  const auto locks = input<cagecast::Lock>(place);
-  if (call.locks.reset(locks.size())) {
-    for (std::uint32_t s = 0; s < locks.size(); ++s) call.locks[s] = {s, locks[s]};
-    options.locks.segments = call.locks;
+/// Copies a typed array into C++ memory; an undefined one is empty.
+/// @return false if there is not enough memory.
+template <typename T>
+bool copyArray(const val& source, Array<T>& out) {
+  if (!out.reset(source.isUndefined() ? 0 : source["length"].as<std::size_t>())) return false;
+  if (!out.empty()) view(out).template call<void>("set", source);
+  return true;
+}
+
+/// Copies an array of records or enumeration values, one by one.
+template <typename T>
+bool copyRecords(const val& source, Array<T>& out) {
+  if (!out.reset(source["length"].as<std::size_t>())) return false;
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = source[i].as<T>();
+  return true;
+}
+
+template <typename T>
+val records(const Array<T>& array) {
+  val out = val::array();
+  for (std::size_t i = 0; i < array.size(); ++i) out.set(i, array[i]);
+  return out;
+}
+
+/// The arrays of a mesh, copied from JavaScript.
+struct Mesh {
+  Array<float> positions;
+  Array<std::uint32_t> indices;
+  Array<float> uvs;
+  Array<std::uint32_t> groups;
+
+  bool copy(const val& mesh) {
+    return copyArray(mesh["positions"], positions) && copyArray(mesh["indices"], indices) &&
+           copyArray(mesh["uvs"], uvs) && copyArray(mesh["groups"], groups);
   }
-  return options;
-}
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
+};
 
-/// What a projection and a transfer both answer, and more.
-std::uintptr_t projected(const Status& status, const Array<Zone>& zones, const Bytes (&more)[3]) {
-  cagecast::Projection& p = call.result.projection;
-  if (!status.ok()) return answer(status);
-  if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats) ||
-      !toNumbers(std::span(&p, 1), call.numbers)) {
-    return answer(kOutOfMemory);
+struct Meshes {
+  Mesh cage;
+  Mesh target;
+
+  bool copy(const val& cageSource, const val& targetSource) {
+    return cage.copy(cageSource) && target.copy(targetSource);
   }
-  return answer(status, {bytes(p.uvs), bytes(p.cornerUvs), bytes(zones), bytes(p.triangles), bytes(p.distances),
-                         bytes(p.segments), bytes(call.stats), bytes(call.numbers), more[0], more[1], more[2]});
+};
+
+/// Locks, copied from JavaScript.
+struct LockLists {
+  Array<LockEntry> segments;
+  Array<LockEntry> groups;
+
+  bool copy(const val& locks) {
+    return copyRecords(locks["segments"], segments) && copyRecords(locks["groups"], groups);
+  }
+  [[nodiscard]] Locks view() const { return {segments, groups}; }
+};
+
+enum class Preset : std::uint8_t { standard, paper };
+
+TransferOptions presetOptions(Preset preset) {
+  return preset == Preset::paper ? TransferOptions::paper() : TransferOptions{};
 }
 
-/// The answer of a transfer.
-std::uintptr_t transferred(const Status& status) {
-  const cagecast::Zones& zones = call.result.zones;
-  return projected(status, zones.zones, {bytes(zones.cosmeticTriangles), bytes(zones.culledBy), bytes(zones.scores)});
+/// How a call ended, for JavaScript.
+struct Ending {
+  std::string code;     ///< `codeName`; "ok" if all went well.
+  std::string message;  ///< `describe`; empty if all went well.
+  std::uint32_t at = 0;
+};
+
+val ending(const Status& status, const Meshes& meshes = {}) {
+  val out = val::object();
+  out.set("status", Ending{codeName(status.code),
+                           status.ok() ? "" : describe(status, meshes.cage.view(), meshes.target.view()), status.at});
+  return out;
 }
+
+/// The memory that calls work in and leave their results in. The arrays that a call returns are views of it, valid
+/// until `release` or the next call.
+class Calls {
+ public:
+  val project(const val& cage, const val& target, const TransferOptions& options) {
+    Meshes meshes;
+    if (!meshes.copy(cage, target)) return ending(kOutOfMemory);
+    Projection& projection = result_.projection;
+    const Status status = cagecast::project(meshes.cage.view(), meshes.target.view(), options, workspace_, projection);
+    if (!status.ok()) return ending(status, meshes);
+    indices_ = std::move(meshes.target.indices);
+    val out = projected();
+    out.set("zones", view(projection.zones));
+    out.set("segmentStats", records(projection.segmentStats));
+    out.set("recovery", view(projection.recovery));
+    out.set("holeShares", records(projection.holeShares));
+    out.set("indices", view(indices_));
+    return out;
+  }
+
+  val transfer(const val& cage, const val& target, TransferOptions options, const val& locks) {
+    Meshes meshes;
+    LockLists lists;
+    if (!meshes.copy(cage, target) || !lists.copy(locks)) return ending(kOutOfMemory);
+    options.locks = lists.view();
+    const Status status = cagecast::transfer(meshes.cage.view(), meshes.target.view(), options, workspace_, result_);
+    if (!status.ok()) return ending(status, meshes);
+    val out = projected();
+    out.set("segmentStats", records(result_.projection.segmentStats));
+    decided(out);
+    return out;
+  }
+
+  val classify(const val& source, TransferOptions options, const val& locks) {
+    Projection& projection = result_.projection;
+    LockLists lists;
+    if (!lists.copy(locks) || !copyArray(source["zones"], projection.zones) ||
+        !copyArray(source["segments"], projection.segments) || !copyArray(source["recovery"], projection.recovery) ||
+        !copyArray(source["indices"], indices_) || !copyRecords(source["segmentStats"], projection.segmentStats) ||
+        !copyRecords(source["holeShares"], projection.holeShares)) {
+      return ending(kOutOfMemory);
+    }
+    options.locks = lists.view();
+    Zones& zones = result_.zones;
+    const Status status = cagecast::classify(projection.view(), indices_, options, zones);
+    if (!status.ok()) return ending(status);
+    for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) {
+      projection.segmentStats[s].culledBy = zones.culledBy[s];
+      projection.segmentStats[s].score = zones.scores[s];
+    }
+    val out = ending(status);
+    out.set("segmentStats", records(projection.segmentStats));
+    decided(out);
+    return out;
+  }
+
+  val splitVertices(const val& target, const val& cornerUvs) {
+    Meshes meshes;
+    Array<float> uvs;
+    if (!meshes.target.copy(target) || !copyArray(cornerUvs, uvs)) return ending(kOutOfMemory);
+    const auto vertexCount = static_cast<std::uint32_t>(meshes.target.positions.size() / 3);
+    const Status status = cagecast::splitVertices(meshes.target.indices, uvs, vertexCount, split_);
+    if (!status.ok()) return ending(status, meshes);
+    val out = ending(status);
+    out.set("sources", view(split_.sources));
+    out.set("indices", view(split_.indices));
+    out.set("uvs", view(split_.uvs));
+    return out;
+  }
+
+  /// @param decision  Of a transfer: its `zones`, its `segments`, and `culledBy` of each segment.
+  val cutBorders(const val& cage, const val& target, const val& decision, const TransferOptions& options) {
+    Meshes meshes;
+    Array<Zone> zones;
+    Array<std::uint32_t> segments;
+    Array<CulledBy> culledBy;
+    if (!meshes.copy(cage, target) || !copyArray(decision["zones"], zones) ||
+        !copyArray(decision["segments"], segments) || !copyRecords(decision["culledBy"], culledBy)) {
+      return ending(kOutOfMemory);
+    }
+    const Status status = cagecast::cutBorders(meshes.cage.view(), {meshes.target.view(), zones, segments, culledBy},
+                                               options, workspace_, cut_);
+    if (!status.ok()) return ending(status, meshes);
+    val out = ending(status);
+    out.set("sources", view(cut_.sources));
+    out.set("weights", view(cut_.weights));
+    out.set("indices", view(cut_.indices));
+    out.set("triangles", view(cut_.origins));
+    out.set("uvs", view(cut_.uvs));
+    out.set("cornerUvs", view(cut_.cornerUvs));
+    out.set("zones", view(cut_.zones));
+    out.set("cosmeticTriangles", view(cut_.cosmeticTriangles));
+    return out;
+  }
+
+  /// Frees the result of the last call and the working memory.
+  void release() {
+    result_ = {};
+    split_ = {};
+    cut_ = {};
+    indices_ = {};
+    workspace_.release();
+  }
+
+ private:
+  /// What `project` and `transfer` both return.
+  val projected() {
+    const Projection& projection = result_.projection;
+    val out = ending({});
+    out.set("uvs", view(projection.uvs));
+    out.set("cornerUvs", view(projection.cornerUvs));
+    out.set("triangles", view(projection.triangles));
+    out.set("distances", view(projection.distances));
+    out.set("segments", view(projection.segments));
+    out.set("timings", projection.timings);
+    out.set("peakBytes", static_cast<double>(projection.peakBytes));
+    return out;
+  }
+
+  /// What `classify` and `transfer` both return.
+  void decided(val& out) {
+    out.set("zones", view(result_.zones.zones));
+    out.set("cosmeticTriangles", view(result_.zones.cosmeticTriangles));
+  }
+
+  Workspace workspace_;
+  TransferResult result_;
+  SplitVertices split_;
+  CutTarget cut_;
+  Array<std::uint32_t> indices_;
+};
+
+// Fields that follow from others are for reading only.
+double coverageOf(const SegmentStats& stats) { return stats.coverage(); }
+bool isCulled(const SegmentStats& stats) { return stats.culled(); }
+template <typename T>
+void ignore(SegmentStats& /*stats*/, T /*value*/) {}
 
 }  // namespace
 
-extern "C" {
+EMSCRIPTEN_BINDINGS(cagecast) {
+  using namespace emscripten;
 
-/// Of the inputs: options, cage, target.
-EMSCRIPTEN_KEEPALIVE std::uintptr_t project() {
-  cagecast::Projection& p = call.result.projection;
-  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), workspace, p);
-  if (status.ok() && !toNumbers(std::span(p.holeShares.begin(), p.holeShares.end()), call.shares))
-    return answer(kOutOfMemory);
-  return projected(status, p.zones, {bytes(p.recovery), bytes(call.shares), std::as_bytes(mesh(5).indices)});
-}
+  enum_<Preset>("Preset").value("default", Preset::standard).value("paper", Preset::paper);
+  enum_<ProjectionMode>("ProjectionMode")
+      .value("nearestPoint", ProjectionMode::nearestPoint)
+      .value("nearestVertex", ProjectionMode::nearestVertex);
+  enum_<Seams>("Seams").value("vertex", Seams::vertex).value("corner", Seams::corner);
+  enum_<Floor>("Floor").value("none", Floor::none).value("area", Floor::area).value("depth", Floor::depth);
+  enum_<Lock>("Lock").value("auto", Lock::automatic).value("keep", Lock::keep).value("exclude", Lock::exclude);
+  enum_<CulledBy>("CulledBy")
+      .value("none", CulledBy::none)
+      .value("coverage", CulledBy::coverage)
+      .value("hole", CulledBy::hole)
+      .value("lock", CulledBy::lock);
 
-/// As `project`.
-EMSCRIPTEN_KEEPALIVE std::uintptr_t transfer() {
-  return transferred(cagecast::transfer(mesh(1), mesh(5), givenOptions(), workspace, call.result));
-}
-
-/// The first half of `transfer`, for those who must know the segments to say which are locked: of the answer their
-/// numbers alone.
-EMSCRIPTEN_KEEPALIVE std::uintptr_t beginTransfer() {
-  cagecast::Projection& p = call.result.projection;
-  const Status status = cagecast::project(mesh(1), mesh(5), givenOptions(), workspace, p);
-  if (!status.ok()) return answer(status);
-  if (!toNumbers(std::span(p.segmentStats.begin(), p.segmentStats.end()), call.stats)) return answer(kOutOfMemory);
-  return answer(status, {bytes(call.stats)});
-}
-
-/// The second half, with what the first was given still there: of a lock per segment besides, after the target.
-EMSCRIPTEN_KEEPALIVE std::uintptr_t endTransfer() {
-  const cagecast::TransferOptions classifyOptions = optionsWithLocks(9);
-  cagecast::Projection& p = call.result.projection;
-  const double start = emscripten_get_now();
-  const Status status = cagecast::classify(p.view(), mesh(5).indices, classifyOptions, call.result.zones);
-  p.timings.classify = emscripten_get_now() - start;
-  p.timings.total += p.timings.classify;
-  return transferred(status);
-}
-
-/// Of the inputs: options; zones, segments, stats, recovery, shares and indices of a projection; a lock per segment, or
-/// none.
-EMSCRIPTEN_KEEPALIVE std::uintptr_t classify() {
-  Array<cagecast::SegmentStats> stats;
-  Array<cagecast::HoleShare> shares;
-  if (!stats.reset(input<double>(3).size() / fieldsOf<cagecast::SegmentStats>()) ||
-      !shares.reset(input<double>(5).size() / fieldsOf<cagecast::HoleShare>())) {
-    return answer(kOutOfMemory);
+  {
+    value_object<Steps> steps("Steps");
+#define CAGECAST_STEP(stage, name, ...) steps.field(#name, &Steps::name);
+#include <cagecast/options.def>
+    value_object<TransferOptions> options("TransferOptions");
+#define CAGECAST_OPTION(stage, name, ...) options.field(#name, &TransferOptions::name);
+#include <cagecast/options.def>
+    options.field("steps", &TransferOptions::steps);
   }
-  fromNumbers(input<double>(3).data(), std::span(stats.begin(), stats.end()));
-  fromNumbers(input<double>(5).data(), std::span(shares.begin(), shares.end()));
-  const cagecast::TransferOptions classifyOptions = optionsWithLocks(7);
-  cagecast::Zones& zones = call.result.zones;
-  const Status status =
-      cagecast::classify({input<Zone>(1), input<std::uint32_t>(2), stats, input<std::uint32_t>(4), shares},
-                         input<std::uint32_t>(6), classifyOptions, zones);
-  return answer(status,
-                {bytes(zones.zones), bytes(zones.cosmeticTriangles), bytes(zones.culledBy), bytes(zones.scores)});
-}
 
-/// Of the inputs: indices, UVs per corner.
-EMSCRIPTEN_KEEPALIVE std::uintptr_t splitVertices(unsigned vertexCount) {
-  cagecast::SplitVertices& split = call.split;
-  const Status status = cagecast::splitVertices(input<std::uint32_t>(0), input<float>(1), vertexCount, split);
-  return answer(status, {bytes(split.sources), bytes(split.indices), bytes(split.uvs)});
-}
+  value_object<LockEntry>("LockEntry").field("id", &LockEntry::id).field("lock", &LockEntry::lock);
+  value_object<Ending>("Status")
+      .field("code", &Ending::code)
+      .field("message", &Ending::message)
+      .field("at", &Ending::at);
+  value_object<SegmentStats>("SegmentStats")
+      .field("points", &SegmentStats::points)
+      .field("area", &SegmentStats::area)
+      .field("exposedArea", &SegmentStats::exposedArea)
+      .field("coveredArea", &SegmentStats::coveredArea)
+      .field("coverage", &coverageOf, &ignore<double>)
+      .field("depthWeightedArea", &SegmentStats::depthWeightedArea)
+      .field("group", &SegmentStats::group)
+      .field("twinOf", &SegmentStats::twinOf)
+      .field("score", &SegmentStats::score)
+      .field("culled", &isCulled, &ignore<bool>)
+      .field("culledBy", &SegmentStats::culledBy);
+  value_object<HoleShare>("HoleShare")
+      .field("hole", &HoleShare::hole)
+      .field("segment", &HoleShare::segment)
+      .field("exposedArea", &HoleShare::exposedArea)
+      .field("uncoveredArea", &HoleShare::uncoveredArea)
+      .field("hiddenArea", &HoleShare::hiddenArea);
+  value_object<Timings>("Timings")
+      .field("weld", &Timings::weld)
+      .field("build", &Timings::build)
+      .field("project", &Timings::project)
+      .field("occluded", &Timings::occluded)
+      .field("covered", &Timings::covered)
+      .field("segments", &Timings::segments)
+      .field("secondLook", &Timings::secondLook)
+      .field("holes", &Timings::holes)
+      .field("seams", &Timings::seams)
+      .field("classify", &Timings::classify)
+      .field("total", &Timings::total);
 
-/// Frees what a call read and left.
-EMSCRIPTEN_KEEPALIVE void release() {
-  renew(exchange);
-  renew(call);
+  class_<Calls>("Workspace")
+      .constructor<>()
+      .function("project", &Calls::project)
+      .function("transfer", &Calls::transfer)
+      .function("classify", &Calls::classify)
+      .function("splitVertices", &Calls::splitVertices)
+      .function("cutBorders", &Calls::cutBorders)
+      .function("release", &Calls::release);
+  function("presetOptions", &presetOptions);
 }
-
-}  // extern "C"

@@ -53,14 +53,24 @@ export function atThresholds(projection: Projection, thresholds: readonly number
 export function withoutEachStep({ cage, target }: Scene): [step: string, Decision][] {
   const { groups: _, ...whole } = target;
   const [paper, ours] = [presetOptions('paper'), presetOptions('default')];
-  const differs = (name: keyof PresetOptions): boolean => paper[name] !== ours[name] && name !== 'seams'; // it is about UVs, not zones
-  const names = (Object.keys(ours) as (keyof PresetOptions)[]).filter(differs);
+  type Single = Exclude<keyof PresetOptions, 'steps'>;
+  // `seams` is about UVs, not zones.
+  const names = (Object.keys(ours) as (keyof PresetOptions)[]).filter(
+    (name): name is Single => name !== 'steps' && name !== 'seams' && paper[name] !== ours[name],
+  );
+  const steps = (Object.keys(ours.steps) as (keyof PresetOptions['steps'])[]).filter(
+    (name) => paper.steps[name] !== ours.steps[name],
+  );
   return [
     ['groups', transfer(cage, whole)],
-    ['depth', transfer(cage, target, { floor: 'area' })],
+    ['depth', transfer(cage, target, { steps: { floor: 'area' } })],
     ...names.map((name): [string, Decision] => [
       name,
       transfer(cage, target, { [name]: paper[name] } as TransferOptions),
+    ]),
+    ...steps.map((name): [string, Decision] => [
+      name,
+      transfer(cage, target, { steps: { [name]: paper.steps[name] } }),
     ]),
   ];
 }

@@ -1,7 +1,6 @@
-import { project, type TransferResult } from 'cagecast';
-import { cutBorders } from 'cagecast/borders';
-import { blend } from '../../wasm/src/cut/blend.js';
+import { cutBorders, type PresetOptions, project, type TransferResult } from 'cagecast';
 import { boxOf, doubleAreaNormal, length, minus, pointAt } from '../../wasm/src/inspect/geometry.js';
+import { blend } from '../../wasm/src/parts/blend.js';
 import type { Scene, SceneMesh } from '../scene-file.js';
 import type { Decision } from './methods.js';
 import type { Model } from './models.js';
@@ -79,14 +78,11 @@ export interface SegmentMeasure {
   culled: boolean;
 }
 
-/** The floor's constants: shares of the segment's own area, and of all that is covered, where little enough is uncovered. */
-export type FloorLimits = Record<'minCovered' | 'minOfAll' | 'maxUncovered', number>;
-
 /** Measures every segment that covers anything. */
 export function measureSegments(
   { scene, truth }: Model,
   { segments, segmentStats }: TransferResult,
-  limits: FloorLimits,
+  limits: PresetOptions,
 ): SegmentMeasure[] {
   const { indices } = scene.target;
   const areas = triangleAreas(scene.target);
@@ -99,13 +95,13 @@ export function measureSegments(
       wishes[segment]![truth.ncz[v] === 1 ? 'bare' : 'painted'] += areas[Math.floor(corner / 3)]!;
   });
   const allCovered = segmentStats.reduce((sum, { coveredArea }) => sum + coveredArea, 0);
-  return segmentStats.flatMap(({ area, exposedArea, coveredArea, coverage, sunkArea, culled }, s) => {
+  return segmentStats.flatMap(({ area, exposedArea, coveredArea, coverage, depthWeightedArea, culled }, s) => {
     if (!(coveredArea > 0)) return [];
     const { painted, bare } = wishes[s]!;
-    const counted = sunkArea * coverage;
+    const counted = depthWeightedArea * coverage;
     const ofAll = Math.min(
-      counted / (limits.minOfAll * allCovered),
-      (limits.maxUncovered * exposedArea) / (exposedArea - coveredArea),
+      counted / (limits.steps.minOfAll * allCovered),
+      (limits.steps.maxUncovered * exposedArea) / (exposedArea - coveredArea),
     );
     return [
       {
@@ -130,7 +126,7 @@ export interface Smear {
 /** How much of what is painted is smeared. */
 export async function smear({ cage, target }: Scene, result: TransferResult): Promise<Smear> {
   const { uvs, cornerUvs } = result;
-  const cut = await cutBorders(cage, target, result);
+  const cut = cutBorders(cage, target, result);
   const pieces = { positions: blend(target.positions, 3, cut), indices: cut.indices };
   const ofPieces = { ...project(cage, pieces, { preset: 'paper' }), cosmeticTriangles: cut.cosmeticTriangles };
   return {

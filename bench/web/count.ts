@@ -8,5 +8,5 @@ const { buffer, byteOffset, byteLength } = readFileSync(file);
 const { cage, target } = readScene((buffer as ArrayBuffer).slice(byteOffset, byteOffset + byteLength));
 await init();
 performance.now(); // Node loads what that takes when it is first asked for.
-let into: TransferResult | undefined;
-for (let i = 0; i < Number(runs); ++i) into = transfer(cage, target, { preset, into });
+let reuse: TransferResult | undefined;
+for (let i = 0; i < Number(runs); ++i) reuse = transfer(cage, target, { preset, reuse });

@@ -57,6 +57,6 @@ export class Runner {
 
   private transferBy(who: Who): TransferResult | PeerResult {
     if (who === 'peer') return transferByBvh(this.scene, this.kept);
-    return (this.result = transfer(this.scene.cage, this.scene.target, { preset: 'paper', into: this.result }));
+    return (this.result = transfer(this.scene.cage, this.scene.target, { preset: 'paper', reuse: this.result }));
   }
 }

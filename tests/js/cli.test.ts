@@ -119,7 +119,7 @@ describe('usage', () => {
       [[...ok, '--threshold', 'half'], /not a number within 0\.\.1/],
       [[...ok, '--threshold', ''], /not a number within 0\.\.1/],
       [[...ok, '--weld-tolerance', '1'], /not a number within 0\.\.0\.01/],
-      [[...ok, '--seams', 'none'], /--seams.*'none' is invalid.*corner, vertex/],
+      [[...ok, '--seams', 'none'], /--seams.*'none' is invalid.*vertex, corner/],
       [[...ok, '--occlusion-reach', '-1'], /not a number within 0\.\.Infinity/],
       [[...ok, '--min-covered', '2'], /not a number within 0\.\.1/],
       [[...ok, '--preset', 'papre'], /--preset.*'papre' is invalid.*paper/],

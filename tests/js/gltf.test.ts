@@ -327,7 +327,7 @@ describe('document.transform(cagecast(…))', () => {
       /^cagecast: texture: is neither a PNG nor a JPEG image/,
     );
     await fails(async () => ({ texture: paint.subarray(0, 50) }), 'badArgument', /^cagecast: texture: is truncated/);
-    await fails(async () => ({ threshold: 2 }), 'badThreshold', /threshold = 2/);
+    await fails(async () => ({ threshold: 2 }), 'badOption', /threshold = 2/);
     await fails(
       async () => ({ cage: 'cage.glb' as unknown as Mesh }),
       'badArgument',

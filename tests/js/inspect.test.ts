@@ -177,9 +177,9 @@ describe('a cage for a part of the target', () => {
     // At a lower threshold it is the floor that it misses.
     assert.match(
       find(inspect(cap, target, { parts, threshold: 0.05 }), 'nothingToPaint').sentence,
-      /and it reaches 0\.\d+ times what the floor asks/,
+      /and it has 0\.\d+ times the covered area that it needs/,
     );
-    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, floor: 'none' }).verdict, 'unfit');
+    assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, steps: { floor: 'none' } }).verdict, 'unfit');
     const { locks } = find(inspection, 'nothingToPaint');
     assert.notEqual(inspect(cap, target, { parts, locks }).verdict, 'unfit', 'as the advice says');
   });
@@ -377,7 +377,11 @@ describe('holes and segments', () => {
   test('a segment near the threshold is named', () => {
     const { segments } = look({});
     const eye = segments.find(({ part }) => part === 'eye')!;
-    const inspection = inspect(cage, target, { parts, threshold: Math.min(1, eye.coverage + 0.02), floor: 'none' });
+    const inspection = inspect(cage, target, {
+      parts,
+      threshold: Math.min(1, eye.coverage + 0.02),
+      steps: { floor: 'none' },
+    });
     assert.match(
       find(inspection, 'segmentInDoubt').sentence,
       /"eye" is not painted, but nearly: F = 0\.\d\d, less than the threshold/,

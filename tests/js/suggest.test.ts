@@ -20,31 +20,31 @@ const sample = async (name: string): Promise<{ cage: Mesh; target: Mesh }> => ({
 const culled = (options: TransferOptions): boolean[] =>
   transfer(cage, target, options).segmentStats.map((segment) => segment.culled);
 
-describe('margin', () => {
+describe('score', () => {
   test('is at least 1 where a segment passes, less where it is culled, whatever locks say', () => {
     for (const options of [
       {},
       { preset: 'paper' },
       { threshold: 0.9 },
-      { floor: 'area' },
+      { steps: { floor: 'area' } },
       { threshold: 0 },
     ] satisfies TransferOptions[]) {
       const { segmentStats } = transfer(cage, target, options);
       for (const segment of segmentStats)
-        assert.equal(segment.margin < 1, segment.culled, JSON.stringify({ options, segment }));
+        assert.equal(segment.score < 1, segment.culled, JSON.stringify({ options, segment }));
       const locked = transfer(cage, target, { ...options, locks: { segments: { 0: 'exclude', 1: 'keep' } } });
       assert.deepEqual(
-        locked.segmentStats.map(({ margin }) => margin),
-        segmentStats.map(({ margin }) => margin),
+        locked.segmentStats.map(({ score }) => score),
+        segmentStats.map(({ score }) => score),
       );
     }
   });
 
   test('without a floor is the coverage by the threshold', () => {
-    for (const { exposedArea, coverage, margin } of transfer(cage, target, { preset: 'paper', threshold: 0.4 })
+    for (const { exposedArea, coverage, score } of transfer(cage, target, { preset: 'paper', threshold: 0.4 })
       .segmentStats) {
       const expected = exposedArea > 0 ? coverage / Math.fround(0.4) : Infinity; // nothing is asked of what is hidden
-      assert.ok(margin === expected || Math.abs(margin - expected) < 1e-9, String(margin));
+      assert.ok(score === expected || Math.abs(score - expected) < 1e-9, String(score));
     }
   });
 });
@@ -108,7 +108,7 @@ describe('suggest', () => {
       [eye!.coverage - 0.02, /is painted, but barely: .* against the threshold/],
       [eye!.coverage + 0.02, /is not painted, but nearly: .* less than the threshold/],
     ] as const) {
-      const options = { threshold, floor: 'none', baredParts: false } as const;
+      const options = { threshold, steps: { floor: 'none', holeContents: false } } as const;
       const { sentence, advice, places, locks } = find(suggest(cage, target, options), 'segmentInDoubt');
       assert.match(sentence, words);
       assert.deepEqual(places, [{ segment: 1, group: 1, part: 'group 1' }]);
@@ -135,12 +135,16 @@ describe('suggest', () => {
     );
   });
 
-  test('near the floor: it says so', () => {
+  test('near the least covered area: it says so', () => {
     const [skin] = transfer(cage, target).segmentStats;
-    const options = { threshold: 0.1, floor: 'area', minCovered: (0.95 * skin!.coveredArea) / skin!.area } as const;
+    const options = {
+      threshold: 0.1,
+      minCovered: (0.95 * skin!.coveredArea) / skin!.area,
+      steps: { floor: 'area' },
+    } as const;
     assert.match(
       find(suggest(cage, target, options), 'segmentInDoubt').sentence,
-      /"group 0" is painted, but barely: F = \d\.\d\d, and it reaches 1\.1 times what the floor asks/,
+      /"group 0" is painted, but barely: F = \d\.\d\d, and it has 1\.1 times the covered area that it needs/,
     );
   });
 
@@ -161,13 +165,13 @@ describe('suggest', () => {
     assert.equal(found[0]!.places!.length, 5);
   });
 
-  test('copies of which some are painted and some not', () => {
+  test('twins of which some are painted and some not', () => {
     const shell = ball([0, 0, 0], () => 1.1, 16, 24);
     const twins = join3d(
       ball([0, 0, 0], () => 1, 16, 24),
       ball([4, 0, 0], () => 1, 16, 24),
     );
-    const { places, locks, sentence } = find(suggest(shell, twins), 'copiesDiffer');
+    const { places, locks, sentence } = find(suggest(shell, twins), 'twinsDiffer');
     assert.equal(sentence, 'Of 2 equal pieces like "group 0" 1 is painted and 1 is not');
     assert.deepEqual(places!.map(({ segment }) => segment).sort(), [0, 1]);
     assert.deepEqual(locks, { segments: { 1: 'keep' } });

@@ -293,8 +293,8 @@ describe('applyTransfer', () => {
     assert.deepEqual([...attribute(target.geometry, '_ncz')].slice(0, decided.zones.length), [...decided.zones]);
     assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
     const { zones, cosmeticTriangles } = decided;
-    // @ts-expect-error that is half a decision
     assert.throws(
+      // @ts-expect-error that is half a decision
       () => update({ zones, cosmeticTriangles }),
       (error) =>
         error instanceof CagecastError &&

@@ -4,7 +4,16 @@ import { before, describe, test } from 'node:test';
 import * as direct from 'cagecast';
 import { CagecastError } from 'cagecast';
 import * as slim from 'cagecast/slim';
-import { classify, init, presetOptions, project, splitVertices, terminate, transfer } from 'cagecast/worker';
+import {
+  classify,
+  cutBorders,
+  init,
+  presetOptions,
+  project,
+  splitVertices,
+  terminate,
+  transfer,
+} from 'cagecast/worker';
 import { head } from './scenes.js';
 
 const scene = head(30, 12);
@@ -34,7 +43,7 @@ describe('the worker', () => {
       'indices',
       'segmentStats',
       'cornerUvs',
-      'restores',
+      'recovery',
       'holeShares',
       'preset',
     ] as const)
@@ -50,6 +59,10 @@ describe('the worker', () => {
     assert.deepEqual(
       await splitVertices(scene.target, result.cornerUvs),
       direct.splitVertices(scene.target, result.cornerUvs),
+    );
+    assert.deepEqual(
+      await cutBorders(scene.cage, scene.target, result),
+      direct.cutBorders(scene.cage, scene.target, result),
     );
     assert.deepEqual(await presetOptions('paper'), direct.presetOptions('paper'));
     await init();
@@ -90,7 +103,7 @@ describe('the worker', () => {
     assert.ok(unsendable instanceof CagecastError && unsendable.code === 'badArgument');
     assert.equal(
       ((await failure(transfer(scene.cage, scene.target, { threshold: 2 }))) as CagecastError).code,
-      'badThreshold',
+      'badOption',
     );
     const untyped = transfer as (...args: unknown[]) => Promise<unknown>;
     for (const [options, says] of [

@@ -3,10 +3,10 @@
  * @module cagecast
  */
 
-export { init } from './engine.js';
-export { CagecastError, type Code } from './error.js';
-export type { Into } from './into.js';
-export type { Mesh } from './mesh.js';
+export { classify } from './api/classify.js';
+export { type CutTarget, cutBorders } from './api/cut-borders.js';
+export { CagecastError, type Code } from './api/error.js';
+export type { Mesh } from './api/mesh.js';
 export {
   type ClassifyOptions,
   type Lock,
@@ -16,18 +16,18 @@ export {
   type ProjectOptions,
   presetOptions,
   type TransferOptions,
-} from './options.js';
-export { type SplitVertices, splitVertices } from './split.js';
-export {
-  type Classification,
-  classify,
-  type HoleShare,
-  type Projected,
-  type Projection,
-  project,
-  type SegmentStats,
-  type Timings,
-  type TransferResult,
-  transfer,
-} from './transfer.js';
-export { Zone } from './zone.js';
+} from './api/options.js';
+export type {
+  Classification,
+  HoleShare,
+  Projected,
+  Projection,
+  SegmentStats,
+  Timings,
+  TransferResult,
+} from './api/result.js';
+export type { Reuse } from './api/reuse.js';
+export { type SplitVertices, splitVertices } from './api/split-vertices.js';
+export { project, transfer } from './api/transfer.js';
+export { init } from './core/engine.js';
+export { Zone } from './generated/zone.js';

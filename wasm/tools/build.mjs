@@ -1,6 +1,6 @@
 // Builds the npm package into dist/: the core as WebAssembly, the TypeScript around it, its types, the CLI.
 //   node wasm/tools/build.mjs                        all of it; does nothing if nothing changed
-//   node wasm/tools/build.mjs --preset wasm-scalar   only index.js and borders.js, in build/wasm-scalar/package, which tests compare with
+//   node wasm/tools/build.mjs --preset wasm-scalar   only index.js, in build/wasm-scalar/package, which tests compare with
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -20,7 +20,6 @@ import {
 import { delimiter, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
-import { takeApart } from './fused.mjs';
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
 const at = (...parts) => join(root, ...parts);
@@ -33,13 +32,6 @@ if (preset !== 'wasm' && preset !== 'wasm-scalar')
 const shipped = preset === 'wasm';
 const out = shipped ? at('dist') : at('build', preset, 'package');
 const stamp = at('build', preset, 'package.stamp');
-
-/** What is loaded when borders are cut, and stays a file of its own. */
-const lazy = [
-  [/^\.\.\/borders\/index\.js$/, './borders.js'],
-  [/^\.\.\/cut\/index\.js$/, './cut.js'],
-  [/^\.\/borders\.js$/, './three-borders.js'],
-];
 
 const hash = hashOf(
   ['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'],
@@ -57,10 +49,7 @@ await buildPackage();
 linkCommand();
 writeFileSync(stamp, hash);
 
-/**
- * The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}, and cagecast-borders.{js,wasm}. What is shipped of the
- * WebAssembly, which all engines know, is in plain/ there.
- */
+/** The core and its bindings: build/<preset>/wasm/cagecast.{js,wasm}. */
 function buildWasm() {
   const emscripten = findEmscripten();
   const env = {
@@ -72,14 +61,6 @@ function buildWasm() {
   };
   run('cmake', ['--preset', preset], env);
   run('cmake', ['--build', '--preset', preset], env);
-  // Binaryen comes with Emscripten: of emsdk in a folder beside it.
-  const folders = [join(emscripten, '../bin'), ...(process.env.PATH ?? '').split(delimiter)];
-  const tool = (name) =>
-    folders.map((folder) => join(folder, name)).find((file) => existsSync(file)) ??
-    fail(`${name} of Binaryen is missing; Debian: apt install binaryen`);
-  mkdirSync(at('build', preset, 'wasm/plain'), { recursive: true });
-  for (const module of ['cagecast', 'cagecast-borders'])
-    takeApart(at('build', preset, `wasm/${module}.wasm`), tool, at('build', preset, `wasm/plain/${module}`));
 }
 
 /** The folder that holds Emscripten's CMake toolchain: of emsdk where its environment is set, else of the emcc in PATH. */
@@ -129,16 +110,9 @@ async function buildPackage() {
     platform: 'neutral',
     plugins: [wasmModules('wasm-inline.ts')],
   });
-  await esbuild.build({
-    ...common,
-    entryPoints: [at('wasm/src/borders/index.ts')],
-    outfile: join(fresh, 'borders.js'),
-    platform: 'neutral',
-    plugins: [wasmModules('wasm-packed.ts', { module: 'cagecast-borders', index: './index.js', errors: true })],
-  });
   if (shipped) {
     // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
-    const beside = (entry, outfile, platform, modules = { index: './index.js', borders: true }, more = {}) =>
+    const beside = (entry, outfile, platform, more = {}) =>
       esbuild.build({
         ...common,
         ...more,
@@ -146,28 +120,16 @@ async function buildPackage() {
         outfile: join(fresh, outfile),
         platform,
         external: ['#spawn', './index.js', 'three'],
-        plugins: [wasmModules('wasm-file.ts', modules)],
+        plugins: [wasmModules('wasm-file.ts', './index.js')],
       });
-    await beside('index.ts', 'slim.js', 'neutral', undefined, eager);
-    await beside('borders/index.ts', 'slim-borders.js', 'neutral', {
-      module: 'cagecast-borders',
-      index: './slim.js',
-      errors: true,
-    });
-    for (const [name, file] of Object.entries({
-      'read-wasm': 'cagecast.wasm',
-      'read-borders-wasm': 'cagecast-borders.wasm',
-    })) {
-      const more = { define: { ...common.define, CAGECAST_WASM: JSON.stringify(`./${file}`) } };
-      await beside('read-wasm.ts', `${name}.js`, 'neutral', {}, more);
-      await beside('read-wasm-node.ts', `${name}-node.js`, 'node', {}, more);
-      cpSync(at('build', preset, 'wasm/plain', file), join(fresh, file));
-      chmodSync(join(fresh, file), 0o644);
-    }
+    await beside('index.ts', 'slim.js', 'neutral', eager);
+    const file = { define: { ...common.define, CAGECAST_WASM: JSON.stringify('./cagecast.wasm') } };
+    await beside('core/read-wasm.ts', 'read-wasm.js', 'neutral', file);
+    await beside('core/read-wasm-node.ts', 'read-wasm-node.js', 'node', file);
+    cpSync(at('build', preset, 'wasm/cagecast.wasm'), join(fresh, 'cagecast.wasm'));
+    chmodSync(join(fresh, 'cagecast.wasm'), 0o644);
     await beside('inspect/index.ts', 'inspect.js', 'neutral');
-    await beside('cut/index.ts', 'cut.js', 'neutral');
     await beside('three/index.ts', 'three.js', 'neutral');
-    await beside('three/borders.ts', 'three-borders.js', 'neutral');
     await beside('gltf/index.ts', 'gltf.js', 'neutral');
     await beside('worker/index.ts', 'worker.js', 'neutral');
     await beside('worker/spawn.ts', 'spawn.js', 'neutral');
@@ -191,8 +153,7 @@ async function buildPackage() {
         ].join('\n'),
       },
       loader: { '.wasm': 'binary' },
-      external: ['./borders.js'],
-      plugins: [wasmModules('wasm-inline.ts', { borders: true })],
+      plugins: [wasmModules('wasm-inline.ts')],
     });
     run(process.execPath, [
       at('node_modules/@typescript/native/bin/tsc'),
@@ -207,59 +168,28 @@ async function buildPackage() {
 
   /**
    * Resolves the names that stand for what the C++ build makes.
-   * @param wasm     How the package comes by its WebAssembly.
-   * @param options  `module`: which; `index`: the file that importers of the package's index share; `errors`: so do those of its error;
-   * `borders`: what is loaded to cut these stays a file of its own.
+   * @param wasm   How the package comes by its WebAssembly.
+   * @param index  The file that importers of the package's index share; without, it is bundled.
    */
-  function wasmModules(wasm, { module = 'cagecast', index, errors = false, borders = false } = {}) {
+  function wasmModules(wasm, index) {
     const files = {
-      '#glue': at('build', preset, `wasm/${module}.js`),
-      '#wasm-digits': at('build', preset, `wasm/plain/${module}.wasm`),
-      '#wasm-packed': at('build', preset, `wasm/plain/${module}.wasm`),
-      '#fused': at('build', preset, `wasm/plain/${module}.json`),
-      '#wasm': at('wasm/src', wasm),
+      '#glue': at('build', preset, 'wasm/cagecast.js'),
+      '#wasm-digits': at('build', preset, 'wasm/cagecast.wasm'),
+      '#wasm': at('wasm/src/core', wasm),
     };
-    const reader = module === 'cagecast' ? '#read-wasm' : '#read-borders-wasm';
     return {
       name: 'wasm-modules',
       setup(build) {
         build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
-        build.onResolve({ filter: /^#read-wasm$/ }, () => ({ path: reader, external: true }));
-        for (const [path, file] of borders ? lazy : [])
-          build.onResolve({ filter: path }, () => ({ path: file, external: true }));
-        const own = at('wasm/src/borders/error.ts');
-        if (errors)
-          build.onResolve({ filter: /^\.\.?\/error\.js$/ }, ({ importer }) =>
-            importer === own ? undefined : { path: own },
-          );
+        build.onResolve({ filter: /^#read-wasm$/ }, ({ path }) => ({ path, external: true }));
         if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
-        build.onLoad({ filter: /cagecast(-borders)?\.wasm$/ }, ({ path }) =>
-          wasm === 'wasm-packed.ts'
-            ? { contents: JSON.stringify(packText(readFileSync(path))), loader: 'json' }
-            : { contents: readFileSync(path).toString('hex'), loader: 'text' },
-        );
+        build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
+          contents: readFileSync(path).toString('hex'),
+          loader: 'text',
+        }));
       },
     };
   }
-}
-
-/**
- * Writes bytes as text of 91 printable symbols, of which strings need to escape none: each of the 89 most frequent bytes
- * as one symbol, the others as two. Unlike base64, which cuts bytes across, it leaves patterns to gzip: 58 KB instead of 64 in
- * hexadecimal digits for 113 KB of WebAssembly. But no browser reads it by itself.
- */
-function packText(bytes) {
-  const counts = new Uint32Array(256);
-  for (const byte of bytes) ++counts[byte];
-  const order = Array.from(counts.keys()).sort((a, b) => counts[b] - counts[a] || a - b);
-  const places = order.reduce((inverse, byte, place) => ((inverse[byte] = place), inverse), []);
-  const symbol = (n) => String.fromCharCode(n + (n < 57 ? 35 : 36)); // from # on, without the backslash
-  const [symbols, short] = [91, 89];
-  const text = Array.from(bytes, (byte) => {
-    const long = places[byte] - short;
-    return long < 0 ? symbol(places[byte]) : symbol(short + Math.floor(long / symbols)) + symbol(long % symbols);
-  }).join('');
-  return { length: bytes.length, order: Buffer.from(order).toString('hex'), text };
 }
 
 /** Makes `npx cagecast` work in this checkout as it does where the package is installed. */

@@ -150,7 +150,9 @@ bool BorderClassifier::isWhole(std::uint32_t side, Nearby nearby, Hull hull) con
       const auto a = static_cast<double>(t.uvs[k]);
       const auto b = static_cast<double>(t.uvs[2 + k]);
       const auto c = static_cast<double>(t.uvs[4 + k]);
-      const Vec3 change = (b - a) * t.gradientB + (c - a) * t.gradientC;
+      const TwoVec3 changes = simd::doubles(b - a, c - a) * t.gradients;
+      const auto sum = [](simd::f64x2 both) { return simd::doubleOf<0>(both) + simd::doubleOf<1>(both); };
+      const Vec3 change{sum(changes.x), sum(changes.y), sum(changes.z)};
       squares += dot(change, change);
     }
     const ClosestPoint place = placeOf(t, middle);

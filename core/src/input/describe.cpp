@@ -1,7 +1,8 @@
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
+#include <cstdint>
 #include <iterator>
+#include <string>
 
 #include "cagecast/status.hpp"
 #include "input/option_list.hpp"
@@ -15,10 +16,34 @@ constexpr const char* kCodeNames[] = {
 #include "cagecast/codes.def"
 };
 
+/// A number with seven significant digits, spelled as in JavaScript. printf would add 8 KB to the WebAssembly module.
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
+  if (std::isnan(value)) return "NaN";
+  const std::string sign = value < 0 ? "-" : "";
+  double digits = std::fabs(value);
+  if (std::isinf(value)) return sign + "Infinity";
+  if (digits == 0) return "0";
+  int exponent = 6;  // value = digits · 10^(exponent − 6)
+  for (; digits >= 1e7; ++exponent) digits /= 10;
+  for (; digits < 1e6; --exponent) digits *= 10;
+  auto rounded = static_cast<std::uint32_t>(digits + 0.5);
+  if (rounded == 10'000'000) {
+    rounded /= 10;
+    ++exponent;
+  }
+  std::string text = std::to_string(rounded);
+  if (exponent >= 7 || exponent < -6) {
+    const auto last = text.find_last_not_of('0');
+    text = text.substr(0, last + 1);
+    if (last > 0) text.insert(1, ".");
+    return sign + text + (exponent < 0 ? "e-" : "e+") + std::to_string(exponent < 0 ? -exponent : exponent);
+  }
+  if (exponent < 0) text.insert(0, static_cast<std::size_t>(-exponent), '0');
+  const auto whole = static_cast<std::size_t>(exponent < 0 ? 1 : exponent + 1);
+  const auto last = text.find_last_not_of('0');
+  text = text.substr(0, last == std::string::npos || last < whole ? whole : last + 1);
+  if (text.size() > whole) text.insert(whole, ".");
+  return sign + text;
 }
 
 std::string describeOption(const Status& status) {

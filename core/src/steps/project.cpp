@@ -71,9 +71,7 @@ bool projectPoints(const Points& points, const Cage& cage, const CageTree& tree,
                                   : Candidate{only, closestPointOnTriangle(cage.triangles[only], p)};
 
     const ClosestPoint& q = nearest.place;
-    const Uv uv = uvAt(cage.triangles[nearest.slot], q);
-    out.uvs[2 * std::size_t{i}] = static_cast<float>(uv.u);
-    out.uvs[2 * std::size_t{i} + 1] = static_cast<float>(uv.v);
+    simd::storeRounded(out.uvs + std::size_t{2} * i, blendUvs(cage.triangles[nearest.slot], q));
     out.distances[i] = static_cast<float>(q.distance);
     out.triangles[i] = nearest.slot;
     // Strictly inside its triangle, q = p − height · n, so the ray hits it at −height.

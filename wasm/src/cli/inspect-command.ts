@@ -7,7 +7,7 @@ import { type EffectiveOptions, effectiveOptions, type Rules } from './options.j
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { type Run, run } from './run.js';
-import { cut, fateText, integer, marginText, percent, short, table } from './table.js';
+import { cut, fateText, integer, percent, scoreText, short, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
 /** What `cagecast inspect` was asked for. */
@@ -151,16 +151,16 @@ function describe(report: InspectionReport, html: string | undefined): string {
     '',
     `segments: ${integer(segments.length)}${more(segments.length)}`,
     table([
-      ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
-      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, margin, culled, bared }) => [
+      ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
+      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, score, culledBy }) => [
         cut(part, 40),
         String(s),
         integer(points),
         short(exposedArea),
         short(coveredArea),
         f.toFixed(3),
-        marginText(margin),
-        fateText({ culled, bared }),
+        scoreText(score),
+        fateText(culledBy),
       ]),
     ]),
     '',

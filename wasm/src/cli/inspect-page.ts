@@ -6,7 +6,7 @@ import { type Scene, sceneOf } from '../inspect/scene.js';
 import type { InspectionReport } from './inspect-command.js';
 import { Picture, type Rgb, type View } from './raster.js';
 import type { Run } from './run.js';
-import { fateText, integer, marginText, percent, short } from './table.js';
+import { fateText, integer, percent, scoreText, short } from './table.js';
 
 /** Pixels along each side of a picture. */
 const size = 420;
@@ -89,18 +89,18 @@ ${
 }
 <h2>Segments</h2>
 ${rows(
-  ['part', 'points', 'exposed E', 'covered C', 'F = C/E', 'margin', ''],
+  ['part', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
   [...segments]
     .sort((a, b) => b.exposedArea - a.exposedArea)
     .slice(0, mostSegments)
-    .map(({ part, points, exposedArea, coveredArea, coverage, margin, culled, bared }) => [
+    .map(({ part, points, exposedArea, coveredArea, coverage, score, culledBy }) => [
       part,
       integer(points),
       short(exposedArea),
       short(coveredArea),
       coverage.toFixed(3),
-      marginText(margin),
-      fateText({ culled, bared }),
+      scoreText(score),
+      fateText(culledBy),
     ]),
 )}
 </html>

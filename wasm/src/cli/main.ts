@@ -1,8 +1,8 @@
 import { Command, CommanderError, InvalidArgumentError, Option } from 'commander';
 import { firstLine, InputError } from '../gltf/input-error.js';
-import { CagecastError, type Preset, type PresetOptions } from '../index.js';
+import { CagecastError } from '../index.js';
 import { inspectCommand } from './inspect-command.js';
-import type { Rules } from './options.js';
+import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
 import { placeOf } from './output.js';
 import { Progress } from './progress.js';
 import { transferCommand } from './transfer-command.js';
@@ -14,15 +14,6 @@ const unfit = 3;
 
 const progress = new Progress();
 
-function numberWithin(least: number, most: number): (text: string) => number {
-  return (text) => {
-    const value = Number(text);
-    if (text.trim() === '' || !(value >= least && value <= most))
-      throw new InvalidArgumentError(`It is not a number within ${least}..${most}.`);
-    return value;
-  };
-}
-
 function endingIn(ending: string): (text: string) => string {
   return (text) => {
     if (!text.toLowerCase().endsWith(ending)) throw new InvalidArgumentError(`Its name must end in ${ending}.`);
@@ -30,92 +21,17 @@ function endingIn(ending: string): (text: string) => string {
   };
 }
 
-interface CommonFlags
-  extends Partial<
-    Pick<PresetOptions, 'threshold' | 'seams' | 'weldTolerance' | 'occlusionReach' | 'pokeThrough' | 'minCovered'>
-  > {
+interface CommonFlags extends RuleFlags {
   cage: string;
-  preset: Preset;
-  keep: string[];
-  exclude: string[];
 }
 
-function common(command: Command): Command {
-  const oneMore = (name: string, before: string[]) => [...before, name];
-  return command
-    .argument('<TARGET>', 'GLB or glTF that receives the texture')
-    .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it needs UVs')
-    .addOption(
-      new Option('--preset <NAME>', 'the set of rules; the options below change single ones')
-        .choices(['default', 'paper'])
-        .default('default'),
-    )
-    .addOption(
-      new Option(
-        '--threshold <SHARE>',
-        'a segment is painted if at least this share of its exposed area is covered',
-      ).argParser(numberWithin(0, 1)),
-    )
-    .addOption(
-      new Option(
-        '--seams <WHERE>',
-        'let no triangle stretch across seams of the texture (corner), or do not split vertices (vertex)',
-      ).choices(['corner', 'vertex']),
-    )
-    .addOption(
-      new Option(
-        '--keep <NAME>',
-        'paint parts of this node or material, * for any text, whatever their areas; may be repeated',
-      )
-        .default([], '')
-        .argParser(oneMore),
-    )
-    .addOption(
-      new Option('--exclude <NAME>', 'never paint parts of this node or material; may be repeated')
-        .default([], '')
-        .argParser(oneMore),
-    )
-    .addOption(
-      new Option('--weld-tolerance <SHARE>', "weld vertices nearer than this share of the target's diagonal").argParser(
-        numberWithin(0, 0.01),
-      ),
-    )
-    .addOption(
-      new Option(
-        '--occlusion-reach <SHARE>',
-        'the target hides a point only up to this share of the diagonal beyond the cage',
-      ).argParser(numberWithin(0, Infinity)),
-    )
-    .addOption(
-      new Option(
-        '--poke-through <SHARE>',
-        'what is up to this share of the diagonal outside the cage is covered',
-      ).argParser(numberWithin(0, 1)),
-    )
-    .addOption(
-      new Option('--min-covered <SHARE>', "the least share of a segment's area that must be covered").argParser(
-        numberWithin(0, 1),
-      ),
-    )
-    .allowExcessArguments(false);
-}
-
-function rulesOf({
-  preset,
-  keep,
-  exclude,
-  threshold,
-  seams,
-  weldTolerance,
-  occlusionReach,
-  pokeThrough,
-  minCovered,
-}: CommonFlags): Rules {
-  const given = Object.entries({ threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered }).filter(
-    ([, value]) => value !== undefined,
+const common = (command: Command): Command =>
+  addRuleFlags(
+    command
+      .argument('<TARGET>', 'GLB or glTF that receives the texture')
+      .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it needs UVs')
+      .allowExcessArguments(false),
   );
-  return { preset, keep, exclude, single: Object.fromEntries(given) };
-}
 
 const program = new Command('cagecast')
   .description('Carries a texture drawn once for a cage onto any mesh, and keeps it off what must not be painted.')
@@ -148,10 +64,7 @@ common(program.command('transfer'))
   .option('--texture <PAINT>', "PNG or JPEG in the cage's UVs: show it as an overlay of the cosmetic triangles")
   .addOption(new Option('-o, --output <OUT.glb>', 'where to write the GLB').argParser(endingIn('.glb')))
   .addOption(
-    new Option(
-      '--borders <HOW>',
-      "let paint end at the target's triangles, or cut these where it does, at holes and seams",
-    )
+    new Option('--borders <HOW>', "let paint end at the target's own triangles, or cut these at holes and seams")
       .choices(['triangle', 'cut'])
       .default('triangle'),
   )
@@ -159,10 +72,10 @@ common(program.command('transfer'))
   .addHelpText(
     'after',
     `
-_NCZ is 0 for a vertex that may be painted, else the reason why not: 1 the target lies over it, 2 the cage has a hole
-over it, 3 too little of its segment is covered, or a hole is meant for it. Where triangles that share a vertex have different
-UVs there, copies of the vertex are added after those that there are, with all that belongs to it; --seams vertex does not.
---borders cut adds vertices in the same way, each a blend of those around it.
+_NCZ is 0 for a vertex that may be painted. Otherwise it says why not: 1 the target lies over it, 2 the cage has a hole over
+it, 3 its segment (connected component) is culled: too little of it is covered, or a hole of the cage is meant for it.
+Where triangles that share a vertex need different UVs, copies of the vertex are added after the existing ones, with all
+attributes; --seams vertex adds none. --borders cut adds vertices too, each a blend of those around it.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb

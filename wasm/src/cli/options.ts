@@ -1,19 +1,77 @@
+import { type Command, InvalidArgumentError, Option } from 'commander';
+import { optionFlags } from '../generated/options.js';
 import type { Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
+
+type Single = Partial<Omit<PresetOptions, 'steps'>>;
 
 /** What the command line says about how to transfer. */
 export interface Rules {
   preset: Preset;
   /** Options of `transfer` that were given. */
-  single: Partial<PresetOptions>;
-  /** Names of nodes or materials, `*` for any text, whose parts are painted whatever their areas. */
+  single: Single;
+  /** Names of nodes or materials, `*` for any text, whose parts are always painted. */
   keep: string[];
   /** The same for parts that are never painted. */
   exclude: string[];
 }
 
-/** All options that a transfer was made with, for a report. `occlusionReach` is `null` where it has no end. */
+/** Flags about how to transfer, as commander parses them. */
+export interface RuleFlags extends Single {
+  preset: Preset;
+  keep: string[];
+  exclude: string[];
+}
+
+/** Adds the flags of all options to a command; those in core/include/cagecast/options.def come from there. */
+export function addRuleFlags(command: Command): Command {
+  const oneMore = (name: string, before: string[]) => [...before, name];
+  command.addOption(
+    new Option('--preset <NAME>', 'the values of all options that are not given')
+      .choices(['default', 'paper'])
+      .default('default'),
+  );
+  for (const { flag, kind, range, text } of optionFlags) {
+    // Words in commander's help begin in lower case and end without a full stop.
+    const help = `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`;
+    command.addOption(
+      kind === 'choice'
+        ? new Option(`${flag} <HOW>`, help).choices(range)
+        : new Option(
+            `${flag} <SHARE>`,
+            kind === 'length' ? `${help}; a share of the target's diagonal` : help,
+          ).argParser(numberWithin(range[0], range[1])),
+    );
+  }
+  return command
+    .addOption(
+      new Option('--keep <NAME>', 'always paint parts of this node or material, * for any text; may be repeated')
+        .default([], '')
+        .argParser(oneMore),
+    )
+    .addOption(
+      new Option('--exclude <NAME>', 'never paint parts of this node or material; may be repeated')
+        .default([], '')
+        .argParser(oneMore),
+    );
+}
+
+function numberWithin(least: number, most: number): (text: string) => number {
+  return (text) => {
+    const value = Number(text);
+    if (text.trim() === '' || !(value >= least && value <= most))
+      throw new InvalidArgumentError(`It is not a number within ${least}..${most}.`);
+    return value;
+  };
+}
+
+export function rulesOf({ preset, keep, exclude, ...flags }: RuleFlags): Rules {
+  const given = optionFlags.map(({ name }) => [name, flags[name]] as const).filter(([, value]) => value !== undefined);
+  return { preset, keep, exclude, single: Object.fromEntries(given) };
+}
+
+/** All options that a transfer was made with, for a report. `occlusionReach` is `null` if it is infinite. */
 export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> {
   preset: Preset;
   occlusionReach: number | null;
@@ -24,13 +82,8 @@ export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> 
 /** The options in full; needs `init`. */
 export function effectiveOptions({ preset, single, keep, exclude }: Rules): EffectiveOptions {
   const all = { ...presetOptions(preset), ...single };
-  return {
-    preset,
-    ...all,
-    occlusionReach: Number.isFinite(all.occlusionReach) ? all.occlusionReach : null,
-    keep,
-    exclude,
-  };
+  const occlusionReach = Number.isFinite(all.occlusionReach) ? all.occlusionReach : null;
+  return { preset, ...all, occlusionReach, keep, exclude };
 }
 
 /**

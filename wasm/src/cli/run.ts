@@ -1,7 +1,7 @@
 import { type Extracted, extract, partOf, placeOf } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
-import { type CagecastError, init, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { CagecastError, init, type TransferOptions, type TransferResult, transfer } from '../index.js';
 import { type Rules, transferOptions } from './options.js';
 import type { Progress } from './progress.js';
 
@@ -70,9 +70,8 @@ export function inFile(
   error: unknown,
   { targetFile, target, cageFile, cage }: Omit<Run, 'options' | 'result'>,
 ): unknown {
-  // By name: what is loaded to cut borders has another copy of the class.
-  if (!(error instanceof Error) || error.name !== 'CagecastError') return error;
-  const { message, code, at } = error as CagecastError;
+  if (!(error instanceof CagecastError)) return error;
+  const { message, code, at } = error;
   const text = message.replace(/^\w+: /, '');
   const isCage = text.startsWith('cage');
   if (!isCage && !text.startsWith('target')) return new InputError(text).in(targetFile.path);

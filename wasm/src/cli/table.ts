@@ -1,3 +1,5 @@
+import type { SegmentStats } from '../index.js';
+
 export { percent } from '../inspect/finding.js';
 
 /** Lays rows out in columns; all but the first are set to the right. */
@@ -30,13 +32,12 @@ export function cut(text: string, length: number): string {
   return text.length > length ? `${text.slice(0, length - 1)}…` : text;
 }
 
-/** How many times what is asked of it a segment reaches: "0.93", "12", "∞" where nothing is asked. */
-export function marginText(margin: number | null): string {
-  return margin === null ? '∞' : Number(margin.toPrecision(2)).toString();
+/** A segment's score: "0.93", "12", "∞" if it needs no area. */
+export function scoreText(score: number | null): string {
+  return score === null ? '∞' : Number(score.toPrecision(2)).toString();
 }
 
-/** Why a segment is not painted, if it is not: by its areas, or because a hole seems to be meant for it. */
-export function fateText({ culled, bared }: { culled: boolean; bared: boolean }): string {
-  if (bared) return 'culled: a hole';
-  return culled ? 'culled' : '';
+/** Why a segment is not painted, if it is not. */
+export function fateText(culledBy: SegmentStats['culledBy']): string {
+  return { none: '', coverage: 'culled', hole: 'culled: a hole', lock: 'culled: a lock' }[culledBy];
 }

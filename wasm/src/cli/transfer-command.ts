@@ -1,10 +1,10 @@
 import { basename } from 'node:path';
-import type { CutTarget } from '../borders/index.js';
 import { placeOf } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { diagonal, type Paint, paintOf, zoneAttribute } from '../gltf/overlay.js';
 import { readBytes } from '../gltf/read.js';
 import { type Added, writeTransfer } from '../gltf/write.js';
+import { type CutTarget, cutBorders } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import { type EffectiveOptions, effectiveOptions, type Rules } from './options.js';
 import { writeFiles } from './output.js';
@@ -37,7 +37,7 @@ export async function transferCommand(command: TransferCommand, progress: Progre
   let cut: CutTarget | undefined;
   const files: { path: string; data: Uint8Array | string }[] = [];
   if (command.output !== undefined) {
-    if (command.borders === 'cut') cut = await cutTarget(done, progress);
+    if (command.borders === 'cut') cut = cutTarget(done, progress);
     progress.step(`writing ${command.output}`);
     const written = await writeTransfer(done.targetFile, done.target, done.result, paint, cut).catch(
       (error: unknown) => {
@@ -53,13 +53,14 @@ export async function transferCommand(command: TransferCommand, progress: Progre
   return summary(command, report);
 }
 
-/** Cuts the target, by a module that is loaded for it alone. @throws {InputError} that names the file and the element at fault. */
-async function cutTarget(done: Run, progress: Progress): Promise<CutTarget> {
+/** Cuts the target. @throws {InputError} that names the file and the element at fault. */
+function cutTarget(done: Run, progress: Progress): CutTarget {
   progress.step('cutting borders');
-  const { cutBorders } = await import('../borders/index.js');
-  return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options).catch((error: unknown) => {
+  try {
+    return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options);
+  } catch (error) {
     throw inFile(error, done);
-  });
+  }
 }
 
 async function readPaint(path: string): Promise<Paint> {
@@ -89,7 +90,7 @@ export interface Report {
    * the target as it was read.
    */
   cut: { vertices: number; counts: PerZone; triangles: { total: number; cosmetic: number } } | null;
-  /** A, E, C, F and D of every connected component, in the order of their first vertices. */
+  /** Every connected component of the target, in the order of their first vertices. */
   segments: {
     part: string;
     vertices: number;
@@ -98,8 +99,11 @@ export interface Report {
     exposedArea: number;
     coveredArea: number;
     coverage: number;
-    sunkArea: number;
+    depthWeightedArea: number;
+    /** `null` if it needs no area. */
+    score: number | null;
     culled: boolean;
+    culledBy: Run['result']['segmentStats'][number]['culledBy'];
   }[];
   /**
    * Every primitive of every node, in scene order. Without output `uvSet`, the attribute added, is `null`; so is
@@ -163,7 +167,7 @@ function makeReport(
       ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) }
       : null,
     segments: result.segmentStats.map(
-      ({ points, area, exposedArea, coveredArea, coverage, sunkArea, margin, culled, bared }, s) => ({
+      ({ points, area, exposedArea, coveredArea, coverage, depthWeightedArea, score, culled, culledBy }, s) => ({
         part: parts[segmentPart[s]!]!.name,
         vertices: segmentVertices[s]!,
         points,
@@ -171,10 +175,10 @@ function makeReport(
         exposedArea,
         coveredArea,
         coverage,
-        sunkArea,
-        margin: Number.isFinite(margin) ? margin : null, // nothing is asked of it
+        depthWeightedArea,
+        score: Number.isFinite(score) ? score : null, // it needs no area
         culled,
-        bared,
+        culledBy,
       }),
     ),
     parts: parts.map((part, p) => ({

@@ -10,10 +10,11 @@ import type {
   Texture,
   TypedArray,
 } from '@gltf-transform/core';
-import type * as cutting from '../cut/index.js';
-import type { Mesh, TransferResult } from '../index.js';
-import { skinMatrix, usedJoints } from '../skin.js';
-import { gather, type SplitPart, splitPart } from '../split-part.js';
+import type { CutTarget, Mesh, TransferResult } from '../index.js';
+import { type Blends, blend, blendSkin, ruleOf } from '../parts/blend.js';
+import { cutPart } from '../parts/cut-part.js';
+import { skinMatrix, usedJoints } from '../parts/skin.js';
+import { gather, type SplitPart, splitPart } from '../parts/split-part.js';
 import { InputError } from './input-error.js';
 import { instancing, isInstanced } from './instancing.js';
 import { identity, isTurned, localMatrix, type Matrix, multiply } from './matrix.js';
@@ -154,12 +155,6 @@ function matrixOfSkin(skin: Skin, primitive: Primitive, positions: Float32Array)
   return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
 }
 
-/** A target as it was cut, and what cuts its parts, which is loaded only then. */
-export interface Cut {
-  target: cutting.CutTarget;
-  tools: typeof cutting;
-}
-
 /**
  * Adds what was transferred to a document, as the command does to a file: to every primitive a new UV set and `_NCZ`, and,
  * with a texture, an overlay primitive of its cosmetic triangles; new vertices along borders that are cut, and copies of those
@@ -170,7 +165,7 @@ export function addTransfer(
   { mesh, parts }: ExtractedDocument,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
   paint?: Paint,
-  cut?: Cut,
+  cut?: CutTarget,
 ): void {
   const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
   const attribute = (array: Float32Array, type: 'SCALAR' | 'VEC2' | 'VEC3') =>
@@ -189,7 +184,7 @@ export function addTransfer(
   parts.forEach((part, p) => {
     const primitive = primitiveOf[p]!;
     const whole = { ...part, turned: isTurned(part.matrix) };
-    const cutOne = cut?.tools.cutPart(whole, cut.target, mesh.positions.length / 3);
+    const cutOne = cut && cutPart(whole, cut, mesh.positions.length / 3);
     const { geometry, result: own } = cutOne ?? { geometry: whole, result };
     const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
     const blends = cutOne && cutOne.blends.sources.length > 0 ? cutOne.blends : undefined;
@@ -201,7 +196,7 @@ export function addTransfer(
         .setArray(split.sources.length < 65536 ? Uint16Array.from(corners) : Uint32Array.from(corners))
         .setBuffer(buffer);
     if (split.copies > 0 || blends)
-      remakePrimitive(primitive, split, indices(split.indices), blends && blender(primitive, blends, cut!.tools));
+      remakePrimitive(primitive, split, indices(split.indices), blends && blender(primitive, blends));
     const uvs = attribute(split.uvs, 'VEC2');
     const zones = own.zones.subarray(firstVertex, firstVertex + vertexCount);
     primitive.setAttribute(
@@ -221,7 +216,7 @@ export function addTransfer(
     );
     if (!texture || corners.length === 0) return;
 
-    const piece = cutOne ? cutPiece(part, geometry, cut!.tools.blend(part.localPositions, 3, cutOne.blends)) : part;
+    const piece = cutOne ? cutPiece(part, geometry, blend(part.localPositions, 3, cutOne.blends)) : part;
     const overlay = document
       .createPrimitive()
       .setAttribute('POSITION', attribute(gather(overlayPositions(piece, offset), 3, split.sources), 'VEC3'))
@@ -250,7 +245,7 @@ export function addTransfer(
 type Extend = (accessor: Accessor, semantic?: string) => TypedArray;
 
 /** Blends the attributes of a primitive. */
-function blender(primitive: Primitive, blends: cutting.Blends, { blend, blendSkin, ruleOf }: typeof cutting): Extend {
+function blender(primitive: Primitive, blends: Blends): Extend {
   const skin = blendSkin((semantic) => primitive.getAttribute(semantic)?.getArray() ?? undefined, blends);
   return (accessor, semantic) => {
     const array = accessor.getArray()!;

@@ -1,6 +1,6 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
-import type { Mesh } from '../mesh.js';
-import { skinMatrix, usedJoints } from '../skin.js';
+import type { Mesh } from '../api/mesh.js';
+import { skinMatrix, usedJoints } from '../parts/skin.js';
 import { InputError } from './input-error.js';
 import { instancing, isInstanced } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';

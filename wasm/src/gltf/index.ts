@@ -3,10 +3,18 @@
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
-import { type Borders, isCut } from '../cut/option.js';
-import { show } from '../error.js';
-import { CagecastError, init, type Mesh, type TransferOptions, type TransferResult, transfer } from '../index.js';
-import { addTransfer, type Cut, extractDocument } from './document.js';
+import { show } from '../api/error.js';
+import {
+  CagecastError,
+  cutBorders,
+  init,
+  type Mesh,
+  type TransferOptions,
+  type TransferResult,
+  transfer,
+} from '../index.js';
+import { type Borders, isCut } from '../parts/borders-option.js';
+import { addTransfer, extractDocument } from './document.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
@@ -28,7 +36,7 @@ export interface CagecastOptions extends TransferOptions {
   texture?: Uint8Array | undefined;
   /**
    * Lets paint end at the target's own triangles (`triangle`, by default), or cuts these where it does, at holes and seams (`cut`):
-   * straight borders, more triangles. Loads `cagecast/borders`, which nothing else needs.
+   * straight borders, more triangles.
    */
   borders?: Borders | undefined;
   /** Is called with the result, and with what its arrays refer to, in order. */
@@ -69,7 +77,7 @@ export function cagecast(options: CagecastOptions): Transform {
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));
     const result = transfer(source, target.mesh, rules);
-    const cut = cuts ? await cutTarget(source, target.mesh, result, rules) : undefined;
+    const cut = cuts ? cutBorders(source, target.mesh, result, rules) : undefined;
     addTransfer(document, target, result, paint, cut);
     onResult?.(
       result,
@@ -82,11 +90,6 @@ export function cagecast(options: CagecastOptions): Transform {
       })),
     );
   };
-}
-
-async function cutTarget(cage: Mesh, target: Mesh, result: TransferResult, options: TransferOptions): Promise<Cut> {
-  const [tools, { cutBorders }] = await Promise.all([import('../cut/index.js'), import('../borders/index.js')]);
-  return { target: await cutBorders(cage, target, result, options), tools };
 }
 
 function within<T>(argument: string, read: () => T): T {

@@ -1,6 +1,6 @@
 import type { Accessor } from '@gltf-transform/core';
-import type { Mesh } from '../mesh.js';
-import type { PartGeometry } from '../split-part.js';
+import type { Mesh } from '../api/mesh.js';
+import type { PartGeometry } from '../parts/split-part.js';
 import { InputError } from './input-error.js';
 import { identity, isTurned, type Matrix } from './matrix.js';
 

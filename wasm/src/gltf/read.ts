@@ -3,7 +3,7 @@ import { dirname, resolve } from 'node:path';
 import { type Document, type GLTF, type JSONDocument, Logger, NodeIO } from '@gltf-transform/core';
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
-import { show } from '../error.js';
+import { show } from '../api/error.js';
 import { checkGeometry, checkLists, dracoOf, meshoptView } from './check.js';
 import { createDracoDecoder } from './draco.js';
 import { firstLine, InputError } from './input-error.js';

@@ -1,9 +1,9 @@
 import type { GLTF } from '@gltf-transform/core';
-import type { CutTarget } from '../borders/index.js';
-import { type Blends, blend, blendSkin, noBlends, ruleOf } from '../cut/blend.js';
-import { cutPart } from '../cut/part.js';
-import { gather, type SplitPart, splitPart } from '../split-part.js';
-import type { TransferResult } from '../transfer.js';
+import type { CutTarget } from '../api/cut-borders.js';
+import type { TransferResult } from '../api/result.js';
+import { type Blends, blend, blendSkin, noBlends, ruleOf } from '../parts/blend.js';
+import { cutPart } from '../parts/cut-part.js';
+import { gather, type SplitPart, splitPart } from '../parts/split-part.js';
 import { dracoOf } from './check.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';

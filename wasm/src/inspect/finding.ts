@@ -52,7 +52,7 @@ export type FindingCode =
   | 'nothingToPaint'
   | 'holeUnexplained'
   | 'segmentInDoubt'
-  | 'copiesDiffer'
+  | 'twinsDiffer'
   | 'muchCulled';
 
 /** Whether a cage fits its target: as it should, with reservations, or not. */

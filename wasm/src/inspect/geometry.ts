@@ -1,4 +1,4 @@
-import type { Mesh } from '../mesh.js';
+import type { Mesh } from '../api/mesh.js';
 
 /** A point or a direction. */
 export type Vector = readonly [number, number, number];

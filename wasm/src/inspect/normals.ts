@@ -1,4 +1,4 @@
-import type { Mesh } from '../mesh.js';
+import type { Mesh } from '../api/mesh.js';
 import { type Finding, percent } from './finding.js';
 import { cross, dot, minus, pointAt, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';

@@ -1,5 +1,5 @@
+import type { Mesh } from '../api/mesh.js';
 import type { TransferResult } from '../index.js';
-import type { Mesh } from '../mesh.js';
 import { type Box, boxOf, dot, doubleAreaNormal, minus, nearestPoint, pointAt, vertexAreas } from './geometry.js';
 import { type Surface, surfaceOf } from './surface.js';
 

@@ -1,8 +1,8 @@
-import type { Locks } from '../index.js';
+import type { Locks, SegmentStats } from '../index.js';
 import { counted, type Finding, type Place, percent } from './finding.js';
 import { partsOf, type Scene } from './scene.js';
 
-/** A segment whose margin is within this factor of 1 could as well be decided the other way. */
+/** A segment whose score is within this factor of 1 is nearly decided the other way. */
 const doubt = 1.25;
 /** Of at least this share of the exposed area, with others of its part. */
 const leastArea = 0.001;
@@ -23,11 +23,10 @@ export interface Segment {
   exposedArea: number;
   coveredArea: number;
   coverage: number;
-  /** How many times what is asked of it it reaches; `null` where nothing is asked. */
-  margin: number | null;
+  /** How many times the area that it needs it has: kept from 1 on, unless a hole or a lock decides. `null` if it needs none. */
+  score: number | null;
   culled: boolean;
-  /** It is culled, although enough of it is covered, because a hole of the cage seems to be meant for it. */
-  bared: boolean;
+  culledBy: SegmentStats['culledBy'];
 }
 
 /** The segments in the order of their numbers, with the parts they belong to. */
@@ -36,7 +35,7 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
   const partOfSegment = new Uint32Array(result.segmentStats.length);
   for (let v = result.segments.length - 1; v >= 0; --v) partOfSegment[result.segments[v]!] = partOf[v]!;
   return result.segmentStats.map(
-    ({ points, group, area, exposedArea, coveredArea, coverage, margin, culled, bared }, s) => ({
+    ({ points, group, area, exposedArea, coveredArea, coverage, score, culled, culledBy }, s) => ({
       part: parts[partOfSegment[s]!]?.name ?? '',
       group,
       points,
@@ -44,9 +43,9 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
       exposedArea,
       coveredArea,
       coverage,
-      margin: Number.isFinite(margin) ? margin : null,
+      score: Number.isFinite(score) ? score : null,
       culled,
-      bared,
+      culledBy,
     }),
   );
 }
@@ -63,7 +62,7 @@ export function checkSegments(scene: Scene, segments: readonly Segment[]): Findi
   return [
     ...left,
     ...checkDoubt(scene, numbered, exposed),
-    ...checkCopies(scene, numbered, exposed),
+    ...checkTwins(scene, numbered, exposed),
     ...(left.length > 0 ? [] : checkCulled(numbered, exposed)),
   ];
 }
@@ -102,7 +101,7 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
 
 /** Parts that the areas barely decide: those that pass and those that do not, each by itself. */
 function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
-  const doubtful = numbered.filter(({ margin }) => margin !== null && margin > 1 / doubt && margin < doubt);
+  const doubtful = numbered.filter(({ score }) => score !== null && score > 1 / doubt && score < doubt);
   return grouped(doubtful, ({ group, part, culled }) => `${group} ${culled} ${part}`).flatMap((alike): Finding[] => {
     const [largest] = alike;
     const area = alike.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
@@ -116,7 +115,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
         weight: Math.min(0.9, 0.2 + 2 * area),
         sentence: `${one} ${is} ${culled ? 'not painted, but nearly' : 'painted, but barely'}: F = ${coverage.toFixed(2)}, ${reason(largest, threshold)}; ${percent(area)} of the exposed area`,
         advice: `If that is wrong, lock ${alike.length === 1 ? 'it' : 'them'} (${option(largest)}); or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
-        numbers: { segments: alike.length, area, margin: largest.margin! },
+        numbers: { segments: alike.length, area, score: largest.score! },
         places: alike.map((segment) => placeOf(segment.s, segment)),
         locks: locksFor(alike),
       },
@@ -124,22 +123,22 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
   });
 }
 
-/** Copies of one part of which some are painted and some not. */
-function checkCopies({ result }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
+/** Twins of which some are painted and some not. */
+function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
   const seen = numbered.filter(({ exposedArea }) => exposedArea >= leastArea * exposed);
-  return grouped(seen, ({ s }) => result.segmentStats[s]!.copyOf).flatMap((copies): Finding[] => {
-    const culled = copies.filter((copy) => copy.culled);
-    if (culled.length === 0 || culled.length === copies.length) return [];
-    const [largest] = copies;
-    const [painted, bare] = [copies.length - culled.length, culled.length];
+  return grouped(seen, ({ s }) => result.segmentStats[s]!.twinOf).flatMap((twins): Finding[] => {
+    const culled = twins.filter((twin) => twin.culled);
+    if (culled.length === 0 || culled.length === twins.length) return [];
+    const [largest] = twins;
+    const [painted, bare] = [twins.length - culled.length, culled.length];
     return [
       {
-        code: 'copiesDiffer',
+        code: 'twinsDiffer',
         weight: 0.2,
-        sentence: `Of ${copies.length} equal pieces like "${largest.part}" ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${bare} ${bare === 1 ? 'is' : 'are'} not`,
-        advice: 'If they should be alike, lock some of them; see whether the cage lies alike over them.',
+        sentence: `Of ${twins.length} equal pieces like "${largest.part}" ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${bare} ${bare === 1 ? 'is' : 'are'} not`,
+        advice: 'If they should be alike, lock some of them; check whether the cage covers them alike.',
         numbers: { painted, bare },
-        places: copies.map((copy) => placeOf(copy.s, copy)),
+        places: twins.map((twin) => placeOf(twin.s, twin)),
         locks: locksFor(culled),
       },
     ];
@@ -168,13 +167,11 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
 }
 
 /** What the areas of a segment are held against, and how near they come. */
-function reason({ coverage, culled, bared, margin }: Segment, threshold: number): string {
-  if (bared) return 'but a hole of the cage seems to be meant for it';
-  const byThreshold = culled
-    ? coverage < threshold
-    : margin !== null && Math.abs(margin * threshold - coverage) <= 1e-6;
+function reason({ coverage, culled, culledBy, score }: Segment, threshold: number): string {
+  if (culledBy === 'hole') return 'but a hole of the cage seems to be meant for it';
+  const byThreshold = culled ? coverage < threshold : score !== null && Math.abs(score * threshold - coverage) <= 1e-6;
   if (byThreshold) return `${culled ? 'less than' : 'against'} the threshold of ${threshold}`;
-  return `and it reaches ${margin === null ? 'more than' : `${margin.toPrecision(2)} times`} what the floor asks`;
+  return `and it has ${score === null ? 'more than' : `${score.toPrecision(2)} times`} the covered area that it needs`;
 }
 
 /** Where a segment is. */

@@ -1,4 +1,4 @@
-import type { Mesh } from '../mesh.js';
+import type { Mesh } from '../api/mesh.js';
 import { boxOf, doubleAreaNormal, firstInPlace, length, pointAt, UnionFind, type Vector } from './geometry.js';
 
 /** An edge between two places, and the triangles that have it. */

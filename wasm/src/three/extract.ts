@@ -8,7 +8,7 @@ import {
   type Mesh as ThreeMesh,
 } from 'three';
 import { CagecastError, type Mesh } from '../index.js';
-import { skinMatrix, usedJoints } from '../skin.js';
+import { skinMatrix, usedJoints } from '../parts/skin.js';
 
 /** One mesh of a scene, or a geometry alone, and where its elements lie in the concatenated arrays. */
 export interface Part {

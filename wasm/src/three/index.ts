@@ -3,22 +3,36 @@
  * @module cagecast/three
  */
 import { BufferAttribute, type BufferGeometry, type Material, type Mesh, type Object3D, type Texture } from 'three';
-import { type Borders, isCut } from '../cut/option.js';
 import {
   type Mesh as Arrays,
   CagecastError,
   type Classification,
+  type CutTarget,
+  cutBorders,
   type TransferOptions,
   type TransferResult,
   transfer,
 } from '../index.js';
-import { splitPart } from '../split-part.js';
-import type * as borders from './borders.js';
+import { type Borders, isCut } from '../parts/borders-option.js';
+import { type CutPart, decideAgain } from '../parts/cut-part.js';
+import { type SplitPart, splitPart } from '../parts/split-part.js';
+import { cutGeometry, type PartRange } from './cut.js';
 import { type Extracted, extract, isTurned, nameOf, type Part, placeOf } from './extract.js';
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
 import { splitGeometry } from './split.js';
 
-export { type Borders, type Extracted, extract, type Part, placeOf };
+export {
+  type Borders,
+  type CutPart,
+  cutGeometry,
+  decideAgain,
+  type Extracted,
+  extract,
+  type Part,
+  type PartRange,
+  placeOf,
+  type SplitPart,
+};
 
 /** The attribute that holds each vertex's `Zone`: the name that GLTFLoader gives to `_NCZ`. */
 export const zoneAttribute = '_ncz';
@@ -38,7 +52,7 @@ export interface ApplyOptions extends TransferOptions {
   channel?: 1 | 2 | 3 | undefined;
   /**
    * Lets paint end at the target's own triangles (`triangle`, by default), or cuts these where it does, at holes and seams (`cut`):
-   * straight borders, more triangles. That loads `cagecast/borders`, which nothing else needs, and takes a promise.
+   * straight borders, more triangles.
    */
   borders?: Borders | undefined;
 }
@@ -94,46 +108,20 @@ export interface Applied {
 export function applyTransfer(
   target: Object3D | BufferGeometry,
   cage: Object3D | BufferGeometry,
-  options: ApplyOptions & { borders: 'cut' },
-): Promise<Applied>;
-export function applyTransfer(
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry,
-  options?: ApplyOptions & { borders?: 'triangle' | undefined },
-): Applied;
-export function applyTransfer(
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry,
-  options?: ApplyOptions,
-): Applied | Promise<Applied>;
-export function applyTransfer(
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry,
   options: ApplyOptions = {},
-): Applied | Promise<Applied> {
+): Applied {
   checkOptions(options);
-  if (isCut('applyTransfer', options.borders)) return applyCut(target, cage, options);
   const extracted = extract(target, 'target');
-  return apply(
-    extracted,
-    resultOf(extracted, options, () => extract(cage, 'cage').mesh),
-    options,
-  );
-}
-
-async function applyCut(
-  target: Object3D | BufferGeometry,
-  cage: Object3D | BufferGeometry,
-  options: ApplyOptions,
-): Promise<Applied> {
-  const [tools, { cutBorders }] = await Promise.all([import('./borders.js'), import('../borders/index.js')]);
-  const extracted = extract(target, 'target');
+  if (!isCut('applyTransfer', options.borders)) {
+    return apply(
+      extracted,
+      resultOf(extracted, options, () => extract(cage, 'cage').mesh),
+      options,
+    );
+  }
   const { mesh } = extract(cage, 'cage');
   const result = resultOf(extracted, options, () => mesh);
-  return apply(extracted, result, options, {
-    target: await cutBorders(mesh, extracted.mesh, result, rulesOf(options)),
-    tools,
-  });
+  return apply(extracted, result, options, cutBorders(mesh, extracted.mesh, result, rulesOf(options)));
 }
 
 const rulesOf = ({ result, texture, material, channel, borders, ...rules }: ApplyOptions): TransferOptions => rules;
@@ -187,12 +175,12 @@ function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
   return free;
 }
 
-/** @param cut  The target as it was cut, and what cuts its parts, which is loaded only then. */
+/** @param cut  The target as it was cut. */
 function apply(
   { mesh, parts }: Extracted,
   result: TransferResult,
   { texture, material, channel = freeChannel(parts) }: ApplyOptions,
-  cut?: { target: borders.CutTarget; tools: typeof borders },
+  cut?: CutTarget,
 ): Applied {
   const uvName = `uv${channel}`;
   const taken = new Set<BufferGeometry>();
@@ -204,10 +192,9 @@ function apply(
     const { geometry, matrix, vertexCount, triangleCount } = part;
     const localIndices = geometry.index?.array ?? Uint32Array.from({ length: vertexCount }, (_, v) => v);
     const whole = { ...part, turned: isTurned(matrix), localIndices: localIndices.subarray(0, 3 * triangleCount) };
-    const { pieces, split } = cut?.tools.cutGeometry(geometry, whole, cut.target, mesh.positions.length / 3) ?? {
-      pieces: undefined,
-      split: splitPart(whole, result),
-    };
+    const { pieces, split } = cut
+      ? cutGeometry(geometry, whole, cut, mesh.positions.length / 3)
+      : { pieces: undefined, split: splitPart(whole, result) };
     if (!pieces && split.copies > 0) splitGeometry(geometry, split);
     geometry.setAttribute(uvName, new BufferAttribute(split.uvs, 2));
     givenChannels.set(geometry, channel);
@@ -232,7 +219,7 @@ function apply(
     made.forEach(({ part, whole, pieces, split }, p) => {
       const { firstVertex, firstTriangle, triangleCount, vertexCount } = part;
       const { zones, cosmeticTriangles } = pieces
-        ? cut!.tools.decideAgain(pieces, whole, mesh.indices, isOther!, now)
+        ? decideAgain(pieces, whole, mesh.indices, isOther!, now)
         : {
             zones: now.zones.subarray(firstVertex, firstVertex + vertexCount),
             cosmeticTriangles: now.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
@@ -250,7 +237,7 @@ function apply(
   return {
     result,
     splitVertices: made.reduce((sum, { split }) => sum + split.copies, 0),
-    cutTriangles: cut ? (cut.target.indices.length - mesh.indices.length) / 3 : 0,
+    cutTriangles: cut ? (cut.indices.length - mesh.indices.length) / 3 : 0,
     parts,
     overlays,
     update(classification) {

@@ -1,5 +1,5 @@
 import { BufferAttribute, type BufferGeometry, type InterleavedBufferAttribute, type TypedArray } from 'three';
-import { gather, type SplitPart } from '../split-part.js';
+import { gather, type SplitPart } from '../parts/split-part.js';
 
 export type Attribute = BufferAttribute | InterleavedBufferAttribute;
 

@@ -5,11 +5,12 @@
  * @module cagecast/worker
  */
 import { spawn } from '#spawn';
-import { show } from '../error.js';
+import { show } from '../api/error.js';
 import {
   CagecastError,
   type Classification,
   type ClassifyOptions,
+  type CutTarget,
   type Mesh,
   type Preset,
   type PresetOptions,
@@ -49,7 +50,7 @@ export function init(): Promise<void> {
   return call('init', [], {});
 }
 
-/** As `transfer` of `cagecast`, off the main thread; without `into`, as the arrays come over anew. */
+/** As `transfer` of `cagecast`, off the main thread; without `reuse`: all arrays are new. */
 export function transfer(
   cage: Mesh,
   target: Mesh,
@@ -77,6 +78,17 @@ export function splitVertices(
   return withOptions('splitVertices', [target, cornerUvs], options);
 }
 
+/** As `cutBorders` of `cagecast`, off the main thread. Of `result` only what is needed is copied. */
+export function cutBorders(
+  cage: Mesh,
+  target: Mesh,
+  result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>,
+  options: TransferOptions & CallOptions = {},
+): Promise<CutTarget> {
+  const { zones, segments, segmentStats } = result ?? {};
+  return withOptions('cutBorders', [cage, target, result && { zones, segments, segmentStats }], options);
+}
+
 /** As `presetOptions` of `cagecast`, off the main thread. */
 export function presetOptions(preset?: Preset, options: CallOptions = {}): Promise<PresetOptions> {
   return withOptions('presetOptions', [preset], options);
@@ -98,13 +110,10 @@ function withOptions<T>(fn: Request['fn'], args: unknown[], options: CallOptions
   if (signal !== undefined && typeof signal?.addEventListener !== 'function')
     return wrong(`signal is ${show(signal)}, not an AbortSignal`);
   if (move !== undefined && typeof move !== 'boolean') return wrong(`move is ${show(move)}, not true or false`);
-  // A copy of it would be written over there, and what it is here would stay as it is.
-  if ('into' in rest && rest.into !== undefined)
+  // The worker would overwrite its own copy of it.
+  if ('reuse' in rest && rest.reuse !== undefined)
     return Promise.reject(
-      new CagecastError(
-        'badOption',
-        `${fn}: options.into is for calls on one thread; from a worker all arrays are new`,
-      ),
+      new CagecastError('badOption', `${fn}: options.reuse is not for the worker, whose results are always new arrays`),
     );
   return call(fn, [...args, rest], { signal, move });
 }

@@ -3,7 +3,7 @@ import type { Code } from '../index.js';
 /** A call for the worker: a function of the package by name, and its arguments. */
 export interface Request {
   id: number;
-  fn: 'init' | 'transfer' | 'project' | 'classify' | 'splitVertices' | 'presetOptions';
+  fn: 'init' | 'transfer' | 'project' | 'classify' | 'splitVertices' | 'cutBorders' | 'presetOptions';
   args: unknown[];
 }
 

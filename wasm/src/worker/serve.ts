@@ -1,10 +1,24 @@
-import { CagecastError, classify, init, presetOptions, project, splitVertices, transfer } from '../index.js';
+import {
+  CagecastError,
+  classify,
+  cutBorders,
+  init,
+  presetOptions,
+  project,
+  splitVertices,
+  transfer,
+} from '../index.js';
 import type { Reply, Request } from './protocol.js';
 
-const functions = { init: () => undefined, transfer, project, classify, splitVertices, presetOptions } as Record<
-  Request['fn'],
-  (...args: unknown[]) => unknown
->;
+const functions = {
+  init: () => undefined,
+  transfer,
+  project,
+  classify,
+  splitVertices,
+  cutBorders,
+  presetOptions,
+} as Record<Request['fn'], (...args: unknown[]) => unknown>;
 
 /** Carries out a call. @returns the reply, and the buffers in it that are to be moved, not copied. */
 export async function serve({ id, fn, args }: Request): Promise<{ reply: Reply; move: ArrayBuffer[] }> {

@@ -13,7 +13,7 @@ export interface Explanation {
   path: Path;
   cageTriangle: number;
   diagonal: number;
-  part: SegmentFacts;
+  part: PartFacts;
   /** The result in a word or two, and its reason as half a sentence. */
   verdict: string;
   because: string;
@@ -22,7 +22,7 @@ export interface Explanation {
 }
 
 /** The segment of a spot; shares are 0..1. */
-export interface SegmentFacts {
+export interface PartFacts {
   name: string;
   segment: number;
   /** Exposed share of the area (E). */
@@ -59,12 +59,8 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
   const cageTriangle = projection.triangles[vertex]!;
   const diagonal = diagonalOf(target.mesh) || 1;
   const options = presetOptions(facts.rules.preset);
-  const path = pathOf(
-    { target: target.mesh, cage: cage.mesh, loops: facts.loops },
-    { vertex, triangle: cageTriangle, diagonal },
-    options,
-  );
-  const part = segmentOf(facts, vertex);
+  const path = pathOf(target.mesh, cage.mesh, facts.loops, vertex, cageTriangle, diagonal, options);
+  const part = partOf(facts, vertex);
   const secondLook = secondLookStep(facts, vertex);
   const steps = [
     { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
@@ -99,12 +95,12 @@ function decidedBy(
   return { zone, vertex: deciding.reduce((best, corner) => (corner.weight > best.weight ? corner : best)).vertex };
 }
 
-function segmentOf({ shown, classification, rules }: Facts, vertex: number): SegmentFacts {
+function partOf({ shown, classification, rules }: Facts, vertex: number): PartFacts {
   const segment = shown.projection.segments[vertex]!;
   const stats = classification.segmentStats[segment]!;
-  const { area, exposedArea, coveredArea, coverage, group, margin, culled } = stats;
+  const { area, exposedArea, coveredArea, coverage, group, score, culled } = stats;
   const pieces = classification.segmentStats.filter((other) => other.group === group && other.area > 0).length;
-  const name = `“${shown.target.mesh.primitives[group]!.name}”`;
+  const name = `“${shown.target.mesh.parts[group]!.name}”`;
   const of = (value: number): number => (area > 0 ? value / area : 0);
   return {
     name: pieces > 1 ? `a piece of ${name}` : name,
@@ -113,7 +109,7 @@ function segmentOf({ shown, classification, rules }: Facts, vertex: number): Seg
     covered: of(coveredArea),
     coverage,
     threshold: rules.threshold,
-    score: margin,
+    score,
     passes: !culled,
   };
 }
@@ -154,7 +150,7 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
 /** What the second look and the hole rule decided; empty if they do not apply. */
 function secondLookStep({ shown: { projection }, classification }: Facts, vertex: number): string {
   const first = projection.zones[vertex]!;
-  const recovery = projection.restores[vertex] ?? 0;
+  const recovery = projection.recovery[vertex] ?? 0;
   if (first === Zone.Cosmetic || recovery === 0) return '';
   if (classification.segmentStats[projection.segments[vertex]!]!.culled)
     return 'The second look would restore it, but its part is culled.';
@@ -166,9 +162,9 @@ function secondLookStep({ shown: { projection }, classification }: Facts, vertex
     : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
 }
 
-function partStep({ classification, locks }: Facts, part: SegmentFacts, options: PresetOptions): string {
+function partStep({ classification, locks }: Facts, part: PartFacts, options: PresetOptions): string {
   const { name, segment, coverage, threshold, passes } = part;
-  const { area, exposedArea, coveredArea, sunkArea, bared } = classification.segmentStats[segment]!;
+  const { area, exposedArea, coveredArea, depthWeightedArea, culledBy } = classification.segmentStats[segment]!;
   const lock: Lock = locks[segment] ?? 'auto';
   const whole = `It belongs to ${name}.`;
   if (lock !== 'auto')
@@ -180,13 +176,13 @@ function partStep({ classification, locks }: Facts, part: SegmentFacts, options:
   if (!enough && !passes) return `${share}, less than the threshold of ${percent(threshold)}: it is culled as a whole.`;
   if (passes)
     return `${share}, less than the threshold of ${percent(threshold)}; but it is judged together with its twins, which have the same shape, and they pass.`;
-  if (bared)
+  if (culledBy === 'hole')
     return `${share}, which is enough. But it is small, and much of it is hidden or lies under a hole of the cage, which therefore seems to be meant for it. It is culled as a whole.`;
-  const counted = options.floor === 'depth' ? sunkArea * coverage : coveredArea;
+  const counted = options.steps.floor === 'depth' ? depthWeightedArea * coverage : coveredArea;
   if (counted >= options.minCovered * area)
     return `${share}, which is enough; but it is judged together with its twins, which have the same shape, and they do not pass.`;
   const deep =
-    options.floor === 'depth' && sunkArea < coveredArea / 2
+    options.steps.floor === 'depth' && depthWeightedArea < coveredArea / 2
       ? ' and lies deeper under the cage than its surroundings'
       : '';
   return `${share}, which is enough. But the covered area is small${deep}: it counts as ${percent(counted / area)} of the whole area, and at least ${percent(options.minCovered)} is required. It is culled as a whole.`;
@@ -197,7 +193,7 @@ function brief(
   zone: number,
   vertex: number,
   { outcome, model, outside }: Path,
-  part: SegmentFacts,
+  part: PartFacts,
 ): string {
   switch (zone) {
     case Zone.Cosmetic:
@@ -212,7 +208,7 @@ function brief(
       return outside > 0 ? 'it lies outside the cage' : 'the cage has a hole over it';
     default:
       if (locks[part.segment] === 'exclude') return `you excluded ${part.name}`;
-      if (classification.segmentStats[part.segment]!.bared)
+      if (classification.segmentStats[part.segment]!.culledBy === 'hole')
         return `a hole of the cage seems to be meant for ${part.name}`;
       return part.coverage < part.threshold
         ? `the cage covers ${percent(part.coverage)} of the exposed area of ${part.name}, less than the threshold of ${percent(part.threshold)}`
@@ -222,7 +218,7 @@ function brief(
 
 /** The name of the mesh that a triangle belongs to. */
 function nameAt({ target: { mesh } }: Shown, triangle: number): string {
-  return `“${mesh.primitives.findLast(({ firstTriangle }) => firstTriangle <= triangle)!.name}”`;
+  return `“${mesh.parts.findLast(({ firstTriangle }) => firstTriangle <= triangle)!.name}”`;
 }
 
 /** With two significant digits. */

@@ -36,9 +36,9 @@ export class Morphs {
   }
 
   /** Lists the morphs of a model at rest. */
-  offer({ primitives }: ExtractedMesh): void {
+  offer({ parts }: ExtractedMesh): void {
     const stored = new Map<string, number>();
-    for (const { mesh } of primitives) {
+    for (const { mesh } of parts) {
       morphNames(mesh).forEach((name, place) => {
         if (!stored.get(name)) stored.set(name, mesh.morphTargetInfluences![place]!);
       });

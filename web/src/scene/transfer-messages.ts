@@ -1,5 +1,6 @@
 import type {
   Code,
+  CutTarget,
   Mesh,
   Projection,
   ProjectOptions,
@@ -8,7 +9,6 @@ import type {
   TransferOptions,
   TransferResult,
 } from 'cagecast';
-import type { CutTarget } from 'cagecast/borders';
 import type { Inspection, InspectOptions } from 'cagecast/inspect';
 
 /** A projection, and the split vertices that the view needs. */

@@ -1,5 +1,6 @@
 import {
   CagecastError,
+  cutBorders,
   init,
   type Mesh,
   type Projection,
@@ -43,7 +44,6 @@ async function answerTo({ id, task, cage, target, options }: Request) {
     return { ...projection, split: splitAtSeams(target, projection) };
   }
   if (task === 'cut') {
-    const { cutBorders } = await import('cagecast/borders');
     return cutBorders(cage, target, options.result, options.rules);
   }
   const { inspect } = await import('cagecast/inspect');

@@ -1,5 +1,4 @@
-import type { Classification } from 'cagecast';
-import type { CutTarget } from 'cagecast/borders';
+import type { Classification, CutTarget } from 'cagecast';
 import type { Texture } from 'three';
 import { Pace } from '../platform/pace';
 import type { ExtractedMesh } from '../scene/extract-mesh';
@@ -29,8 +28,8 @@ export class Overlay {
    */
   constructor(target: ExtractedMesh, projection: SplitProjection, paint: Texture | undefined) {
     this.#vertexCount = target.positions.length / 3;
-    const filled = target.primitives.filter(({ triangleCount }) => triangleCount > 0);
-    this.#primitives = filled.map((primitive) => new PrimitiveOverlay(primitive, target.indices, paint));
+    const parts = target.parts.filter((part) => part.triangleCount > 0);
+    this.#primitives = parts.map((part) => new PrimitiveOverlay(part, target.indices, paint));
     this.setProjection(projection);
   }
 
@@ -50,7 +49,7 @@ export class Overlay {
     const call = ++this.#version;
     for (const primitive of this.#primitives) primitive.clearCut();
     if (!cut) return;
-    const { cutGeometry } = await import('cagecast/three/borders');
+    const { cutGeometry } = await import('cagecast/three');
     const pace = new Pace();
     for (const primitive of this.#primitives) {
       if (call !== this.#version) return;

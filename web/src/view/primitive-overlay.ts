@@ -1,5 +1,4 @@
-import type { Classification, SplitVertices } from 'cagecast';
-import type { CutTarget } from 'cagecast/borders';
+import type { Classification, CutTarget, SplitVertices } from 'cagecast';
 import {
   BufferAttribute,
   BufferGeometry,
@@ -11,7 +10,7 @@ import {
   SRGBColorSpace,
   type Texture,
 } from 'three';
-import { type Primitive, reverseWinding } from '../scene/extract-mesh';
+import { type Part, reverseWinding } from '../scene/extract-mesh';
 import type { Look } from './overlay';
 import {
   copyVertices,
@@ -44,11 +43,11 @@ const kLinear = Uint16Array.from({ length: 256 }, (_, byte) =>
 
 const kExcludedZones = [1, 2, 3] as const;
 
-export type CutGeometry = typeof import('cagecast/three/borders')['cutGeometry'];
+export type CutGeometry = typeof import('cagecast/three')['cutGeometry'];
 
 /** The overlay on one mesh of the target. */
 export class PrimitiveOverlay {
-  readonly #primitive: Primitive;
+  readonly #part: Part;
   /** The corners of its triangles: as vertices of the target, and of the filtered mesh. */
   readonly #vertices: Uint32Array;
   #corners = new Uint32Array(0);
@@ -66,9 +65,9 @@ export class PrimitiveOverlay {
   readonly #vertexColors = colorMaterial();
   readonly #hidden = kExcludedZones.map((zone) => hiddenMaterial(kZoneColors[zone]));
 
-  constructor(primitive: Primitive, indices: Uint32Array, paint: Texture | undefined) {
-    this.#primitive = primitive;
-    const { mesh, firstTriangle, triangleCount } = primitive;
+  constructor(part: Part, indices: Uint32Array, paint: Texture | undefined) {
+    this.#part = part;
+    const { mesh, firstTriangle, triangleCount } = part;
     this.#vertices = indices.subarray(3 * firstTriangle, 3 * (firstTriangle + triangleCount));
     this.#paint = paintMaterial([mesh.material].flat()[0]!);
     if (paint) this.setPaint(paint);
@@ -80,9 +79,9 @@ export class PrimitiveOverlay {
 
   /** Rebuilds the geometries. Materials are kept, as compiling a shader takes longer than a frame. */
   setProjection(uvs: Float32Array, split: SplitVertices): void {
-    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = this.#primitive;
+    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = this.#part;
     const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)];
-    // Split vertices are in order of use: those of a primitive are contiguous.
+    // Split vertices are in order of use: those of a part are contiguous.
     const first = split.indices[from]!;
     this.#corners = shifted(split.indices.subarray(from, to), first);
     let count = 0;
@@ -105,10 +104,10 @@ export class PrimitiveOverlay {
 
   /** Shows the filtered paint on the cut target. @param vertexCount Of the whole target before cutting. */
   setCut(cut: CutTarget, vertexCount: number, cutGeometry: CutGeometry): void {
-    const { mesh, mirrored } = this.#primitive;
+    const { mesh, mirrored } = this.#part;
     const geometry = shareVertices(mesh.geometry);
     geometry.morphAttributes = { ...geometry.morphAttributes }; // a copy, as `cutGeometry` replaces entries
-    const { pieces, split } = cutGeometry(geometry, { ...this.#primitive, turned: mirrored }, cut, vertexCount);
+    const { pieces, split } = cutGeometry(geometry, { ...this.#part, turned: mirrored }, cut, vertexCount);
     geometry.setAttribute(kUvName, new BufferAttribute(split.uvs, 2));
     const { cosmeticTriangles, zones } = pieces.result;
     const triangleZones = zonesOfTriangles(cosmeticTriangles, zones, pieces.geometry.localIndices);
@@ -121,7 +120,7 @@ export class PrimitiveOverlay {
     this.show(this.#look);
   }
 
-  /** Shows the primitive's own triangles again. */
+  /** Shows the part's own triangles again. */
   clearCut(): void {
     if (!this.#cut) return;
     this.#cut.removeFromParent();
@@ -143,7 +142,7 @@ export class PrimitiveOverlay {
   }
 
   classify({ zones, cosmeticTriangles }: Classification): void {
-    const { firstTriangle, triangleCount } = this.#primitive;
+    const { firstTriangle, triangleCount } = this.#part;
     const cosmetic = cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount);
     sortByZone(this.#filtered.geometry, this.#corners, zonesOfTriangles(cosmetic, zones, this.#vertices));
   }
@@ -159,7 +158,7 @@ export class PrimitiveOverlay {
   }
 
   setColors(colors: Uint8Array): void {
-    const { mesh, firstTriangle, firstVertex, triangleCount, mirrored } = this.#primitive;
+    const { mesh, firstTriangle, firstVertex, triangleCount, mirrored } = this.#part;
     if (!this.#colored) {
       const geometry = copyVertices(mesh.geometry, shifted(this.#vertices, firstVertex));
       if (mirrored) {

@@ -1,5 +1,4 @@
-import type { Classification } from 'cagecast';
-import type { CutTarget } from 'cagecast/borders';
+import type { Classification, CutTarget } from 'cagecast';
 import {
   type AnimationClip,
   AnimationMixer,

@@ -1,12 +1,11 @@
 import digits from '#wasm-digits';
-import { fuse } from './fuse.js';
 
 /**
  * Compiles the WebAssembly module that this script carries within itself. It is the one form that works unchanged in
  * every bundler, server and worker; `cagecast/slim` has the module as a file of its own.
  */
 export function compile(): Promise<WebAssembly.Module> {
-  return WebAssembly.compile(fuse(bytesOf(digits)));
+  return WebAssembly.compile(bytesOf(digits));
 }
 
 /** Reads hexadecimal digits. Hosts of since 2025 do so by themselves, a millisecond or two sooner. */

@@ -1,15 +1,9 @@
-/**
- * What `applyTransfer` loads to cut borders, besides `cagecast/borders`; and for pages with overlays of their own, or that cut in a
- * worker: `cutBorders` there, `cutGeometry` here.
- * @module cagecast/three/borders
- */
 import { type BufferGeometry, DataUtils, type TypedArray } from 'three';
-import { blend, blendSkin, type CutPart, type CutTarget, cutPart, ruleOf } from '../cut/index.js';
-import { type PartGeometry, type SplitPart, splitPart } from '../split-part.js';
+import type { CutTarget } from '../index.js';
+import { blend, blendSkin, ruleOf } from '../parts/blend.js';
+import { type CutPart, cutPart } from '../parts/cut-part.js';
+import { type PartGeometry, type SplitPart, splitPart } from '../parts/split-part.js';
 import { type Attribute, likeAttribute, remakeGeometry, splitGeometry, valuesOf } from './split.js';
-
-export { type CutPart, type CutTarget, decideAgain } from '../cut/index.js';
-export type { SplitPart };
 
 /** glTF's names of what is not just a mean where triangles are cut. */
 const semantics: Record<string, string> = {

@@ -1,4 +1,4 @@
-import { splitVertices, type TransferResult } from './index.js';
+import { splitVertices, type TransferResult } from '../index.js';
 
 /** Where a part lies in the arrays of a result, and which triangles it has. */
 export interface PartGeometry {

@@ -1,7 +1,6 @@
 import { readWasm } from '#read-wasm';
-import { fuse } from './fuse.js';
 
 /** Compiles the WebAssembly module that lies beside this script: a smaller script, and one file more to serve. */
 export async function compile(): Promise<WebAssembly.Module> {
-  return WebAssembly.compile(fuse(await readWasm()));
+  return WebAssembly.compile(await readWasm());
 }

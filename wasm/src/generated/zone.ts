@@ -1,3 +1,5 @@
+// Made by wasm/tools/generate.mjs from core/include/cagecast/result.hpp. Do not edit.
+
 /** Why a vertex may, or may not, be painted. All but `Cosmetic` are Non-Cosmetic Zones. */
 export const Zone = {
   /** May be painted. */
@@ -6,7 +8,7 @@ export const Zone = {
   Occluded: 1,
   /** The cage has a hole over it, or it lies outside the cage. */
   Uncovered: 2,
-  /** Too little of its segment is covered, or a hole of the cage is meant for it. */
+  /** Its segment is culled; see `culledBy`. */
   Culled: 3,
 } as const;
 

@@ -1,6 +1,6 @@
 // What the build puts in by these names: see wasm/tools/build.mjs.
 
-/** The glue that Emscripten makes of bindings.cpp; in cagecast/borders of bindings_borders.cpp. */
+/** The glue that Emscripten makes of bindings.cpp. */
 declare module '#glue' {
   export default function createModule(module: object): PromiseLike<unknown>;
 }
@@ -9,18 +9,6 @@ declare module '#glue' {
 declare module '#wasm-digits' {
   const digits: string;
   export default digits;
-}
-
-/** Where products and sums that belong together are in it, each as bytes from the one before: see wasm/tools/fused.mjs. */
-declare module '#fused' {
-  const sites: readonly number[];
-  export default sites;
-}
-
-/** The module as text of printable symbols. */
-declare module '#wasm-packed' {
-  const packed: { length: number; order: string; text: string };
-  export default packed;
 }
 
 /** Google's Draco decoder; its package has types for its main module only. */

@@ -1,5 +1,4 @@
-import { checkAnswer } from './answer.js';
-import { callCore } from './engine.js';
+import { callCore } from '../core/engine.js';
 import { CagecastError, show } from './error.js';
 import { checkMesh, type Mesh } from './mesh.js';
 
@@ -38,10 +37,5 @@ export function splitVertices(target: Mesh, cornerUvs: Float32Array): SplitVerti
       cornerUvs.length,
     );
   }
-  const answer = callCore('splitVertices', (core) =>
-    core.splitVertices(mesh.indices, cornerUvs, Math.floor(mesh.positions.length / 3)),
-  );
-  checkAnswer('splitVertices', answer, undefined, mesh);
-  const { sources, indices, uvs } = answer;
-  return { sources, indices, uvs };
+  return callCore('splitVertices', ({ workspace }) => workspace.splitVertices(mesh, cornerUvs));
 }

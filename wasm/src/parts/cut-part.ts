@@ -1,7 +1,7 @@
-import type { CutTarget } from '../borders/index.js';
-import { gather, type PartGeometry } from '../split-part.js';
-import type { Classification } from '../transfer.js';
+import type { CutTarget } from '../api/cut-borders.js';
+import type { Classification } from '../api/result.js';
 import { type Blends, heaviestOf } from './blend.js';
+import { gather, type PartGeometry } from './split-part.js';
 
 /** A part as it was cut, as if there were no other, and what was transferred to it. */
 export interface CutPart {

@@ -1,0 +1,91 @@
+import { callCore, useCore } from '../core/engine.js';
+import type { CoreProjection } from '../core/module.js';
+import { CagecastError, show } from './error.js';
+import { count } from './mesh.js';
+import { type ClassifyOptions, checkOptions } from './options.js';
+import type { Classification, HoleShare, Projection, SegmentStats } from './result.js';
+import { checkReuse, handOver, type Reuse } from './reuse.js';
+
+/**
+ * Decides which segments are culled, and so the zone of every vertex, in microseconds.
+ * @param options  With `reuse`, an earlier classification becomes this one.
+ * @throws {CagecastError} `badArgument` if `projection` is not what `project` returned; `badOption`.
+ */
+export function classify(projection: Projection, options?: ClassifyOptions & Reuse<Classification>): Classification {
+  const whole = checkProjection(projection);
+  const { core, locks } = checkOptions('classify', options, projection.preset);
+  const arrays = checkReuse('classify', options?.reuse);
+  const result = callCore('classify', ({ workspace }) => workspace.classify(whole, core, locks), arrays);
+  return handOver(result, options?.reuse);
+}
+
+const wrong = (text: string, at = 0) =>
+  new CagecastError('badArgument', `classify: projection${text}; pass what project() returned`, at);
+
+/**
+ * Checks that `projection` is whole: it is plain data, which may have been stored or sent, and the core trusts it.
+ * @returns it as the core takes it.
+ */
+function checkProjection(projection: Projection): CoreProjection {
+  if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
+  const { zones, segments, segmentStats, recovery, holeShares, indices } = projection;
+  if (!(zones instanceof Uint8Array)) throw wrong(`.zones is ${show(zones)}, not a Uint8Array`);
+  for (const [name, array] of Object.entries({ segments, recovery, indices }))
+    if (!(array instanceof Uint32Array)) throw wrong(`.${name} is ${show(array)}, not a Uint32Array`);
+  for (const [name, array] of Object.entries({ segmentStats, holeShares }))
+    if (!Array.isArray(array)) throw wrong(`.${name} is ${show(array)}, not an array`);
+  if (zones.length !== segments.length) throw wrong(` has ${zones.length} zones but ${segments.length} segments`);
+  if (recovery.length !== 0 && recovery.length !== zones.length)
+    throw wrong(` has ${zones.length} zones but ${recovery.length} entries of recovery`);
+  if (indices.length % 3 !== 0) throw wrong(`.indices has ${indices.length} entries, not 3 per triangle`);
+  const none = useCore('classify', ({ module }) => module['CulledBy']!['none']!);
+  const stats = segmentStats.map((segment, s) => ({
+    ...checkSegment(segment, s, segmentStats.length),
+    culledBy: none,
+  }));
+  const holes = checkShares(holeShares, segmentStats.length);
+
+  const outOfRange = (name: string, array: Uint32Array, limit: number, what: string) => {
+    for (let i = 0; i < array.length; ++i)
+      if (array[i]! >= limit) throw wrong(`.${name}[${i}] = ${array[i]} is out of range (${what})`, i);
+  };
+  outOfRange('segments', segments, segmentStats.length, `${segmentStats.length} segments`);
+  outOfRange('recovery', recovery, 2 + holes, `${holes} holes`);
+  outOfRange('indices', indices, zones.length, count(zones.length, 'vertex'));
+  for (let v = 0; v < zones.length; ++v) {
+    if (zones[v]! > 2) throw wrong(`.zones[${v}] = ${zones[v]} is not a zone that project() gives (0..2)`, v);
+  }
+  return { zones, segments, segmentStats: stats, recovery, holeShares, indices };
+}
+
+const isBelow = (value: unknown, limit: number) =>
+  Number.isInteger(value) && (value as number) >= 0 && (value as number) < limit;
+
+function checkSegment(segment: SegmentStats, s: number, segments: number): SegmentStats {
+  const { points, area, exposedArea, coveredArea, depthWeightedArea, group, twinOf } = segment ?? {};
+  const numbers = [points, area, exposedArea, coveredArea, depthWeightedArea, group];
+  if (!numbers.every(Number.isFinite) || !isBelow(twinOf, segments))
+    throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
+  // What `classify` decides, and what follows from the rest, may be missing.
+  return { ...segment, coverage: 0, score: Number.POSITIVE_INFINITY, culled: false, culledBy: 'none' };
+}
+
+/** More holes than a cage can have would only ask for memory. */
+const mostHoles = 2 ** 28;
+
+/** @returns the number of holes. */
+function checkShares(holeShares: readonly HoleShare[], segments: number): number {
+  let holes = 0;
+  holeShares.forEach((share, i) => {
+    const { hole, segment, exposedArea, uncoveredArea, hiddenArea } = share ?? {};
+    const isOrdered = isBelow(hole, mostHoles) && hole >= holes - 1;
+    if (!isOrdered || !isBelow(segment, segments) || ![exposedArea, uncoveredArea, hiddenArea].every(Number.isFinite)) {
+      throw wrong(
+        `.holeShares[${i}] is not { hole, segment, exposedArea, uncoveredArea, hiddenArea } in the order of holes`,
+        i,
+      );
+    }
+    holes = hole + 1;
+  });
+  return holes;
+}

@@ -1,0 +1,90 @@
+import { callCore, useCore } from '../core/engine.js';
+import type { CoreDecision } from '../core/module.js';
+import { CagecastError, show } from './error.js';
+import { type CheckedMesh, checkMesh, count, type Mesh } from './mesh.js';
+import { checkOptions, type TransferOptions } from './options.js';
+import type { TransferResult } from './result.js';
+
+/**
+ * A target whose triangles are cut along the borders of the paint. The target's vertices keep their numbers, and new ones follow.
+ * An edge is cut at the same places for all of its triangles, so that the surface stays as watertight as it was. The caller owns
+ * every array.
+ */
+export interface CutTarget {
+  /** 3 per new vertex: the vertices of the target that it blends, corners of one triangle. One may be there twice. */
+  sources: Uint32Array<ArrayBuffer>;
+  /** 3 per new vertex: how much of each source; they add up to 1. */
+  weights: Float32Array<ArrayBuffer>;
+  /** 3 per triangle. */
+  indices: Uint32Array<ArrayBuffer>;
+  /** 1 per triangle: the triangle of the target that it is a part of, ascending. */
+  triangles: Uint32Array<ArrayBuffer>;
+  /** 2 per vertex, new ones included: its place in the cage's texture. */
+  uvs: Float32Array<ArrayBuffer>;
+  /** 2 per index, with `seams: 'corner'`; else empty. */
+  cornerUvs: Float32Array<ArrayBuffer>;
+  /** 1 per vertex, a `Zone`; vertices on the border of a hole are cosmetic. */
+  zones: Uint8Array<ArrayBuffer>;
+  /** 1 per triangle: 1 if it may be painted. */
+  cosmeticTriangles: Uint8Array<ArrayBuffer>;
+}
+
+/**
+ * Cuts a target along the projected borders of the cage and its holes, and, with `seams: 'corner'`, along the seams of the
+ * texture, so that every triangle lies on one side. Segments stay culled or kept. With `steps.projection: 'nearestVertex'`
+ * nothing is cut.
+ *
+ * It takes about as long as a transfer, and about twenty searches for a nearest point for each edge that is cut.
+ *
+ * @param cage     As for `transfer`.
+ * @param target   As for `transfer`. The attributes of a new vertex are those of its `sources`, blended by `weights`.
+ * @param result   What `transfer` returned for the same cage, target and options.
+ * @param options  Those of the transfer; its `locks` are in the result already.
+ * @throws {CagecastError} `resultMismatch` if the result does not belong to this target; else as `transfer` does.
+ *
+ * @example
+ * const result = transfer(cage, target);
+ * const { indices, uvs, cosmeticTriangles } = cutBorders(cage, target, result);
+ */
+export function cutBorders(
+  cage: Mesh,
+  target: Mesh,
+  result: Pick<TransferResult, 'zones' | 'segments' | 'segmentStats'>,
+  options?: TransferOptions,
+): CutTarget {
+  const checked = checkOptions('cutBorders', options);
+  const [cageMesh, targetMesh] = [checkMesh('cutBorders', 'cage', cage), checkMesh('cutBorders', 'target', target)];
+  const decision = checkResult(result, targetMesh);
+  return callCore('cutBorders', ({ workspace }) => workspace.cutBorders(cageMesh, targetMesh, decision, checked.core));
+}
+
+/** Checks that a result is whole and belongs to this target: the core trusts what is in it. */
+function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision {
+  const wrong = (text: string) =>
+    new CagecastError('badArgument', `cutBorders: result${text}; pass what transfer() returned`);
+  if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);
+  const { zones, segments, segmentStats } = result as Partial<TransferResult>;
+  if (!(zones instanceof Uint8Array)) throw wrong(`.zones is ${show(zones)}, not a Uint8Array`);
+  if (!(segments instanceof Uint32Array)) throw wrong(`.segments is ${show(segments)}, not a Uint32Array`);
+  if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
+  const mismatch = (text: string, at: number) => new CagecastError('resultMismatch', `cutBorders: result.${text}`, at);
+  for (const [name, { length }] of Object.entries({ zones, segments })) {
+    if (length !== Math.floor(positions.length / 3))
+      throw mismatch(
+        `${name} has ${length} entries, not 1 for each of ${count(positions.length / 3, 'vertex')} of target`,
+        length,
+      );
+  }
+  const unknown = zones.findIndex((zone) => zone > 3);
+  if (unknown >= 0) throw mismatch(`zones[${unknown}] = ${zones[unknown]} is not a zone (0..3)`, unknown);
+  const stray = segments.findIndex((segment) => segment >= segmentStats.length);
+  if (stray >= 0)
+    throw mismatch(`segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);
+  const culledBy = useCore('cutBorders', ({ module }) =>
+    segmentStats.map((segment) => {
+      const { none, coverage } = module['CulledBy']!;
+      return segment?.culled === true ? coverage! : none!;
+    }),
+  );
+  return { zones, segments, culledBy };
+}

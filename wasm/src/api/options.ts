@@ -1,0 +1,195 @@
+import { useCore } from '../core/engine.js';
+import { type CoreLocks, type CoreOptions, type CoreValue, nameOf, namesOf } from '../core/module.js';
+import {
+  type ClassifyStage,
+  type ClassifySteps,
+  optionTable,
+  type ProjectStage,
+  type ProjectSteps,
+} from '../generated/options.js';
+import { CagecastError, show } from './error.js';
+
+/**
+ * A named set of values for all options. `paper` is the method as published: *Cage-based Texture Transfer with Geometric
+ * Filtering* (SIGGRAPH Posters '26, DOI 10.1145/3799825.3818741). `default` adds steps for bodies, cars and cages of many pieces;
+ * docs/method.md describes them.
+ */
+export type Preset = 'default' | 'paper';
+
+/** What the user of a model says about a segment: its areas decide, it is always painted, or never. */
+export type Lock = 'auto' | 'keep' | 'exclude';
+
+/** The last word about parts of the target. A lock by segment takes precedence over one by group. */
+export interface Locks {
+  /** By segment: a number in `result.segments`. */
+  segments?: Readonly<Record<number, Lock>> | undefined;
+  /** By group: a number in `target.groups`; 0 if the target has none. A segment has the group of its first vertex. */
+  groups?: Readonly<Record<number, Lock>> | undefined;
+}
+
+/** Options of `project`. An option that is not given has the value of the preset. */
+export interface ProjectOptions extends ProjectStage {
+  /** The values of all options that are not given. Default: `default`. */
+  preset?: Preset | undefined;
+  /** Switches for measuring single steps; not part of the stable interface. */
+  steps?: ProjectSteps | undefined;
+}
+
+/** Options of `classify`. An option that is not given has the value of the preset. */
+export interface ClassifyOptions extends ClassifyStage {
+  /** The values of all options that are not given. Default: the preset of the projection. */
+  preset?: Preset | undefined;
+  /** Switches for measuring single steps; not part of the stable interface. */
+  steps?: ClassifySteps | undefined;
+  /** Segments and groups that are always or never painted. */
+  locks?: Locks | undefined;
+}
+
+/** Options of `transfer` and `cutBorders`. An option that is not given has the value of the preset. */
+export interface TransferOptions extends ProjectStage, ClassifyStage {
+  /** The values of all options that are not given. Default: `default`. */
+  preset?: Preset | undefined;
+  /** Switches for measuring single steps; not part of the stable interface. */
+  steps?: (ProjectSteps & ClassifySteps) | undefined;
+  /** Segments and groups that are always or never painted. */
+  locks?: Locks | undefined;
+}
+
+type AllOf<T> = { [Name in keyof T]-?: NonNullable<T[Name]> };
+
+/** The value of every option in a preset. */
+export interface PresetOptions extends AllOf<ProjectStage & ClassifyStage> {
+  steps: AllOf<ProjectSteps & ClassifySteps>;
+}
+
+/** Checked options, as the core takes them. */
+export interface CheckedOptions {
+  preset: Preset;
+  core: CoreOptions;
+  locks: CoreLocks;
+}
+
+/** A function that takes options, and which of them besides those of its stages. */
+const functions = {
+  project: { stages: ['project'], others: ['reuse'] },
+  classify: { stages: ['classify'], others: ['locks', 'reuse'] },
+  transfer: { stages: ['project', 'classify'], others: ['locks', 'reuse'] },
+  cutBorders: { stages: ['project', 'classify'], others: ['locks'] },
+} as const;
+type Fn = keyof typeof functions;
+
+const presets: readonly Preset[] = ['default', 'paper'];
+const lockNames: readonly Lock[] = ['auto', 'keep', 'exclude'];
+
+type OptionName = keyof typeof optionTable;
+
+/** The options of a function: those in `steps`, or the others. */
+const optionsOf = (fn: Fn, isStep: boolean): OptionName[] =>
+  (Object.keys(optionTable) as OptionName[]).filter(
+    (name) =>
+      optionTable[name].isStep === isStep &&
+      (functions[fn].stages as readonly string[]).includes(optionTable[name].stage),
+  );
+
+/** The C++ enumeration of a choice. */
+function typeOf(name: string): string | undefined {
+  const entry = optionTable[name as OptionName];
+  return 'type' in entry ? entry.type : undefined;
+}
+
+/**
+ * Returns the value of every option in a preset, but for `locks`.
+ * @throws {CagecastError} `notInitialised`, `badOption`
+ */
+export function presetOptions(preset: Preset = 'default'): PresetOptions {
+  const { steps, ...options } = presetOf('presetOptions', 'preset', preset);
+  return { ...readable(options), steps: readable(steps) } as PresetOptions;
+}
+
+/** Options as people read them: choices by name. */
+function readable(options: Record<string, CoreValue>): object {
+  const entries = Object.entries(options).map(([name, value]) => {
+    const type = typeOf(name);
+    if (type !== undefined) return [name, useCore('presetOptions', (core) => nameOf(core, type, value))];
+    // C++ has 32-bit floats: 0.2 is 0.20000000298 there.
+    return [name, typeof value === 'number' ? Number(value.toPrecision(7)) : value];
+  });
+  return Object.fromEntries(entries);
+}
+
+function presetOf(fn: string, name: string, preset: unknown): CoreOptions {
+  if (!presets.includes(preset as Preset))
+    throw new CagecastError(
+      'badOption',
+      `${fn}: ${name} = ${show(preset)} is unknown; there are: ${presets.map(show).join(', ')}`,
+    );
+  return useCore(fn, ({ module }) => module.presetOptions(module['Preset']![preset as Preset]!));
+}
+
+/**
+ * Checks the types of options, and fills in those that are not given. The core checks the ranges of numbers.
+ * @param preset  The preset if the options name none.
+ * @throws {CagecastError} `badOption`
+ */
+export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'default'): CheckedOptions {
+  const given = checkNames(fn, 'options', options, [
+    'preset',
+    ...optionsOf(fn, false),
+    'steps',
+    ...functions[fn].others,
+  ]);
+  const steps = checkNames(fn, 'options.steps', given['steps'], optionsOf(fn, true));
+  const chosen = (given['preset'] ?? preset) as Preset;
+  const core = presetOf(fn, 'options.preset', chosen);
+  for (const name of optionsOf(fn, false))
+    if (given[name] !== undefined) core[name] = checkValue(fn, 'options', name, given[name]);
+  for (const name of optionsOf(fn, true))
+    if (steps[name] !== undefined) core.steps[name] = checkValue(fn, 'options.steps', name, steps[name]);
+  return { preset: chosen, core, locks: checkLocks(fn, given['locks']) };
+}
+
+function checkNames(fn: string, where: string, given: unknown = {}, known: readonly string[]): Record<string, unknown> {
+  if (typeof given !== 'object' || given === null)
+    throw new CagecastError('badOption', `${fn}: ${where} is ${show(given)}, not an object`);
+  const unknown = Object.keys(given).find((name) => !known.includes(name));
+  if (unknown !== undefined)
+    throw new CagecastError('badOption', `${fn}: ${where}.${unknown} is not an option; there are: ${known.join(', ')}`);
+  return given as Record<string, unknown>;
+}
+
+function checkValue(fn: string, where: string, name: OptionName, value: unknown): CoreValue {
+  const wrong = (is: string) => new CagecastError('badOption', `${fn}: ${where}.${name} = ${show(value)} is ${is}`);
+  const type = typeOf(name);
+  if (type !== undefined) {
+    const choices = useCore(fn, (core) => namesOf(core, type));
+    if (!choices.includes(value as string)) throw wrong(`unknown; there are: ${choices.map(show).join(', ')}`);
+    return useCore(fn, ({ module }) => module[type]![value as string]!);
+  }
+  if (optionTable[name].kind === 'toggle') {
+    if (typeof value !== 'boolean') throw wrong('not true or false');
+    return value;
+  }
+  if (typeof value !== 'number') throw wrong('not a number');
+  return value;
+}
+
+function checkLocks(fn: string, locks: unknown = {}): CoreLocks {
+  const wrong = (text: string) => new CagecastError('badOption', `${fn}: options.locks${text}`);
+  if (typeof locks !== 'object' || locks === null) throw wrong(` is ${show(locks)}, not an object`);
+  const out: CoreLocks = { segments: [], groups: [] };
+  for (const [field, entries] of Object.entries(locks)) {
+    if (field !== 'segments' && field !== 'groups') throw wrong(`.${field} is unknown; there are: segments, groups`);
+    if (entries === undefined) continue;
+    if (typeof entries !== 'object' || entries === null || entries instanceof Map)
+      throw wrong(`.${field} is ${show(entries)}, not an object of numbers and locks`);
+    out[field] = Object.entries(entries).map(([id, lock]) => {
+      // Segments and groups have 32-bit numbers.
+      if (!/^(0|[1-9][0-9]*)$/.test(id) || Number(id) >= 2 ** 32)
+        throw wrong(`.${field} has the key ${show(id)}, which is not a number of one`);
+      if (!lockNames.includes(lock as Lock))
+        throw wrong(`.${field}[${id}] = ${show(lock)} is unknown; there are: ${lockNames.map(show).join(', ')}`);
+      return { id: Number(id), lock: useCore(fn, ({ module }) => module['Lock']![lock as Lock]!) };
+    });
+  }
+  return out;
+}

@@ -1,0 +1,126 @@
+import type { Preset } from './options.js';
+
+/** CPU time of each step, in milliseconds. */
+export interface Timings {
+  /** Checking the input and welding the target's vertices. */
+  weld: number;
+  /** Building the search trees of cage and target, and the cage's boundary loops. */
+  build: number;
+  /** Step 1: the nearest point of the cage for every point of the target. */
+  project: number;
+  /** Step 2: self-intersection. */
+  occluded: number;
+  /** Step 3: cage intersection. */
+  covered: number;
+  /** Steps 4 and 5′: connected components, their areas and twins. */
+  segments: number;
+  /** Step 6: occluded points that are seen in another direction. */
+  secondLook: number;
+  /** Step 7: what lies under the holes of the cage. */
+  holes: number;
+  /** Step 9: UVs per triangle corner. */
+  seams: number;
+  /** Steps 5 and 8: which segments are culled, the zones of vertices and triangles. 0 after `project`. */
+  classify: number;
+  /** All of it. */
+  total: number;
+}
+
+/** What is known of one segment, a connected component of the target. Areas are in squared units of the input. */
+export interface SegmentStats {
+  /** Welded points. */
+  points: number;
+  /** A: its whole area. */
+  area: number;
+  /** E: the area that the target does not occlude. */
+  exposedArea: number;
+  /** C: the exposed area that the cage covers. */
+  coveredArea: number;
+  /** F = C / E, the share of the exposed area that the cage covers; 0 if nothing is exposed. */
+  coverage: number;
+  /** D: C, counted less where it is unusually deep under the cage; C without `steps.depthWeighting`. */
+  depthWeightedArea: number;
+  /** The group of its first vertex, in `target.groups`; 0 if the target has none. */
+  group: number;
+  /** The first of the segments that have the same shape, possibly itself; itself without `steps.depthWeighting`. */
+  twinOf: number;
+  /**
+   * How many times the area that it needs it has: from 1 on it is kept, unless a hole or a lock decides. Infinity if nothing is
+   * needed, and after `project`.
+   */
+  score: number;
+  /** Whether none of it may be painted. `false` after `project`. */
+  culled: boolean;
+  /** Why it is culled: too little of it is covered, a hole of the cage is meant for it, or a lock excludes it. */
+  culledBy: 'none' | 'coverage' | 'hole' | 'lock';
+}
+
+/** What `project` and `transfer` both return. The caller owns every array. */
+export interface Projected {
+  /** 2 per target vertex: its place in the cage's texture, whatever its zone. */
+  uvs: Float32Array<ArrayBuffer>;
+  /**
+   * 2 per triangle corner, in the order of `target.indices`, with `seams: 'corner'`; else empty. They differ from `uvs` only where
+   * a seam of the cage's texture runs through a triangle. `splitVertices` makes a mesh of them.
+   */
+  cornerUvs: Float32Array<ArrayBuffer>;
+  /** 1 per vertex, a `Zone`. After `project` none is `Culled`. */
+  zones: Uint8Array<ArrayBuffer>;
+  /** 1 per vertex: the nearest triangle of the cage. */
+  triangles: Uint32Array<ArrayBuffer>;
+  /** 1 per vertex: the distance to it, in units of the input. */
+  distances: Float32Array<ArrayBuffer>;
+  /** 1 per vertex: its segment. Segments are numbered by their first vertex. */
+  segments: Uint32Array<ArrayBuffer>;
+  /** 1 per segment. */
+  segmentStats: SegmentStats[];
+  /** How long each step took. */
+  timings: Timings;
+  /** The most memory in use at once during the call, without the inputs, in bytes. */
+  peakBytes: number;
+}
+
+/** The part of a segment that lies nearest to one hole of the cage. Areas are in squared units of the input. */
+export interface HoleShare {
+  /** The number of the hole. */
+  hole: number;
+  /** The number of the segment. */
+  segment: number;
+  /** The area that the target does not occlude. */
+  exposedArea: number;
+  /** The exposed area that the cage does not cover. */
+  uncoveredArea: number;
+  /**
+   * The area that the target occludes and the cage does not cover; 0 if `occlusionReach` is infinite, and in segments nothing of
+   * which is covered.
+   */
+  hiddenArea: number;
+}
+
+/** The part of the result that does not depend on the threshold: plain data that can be kept, sent or stored. */
+export interface Projection extends Projected {
+  /** The preset that it was made with, which is the default for `classify`. */
+  preset: Preset;
+  /**
+   * 1 per vertex, with `steps.secondLook` or `steps.holes`; else empty. Whether an occluded or uncovered vertex becomes cosmetic if
+   * its segment is kept: 0 never, 1 always, 2 and above if hole number `value - 2` is explained by a culled segment behind it.
+   */
+  recovery: Uint32Array<ArrayBuffer>;
+  /** 1 per hole and segment near it, with `steps.holes`; ordered by hole. */
+  holeShares: HoleShare[];
+  /** The target's indices, 3 per triangle. */
+  indices: Uint32Array<ArrayBuffer>;
+}
+
+/** The part of the result that depends on the threshold. The caller owns every array. */
+export interface Classification {
+  /** 1 per target vertex, a `Zone`. */
+  zones: Uint8Array<ArrayBuffer>;
+  /** 1 per target triangle: 1 if it may be painted; see `steps.partialTriangles`. */
+  cosmeticTriangles: Uint8Array<ArrayBuffer>;
+  /** 1 per segment, with `culled`, `culledBy` and `score`. */
+  segmentStats: SegmentStats[];
+}
+
+/** The result of `transfer`. */
+export interface TransferResult extends Projected, Classification {}

@@ -1,0 +1,41 @@
+import { callCore } from '../core/engine.js';
+import { checkMesh, type Mesh } from './mesh.js';
+import { checkOptions, type ProjectOptions, type TransferOptions } from './options.js';
+import type { Projection, TransferResult } from './result.js';
+import { checkReuse, handOver, type Reuse } from './reuse.js';
+
+/**
+ * Carries the cage's UVs to the target and finds its Non-Cosmetic Zones, the vertices that must not be painted.
+ *
+ * @param cage    The mesh that the texture was drawn for; it must have UVs.
+ * @param target  The mesh that receives it, in the same space and unit.
+ * @param options  With `reuse`, an earlier result becomes this one.
+ * @throws {CagecastError} if a mesh or an option is unusable, and `outOfMemory`.
+ *
+ * @example
+ * await init();
+ * const result = transfer(cage, target, { threshold: 0.5 });
+ * // The target moves: for every frame
+ * transfer(cage, target, { threshold: 0.5, reuse: result });
+ */
+export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & Reuse<TransferResult>): TransferResult {
+  const { core, locks } = checkOptions('transfer', options);
+  const arrays = checkReuse('transfer', options?.reuse);
+  const [cageMesh, targetMesh] = [checkMesh('transfer', 'cage', cage), checkMesh('transfer', 'target', target)];
+  const result = callCore('transfer', ({ workspace }) => workspace.transfer(cageMesh, targetMesh, core, locks), arrays);
+  return handOver(result, options?.reuse);
+}
+
+/**
+ * Does the costly part of `transfer`, which does not depend on the threshold: steps 1 to 4 of the method, and what later steps
+ * need. Pass the result to `classify`, for as many thresholds as you like.
+ * @param options  With `reuse`, an earlier projection becomes this one.
+ * @throws {CagecastError} as `transfer` does.
+ */
+export function project(cage: Mesh, target: Mesh, options?: ProjectOptions & Reuse<Projection>): Projection {
+  const { core, preset } = checkOptions('project', options);
+  const arrays = checkReuse('project', options?.reuse);
+  const [cageMesh, targetMesh] = [checkMesh('project', 'cage', cage), checkMesh('project', 'target', target)];
+  const result = callCore('project', ({ workspace }) => workspace.project(cageMesh, targetMesh, core), arrays);
+  return handOver({ ...result, preset }, options?.reuse);
+}

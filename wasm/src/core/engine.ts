@@ -1,0 +1,153 @@
+import createModule from '#glue';
+import { compile } from '#wasm';
+import { CagecastError, type Code } from '../api/error.js';
+import type { SegmentStats } from '../api/result.js';
+import { type Answer, type CoreModule, type CoreSegment, nameOf, type Workspace } from './module.js';
+
+let starting: Promise<void> | undefined;
+let compiled: WebAssembly.Module | undefined;
+let instance: Core | undefined;
+
+/** An instance of the module, and the one workspace of its calls. */
+export interface Core {
+  module: CoreModule;
+  workspace: Workspace;
+}
+
+/** Makes a fresh instance of the compiled module: a few milliseconds. */
+function instantiate(module: WebAssembly.Module): Core {
+  const glue: Partial<CoreModule> = {};
+  let failure: unknown;
+  // The glue takes the instance and registers the functions at once; what it returns is a promise for the same object.
+  createModule(
+    Object.assign(glue, {
+      instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
+        let made: WebAssembly.Instance;
+        try {
+          made = new WebAssembly.Instance(module, imports);
+        } catch (cause) {
+          // The glue keeps it to itself.
+          throw (failure = cause);
+        }
+        receive(made);
+        return made.exports;
+      },
+    }),
+  ).then(undefined, () => {});
+  if (failure !== undefined) throw failure;
+  if (glue.Workspace === undefined)
+    throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
+  return { module: glue as CoreModule, workspace: new glue.Workspace() };
+}
+
+/**
+ * Makes Cagecast ready: compiles the WebAssembly module. Nothing starts before it is called.
+ * It may be called any number of times, also at once: all calls share one start.
+ * @throws {CagecastError} `unsupported` if the host cannot run WebAssembly with SIMD; the next call tries again.
+ */
+export function init(): Promise<void> {
+  starting ??= start().catch((cause: unknown) => {
+    starting = undefined;
+    if (cause instanceof CagecastError) throw cause;
+    throw new CagecastError('unsupported', `init: this host cannot run the WebAssembly module (${String(cause)})`, 0, {
+      cause,
+    });
+  });
+  return starting;
+}
+
+async function start(): Promise<void> {
+  const module = await compile();
+  instance = instantiate(module);
+  compiled = module;
+}
+
+/** Arrays that may be written over, by their names in the answer. */
+export type Reusable = Record<string, Uint8Array | Uint32Array | Float32Array>;
+
+/**
+ * Uses the core, and outlives its end: a call that runs out of memory or traps costs its instance, not the next call.
+ * @throws {CagecastError} `notInitialised`, `outOfMemory`, `internal`
+ */
+export function useCore<A>(fn: string, use: (core: Core) => A): A {
+  if (compiled === undefined) {
+    throw new CagecastError('notInitialised', `${fn}: Cagecast is not ready; await init() once before the first call`);
+  }
+  try {
+    instance ??= instantiate(compiled);
+    return use(instance);
+  } catch (cause) {
+    dropInstance();
+    // RangeError: an array for JavaScript could not be had. "Aborted", or a number (an exception of C++): C++ could not
+    // allocate where it cannot say so.
+    const memory = cause instanceof RangeError || typeof cause === 'number' || String(cause).includes('Aborted');
+    throw memory
+      ? new CagecastError('outOfMemory', `${fn}: not enough memory for this target and cage`, 0, { cause })
+      : new CagecastError('internal', `${fn}: the WebAssembly module failed (${String(cause)})`, 0, { cause });
+  }
+}
+
+/**
+ * Calls a function of the core. Arrays of `reusable` that have the name and the length of one of the answer become that one,
+ * unless the call throws.
+ * @returns the answer, with arrays of the caller's own.
+ * @throws {CagecastError} with what the core reports; and as `useCore`.
+ */
+export function callCore<A extends Answer>(fn: string, call: (core: Core) => A, reusable: Reusable = {}): Own<A> {
+  const { status, ...answer } = useCore(fn, (core) => {
+    const { status, ...views } = call(core);
+    if (status.code !== 'ok') return { status } as A;
+    const copies = copyViews(views, reusable);
+    core.workspace.release();
+    return { status, ...withNames(core, copies) } as A;
+  });
+  if (status.code === 'ok') return answer as unknown as Own<A>;
+  if (status.code === 'outOfMemory') dropInstance();
+  throw new CagecastError(status.code as Code, `${fn}: ${status.message}`, status.at);
+}
+
+/** An answer without its status, as users get it: with names in place of enumeration values. */
+type Own<A> = { [Name in Exclude<keyof A, 'status'>]: A[Name] extends CoreSegment[] ? SegmentStats[] : A[Name] };
+
+function withNames(core: Core, answer: { segmentStats?: CoreSegment[] }): object {
+  return answer.segmentStats
+    ? {
+        ...answer,
+        segmentStats: answer.segmentStats.map((segment) => ({
+          ...segment,
+          culledBy: nameOf(core, 'CulledBy', segment.culledBy),
+        })),
+      }
+    : answer;
+}
+
+/** Replaces the views of WebAssembly memory in an answer by copies of them. */
+function copyViews(views: object, reusable: Reusable): object {
+  // What is new first: if there is no memory for it, nothing is written over.
+  const entries = Object.entries(views).map(([name, value]) => {
+    const isReused = ArrayBuffer.isView(value) && fits(reusable[name], value as Uint8Array);
+    return {
+      name,
+      value,
+      isReused,
+      own: ArrayBuffer.isView(value) && !isReused ? (value as Uint8Array).slice() : value,
+    };
+  });
+  return Object.fromEntries(
+    entries.map(({ name, value, isReused, own }) => {
+      if (!isReused) return [name, own];
+      const array = reusable[name]!;
+      array.set(value);
+      return [name, array];
+    }),
+  );
+}
+
+/** Whether there is room in an array for just what a view shows. An empty one may be what is left of one that was moved away. */
+const fits = (array: Reusable[string] | undefined, { length }: Uint8Array): boolean =>
+  length > 0 && array?.length === length;
+
+/** Gives the instance's memory back; the next call makes a new one. WebAssembly memory grows but never shrinks. */
+export function dropInstance(): void {
+  instance = undefined;
+}

@@ -1,0 +1,124 @@
+import type { CheckedMesh } from '../api/mesh.js';
+import type { HoleShare, SegmentStats, Timings } from '../api/result.js';
+
+/** A value of an enumeration in C++. */
+export type EnumValue = { readonly value: number };
+/** An enumeration in C++: its values by name. It is the class of its values, too. */
+export type Enum = Record<string, EnumValue>;
+
+export type CoreValue = number | boolean | EnumValue;
+/** All options, as C++ takes them. */
+export type CoreOptions = { [name: string]: CoreValue } & { steps: Record<string, CoreValue> };
+
+/** The locks of parts, as C++ takes them. */
+export interface CoreLocks {
+  segments: CoreLock[];
+  groups: CoreLock[];
+}
+export interface CoreLock {
+  id: number;
+  lock: EnumValue;
+}
+
+/** How a call ended: `ok`, or the name and sentence of what went wrong. */
+export interface Status {
+  code: string;
+  message: string;
+  at: number;
+}
+
+/** The arrays of an answer are views of WebAssembly memory: copy them before the next call. */
+export interface Answer {
+  status: Status;
+}
+
+/** A segment, as C++ has it. */
+export type CoreSegment = Omit<SegmentStats, 'culledBy'> & { culledBy: EnumValue };
+
+type U8 = Uint8Array<ArrayBuffer>;
+type U32 = Uint32Array<ArrayBuffer>;
+type F32 = Float32Array<ArrayBuffer>;
+
+export interface ProjectedAnswer extends Answer {
+  uvs: F32;
+  cornerUvs: F32;
+  zones: U8;
+  triangles: U32;
+  distances: F32;
+  segments: U32;
+  segmentStats: CoreSegment[];
+  timings: Timings;
+  peakBytes: number;
+}
+export interface ProjectAnswer extends ProjectedAnswer {
+  recovery: U32;
+  holeShares: HoleShare[];
+  indices: U32;
+}
+export interface ClassifyAnswer extends Answer {
+  zones: U8;
+  cosmeticTriangles: U8;
+  segmentStats: CoreSegment[];
+}
+export interface TransferAnswer extends ProjectedAnswer, ClassifyAnswer {}
+export interface SplitAnswer extends Answer {
+  sources: U32;
+  indices: U32;
+  uvs: F32;
+}
+export interface CutAnswer extends Answer {
+  sources: U32;
+  weights: F32;
+  indices: U32;
+  triangles: U32;
+  uvs: F32;
+  cornerUvs: F32;
+  zones: U8;
+  cosmeticTriangles: U8;
+}
+
+/** What C++ needs of a projection to classify it. */
+export interface CoreProjection {
+  zones: Uint8Array;
+  segments: Uint32Array;
+  segmentStats: CoreSegment[];
+  recovery: Uint32Array;
+  holeShares: HoleShare[];
+  indices: Uint32Array;
+}
+
+/** What C++ needs of a transfer to cut its target. */
+export interface CoreDecision {
+  zones: Uint8Array;
+  segments: Uint32Array;
+  /** 1 per segment. */
+  culledBy: EnumValue[];
+}
+
+/** The working memory of calls, and what the last one left to be copied. */
+export interface Workspace {
+  project(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions): ProjectAnswer;
+  transfer(cage: CheckedMesh, target: CheckedMesh, options: CoreOptions, locks: CoreLocks): TransferAnswer;
+  classify(projection: CoreProjection, options: CoreOptions, locks: CoreLocks): ClassifyAnswer;
+  splitVertices(target: CheckedMesh, cornerUvs: Float32Array): SplitAnswer;
+  cutBorders(cage: CheckedMesh, target: CheckedMesh, decision: CoreDecision, options: CoreOptions): CutAnswer;
+  release(): void;
+}
+
+/** What wasm/bindings.cpp binds: besides these, its enumerations by name. */
+export type CoreModule = {
+  Workspace: new () => Workspace;
+  presetOptions(preset: EnumValue): CoreOptions;
+} & { [type: string]: Enum };
+
+type Core = { module: CoreModule };
+
+/** The names of an enumeration's values. */
+export function namesOf({ module }: Core, type: string): string[] {
+  const values = module[type]!;
+  return Object.keys(values).filter((name) => values[name] instanceof (values as unknown as new () => object));
+}
+
+/** The name of a value. */
+export const nameOf = ({ module }: Core, type: string, value: unknown): string =>
+  Object.keys(module[type]!).find((name) => module[type]![name] === value)!;

@@ -1,0 +1,147 @@
+// Writes what follows from the lists of options, error codes and zones of the core: wasm/src/generated/*.ts and docs/options.md.
+//
+//   node wasm/tools/generate.mjs [--check] [--root FOLDER]
+//     --check   writes nothing; fails if a file is not as it would be written
+//     --root    another tree than this repository, such as a test's
+
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+import { readCodes, readOptions, readZones } from './options-list.mjs';
+
+const { values } = parseArgs({ options: { check: { type: 'boolean' }, root: { type: 'string' } } });
+const root = resolve(values.root ?? fileURLToPath(new URL('../..', import.meta.url)));
+
+const kHead = (source) => `// Made by wasm/tools/generate.mjs from core/include/cagecast/${source}. Do not edit.\n`;
+
+const quoted = (value) => (typeof value === 'string' ? `'${value}'` : String(value));
+const typeOf = ({ kind, range }) =>
+  kind === 'toggle' ? 'boolean' : kind === 'choice' ? range.map(quoted).join(' | ') : 'number';
+/** What its values are, for people. */
+function rangeOf({ kind, range }) {
+  if (kind === 'toggle') return 'true or false';
+  if (kind === 'choice') return range.map((name) => `\`${name}\``).join(' or ');
+  const limits = range[1] === Infinity ? `at least ${range[0]}` : `${range[0]} to ${range[1]}`;
+  return kind === 'length' ? `${limits}, as a share of the target's diagonal` : limits;
+}
+const defaultsOf = ({ standard, paper }) =>
+  standard === paper ? `Default: \`${standard}\`.` : `Default: \`${standard}\`; in the preset \`paper\`: \`${paper}\`.`;
+
+/** Breaks a text into the lines of a comment, as formatted code has them. */
+function comment(text, indent = '  ') {
+  const most = 120 - indent.length - 3;
+  if (text.length + 8 <= 120 - indent.length) return `${indent}/** ${text} */\n`;
+  const lines = [''];
+  for (const word of text.split(' ')) {
+    const line = lines.at(-1);
+    if (line !== '' && line.length + 1 + word.length > most) lines.push(word);
+    else lines[lines.length - 1] = line === '' ? word : `${line} ${word}`;
+  }
+  return `${indent}/**\n${lines.map((line) => `${indent} * ${line}\n`).join('')}${indent} */\n`;
+}
+
+const field = (option) =>
+  comment(`${option.text} ${capital(rangeOf(option))}. ${defaultsOf(option)}`) +
+  `  ${option.name}?: ${typeOf(option)} | undefined;\n`;
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
+const flagOf = ({ name }) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
+
+function makeOptions(options) {
+  const of = (stage, isStep) => options.filter((option) => option.stage === stage && option.isStep === isStep);
+  const interfaceOf = (name, text, fields) =>
+    `${comment(text, '')}export interface ${name} {\n${fields.map(field).join('')}}\n`;
+  const row = ({ name, stage, isStep, kind, type }) =>
+    `  ${name}: { stage: '${stage}', isStep: ${isStep}, kind: '${kind}'${type ? `, type: '${type}'` : ''} },\n`;
+  const literal = (text) => (text.includes("'") ? (text.includes('"') ? `\`${text}\`` : `"${text}"`) : `'${text}'`);
+  const flag = (option) => {
+    const range = `[${option.range.map(quoted).join(', ')}]`;
+    const text = literal(option.text);
+    const inline = `    text: ${text},`;
+    return `  {\n    name: '${option.name}',\n    flag: '${flagOf(option)}',\n    kind: '${option.kind}',\n    range: ${range},\n${
+      inline.length > 120 ? `    text: ${text},\n` : `${inline}\n`
+    }  },\n`;
+  };
+  return [
+    kHead('options.def'),
+    interfaceOf('ProjectStage', 'Options that `project` reads.', of('project', false)),
+    interfaceOf('ClassifyStage', 'Options that `classify` reads.', of('classify', false)),
+    interfaceOf('ProjectSteps', 'Switches of the steps in `project`, for measuring them.', of('project', true)),
+    interfaceOf('ClassifySteps', 'Switches of the steps in `classify`, for measuring them.', of('classify', true)),
+    `/** Every option: which function reads it, whether it is in \`steps\`, and what its values are. */\nexport const optionTable = {\n${options.map(row).join('')}} as const;\n`,
+    `/** The command's flags, one for each option outside \`steps\`. */\nexport const optionFlags = [\n${options
+      .filter(({ isStep }) => !isStep)
+      .map(flag)
+      .join('')}] as const;\n`,
+  ].join('\n');
+}
+
+function makeCodes(codes) {
+  return `${kHead('codes.def')}
+/** What the core finds wrong. */
+export type CoreCode =
+${codes.map(({ name, text }) => `${comment(text)}  | '${name}'`).join('\n')};
+`;
+}
+
+function makeZones(zones) {
+  return `${kHead('result.hpp')}
+/** Why a vertex may, or may not, be painted. All but \`Cosmetic\` are Non-Cosmetic Zones. */
+export const Zone = {
+${zones.map(({ name, value, text }) => `  /** ${text.replace('`CulledBy`', '`culledBy`')} */\n  ${name}: ${value},\n`).join('')}} as const;
+
+/** A value of {@link Zone}. */
+export type Zone = (typeof Zone)[keyof typeof Zone];
+`;
+}
+
+function makePage(options) {
+  const row = (option) =>
+    `| \`${option.name}\` | ${rangeOf(option).replace(/\|/g, '\\|')} | \`${option.standard}\` | \`${option.paper}\` | ${option.stage} | ${option.text} |\n`;
+  const head = '| Option | Values | `default` | `paper` | Read by | What it does |\n|---|---|---|---|---|---|\n';
+  const rows = (isStep) =>
+    options
+      .filter((option) => option.isStep === isStep)
+      .map(row)
+      .join('');
+  const flags = options.filter(({ isStep }) => !isStep).map((option) => `\`${flagOf(option)}\``);
+  return `# Options
+
+<!-- Made by wasm/tools/generate.mjs from core/include/cagecast/options.def. Do not edit. -->
+
+C++ (\`TransferOptions\`), JavaScript and the command have the same options with the same defaults. \`transfer\` and
+\`cutBorders\` read all of them, \`project\` and \`classify\` those of their stage. An option that is not given has the value of
+the preset: \`default\`, or \`paper\` for the method as published.
+
+${head}${rows(false)}
+Besides, JavaScript has \`preset\`, \`locks\` (parts that are always or never painted) and \`reuse\` (an earlier result whose arrays
+are written over). The command has ${flags.join(', ')}, \`--preset\`, \`--keep\` and \`--exclude\`.
+
+## Steps
+
+The switches in \`steps\` turn single steps of the [method](method.md) on and off. They are meant for measuring what a step is
+worth and are not part of the stable interface.
+
+${head}${rows(true)}`;
+}
+
+const options = readOptions(root);
+const files = {
+  'wasm/src/generated/options.ts': makeOptions(options),
+  'wasm/src/generated/codes.ts': makeCodes(readCodes(root)),
+  'wasm/src/generated/zone.ts': makeZones(readZones(root)),
+  'docs/options.md': makePage(options),
+};
+let stale = 0;
+for (const [name, text] of Object.entries(files)) {
+  const path = join(root, name);
+  if (existsSync(path) && readFileSync(path, 'utf8') === text) continue;
+  if (values.check) {
+    console.error(`${name} is stale: run node wasm/tools/generate.mjs`);
+    ++stale;
+  } else {
+    mkdirSync(dirname(path), { recursive: true });
+    writeFileSync(path, text);
+  }
+}
+process.exit(stale > 0 ? 1 : 0);
