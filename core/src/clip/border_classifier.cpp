@@ -7,185 +7,200 @@
 namespace cagecast {
 namespace {
 
-/// Of more triangles it is not asked whether the texture hangs together.
-constexpr std::uint32_t kMostPatches = 8;
+/// Parts with more cage triangles nearby than this are not tested for smeared texture: all pairs are compared.
+constexpr std::uint32_t kMaxPairwise = 8;
 
-/// Where the middle of a part is, and how far it reaches from there.
-struct Extent {
-  Vec3 middle{0, 0, 0};
+/// The centroid of a part's corners, and the radius of the ball around it that contains them.
+struct Ball {
+  Vec3 centre{0, 0, 0};
   double radius = 0;
 
-  explicit Extent(Hull hull) noexcept {
-    for (const Vec3 corner : hull) middle = middle + corner;
-    middle = 1 / static_cast<double>(hull.size()) * middle;
-    for (const Vec3 corner : hull) radius = std::max(radius, length(corner - middle));
+  explicit Ball(Hull hull) noexcept {
+    for (const Vec3 corner : hull) centre = centre + corner;
+    centre = 1 / static_cast<double>(hull.size()) * centre;
+    for (const Vec3 corner : hull) radius = std::max(radius, length(corner - centre));
   }
 };
 
-/// Once in the code: `closestPointOnTriangle` is long.
-ClosestPoint placeOf(const CageTriangle& t, Vec3 p) { return closestPointOnTriangle(t, p); }
+/// Not inlined, to keep the code small.
+ClosestPoint closestPointOf(const CageTriangle& t, Vec3 p) { return closestPointOnTriangle(t, p); }
+
+/// How fast the texture changes across a triangle, at most: UV length per length.
+double fastestChange(const CageTriangle& t) {
+  double squared = 0;
+  for (int k = 0; k < 2; ++k) {
+    const auto a = static_cast<double>(t.uvs[k]);
+    const auto b = static_cast<double>(t.uvs[2 + k]);
+    const auto c = static_cast<double>(t.uvs[4 + k]);
+    const TwoVec3 changes = simd::doubles(b - a, c - a) * t.gradients;
+    const auto sum = [](simd::f64x2 both) { return simd::doubleOf<0>(both) + simd::doubleOf<1>(both); };
+    const Vec3 change{sum(changes.x), sum(changes.y), sum(changes.z)};
+    squared += dot(change, change);
+  }
+  return std::sqrt(squared);
+}
 
 }  // namespace
 
-BorderClassifier::BorderClassifier(const MeshView& mesh, const Cage& cage, const CageTree& tree,
-                                   const BoundaryLoops& loops, const UvCharts* charts, const Units& units,
-                                   Arena& arena) noexcept
-    : mesh_(mesh),
-      cage_(cage),
-      loops_(loops),
-      charts_(charts),
-      diagonal_(units.diagonal),
-      margin_(1.001 * kTieDistance * units.diagonal),
-      // Places are rounded for the search, by less than what a reach more makes it allow for.
-      search_(tree, units.diagonal + static_cast<double>(units.reach), arena),
-      found_(arena.allocate<std::uint32_t>(cage.count)),
-      candidates_(arena.allocate<Candidate>(cage.count)),
-      lines_(cage, tree, loops, arena),
-      clearances_(arena.allocate<double>(mesh.positions.size() / 3)) {
-  if (!arena.failed()) std::fill(clearances_, clearances_ + mesh.positions.size() / 3, -1.0);
+BorderClassifier::BorderClassifier(const ClipCage& cage, BorderKind kind, Arena& arena) noexcept
+    : cage_(cage),
+      charts_(kind == BorderKind::seams ? cage.charts : nullptr),
+      diagonal_(cage.units.diagonal),
+      slack_(1.001 * kTieDistance * cage.units.diagonal),
+      // Points are rounded to float for the search. The added reach makes it allow for more than that.
+      search_(cage.tree, cage.units.diagonal + static_cast<double>(cage.units.reach), arena),
+      found_(arena.allocate<std::uint32_t>(cage.cage.count)),
+      candidates_(arena.allocate<Candidate>(cage.cage.count)),
+      lines_(cage.cage, cage.tree, cage.loops, arena),
+      clearances_(arena.allocate<double>(cage.mesh.positions.size() / 3)) {
+  if (!arena.failed()) std::fill_n(clearances_, cage.mesh.positions.size() / 3, -1.0);
 }
 
-const Candidate& BorderClassifier::nearestOf(const std::uint32_t* slots, std::uint32_t count, Vec3 p) noexcept {
+/// Finds the nearest of some cage triangles by the tie rule.
+const Candidate& BorderClassifier::nearestOf(const std::uint32_t* cageTriangles, std::uint32_t count, Vec3 p) noexcept {
   std::uint32_t found = 0;
   double limit = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const CageTriangle& t = cage_.triangles[slots[i]];
-    // It is not nearer than its plane.
+    const CageTriangle& t = cage_.cage.triangles[cageTriangles[i]];
+    // A triangle is no nearer than its plane.
     if (std::abs(dot(p - Vec3::from(t.a), t.normal.exact)) > limit) continue;
-    candidates_[found] = {slots[i], placeOf(t, p)};
+    candidates_[found] = {cageTriangles[i], closestPointOf(t, p)};
     if (candidates_[found].place.distance > limit) continue;
-    limit = std::min(limit, candidates_[found].place.distance + margin_);
+    limit = std::min(limit, candidates_[found].place.distance + slack_);
     ++found;
   }
   return cagecast::nearestOf(candidates_, found, diagonal_);
 }
 
-std::uint32_t BorderClassifier::find(Vec3 p, double more, double distance) noexcept {
+/// Finds, in `found_`, the cage triangles that are farther from a point than the nearest one by up to `more`.
+/// @param distance  As in `NearestSearch::widen`.
+/// @return How many there are.
+std::uint32_t BorderClassifier::findWithin(Vec3 p, double more, double distance) noexcept {
   search_.widen(more, distance);
   alignas(16) const float rounded[4] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0};
   search_.search(rounded, 1);
   return search_.candidates(0, found_);
 }
 
-Look BorderClassifier::at(Vec3 p) noexcept { return judge(nearestOf(found_, find(p, 0, diagonal_), p)); }
-
-Look BorderClassifier::at(Nearby nearby, Vec3 p) noexcept {
-  return nearby.count == 0 ? at(p) : judge(nearestOf(&listed_[nearby.first], nearby.count, p));
+BorderSample BorderClassifier::sample(Vec3 p) noexcept {
+  return classify(nearestOf(found_, findWithin(p, 0, diagonal_), p));
 }
 
-Look BorderClassifier::judge(const Candidate& nearest) const noexcept {
-  const auto& [slot, place] = nearest;
-  const CageTriangle& t = cage_.triangles[slot];
-  const Vec3 q = positionOf(t, place);
-  const std::uint32_t side =
-      charts_ != nullptr ? charts_->charts[slot] : loops_.sideAt(t, slot, q, diagonal_) != BoundaryLoops::kNone;
-  return {side, slot, q, uvAt(t, place)};
+BorderSample BorderClassifier::sample(NearbyTriangles nearby, Vec3 p) noexcept {
+  return nearby.count == 0 ? sample(p) : classify(nearestOf(&listed_[nearby.first], nearby.count, p));
 }
 
-Nearby BorderClassifier::around(Hull hull, double distance) noexcept {
-  const auto& [middle, radius] = Extent(hull);
-  // The nearest to any place of the part is farther from the middle than the nearest there by no more than this.
-  const std::uint32_t count = find(middle, 2 * radius, distance);
+BorderSample BorderClassifier::classify(const Candidate& nearest) const noexcept {
+  const auto& [cageTriangle, place] = nearest;
+  const CageTriangle& t = cage_.cage.triangles[cageTriangle];
+  const Vec3 closest = positionOf(t, place);
+  const std::uint32_t region = charts_ != nullptr
+                                   ? charts_->charts[cageTriangle]
+                                   : cage_.loops.sideAt(t, cageTriangle, closest, diagonal_) != BoundaryLoops::kNone;
+  return {region, cageTriangle, closest, uvAt(t, place)};
+}
+
+NearbyTriangles BorderClassifier::listNearby(Hull hull, double distance) noexcept {
+  const auto& [centre, radius] = Ball(hull);
+  // For any point of the part, the nearest triangle is at most this much farther from the centre than the one nearest
+  // to the centre.
+  const std::uint32_t count = findWithin(centre, 2 * radius, distance);
   const auto first = static_cast<std::uint32_t>(listed_.size());
   for (std::uint32_t i = 0; i < count; ++i) listed_.add(found_[i]);
-  return failed() ? Nearby{} : within({first, count}, hull);
+  return failed() ? NearbyTriangles{} : narrow({first, count}, hull);
 }
 
-Nearby BorderClassifier::within(Nearby nearby, Hull hull) noexcept {
+NearbyTriangles BorderClassifier::narrow(NearbyTriangles nearby, Hull hull) noexcept {
   if (nearby.count <= 1) return nearby;
-  const Vec3 middle = Extent(hull).middle;
-  const std::uint32_t nearest = nearestOf(&listed_[nearby.first], nearby.count, middle).slot;
-  // Distance to a triangle is convex: between corners it is nowhere more than what lies straight between theirs,
-  double limits[kMostCorners];
+  const Vec3 centre = Ball(hull).centre;
+  const std::uint32_t nearest = nearestOf(&listed_[nearby.first], nearby.count, centre).slot;
+  // The distance to a triangle is a convex function. So, within the part, the distance to the cage is at most what is
+  // interpolated between the corners' distances to one triangle,
+  double limits[kMaxCorners];
   for (std::size_t k = 0; k < hull.size(); ++k)
-    limits[k] = placeOf(cage_.triangles[nearest], hull[k]).distance + margin_;
-  // and nowhere less than straight on from the middle.
+    limits[k] = closestPointOf(cage_.cage.triangles[nearest], hull[k]).distance + slack_;
+  // and the distance to any other triangle is at least its tangent at the centre.
   const auto first = static_cast<std::uint32_t>(listed_.size());
   for (std::uint32_t i = 0; i < nearby.count; ++i) {
-    const std::uint32_t slot = listed_[nearby.first + i];
-    const CageTriangle& t = cage_.triangles[slot];
-    const ClosestPoint place = placeOf(t, middle);
-    const Vec3 away = place.distance > margin_ ? 1 / place.distance * (middle - positionOf(t, place)) : Vec3{0, 0, 0};
+    const std::uint32_t cageTriangle = listed_[nearby.first + i];
+    const CageTriangle& t = cage_.cage.triangles[cageTriangle];
+    const ClosestPoint place = closestPointOf(t, centre);
+    const Vec3 away = place.distance > slack_ ? 1 / place.distance * (centre - positionOf(t, place)) : Vec3{0, 0, 0};
     bool isNear = false;
     for (std::size_t k = 0; k < hull.size(); ++k)
-      isNear = isNear || place.distance + dot(away, hull[k] - middle) <= limits[k];
-    if (isNear) listed_.add(slot);
+      isNear = isNear || place.distance + dot(away, hull[k] - centre) <= limits[k];
+    if (isNear) listed_.add(cageTriangle);
   }
-  return failed() ? nearby : Nearby{first, static_cast<std::uint32_t>(listed_.size()) - first};
+  return failed() ? nearby : NearbyTriangles{first, static_cast<std::uint32_t>(listed_.size()) - first};
 }
 
-bool BorderClassifier::isBetween(const Look& a, const Look& b) const noexcept {
-  if (a.side != b.side || charts_ == nullptr) return a.side != b.side;
+bool BorderClassifier::separates(const BorderSample& a, const BorderSample& b) const noexcept {
+  if (a.region != b.region || charts_ == nullptr) return a.region != b.region;
   const double du = b.uv.u - a.uv.u, dv = b.uv.v - a.uv.v;
-  const double explained = std::max(charts_->stretch[a.slot], charts_->stretch[b.slot]) * length(b.q - a.q);
+  const double explained =
+      std::max(charts_->stretch[a.cageTriangle], charts_->stretch[b.cageTriangle]) * length(b.closest - a.closest);
   return std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack;
 }
 
-bool BorderClassifier::areAllOn(std::uint32_t side, Nearby nearby, Hull hull) const noexcept {
-  const auto* slots = &listed_[nearby.first];
-  return nearby.count > 0 && std::all_of(slots, slots + nearby.count, [&](std::uint32_t slot) {
-           if (charts_ != nullptr) return charts_->charts[slot] == side;
-           return side == 0 ? loops_.areOff(cage_.triangles[slot], slot, hull, diagonal_)
-                            : loops_.areOn(cage_.triangles[slot], slot, hull);
-         });
+bool BorderClassifier::isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept {
+  if (nearby.count == 0) return false;
+  const std::uint32_t* begin = &listed_[nearby.first];
+  return std::all_of(begin, begin + nearby.count, [&](std::uint32_t cageTriangle) {
+    if (charts_ != nullptr) return charts_->charts[cageTriangle] == region;
+    const CageTriangle& t = cage_.cage.triangles[cageTriangle];
+    return region == 0 ? cage_.loops.areOff(t, cageTriangle, hull, diagonal_)
+                       : cage_.loops.areOn(t, cageTriangle, hull);
+  });
 }
 
-bool BorderClassifier::isWhole(std::uint32_t side, Nearby nearby, Hull hull) const noexcept {
-  if (!areAllOn(side, nearby, hull)) return false;
+bool BorderClassifier::isSurelyWhole(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept {
+  if (!isSurelyIn(region, nearby, hull)) return false;
   if (charts_ == nullptr) return true;
-  // What is nearest to a place of the part, on each triangle: it moves no farther than the place.
-  struct Patch {
-    Vec3 q;
+  if (nearby.count > kMaxPairwise) return false;
+  // The texture around the point of each triangle that is closest to the centre. For another point of the part, the
+  // closest point moves no farther than the point itself.
+  struct Around {
+    Vec3 closest;
     Uv uv;
-    double fastest, stretch;  ///< How fast the texture changes across the triangle, at most, and along its edges.
+    double fastest, stretch;
   };
-  Patch patches[kMostPatches];
-  if (nearby.count > kMostPatches) return false;
-  const auto& [middle, radius] = Extent(hull);
+  Around around[kMaxPairwise];
+  const auto& [centre, radius] = Ball(hull);
   for (std::uint32_t i = 0; i < nearby.count; ++i) {
-    const std::uint32_t slot = listed_[nearby.first + i];
-    const CageTriangle& t = cage_.triangles[slot];
-    double squares = 0;
-    for (int k = 0; k < 2; ++k) {
-      const auto a = static_cast<double>(t.uvs[k]);
-      const auto b = static_cast<double>(t.uvs[2 + k]);
-      const auto c = static_cast<double>(t.uvs[4 + k]);
-      const TwoVec3 changes = simd::doubles(b - a, c - a) * t.gradients;
-      const auto sum = [](simd::f64x2 both) { return simd::doubleOf<0>(both) + simd::doubleOf<1>(both); };
-      const Vec3 change{sum(changes.x), sum(changes.y), sum(changes.z)};
-      squares += dot(change, change);
-    }
-    const ClosestPoint place = placeOf(t, middle);
-    const Patch& p = patches[i] = {positionOf(t, place), uvAt(t, place), std::sqrt(squares), charts_->stretch[slot]};
-    // On one triangle the texture is mostly explained by its edges.
-    if (p.fastest > kSmear * p.stretch && 2 * p.fastest * radius > kSmearSlack) return false;
+    const std::uint32_t cageTriangle = listed_[nearby.first + i];
+    const CageTriangle& t = cage_.cage.triangles[cageTriangle];
+    const ClosestPoint place = closestPointOf(t, centre);
+    const Around& a =
+        around[i] = {positionOf(t, place), uvAt(t, place), fastestChange(t), charts_->stretch[cageTriangle]};
+    // Within one triangle, the stretch of its edges mostly explains the texture's change.
+    if (a.fastest > kSmear * a.stretch && 2 * a.fastest * radius > kSmearSlack) return false;
     for (std::uint32_t j = 0; j < i; ++j) {
-      const Patch& o = patches[j];
-      const double apart = std::max(0.0, length(p.q - o.q) - 2 * radius);
-      const double du = p.uv.u - o.uv.u, dv = p.uv.v - o.uv.v;
-      if (std::sqrt(du * du + dv * dv) + (p.fastest + o.fastest) * radius >
-          kSmear * std::max(p.stretch, o.stretch) * apart + kSmearSlack)
+      const Around& b = around[j];
+      const double apart = std::max(0.0, length(a.closest - b.closest) - 2 * radius);
+      const double du = a.uv.u - b.uv.u, dv = a.uv.v - b.uv.v;
+      if (std::sqrt(du * du + dv * dv) + (a.fastest + b.fastest) * radius >
+          kSmear * std::max(a.stretch, b.stretch) * apart + kSmearSlack)
         return false;
     }
   }
   return true;
 }
 
-double BorderClassifier::clearance(const Look& look, Vec3 p) noexcept {
+double BorderClassifier::clearance(const BorderSample& sample, Vec3 p) noexcept {
   if (charts_ != nullptr) return 0;
-  const CageTriangle& t = cage_.triangles[look.slot];
-  const std::uint32_t* index = mesh_.indices.data() + std::size_t{3} * t.index;
+  const CageTriangle& t = cage_.cage.triangles[sample.cageTriangle];
+  const std::uint32_t* index = cage_.mesh.indices.data() + std::size_t{3} * t.index;
   const float* corners[3] = {t.a, t.b, t.c};
-  double least = 0;
+  double toLoop = 0;  // A lower bound for p.
   for (std::uint32_t k = 0; k < 3; ++k) {
     double& known = clearances_[index[k]];
     const Vec3 corner = Vec3::from(corners[k]);
     if (known < 0) known = lines_.distance(corner);
-    least = std::max(least, known - length(p - corner));
+    toLoop = std::max(toLoop, known - length(p - corner));
   }
-  // BoundaryLoops are at least so far from p. The distance to them, and that to the cage, change by no more than one
-  // steps: as long as the one is greater than the other, what is nearest lies on no loop.
-  return (least - length(p - look.q)) / 2;
+  // Along a way from p both the distance to the loops and that to the cage change by at most its length. As long as the
+  // former is greater, the closest point lies on no loop.
+  return (toLoop - length(p - sample.closest)) / 2;
 }
 
 }  // namespace cagecast

@@ -9,85 +9,95 @@
 #include "clip/boundary_lines.hpp"
 #include "steps/steps.hpp"
 
-/// docs/method.md, step 10: what borders run between.
+/// docs/method.md, step 10: which region of the target a point is in. Borders run between regions.
 namespace cagecast {
 
-/// What is known of a place of the target.
-struct Look {
-  std::uint32_t
-      side;  ///< Between places on two sides runs a border. Of loops: 1 beyond one, else 0. Of seams: the island.
-  std::uint32_t slot;  ///< The cage triangle that it is nearest to,
-  Vec3 q;              ///< where,
-  Uv uv;               ///< and what of the texture is there.
+/// The cage, as the clip step needs it.
+struct ClipCage {
+  const MeshView& mesh;  ///< As it was given.
+  const Cage& cage;
+  const CageTree& tree;
+  const BoundaryLoops& loops;
+  const UvCharts* charts;  ///< Null if borders along seams are not asked for.
+  const Units& units;
 };
 
-/// A part of the target: all that lies between some places, the corners of a segment or of a triangle.
+/// What the borders are that a target is cut along.
+enum class BorderKind : std::uint8_t { loops, seams };
+
+/// What is known of a point on the target.
+struct BorderSample {
+  /// For boundary loops: 1 if the closest point of the cage lies on a loop, else 0. For seams: the chart.
+  std::uint32_t region;
+  std::uint32_t cageTriangle;  ///< The nearest.
+  Vec3 closest;                ///< The closest point of the cage.
+  Uv uv;                       ///< There.
+};
+
+/// The corners of a convex part of the target: a line segment or a polygon.
 using Hull = std::span<const Vec3>;
 
-/// All triangles of the cage that can be nearest to a place of a part; of those that a `BorderClassifier` has listed.
-/// None: not known.
-struct Nearby {
+/// All cage triangles that may be the nearest to a point of a part of the target, as a range of a classifier's list.
+/// Empty: unknown.
+struct NearbyTriangles {
   std::uint32_t first = 0, count = 0;
+  [[nodiscard]] std::uint32_t end() const noexcept { return first + count; }
 };
 
-/// Looks at single places of the target, in double.
+/// Classifies points of the target, in double, and proves that parts of it contain no border.
 class BorderClassifier {
  public:
-  /// Takes what it needs from `arena`; `arena.failed()` tells if that was there.
-  /// @param charts  To look for seams of the texture; null to look for loops.
-  BorderClassifier(const MeshView& mesh, const Cage& cage, const CageTree& tree, const BoundaryLoops& loops,
-                   const UvCharts* charts, const Units& units, Arena& arena) noexcept;
+  /// Allocates its working memory from `arena`; check `arena.failed()` afterwards.
+  BorderClassifier(const ClipCage& cage, BorderKind kind, Arena& arena) noexcept;
 
   /// @param p  Scaled.
-  Look at(Vec3 p) noexcept;
-  /// @param nearby  To a part that the place is in: quicker.
-  Look at(Nearby nearby, Vec3 p) noexcept;
+  BorderSample sample(Vec3 p) noexcept;
+  /// The same, faster.
+  /// @param nearby  Of a part that contains the point.
+  BorderSample sample(NearbyTriangles nearby, Vec3 p) noexcept;
 
-  /// What is near a part of the target, from arena.
-  /// @param distance  Not less than how far its middle is from the cage; the less the better.
-  Nearby around(Hull hull, double distance) noexcept;
-  /// A part has so many corners at most.
-  static constexpr std::size_t kMostCorners = 6;
-  /// What is near a part of another part.
-  Nearby within(Nearby nearby, Hull hull) noexcept;
-  /// What was listed since is forgotten by `rewind`.
+  /// Lists what is near a part of the target.
+  /// @param distance  An upper bound of the distance between the part's centroid and the cage; the tighter the faster.
+  NearbyTriangles listNearby(Hull hull, double distance) noexcept;
+  /// Lists what is near a smaller part.
+  NearbyTriangles narrow(NearbyTriangles nearby, Hull hull) noexcept;
+  /// The greatest number of corners of a part: a triangle that was clipped three times, each of which adds half as many
+  /// corners at most, even if rounding makes it less than convex.
+  static constexpr std::size_t kMaxCorners = 9;
+
+  /// Forgets what was listed after a call of `mark`.
   [[nodiscard]] std::size_t mark() const noexcept { return listed_.size(); }
   void rewind(std::size_t mark) noexcept { listed_.cut(mark); }
+  /// Whether memory ran out.
   [[nodiscard]] bool failed() const noexcept { return listed_.failed(); }
 
-  /// Whether, for sure, all places of a part are on a side.
-  [[nodiscard]] bool areAllOn(std::uint32_t side, Nearby nearby, Hull hull) const noexcept;
-  /// Whether, for sure, no border runs between any two places of a part, one of which is on a side.
-  [[nodiscard]] bool isWhole(std::uint32_t side, Nearby nearby, Hull hull) const noexcept;
+  /// Whether all points of a part are surely in a region. False if that is not known.
+  [[nodiscard]] bool isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept;
+  /// Whether all points of a part are surely in a region, and no border within the region runs through it either.
+  [[nodiscard]] bool isSurelyWhole(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept;
 
-  /// So far around a place that was looked at no other is nearest to a loop, for sure; 0 where seams are looked for.
-  [[nodiscard]] double clearance(const Look& look, Vec3 p) noexcept;
+  /// The radius of a ball around a point in which surely no other point has its closest point on a boundary loop. 0 for
+  /// seams.
+  [[nodiscard]] double clearance(const BorderSample& sample, Vec3 p) noexcept;
 
-  /// Whether a border runs between two places.
-  [[nodiscard]] bool isBetween(const Look& a, const Look& b) const noexcept;
+  /// Whether a border runs between two points: their regions differ, or the texture is smeared between them.
+  [[nodiscard]] bool separates(const BorderSample& a, const BorderSample& b) const noexcept;
 
  private:
-  /// Finds the triangles that are farther from a place than the nearest by up to `more`.
-  /// @param distance  As in `NearestSearch::widen`.
-  /// @return How many there are in `found_`.
-  std::uint32_t find(Vec3 p, double more, double distance) noexcept;
-  /// Finds which of some triangles a place is nearest to; `candidates_` are then those that can be.
-  const Candidate& nearestOf(const std::uint32_t* slots, std::uint32_t count, Vec3 p) noexcept;
-  [[nodiscard]] Look judge(const Candidate& nearest) const noexcept;
+  std::uint32_t findWithin(Vec3 p, double more, double distance) noexcept;
+  const Candidate& nearestOf(const std::uint32_t* cageTriangles, std::uint32_t count, Vec3 p) noexcept;
+  [[nodiscard]] BorderSample classify(const Candidate& nearest) const noexcept;
 
-  const MeshView& mesh_;
-  const Cage& cage_;
-  const BoundaryLoops& loops_;
-  const UvCharts* charts_;
+  const ClipCage cage_;
+  const UvCharts* charts_;  ///< Null for boundary loops.
   double diagonal_;
-  double margin_;  ///< What is farther than the nearest by more is not the answer.
+  double slack_;  ///< A triangle farther than the nearest one by more than this is not the answer.
   NearestSearch search_;
-  std::uint32_t* found_;
+  std::uint32_t* found_;  ///< 1 per cage triangle: the result of `findWithin`.
   Candidate* candidates_;
   List<std::uint32_t> listed_;
   BoundaryLines lines_;
-  double*
-      clearances_;  ///< 1 per vertex of the cage: its distance to the nearest line, or less than 0 if nobody asked yet.
+  double* clearances_;  ///< 1 per vertex of the cage: its distance to the nearest open edge; negative if unknown.
 };
 
 }  // namespace cagecast

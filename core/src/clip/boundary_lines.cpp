@@ -11,10 +11,10 @@ BoundaryLines::BoundaryLines(const Cage& cage, const CageTree& tree, const Bound
       boxes_(arena.allocate<BoundaryLoops::Box>(std::size_t{3} * cage.count / kRun + 1)) {
   if (arena.failed()) return;
   for (std::uint32_t i = 0; i < 3 * cage.count; ++i) {
-    // In the order of the tree's leaves neighbours are neighbours in space.
-    const std::uint32_t slot = tree.near[i / 12].slot[i / 3 % 4], k = i % 3;
-    if (loops.ofSides[std::size_t{6} * slot + k] == BoundaryLoops::kNone) continue;
-    const CageTriangle& t = cage.triangles[slot];
+    // Successive leaves of the tree are close to each other in space.
+    const std::uint32_t cageTriangle = tree.near[i / 12].slot[i / 3 % 4], k = i % 3;
+    if (loops.ofSides[std::size_t{6} * cageTriangle + k] == BoundaryLoops::kNone) continue;
+    const CageTriangle& t = cage.triangles[cageTriangle];
     const float* corners[3] = {t.a, t.b, t.c};
     const Vec3 from = Vec3::from(corners[k]), to = Vec3::from(corners[(k + 1) % 3]);
     BoundaryLoops::Box& box = boxes_[count_ / kRun];

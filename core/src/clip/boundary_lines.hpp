@@ -7,18 +7,18 @@
 
 namespace cagecast {
 
-/// The open edges of the cage.
+/// The open edges of the cage, to find distances to them.
 class BoundaryLines {
  public:
-  /// Takes what it needs from `arena`; `arena.failed()` tells if that was there.
+  /// Allocates its memory from `arena`; check `arena.failed()` afterwards.
   BoundaryLines(const Cage& cage, const CageTree& tree, const BoundaryLoops& loops, Arena& arena) noexcept;
 
-  /// How far a place is from the nearest; infinity if there is none.
-  /// Cost: a look at a box for every `kRun` lines, and at some lines.
+  /// The distance from a point to the nearest open edge; infinity if there is none.
+  /// Cost: one box test for every `kRun` edges, and one distance for some of the edges.
   [[nodiscard]] double distance(Vec3 p) const noexcept;
 
  private:
-  /// So many lines that are neighbours have a box around them.
+  /// So many successive edges, which are close to each other, share a bounding box.
   static constexpr std::size_t kRun = 64;
   struct Line {
     Vec3 from, along;

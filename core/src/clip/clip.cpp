@@ -31,7 +31,7 @@ bool findParts(const DecidedTarget& decided, const Points& points, Arena& arena,
 
 /// Finds what is needed to cut the target, and cuts it.
 Status cutAlone(const MeshView& cageMesh, const DecidedTarget& decided, const TransferOptions& options, Arena& arena,
-                CutMesh& out) {
+                ClippedMesh& out) {
   const MeshView& target = decided.mesh;
   Units units;
   if (const Status status = checkMeshes(cageMesh, target, units); !status.ok()) return status;
@@ -49,10 +49,11 @@ Status cutAlone(const MeshView& cageMesh, const DecidedTarget& decided, const Tr
   // A target in one place has nothing to cut, nor a length to search by.
   if (options.steps.projection != ProjectionMode::nearestPoint || !(units.diagonal > 0))
     std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
-  const bool isDone = buildCageTree(cage, units, arena, cageTree) && findHalfEdges(cageMesh, cage, arena, edges) &&
-                      findBoundaryLoops(cage, edges, arena, loops) && findUvCharts(cage, edges, arena, charts) &&
-                      cutTarget(cageMesh, target, cage, cageTree, loops,
-                                options.seams == Seams::corner ? &charts : nullptr, units, takesPart, arena, out);
+  const bool isDone =
+      buildCageTree(cage, units, arena, cageTree) && findHalfEdges(cageMesh, cage, arena, edges) &&
+      findBoundaryLoops(cage, edges, arena, loops) && findUvCharts(cage, edges, arena, charts) &&
+      clipTarget({cageMesh, cage, cageTree, loops, options.seams == Seams::corner ? &charts : nullptr, units}, target,
+                 takesPart, arena, out);
   return isDone ? Status{} : kOutOfMemory;
 }
 
@@ -71,9 +72,9 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   if (const Status status = checkOptions(options); !status.ok()) return status;
   Arena* const arena = workspace.restart();
   if (arena == nullptr) return kOutOfMemory;
-  CutMesh cut;
+  ClippedMesh cut;
   if (const Status status = cutAlone(cage, decided, options, *arena, cut); !status.ok()) return status;
-  const std::size_t count = cut.vertexSides.size();
+  const std::size_t count = cut.loopSides.size();
   Array<std::uint32_t> groups, segments;
   Array<LockEntry> locks;
   Array<SegmentStats> stats;
@@ -103,8 +104,8 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   // What lies beyond a loop is uncovered, however the hole is explained; what lies on the border is not.
   for (std::size_t v = 0; v < count; ++v) {
     Zone& zone = zones.zones[v];
-    if (cut.vertexSides[v] == BoundarySide::beyond && zone == Zone::cosmetic) zone = Zone::uncovered;
-    if (cut.vertexSides[v] == BoundarySide::onBorder && zone == Zone::uncovered) zone = Zone::cosmetic;
+    if (cut.loopSides[v] == LoopSide::beyond && zone == Zone::cosmetic) zone = Zone::uncovered;
+    if (cut.loopSides[v] == LoopSide::onBorder && zone == Zone::uncovered) zone = Zone::cosmetic;
   }
   markCosmetic(zones.zones, cut.indices, options, zones.cosmeticTriangles);
   for (std::size_t t = 0; t < cut.areBeyond.size(); ++t) zones.cosmeticTriangles[t] &= cut.areBeyond[t] == 0;

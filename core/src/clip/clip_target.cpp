@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "base/hash_index.hpp"
 #include "clip/triangle_cutter.hpp"
@@ -10,26 +11,27 @@
 namespace cagecast {
 namespace {
 
-/// Lets vertices in one place take part together if any does: they are the ends of edges that are cut alike.
+/// Lets vertices with equal positions take part if any of them does: their edges have to be cut alike.
 /// @param[in,out] takesPart  1 per vertex.
 /// @return false if memory ran out.
-bool joinPlaces(std::span<const float> positions, Arena& arena, std::uint8_t* takesPart) noexcept {
-  struct Site {
+bool joinEqualPositions(std::span<const float> positions, Arena& arena, std::uint8_t* takesPart) noexcept {
+  struct Position {
     float x, y, z;
-    bool operator==(const Site& other) const { return std::memcmp(this, &other, sizeof(Site)) == 0; }
+    bool operator==(const Position& other) const { return std::memcmp(this, &other, sizeof(Position)) == 0; }
   };
   const auto count = static_cast<std::uint32_t>(positions.size() / 3);
-  const auto siteOf = [&](std::uint32_t v) {
+  const auto positionOf = [&](std::uint32_t v) {
     const float* p = positions.data() + std::size_t{3} * v;
-    return Site{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // Now −0 is 0.
+    return Position{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // −0 becomes 0.
   };
   const Arena::Mark mark = arena.mark();
-  HashIndex places(count, arena);
+  HashIndex index(count, arena);
   auto* first = arena.allocate<std::uint32_t>(count);
   if (arena.failed()) return false;
   for (std::uint32_t v = 0; v < count; ++v) {
-    const Site site = siteOf(v);
-    first[v] = places.firstEqual(v, HashIndex::hash(site), [&](std::uint32_t other) { return siteOf(other) == site; });
+    const Position position = positionOf(v);
+    first[v] = index.firstEqual(v, HashIndex::hash(position),
+                                [&](std::uint32_t other) { return positionOf(other) == position; });
     takesPart[first[v]] |= takesPart[v];
   }
   for (std::uint32_t v = 0; v < count; ++v) takesPart[v] = takesPart[first[v]];
@@ -37,14 +39,15 @@ bool joinPlaces(std::span<const float> positions, Arena& arena, std::uint8_t* ta
   return true;
 }
 
-/// A blend of up to three vertices of the target.
+/// A weighted mean of up to three vertices of the target.
 class Blend {
  public:
   void add(std::uint32_t vertex, double weight) noexcept {
     int i = 0;
     while (i < count_ && vertices_[i] != vertex) ++i;
     if (i == count_) {
-      if (count_ == 3) return;  // Of no weight: all that is inside a triangle is a blend of its corners.
+      // All that is inside a triangle is a blend of its corners: a fourth vertex has no weight but by rounding.
+      if (count_ == 3) return;
       vertices_[count_] = vertex;
       weights_[count_++] = 0;
     }
@@ -62,130 +65,141 @@ class Blend {
   }
 
  private:
-  std::uint32_t vertices_[3];
-  double weights_[3];
+  std::uint32_t vertices_[3] = {};
+  double weights_[3] = {};
   int count_ = 0;
 };
 
-/// Takes what was cut over: blends of vertices that are blends themselves become blends of vertices of the target.
-bool takeOver(const MeshView& target, const CutTriangles& cut, CutMesh& out) noexcept {
-  const std::size_t ownCount = target.positions.size() / 3;
-  const std::size_t before = ownCount + out.sources.size() / 3;
-  const std::size_t added = cut.sources.size() / 3;
-  const std::size_t all = before + added;
+/// Merges the result of a pass into the mesh of the passes before: new vertices, which blend vertices of that mesh,
+/// become blends of vertices of the target.
+/// @param[in,out] mesh  Empty before the first pass. Its sides are left alone.
+/// @return false if memory ran out.
+bool mergePass(const MeshView& target, const ClippedTriangles& pass, ClippedMesh& mesh) noexcept {
+  const std::size_t targetCount = target.positions.size() / 3;
+  const std::size_t newBefore = mesh.sources.size() / 3;
+  const std::size_t newCount = newBefore + pass.sources.size() / 3;
   Array<std::uint32_t> sources, indices, origins;
   Array<float> weights, positions;
-  if (!sources.reset(3 * (all - ownCount)) || !weights.reset(3 * (all - ownCount)) || !positions.reset(3 * all) ||
-      !cut.indices.copyTo(indices) || !cut.origins.copyTo(origins)) {
+  if (!sources.reset(3 * newCount) || !weights.reset(3 * newCount) || !positions.reset(3 * (targetCount + newCount)) ||
+      !pass.indices.copyTo(indices) || !pass.origins.copyTo(origins)) {
     return false;
   }
-  std::copy(out.sources.begin(), out.sources.end(), sources.begin());
-  std::copy(out.weights.begin(), out.weights.end(), weights.begin());
+  std::copy(mesh.sources.begin(), mesh.sources.end(), sources.begin());
+  std::copy(mesh.weights.begin(), mesh.weights.end(), weights.begin());
   std::copy(target.positions.begin(), target.positions.end(), positions.begin());
-  if (out.positions.size() > 0) std::copy(out.positions.begin(), out.positions.end(), positions.begin());
-  for (std::size_t n = 0; n < added; ++n) {
+  std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin());
+  for (std::size_t n = newBefore; n < newCount; ++n) {
     Blend blend;
-    for (std::size_t i = 3 * n; i < 3 * n + 3; ++i) {
-      const std::size_t vertex = cut.sources[i];
-      const auto weight = static_cast<double>(cut.weights[i]);
+    for (std::size_t i = 3 * (n - newBefore); i < 3 * (n - newBefore) + 3; ++i) {
+      const std::size_t vertex = pass.sources[i];
+      const auto weight = static_cast<double>(pass.weights[i]);
       if (weight == 0) continue;
-      if (vertex < ownCount) {
-        blend.add(cut.sources[i], weight);
+      if (vertex < targetCount) {
+        blend.add(pass.sources[i], weight);
         continue;
       }
-      for (std::size_t j = 3 * (vertex - ownCount); j < 3 * (vertex - ownCount) + 3; ++j) {
+      for (std::size_t j = 3 * (vertex - targetCount); j < 3 * (vertex - targetCount) + 3; ++j) {
         if (weights[j] > 0) blend.add(sources[j], weight * static_cast<double>(weights[j]));
       }
     }
-    const std::size_t to = before + n;
-    blend.write(sources.data() + 3 * (to - ownCount), weights.data() + 3 * (to - ownCount));
+    blend.write(sources.data() + 3 * n, weights.data() + 3 * n);
     for (std::size_t k = 0; k < 3; ++k) {
       double sum = 0;
-      for (std::size_t i = 3 * (to - ownCount); i < 3 * (to - ownCount) + 3; ++i) {
+      for (std::size_t i = 3 * n; i < 3 * n + 3; ++i)
         sum += static_cast<double>(weights[i]) * static_cast<double>(target.positions[std::size_t{3} * sources[i] + k]);
-      }
-      positions[3 * to + k] = static_cast<float>(sum);
+      positions[3 * (targetCount + n) + k] = static_cast<float>(sum);
     }
   }
-  if (out.origins.size() > 0) {
-    for (std::uint32_t& origin : origins) origin = out.origins[origin];
+  if (mesh.origins.size() > 0) {
+    for (std::uint32_t& origin : origins) origin = mesh.origins[origin];
   }
-  out.sources = std::move(sources);
-  out.weights = std::move(weights);
-  out.positions = std::move(positions);
-  out.indices = std::move(indices);
-  out.origins = std::move(origins);
+  mesh.sources = std::move(sources);
+  mesh.weights = std::move(weights);
+  mesh.positions = std::move(positions);
+  mesh.indices = std::move(indices);
+  mesh.origins = std::move(origins);
+  return true;
+}
+
+/// The first pass.
+/// @return false if memory ran out.
+bool clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
+                    ClippedMesh& out) noexcept {
+  const Arena::Mark mark = arena.mark();
+  BorderClassifier classifier(cage, BorderKind::loops, arena);
+  ClippedTriangles pass;
+  const ClipInput input{target, static_cast<double>(cage.units.scale), cage.units.diagonal, takesPart};
+  if (arena.failed() || !cutTriangles(input, classifier, arena, pass) || !mergePass(target, pass, out) ||
+      !out.loopSides.reset(pass.onBorder.size()) || !out.areBeyond.reset(pass.regions.size())) {
+    return false;
+  }
+  // A vertex is beyond a loop if one of its triangles is, unless a triangle that was cut has it and is not.
+  std::fill(out.loopSides.begin(), out.loopSides.end(), LoopSide::covered);
+  for (std::size_t t = 0; t < pass.regions.size(); ++t) {
+    out.areBeyond[t] = pass.regions[t] != 0;
+    for (std::size_t i = 3 * t; i < 3 * t + 3 && pass.regions[t] != 0; ++i)
+      out.loopSides[pass.indices[i]] = LoopSide::beyond;
+  }
+  for (std::size_t t = 0; t < pass.regions.size(); ++t) {
+    const std::uint32_t* corners = target.indices.data() + std::size_t{3} * pass.origins[t];
+    const bool isPart = std::all_of(corners, corners + 3, [&](std::uint32_t v) { return takesPart[v] != 0; });
+    for (std::size_t i = 3 * t; i < 3 * t + 3 && isPart && pass.regions[t] == 0; ++i)
+      out.loopSides[pass.indices[i]] = LoopSide::covered;
+  }
+  for (std::size_t v = 0; v < out.loopSides.size(); ++v) {
+    if (pass.onBorder[v] != 0) out.loopSides[v] = LoopSide::onBorder;
+  }
+  arena.rewind(mark);
+  return true;
+}
+
+/// The second pass. What is beyond a loop is not painted, so its seams do not matter.
+/// @param[in,out] mesh  The result of the first pass.
+/// @return false if memory ran out.
+bool clipAlongSeams(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
+                    ClippedMesh& mesh) noexcept {
+  const std::size_t targetCount = target.positions.size() / 3;
+  const std::size_t count = mesh.loopSides.size();
+  const Arena::Mark mark = arena.mark();
+  auto* mayBePainted = arena.allocate<std::uint8_t>(count);
+  BorderClassifier classifier(cage, BorderKind::seams, arena);
+  if (arena.failed()) return false;
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto takes = [&](std::size_t i) { return takesPart[mesh.sources[3 * (v - targetCount) + i]] != 0; };
+    mayBePainted[v] = mesh.loopSides[v] != LoopSide::beyond &&
+                      (v < targetCount ? takesPart[v] != 0 : takes(0) && takes(1) && takes(2));
+  }
+  if (!joinEqualPositions(mesh.positions, arena, mayBePainted)) return false;
+  ClippedTriangles pass;
+  const ClipInput input{
+      {mesh.positions, mesh.indices}, static_cast<double>(cage.units.scale), cage.units.diagonal, mayBePainted};
+  if (!cutTriangles(input, classifier, arena, pass)) return false;
+  Array<std::uint8_t> areBeyond;
+  Array<LoopSide> sides;
+  if (!areBeyond.reset(pass.origins.size()) || !sides.reset(pass.onBorder.size())) return false;
+  for (std::size_t t = 0; t < areBeyond.size(); ++t) areBeyond[t] = mesh.areBeyond[pass.origins[t]];
+  std::copy(mesh.loopSides.begin(), mesh.loopSides.end(), sides.begin());
+  for (std::size_t v = count; v < sides.size(); ++v) {
+    // On the border if all vertices that it blends are, else like the first that is not.
+    sides[v] = LoopSide::onBorder;
+    for (std::size_t i = 3 * (v - count); i < 3 * (v - count) + 3; ++i) {
+      if (pass.weights[i] > 0 && sides[v] == LoopSide::onBorder) sides[v] = mesh.loopSides[pass.sources[i]];
+    }
+  }
+  if (!mergePass(target, pass, mesh)) return false;
+  mesh.areBeyond = std::move(areBeyond);
+  mesh.loopSides = std::move(sides);
+  arena.rewind(mark);
   return true;
 }
 
 }  // namespace
 
-bool cutTarget(const MeshView& cageMesh, const MeshView& target, const Cage& cage, const CageTree& tree,
-               const BoundaryLoops& loops, const UvCharts* charts, const Units& units, std::uint8_t* takesPart,
-               Arena& arena, CutMesh& out) noexcept {
-  const auto scale = static_cast<double>(units.scale);
-  const std::size_t ownCount = target.positions.size() / 3;
-  if (!joinPlaces(target.positions, arena, takesPart)) return false;
-  {
-    const Arena::Mark mark = arena.mark();
-    BorderClassifier classifier(cageMesh, cage, tree, loops, nullptr, units, arena);
-    CutTriangles cut;
-    if (arena.failed() || !cutTriangles(target, scale, units.diagonal, takesPart, classifier, arena, cut) ||
-        !takeOver(target, cut, out) || !out.vertexSides.reset(cut.onBorder.size()) ||
-        !out.areBeyond.reset(cut.sides.size())) {
-      return false;
-    }
-    std::fill(out.vertexSides.begin(), out.vertexSides.end(), BoundarySide::inside);
-    for (std::size_t t = 0; t < cut.sides.size(); ++t) {
-      out.areBeyond[t] = cut.sides[t] != 0;
-      for (std::size_t i = 3 * t; i < 3 * t + 3 && cut.sides[t] != 0; ++i)
-        out.vertexSides[cut.indices[i]] = BoundarySide::beyond;
-    }
-    for (std::size_t t = 0; t < cut.sides.size(); ++t) {
-      const std::uint32_t* corners = target.indices.data() + std::size_t{3} * cut.origins[t];
-      const bool isPart = std::all_of(corners, corners + 3, [&](std::uint32_t v) { return takesPart[v] != 0; });
-      for (std::size_t i = 3 * t; i < 3 * t + 3 && isPart && cut.sides[t] == 0; ++i)
-        out.vertexSides[cut.indices[i]] = BoundarySide::inside;
-    }
-    for (std::size_t v = 0; v < out.vertexSides.size(); ++v) {
-      if (cut.onBorder[v] != 0) out.vertexSides[v] = BoundarySide::onBorder;
-    }
-    arena.rewind(mark);
-  }
-  if (charts == nullptr) return true;
-
-  // What is beyond a loop is not painted: its seams do not matter.
-  const std::size_t count = out.vertexSides.size();
-  auto* isPainted = arena.allocate<std::uint8_t>(count);
-  BorderClassifier classifier(cageMesh, cage, tree, loops, charts, units, arena);
-  if (arena.failed()) return false;
-  for (std::size_t v = 0; v < count; ++v) {
-    const auto takes = [&](std::size_t i) { return takesPart[out.sources[3 * (v - ownCount) + i]] != 0; };
-    isPainted[v] = out.vertexSides[v] != BoundarySide::beyond &&
-                   (v < ownCount ? takesPart[v] != 0 : takes(0) && takes(1) && takes(2));
-  }
-  if (!joinPlaces(out.positions, arena, isPainted)) return false;
-  CutTriangles cut;
-  Array<std::uint32_t> before;
-  if (!before.reset(out.indices.size())) return false;
-  std::copy(out.indices.begin(), out.indices.end(), before.begin());
-  if (!cutTriangles({out.positions, before}, scale, units.diagonal, isPainted, classifier, arena, cut)) return false;
-  Array<std::uint8_t> areBeyond;
-  Array<BoundarySide> sides;
-  if (!areBeyond.reset(cut.origins.size()) || !sides.reset(cut.onBorder.size())) return false;
-  for (std::size_t t = 0; t < areBeyond.size(); ++t) areBeyond[t] = out.areBeyond[cut.origins[t]];
-  std::copy(out.vertexSides.begin(), out.vertexSides.end(), sides.begin());
-  for (std::size_t v = count; v < sides.size(); ++v) {
-    // On a border if all that it is a blend of is.
-    sides[v] = BoundarySide::onBorder;
-    for (std::size_t i = 3 * (v - count); i < 3 * (v - count) + 3; ++i) {
-      if (cut.weights[i] > 0 && sides[v] == BoundarySide::onBorder) sides[v] = out.vertexSides[cut.sources[i]];
-    }
-  }
-  if (!takeOver(target, cut, out)) return false;
-  out.areBeyond = std::move(areBeyond);
-  out.vertexSides = std::move(sides);
-  return true;
+bool clipTarget(const ClipCage& cage, const MeshView& target, std::uint8_t* takesPart, Arena& arena,
+                ClippedMesh& out) noexcept {
+  return joinEqualPositions(target.positions, arena, takesPart) &&
+         clipAlongLoops(cage, target, takesPart, arena, out) &&
+         (cage.charts == nullptr || clipAlongSeams(cage, target, takesPart, arena, out));
 }
 
 }  // namespace cagecast

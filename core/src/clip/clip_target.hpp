@@ -4,26 +4,26 @@
 
 namespace cagecast {
 
-/// Where a vertex of a cut target lies.
-enum class BoundarySide : std::uint8_t { inside, onBorder, beyond };
+/// Where a vertex of a clipped target lies with respect to the boundary loops.
+enum class LoopSide : std::uint8_t { covered, onBorder, beyond };
 
 /// A target with its triangles cut.
-struct CutMesh {
+struct ClippedMesh {
   Array<float> positions;        ///< 3 per vertex: those of the target, then the new ones.
-  Array<std::uint32_t> sources;  ///< The fields from here are those of `CutTarget`.
+  Array<std::uint32_t> sources;  ///< As in `CutTarget`, like the next three.
   Array<float> weights;
   Array<std::uint32_t> indices;
   Array<std::uint32_t> origins;
-  Array<BoundarySide> vertexSides;  ///< 1 per vertex.
-  Array<std::uint8_t> areBeyond;    ///< 1 per triangle: 1 if it lies beyond a loop.
+  Array<LoopSide> loopSides;      ///< 1 per vertex.
+  Array<std::uint8_t> areBeyond;  ///< 1 per triangle: 1 if it lies beyond a boundary loop.
 };
 
-/// Step 10: cuts the target along the loops, and then, if there is an charts, what is not beyond them along the seams.
-/// @param[in,out] takesPart  1 per vertex of the target: an edge is cut if both its ends have 1 here. Those in one
-/// place get the same.
-/// @return false if memory ran out.
-bool cutTarget(const MeshView& cageMesh, const MeshView& target, const Cage& cage, const CageTree& tree,
-               const BoundaryLoops& loops, const UvCharts* charts, const Units& units, std::uint8_t* takesPart,
-               Arena& arena, CutMesh& out) noexcept;
+/// Step 10: cuts a target along the boundary loops of the cage, and then, if the cage has charts, what is not beyond
+/// the loops along the seams.
+/// @param[in,out] takesPart  1 per vertex of the target: an edge is cut if both its ends have 1 here. Vertices with
+/// equal positions get the same value, 1 if any has it.
+/// @return false if memory ran out; `out` is of no use then.
+bool clipTarget(const ClipCage& cage, const MeshView& target, std::uint8_t* takesPart, Arena& arena,
+                ClippedMesh& out) noexcept;
 
 }  // namespace cagecast

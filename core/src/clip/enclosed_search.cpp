@@ -1,0 +1,81 @@
+#include "clip/enclosed_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace cagecast {
+
+bool EnclosedSearch::find(const List<Piece>& pieces, TrianglePoint& point) noexcept {
+  const NearbyTriangles nearby = triangle_.nearby();
+  const std::size_t mark = triangle_.classifier.mark();
+  parts_.cut(0);
+  for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+    const TrianglePoint(&corners)[3] = pieces[i].corners;
+    addPart(pieces[i], {{corners[0], corners[1], corners[2]}, i, nearby});
+  }
+  bool isFound = false;
+  for (std::size_t next = 0; next < parts_.size() && !isFound && !failed() && !triangle_.failed(); ++next) {
+    const Part part = parts_[next];
+    const Piece& piece = pieces[part.piece];
+    TrianglePoint t[6] = {part.corners[0], part.corners[1], part.corners[2]};
+    triangle_.addMidpoints(t, part.nearby);
+    for (int k = 3; k < 6 && !isFound; ++k) {
+      isFound = t[k].sample.region != piece.region && triangle_.isWellInside(t[k].p, piece.corners);
+      if (isFound) point = t[k];
+    }
+    for (const auto& [a, b, c] : kQuarters) addPart(piece, {{t[a], t[b], t[c]}, part.piece, part.nearby});
+  }
+  triangle_.classifier.rewind(mark);
+  return isFound;
+}
+
+/// Queues a part, unless what is well inside the piece of it is surely in the piece's region.
+void EnclosedSearch::addPart(const Piece& piece, Part part) noexcept {
+  if (longestEdge(part.corners) <= triangle_.tolerances.feature) return;
+  Vec3 core[BorderClassifier::kMaxCorners];
+  const std::uint32_t count = clipToCore(piece, part, core);
+  if (count == 0) return;
+  const std::size_t mark = triangle_.classifier.mark();
+  if (isSurelyInRegion(piece, part, Hull(core, count))) {
+    triangle_.classifier.rewind(mark);
+  } else {
+    parts_.add(part);
+  }
+}
+
+/// Clips a part of a piece to what is well inside the piece.
+/// @return The number of corners; 0 if nothing is left.
+std::uint32_t EnclosedSearch::clipToCore(const Piece& piece, const Part& part,
+                                         Vec3 (&core)[BorderClassifier::kMaxCorners]) const noexcept {
+  std::uint32_t count = 3;
+  for (int k = 0; k < 3; ++k) core[k] = part.corners[k].p;
+  for (int k = 0; k < 3; ++k) {
+    Vec3 before[BorderClassifier::kMaxCorners];
+    std::copy(core, core + count, before);
+    const std::uint32_t beforeCount = std::exchange(count, 0);
+    for (std::uint32_t i = 0; i < beforeCount; ++i) {
+      const Vec3 p = before[i], q = before[(i + 1) % beforeCount];
+      const double depthOfP = triangle_.depthInside(p, piece.corners, k) - 1;
+      const double depthOfQ = triangle_.depthInside(q, piece.corners, k) - 1;
+      if (depthOfP > 0) core[count++] = p;
+      if ((depthOfP > 0) != (depthOfQ > 0)) core[count++] = p + depthOfP / (depthOfP - depthOfQ) * (q - p);
+    }
+  }
+  return count;
+}
+
+/// Tries to prove that the core of a part lies in the region of its piece, with ever fewer cage triangles nearby. Those
+/// near the whole part stay listed, for its own parts.
+bool EnclosedSearch::isSurelyInRegion(const Piece& piece, Part& part, Hull core) noexcept {
+  BorderClassifier& classifier = triangle_.classifier;
+  if (classifier.isSurelyIn(piece.region, part.nearby, core)) return true;
+  part.nearby = classifier.narrow(part.nearby, std::array{part.corners[0].p, part.corners[1].p, part.corners[2].p});
+  if (classifier.isSurelyIn(piece.region, part.nearby, core)) return true;
+  const std::size_t mark = classifier.mark();
+  const bool isSure = classifier.isSurelyIn(piece.region, classifier.narrow(part.nearby, core), core);
+  classifier.rewind(mark);
+  return isSure;
+}
+
+}  // namespace cagecast
