@@ -29,20 +29,20 @@ const entriesOf = (list) =>
 
 /** What a macro makes of a line of the list, with the line's text as a comment. */
 function expand({ names, body }, values) {
-  const valueOf = Object.fromEntries(names.map((name, i) => [name, values[i]]));
+  const byName = Object.fromEntries(names.map((name, i) => [name, values[i]]));
   const typed = body.replace(/CAGECAST_TYPE_##(\w+)/, (_, kind) =>
-    valueOf[kind]
+    byName[kind]
       .replace(/^choice\((\w+)\)$/, '$1')
       .replace(/^(share|length)$/, 'float')
       .replace(/^toggle$/, 'bool'),
   );
-  const code = typed.replace(/\b\w+\b/g, (word) => valueOf[word] ?? word);
+  const code = typed.replace(/\b\w+\b/g, (word) => byName[word] ?? word);
   if (/\boptions\./.test(code)) return code;
-  const [least, most] = (valueOf.range ?? '').slice(1, -1).split(', ');
-  const range = /^(share|length)$/.test(valueOf.kind)
+  const [least, most] = (byName.range ?? '').slice(1, -1).split(', ');
+  const range = /^(share|length)$/.test(byName.kind)
     ? ` Range ${least} to ${most}.`.replace(/(\d)f/g, '$1').replace('kInfinity', 'infinity')
     : '';
-  return `${code}  ///< ${valueOf.text.slice(1, -1)}${range}`;
+  return `${code}  ///< ${byName.text.slice(1, -1)}${range}`;
 }
 
 const text = readFileSync(process.argv[2], 'utf8').replace(

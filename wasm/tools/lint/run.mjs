@@ -49,7 +49,8 @@ const kSteps = {
     const sources = files.filter(isCpp).filter((file) => !file.endsWith('.def'));
     return sources.length > 0 ? problemsOf(root, 'clang-format', '--dry-run', '-Werror', ...sources) : [];
   },
-  biome: (root) => problemsOf(root, process.execPath, biome, 'check', '--error-on-warnings', '--colors=off'),
+  biome: (root) =>
+    problemsOf(root, process.execPath, biome, 'check', '--error-on-warnings', '--colors=off', '--max-diagnostics=100'),
   tidy: (root, files) => checkTidy(root, files),
 };
 
