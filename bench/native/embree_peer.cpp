@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/timer.hpp"
 #include "peer.hpp"
 #include "pipeline.hpp"
+#include "stop_watch.hpp"
 
 // The form in which Embree is fastest at this, found by trying on heads of 4.8k and 9.9k triangles:
 // - both the scene's and the geometry's build quality low (Morton order): the geometry's alone decides how long the

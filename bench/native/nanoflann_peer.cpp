@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "base/timer.hpp"
 #include "peer.hpp"
 #include "pipeline.hpp"
+#include "stop_watch.hpp"
 
 namespace cagecast::bench {
 namespace {

@@ -1,211 +1,153 @@
 #include "cagecast/transfer.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "base/timer.hpp"
 #include "input/validate.hpp"
 #include "seams/corner_uvs.hpp"
-#include "steps/steps.hpp"
+#include "steps/depth.hpp"
+#include "steps/holes.hpp"
+#include "steps/interior_samples.hpp"
+#include "steps/occluded.hpp"
+#include "steps/point_data.hpp"
+#include "steps/project.hpp"
+#include "steps/recheck/recheck_occluded.hpp"
+#include "steps/scene.hpp"
+#include "steps/segments.hpp"
+#include "steps/twins.hpp"
+#include "steps/uncovered.hpp"
 
 namespace cagecast {
 namespace {
 
-constexpr Status kOutOfMemory{Code::outOfMemory};
-
-/// What the steps look at.
-struct Scene {
-  Units units;
-  Cage cage;
-  CageTree cageTree;
-  RayTree targetTree;
-  HalfEdges halfEdges;
-  BoundaryLoops loops;
-};
-
-bool takeResults(std::uint32_t count, const TransferOptions& options, Arena& arena, PointResults& results) {
-  if (std::isfinite(options.occlusionReach)) results.cageDistances = arena.allocate<double>(count);
-  results.uvs = arena.allocate<float>(std::size_t{2} * count);
-  results.distances = arena.allocate<float>(count);
-  results.triangles = arena.allocate<std::uint32_t>(count);
-  results.zones = arena.allocate<Zone>(count);
-  results.meetsCage = arena.allocate<bool>(count);
-  results.segments = arena.allocate<std::uint32_t>(count);
-  return !arena.failed();
+/// Steps 1 to 3: where points lie on the cage, and what lies over them.
+void findZones(const Scene& scene, PointData& data, Timings& times) {
+  timed(times.project, [&] { projectPoints(scene, data); });
+  timed(times.covered, [&] { findCageDistances(scene, data); });
+  timed(times.occluded, [&] { markOccluded(scene, data); });
+  timed(times.covered, [&] { markUncovered(scene, data); });
 }
 
-/// Steps 1 to 3: where points lie on the cage, and what lies over them.
-bool judge(const Points& points, const Scene& scene, const TransferOptions& options, Arena& arena,
-           PointResults& results, Timings& timings, StopWatch& watch) {
-  const auto& [units, cage, cageTree, targetTree, halfEdges, loops] = scene;
-  if (!projectPoints(points, cage, cageTree, units, arena, results)) return false;
-  timings.project += watch.lap();
-  if (results.cageDistances != nullptr && !findCageDistances(points, cage, cageTree, units, arena, results))
-    return false;
-  timings.covered += watch.lap();
-  const double reach = static_cast<double>(options.occlusionReach) * units.diagonal;
-  if (!markOccluded(points, cage, targetTree, units, reach, arena, results)) return false;
-  timings.occluded += watch.lap();
-  const double pokeThrough = static_cast<double>(options.pokeThrough) * units.diagonal;
-  if (!markUncovered(points, cage, cageTree, loops, units, pokeThrough, arena, results)) return false;
-  timings.covered += watch.lap();
-  return true;
+/// Steps 4 and 5′: the segments, their areas and twins.
+void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& stats) {
+  const Steps& steps = scene.options.steps;
+  const bool isFiltered = steps.projection == ProjectionMode::nearestPoint;
+  findSegments(scene, data, stats);
+  InteriorSamples samples;
+  if (isFiltered && steps.interiorSamples) placeInteriorSamples(scene, data, stats, samples);
+  Timings ofSamples;  // Counted as a part of step 4.
+  if (samples.triangleCount > 0) findZones(scene, samples.data, ofSamples);
+  sumAreas(scene, samples, data, stats);
+  if (!isFiltered || !steps.depthWeighting) return;
+  weightByDepth(scene, data, samples, stats);
+  findTwins(scene, data, stats);
+}
+
+/// Steps 6 and 7: which points are restored if their segment is not culled.
+void findRecovery(const Scene& scene, PointData& data, Projection& out) {
+  const Steps& steps = scene.options.steps;
+  if (steps.projection != ProjectionMode::nearestPoint || !(steps.secondLook || steps.holes)) return;
+  data.recovery = scene.arena.allocate<std::uint32_t>(data.points.count);
+  if (scene.arena.failed()) return;
+  std::fill(data.recovery, data.recovery + data.points.count, Recovery::never);
+  if (steps.secondLook) timed(out.timings.secondLook, [&] { recheckOccluded(scene, data, out.segmentStats); });
+  if (steps.holes) timed(out.timings.holes, [&] { assignHoles(scene, data, out.segmentStats, out.holeShares); });
 }
 
 /// Hands the results of the points to their vertices, in the caller's units and numbering.
-bool writeOut(const Points& points, const Cage& cage, const Units& units, const PointResults& results,
-              std::uint32_t vertexCount, Projection& out) {
-  if (!out.uvs.reset(std::size_t{2} * vertexCount) || !out.zones.reset(vertexCount) ||
-      !out.triangles.reset(vertexCount) || !out.distances.reset(vertexCount) || !out.segments.reset(vertexCount)) {
-    return false;
+void writeProjection(const Scene& scene, const PointData& data, Projection& out) {
+  const std::size_t vertexCount = scene.targetMesh.positions.size() / 3;
+  if (scene.arena.failed() || !out.uvs.reset(2 * vertexCount) || !out.zones.reset(vertexCount) ||
+      !out.triangles.reset(vertexCount) || !out.distances.reset(vertexCount) || !out.segments.reset(vertexCount) ||
+      !out.recovery.reset(data.recovery == nullptr ? 0 : vertexCount)) {
+    return scene.arena.fail();
   }
-  const float toInput = 1 / units.scale;  // A power of two, like the scale.
-  // Where all is, in variables of this function: what else knows of them is asked for each vertex.
-  const auto [uvs, distances, triangles, zones, meetsCage, cageDistances, segments] = results;
-  const std::uint32_t* ofVertex = points.ofVertex;
-  const CageTriangle* ofCage = cage.triangles;
-  float* uvsOut = out.uvs.data();
-  Zone* zonesOut = out.zones.data();
-  std::uint32_t* trianglesOut = out.triangles.data();
-  float* distancesOut = out.distances.data();
-  std::uint32_t* segmentsOut = out.segments.data();
-  for (std::uint32_t v = 0; v < vertexCount; ++v) {
-    const std::uint32_t i = ofVertex[v];
-    std::memcpy(uvsOut + std::size_t{2} * v, uvs + std::size_t{2} * i, 2 * sizeof(float));
-    zonesOut[v] = zones[i];
-    trianglesOut[v] = ofCage[triangles[i]].index;
-    distancesOut[v] = distances[i] * toInput;
-    segmentsOut[v] = segments[i];
+  const float toInput = 1 / scene.units.scale;  // A power of two, like the scale.
+  // Copies on the stack: their pointers need no reload after each store to `out`.
+  const PointData from = data;
+  const CageTriangle* const cage = scene.cage.triangles;
+  float* const uvs = out.uvs.data();
+  Zone* const zones = out.zones.data();
+  std::uint32_t* const triangles = out.triangles.data();
+  float* const distances = out.distances.data();
+  std::uint32_t* const segments = out.segments.data();
+  for (std::size_t v = 0; v < vertexCount; ++v) {
+    const std::size_t i = from.points.ofVertex[v];
+    std::memcpy(uvs + 2 * v, from.uvs + 2 * i, 2 * sizeof(float));
+    zones[v] = from.zones[i];
+    triangles[v] = cage[from.cageTriangles[i]].index;
+    distances[v] = from.distances[i] * toInput;
+    segments[v] = from.segments[i];
   }
-  return true;
+  for (std::size_t v = 0; v < out.recovery.size(); ++v) out.recovery[v] = from.recovery[from.points.ofVertex[v]];
 }
 
-/// Steps 6 and 7: what brings each point back if its segment passes, handed to its vertices.
-bool findRecovery(const Points& points, const Scene& scene, const TransferOptions& options, const PointResults& results,
-                  const PointAreas& areas, std::uint32_t vertexCount, Arena& arena, Projection& out, StopWatch& watch) {
-  const auto& [units, cage, cageTree, targetTree, halfEdges, loops] = scene;
-  auto* recovery = arena.allocate<std::uint32_t>(points.count);
-  if (arena.failed() || !out.recovery.reset(vertexCount)) return false;
-  std::fill(recovery, recovery + points.count, Recovery::never);
-  if (options.steps.secondLook && !recheckOccluded(points, cage, cageTree, targetTree, units, results, areas,
-                                                   out.segmentStats, options, arena, recovery)) {
-    return false;
+/// Step 9: UVs per triangle corner.
+void projectCorners(const Scene& scene, const PointData& data, Array<float>& cornerUvs) {
+  const bool isWanted =
+      scene.options.seams == Seams::corner && scene.options.steps.projection == ProjectionMode::nearestPoint;
+  if (scene.arena.failed() || !cornerUvs.reset(isWanted ? 2 * scene.targetMesh.indices.size() : 0)) {
+    return scene.arena.fail();
   }
-  out.timings.secondLook = watch.lap();
-  if (options.steps.holes &&
-      !assignHoles(points, cage, loops, units, results, areas, out.segmentStats, arena, recovery, out.holeShares)) {
-    return false;
+  if (!isWanted) return;
+  if (!findCornerUvs(scene.targetMesh, scene.points, scene.cage, scene.halfEdges, scene.cageTree, scene.units, data,
+                     scene.arena, cornerUvs.data())) {
+    scene.arena.fail();
   }
-  for (std::uint32_t v = 0; v < vertexCount; ++v) out.recovery[v] = recovery[points.ofVertex[v]];
-  out.timings.holes = watch.lap();
-  return true;
+}
+
+template <typename... T>
+std::uint64_t bytesOf(const Array<T>&... arrays) {
+  return ((arrays.size() * sizeof(T)) + ...);
 }
 
 }  // namespace
 
-Status project(const MeshView& cageMesh, const MeshView& targetMesh, const TransferOptions& options,
-               Workspace& workspace, Projection& out) noexcept {
-  StopWatch watch;
-  Arena* const memory = workspace.restart();
-  if (memory == nullptr) return kOutOfMemory;
-  Arena& arena = *memory;
-  out.timings = {};
-  const auto vertexCount = static_cast<std::uint32_t>(targetMesh.positions.size() / 3);
-
-  Scene scene;
-  Units& units = scene.units;
-  Cage& cage = scene.cage;
+Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
+               Projection& out) noexcept {
+  Timings& times = out.timings = {};
+  const Timer timer(times.total);
   if (const Status status = checkOptions(options, Stage::project); !status.ok()) return status;
-  if (const Status status = checkMeshes(cageMesh, targetMesh, units); !status.ok()) return status;
-  if (!gatherCage(cageMesh, units, arena, cage)) return kOutOfMemory;
-  if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
-  Points points;
-  if (!weld(targetMesh, units, options.weldTolerance, arena, points)) return kOutOfMemory;
-  PointResults results;
-  if (!takeResults(points.count, options, arena, results)) return kOutOfMemory;
-  out.timings.weld = watch.lap();
+  Arena* const arena = workspace.restart();
+  if (arena == nullptr || !out.holeShares.reset(0)) return {Code::outOfMemory};
 
-  const bool isFiltered = options.steps.projection == ProjectionMode::nearestPoint;
-  if (!isFiltered) {
-    if (!projectToVertices(cageMesh, points, cage, units, arena, results)) return kOutOfMemory;
-    out.timings.project = watch.lap();
+  Scene scene(cage, target, options, *arena);
+  if (const Status status = timed(times.weld, [&] { return scene.load(); }); !status.ok()) return status;
+  PointData points(scene.points, options, *arena);
+  if (options.steps.projection == ProjectionMode::nearestPoint) {
+    timed(times.build, [&] { scene.buildTrees(); });
+    findZones(scene, points, times);
   } else {
-    const bool needsLoops =
-        options.pokeThrough > 0 || options.steps.interiorSamples || options.steps.depthWeighting || options.steps.holes;
-    const bool asksForEdges = needsLoops || options.seams == Seams::corner;
-    if (!buildCageTree(cage, units, arena, scene.cageTree) ||
-        !buildTargetTree(points, units, arena, scene.targetTree) ||
-        (asksForEdges && !findHalfEdges(cageMesh, cage, arena, scene.halfEdges)) ||
-        (needsLoops && !findBoundaryLoops(cage, scene.halfEdges, arena, scene.loops))) {
-      return kOutOfMemory;
-    }
-    out.timings.build = watch.lap();
-    if (!judge(points, scene, options, arena, results, out.timings, watch)) return kOutOfMemory;
+    timed(times.project, [&] { projectToVertices(scene, points); });
   }
+  timed(times.segments, [&] { measureSegments(scene, points, out.segmentStats); });
+  findRecovery(scene, points, out);
+  timed(times.segments, [&] { writeProjection(scene, points, out); });
+  timed(times.seams, [&] { projectCorners(scene, points, out.cornerUvs); });
 
-  if (!findSegments(points, vertexCount, targetMesh.groups, arena, results, out.segmentStats)) return kOutOfMemory;
-  InteriorSamples samples;
-  if (isFiltered && options.steps.interiorSamples) {
-    if (!findInteriorSamples(points, scene.loops, units, results, out.segmentStats, options, arena, samples) ||
-        !takeResults(samples.points.count, options, arena, samples.results)) {
-      return kOutOfMemory;
-    }
-    Timings ofVoters;
-    StopWatch voterWatch;
-    if (samples.count > 0 && !judge(samples.points, scene, options, arena, samples.results, ofVoters, voterWatch))
-      return kOutOfMemory;
-  }
-  PointAreas areas;
-  if (!addUpAreas(points, samples, units, results, arena, areas, out.segmentStats)) return kOutOfMemory;
-  if (isFiltered && options.steps.depthWeighting &&
-      (!findDepthWeightedAreas(points, cage, scene.halfEdges, samples, areas, units, results, arena,
-                               out.segmentStats) ||
-       !findTwins(points, results, arena, out.segmentStats))) {
-    return kOutOfMemory;
-  }
-  if (!writeOut(points, cage, units, results, vertexCount, out)) return kOutOfMemory;
-  out.timings.segments = watch.lap();
-
-  if (!out.recovery.reset(0) || !out.holeShares.reset(0)) return kOutOfMemory;
-  if (isFiltered && (options.steps.secondLook || options.steps.holes) &&
-      !findRecovery(points, scene, options, results, areas, vertexCount, arena, out, watch)) {
-    return kOutOfMemory;
-  }
-
-  const bool atCorners = options.seams == Seams::corner && options.steps.projection == ProjectionMode::nearestPoint;
-  if (!out.cornerUvs.reset(atCorners ? 2 * targetMesh.indices.size() : 0)) return kOutOfMemory;
-  if (atCorners && !findCornerUvs(targetMesh, points, cage, scene.halfEdges, scene.cageTree, units, results, arena,
-                                  out.cornerUvs.data()))
-    return kOutOfMemory;
-  out.timings.seams = watch.lap();
-  const Timings& t = out.timings;
-  out.timings.total =
-      t.weld + t.build + t.project + t.occluded + t.covered + t.segments + t.secondLook + t.holes + t.seams;
-  out.peakBytes = arena.peak() +
-                  vertexCount * (2 * sizeof(float) + sizeof(Zone) + 2 * sizeof(std::uint32_t) + sizeof(float)) +
-                  out.segmentStats.size() * sizeof(SegmentStats) + out.cornerUvs.size() * sizeof(float) +
-                  out.recovery.size() * sizeof(std::uint32_t) + out.holeShares.size() * sizeof(HoleShare);
-  return {};
+  out.peakBytes = arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.zones, out.triangles, out.distances, out.segments,
+                                          out.segmentStats, out.recovery, out.holeShares);
+  return arena->failed() ? Status{Code::outOfMemory} : Status{};
 }
 
 Status transfer(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                 TransferResult& out) noexcept {
   if (const Status status = checkOptions(options); !status.ok()) return status;
   Projection& projection = out.projection;
+  Zones& zones = out.zones;
   if (const Status status = project(cage, target, options, workspace, projection); !status.ok()) return status;
-  StopWatch watch;
-  if (const Status status = classify(projection.view(), target.indices, options, out.zones); !status.ok()) {
-    return status;
-  }
+  Timings& times = projection.timings;
+  const Status status =
+      timed(times.classify, [&] { return classify(projection.view(), target.indices, options, zones); });
+  if (!status.ok()) return status;
   for (std::size_t s = 0; s < projection.segmentStats.size(); ++s) {
-    projection.segmentStats[s].culledBy = out.zones.culledBy[s];
-    projection.segmentStats[s].score = out.zones.scores[s];
+    projection.segmentStats[s].culledBy = zones.culledBy[s];
+    projection.segmentStats[s].score = zones.scores[s];
   }
-  projection.timings.classify = watch.lap();
-  projection.timings.total += projection.timings.classify;
-  projection.peakBytes += out.zones.zones.size() + out.zones.cosmeticTriangles.size() + out.zones.culledBy.size() +
-                          out.zones.scores.size() * sizeof(double);
+  times.total += times.classify;
+  projection.peakBytes +=
+      bytesOf(zones.zones, zones.cosmeticTriangles, zones.culledBy, zones.scores, zones.explainedHoles);
   return {};
 }
 

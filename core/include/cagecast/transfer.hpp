@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -23,7 +24,8 @@ class Arena;
 /// workspace saves allocations. One workspace serves one call at a time; threads need one each.
 class Workspace {
  public:
-  Workspace() noexcept = default;
+  /// @param limit  Most bytes of working memory; a call that needs more ends with outOfMemory.
+  explicit Workspace(std::size_t limit = SIZE_MAX) noexcept : limit_(limit) {}
   Workspace(Workspace&& other) noexcept;
   Workspace& operator=(Workspace&& other) noexcept;
   ~Workspace();
@@ -36,6 +38,7 @@ class Workspace {
 
  private:
   Arena* arena_ = nullptr;  ///< Made by the first call.
+  std::size_t limit_;
 };
 
 /// Finds, for every vertex of the target, its place on the cage and what lies over it: steps 1 to 4, 6, 7 and 9. The

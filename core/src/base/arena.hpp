@@ -6,50 +6,68 @@
 
 namespace cagecast {
 
-/// The working memory of a call: a stack of arrays, freed all at once and kept for the next call.
+/// The working memory of a call: a stack of arrays in a few large blocks, which are kept for the next call.
 ///
-/// Blocks are taken from the system as they are needed. Running out is an answer (`failed()`), not the end of the
-/// process: `take` then returns null and the step that asked gives up.
+/// Running out of memory is sticky: from then on `allocate` returns null and `failed()` stays true until `restart`. A
+/// step allocates all its arrays, checks `failed()` once and returns; the steps after it do the same, so only the end
+/// of a call has to report it.
+///
+/// With AddressSanitizer, memory that is not allocated is poisoned, with a gap after every array: reading past an
+/// array, or an array that was given back, ends the program.
 class Arena {
  public:
-  Arena() noexcept = default;
+  /// @param limit  Most bytes to take from the system.
+  explicit Arena(std::size_t limit = SIZE_MAX) noexcept : limit_(limit) {}
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
   ~Arena() { release(); }
 
-  /// `count` values, uninitialised, aligned to 16 bytes; null if there is no memory left.
+  /// @return `count` uninitialised values, aligned to 16 bytes; null if memory has run out.
   template <typename T>
   [[nodiscard]] T* allocate(std::size_t count) noexcept {
     static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kAlign);
     return static_cast<T*>(allocateBytes(count, sizeof(T)));
   }
 
-  /// Gives back the end of the array taken last.
+  /// Gives back the end of the array allocated last.
   /// @param count  Elements to keep.
   template <typename T>
   void shrink(const T* array, std::size_t count) noexcept {
-    const auto* end = reinterpret_cast<const std::byte*>(array + count);
-    used_ = (static_cast<std::size_t>(end - blocks_[current_].data) + kAlign - 1) / kAlign * kAlign;
+    shrinkTo(reinterpret_cast<const std::byte*>(array + count));
   }
 
-  /// Where the stack stands.
+  /// How much of the stack is in use.
   struct Mark {
     std::size_t block, used;
   };
   [[nodiscard]] Mark mark() const noexcept { return {current_, used_}; }
-  /// Gives back everything taken since the mark.
-  void rewind(Mark m) noexcept {
-    current_ = m.block;
-    used_ = m.used;
-  }
+  /// Gives back everything allocated since the mark.
+  void rewind(Mark mark) noexcept;
 
-  /// Empties the stack for a new call. What the last call needed in several blocks is taken as one.
-  void begin() noexcept;
+  /// Gives back, at the end of a scope of the program, everything allocated in it.
+  class Scope {
+   public:
+    explicit Scope(Arena& arena) noexcept : arena_(arena), mark_(arena.mark()) {}
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope() { arena_.rewind(mark_); }
+
+   private:
+    Arena& arena_;
+    Mark mark_;
+  };
+
+  /// Empties the stack for a new call, and forgets that memory ran out. What the last call needed in several blocks
+  /// becomes one.
+  void restart() noexcept;
   /// Gives all memory back to the system.
   void release() noexcept;
 
+  /// Whether memory has run out since `restart`.
   [[nodiscard]] bool failed() const noexcept { return failed_; }
-  /// Most memory in use at once since `begin`, in bytes.
+  /// Reports that memory ran out elsewhere: for arrays of the result, which are not in the arena.
+  void fail() noexcept { failed_ = true; }
+  /// Most memory in use at once since `restart`, in bytes.
   [[nodiscard]] std::size_t peak() const noexcept { return peak_; }
 
  private:
@@ -62,13 +80,17 @@ class Arena {
   };
 
   void* allocateBytes(std::size_t count, std::size_t size) noexcept;
+  void shrinkTo(const std::byte* end) noexcept;
   bool addBlock(std::size_t size) noexcept;
+  /// Bytes in the blocks before one.
+  [[nodiscard]] std::size_t bytesBefore(std::size_t block) const noexcept;
 
   Block blocks_[kMaxBlocks] = {};
   std::size_t blockCount_ = 0;
   std::size_t current_ = 0;  ///< The block in use.
   std::size_t used_ = 0;     ///< Bytes used of it.
   std::size_t peak_ = 0;
+  std::size_t limit_;
   bool failed_ = false;
 };
 

@@ -10,9 +10,6 @@
 /// Places on the cage, decided in double: which triangle is nearest, and where on it.
 namespace cagecast {
 
-/// docs/method.md, step 1: planes whose distance is within this share of the diagonal of the farthest are equally far.
-inline constexpr double kTiePlane = 1e-7;
-
 /// The point of a cage triangle that is nearest to a point p.
 struct ClosestPoint {
   double distance;

@@ -27,7 +27,7 @@ class SeamFilter {
       explained[t] = isUsable ? static_cast<float>(ofTriangle) : -std::numeric_limits<float>::infinity();
     }
     for (std::uint32_t i = 0; i < points.count; ++i) {
-      const std::uint32_t t = results.triangles[i];
+      const std::uint32_t t = results.cageTriangles[i];
       samples_[i] = {results.uvs[2 * i], results.uvs[2 * i + 1], explained[t], static_cast<float>(charts.charts[t])};
     }
   }

@@ -48,7 +48,7 @@ void SeamResolver::add(const Points& points, const PointResults& results, const 
     std::uint32_t& i = recent_[point % kRecent];
     if (i >= cornerCount_ || corners_[i].point != point) {
       i = cornerCount_++;
-      setCorner(corners_[i], point, points.at(point), results.triangles[point]);
+      setCorner(corners_[i], point, points.at(point), results.cageTriangles[point]);
     }
     queued.corners[c] = corners_ + i;
   }

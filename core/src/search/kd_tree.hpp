@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/arena.hpp"
+#include "base/tolerances.hpp"
 #include "input/cage.hpp"
 #include "input/weld.hpp"
 #include "search/leaf_box.hpp"
@@ -81,10 +82,6 @@ struct CageTree {
 /// @return false if memory ran out.
 bool buildTargetTree(const Points& target, const Units& units, Arena& arena, RayTree& out) noexcept;
 bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree& out) noexcept;
-
-/// docs/method.md, step 1: a cage triangle can be the answer if its distance is within this share of the diagonal of
-/// the least.
-inline constexpr double kTieDistance = 1e-6;
 
 /// Searches the cage's triangles for the nearest to a few points at once.
 ///

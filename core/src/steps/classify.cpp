@@ -1,49 +1,52 @@
+#include "steps/classify.hpp"
+
 #include <algorithm>
 #include <limits>
 
+#include "cagecast/transfer.hpp"
 #include "input/validate.hpp"
-#include "steps/steps.hpp"
 
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 7: a hole is explained if what fails there is so large a share of what is uncovered there.
+/// docs/method.md, step 7: a hole is explained if the culled area there is at least this share of the uncovered area.
 constexpr double kExplaining = 0.02;
 
-/// docs/method.md, step 5″: a part that a hole is meant for has less than so large a share of all that is covered,
-constexpr double kSmallPart = 0.02;
-/// and under a hole that nothing explains it bares at least so much, as a share of what is exposed of it and of what is
-/// bare there,
-constexpr double kBare = 0.15;
-constexpr double kMuchOfHole = 0.25;
-/// or under any hole it hides so much, as a share of what is exposed of it with that.
+/// docs/method.md, step 5″: a small segment has less than this share of the covered area of all segments. A hole is
+/// meant for it if the hole is unexplained and the segment is uncovered there in at least
+constexpr double kSmallSegment = 0.02;
+/// this share of its exposed area
+constexpr double kUncoveredOfSegment = 0.15;
+/// and this share of the uncovered area at the hole;
+constexpr double kUncoveredOfHole = 0.25;
+/// or if the area hidden there is at least this share of its exposed area and the hidden area together.
 constexpr double kHidden = 0.25;
 
-/// docs/method.md, step 5′: copies within this factor of what is asked of them are judged together.
+/// docs/method.md, step 5′: twins with scores within this factor of 1 are judged together.
 constexpr double kDoubt = 2;
 
 /// How many times what it needs something has.
-double times(double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); }
+double ratio(double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); }
 
 /// The areas of a segment, or of several that are judged together.
-struct Tally {
-  double area = 0, exposed = 0, covered = 0, sunk = 0;
+struct Areas {
+  double all = 0, exposed = 0, covered = 0, depthWeighted = 0;
   double segments = 0;
 
-  static Tally of(const SegmentStats& s) { return {s.area, s.exposedArea, s.coveredArea, s.depthWeightedArea, 1}; }
-  void add(const Tally& other) {
-    area += other.area;
+  static Areas of(const SegmentStats& s) { return {s.area, s.exposedArea, s.coveredArea, s.depthWeightedArea, 1}; }
+  void add(const Areas& other) {
+    all += other.all;
     exposed += other.exposed;
     covered += other.covered;
-    sunk += other.sunk;
+    depthWeighted += other.depthWeighted;
     segments += other.segments;
   }
 };
 
-/// Step 5: which segments pass.
-class Verdicts {
+/// Step 5: the scores of the segments.
+class Scoring {
  public:
-  Verdicts(std::span<const SegmentStats> stats, const TransferOptions& options) noexcept
+  Scoring(std::span<const SegmentStats> stats, const TransferOptions& options) noexcept
       : stats_(stats), options_(options) {
     for (const SegmentStats& s : stats) allCovered_ += s.coveredArea;
   }
@@ -51,48 +54,47 @@ class Verdicts {
   /// The covered area of all segments.
   [[nodiscard]] double allCovered() const noexcept { return allCovered_; }
 
-  /// @param[out] scores  1 per segment: it passes from 1 on.
+  /// @param[out] scores  1 per segment.
   /// @return false if memory ran out.
-  bool decide(Array<double>& scores) const noexcept {
-    bool anyDoubt = false;
+  bool score(Array<double>& scores) const noexcept {
+    bool isAnyInDoubt = false;
     for (std::size_t s = 0; s < stats_.size(); ++s) {
-      scores[s] = marginOf(Tally::of(stats_[s]));
-      anyDoubt = anyDoubt || isInDoubt(scores[s]);
+      scores[s] = scoreOf(Areas::of(stats_[s]));
+      isAnyInDoubt = isAnyInDoubt || isInDoubt(scores[s]);
     }
-    return !(options_.steps.twins && options_.steps.floor != Floor::none && anyDoubt) || judgeCopies(scores);
+    const bool areTwinsJoined = options_.steps.twins && options_.steps.floor != Floor::none;
+    return !areTwinsJoined || !isAnyInDoubt || scoreTwins(scores);
   }
 
  private:
-  static bool isInDoubt(double margin) { return margin >= 1 / kDoubt && margin < kDoubt; }
+  static bool isInDoubt(double score) { return score >= 1 / kDoubt && score < kDoubt; }
 
-  /// How many times what is asked of it a tally reaches: it passes from 1 on.
-  [[nodiscard]] double marginOf(const Tally& tally) const {
-    const double coverage = times(tally.covered, static_cast<double>(options_.threshold) * tally.exposed);
-    if (options_.steps.floor == Floor::none) return coverage;
-    if (!(tally.covered > 0)) return 0;
-    const double ofItself = static_cast<double>(options_.minCovered) * tally.area;
-    if (options_.steps.floor == Floor::area) return std::min(coverage, times(tally.covered, ofItself));
-    // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
-    const double counted = tally.sunk * (tally.covered / tally.exposed);
-    // A part that is mostly hidden passes for what it is of the whole, if where it is exposed it is covered beyond
-    // doubt.
-    const double ofAll = std::min(
-        times(counted, static_cast<double>(options_.steps.minOfAll) * allCovered_ * tally.segments),
-        times(static_cast<double>(options_.steps.maxUncovered) * tally.exposed, tally.exposed - tally.covered));
-    return std::min(coverage, std::max(times(counted, ofItself), ofAll));
+  [[nodiscard]] double scoreOf(const Areas& areas) const {
+    const double coverage = ratio(areas.covered, static_cast<double>(options_.threshold) * areas.exposed);
+    const Steps& steps = options_.steps;
+    if (steps.floor == Floor::none) return coverage;
+    if (!(areas.covered > 0)) return 0;
+    const double ofItself = static_cast<double>(options_.minCovered) * areas.all;
+    if (steps.floor == Floor::area) return std::min(coverage, ratio(areas.covered, ofItself));
+    // What is meant to be painted is covered almost wherever it is exposed; an eye or a lamp in its hole is not.
+    const double counted = areas.depthWeighted * (areas.covered / areas.exposed);
+    // A segment that is mostly hidden is kept for its share of the whole, if it is clearly covered where it is exposed.
+    const double ofAll =
+        std::min(ratio(counted, static_cast<double>(steps.minOfAll) * allCovered_ * areas.segments),
+                 ratio(static_cast<double>(steps.maxUncovered) * areas.exposed, areas.exposed - areas.covered));
+    return std::min(coverage, std::max(ratio(counted, ofItself), ofAll));
   }
 
-  /// Judges copies that are in doubt together, so that twins do not fall on either side by accident.
-  bool judgeCopies(Array<double>& scores) const noexcept {
-    Array<Tally> together;  // By the first of the copies.
+  /// Gives twins in doubt the score of their areas together, so that they are not culled one by one by accident.
+  bool scoreTwins(Array<double>& scores) const noexcept {
+    Array<Areas> together;  // By the first of the twins.
     if (!together.reset(stats_.size())) return false;
-    std::fill(together.begin(), together.end(), Tally{});
-    const auto isDoubted = [&](std::size_t s) { return isInDoubt(marginOf(Tally::of(stats_[s]))); };
+    std::fill(together.begin(), together.end(), Areas{});
     for (std::size_t s = 0; s < stats_.size(); ++s) {
-      if (isDoubted(s)) together[stats_[s].twinOf].add(Tally::of(stats_[s]));
+      if (isInDoubt(scores[s])) together[stats_[s].twinOf].add(Areas::of(stats_[s]));
     }
     for (std::size_t s = 0; s < stats_.size(); ++s) {
-      if (isDoubted(s)) scores[s] = marginOf(together[stats_[s].twinOf]);
+      if (isInDoubt(scores[s])) scores[s] = scoreOf(together[stats_[s].twinOf]);
     }
     return true;
   }
@@ -102,29 +104,91 @@ class Verdicts {
   double allCovered_ = 0;
 };
 
-/// Step 7: finds which holes are meant for what fails behind them. Step 5″ before that, with `small` parts: lowers the
-/// scores of those that pass and that a hole is meant for.
-/// @param small  A part is small if less than this area of it is covered; 0: none is.
-void judgeHoles(std::span<const HoleShare> shares, std::span<const SegmentStats> stats, double small, Zones& out) {
-  std::fill(out.explainedHoles.begin(), out.explainedHoles.end(), std::uint8_t{0});
+/// Steps 5″ and 7: what the holes mean, given which segments are culled.
+class HoleJudge {
+ public:
+  HoleJudge(const ProjectionView& projection, Zones& out) noexcept
+      : shares_(projection.holeShares), stats_(projection.segmentStats), out_(out) {}
+
+  /// Finds which holes are explained by culled segments behind them.
+  void explainHoles() const noexcept { judge(0); }
+  /// The same, and lowers the scores of segments with less than `small` covered area that a hole is meant for.
+  void judgeContents(double small) const noexcept { judge(small); }
+
+ private:
+  [[nodiscard]] bool isCulled(std::size_t s) const { return out_.culledBy[s] != CulledBy::none; }
+
+  void judge(double small) const noexcept {
+    std::fill(out_.explainedHoles.begin(), out_.explainedHoles.end(), std::uint8_t{0});
+    for (std::size_t i = 0, end = 0; i < shares_.size(); i = end) {
+      double culled = 0;
+      double uncovered = 0;
+      for (; end < shares_.size() && shares_[end].hole == shares_[i].hole; ++end) {
+        const HoleShare& share = shares_[end];
+        (isCulled(share.segment) ? culled : uncovered) +=
+            isCulled(share.segment) ? share.exposedArea : share.uncoveredArea;
+      }
+      const bool isExplained = culled > 0 && culled >= kExplaining * uncovered;
+      out_.explainedHoles[shares_[i].hole] = isExplained;
+      for (const HoleShare& share : shares_.subspan(i, end - i)) {
+        const SegmentStats& segment = stats_[share.segment];
+        if (isCulled(share.segment) || segment.coveredArea >= small) continue;
+        double& score = out_.scores[share.segment];
+        score = std::min(score, ratio(kHidden * (segment.exposedArea + share.hiddenArea), share.hiddenArea));
+        if (isExplained || share.uncoveredArea < kUncoveredOfHole * uncovered) continue;
+        score = std::min(score, ratio(kUncoveredOfSegment * segment.exposedArea, share.uncoveredArea));
+      }
+    }
+  }
+
+  std::span<const HoleShare> shares_;
+  std::span<const SegmentStats> stats_;
+  Zones& out_;
+};
+
+/// Steps 5 and 5″: which segments are culled, and which holes that explains.
+Status cullSegments(const ProjectionView& projection, const TransferOptions& options, Zones& out) {
+  const std::span<const SegmentStats> stats = projection.segmentStats;
+  Array<Lock> locks;
+  if (const Status status = resolveLocks(options.locks, stats, locks); !status.ok()) return status;
+  const Scoring scoring(stats, options);
+  if (!scoring.score(out.scores)) return {Code::outOfMemory};
+  const auto lockOf = [&](std::size_t s) { return locks.empty() ? Lock::automatic : locks[s]; };
+  for (std::size_t s = 0; s < stats.size(); ++s) {
+    switch (lockOf(s)) {
+      case Lock::automatic: out.culledBy[s] = out.scores[s] < 1 ? CulledBy::coverage : CulledBy::none; break;
+      case Lock::keep: out.culledBy[s] = CulledBy::none; break;
+      case Lock::exclude: out.culledBy[s] = CulledBy::lock; break;
+    }
+  }
+  const HoleJudge holes(projection, out);
+  if (options.steps.holeContents) {
+    holes.judgeContents(kSmallSegment * scoring.allCovered());
+    for (std::size_t s = 0; s < stats.size(); ++s) {
+      const bool isLowered = out.culledBy[s] == CulledBy::none && out.scores[s] < 1;
+      if (isLowered && lockOf(s) == Lock::automatic) out.culledBy[s] = CulledBy::hole;
+    }
+  }
+  holes.explainHoles();
+  return {};
+}
+
+/// Gives every vertex its zone, as its segment and its recovery have it.
+void writeZones(const ProjectionView& projection, Zones& out) {
+  const std::span<const std::uint32_t> segments = projection.segments;
+  const std::span<const std::uint32_t> recovery = projection.recovery;
   const auto isCulled = [&](std::size_t s) { return out.culledBy[s] != CulledBy::none; };
-  for (std::size_t i = 0, end = 0; i < shares.size(); i = end) {
-    double failing = 0;
-    double uncovered = 0;
-    for (; end < shares.size() && shares[end].hole == shares[i].hole; ++end) {
-      (isCulled(shares[end].segment) ? failing : uncovered) +=
-          isCulled(shares[end].segment) ? shares[end].exposedArea : shares[end].uncoveredArea;
-    }
-    const bool isExplained = failing > 0 && failing >= kExplaining * uncovered;
-    out.explainedHoles[shares[i].hole] = isExplained;
-    for (const HoleShare& share : shares.subspan(i, end - i)) {
-      const SegmentStats& part = stats[share.segment];
-      if (isCulled(share.segment) || part.coveredArea >= small) continue;
-      double& margin = out.scores[share.segment];
-      margin = std::min(margin, times(kHidden * (part.exposedArea + share.hiddenArea), share.hiddenArea));
-      if (isExplained || share.uncoveredArea < kMuchOfHole * uncovered) continue;
-      margin = std::min(margin, times(kBare * part.exposedArea, share.uncoveredArea));
-    }
+  for (std::size_t v = 0; v < projection.zones.size(); ++v) {
+    // Without a branch, which is unpredictable here: only cosmetic, which is 0, is less than the 1 of a culled segment.
+    const auto zone = static_cast<unsigned>(projection.zones[v]);
+    const unsigned culled = unsigned{isCulled(segments[v])} > zone ? static_cast<unsigned>(Zone::culled) : 0;
+    out.zones[v] = static_cast<Zone>(zone | culled);
+  }
+  for (std::size_t v = 0; v < recovery.size(); ++v) {
+    if (recovery[v] == Recovery::never || isCulled(segments[v])) continue;
+    const std::size_t hole = recovery[v] - Recovery::throughHole;
+    const bool isExplained = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
+    if (recovery[v] == Recovery::always || isExplained) out.zones[v] = Zone::cosmetic;
   }
 }
 
@@ -133,15 +197,16 @@ void judgeHoles(std::span<const HoleShare> shares, std::span<const SegmentStats>
 void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indices, const TransferOptions& options,
                   Array<std::uint8_t>& cosmetic) noexcept {
   static_assert(static_cast<int>(Zone::cosmetic) == 0 && static_cast<int>(Zone::occluded) == 1);
-  // The depth buffer hides what is occluded of a triangle. Squares of the others are too much for any sum.
+  // Summing squares takes no branch: up to two occluded corners give at most 2, any other NCZ corner at least 4. The
+  // occluded part of a painted triangle is hidden by the depth buffer.
   const int most = options.steps.partialTriangles ? 2 : 0;
   const Zone* zone = zones.data();
   const std::uint32_t* index = indices.data();
-  for (std::uint8_t& itsCosmetic : cosmetic) {
+  for (std::uint8_t& isCosmetic : cosmetic) {
     const auto squared = [&](std::size_t corner) {
       return static_cast<int>(zone[index[corner]]) * static_cast<int>(zone[index[corner]]);
     };
-    itsCosmetic = squared(0) + squared(1) + squared(2) <= most;
+    isCosmetic = squared(0) + squared(1) + squared(2) <= most;
     index += 3;
   }
 }
@@ -149,43 +214,15 @@ void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indic
 Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices,
                 const TransferOptions& options, Zones& out) noexcept {
   if (const Status status = checkOptions(options, Stage::classify); !status.ok()) return status;
-  const auto& [zones, segments, stats, recovery, shares] = projection;
-  Array<Lock> locks;
-  if (const Status status = resolveLocks(options.locks, stats, locks); !status.ok()) return status;
-  const std::size_t triangles = indices.size() / 3;
-  if (!out.zones.reset(zones.size()) || !out.cosmeticTriangles.reset(triangles) || !out.culledBy.reset(stats.size()) ||
-      !out.scores.reset(stats.size()) ||
+  const std::size_t segmentCount = projection.segmentStats.size();
+  const std::span<const HoleShare> shares = projection.holeShares;
+  if (!out.zones.reset(projection.zones.size()) || !out.cosmeticTriangles.reset(indices.size() / 3) ||
+      !out.culledBy.reset(segmentCount) || !out.scores.reset(segmentCount) ||
       !out.explainedHoles.reset(shares.empty() ? 0 : std::size_t{shares.back().hole} + 1)) {
     return {Code::outOfMemory};
   }
-
-  const Verdicts verdicts(stats, options);
-  if (!verdicts.decide(out.scores)) return {Code::outOfMemory};
-  const auto isLocked = [&](std::size_t s) { return !locks.empty() && locks[s] != Lock::automatic; };
-  for (std::size_t s = 0; s < stats.size(); ++s) {
-    out.culledBy[s] = out.scores[s] < 1 ? CulledBy::coverage : CulledBy::none;
-    if (isLocked(s)) out.culledBy[s] = locks[s] == Lock::exclude ? CulledBy::lock : CulledBy::none;
-  }
-  const auto isCulled = [&](std::size_t s) { return out.culledBy[s] != CulledBy::none; };
-  if (options.steps.holeContents) {
-    judgeHoles(shares, stats, kSmallPart * verdicts.allCovered(), out);
-    for (std::size_t s = 0; s < stats.size(); ++s) {
-      if (!isCulled(s) && out.scores[s] < 1 && !isLocked(s)) out.culledBy[s] = CulledBy::hole;
-    }
-  }
-  judgeHoles(shares, stats, 0, out);
-  for (std::size_t v = 0; v < zones.size(); ++v) {
-    // As numbers, without a branch: cosmetic is 0, less than the 1 of a segment that is culled.
-    const auto zone = static_cast<unsigned>(zones[v]);
-    const unsigned becomes = unsigned{isCulled(segments[v])} > zone ? static_cast<unsigned>(Zone::culled) : 0;
-    out.zones[v] = static_cast<Zone>(zone | becomes);
-  }
-  for (std::size_t v = 0; v < recovery.size(); ++v) {
-    if (recovery[v] == Recovery::never || isCulled(segments[v])) continue;
-    const std::size_t hole = recovery[v] - Recovery::throughHole;
-    const bool isExplained = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
-    if (recovery[v] == Recovery::always || isExplained) out.zones[v] = Zone::cosmetic;
-  }
+  if (const Status status = cullSegments(projection, options, out); !status.ok()) return status;
+  writeZones(projection, out);
   markCosmetic(out.zones, indices, options, out.cosmeticTriangles);
   return {};
 }

@@ -1,13 +1,16 @@
-#include "steps/areas.hpp"
-#include "steps/steps.hpp"
+#include "steps/depth.hpp"
+
+#include <algorithm>
+
+#include "base/area_unit.hpp"
 
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 5′: no depth below this share of the diagonal counts as deep.
-constexpr double kNotDeep = 0.01;
+/// docs/method.md, step 5′: a depth up to this share of the diagonal is never too deep.
+constexpr double kShallow = 0.01;
 
-/// Of what is covered: its area, and its area times its depth.
+/// Of covered points: their area, and the sum of their areas times depths.
 struct Covered {
   std::int64_t area = 0, depth = 0;
   void add(Covered other) {
@@ -16,67 +19,80 @@ struct Covered {
   }
 };
 
-}  // namespace
-
-bool findDepthWeightedAreas(const Points& points, const Cage& cage, const HalfEdges& edges,
-                            const InteriorSamples& samples, const PointAreas& areas, const Units& units,
-                            const PointResults& results, Arena& arena, Array<SegmentStats>& stats) noexcept {
-  const Arena::Mark mark = arena.mark();
-  auto* inTriangles = arena.allocate<Covered>(cage.count);
-  auto* aroundVertices = arena.allocate<Covered>(edges.vertexCount);
-  auto* usual = arena.allocate<double>(cage.count);
-  auto* sunk = arena.allocate<std::int64_t>(stats.size());
-  if (arena.failed()) return false;
-
-  // Depths as shares of what none exceeds, so that whole numbers have room for their sums.
-  const double deepest = 2.0 * static_cast<double>(units.reach);
-  const AreaUnit unit(points.triangleCount, units.diagonal);
-  const auto eachCovered = [&](auto call) {
-    for (std::uint32_t i = 0; i < points.count; ++i) {
-      if (results.zones[i] != Zone::cosmetic) continue;
-      call(results.segments[i], results.triangles[i], static_cast<double>(results.distances[i]),
-           areas.interiorSamples[i]);
-    }
-    for (std::uint32_t i = 0; i < samples.points.count; ++i) {
-      if (samples.results.zones[i] != Zone::cosmetic) continue;
-      const std::uint32_t t = samples.triangles[i / 4];
-      call(results.segments[points.triangles[std::size_t{3} * t]], samples.results.triangles[i],
-           static_cast<double>(samples.results.distances[i]), unit.quarter(points.doubleAreas[t]));
-    }
-  };
-  // What is usual about each triangle of the cage: in those around its corners.
-  std::fill(inTriangles, inTriangles + cage.count, Covered{});
-  eachCovered([&](std::uint32_t, std::uint32_t slot, double depth, std::int64_t area) {
-    inTriangles[slot].add({area, static_cast<std::int64_t>(static_cast<double>(area) * (depth / deepest))});
-  });
-  std::fill(aroundVertices, aroundVertices + edges.vertexCount, Covered{});
-  const auto vertexAt = [&](std::uint32_t slot, std::size_t corner) {
-    return edges.starts[std::size_t{3} * slot + corner];
-  };
-  for (std::uint32_t slot = 0; slot < cage.count; ++slot) {
-    if (inTriangles[slot].area == 0) continue;
-    for (std::size_t k = 0; k < 3; ++k) aroundVertices[vertexAt(slot, k)].add(inTriangles[slot]);
+/// Calls for each covered point or interior sample.
+/// @param call  Takes its segment, its cage triangle, its depth and its area.
+template <typename Call>
+void eachCovered(const PointData& data, const InteriorSamples& samples, const AreaUnit& unit, Call call) {
+  const Points& points = data.points;
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    if (data.zones[i] != Zone::cosmetic) continue;
+    call(data.segments[i], data.cageTriangles[i], static_cast<double>(data.distances[i]), data.ownAreas[i]);
   }
-  for (std::uint32_t slot = 0; slot < cage.count; ++slot) {
+  for (std::uint32_t i = 0; i < samples.data.points.count; ++i) {
+    if (samples.data.zones[i] != Zone::cosmetic) continue;
+    const std::uint32_t t = samples.triangles[i / 4];
+    call(data.segments[points.triangles[std::size_t{3} * t]], samples.data.cageTriangles[i],
+         static_cast<double>(samples.data.distances[i]), unit.quarter(points.doubleAreas[t]));
+  }
+}
+
+/// Finds the typical depth under each cage triangle: the mean over what is covered by the triangles around its corners.
+/// @param ofTriangles        1 per cage triangle: what it covers.
+/// @param[out] typicalDepth  1 per cage triangle.
+void findTypicalDepths(const Scene& scene, const Covered* ofTriangles, double deepest, double* typicalDepth) {
+  const HalfEdges& halfEdges = scene.halfEdges;
+  const Arena::Scope scope(scene.arena);
+  auto* aroundVertices = scene.arena.allocate<Covered>(halfEdges.vertexCount);
+  if (scene.arena.failed()) return;
+  std::fill(aroundVertices, aroundVertices + halfEdges.vertexCount, Covered{});
+  const auto aroundCorner = [&](std::uint32_t t, std::size_t corner) -> Covered& {
+    return aroundVertices[halfEdges.starts[std::size_t{3} * t + corner]];
+  };
+  for (std::uint32_t t = 0; t < scene.cage.count; ++t) {
+    if (ofTriangles[t].area == 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) aroundCorner(t, k).add(ofTriangles[t]);
+  }
+  for (std::uint32_t t = 0; t < scene.cage.count; ++t) {
     double area = 0;
     double depth = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      area += static_cast<double>(aroundVertices[vertexAt(slot, k)].area);
-      depth += static_cast<double>(aroundVertices[vertexAt(slot, k)].depth);
+      area += static_cast<double>(aroundCorner(t, k).area);
+      depth += static_cast<double>(aroundCorner(t, k).depth);
     }
-    usual[slot] = std::max(area > 0 ? depth / area * deepest : 0.0, kNotDeep * units.diagonal);
+    typicalDepth[t] = std::max(area > 0 ? depth / area * deepest : 0.0, scene.length(kShallow));
   }
+}
 
-  std::fill(sunk, sunk + stats.size(), 0);
-  eachCovered([&](std::uint32_t segment, std::uint32_t slot, double depth, std::int64_t area) {
-    const double share = usual[slot] / std::max(depth, usual[slot]);
-    sunk[segment] +=
-        depth > usual[slot] ? static_cast<std::int64_t>(static_cast<double>(area) * (share * share)) : area;
+}  // namespace
+
+void weightByDepth(const Scene& scene, const PointData& data, const InteriorSamples& samples,
+                   Array<SegmentStats>& stats) noexcept {
+  Arena& arena = scene.arena;
+  const Arena::Scope scope(arena);
+  const std::uint32_t cageCount = scene.cage.count;
+  auto* ofTriangles = arena.allocate<Covered>(cageCount);
+  auto* typicalDepth = arena.allocate<double>(cageCount);
+  auto* weighted = arena.allocate<std::int64_t>(stats.size());
+  if (arena.failed()) return;
+
+  // Depths are summed as shares of a bound on all of them, so that 63 bits are enough.
+  const double deepest = 2.0 * static_cast<double>(scene.units.reach);
+  const AreaUnit unit(data.points.triangleCount, scene.units.diagonal);
+  std::fill(ofTriangles, ofTriangles + cageCount, Covered{});
+  eachCovered(data, samples, unit, [&](std::uint32_t, std::uint32_t t, double depth, std::int64_t area) {
+    ofTriangles[t].add({area, static_cast<std::int64_t>(static_cast<double>(area) * (depth / deepest))});
   });
-  const double toInput = 1.0 / units.scale / units.scale;
-  for (std::size_t s = 0; s < stats.size(); ++s) stats[s].depthWeightedArea = unit.area(sunk[s]) * toInput;
-  arena.rewind(mark);
-  return true;
+  findTypicalDepths(scene, ofTriangles, deepest, typicalDepth);
+  if (arena.failed()) return;
+
+  std::fill(weighted, weighted + stats.size(), 0);
+  eachCovered(data, samples, unit, [&](std::uint32_t segment, std::uint32_t t, double depth, std::int64_t area) {
+    const double share = typicalDepth[t] / std::max(depth, typicalDepth[t]);
+    weighted[segment] +=
+        depth > typicalDepth[t] ? static_cast<std::int64_t>(static_cast<double>(area) * (share * share)) : area;
+  });
+  const double toInput = scene.units.areaToInput();
+  for (std::size_t s = 0; s < stats.size(); ++s) stats[s].depthWeightedArea = unit.area(weighted[s]) * toInput;
 }
 
 }  // namespace cagecast

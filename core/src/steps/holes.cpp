@@ -1,102 +1,126 @@
+#include "steps/holes.hpp"
+
+#include <algorithm>
 #include <limits>
 #include <utility>
 
-#include "steps/areas.hpp"
-#include "steps/steps.hpp"
+#include "base/area_unit.hpp"
+#include "geometry/closest_point.hpp"
 
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 7: how far a point may overhang the loop of any hole, as a share of the diagonal and of the
-/// hole's, and of a hole that something else explains.
+/// docs/method.md, step 7: a point may overhang the boundary loop of any hole by the lesser of this share of the
+/// diagonal,
 constexpr double kOverhang = 0.005;
+/// and this share of the diagonal of the loop;
 constexpr double kOverhangOfHole = 0.05;
+/// and the loop of an explained hole by this share of the diagonal.
 constexpr double kExplainedOverhang = 0.03;
 
+constexpr std::uint32_t kNone = BoundaryLoops::kNone;
+
+/// A `HoleShare` with its areas in an `AreaUnit`.
 struct Share {
   std::uint32_t loop, segment;
   std::int64_t exposed, uncovered, hidden;
 };
 
-}  // namespace
+/// Whether a point takes part in the areas at holes: not if the target occludes it and the cage covers it as well, or
+/// nothing of its segment is covered.
+bool takesPart(const PointData& data, const Array<SegmentStats>& stats, std::uint32_t point) {
+  if (data.zones[point] != Zone::occluded) return true;
+  const bool isUnderCage =
+      data.cageDistances == nullptr || data.cageDistances[point] < std::numeric_limits<double>::infinity();
+  return !isUnderCage && stats[data.segments[point]].coveredArea > 0;
+}
 
-bool assignHoles(const Points& points, const Cage& cage, const BoundaryLoops& loops, const Units& units,
-                 const PointResults& results, const PointAreas& areas, const Array<SegmentStats>& stats, Arena& arena,
-                 std::uint32_t* recovery, Array<HoleShare>& shares) noexcept {
-  const auto segmentCount = static_cast<std::uint32_t>(stats.size());
-  const Arena::Mark mark = arena.mark();
-  auto* loopOf = arena.allocate<std::uint32_t>(points.count);
-  auto* atLoops = arena.allocate<std::uint32_t>(points.count);
-  auto* starts = arena.allocate<std::uint32_t>(std::size_t{loops.count} + 1);
-  auto* found = arena.allocate<Share>(points.count);
-  auto* shareOf = arena.allocate<std::uint32_t>(segmentCount);
-  if (arena.failed()) return false;
-
-  // Where the points lie that are not occluded, or not under the cage either, and what brings those back that are
-  // uncovered.
-  std::fill(starts, starts + loops.count + 1, 0u);
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    loopOf[i] = BoundaryLoops::kNone;
-    const std::uint32_t slot = results.triangles[i];
-    const bool isUncovered = results.zones[i] == Zone::uncovered;
-    if (isUncovered) recovery[i] = Recovery::always;
-    if (results.zones[i] == Zone::occluded) {
-      const bool isUnderCage =
-          results.cageDistances == nullptr || results.cageDistances[i] < std::numeric_limits<double>::infinity();
-      if (isUnderCage || !(stats[results.segments[i]].coveredArea > 0)) continue;
-    }
-    if (!loops.touches(slot)) continue;
-    const CageTriangle& t = cage.triangles[slot];
-    const Vec3 p = points.exactly(i);
-    const ClosestPoint place = closestPointOnTriangle(t, p);
-    const Vec3 q = positionOf(t, place);
-    const std::uint32_t loop = loops.at(t, slot, q, units.diagonal);
-    if (loop == BoundaryLoops::kNone) continue;
-    loopOf[i] = loop;
-    ++starts[loop];
-    if (!isUncovered) continue;
-    const Vec3 offset = p - q;
-    const double overhang = length(offset - dot(offset, t.normal.exact) * t.normal.exact);
-    const double little = std::min(kOverhang * units.diagonal, kOverhangOfHole * loops.boxes[loop].diagonal());
-    if (overhang > little) {
-      recovery[i] = overhang <= kExplainedOverhang * units.diagonal ? Recovery::throughHole + loop : Recovery::never;
-    }
+/// Finds the boundary loop that a point's closest point on the cage lies on.
+/// @param[in,out] recovery  Of an uncovered point: `always` before.
+std::uint32_t loopOfPoint(const Scene& scene, const PointData& data, std::uint32_t point, std::uint32_t& recovery) {
+  const BoundaryLoops& loops = scene.loops;
+  const std::uint32_t t = data.cageTriangles[point];
+  if (!loops.touches(t)) return kNone;
+  const CageTriangle& triangle = scene.cage.triangles[t];
+  const Vec3 p = data.points.exactly(point);
+  const Vec3 q = positionOf(triangle, closestPointOnTriangle(triangle, p));
+  const std::uint32_t loop = loops.at(triangle, t, q, scene.units.diagonal);
+  if (loop == kNone || data.zones[point] != Zone::uncovered) return loop;
+  const Vec3 offset = p - q;
+  const Vec3 normal = triangle.normal.exact;
+  const double overhang = length(offset - dot(offset, normal) * normal);
+  if (overhang > std::min(scene.length(kOverhang), kOverhangOfHole * loops.boxes[loop].diagonal())) {
+    recovery = overhang <= scene.length(kExplainedOverhang) ? Recovery::throughHole + loop : Recovery::never;
   }
+  return loop;
+}
 
-  // Rim by loop, what each segment has there.
-  std::uint32_t total = 0;
-  for (std::uint32_t loop = 0; loop <= loops.count; ++loop) total += std::exchange(starts[loop], total);
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    if (loopOf[i] != BoundaryLoops::kNone)
-      atLoops[starts[loopOf[i]]++] = i;  // A start becomes its end, the next one's start.
-  }
-  std::fill(shareOf, shareOf + segmentCount, 0u);
+/// Adds up, loop by loop, what each segment has there.
+/// @param atLoops     The points at loops, loop by loop.
+/// @param ends        1 per loop: where its points end.
+/// @param[out] found  Room for as many as there are points.
+/// @return How many there are.
+std::uint32_t sumShares(const Scene& scene, const PointData& data, std::span<const std::uint32_t> atLoops,
+                        std::span<const std::uint32_t> ends, std::span<Share> found) {
+  const Arena::Scope scope(scene.arena);
+  auto* shareOf = scene.arena.allocate<std::uint32_t>(found.size());  // By segment.
+  if (scene.arena.failed()) return 0;
+  std::fill(shareOf, shareOf + found.size(), 0u);
   std::uint32_t count = 0;
-  for (std::uint32_t loop = 0, i = 0; loop < loops.count; ++loop) {
+  for (std::uint32_t loop = 0, i = 0; loop < ends.size(); ++loop) {
     const std::uint32_t first = count;
-    for (; i < starts[loop]; ++i) {
+    for (; i < ends[loop]; ++i) {
       const std::uint32_t p = atLoops[i];
-      const std::uint32_t s = results.segments[p];
+      const std::uint32_t s = data.segments[p];
       // A share found at an earlier loop, or never, is not this one's.
       if (shareOf[s] < first || shareOf[s] >= count || found[shareOf[s]].segment != s) {
         shareOf[s] = count;
         found[count++] = {loop, s, 0, 0, 0};
       }
       Share& share = found[shareOf[s]];
-      (results.zones[p] == Zone::occluded ? share.hidden : share.exposed) += areas.all[p];
-      if (results.zones[p] == Zone::uncovered) share.uncovered += areas.all[p];
+      (data.zones[p] == Zone::occluded ? share.hidden : share.exposed) += data.areas[p];
+      if (data.zones[p] == Zone::uncovered) share.uncovered += data.areas[p];
     }
   }
-  if (!shares.reset(count)) return false;
-  const AreaUnit unit(points.triangleCount, units.diagonal);
-  const double toInput = 1.0 / units.scale / units.scale;
+  return count;
+}
+
+}  // namespace
+
+void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>& stats,
+                 Array<HoleShare>& shares) noexcept {
+  Arena& arena = scene.arena;
+  const Arena::Scope scope(arena);
+  const std::uint32_t pointCount = data.points.count;
+  const std::uint32_t loopCount = scene.loops.count;
+  auto* loopOf = arena.allocate<std::uint32_t>(pointCount);
+  auto* atLoops = arena.allocate<std::uint32_t>(pointCount);
+  auto* ends = arena.allocate<std::uint32_t>(loopCount);
+  auto* found = arena.allocate<Share>(pointCount);
+  if (arena.failed()) return;
+
+  std::fill(ends, ends + loopCount, 0u);
+  for (std::uint32_t i = 0; i < pointCount; ++i) {
+    if (data.zones[i] == Zone::uncovered) data.recovery[i] = Recovery::always;
+    loopOf[i] = takesPart(data, stats, i) ? loopOfPoint(scene, data, i, data.recovery[i]) : kNone;
+    if (loopOf[i] != kNone) ++ends[loopOf[i]];
+  }
+  // List the points loop by loop. Each entry of `ends` is first the start of its loop, and moves to its end.
+  std::uint32_t total = 0;
+  for (std::uint32_t loop = 0; loop < loopCount; ++loop) total += std::exchange(ends[loop], total);
+  for (std::uint32_t i = 0; i < pointCount; ++i) {
+    if (loopOf[i] != kNone) atLoops[ends[loopOf[i]]++] = i;
+  }
+  const std::uint32_t count = sumShares(scene, data, {atLoops, total}, {ends, loopCount}, {found, pointCount});
+  if (arena.failed() || !shares.reset(count)) return arena.fail();
+
+  const AreaUnit unit(data.points.triangleCount, scene.units.diagonal);
+  const double toInput = scene.units.areaToInput();
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto& [loop, segment, exposed, uncovered, hidden] = found[i];
     shares[i] = {loop, segment, unit.summableArea(exposed) * toInput, unit.summableArea(uncovered) * toInput,
                  unit.summableArea(hidden) * toInput};
   }
-  arena.rewind(mark);
-  return true;
 }
 
 }  // namespace cagecast

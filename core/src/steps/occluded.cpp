@@ -1,32 +1,35 @@
-#include "steps/steps.hpp"
+#include "steps/occluded.hpp"
+
+#include <algorithm>
+
+#include "base/tolerances.hpp"
+#include "steps/normal_ray.hpp"
 
 namespace cagecast {
 
-bool markOccluded(const Points& points, const Cage& cage, const RayTree& target, const Units& units, double reach,
-                  Arena& arena, PointResults& results) noexcept {
-  const Arena::Mark mark = arena.mark();
+void markOccluded(const Scene& scene, PointData& data) noexcept {
+  Arena& arena = scene.arena;
+  const Arena::Scope scope(arena);
   auto* rays = arena.allocate<Ray>(HitSearch::kMostRays);
   auto* hit = arena.allocate<bool>(HitSearch::kMostRays);
   // Triangles at the point itself are hit at distance 0, exactly, and so do not count.
-  HitSearch search(target, kRayStart * units.diagonal, arena);
-  if (arena.failed()) return false;
-  // In variables of this function: a ray that is written might change all else, as far as a compiler knows.
-  const Points from = points;
-  const Cage onto = cage;
-  const PointResults of = results;
-  for (std::uint32_t begin = 0; begin < points.count; begin += HitSearch::kMostRays) {
-    const std::uint32_t count = std::min(HitSearch::kMostRays, points.count - begin);
+  HitSearch search(scene.targetTree, scene.length(kRayStart), arena);
+  if (arena.failed()) return;
+  const double reach = scene.length(static_cast<double>(scene.options.occlusionReach));
+  // Copies on the stack: their pointers need no reload after each store to a ray.
+  const PointData of = data;
+  const Cage cage = scene.cage;
+  for (std::uint32_t begin = 0; begin < of.points.count; begin += HitSearch::kMostRays) {
+    const std::uint32_t count = std::min(HitSearch::kMostRays, of.points.count - begin);
     for (std::uint32_t i = 0; i < count; ++i) {
-      setRay(rays[i], from, onto, of, begin + i);
+      setNormalRay(rays[i], of, cage, begin + i);
       if (of.cageDistances != nullptr) rays[i].end = of.cageDistances[begin + i] + reach;
     }
     search.search(rays, count, hit);
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (hit[i]) results.zones[begin + i] = Zone::occluded;
+      if (hit[i]) of.zones[begin + i] = Zone::occluded;
     }
   }
-  arena.rewind(mark);
-  return true;
 }
 
 }  // namespace cagecast

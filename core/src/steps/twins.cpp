@@ -1,76 +1,109 @@
+#include "steps/twins.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "base/heap_sort.hpp"
-#include "steps/steps.hpp"
 
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 5′: how much larger a copy may be, and how much its extent may differ.
-constexpr double kSameArea = 0.01;
-constexpr double kSameExtent = 0.02;
-/// docs/method.md, step 5′: parts of equal area and another shape may lie between twins; not many do.
-constexpr std::uint32_t kRuns = 8;
+/// docs/method.md, step 5′: twins have equally many points; the area of the larger exceeds that of the smaller by no
+/// more than this share,
+constexpr double kAreaTolerance = 0.01;
+/// and their extents differ by no more than this share.
+constexpr double kExtentTolerance = 0.02;
+/// Segments are compared in the order of their areas. Up to so many kinds of equal area and another shape may come
+/// between twins.
+constexpr std::uint32_t kMostKinds = 8;
 
-}  // namespace
+/// Segments in an order in which twins are close together: by points, area and number.
+class Order {
+ public:
+  Order(const Array<SegmentStats>& stats, Arena& arena) noexcept
+      : stats_(stats), segments_(arena.allocate<std::uint64_t>(stats.size())) {
+    if (arena.failed()) return;
+    for (std::uint32_t s = 0; s < count(); ++s) segments_[s] = s;
+    heapSort(segments_, segments_ + count(), [&](std::uint64_t s, std::uint64_t t) {
+      const SegmentStats& a = stats[static_cast<std::uint32_t>(s)];
+      const SegmentStats& b = stats[static_cast<std::uint32_t>(t)];
+      return std::tie(a.points, a.area, s) < std::tie(b.points, b.area, t);
+    });
+  }
+  [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(stats_.size()); }
+  [[nodiscard]] std::uint32_t operator[](std::uint32_t i) const { return static_cast<std::uint32_t>(segments_[i]); }
 
-bool findTwins(const Points& points, const PointResults& results, Arena& arena, Array<SegmentStats>& stats) noexcept {
-  const Arena::Mark mark = arena.mark();
-  const auto count = static_cast<std::uint32_t>(stats.size());
-  auto* centres = arena.allocate<Vec3>(count);
-  auto* extents = arena.allocate<double>(count);       // Sums of squared distances of the points from their mean.
-  auto* order = arena.allocate<std::uint64_t>(count);  // Segments.
-  auto* shares = arena.allocate<double>(count);        // Of a point in their mean.
-  auto* runs = arena.allocate<std::uint32_t>(count);   // By their first.
-  auto* isAlone = arena.allocate<bool>(count);         // With so many points: it has no copy, and needs no extent.
-  auto* list = arena.allocate<std::uint32_t>(points.count);  // Points of the others.
-  if (arena.failed()) return false;
-  for (std::uint32_t s = 0; s < count; ++s) order[s] = s;
-  heapSort(order, order + count, [&](std::uint64_t s, std::uint64_t t) {
-    const SegmentStats& a = stats[static_cast<std::uint32_t>(s)];
-    const SegmentStats& b = stats[static_cast<std::uint32_t>(t)];
-    return std::tie(a.points, a.area, s) < std::tie(b.points, b.area, t);
-  });
-  const auto at = [order](std::uint32_t i) { return static_cast<std::uint32_t>(order[i]); };
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const auto isAsMany = [&](std::uint32_t j) { return j < count && stats[at(j)].points == stats[at(i)].points; };
-    isAlone[at(i)] = !isAsMany(i - 1) && !isAsMany(i + 1);
+  /// Whether no other segment has as many points as segment i of the order.
+  [[nodiscard]] bool isAlone(std::uint32_t i) const {
+    const auto hasAsMany = [&](std::uint32_t j) { return stats_[(*this)[j]].points == stats_[(*this)[i]].points; };
+    return !(i > 0 && hasAsMany(i - 1)) && !(i + 1 < count() && hasAsMany(i + 1));
   }
 
+ private:
+  const Array<SegmentStats>& stats_;
+  std::uint64_t* segments_;
+};
+
+/// Finds the extents of segments: sums of the squared distances of the points from their mean.
+/// @param isAlone       1 per segment: whether its extent is not needed.
+/// @param[out] extents  1 per segment.
+void findExtents(const Scene& scene, const PointData& data, const Array<SegmentStats>& stats, const bool* isAlone,
+                 double* extents) {
+  Arena& arena = scene.arena;
+  const Points& points = data.points;
+  const Arena::Scope scope(arena);
+  const std::size_t count = stats.size();
+  auto* centres = arena.allocate<Vec3>(count);
+  auto* shares = arena.allocate<double>(count);                // Of a point in the mean of its segment.
+  auto* listed = arena.allocate<std::uint32_t>(points.count);  // The points of those segments.
+  if (arena.failed()) return;
   for (std::uint32_t s = 0; s < count; ++s) {
     shares[s] = 1.0 / stats[s].points;
     centres[s] = {0, 0, 0};
     extents[s] = 0;
   }
-  // Listed first: where they begin and end nobody can guess.
-  std::uint32_t listed = 0;
+  std::uint32_t listedCount = 0;
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    list[listed] = i;
-    listed += !isAlone[results.segments[i]];
+    listed[listedCount] = i;
+    listedCount += !isAlone[data.segments[i]];
   }
   const auto eachPoint = [&](auto call) {
-    for (std::uint32_t i = 0; i < listed; ++i) call(results.segments[list[i]], Vec3::from(points.at(list[i])));
+    for (std::uint32_t i = 0; i < listedCount; ++i) call(data.segments[listed[i]], Vec3::from(points.at(listed[i])));
   };
   eachPoint([&](std::uint32_t s, Vec3 p) { centres[s] = centres[s] + shares[s] * p; });
   eachPoint([&](std::uint32_t s, Vec3 p) { extents[s] += dot(p - centres[s], p - centres[s]); });
+}
 
-  std::uint32_t runCount = 0;
+}  // namespace
+
+void findTwins(const Scene& scene, const PointData& data, Array<SegmentStats>& stats) noexcept {
+  Arena& arena = scene.arena;
+  const Arena::Scope scope(arena);
+  const Order order(stats, arena);
+  const std::uint32_t count = order.count();
+  auto* extents = arena.allocate<double>(count);
+  auto* isAlone = arena.allocate<bool>(count);
+  auto* kinds = arena.allocate<std::uint32_t>(count);  // The first segment of each kind.
+  if (arena.failed()) return;
+  for (std::uint32_t i = 0; i < count; ++i) isAlone[order[i]] = order.isAlone(i);
+  findExtents(scene, data, stats, isAlone, extents);
+  if (arena.failed()) return;
+
+  std::uint32_t kindCount = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t s = at(i);
-    const auto isLike = [&](std::uint32_t first) {
-      return stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
-             std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];
+    const std::uint32_t s = order[i];
+    const auto isTwinOf = [&](std::uint32_t first) {
+      return stats[s].points == stats[first].points && stats[s].area <= (1 + kAreaTolerance) * stats[first].area &&
+             std::abs(extents[s] - extents[first]) <= kExtentTolerance * extents[first];
     };
-    const std::uint32_t oldest = runCount - std::min(kRuns, runCount);
-    std::uint32_t run = runCount;
-    while (run > oldest && !isLike(runs[run - 1])) --run;
-    if (run == oldest) runs[runCount++] = s;
-    stats[s].twinOf = run == oldest ? s : runs[run - 1];
+    const std::uint32_t oldest = kindCount - std::min(kMostKinds, kindCount);
+    std::uint32_t kind = kindCount;
+    while (kind > oldest && !isTwinOf(kinds[kind - 1])) --kind;
+    const bool isNew = kind == oldest;
+    if (isNew) kinds[kindCount++] = s;
+    stats[s].twinOf = isNew ? s : kinds[kind - 1];
   }
-  arena.rewind(mark);
-  return true;
 }
 
 }  // namespace cagecast

@@ -1,73 +1,78 @@
+#include "steps/uncovered.hpp"
+
+#include <algorithm>
 #include <limits>
 
-#include "steps/steps.hpp"
+#include "base/tolerances.hpp"
+#include "geometry/closest_point.hpp"
+#include "steps/normal_ray.hpp"
 
 namespace cagecast {
 namespace {
 
-/// Sends the rays of the points that a predicate picks to the cage.
-/// @param take  Takes a point and its ray, after it was sent, and whether it hit.
-template <typename Picks, typename Take>
-bool sendToCage(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, HitSearch::Find find,
-                Arena& arena, const PointResults& results, Picks picks, Take take) {
-  const Arena::Mark mark = arena.mark();
+/// Sends the rays of some points to the cage.
+/// @param isWanted  Takes a point.
+/// @param take      Takes a point, its ray after the search, and whether the ray hit the cage.
+template <typename IsWanted, typename Take>
+void sendToCage(const Scene& scene, const PointData& data, HitSearch::Find find, IsWanted isWanted, Take take) {
+  Arena& arena = scene.arena;
+  const Arena::Scope scope(arena);
   auto* rays = arena.allocate<Ray>(HitSearch::kMostRays);
-  auto* ofRay = arena.allocate<std::uint32_t>(HitSearch::kMostRays);
+  auto* pointOfRay = arena.allocate<std::uint32_t>(HitSearch::kMostRays);
   auto* hit = arena.allocate<bool>(HitSearch::kMostRays);
-  HitSearch search(tree.rays, -kRayStart * units.diagonal, arena);
-  if (arena.failed()) return false;
+  HitSearch search(scene.cageTree.rays, -scene.length(kRayStart), arena);
+  if (arena.failed()) return;
   std::uint32_t count = 0;
   const auto send = [&] {
     search.search(rays, count, hit, find);
-    for (std::uint32_t r = 0; r < count; ++r) take(ofRay[r], rays[r], hit[r]);
+    for (std::uint32_t r = 0; r < count; ++r) take(pointOfRay[r], rays[r], hit[r]);
     count = 0;
   };
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    if (!picks(i)) continue;
-    ofRay[count] = i;
-    setRay(rays[count++], points, cage, results, i);
+  for (std::uint32_t i = 0; i < data.points.count; ++i) {
+    if (!isWanted(i)) continue;
+    pointOfRay[count] = i;
+    setNormalRay(rays[count++], data, scene.cage, i);
     if (count == HitSearch::kMostRays) send();
   }
   send();
-  arena.rewind(mark);
-  return true;
+}
+
+/// Step 3′: whether a point is a little outside the cage, and not at a boundary loop.
+bool pokesThrough(const Scene& scene, const PointData& data, std::uint32_t point) {
+  const std::uint32_t t = data.cageTriangles[point];
+  const CageTriangle& triangle = scene.cage.triangles[t];
+  const ClosestPoint place = closestPointOnTriangle(triangle, data.points.exactly(point));
+  return place.distance <= scene.length(static_cast<double>(scene.options.pokeThrough)) && place.height > 0 &&
+         scene.loops.at(triangle, t, positionOf(triangle, place), scene.units.diagonal) == BoundaryLoops::kNone;
 }
 
 }  // namespace
 
-bool findCageDistances(const Points& points, const Cage& cage, const CageTree& tree, const Units& units, Arena& arena,
-                       PointResults& results) noexcept {
-  return sendToCage(
-      points, cage, tree, units, HitSearch::Find::nearest, arena, results,
-      [&](std::uint32_t i) { return !results.meetsCage[i]; },
+void findCageDistances(const Scene& scene, PointData& data) noexcept {
+  if (data.cageDistances == nullptr || scene.arena.failed()) return;
+  sendToCage(
+      scene, data, HitSearch::Find::nearest, [&](std::uint32_t i) { return !data.meetsCage[i]; },
       [&](std::uint32_t i, const Ray& ray, bool hit) {
-        results.meetsCage[i] = hit;
-        results.cageDistances[i] = hit ? std::max(0.0, ray.end) : std::numeric_limits<double>::infinity();
+        data.meetsCage[i] = hit;
+        data.cageDistances[i] = hit ? std::max(0.0, ray.end) : std::numeric_limits<double>::infinity();
       });
 }
 
-bool markUncovered(const Points& points, const Cage& cage, const CageTree& tree, const BoundaryLoops& loops,
-                   const Units& units, double pokeThrough, Arena& arena, PointResults& results) noexcept {
-  const auto pokesThrough = [&](std::uint32_t i) {
-    const std::uint32_t slot = results.triangles[i];
-    const CageTriangle& t = cage.triangles[slot];
-    const Vec3 p = points.exactly(i);
-    const ClosestPoint place = closestPointOnTriangle(t, p);
-    return place.distance <= pokeThrough && place.height > 0 &&
-           loops.at(t, slot, positionOf(t, place), units.diagonal) == BoundaryLoops::kNone;
-  };
+void markUncovered(const Scene& scene, PointData& data) noexcept {
+  if (scene.arena.failed()) return;
+  const bool canPoke = scene.options.pokeThrough > 0;
   const auto mark = [&](std::uint32_t i, bool hit) {
-    if (!hit && !(pokeThrough > 0 && pokesThrough(i))) results.zones[i] = Zone::uncovered;
+    if (!hit && !(canPoke && pokesThrough(scene, data, i))) data.zones[i] = Zone::uncovered;
   };
-  if (results.cageDistances != nullptr) {  // The rays have been sent.
-    for (std::uint32_t i = 0; i < points.count; ++i) {
-      if (results.zones[i] == Zone::cosmetic) mark(i, results.meetsCage[i]);
+  if (data.cageDistances != nullptr) {  // `findCageDistances` has sent the rays.
+    for (std::uint32_t i = 0; i < data.points.count; ++i) {
+      if (data.zones[i] == Zone::cosmetic) mark(i, data.meetsCage[i]);
     }
-    return true;
+    return;
   }
-  return sendToCage(
-      points, cage, tree, units, HitSearch::Find::any, arena, results,
-      [&](std::uint32_t i) { return results.zones[i] == Zone::cosmetic && !results.meetsCage[i]; },
+  sendToCage(
+      scene, data, HitSearch::Find::any,
+      [&](std::uint32_t i) { return data.zones[i] == Zone::cosmetic && !data.meetsCage[i]; },
       [&](std::uint32_t i, const Ray&, bool hit) { mark(i, hit); });
 }
 

@@ -1,0 +1,61 @@
+#include <algorithm>
+
+#include "base/area_unit.hpp"
+#include "steps/segments.hpp"
+
+namespace cagecast {
+namespace {
+
+/// Areas of a segment, in an `AreaUnit`.
+struct Sums {
+  std::int64_t ofZone[4];
+  std::int64_t rounding;  ///< What its interior samples have less than the corners they stand for.
+
+  void add(Zone zone, std::int64_t area) { ofZone[static_cast<std::size_t>(zone)] += area; }
+  [[nodiscard]] std::int64_t of(Zone zone) const { return ofZone[static_cast<std::size_t>(zone)]; }
+};
+
+}  // namespace
+
+void sumAreas(const Scene& scene, const InteriorSamples& samples, PointData& data,
+              Array<SegmentStats>& stats) noexcept {
+  Arena& arena = scene.arena;
+  const Points points = data.points;
+  auto* const all = data.areas = arena.allocate<std::int64_t>(points.count);
+  auto* const own = data.ownAreas = samples.triangleCount > 0 ? arena.allocate<std::int64_t>(points.count) : all;
+  const Arena::Scope scope(arena);
+  auto* sums = arena.allocate<Sums>(stats.size());
+  if (arena.failed()) return;
+  std::fill(sums, sums + stats.size(), Sums{});
+  std::fill(all, all + points.count, 0);
+  const AreaUnit unit(points.triangleCount, scene.units.diagonal);
+  for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
+    const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+    const std::int64_t third = unit.third(points.doubleAreas[t]);
+    for (int i = 0; i < 3; ++i) all[corner[i]] += third;
+  }
+  if (samples.triangleCount > 0) std::copy(all, all + points.count, own);
+  for (std::uint32_t i = 0; i < samples.triangleCount; ++i) {
+    const std::uint32_t t = samples.triangles[i];
+    const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
+    const Zone* zones = samples.data.zones + std::size_t{4} * i;
+    const std::int64_t third = unit.third(points.doubleAreas[t]);
+    const std::int64_t quarter = unit.quarter(points.doubleAreas[t]);
+    Sums& sum = sums[data.segments[corner[0]]];
+    for (int k = 0; k < 3; ++k) own[corner[k]] -= third;
+    for (int k = 0; k < 4; ++k) sum.add(zones[k], quarter);
+    sum.rounding += 3 * third - 4 * quarter;
+  }
+  for (std::uint32_t i = 0; i < points.count; ++i) sums[data.segments[i]].add(data.zones[i], own[i]);
+
+  const double toInput = scene.units.areaToInput();
+  for (std::size_t s = 0; s < stats.size(); ++s) {
+    const std::int64_t covered = sums[s].of(Zone::cosmetic);
+    const std::int64_t exposed = covered + sums[s].of(Zone::uncovered);
+    stats[s].area = unit.area(exposed + sums[s].of(Zone::occluded) + sums[s].rounding) * toInput;
+    stats[s].exposedArea = unit.area(exposed) * toInput;
+    stats[s].coveredArea = stats[s].depthWeightedArea = unit.area(covered) * toInput;
+  }
+}
+
+}  // namespace cagecast

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "cagecast/array.hpp"
+#include "steps/point_data.hpp"
+#include "steps/scene.hpp"
+
+namespace cagecast {
+
+/// Step 7: finds for every uncovered point whether it is restored, and which hole that depends on (`data.recovery`);
+/// and what part of which segment lies at which hole.
+/// @param[out] shares  Ordered by hole.
+void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>& stats,
+                 Array<HoleShare>& shares) noexcept;
+
+}  // namespace cagecast

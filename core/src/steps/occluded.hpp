@@ -1,0 +1,11 @@
+#pragma once
+
+#include "steps/point_data.hpp"
+#include "steps/scene.hpp"
+
+namespace cagecast {
+
+/// Step 2: marks the points over which the target itself lies. Step 2′: only up to `occlusionReach` beyond the cage.
+void markOccluded(const Scene& scene, PointData& data) noexcept;
+
+}  // namespace cagecast

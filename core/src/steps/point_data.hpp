@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "base/arena.hpp"
+#include "cagecast/options.hpp"
+#include "cagecast/result.hpp"
+#include "input/weld.hpp"
+
+namespace cagecast {
+
+/// Points on the target, and what the steps find out about them. They are the welded vertices, or the interior samples
+/// of step 4′. Every array has one entry per point; lengths are scaled.
+struct PointData {
+  PointData() noexcept = default;
+  /// Allocates what steps 1 to 4 write.
+  PointData(const Points& at, const TransferOptions& options, Arena& arena) noexcept
+      : points(at),
+        uvs(arena.allocate<float>(std::size_t{2} * at.count)),
+        distances(arena.allocate<float>(at.count)),
+        cageTriangles(arena.allocate<std::uint32_t>(at.count)),
+        zones(arena.allocate<Zone>(at.count)),
+        meetsCage(arena.allocate<bool>(at.count)),
+        segments(arena.allocate<std::uint32_t>(at.count)) {
+    if (std::isfinite(options.occlusionReach)) cageDistances = arena.allocate<double>(at.count);
+  }
+
+  Points points;
+
+  // Of steps 1 to 3:
+  float* uvs = nullptr;                    ///< 2 per point.
+  float* distances = nullptr;              ///< To the closest point of the cage.
+  std::uint32_t* cageTriangles = nullptr;  ///< The triangle of that point, in `Cage::triangles`.
+  Zone* zones = nullptr;
+  bool* meetsCage = nullptr;        ///< Whether the ray of step 3 is known to hit the cage.
+  double* cageDistances = nullptr;  ///< How far along its ray the cage is; infinity: nowhere. With step 2′, else null.
+
+  // Of steps 4 and 5:
+  std::uint32_t* segments = nullptr;
+  std::int64_t* areas = nullptr;     ///< A third of each triangle at the point, in an `AreaUnit`.
+  std::int64_t* ownAreas = nullptr;  ///< The same without the triangles that have interior samples.
+
+  /// Of steps 6 and 7: values of `Recovery`. Null if there is neither.
+  std::uint32_t* recovery = nullptr;
+};
+
+}  // namespace cagecast

@@ -1,0 +1,26 @@
+#include "steps/scene.hpp"
+
+#include "input/validate.hpp"
+
+namespace cagecast {
+
+Status Scene::load() noexcept {
+  if (const Status status = checkMeshes(cageMesh, targetMesh, units); !status.ok()) return status;
+  if (!gatherCage(cageMesh, units, arena, cage)) return {Code::outOfMemory};
+  if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
+  if (!weld(targetMesh, units, options.weldTolerance, arena, points)) return {Code::outOfMemory};
+  return {};
+}
+
+void Scene::buildTrees() noexcept {
+  const Steps& steps = options.steps;
+  const bool needsLoops = options.pokeThrough > 0 || steps.interiorSamples || steps.depthWeighting || steps.holes;
+  const bool needsHalfEdges = needsLoops || options.seams == Seams::corner;
+  const bool isDone = buildCageTree(cage, units, arena, cageTree) &&
+                      buildTargetTree(points, units, arena, targetTree) &&
+                      (!needsHalfEdges || findHalfEdges(cageMesh, cage, arena, halfEdges)) &&
+                      (!needsLoops || findBoundaryLoops(cage, halfEdges, arena, loops));
+  if (!isDone) arena.fail();
+}
+
+}  // namespace cagecast
