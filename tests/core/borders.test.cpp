@@ -9,7 +9,7 @@
 #include "checks.hpp"
 #include "cuts.hpp"
 #include "hash.hpp"
-#include "reference_scene.hpp"
+#include "reference/scene.hpp"
 #include "traps.hpp"
 #ifdef CAGECAST_GLTF
 #include "assets.hpp"

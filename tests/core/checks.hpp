@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "scenes.hpp"
 
 /// What several tests ask.

@@ -2,7 +2,7 @@
 
 #include "cagecast/clip.hpp"
 #include "checks.hpp"
-#include "reference_scene.hpp"
+#include "reference/scene.hpp"
 
 /// What several tests ask of a target whose borders are cut.
 namespace cagecast {

@@ -9,7 +9,7 @@ const built = 'build/release/tests/core/cagecast_reference';
 
 /**
  * The brute-force reference and the native library behind one command, built if it is not of this code; CAGECAST_REFERENCE names
- * another. tests/core/reference_main.cpp tells what it does.
+ * another. tests/core/reference/main.cpp tells what it does.
  */
 export function nativeCommand(): string {
   const given = process.env['CAGECAST_REFERENCE'];

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "reference.hpp"
-#include "reference_geometry.hpp"
+#include "reference/geometry.hpp"
+#include "reference/reference.hpp"
 
 /// The two meshes as the steps of the reference see them.
 namespace cagecast::reference {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <map>
 
-#include "reference_scene.hpp"
+#include "reference/scene.hpp"
 
 namespace cagecast::reference {
 namespace {

@@ -1,4 +1,4 @@
-#include "reference_geometry.hpp"
+#include "reference/geometry.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "reference.hpp"
+#include "reference/reference.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "reference_scene.hpp"
+#include "reference/scene.hpp"
 
 namespace cagecast::reference {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "reference.hpp"
-#include "reference_geometry.hpp"
+#include "reference/geometry.hpp"
+#include "reference/reference.hpp"
 
 namespace cagecast::reference {
 

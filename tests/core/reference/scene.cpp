@@ -1,4 +1,4 @@
-#include "reference_scene.hpp"
+#include "reference/scene.hpp"
 
 #include <algorithm>
 #include <map>

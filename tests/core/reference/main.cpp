@@ -31,7 +31,7 @@
 #include <utility>
 #include <vector>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "scenes.hpp"
 #include "traps.hpp"
 
