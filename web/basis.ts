@@ -4,7 +4,7 @@ import type { Plugin } from 'vite';
 
 const kFile = /\/basis_transcoder(-[\w-]+)?\.js$/;
 
-// Called from C++ and into it, by types that are known when the module starts.
+// Calls into C++ and out of it, with types that are known when the module starts.
 const kCallIn = `var invokerFn=function(...given){
   if(given.length!==argCount-2)throwBindingError(humanName+" takes "+(argCount-2)+" arguments, not "+given.length);
   var destructors=needsDestructorStack?[]:null;
@@ -18,27 +18,28 @@ const kCallOut = `var invokerFunction=(obj,func,destructorsRef,at)=>{
   var result=kind===1?new func(...given):func.call(obj,...given);
   return retType.isVoid?undefined:emval_returnValue(retType,destructorsRef,result)};`;
 
-/** The places where the transcoder makes a function out of text: how each begins, what follows it, and what does the same. */
+/** Where the transcoder creates functions from text: how each place begins, what follows it, and its replacement. */
 const kPlaces = [
   ['let[args,invokerFnBody]=', 'return createNamedFunction(humanName,', kCallIn],
   ['var functionBody=', 'var functionName=', kCallOut],
 ] as const;
 
-/** The transcoder without functions made out of text. @throws Error if it is another one than this knows. */
+/** The transcoder without functions from text. @throws Error if its code is not as expected. */
 function withoutEval(code: string): string {
   for (const [first, next, instead] of kPlaces) {
     const [from, to] = [code.indexOf(first), code.indexOf(next, code.indexOf(first))];
     if (from < 0 || to < 0)
-      throw new Error(`basis_transcoder.js: there is no “${first} … ${next}”: see how it calls C++ now`);
+      throw new Error(`basis_transcoder.js has no “${first} … ${next}”; adapt web/basis.ts to the new version`);
     code = code.slice(0, from) + instead + code.slice(to);
   }
-  if (code.includes('newFunc(Function')) throw new Error('basis_transcoder.js: it makes more functions out of text');
+  if (code.includes('newFunc(Function'))
+    throw new Error('basis_transcoder.js creates further functions from text; adapt web/basis.ts');
   return code;
 }
 
 const kNoZstd = '\0no-zstd';
 
-/** Lets Basis' transcoder, which decodes KTX2 textures, run under the page's security policy, which forbids `new Function`. */
+/** Makes Basis' KTX2 transcoder work under the page's content security policy, which forbids `new Function`. */
 export function basis(): Plugin {
   return {
     name: 'cagecast-basis',
@@ -46,7 +47,7 @@ export function basis(): Plugin {
     configureServer(server) {
       server.middlewares.use(async (request, response, next) => {
         const { pathname, searchParams } = new URL(request.url ?? '/', 'http://localhost');
-        // A module that asks for the address alone gets that from Vite.
+        // Vite answers requests for the URL only.
         if (!kFile.test(pathname) || searchParams.has('url')) return next();
         response.setHeader('Content-Type', 'text/javascript');
         response.end(
@@ -56,7 +57,7 @@ export function basis(): Plugin {
         );
       });
     },
-    // Basis unpacks by itself; what the loader brings along is for textures that glTF does not have: 17 KB gzipped.
+    // Zstandard is only needed for textures that glTF does not allow; leaving it out saves 17 KB gzipped.
     resolveId: (source) => (source.endsWith('/zstddec.module.js') ? kNoZstd : undefined),
     load: (id) => (id === kNoZstd ? 'export class ZSTDDecoder {}' : undefined),
     async generateBundle(_, bundle) {

@@ -8,7 +8,7 @@ import type { Plugin } from 'vite';
 const kWorker = fileURLToPath(new URL('service-worker/service-worker.ts', import.meta.url));
 const kPage = 'index.html';
 
-/** Builds the service worker last, with the list of all files that the page has by then. */
+/** Builds the service worker after everything else, with the list of all files. */
 export function precache(): Plugin {
   let outDir: string;
   return {

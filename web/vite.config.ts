@@ -32,7 +32,7 @@ function samples(): Plugin {
   };
 }
 
-/** The files that the list of samples names, relative to it. */
+/** The files in the list of samples, relative to it. */
 async function sampleFiles(): Promise<string[]> {
   const text = await readFile(path.join(kSamples, 'index.json'), 'utf8').catch(() => {
     throw new Error('build/assets/index.json is missing: make the sample models first (npm run assets)');
@@ -41,7 +41,7 @@ async function sampleFiles(): Promise<string[]> {
   return samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)]);
 }
 
-/** Takes the package with its WebAssembly in files of their own: page and worker share them, and they compile while they load. */
+/** Uses the package's separate .wasm files: page and worker share them, and they compile while they load. */
 function slim(): Plugin {
   const slimOf = new Map(
     [
@@ -59,7 +59,7 @@ function slim(): Plugin {
   };
 }
 
-/** Leaves out Draco's decoders for other files than glTF, which the loader names but the page never asks for: a megabyte. */
+/** Leaves out Draco's decoders for formats other than glTF, which the page never uses: a megabyte. */
 function onlyGltfDraco(): Plugin {
   const spare = /new URL\( '\.\.\/libs\/draco\/draco_[^']+', import\.meta\.url \)\.toString\(\)/g;
   return {
@@ -70,7 +70,7 @@ function onlyGltfDraco(): Plugin {
 
 export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
-  // Relative, so that the built page can lie in any folder of any host.
+  // Relative, so that the page can be served from any folder.
   base: './',
   plugins: [slim(), samples(), onlyGltfDraco(), basis(), precache()],
   build: {

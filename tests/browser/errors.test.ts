@@ -160,7 +160,7 @@ test('a target whose image is damaged is shown in white, and one line says which
       Buffer.from([0xff, 0xd8, 0xff, 0xe0, 0, 16]),
       /^box\.glb: image “own” cannot be shown: the JPEG file is cut short after 6 bytes\./,
     ],
-    ['damaged', 'image/png', flipped, /^box\.glb: image “own” cannot be shown: its PNG is damaged\./],
+    ['damaged', 'image/png', flipped, /^box\.glb: image “own” cannot be shown: the PNG file is damaged\./],
   ] as const) {
     const io = new NodeIO();
     const document = await io.readBinary(new Uint8Array((await texturedBox(png)).buffer));
@@ -190,7 +190,7 @@ test('of what is dropped the page takes what it knows, and says what it does not
   assert.equal(await settled(page), 'error');
   assert.equal(
     await shownError(page),
-    'notes.txt: this is not a GLB or glTF file; models are wanted as these, paints as PNG, JPEG or WebP',
+    'notes.txt: this is not a GLB or glTF file; models must be GLB or glTF, paints PNG, JPEG or WebP',
   );
   await page.locator('#alert-close').click();
   assert.equal(await shownError(page), '');
@@ -235,7 +235,7 @@ test('folders may be dropped, with what lies in them; an empty one is told of, a
     await mkdir(path.join(folder, 'nothing'));
     await dropFolder('nothing');
     await page.getByTestId('error').waitFor();
-    assert.equal(await shownError(page), 'nothing: this folder is empty');
+    assert.equal(await shownError(page), 'nothing: the folder is empty');
     await mkdir(path.join(folder, 'avatar/fitting'), { recursive: true });
     await writeFile(path.join(folder, 'avatar/head.glb'), lizard);
     await writeFile(path.join(folder, 'avatar/fitting/cage.glb'), glbOf(tetrahedron(9), 'thing'));
@@ -251,7 +251,7 @@ test('folders may be dropped, with what lies in them; an empty one is told of, a
     assert.equal(await settled(page), 'error');
     assert.equal(
       await shownError(page),
-      'huge.glb: the browser cannot read this file of 3,000 MB; it may be too large, or gone',
+      'huge.glb: the browser cannot read this file (3,000 MB); it may be too large, or deleted',
     );
     assert.deepEqual(complaints, []);
   } finally {

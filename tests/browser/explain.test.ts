@@ -193,7 +193,7 @@ test('each way to be left out, and each to be let in, has words of its own', asy
     await page.getByRole('button', { name: 'Explain the centre' }).click();
     return `${await bubble(page)} ${await explanation(page)}`;
   };
-  assert.match(await open(1), /Painted.*the cage is over it and nothing of the model between/s);
+  assert.match(await open(1), /Painted.*the cage covers it, and nothing of the model lies between/s);
   assert.match(await open(4), /Not painted: uncovered.*it lies outside the cage/s);
   assert.match(await open(2.002), /Painted.*pokes out of the cage a little/s);
 

@@ -104,6 +104,6 @@ test('a large model is inspected when that is asked for', async () => {
   assert.equal(await settled(page), 'ready', await shownError(page));
   await page.waitForTimeout(1500);
   assert.equal(await page.locator('#fit-verdict').textContent(), '');
-  await page.getByRole('button', { name: 'Inspect it' }).click();
+  await page.getByRole('button', { name: 'Inspect the cage' }).click();
   assert.match((await found()).verdict, /^(good|usable|unfit)$/);
 });

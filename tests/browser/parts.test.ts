@@ -44,7 +44,7 @@ test('the table lists the parts by name, those that are covered least first, wit
   assert.ok(parts.length > 1);
   assert.ok(parts.some(({ culled }) => culled) && parts.some(({ culled }) => !culled), 'some pass, some do not');
   const coverage = parts.map(({ covered }) =>
-    covered === 'hidden' ? 0 : covered === '< 1 %' ? 0.5 : Number.parseInt(covered),
+    covered === 'hidden' ? 0 : covered === '< 1 %' ? 0.5 : Number.parseInt(covered, 10),
   );
   assert.deepEqual(
     coverage,

@@ -3,7 +3,7 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { difference, modelArea, shareOfHue } from '../support/picture';
-import { Site, settled } from '../support/site';
+import { Site } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));

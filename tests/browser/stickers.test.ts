@@ -52,7 +52,6 @@ async function undone(): Promise<void> {
 }
 
 test('one finger paints', async () => {
-  const { page } = visit;
   await choose('Brush');
   await set({ 'brush-color': '#00c040', 'brush-size': '60', 'brush-hardness': '100' });
   await touch([[0.45, 0.45]], [[0.5, 0.4]], [[0.55, 0.38]]);

@@ -14,7 +14,7 @@ export function packGlb({ json, bin }: Glb): Buffer {
   const chunks = [
     { type: 0x4e4f534a, data: Buffer.concat([text, Buffer.alloc(pad(text.length), 0x20)]) },
     { type: 0x004e4942, data: Buffer.concat([bin, Buffer.alloc(pad(bin.length))]) },
-  ].filter(({ data }) => data.length > 0);
+  ].filter(({ data }) => data.length > 0 || json.bufferViews?.length);
   const words = (...values: number[]) => Buffer.from(new Uint32Array(values).buffer);
   const body = Buffer.concat(chunks.flatMap(({ type, data }) => [words(data.length, type), data]));
   return Buffer.concat([words(0x46546c67, 2, 12 + body.length), body]);

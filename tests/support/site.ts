@@ -9,6 +9,12 @@ const kRoot = fileURLToPath(new URL('../..', import.meta.url));
 const kConfig = path.join(kRoot, 'web/vite.config.ts');
 /** Milliseconds. Long enough for software rendering on a busy machine, but ends tests of a page that hangs. */
 const kPatience = 60_000;
+/** Antialiasing doubles the cost of software rendering, and no test depends on it. */
+const kNoAntialiasing = `
+  const { getContext } = HTMLCanvasElement.prototype
+  HTMLCanvasElement.prototype.getContext = function (type, options) {
+    return getContext.call(this, type, options?.antialias ? { ...options, antialias: false } : options)
+  }`;
 /** Logged by Playwright when service workers are blocked. */
 const kBlocked = 'Service Worker registration blocked by Playwright';
 
@@ -106,6 +112,7 @@ export class Site {
       const { origin, protocol } = new URL(request.url());
       if (protocol.startsWith('http') && origin !== new URL(this.url).origin) visit.foreign.push(request.url());
     });
+    await page.addInitScript({ content: kNoAntialiasing });
     if (typeof prepare === 'string') await page.addInitScript({ content: prepare });
     else await prepare?.(page);
     await page.goto(this.url + fragment);

@@ -9,8 +9,8 @@ import { modelFolders, readPlain, smallHole } from '../js/scenes';
 
 before(() => init());
 
-/** A mesh with its groups as parts, as the page has them. */
-function withParts(mesh: Mesh) {
+/** A mesh with a primitive for each group, as on the page. */
+function withPrimitives(mesh: Mesh) {
   const { groups, indices } = mesh;
   const count = Math.max(...groups!) + 1;
   const firstTriangle = (group: number): number => {
@@ -20,7 +20,7 @@ function withParts(mesh: Mesh) {
   };
   return {
     ...mesh,
-    parts: Array.from({ length: count }, (_, group) => ({
+    primitives: Array.from({ length: count }, (_, group) => ({
       name: `part ${group}`,
       firstTriangle: firstTriangle(group),
     })),
@@ -36,7 +36,7 @@ for (const folder of modelFolders()) {
     for (const preset of ['default', 'paper'] as const) {
       const projection = project(cage!, target!, { preset });
       // Of the models only their meshes are asked for.
-      const shown = { target: { mesh: withParts(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+      const shown = { target: { mesh: withPrimitives(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
       const segmentOf = (triangle: number): number => projection.segments[target!.indices[3 * triangle]!]!;
       // One triangle of each segment.
       const triangles = new Map(
@@ -69,7 +69,7 @@ for (const folder of modelFolders()) {
 test('of a part that a hole is meant for that is told, and by the other rules it is painted', () => {
   const { cage, target } = smallHole();
   const projection = project(cage, target);
-  const shown = { target: { mesh: withParts(target) }, cage: { mesh: cage }, projection } as unknown as Shown;
+  const shown = { target: { mesh: withPrimitives(target) }, cage: { mesh: cage }, projection } as unknown as Shown;
   const isEyes = (triangle: number): boolean => projection.segments[target.indices[3 * triangle]!] === 1;
   const covered = Array.from({ length: target.indices.length / 3 }, (_, triangle) => triangle).find(
     (triangle) => isEyes(triangle) && projection.zones[target.indices[3 * triangle]!] === 0,
@@ -105,7 +105,7 @@ test('of a part that is locked only that is told', async () => {
   for (const lock of ['keep', 'exclude'] as const) {
     const locks = { [segment]: lock };
     const classification = classify(projection, { locks: { segments: locks } });
-    const shown = { target: { mesh: withParts(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
+    const shown = { target: { mesh: withPrimitives(target!) }, cage: { mesh: cage }, projection } as unknown as Shown;
     const { steps } = explain(
       { shown, classification, rules: { preset: 'default', threshold: 0.5 }, locks, loops: new BoundaryLoops(cage!) },
       0,

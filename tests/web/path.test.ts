@@ -24,7 +24,11 @@ for (const folder of modelFolders()) {
       const { zones, triangles, distances } = project(cage!, target!, { preset });
       const every = Math.max(1, Math.floor(zones.length / kAsked));
       for (let vertex = 0; vertex < zones.length; vertex += every) {
-        const path = pathOf(target!, cage!, loops, vertex, triangles[vertex]!, diagonal, presetOptions(preset));
+        const path = pathOf(
+          { target: target!, cage: cage!, loops },
+          { vertex, triangle: triangles[vertex]!, diagonal },
+          presetOptions(preset),
+        );
         assert.equal(kZones[path.outcome], zones[vertex], `${preset}: vertex ${vertex} is ${path.outcome}`);
         assert.ok(
           Math.abs(path.start.distanceTo(path.closest) - distances[vertex]!) < 1e-6 * diagonal,

@@ -1,32 +1,32 @@
-// Keeps the page for visits without a network. Built into service-worker.js, which lists the files it was built with.
+// Caches the page for offline visits. Built into service-worker.js, which lists the files of the build.
 
-/** Addresses of all files of the page, relative to it; the page itself is the first. */
+/** URLs of all files of the page, relative to it; the page itself comes first. */
 declare const FILES: string[];
-/** Differs wherever a file differs. */
+/** A hash of all files. */
 declare const VERSION: string;
 
-// Of this page alone: another copy of it may lie in another folder of the same host.
+// Includes the path: the same host may serve other copies of the page.
 const kPrefix = `cagecast-${new URL('./', self.location.href).pathname}-`;
 const kCache = kPrefix + VERSION;
 
-const worker = self as unknown as ServiceWorkerGlobalScope; // what the library of types takes any worker for
+const worker = self as unknown as ServiceWorkerGlobalScope; // the library declares `self` for any kind of worker
 
 worker.addEventListener('install', (event) => {
-  // All or nothing: half a page would fail where nobody can help it.
+  // All or nothing: half of the files would be useless offline.
   event.waitUntil(caches.open(kCache).then((cache) => Promise.all(FILES.map((file) => keep(cache, file)))));
 });
 
 async function keep(cache: Cache, file: string): Promise<void> {
   const response = await fetch(file, { cache: 'no-cache' });
   if (!response.ok) throw new TypeError(`${file}: ${response.status}`);
-  // A server may send from index.html to its folder, but no visit may be answered by what was sent elsewhere.
+  // Servers may redirect index.html to its folder, but redirected responses must not answer navigations.
   await cache.put(file, response.redirected ? new Response(response.body, response) : response);
 }
 
-worker.addEventListener('activate', (event) => event.waitUntil(takeOver()));
+worker.addEventListener('activate', (event) => event.waitUntil(activate()));
 
-/** A new version waits until no page of the old one is open; only then the old one's files may go. */
-async function takeOver(): Promise<void> {
+/** A new version activates once no page of the old one is open: delete the old files then. */
+async function activate(): Promise<void> {
   const names = await caches.keys();
   await Promise.all(
     names.filter((name) => name.startsWith(kPrefix) && name !== kCache).map((name) => caches.delete(name)),
@@ -43,7 +43,7 @@ worker.addEventListener('fetch', (event) => {
 async function answer(request: Request): Promise<Response> {
   const cache = await caches.open(kCache);
   const wanted = request.mode === 'navigate' && isPage(request.url) ? FILES[0]! : request;
-  // Any query is the same page. And servers that vary by origin would hide a script from the tag that asks for it.
+  // Queries do not change the page. Ignore Vary: scripts and their tags send different Origin headers.
   return (await cache.match(wanted, { ignoreSearch: true, ignoreVary: true })) ?? fetch(request);
 }
 

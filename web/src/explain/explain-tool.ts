@@ -4,7 +4,7 @@ import type { Spot } from '../view/pick';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
 import { BoundaryLoops } from './boundary-loops';
-import { type Explanation, explain, type PartFacts, percent } from './explanation';
+import { type Explanation, explain, percent, type SegmentFacts } from './explanation';
 import { ExplanationMarks } from './marks';
 
 const kZoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'];
@@ -123,7 +123,7 @@ export class Explain {
 }
 
 /** The areas of a part as a bar: exposed, covered, and the threshold. */
-function areasOf({ exposed, covered, coverage, threshold, score, passes }: PartFacts): HTMLElement {
+function areasOf({ exposed, covered, coverage, threshold, score, passes }: SegmentFacts): HTMLElement {
   const figure = document.createElement('figure');
   figure.className = 'areas';
   const bar = document.createElement('div');

@@ -13,7 +13,7 @@ export interface Explanation {
   path: Path;
   cageTriangle: number;
   diagonal: number;
-  part: PartFacts;
+  part: SegmentFacts;
   /** The result in a word or two, and its reason as half a sentence. */
   verdict: string;
   because: string;
@@ -22,7 +22,7 @@ export interface Explanation {
 }
 
 /** The segment of a spot; shares are 0..1. */
-export interface PartFacts {
+export interface SegmentFacts {
   name: string;
   segment: number;
   /** Exposed share of the area (E). */
@@ -59,8 +59,12 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
   const cageTriangle = projection.triangles[vertex]!;
   const diagonal = diagonalOf(target.mesh) || 1;
   const options = presetOptions(facts.rules.preset);
-  const path = pathOf(target.mesh, cage.mesh, facts.loops, vertex, cageTriangle, diagonal, options);
-  const part = partOf(facts, vertex);
+  const path = pathOf(
+    { target: target.mesh, cage: cage.mesh, loops: facts.loops },
+    { vertex, triangle: cageTriangle, diagonal },
+    options,
+  );
+  const part = segmentOf(facts, vertex);
   const secondLook = secondLookStep(facts, vertex);
   const steps = [
     { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
@@ -95,12 +99,12 @@ function decidedBy(
   return { zone, vertex: deciding.reduce((best, corner) => (corner.weight > best.weight ? corner : best)).vertex };
 }
 
-function partOf({ shown, classification, rules }: Facts, vertex: number): PartFacts {
+function segmentOf({ shown, classification, rules }: Facts, vertex: number): SegmentFacts {
   const segment = shown.projection.segments[vertex]!;
   const stats = classification.segmentStats[segment]!;
   const { area, exposedArea, coveredArea, coverage, group, score, culled } = stats;
   const pieces = classification.segmentStats.filter((other) => other.group === group && other.area > 0).length;
-  const name = `“${shown.target.mesh.parts[group]!.name}”`;
+  const name = `“${shown.target.mesh.primitives[group]!.name}”`;
   const of = (value: number): number => (area > 0 ? value / area : 0);
   return {
     name: pieces > 1 ? `a piece of ${name}` : name,
@@ -162,7 +166,7 @@ function secondLookStep({ shown: { projection }, classification }: Facts, vertex
     : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
 }
 
-function partStep({ classification, locks }: Facts, part: PartFacts, options: PresetOptions): string {
+function partStep({ classification, locks }: Facts, part: SegmentFacts, options: PresetOptions): string {
   const { name, segment, coverage, threshold, passes } = part;
   const { area, exposedArea, coveredArea, depthWeightedArea, culledBy } = classification.segmentStats[segment]!;
   const lock: Lock = locks[segment] ?? 'auto';
@@ -193,7 +197,7 @@ function brief(
   zone: number,
   vertex: number,
   { outcome, model, outside }: Path,
-  part: PartFacts,
+  part: SegmentFacts,
 ): string {
   switch (zone) {
     case Zone.Cosmetic:
@@ -218,7 +222,7 @@ function brief(
 
 /** The name of the mesh that a triangle belongs to. */
 function nameAt({ target: { mesh } }: Shown, triangle: number): string {
-  return `“${mesh.parts.findLast(({ firstTriangle }) => firstTriangle <= triangle)!.name}”`;
+  return `“${mesh.primitives.findLast(({ firstTriangle }) => firstTriangle <= triangle)!.name}”`;
 }
 
 /** With two significant digits. */

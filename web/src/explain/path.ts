@@ -27,23 +27,35 @@ export interface Reach {
   pokeThrough: number;
 }
 
+/** The surfaces of a path. */
+export interface PathScene {
+  target: Surface;
+  cage: Surface;
+  /** Of the cage. */
+  loops: BoundaryLoops;
+}
+
+/** Where a path starts. */
+export interface PathStart {
+  /** Of the target. */
+  vertex: number;
+  /** The closest cage triangle, as the transfer found it. */
+  triangle: number;
+  /** Diagonal of the target's bounding box. */
+  diagonal: number;
+}
+
 // Of the model's diagonal; docs/method.md.
 const kRayStart = 1e-5;
 const kOnBoundary = 1e-6;
 
 /**
  * Repeats steps 1 to 3 for one vertex, to show them.
- * @param triangle The closest cage triangle, as the transfer found it.
- * @param diagonal Diagonal of the target's bounding box.
  * Cost: visits all triangles of target and cage.
  */
 export function pathOf(
-  target: Surface,
-  cage: Surface,
-  loops: BoundaryLoops,
-  vertex: number,
-  triangle: number,
-  diagonal: number,
+  { target, cage, loops }: PathScene,
+  { vertex, triangle, diagonal }: PathStart,
   reach: Reach,
 ): Path {
   const start = new Vector3().fromArray(target.positions, 3 * vertex);

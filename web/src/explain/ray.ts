@@ -35,16 +35,13 @@ export function firstHit(
     if (u * v < 0) continue;
     const w = dx * (by * az - bz * ay) + dy * (bz * ax - bx * az) + dz * (bx * ay - by * ax);
     if (u * w < 0 || v * w < 0) continue;
-    const [nx, ny, nz] = normalOf(bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az);
+    const [ex, ey, ez] = [bx - ax, by - ay, bz - az];
+    const [fx, fy, fz] = [cx - ax, cy - ay, cz - az];
+    const [nx, ny, nz] = [ey * fz - ez * fy, ez * fx - ex * fz, ex * fy - ey * fx];
     const slope = nx * dx + ny * dy + nz * dz;
     if (slope === 0) continue; // without area, or parallel to the ray
     const length = (nx * ax + ny * ay + nz * az) / slope;
     if (length > after && (!nearest || length < nearest.length)) nearest = { triangle: corner / 3, length };
   }
   return nearest;
-}
-
-/** The cross product. */
-function normalOf(ax: number, ay: number, az: number, bx: number, by: number, bz: number): [number, number, number] {
-  return [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
 }

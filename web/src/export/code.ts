@@ -71,7 +71,7 @@ function partsLocked(
 ): { whole: string[]; some: string[] } {
   const [locked, others] = [new Set<string>(), new Set<string>()];
   projection.segmentStats.forEach(({ group, area }, segment) => {
-    if (area > 0) (locks[segment] === lock ? locked : others).add(target.mesh.parts[group]!.name);
+    if (area > 0) (locks[segment] === lock ? locked : others).add(target.mesh.primitives[group]!.name);
   });
   return {
     whole: [...locked].filter((name) => !others.has(name)),

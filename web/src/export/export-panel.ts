@@ -80,8 +80,8 @@ export class ExportPanel {
 
   /** Enables baking into textures if the model has some. */
   #offerTextures(): void {
-    const { parts } = this.#session.shown!.target.mesh;
-    const textured = parts.some(
+    const { primitives } = this.#session.shown!.target.mesh;
+    const textured = primitives.some(
       ({ mesh: { material, geometry } }) =>
         [material].flat().some((one) => 'map' in one && one.map) && geometry.hasAttribute('uv'),
     );

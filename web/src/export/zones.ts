@@ -12,14 +12,14 @@ export function zonesJson({ shown, classification, rules: { preset, threshold },
     cage: cage.name,
     options: { preset, threshold, locks: { segments: locks } },
     counts: { cosmetic, occluded, uncovered, culled },
-    parts: target.mesh.parts.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
+    parts: target.mesh.primitives.map(({ name, firstVertex, vertexCount, firstTriangle, triangleCount }) => ({
       name,
       firstVertex,
       vertexCount,
       firstTriangle,
       triangleCount,
     })),
-    segments: segmentStats.map((stats) => ({ part: target.mesh.parts[stats.group]!.name, ...stats })),
+    segments: segmentStats.map((stats) => ({ part: target.mesh.primitives[stats.group]!.name, ...stats })),
     /** Per vertex: 0 cosmetic, 1 occluded, 2 uncovered, 3 culled. */
     zones: [...zones],
     /** Per vertex: its segment. */

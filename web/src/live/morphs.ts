@@ -36,9 +36,9 @@ export class Morphs {
   }
 
   /** Lists the morphs of a model at rest. */
-  offer({ parts }: ExtractedMesh): void {
+  offer({ primitives }: ExtractedMesh): void {
     const stored = new Map<string, number>();
-    for (const { mesh } of parts) {
+    for (const { mesh } of primitives) {
       morphNames(mesh).forEach((name, place) => {
         if (!stored.get(name)) stored.set(name, mesh.morphTargetInfluences![place]!);
       });

@@ -1,5 +1,5 @@
 import { Box3, BufferAttribute, type BufferGeometry, Matrix3, type Matrix4, Vector3 } from 'three';
-import type { ExtractedMesh, Part } from '../scene/extract-mesh';
+import type { ExtractedMesh, Primitive } from '../scene/extract-mesh';
 import { type Deform, deform, type Extent } from './deform';
 import { morphNames, type Weights } from './morphs';
 
@@ -22,12 +22,12 @@ export const isAtRest = ({ amount, morphs }: Shape): boolean => amount === 0 && 
 export class Pose {
   readonly #mesh: ExtractedMesh;
   readonly #rest: Float32Array;
-  readonly #parts: PartPose[];
+  readonly #primitives: PrimitivePose[];
 
   constructor(mesh: ExtractedMesh) {
     this.#mesh = mesh;
     this.#rest = mesh.rest ??= mesh.positions.slice();
-    this.#parts = mesh.parts.map((part) => new PartPose(part));
+    this.#primitives = mesh.primitives.map((primitive) => new PrimitivePose(primitive));
   }
 
   /** The extent of the model at rest. */
@@ -40,7 +40,7 @@ export class Pose {
   positions(shape: Shape): Float32Array {
     const moved = this.#rest.slice();
     if (isAtRest(shape)) return moved; // exactly
-    if (shape.morphs) for (const part of this.#parts) part.morph(moved, shape.morphs);
+    if (shape.morphs) for (const primitive of this.#primitives) primitive.morph(moved, shape.morphs);
     if (shape.amount === 0) return moved;
     const point = new Vector3();
     for (let at = 0; at < moved.length; at += 3) {
@@ -54,15 +54,15 @@ export class Pose {
   /** Moves the vertices. */
   set(positions: Float32Array, shape: Shape): void {
     this.#mesh.positions.set(positions);
-    for (const part of this.#parts) part.set(positions, shape);
+    for (const primitive of this.#primitives) primitive.set(positions, shape);
   }
 }
 
 type Name = 'position' | 'normal';
 
 /** One mesh of a model, with its vertices at rest. */
-class PartPose {
-  readonly #part: Part;
+class PrimitivePose {
+  readonly #primitive: Primitive;
   readonly #inverse: Matrix4;
   readonly #linear: Matrix3;
   readonly #toWorld: Matrix3;
@@ -71,14 +71,14 @@ class PartPose {
   readonly #morphs: BufferGeometry['morphAttributes'];
   #moved = false;
 
-  constructor(part: Part) {
-    this.#part = part;
-    const { matrix } = part;
+  constructor(primitive: Primitive) {
+    this.#primitive = primitive;
+    const { matrix } = primitive;
     this.#inverse = matrix.clone().invert();
     this.#linear = new Matrix3().setFromMatrix4(matrix);
     this.#toWorld = new Matrix3().getNormalMatrix(matrix);
     this.#toLocal = this.#linear.clone().transpose();
-    const { attributes, morphAttributes } = part.mesh.geometry;
+    const { attributes, morphAttributes } = primitive.mesh.geometry;
     this.#atRest = (['position', 'normal'] as const).flatMap((name) => {
       const attribute = attributes[name] as BufferAttribute | undefined;
       return attribute ? [{ name, attribute }] : [];
@@ -88,7 +88,7 @@ class PartPose {
 
   /** Adds the morphs to the mesh's vertices. @param positions Of the whole model, in the scene's space. */
   morph(positions: Float32Array, morphs: Weights): void {
-    const { firstVertex, vertexCount } = this.#part;
+    const { firstVertex, vertexCount } = this.#primitive;
     const [change, delta] = [new Vector3(), new Vector3()];
     const active = this.#active('position', morphs);
     if (active.length === 0) return;
@@ -104,14 +104,14 @@ class PartPose {
 
   /** The morphs of non-zero weight; their attributes are offsets, as in glTF. */
   #active(name: Name, morphs: Weights | undefined): { weight: number; attribute: BufferAttribute }[] {
-    return morphNames(this.#part.mesh).flatMap((morph, place) => {
+    return morphNames(this.#primitive.mesh).flatMap((morph, place) => {
       const [weight, attribute] = [morphs?.get(morph) ?? 0, this.#morphs[name]?.[place]];
       return weight !== 0 && attribute ? [{ weight, attribute: attribute as BufferAttribute }] : [];
     });
   }
 
   set(positions: Float32Array, shape: Shape): void {
-    const { geometry } = this.#part.mesh;
+    const { geometry } = this.#primitive.mesh;
     // The positions include the morphs already: do not let the renderer add them again.
     geometry.morphAttributes = shape.morphs ? {} : this.#morphs;
     if (isAtRest(shape)) {
@@ -125,7 +125,7 @@ class PartPose {
   }
 
   #write(name: Name, rest: BufferAttribute, positions: Float32Array, shape: Shape): void {
-    const { mesh, firstVertex, vertexCount } = this.#part;
+    const { mesh, firstVertex, vertexCount } = this.#primitive;
     // Quantised or interleaved attributes cannot hold moved vertices: use a float copy.
     if (!this.#moved) mesh.geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * vertexCount), 3));
     const attribute = mesh.geometry.getAttribute(name) as BufferAttribute;
@@ -148,7 +148,7 @@ class PartPose {
   /** Rotates a normal with the surface, by finite differences: two nearby points are deformed as well. */
   #turnNormal(normal: Vector3, vertex: number, { how, amount, extent }: Shape): void {
     const { attribute } = this.#atRest[0]!;
-    const point = new Vector3().fromBufferAttribute(attribute, vertex).applyMatrix4(this.#part.matrix);
+    const point = new Vector3().fromBufferAttribute(attribute, vertex).applyMatrix4(this.#primitive.matrix);
     const n = normal.applyMatrix3(this.#toWorld).normalize();
     const across = Math.abs(n.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
     const right = across.cross(n).normalize();

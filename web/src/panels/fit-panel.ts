@@ -58,7 +58,11 @@ export class FitPanel {
     this.#client ??= new TransferClient();
     try {
       const { target, cage } = shown;
-      const parts = target.mesh.parts.map(({ name, firstVertex, vertexCount }) => ({ name, firstVertex, vertexCount }));
+      const parts = target.mesh.primitives.map(({ name, firstVertex, vertexCount }) => ({
+        name,
+        firstVertex,
+        vertexCount,
+      }));
       this.#write(
         await this.#client.ask('inspect', cage, target, { preset, threshold, locks: { segments: locks }, parts }),
       );

@@ -1,6 +1,6 @@
 import type { Classification, Lock, SegmentStats } from 'cagecast';
 import { element } from '../platform/page';
-import type { Part } from '../scene/extract-mesh';
+import type { Primitive } from '../scene/extract-mesh';
 import type { Locks, Session, Shown } from '../scene/session';
 import { cssColor, type Rgb } from '../view/colors';
 import { segmentColors, trianglesOf } from '../view/segments';
@@ -63,7 +63,7 @@ export class PartsTable {
 
   /** Lists the largest segments of a projection, the least covered first. */
   #list(shown: Shown, locks: Locks): void {
-    const entries = entriesOf(shown.projection.segmentStats, shown.target.mesh.parts, locks);
+    const entries = entriesOf(shown.projection.segmentStats, shown.target.mesh.primitives, locks);
     const colors = segmentColors(shown);
     const largest = named(entries.toSorted((a, b) => b.area - a.area).slice(0, kMostRows));
     // Sorting is stable: of two with equal coverage the larger comes first.
@@ -126,14 +126,14 @@ export class PartsTable {
 }
 
 /** The segments with area, grouped into rows. */
-function entriesOf(stats: readonly SegmentStats[], parts: readonly Part[], locks: Locks): Entry[] {
+function entriesOf(stats: readonly SegmentStats[], primitives: readonly Primitive[], locks: Locks): Entry[] {
   const entries = new Map<string, Entry>();
   stats.forEach(({ points, area, exposedArea, coveredArea, group }, segment) => {
     if (area === 0) return;
     const lock = locks[segment] ?? 'auto';
     const key = coveredArea > 0 ? `segment ${segment}` : `group ${group} ${exposedArea > 0} ${lock}`;
     const entry = entries.get(key) ?? {
-      name: parts[group]!.name,
+      name: primitives[group]!.name,
       segments: [],
       points: 0,
       area: 0,

@@ -3,7 +3,7 @@ import { type BufferAttribute, type InterleavedBufferAttribute, Matrix4, Mesh, t
 import { Pace } from '../platform/pace';
 
 /** One triangle mesh of the scene, and the ranges of its elements in the concatenated arrays. */
-export interface Part {
+export interface Primitive {
   /** The three.js mesh. */
   mesh: Mesh;
   /** Its name, for people. */
@@ -26,11 +26,11 @@ export interface ExtractedMesh {
   rest?: Float32Array;
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array;
-  /** 2 per vertex, from the first UV set; absent unless every part has one. */
+  /** 2 per vertex, from the first UV set; absent unless every primitive has one. */
   uvs?: Float32Array;
-  /** 1 per vertex: the index of its part. Only vertices of the same part are welded. */
+  /** 1 per vertex: the index of its primitive. Only vertices of the same primitive are welded. */
   groups: Uint32Array;
-  parts: Part[];
+  primitives: Primitive[];
 }
 
 const kIdentity = new Matrix4();
@@ -41,19 +41,19 @@ type Attribute = BufferAttribute | InterleavedBufferAttribute;
 /**
  * Reads all triangle meshes below `root`, depth first, into one set of arrays.
  * Vertices keep their order. World matrices are applied in double precision, and the result is rounded once. The winding of
- * mirrored parts is reversed, so that triangles keep facing outward.
+ * mirrored primitives is reversed, so that triangles keep facing outward.
  * @param root   A scene that has not been moved since it was loaded.
  * @param nameOf The name of a mesh in its file, if any.
- * @throws Error that names the part and the element that cannot be read; or if there are no triangles.
+ * @throws Error that names the primitive and the element that cannot be read; or if there are no triangles.
  */
 export async function extractMesh(
   root: Object3D,
   nameOf: (mesh: Mesh) => string | undefined = () => undefined,
 ): Promise<ExtractedMesh> {
   root.updateMatrixWorld(true);
-  const parts = listParts(root, nameOf);
-  if (parts.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
-  const last = parts.at(-1);
+  const primitives = listPrimitives(root, nameOf);
+  if (primitives.length === 0) throw new Error('the file contains no triangles, only points, lines or an empty scene');
+  const last = primitives.at(-1);
   const vertexCount = last ? last.firstVertex + last.vertexCount : 0;
   const triangleCount = last ? last.firstTriangle + last.triangleCount : 0;
 
@@ -61,20 +61,20 @@ export async function extractMesh(
   const indices = new Uint32Array(3 * triangleCount);
   const groups = new Uint32Array(vertexCount);
   const pace = new Pace();
-  for (const [group, part] of parts.entries()) {
-    for (const [from, to] of slices(part.vertexCount)) {
-      copyPositions(part, positions, from, to);
+  for (const [group, primitive] of primitives.entries()) {
+    for (const [from, to] of slices(primitive.vertexCount)) {
+      copyPositions(primitive, positions, from, to);
       await pace.rest();
     }
-    for (const [from, to] of slices(part.triangleCount)) {
-      copyIndices(part, indices, 3 * from, 3 * to);
+    for (const [from, to] of slices(primitive.triangleCount)) {
+      copyIndices(primitive, indices, 3 * from, 3 * to);
       await pace.rest();
     }
-    groups.fill(group, part.firstVertex, part.firstVertex + part.vertexCount);
+    groups.fill(group, primitive.firstVertex, primitive.firstVertex + primitive.vertexCount);
   }
 
-  const hasUvs = parts.every((part) => part.mesh.geometry.hasAttribute('uv'));
-  return { positions, indices, groups, parts, ...(hasUvs && { uvs: copyUvs(parts, vertexCount) }) };
+  const hasUvs = primitives.every((primitive) => primitive.mesh.geometry.hasAttribute('uv'));
+  return { positions, indices, groups, primitives, ...(hasUvs && { uvs: copyUvs(primitives, vertexCount) }) };
 }
 
 /** Splits a count into ranges of `kSlice`. */
@@ -82,13 +82,13 @@ function* slices(count: number): Iterable<[number, number]> {
   for (let from = 0; from < count; from += kSlice) yield [from, Math.min(from + kSlice, count)];
 }
 
-function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): Part[] {
-  const parts: Part[] = [];
+function listPrimitives(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): Primitive[] {
+  const primitives: Primitive[] = [];
   let firstVertex = 0;
   let firstTriangle = 0;
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return;
-    const name = nameOf(object) || object.name || object.parent?.name || `part ${parts.length}`;
+    const name = nameOf(object) || object.name || object.parent?.name || `part ${primitives.length}`;
     if ('isInstancedMesh' in object)
       throw new Error(`“${name}” uses instancing, which is not supported; give each instance a node of its own`);
     const { index, attributes } = object.geometry as Mesh['geometry'];
@@ -99,7 +99,7 @@ function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): 
     }
     const triangleCount = cornerCount / 3;
     const matrix = placeOf(object).clone();
-    parts.push({
+    primitives.push({
       mesh: object,
       name,
       firstVertex,
@@ -112,10 +112,10 @@ function listParts(root: Object3D, nameOf: (mesh: Mesh) => string | undefined): 
     firstVertex += vertexCount;
     firstTriangle += triangleCount;
   });
-  return parts;
+  return primitives;
 }
 
-function copyPositions({ mesh, firstVertex, matrix }: Part, out: Float32Array, from: number, to: number): void {
+function copyPositions({ mesh, firstVertex, matrix }: Primitive, out: Float32Array, from: number, to: number): void {
   const position = mesh.geometry.attributes.position as Attribute;
   const point = new Vector3();
   const identity = matrix.equals(kIdentity);
@@ -128,7 +128,7 @@ function copyPositions({ mesh, firstVertex, matrix }: Part, out: Float32Array, f
 }
 
 function copyIndices(
-  { mesh, name, firstVertex, vertexCount, firstTriangle, mirrored }: Part,
+  { mesh, name, firstVertex, vertexCount, firstTriangle, mirrored }: Primitive,
   out: Uint32Array,
   from: number,
   to: number,
@@ -137,7 +137,7 @@ function copyIndices(
   const base = 3 * firstTriangle;
   for (let corner = from; corner < to; corner++) {
     const vertex = index ? index.getX(corner) : corner;
-    // Check per part: after concatenation, an index out of range would point into the next part.
+    // Check per primitive: after concatenation, an index out of range would point into the next primitive.
     if (vertex >= vertexCount) {
       throw new Error(`indices[${corner}] = ${vertex} of “${name}” is out of range (${vertexCount} vertices)`);
     }
@@ -155,9 +155,9 @@ export function reverseWinding(indices: Uint32Array): void {
   }
 }
 
-function copyUvs(parts: Part[], vertexCount: number): Float32Array {
+function copyUvs(primitives: Primitive[], vertexCount: number): Float32Array {
   const uvs = new Float32Array(2 * vertexCount);
-  for (const { mesh, firstVertex } of parts) {
+  for (const { mesh, firstVertex } of primitives) {
     const uv = mesh.geometry.attributes.uv as Attribute;
     for (let i = 0; i < uv.count; i++) {
       uvs[2 * (firstVertex + i)] = uv.getX(i);

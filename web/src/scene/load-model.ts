@@ -71,9 +71,9 @@ export async function loadModel(
 
 /** Frees the GPU memory of a model. */
 export function disposeModel({ mesh }: Model): void {
-  for (const part of mesh.parts) {
-    part.mesh.geometry.dispose();
-    for (const material of [part.mesh.material].flat()) {
+  for (const primitive of mesh.primitives) {
+    primitive.mesh.geometry.dispose();
+    for (const material of [primitive.mesh.material].flat()) {
       for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
       material.dispose();
     }

@@ -14,8 +14,8 @@ export class Highlight {
   );
 
   /** @param triangles Indices of the target's triangles. */
-  constructor({ parts, indices }: ExtractedMesh, triangles: readonly number[]) {
-    for (const { mesh: base, firstVertex, firstTriangle, triangleCount } of parts) {
+  constructor({ primitives, indices }: ExtractedMesh, triangles: readonly number[]) {
+    for (const { mesh: base, firstVertex, firstTriangle, triangleCount } of primitives) {
       const own = triangles.filter((triangle) => triangle >= firstTriangle && triangle < firstTriangle + triangleCount);
       if (own.length === 0) continue;
       const vertices = Uint32Array.from(

@@ -28,8 +28,8 @@ export class Overlay {
    */
   constructor(target: ExtractedMesh, projection: SplitProjection, paint: Texture | undefined) {
     this.#vertexCount = target.positions.length / 3;
-    const parts = target.parts.filter((part) => part.triangleCount > 0);
-    this.#primitives = parts.map((part) => new PrimitiveOverlay(part, target.indices, paint));
+    const filled = target.primitives.filter(({ triangleCount }) => triangleCount > 0);
+    this.#primitives = filled.map((primitive) => new PrimitiveOverlay(primitive, target.indices, paint));
     this.setProjection(projection);
   }
 

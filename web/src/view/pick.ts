@@ -1,5 +1,5 @@
 import { type Camera, type Intersection, Raycaster, Triangle, type Vector2, Vector3 } from 'three';
-import type { ExtractedMesh, Part } from '../scene/extract-mesh';
+import type { ExtractedMesh, Primitive } from '../scene/extract-mesh';
 
 /** A spot on the surface of the target. */
 export interface Spot {
@@ -21,22 +21,22 @@ export interface Spot {
 export function pick(target: ExtractedMesh, camera: Camera, at: Vector2): Spot | undefined {
   const raycaster = new Raycaster();
   raycaster.setFromCamera(at, camera);
-  let nearest: { part: Part; hit: Intersection } | undefined;
-  for (const part of target.parts) {
-    const [hit] = raycaster.intersectObject(part.mesh, false);
-    if (hit && (!nearest || hit.distance < nearest.hit.distance)) nearest = { part, hit };
+  let nearest: { primitive: Primitive; hit: Intersection } | undefined;
+  for (const primitive of target.primitives) {
+    const [hit] = raycaster.intersectObject(primitive.mesh, false);
+    if (hit && (!nearest || hit.distance < nearest.hit.distance)) nearest = { primitive, hit };
   }
-  return nearest && spotOf(target, nearest.part, nearest.hit);
+  return nearest && spotOf(target, nearest.primitive, nearest.hit);
 }
 
 function spotOf(
   { positions, indices }: ExtractedMesh,
-  { mesh, firstVertex, firstTriangle }: Part,
+  { mesh, firstVertex, firstTriangle }: Primitive,
   { faceIndex, point: seen }: Intersection,
 ): Spot {
   const triangle = firstTriangle + faceIndex!;
   const corners = [0, 1, 2].map((corner) => indices[3 * triangle + corner]!) as [number, number, number];
-  // In the order of the target's indices, whose winding is reversed if the part is mirrored.
+  // In the order of the target's indices, whose winding is reversed if the primitive is mirrored.
   const posed = corners.map((vertex) =>
     mesh.localToWorld(mesh.getVertexPosition(vertex - firstVertex, new Vector3())),
   ) as [Vector3, Vector3, Vector3];

@@ -10,7 +10,7 @@ import {
   SRGBColorSpace,
   type Texture,
 } from 'three';
-import { type Part, reverseWinding } from '../scene/extract-mesh';
+import { type Primitive, reverseWinding } from '../scene/extract-mesh';
 import type { Look } from './overlay';
 import {
   copyVertices,
@@ -47,7 +47,7 @@ export type CutGeometry = typeof import('cagecast/three')['cutGeometry'];
 
 /** The overlay on one mesh of the target. */
 export class PrimitiveOverlay {
-  readonly #part: Part;
+  readonly #primitive: Primitive;
   /** The corners of its triangles: as vertices of the target, and of the filtered mesh. */
   readonly #vertices: Uint32Array;
   #corners = new Uint32Array(0);
@@ -65,9 +65,9 @@ export class PrimitiveOverlay {
   readonly #vertexColors = colorMaterial();
   readonly #hidden = kExcludedZones.map((zone) => hiddenMaterial(kZoneColors[zone]));
 
-  constructor(part: Part, indices: Uint32Array, paint: Texture | undefined) {
-    this.#part = part;
-    const { mesh, firstTriangle, triangleCount } = part;
+  constructor(primitive: Primitive, indices: Uint32Array, paint: Texture | undefined) {
+    this.#primitive = primitive;
+    const { mesh, firstTriangle, triangleCount } = primitive;
     this.#vertices = indices.subarray(3 * firstTriangle, 3 * (firstTriangle + triangleCount));
     this.#paint = paintMaterial([mesh.material].flat()[0]!);
     if (paint) this.setPaint(paint);
@@ -79,9 +79,9 @@ export class PrimitiveOverlay {
 
   /** Rebuilds the geometries. Materials are kept, as compiling a shader takes longer than a frame. */
   setProjection(uvs: Float32Array, split: SplitVertices): void {
-    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = this.#part;
+    const { mesh, firstVertex, vertexCount, firstTriangle, triangleCount, mirrored } = this.#primitive;
     const [from, to] = [3 * firstTriangle, 3 * (firstTriangle + triangleCount)];
-    // Split vertices are in order of use: those of a part are contiguous.
+    // Split vertices are in order of use: those of a primitive are contiguous.
     const first = split.indices[from]!;
     this.#corners = shifted(split.indices.subarray(from, to), first);
     let count = 0;
@@ -104,10 +104,10 @@ export class PrimitiveOverlay {
 
   /** Shows the filtered paint on the cut target. @param vertexCount Of the whole target before cutting. */
   setCut(cut: CutTarget, vertexCount: number, cutGeometry: CutGeometry): void {
-    const { mesh, mirrored } = this.#part;
+    const { mesh, mirrored } = this.#primitive;
     const geometry = shareVertices(mesh.geometry);
     geometry.morphAttributes = { ...geometry.morphAttributes }; // a copy, as `cutGeometry` replaces entries
-    const { pieces, split } = cutGeometry(geometry, { ...this.#part, turned: mirrored }, cut, vertexCount);
+    const { pieces, split } = cutGeometry(geometry, { ...this.#primitive, turned: mirrored }, cut, vertexCount);
     geometry.setAttribute(kUvName, new BufferAttribute(split.uvs, 2));
     const { cosmeticTriangles, zones } = pieces.result;
     const triangleZones = zonesOfTriangles(cosmeticTriangles, zones, pieces.geometry.localIndices);
@@ -120,7 +120,7 @@ export class PrimitiveOverlay {
     this.show(this.#look);
   }
 
-  /** Shows the part's own triangles again. */
+  /** Shows the primitive's own triangles again. */
   clearCut(): void {
     if (!this.#cut) return;
     this.#cut.removeFromParent();
@@ -142,7 +142,7 @@ export class PrimitiveOverlay {
   }
 
   classify({ zones, cosmeticTriangles }: Classification): void {
-    const { firstTriangle, triangleCount } = this.#part;
+    const { firstTriangle, triangleCount } = this.#primitive;
     const cosmetic = cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount);
     sortByZone(this.#filtered.geometry, this.#corners, zonesOfTriangles(cosmetic, zones, this.#vertices));
   }
@@ -158,7 +158,7 @@ export class PrimitiveOverlay {
   }
 
   setColors(colors: Uint8Array): void {
-    const { mesh, firstTriangle, firstVertex, triangleCount, mirrored } = this.#part;
+    const { mesh, firstTriangle, firstVertex, triangleCount, mirrored } = this.#primitive;
     if (!this.#colored) {
       const geometry = copyVertices(mesh.geometry, shifted(this.#vertices, firstVertex));
       if (mirrored) {
