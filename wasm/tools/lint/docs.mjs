@@ -19,7 +19,6 @@ const kWords = {
   copyOf: 'twinOf',
   'bared\\w*': 'hole contents',
   '(?<=\\.)restores': 'recovery',
-  'second look': 'recheck of occluded points',
   farRims: 'farLoops',
 };
 
