@@ -40,12 +40,12 @@ const answer = '[[0,0,1,0,0,1],[0,0,0],[0,0,0],3,"nonFinitePosition"]';
 
 const slimProgram = program.replace("'cagecast'", "'cagecast/slim'");
 const cutProgram = `
-import { init, transfer, CagecastError } from 'cagecast/slim';
-import { cutBorders } from 'cagecast/slim/borders';
+import { cutBorders, init, transfer, CagecastError } from 'cagecast/slim';
 await init();
 const mesh = (z) => ({ positions: new Float32Array([0, 0, z, 1, 0, z, 0, 1, z]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array([0, 0, 1, 0, 0, 1]) });
 const { triangles, cosmeticTriangles } = await cutBorders(mesh(0.1), mesh(0), transfer(mesh(0.1), mesh(0)));
-const refused = await cutBorders(mesh(0.1), mesh(0), {}).catch((error) => error);
+let refused;
+try { cutBorders(mesh(0.1), mesh(0), {}); } catch (error) { refused = error; }
 globalThis.answer = JSON.stringify([triangles.length > 0, triangles.every((t) => t === 0), cosmeticTriangles.every((one) => one === 1), refused instanceof CagecastError]);
 `;
 const cutAnswer = '[true,true,true,true]';
@@ -108,7 +108,7 @@ describe('the packed package', () => {
       (name) => !/^(dist|package\.json|README\.md|LICENSE|CHANGELOG\.md)$/.test(name),
     );
     assert.deepEqual(top, []);
-    for (const name of distFiles()) assert.match(name, /\.(js|d\.ts|wasm)$/);
+    for (const name of distFiles()) assert.match(name, /\.(js|js\.map|d\.ts|wasm|txt)$/);
   });
 
   test('holds nothing of the machine it was built on', () => {
@@ -121,12 +121,12 @@ describe('the packed package', () => {
     }
   });
 
-  test('is small: the entry with its WebAssembly at most 60 KB gzipped, the WebAssembly itself at most 40 KB', (context) => {
+  test('is small: the entry with its WebAssembly at most 100 KB gzipped, the WebAssembly itself at most 76 KB', (context) => {
     const entry = gzipSync(readFileSync(join(installed, 'dist/index.js')), { level: 9 }).length;
     const wasm = gzipSync(readFileSync('dist/cagecast.wasm'), { level: 9 }).length;
     context.diagnostic(`entry ${entry} bytes, WebAssembly ${wasm} bytes, gzipped`);
-    assert.ok(entry <= 60 * 1024, `${entry} bytes`);
-    assert.ok(wasm <= 40 * 1024, `${wasm} bytes`);
+    assert.ok(entry <= 100 * 1024, `${entry} bytes`);
+    assert.ok(wasm <= 76 * 1024, `${wasm} bytes`);
   });
 
   test('asks engines to compile its index as they read it: they look for that at the very beginning', () => {
@@ -135,7 +135,7 @@ describe('the packed package', () => {
   });
 
   test('its further entries are small, and none of them is in the main one', (context) => {
-    for (const [name, most] of Object.entries({ inspect: 12, three: 5, gltf: 6, borders: 62 })) {
+    for (const [name, most] of Object.entries({ inspect: 12, three: 5, gltf: 6 })) {
       const text = readFileSync(join(installed, `dist/${name}.js`));
       const size = gzipSync(text, { level: 9 }).length;
       context.diagnostic(`${name} ${size} bytes, gzipped`);
@@ -144,11 +144,11 @@ describe('the packed package', () => {
     }
     assert.doesNotMatch(
       readFileSync(join(installed, 'dist/index.js'), 'utf8'),
-      /cageMisplaced|TEXCOORD_0|isBufferGeometry|cutBorders: result/,
+      /cageMisplaced|TEXCOORD_0|isBufferGeometry/,
     );
   });
 
-  test('its entries for three.js and glTF-Transform, inspect and borders run and type-check beside these', () => {
+  test('its entries for three.js and glTF-Transform, inspect run and type-check beside these', () => {
     const folder = join(user, 'peers');
     mkdirSync(join(folder, 'node_modules/@types'), { recursive: true });
     mkdirSync(join(folder, 'node_modules/@gltf-transform'));
@@ -161,9 +161,8 @@ describe('the packed package', () => {
       join(folder, 'program.ts'),
       `import { Document } from '@gltf-transform/core';
       import { BoxGeometry, Group, Mesh, SphereGeometry, Texture } from 'three';
-      import { init, type Mesh as Arrays } from 'cagecast';
+      import { cutBorders, type CutTarget, init, type Mesh as Arrays } from 'cagecast';
       import { cagecast } from 'cagecast/gltf';
-      import { cutBorders, type CutTarget } from 'cagecast/borders';
       import { inspect, type Inspection, type Verdict } from 'cagecast/inspect';
       import { applyTransfer, extract, type Applied } from 'cagecast/three';
       await init();
@@ -175,7 +174,7 @@ describe('the packed package', () => {
       const arrays: Arrays = extract(cage, 'cage').mesh;
       const inspection: Inspection = inspect(arrays, { positions, indices, ...rest }, { result: applied.result });
       const verdict: Verdict = inspection.verdict;
-      const cut: CutTarget = await cutBorders(arrays, { positions, indices, ...rest }, applied.result, { threshold: 0.3, seams: 'vertex' });
+      const cut: CutTarget = cutBorders(arrays, { positions, indices, ...rest }, applied.result, { threshold: 0.3, seams: 'vertex' });
       const document = new Document();
       const buffer = document.createBuffer();
       const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'SCALAR') => document.createAccessor().setType(type).setArray(new (array.constructor as Float32ArrayConstructor)(array)).setBuffer(buffer);
@@ -183,7 +182,7 @@ describe('the packed package', () => {
       document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
       await document.transform(cagecast({ cage: arrays }));
       const box = new Group().add(new Mesh(new BoxGeometry(1, 1, 1, 3, 3, 3)));
-      const { cutTriangles }: Applied = await applyTransfer(box, cage, { borders: 'cut', threshold: 0.3, seams: 'vertex' });
+      const { cutTriangles }: Applied = applyTransfer(box, cage, { borders: 'cut', threshold: 0.3, seams: 'vertex' });
       // @ts-expect-error a cage is needed
       void (() => cagecast({}));
       console.log(verdict !== undefined, cutTriangles > 0 && cut.triangles.length - indices.length / 3 === cutTriangles, applied.overlays.length, primitive.listSemantics().join());`,

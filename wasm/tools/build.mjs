@@ -2,7 +2,7 @@
 //   node wasm/tools/build.mjs                        all of it; does nothing if nothing changed
 //   node wasm/tools/build.mjs --preset wasm-scalar   only index.js, in build/wasm-scalar/package, which tests compare with
 
-import { execFileSync, spawnSync } from 'node:child_process';
+import { spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import {
   chmodSync,
@@ -20,6 +20,7 @@ import {
 import { delimiter, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
+import { noticesOf } from './notices.mjs';
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), '../..');
 const at = (...parts) => join(root, ...parts);
@@ -32,6 +33,23 @@ if (preset !== 'wasm' && preset !== 'wasm-scalar')
 const shipped = preset === 'wasm';
 const out = shipped ? at('dist') : at('build', preset, 'package');
 const stamp = at('build', preset, 'package.stamp');
+
+/** Options of esbuild for every file of the package. */
+const common = {
+  bundle: true,
+  format: 'esm',
+  target: 'es2022',
+  minify: true,
+  legalComments: 'none', // THIRD-PARTY-NOTICES.txt has them
+  sourcemap: shipped ? 'linked' : false,
+  metafile: true,
+  logLevel: 'warning',
+  absWorkingDir: root,
+  define: { CAGECAST_VERSION: JSON.stringify(JSON.parse(readFileSync(at('package.json'), 'utf8')).version) },
+};
+// Nearly all functions of the index are called by the first transfer. Told so, Chromium compiles them as it parses them, on a
+// thread in the background, and not one by one as they are called.
+const eager = { banner: { js: '//# allFunctionsCalledOnLoad' } };
 
 const hash = hashOf(
   ['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'],
@@ -84,112 +102,100 @@ function findEmscripten() {
 }
 
 async function buildPackage() {
-  const esbuild = await import('esbuild');
+  const { build } = await import('esbuild');
   const fresh = at('build', preset, 'package.new');
   rmSync(fresh, { recursive: true, force: true });
   mkdirSync(fresh, { recursive: true });
 
-  const common = {
-    bundle: true,
-    format: 'esm',
-    target: 'es2022',
-    minify: true,
-    legalComments: 'none',
-    logLevel: 'warning',
-    absWorkingDir: root,
-    define: { CAGECAST_VERSION: JSON.stringify(JSON.parse(readFileSync(at('package.json'), 'utf8')).version) },
+  const bundled = new Set();
+  const bundle = async (entry, name, platform, options) => {
+    const outfile = join(fresh, name);
+    const entryPoints = [at('wasm/src', entry)];
+    const { metafile } = await build({ ...common, ...options, entryPoints, outfile, platform });
+    for (const path of Object.keys(metafile.inputs)) bundled.add(path);
+    if (shipped) withoutDigits(`${outfile}.map`);
   };
-  // Nearly all functions of the index are called by the first transfer. Told so, Chromium compiles them as it parses them, on a
-  // thread in the background, and not one by one as they are called.
-  const eager = { banner: { js: '//# allFunctionsCalledOnLoad' } };
-  await esbuild.build({
-    ...common,
-    ...eager,
-    entryPoints: [at('wasm/src/index.ts')],
-    outfile: join(fresh, 'index.js'),
-    platform: 'neutral',
-    plugins: [wasmModules('wasm-inline.ts')],
-  });
+  await bundle('index.ts', 'index.js', 'neutral', { ...eager, plugins: [wasmModules('wasm-inline.ts')] });
   if (shipped) {
-    // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
-    const beside = (entry, outfile, platform, more = {}) =>
-      esbuild.build({
-        ...common,
-        ...more,
-        entryPoints: [at('wasm/src', entry)],
-        outfile: join(fresh, outfile),
-        platform,
-        external: ['#spawn', './index.js', 'three'],
-        plugins: [wasmModules('wasm-file.ts', './index.js')],
-      });
-    await beside('index.ts', 'slim.js', 'neutral', eager);
-    const file = { define: { ...common.define, CAGECAST_WASM: JSON.stringify('./cagecast.wasm') } };
-    await beside('core/read-wasm.ts', 'read-wasm.js', 'neutral', file);
-    await beside('core/read-wasm-node.ts', 'read-wasm-node.js', 'node', file);
+    await bundleEntries(bundle);
+    await bundleCommand(bundle);
     cpSync(at('build', preset, 'wasm/cagecast.wasm'), join(fresh, 'cagecast.wasm'));
     chmodSync(join(fresh, 'cagecast.wasm'), 0o644);
-    await beside('inspect/index.ts', 'inspect.js', 'neutral');
-    await beside('three/index.ts', 'three.js', 'neutral');
-    await beside('gltf/index.ts', 'gltf.js', 'neutral');
-    await beside('worker/index.ts', 'worker.js', 'neutral');
-    await beside('worker/spawn.ts', 'spawn.js', 'neutral');
-    await beside('worker/spawn-node.ts', 'spawn-node.js', 'node');
-    await beside('worker/thread.ts', 'worker-thread.js', 'neutral');
-    await beside('worker/thread-node.ts', 'worker-thread-node.js', 'node');
-    await esbuild.build({
-      ...common,
-      entryPoints: [at('wasm/src/cli/main.ts')],
-      outfile: join(fresh, 'cli.js'),
-      platform: 'node',
-      target: 'node20',
-      // Some of what is bundled is CommonJS and asks for these.
-      banner: {
-        js: [
-          '#!/usr/bin/env node',
-          "import { createRequire as cagecastRequire } from 'node:module';",
-          "import { dirname as cagecastDirname } from 'node:path';",
-          "import { fileURLToPath as cagecastPath } from 'node:url';",
-          'const require = cagecastRequire(import.meta.url), __filename = cagecastPath(import.meta.url), __dirname = cagecastDirname(__filename);',
-        ].join('\n'),
-      },
-      loader: { '.wasm': 'binary' },
-      plugins: [wasmModules('wasm-inline.ts')],
-    });
-    run(process.execPath, [
-      at('node_modules/@typescript/native/bin/tsc'),
-      '-p',
-      at('wasm/tsconfig.types.json'),
-      '--outDir',
-      fresh,
-    ]);
+    const tsc = at('node_modules/@typescript/native/bin/tsc');
+    run(process.execPath, [tsc, '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
+    const nanoflann = at('build', preset, 'core/nanoflann/nanoflann.hpp');
+    writeFileSync(join(fresh, 'THIRD-PARTY-NOTICES.txt'), noticesOf(root, bundled, nanoflann));
   }
   rmSync(out, { recursive: true, force: true });
   renameSync(fresh, out);
+}
 
-  /**
-   * Resolves the names that stand for what the C++ build makes.
-   * @param wasm   How the package comes by its WebAssembly.
-   * @param index  The file that importers of the package's index share; without, it is bundled.
-   */
-  function wasmModules(wasm, index) {
-    const files = {
-      '#glue': at('build', preset, 'wasm/cagecast.js'),
-      '#wasm-digits': at('build', preset, 'wasm/cagecast.wasm'),
-      '#wasm': at('wasm/src/core', wasm),
-    };
-    return {
-      name: 'wasm-modules',
-      setup(build) {
-        build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
-        build.onResolve({ filter: /^#read-wasm$/ }, ({ path }) => ({ path, external: true }));
-        if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
-        build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
-          contents: readFileSync(path).toString('hex'),
-          loader: 'text',
-        }));
-      },
-    };
-  }
+/** Bundles what package.json exports besides the index. */
+async function bundleEntries(bundle) {
+  // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
+  const shared = {
+    external: ['#spawn', './index.js', 'three'],
+    plugins: [wasmModules('wasm-file.ts', './index.js')],
+  };
+  const file = { ...shared, define: { ...common.define, CAGECAST_WASM: JSON.stringify('./cagecast.wasm') } };
+  await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager });
+  await bundle('core/read-wasm.ts', 'read-wasm.js', 'neutral', file);
+  await bundle('core/read-wasm-node.ts', 'read-wasm-node.js', 'node', file);
+  for (const entry of ['inspect', 'three', 'gltf', 'worker'])
+    await bundle(`${entry}/index.ts`, `${entry}.js`, 'neutral', shared);
+  await bundle('worker/spawn.ts', 'spawn.js', 'neutral', shared);
+  await bundle('worker/spawn-node.ts', 'spawn-node.js', 'node', shared);
+  await bundle('worker/thread.ts', 'worker-thread.js', 'neutral', shared);
+  await bundle('worker/thread-node.ts', 'worker-thread-node.js', 'node', shared);
+}
+
+async function bundleCommand(bundle) {
+  // Some of what is bundled is CommonJS and asks for these.
+  const banner = [
+    '#!/usr/bin/env node',
+    "import { createRequire as cagecastRequire } from 'node:module';",
+    "import { dirname as cagecastDirname } from 'node:path';",
+    "import { fileURLToPath as cagecastPath } from 'node:url';",
+    'const require = cagecastRequire(import.meta.url), __filename = cagecastPath(import.meta.url), __dirname = cagecastDirname(__filename);',
+  ];
+  await bundle('cli/main.ts', 'cli.js', 'node', {
+    target: 'node20',
+    banner: { js: banner.join('\n') },
+    loader: { '.wasm': 'binary' },
+    plugins: [wasmModules('wasm-inline.ts')],
+  });
+}
+
+/**
+ * Resolves the names that stand for what the C++ build makes.
+ * @param wasm   How the package comes by its WebAssembly.
+ * @param index  The file that importers of the package's index share; without, it is bundled.
+ */
+function wasmModules(wasm, index) {
+  const files = {
+    '#glue': at('build', preset, 'wasm/cagecast.js'),
+    '#wasm-digits': at('build', preset, 'wasm/cagecast.wasm'),
+    '#wasm': at('wasm/src/core', wasm),
+  };
+  return {
+    name: 'wasm-modules',
+    setup(build) {
+      build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
+      build.onResolve({ filter: /^#read-wasm$/ }, ({ path }) => ({ path, external: true }));
+      if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
+      build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
+        contents: readFileSync(path).toString('hex'),
+        loader: 'text',
+      }));
+    },
+  };
+}
+
+/** Takes the digits of the WebAssembly module out of a source map: nobody reads them. */
+function withoutDigits(path) {
+  const map = JSON.parse(readFileSync(path, 'utf8'));
+  map.sourcesContent = map.sourcesContent.map((text, i) => (map.sources[i].endsWith('.wasm') ? null : text));
+  writeFileSync(path, JSON.stringify(map));
 }
 
 /** Makes `npx cagecast` work in this checkout as it does where the package is installed. */

@@ -37,9 +37,9 @@ export function readOptions(root) {
       stage,
       kind,
       type,
-      standard: valueOf(standard, fail),
-      paper: valueOf(paper, fail),
-      range: splitColumns(range.slice(1, -1)).map((value) => valueOf(value, fail)),
+      standard: readValue(standard, fail),
+      paper: readValue(paper, fail),
+      range: splitColumns(range.slice(1, -1)).map((value) => readValue(value, fail)),
       text: textOf(text),
     };
   });
@@ -79,7 +79,7 @@ function splitColumns(text) {
 /** A text as it is written in C++: one literal, or several that it joins. */
 const textOf = (literals) => (literals.match(/"(?:[^"\\]|\\.)*"/g) ?? []).map((one) => JSON.parse(one)).join('');
 
-function valueOf(text, fail) {
+function readValue(text, fail) {
   if (text === 'true' || text === 'false') return text === 'true';
   if (text === 'kInfinity') return Infinity;
   if (/^-?[\d.]+(e-?\d+)?f?$/.test(text)) return Number.parseFloat(text);

@@ -90,6 +90,22 @@ const conclusions: Record<Verdict, string> = {
   unfit: 'UNFIT: the cage does not fit.',
 };
 
+function segmentTable(listed: (InspectionReport['segments'][number] & { s: number })[]): string {
+  return table([
+    ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
+    ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage, score, culledBy }) => [
+      cut(part, 40),
+      String(s),
+      integer(points),
+      short(exposedArea),
+      short(coveredArea),
+      coverage.toFixed(3),
+      scoreText(score),
+      fateText(culledBy),
+    ]),
+  ]);
+}
+
 function describe(report: InspectionReport, html: string | undefined): string {
   const {
     verdict,
@@ -150,19 +166,7 @@ function describe(report: InspectionReport, html: string | undefined): string {
         ]),
     '',
     `segments: ${integer(segments.length)}${more(segments.length)}`,
-    table([
-      ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
-      ...listed.map(({ part, s, points, exposedArea, coveredArea, coverage: f, score, culledBy }) => [
-        cut(part, 40),
-        String(s),
-        integer(points),
-        short(exposedArea),
-        short(coveredArea),
-        f.toFixed(3),
-        scoreText(score),
-        fateText(culledBy),
-      ]),
-    ]),
+    segmentTable(listed),
     '',
     conclusions[verdict],
     ...findings.flatMap(({ weight, sentence, advice }) => [

@@ -76,8 +76,13 @@ function listOf(name: string, value: unknown, fits: (item: unknown) => boolean, 
  * @throws {InputError}
  */
 export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): void {
-  const { bufferViews = [], accessors = [], meshes = [], nodes = [], scenes = [], skins = [], materials = [] } = json;
+  checkViews(json, bytes);
+  checkAccessors(json);
+  checkMeshes(json);
+  checkNodes(json);
+}
 
+function checkViews({ bufferViews = [] }: GLTF.IGLTF, bytes: (number | undefined)[]): void {
   bufferViews.forEach((view, v) => {
     const name = `bufferViews[${v}]`;
     const compressed = meshoptView(view);
@@ -106,7 +111,9 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
       throw new InputError(`${name} ends at byte ${offset + length} of buffers[${buffer}], which has ${size ?? 0}`);
     }
   }
+}
 
+function checkAccessors({ bufferViews = [], accessors = [] }: GLTF.IGLTF): void {
   accessors.forEach((accessor, a) => {
     const name = `accessors[${a}]`;
     const component = componentBytes[accessor.componentType];
@@ -141,7 +148,9 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
     if (end > view.byteLength)
       throw new InputError(`${name} ends at byte ${end} of bufferViews[${at}], which has ${view.byteLength}`);
   }
+}
 
+function checkMeshes({ bufferViews = [], accessors = [], meshes = [], materials = [] }: GLTF.IGLTF): void {
   meshes.forEach((mesh, m) => {
     if (mesh.primitives.length === 0) throw new InputError(`meshes[${m}] has no primitives`);
     mesh.primitives.forEach((primitive, p) => {
@@ -169,7 +178,10 @@ export function checkGeometry(json: GLTF.IGLTF, bytes: (number | undefined)[]): 
       index(`${name} (compressed).bufferView`, draco.bufferView, bufferViews.length, 'bufferViews');
     });
   });
+}
 
+function checkNodes(json: GLTF.IGLTF): void {
+  const { accessors = [], meshes = [], nodes = [], scenes = [], skins = [] } = json;
   const parents = new Array<number | undefined>(nodes.length);
   nodes.forEach((node, n) => {
     if (node.mesh !== undefined) index(`nodes[${n}].mesh`, node.mesh, meshes.length, 'meshes');

@@ -96,7 +96,12 @@ function listParts(file: GltfFile): Part[] {
         matrix:
           nodeDef.skin === undefined
             ? matrix
-            : matrixOfSkin(file, nodeDef.skin, placeOf, place, nodeDef.mesh!, p, localPositions),
+            : matrixOfSkin(file, nodeDef.skin, placeOf, {
+                place,
+                mesh: nodeDef.mesh!,
+                primitive: p,
+                positions: localPositions,
+              }),
         firstVertex,
         vertexCount: localPositions.length / 3,
         firstTriangle,
@@ -117,11 +122,9 @@ function matrixOfSkin(
   file: GltfFile,
   skin: number,
   placeOf: readonly Matrix[],
-  place: string,
-  mesh: number,
-  primitive: number,
-  positions: Float32Array,
+  of: { place: string; mesh: number; primitive: number; positions: Float32Array },
 ): Matrix {
+  const { place, mesh, primitive, positions } = of;
   const { joints = [], inverseBindMatrices } = file.json.skins![skin]!;
   const accessor = (semantic: string) => accessorOf(file, place, mesh, primitive, semantic);
   const [held, weights] = [accessor('JOINTS_0')?.getArray(), accessor('WEIGHTS_0')?.getArray()];

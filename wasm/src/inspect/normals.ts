@@ -43,7 +43,7 @@ export function orientationOf(scene: Scene): Orientation {
   let area = 0;
   pieces.forEach((triangles, p) => {
     const pieceArea = triangles.reduce((sum, t) => sum + surface.areas[t]!, 0);
-    const volume = volumeOf(surface, triangles, borders[p]!, pieceOf, p, turned);
+    const volume = volumeOf(surface, triangles, borders[p]!, { pieceOf, piece: p, turned });
     const outward =
       Math.abs(volume) >= leastVolume * pieceArea ** 1.5
         ? volume > 0
@@ -102,9 +102,7 @@ function volumeOf(
   { mesh }: Surface,
   triangles: readonly number[],
   border: readonly Edge[],
-  pieceOf: Int32Array,
-  piece: number,
-  turned: Int8Array,
+  { pieceOf, piece, turned }: { pieceOf: Int32Array; piece: number; turned: Int8Array },
 ): number {
   const { positions, indices } = mesh;
   const origin = pointAt(positions, indices[3 * triangles[0]!]!);
@@ -129,7 +127,11 @@ function volumeOf(
     const chain = [start];
     for (let i = 0; i < chain.length; ++i) {
       for (const end of [chain[i]!.a, chain[i]!.b]) {
-        for (const next of atPlace.get(end)!) if (!seen.has(next)) seen.add(next), chain.push(next);
+        for (const next of atPlace.get(end)!) {
+          if (seen.has(next)) continue;
+          seen.add(next);
+          chain.push(next);
+        }
       }
     }
     const middle = minus(middleOf(positions, chain), origin);

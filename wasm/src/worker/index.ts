@@ -148,16 +148,16 @@ function call<T>(fn: Request['fn'], args: unknown[], { signal, move = false }: C
 /** Hands the first job to the worker. */
 function next(): void {
   const job = jobs[0];
-  if (job === undefined) return thread?.setBusy(false);
+  if (job === undefined) {
+    thread?.setBusy(false);
+    return;
+  }
   try {
     thread ??= spawn(onReply, onFailure);
   } catch (cause) {
-    return finish(
-      job,
-      new CagecastError('unsupported', `${job.request.fn}: this host cannot start the worker (${String(cause)})`, 0, {
-        cause,
-      }),
-    );
+    const message = `${job.request.fn}: this host cannot start the worker (${String(cause)})`;
+    finish(job, new CagecastError('unsupported', message, 0, { cause }));
+    return;
   }
   try {
     thread.setBusy(true);
