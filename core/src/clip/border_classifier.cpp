@@ -32,9 +32,7 @@ double fastestChange(const CageTriangle& t) {
     const auto a = static_cast<double>(t.uvs[k]);
     const auto b = static_cast<double>(t.uvs[2 + k]);
     const auto c = static_cast<double>(t.uvs[4 + k]);
-    const TwoVec3 changes = simd::doubles(b - a, c - a) * t.gradients;
-    const auto sum = [](simd::f64x2 both) { return simd::doubleOf<0>(both) + simd::doubleOf<1>(both); };
-    const Vec3 change{sum(changes.x), sum(changes.y), sum(changes.z)};
+    const Vec3 change = (b - a) * t.gradientB + (c - a) * t.gradientC;
     squared += dot(change, change);
   }
   return std::sqrt(squared);

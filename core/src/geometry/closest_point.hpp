@@ -33,9 +33,8 @@ inline ClosestPoint closestPointOnTriangle(const CageTriangle& t, const Vec3& p)
   const Vec3 offset = p - Vec3::from(t.a);
   const double height = dot(offset, t.normal.exact);
   // Most points lie straight under their triangle.
-  const simd::f64x2 both = dot(twice(offset), t.gradients);
-  const double v = simd::doubleOf<0>(both);
-  const double w = simd::doubleOf<1>(both);
+  const double v = dot(offset, t.gradientB);
+  const double w = dot(offset, t.gradientC);
   if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
   const BorderPlace place = placeOnBorder(t, p, v, w);
   return {place.distance, place.v, place.w, height, false};
@@ -57,16 +56,14 @@ struct Uv {
 };
 
 /// Blends the UVs of a triangle's corners at a place on it.
-inline simd::f64x2 blendUvs(const CageTriangle& t, const ClosestPoint& place) {
-  const simd::f64x2 a = simd::lowDoubles(simd::load(t.uvs));
-  const simd::f64x2 ab = simd::lowDoubles(simd::load(t.uvs + 2)) - a;
-  const simd::f64x2 ac = simd::highDoubles(simd::load(t.uvs + 2)) - a;
-  return a + simd::splatDouble(place.v) * ab + simd::splatDouble(place.w) * ac;
-}
 inline Uv uvAt(const CageTriangle& t, const ClosestPoint& place) {
-  double uv[2];
-  simd::store(uv, blendUvs(t, place));
-  return {uv[0], uv[1]};
+  const auto blend = [&](int axis) {
+    const auto a = static_cast<double>(t.uvs[axis]);
+    const double ab = static_cast<double>(t.uvs[2 + axis]) - a;
+    const double ac = static_cast<double>(t.uvs[4 + axis]) - a;
+    return a + place.v * ab + place.w * ac;
+  };
+  return {blend(0), blend(1)};
 }
 
 }  // namespace cagecast

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/triangle.hpp"
+#include "simd/simd.hpp"
+
 namespace cagecast {
 
 RayDirection RayDirection::along(Vec3 unit) noexcept {
@@ -43,8 +46,9 @@ bool gatherCage(const MeshView& cage, const Units& units, Arena& arena, Cage& ou
     if (!(doubleArea > 0)) continue;
     const Vec3 unit = 1 / doubleArea * normal;
     triangle.index = static_cast<std::uint32_t>(t);
-    const TwoVec3 edges = pointsAt(triangle.a, triangle.b) - pointsAt(triangle.c, triangle.a);
-    triangle.gradients = simd::splatDouble(1 / doubleArea) * cross(twice(unit), edges);
+    const Vec3 a = Vec3::from(triangle.a);
+    triangle.gradientB = 1 / doubleArea * cross(unit, a - Vec3::from(triangle.c));
+    triangle.gradientC = 1 / doubleArea * cross(unit, Vec3::from(triangle.b) - a);
     triangle.normal = RayDirection::along(unit);
     ++count;
   }

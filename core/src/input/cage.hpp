@@ -4,7 +4,7 @@
 
 #include "base/arena.hpp"
 #include "cagecast/mesh.hpp"
-#include "geometry/triangle.hpp"
+#include "geometry/vec3.hpp"
 #include "input/validate.hpp"
 
 namespace cagecast {
@@ -30,8 +30,9 @@ struct alignas(16) CageTriangle {
   float a[4], b[4], c[4];  ///< Corners (x, y, z, 0), scaled.
   float uvs[6];            ///< Of the corners.
   std::uint32_t index;     ///< In the caller's mesh.
-  TwoVec3 gradients;       ///< Of the barycentrics of b and c: times p − a, they are those of the foot of p.
-  RayDirection normal;     ///< Outward; the direction of the rays of the points that project here.
+  /// Of the barycentrics of b and c: times p − a, they are those of the foot of p.
+  Vec3 gradientB, gradientC;
+  RayDirection normal;  ///< Outward; the direction of the rays of the points that project here.
 };
 
 /// In an array of cage triangles, seen as positions of four floats, corner a of one is so many after that of the one

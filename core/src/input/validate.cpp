@@ -88,11 +88,9 @@ bool bound(std::span<const float> positions, Box& box) {
 }
 
 std::uint32_t highestOf(std::span<const std::uint32_t> indices) {
-  simd::count4 fours = simd::splatCount(0);
-  std::size_t i = 0;
-  for (; i + simd::kWidth <= indices.size(); i += simd::kWidth) fours = simd::max(fours, simd::load(&indices[i]));
-  for (; i < indices.size(); ++i) fours = simd::max(fours, simd::splatCount(indices[i]));
-  return std::max({simd::countOf<0>(fours), simd::countOf<1>(fours), simd::countOf<2>(fours), simd::countOf<3>(fours)});
+  std::uint32_t most = 0;
+  for (const std::uint32_t index : indices) most = std::max(most, index);
+  return most;
 }
 
 Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {

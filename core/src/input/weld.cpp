@@ -135,26 +135,22 @@ std::uint32_t weldEqual(Placed* placed, std::uint32_t vertexCount, const Site* s
   return count;
 }
 
-/// Finds the corners of the triangles that have an area, and twice that, two by two: there must be room for one more.
+/// Finds the corners of the triangles that have an area, and twice that area.
 /// @return How many there are.
 std::uint32_t weldTriangles(std::span<const std::uint32_t> indices, const std::uint32_t* ofVertex,
                             const float* positions, std::uint32_t* triangles, double* areas) {
-  simd::f64x2 least = simd::splatDouble(std::numeric_limits<double>::infinity());
-  double* area = areas;
-  for (std::size_t i = 0; i < indices.size(); i += 6, area += 2) {
-    const std::uint32_t* index = &indices[i];
-    const std::uint32_t* other = i + 3 < indices.size() ? index + 3 : index;
-    const std::uint32_t corners[6] = {ofVertex[index[0]], ofVertex[index[1]], ofVertex[index[2]],
-                                      ofVertex[other[0]], ofVertex[other[1]], ofVertex[other[2]]};
-    for (std::size_t k = 0; k < 6; ++k) triangles[i + k] = corners[k];
-    const simd::f64x2 both = doubleAreas(positions, corners, corners + 3);
-    simd::store(area, both);
-    least = simd::min(least, both);
-  }
-  double leastOf[2];
-  simd::store(leastOf, least);
+  double least = std::numeric_limits<double>::infinity();
   const auto all = static_cast<std::uint32_t>(indices.size() / 3);
-  if (leastOf[0] > 0 && leastOf[1] > 0) return all;
+  for (std::size_t t = 0; t < all; ++t) {
+    const float* corner[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangles[3 * t + k] = ofVertex[indices[3 * t + k]];
+      corner[k] = positions + Points::kStride * triangles[3 * t + k];
+    }
+    areas[t] = length(areaNormal(corner[0], corner[1], corner[2]));
+    least = std::min(least, areas[t]);
+  }
+  if (least > 0) return all;
 
   std::uint32_t kept = 0;
   for (std::uint32_t t = 0; t < all; ++t) {
@@ -184,8 +180,8 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
   auto* ofVertex = arena.allocate<std::uint32_t>(vertexCount);
   auto* positions = arena.allocate<float>(Points::kStride * vertexCount);
   auto* places = arena.allocate<std::uint32_t>(vertexCount);
-  auto* triangles = arena.allocate<std::uint32_t>(std::size_t{3} * (allTriangles + 1));
-  auto* doubleAreas = arena.allocate<double>(allTriangles + std::size_t{1});
+  auto* triangles = arena.allocate<std::uint32_t>(std::size_t{3} * allTriangles);
+  auto* doubleAreas = arena.allocate<double>(allTriangles);
   const bool tolerant = tolerance > 0;
   auto* groups = arena.allocate<std::uint32_t>(tolerant ? vertexCount : 0);
   const Arena::Mark mark = arena.mark();
@@ -210,8 +206,8 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
   for (std::uint32_t v = 0; v < vertexCount; ++v, position += 3) {
     const f32x4 p = simd::load3(position) * scale + simd::splat(0);
     sites[v].put(p, groupOf == nullptr ? 0 : groupOf[v]);
-    const simd::count4 cell = simd::rounded((p - low) * simd::splat(cells));
-    const std::uint32_t key = curve.key(simd::countOf<0>(cell), simd::countOf<1>(cell), simd::countOf<2>(cell));
+    const simd::u32x4 cell = simd::rounded((p - low) * simd::splat(cells));
+    const std::uint32_t key = curve.key(simd::lane<0>(cell), simd::lane<1>(cell), simd::lane<2>(cell));
     digits.count(key, counts);
     unsorted[v] = Placed{key} << 32 | v;
   }

@@ -15,7 +15,7 @@ ChartFlood::ChartFlood(const Cage& cage, const CageTree& tree, const UvCharts& c
       tree_(tree),
       charts_(charts),
       fixedSlack_(fixedSlack(slackOf(tree, diagonal), kRelativeSlack)),
-      triangles_(arena.allocate<FlatTriangle>(cage.count)),
+      triangles_(arena.allocate<FlatTriangles<1>>(cage.count)),
       patches_(arena.allocate<ChartPatch>(kMaxPatches)),
       groups_(arena.allocate<Group>(kMaxGroups)),
       candidates_(arena.allocate<PatchCandidate>(kCandidateRoom + std::size_t{3} * cage.count)),
@@ -30,7 +30,7 @@ ChartFlood::ChartFlood(const Cage& cage, const CageTree& tree, const UvCharts& c
   std::fill(met_, met_ + cage.count, 0u);
   std::fill(edgeMet_, edgeMet_ + std::size_t{3} * cage.count, 0u);
   for (std::uint32_t i = 0; i < cage.count; ++i)
-    triangles_[tree.near[i / 4].slot[i % 4]] = FlatTriangle::of(tree.near[i / 4], i % 4);
+    triangles_[tree.near[i / 4].slot[i % 4]] = triangleOf(tree.near[i / 4], i % 4);
 }
 
 ChartPatch& ChartFlood::add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept {
@@ -179,9 +179,9 @@ void ChartFlood::flood(const Group& group, double reach) noexcept {
   if (memberCount == 0) enqueue(group.cageTriangle);
   for (std::uint32_t i = 0; i < end; ++i) {
     const std::uint32_t t = queue[i];
-    const FlatTriangle& triangle = triangles_[t];
-    const simd::f32x4 squared = triangle.squaredDistances(x[0], y[0], z[0]);
-    const float toCentre = simd::first(squared);
+    const FlatTriangles<1>& triangle = triangles_[t];
+    const simd::f32x4 squared = squaredDistances(triangle, x[0], y[0], z[0]);
+    const float toCentre = simd::lane<0>(squared);
     bool isWithin = toCentre <= surelyWithin;
     if (!isWithin && toCentre <= perhapsWithin)
       isWithin = closestPointOnTriangle(cage_.triangles[t], group.centre).distance <= reach;
@@ -194,7 +194,7 @@ void ChartFlood::flood(const Group& group, double reach) noexcept {
     simd::store(squares, squared);
     least_[0] = simd::min(least_[0], squared);
     for (std::uint32_t v = 1; v < group.vectors(); ++v) {
-      const simd::f32x4 more = triangle.squaredDistances(x[v], y[v], z[v]);
+      const simd::f32x4 more = squaredDistances(triangle, x[v], y[v], z[v]);
       simd::store(squares + simd::kWidth * v, more);
       least_[v] = simd::min(least_[v], more);
     }

@@ -6,8 +6,8 @@
 #include "cage/uv_charts.hpp"
 #include "geometry/closest_point.hpp"
 #include "input/cage.hpp"
-#include "seams/flat_triangle.hpp"
 #include "search/kd_tree.hpp"
+#include "search/near_kernel.hpp"
 #include "simd/simd.hpp"
 
 namespace cagecast {
@@ -113,7 +113,7 @@ class ChartFlood {
   const CageTree& tree_;
   const UvCharts& charts_;
   float fixedSlack_;
-  FlatTriangle* triangles_;  ///< 1 per cage triangle.
+  FlatTriangles<1>* triangles_;  ///< 1 per cage triangle.
   ChartPatch* patches_;
   Group* groups_;
   std::uint32_t patchCount_ = 0, groupCount_ = 0, grownGroups_ = 0;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cage/uv_charts.hpp"
+#include "geometry/triangle.hpp"
 #include "seams/seam_resolver.hpp"
 #include "simd/simd.hpp"
 
@@ -36,12 +37,13 @@ class SeamFilter {
   /// @param triangle  3 points.
   [[nodiscard]] bool isWhole(const std::uint32_t* triangle) const noexcept {
     const simd::f32x4 zero = simd::splat(0);
-    simd::f32x4 edges[4], inUv[4];  // Per edge, then, transposed, per field.
+    const simd::mask4 isThird = zero < simd::of(0.0f, 0.0f, 1.0f, 0.0f);  // Not a difference, but the greater one.
+    simd::f32x4 edges[4], inUv[4];                                        // Per edge, then, transposed, per field.
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t from = triangle[k], to = triangle[(k + 1) % 3];
       edges[k] = simd::load(positions_ + Points::kStride * to) - simd::load(positions_ + Points::kStride * from);
       const simd::f32x4 a = simd::load(&samples_[from].u), b = simd::load(&samples_[to].u);
-      inUv[k] = simd::withLane<2>(b - a, simd::max(a, b));
+      inUv[k] = simd::select(isThird, simd::max(a, b), b - a);
     }
     edges[3] = inUv[3] = zero;
     auto& [x, y, z, unused] = edges;

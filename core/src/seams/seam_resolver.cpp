@@ -144,7 +144,9 @@ void SeamResolver::projectOnto(const Queued& queued, int k, Projected& out) noex
     const Candidate& closest =
         i == 0 ? corner.closest : closestOnPatch(corner, *queued.patches[k], queued.inGroup[k][c]);
     out.sum += closest.place.distance;
-    simd::storeRounded(out.uvs + 2 * c, blendUvs(cage_.triangles[closest.slot], closest.place));
+    const Uv uv = uvAt(cage_.triangles[closest.slot], closest.place);
+    out.uvs[2 * c] = static_cast<float>(uv.u);
+    out.uvs[2 * c + 1] = static_cast<float>(uv.v);
   }
 }
 

@@ -14,9 +14,7 @@ namespace {
 using simd::f32x4;
 using simd::load;
 using simd::mask4;
-using simd::repeat;
 using simd::splat;
-using simd::wide;
 
 /// The sine of the angle between a ray and a plane under which the ray lies in the plane: less cannot be told from
 /// nothing in double precision between vertices that are floats. (In exact arithmetic such a ray has edge functions of
@@ -128,9 +126,9 @@ struct Estimate {
 inline Estimate estimate(const RayLeaf& leaf, const RoughRay& ray) {
   const f32x4 shearX = splat(ray.direction.shearX);
   const f32x4 shearY = splat(ray.direction.shearY);
-  const f32x4 originZ = simd::splatAt<0>(ray.origin);
-  const f32x4 originX = simd::splatAt<1>(ray.origin);
-  const f32x4 originY = simd::splatAt<2>(ray.origin);
+  const f32x4 originZ = splat(ray.origin[0]);
+  const f32x4 originX = splat(ray.origin[1]);
+  const f32x4 originY = splat(ray.origin[2]);
   const float(*corner)[3][4] = leaf.corner + ray.direction.z;
   // From the corners to the origin: in this order a processor subtracts while it loads. The edge functions do not mind.
   Estimate of;
@@ -140,27 +138,28 @@ inline Estimate estimate(const RayLeaf& leaf, const RoughRay& ray) {
     x[i] = simd::multiplyAdd(z[i], shearX, originX - load(corner[1][i]));
     y[i] = simd::multiplyAdd(z[i], shearY, originY - load(corner[2][i]));
   }
-  const f32x4 u = simd::subtractProduct(x[2] * y[1], y[2], x[1]);
-  const f32x4 v = simd::subtractProduct(x[0] * y[2], y[0], x[2]);
-  const f32x4 w = simd::subtractProduct(x[1] * y[0], y[1], x[0]);
+  const f32x4 u = x[2] * y[1] - y[2] * x[1];
+  const f32x4 v = x[0] * y[2] - y[0] * x[2];
+  const f32x4 w = x[1] * y[0] - y[1] * x[0];
   // The distance is −(u·z0 + v·z1 + w·z2)·scale / (u + v + w).
   least = simd::min(u, simd::min(v, w));
   most = simd::max(u, simd::max(v, w));
   sum = u + v + w;
   depthWeighting = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
-  distances = simd::turned(depthWeighting * splat(ray.direction.scaleZ), sum);
+  const f32x4 scaled = depthWeighting * splat(ray.direction.scaleZ);
+  distances = simd::select(sum < splat(0), splat(0) - scaled, scaled);
   return of;
 }
 
 /// Which triangles the ray might hit, as far as float can tell.
-/// @param nowhere  0 if a hit at distance 0 is none, else no number.
+/// @param nowhere  What the size of the distance has to be more than: 0 if a hit at distance 0 is none, else less.
 inline unsigned mightHit(const RayLeaf& leaf, const Estimate& of, f32x4 nowhere) {
   // None is negative, or none is positive.
   const mask4 through = simd::min(splat(0) - of.least, of.most) <= splat(leaf.rounding);
   // Where hits count from is nearer than distances are exact.
   const mask4 beyond = splat(leaf.nearest) <= of.distances;
   // Triangles at the origin itself come out at 0 exactly; they are many, and no hits if hits begin beyond 0.
-  return simd::bits(through & beyond & (of.depthWeighting != nowhere));
+  return simd::bits(through & beyond & (nowhere < simd::abs(of.depthWeighting)));
 }
 
 /// What is known of four triangles that a ray might hit: a bit each.
@@ -198,7 +197,7 @@ HitSearch::HitSearch(const RayTree& tree, double from, Arena& arena) noexcept
       boxFrom_(static_cast<float>(from)),
       loose_(static_cast<float>(from > 0 ? from / 2 : from * 2)),
       strict_(static_cast<float>(from > 0 ? from * 2 : from / 2)),
-      zero_(from > 0 ? 0.0f : std::numeric_limits<float>::quiet_NaN()),
+      zero_(from > 0 ? 0.0f : -1.0f),
       rough_(arena.allocate<RoughRay>(kMostRays)),
       lists_(arena.allocate<std::uint16_t>(kListRoom)) {}
 
@@ -261,58 +260,40 @@ void HitSearch::enter(const Node& node, std::uint16_t* rays, std::uint32_t count
 /// The lists are put one behind the other, the last first, with room for all rays and one more each.
 void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
                           std::uint32_t (&counts)[4]) const noexcept {
-  wide low[3];
-  wide high[3];
-  wide middle[3];
-  wide half[3];
+  f32x4 low[3];
+  f32x4 high[3];
   for (int k = 0; k < 3; ++k) {
-    low[k] = repeat(load(node.low[k]));
-    high[k] = repeat(load(node.high[k]));
-    middle[k] = simd::splatWide(0.5f) * (low[k] + high[k]);
-    half[k] = simd::splatWide(0.5f) * (high[k] - low[k]);
+    low[k] = load(node.low[k]);
+    high[k] = load(node.high[k]);
   }
-  const wide from = simd::splatWide(boxFrom_);
+  const f32x4 from = splat(boxFrom_);
   const std::uint32_t room = count + 1;
-  const simd::count4 begins = simd::of(3 * room, 2 * room, room, 0);
-  simd::count4 ends = begins;    // Of the lists.
-  simd::count4 before = begins;  // Without the last ray.
-  if (simd::kParts > 1) rays[count] = rays[count - 1];
-  for (const std::uint16_t* next = rays; next < rays + count; next += simd::kParts) {
-    const std::uint16_t ray[] = {next[0], next[simd::kParts - 1]};  // As many as there are parts.
-    const auto inverse = [&](int i) { return roughRay(ray[i]).direction.inverse; };
-    const auto offset = [&](int i) { return roughRay(ray[i]).offset; };
-    wide first = from;
-    wide last = simd::splatParts<3>(inverse);
-    const auto cut = [&]<int axis>(std::integral_constant<int, axis>) {
-      const wide inverseOfAxis = simd::splatParts<axis>(inverse);
-      const wide offsetOfAxis = simd::splatParts<axis>(offset);
+  simd::u32x4 ends = simd::of(3 * room, 2 * room, room, 0u);  // Of the lists.
+  for (const std::uint16_t* next = rays; next < rays + count; ++next) {
+    const std::uint16_t ray = *next;
+    const RoughRay& rough = roughRay(ray);
+    f32x4 first = from;
+    f32x4 last = splat(rough.direction.inverse[3]);
+    for (int axis = 0; axis < 3; ++axis) {
       // Rays of all directions go together: which side is the near one shows only now.
-      if constexpr (simd::kMultipliesByLane) {
-        const wide toMiddle = simd::multiplyAdd(middle[axis], inverseOfAxis, offsetOfAxis);
-        const wide within = half[axis] * simd::splatLane<axis>(simd::abs(simd::loadParts(inverse)));
-        first = simd::max(first, toMiddle - within);
-        last = simd::min(last, toMiddle + within);
-      } else {
-        const wide toLow = simd::multiplyAdd(low[axis], inverseOfAxis, offsetOfAxis);
-        const wide toHigh = simd::multiplyAdd(high[axis], inverseOfAxis, offsetOfAxis);
-        first = simd::max(first, simd::min(toLow, toHigh));
-        last = simd::min(last, simd::max(toLow, toHigh));
-      }
-    };
-    cut(std::integral_constant<int, 0>{});
-    cut(std::integral_constant<int, 1>{});
-    cut(std::integral_constant<int, 2>{});
-    simd::forParts(first <= last, [&](int i, mask4 enters) {
-      // Put down at the end of every list, but only counted where it belongs: no branch.
-      lists[simd::countOf<0>(ends)] = ray[i];
-      lists[simd::countOf<1>(ends)] = ray[i];
-      lists[simd::countOf<2>(ends)] = ray[i];
-      lists[simd::countOf<3>(ends)] = ray[i];
-      before = ends;
-      ends = simd::countTrue(ends, enters);
-    });
+      const f32x4 inverse = splat(rough.direction.inverse[axis]);
+      const f32x4 offset = splat(rough.offset[axis]);
+      const f32x4 toLow = simd::multiplyAdd(low[axis], inverse, offset);
+      const f32x4 toHigh = simd::multiplyAdd(high[axis], inverse, offset);
+      first = simd::max(first, simd::min(toLow, toHigh));
+      last = simd::min(last, simd::max(toLow, toHigh));
+    }
+    // Put down at the end of every list, but only counted where it belongs: no branch.
+    lists[simd::lane<0>(ends)] = ray;
+    lists[simd::lane<1>(ends)] = ray;
+    lists[simd::lane<2>(ends)] = ray;
+    lists[simd::lane<3>(ends)] = ray;
+    ends = simd::countTrue(ends, first <= last);
   }
-  simd::store(counts, (count % simd::kParts == 0 ? ends : before) - begins);
+  counts[0] = simd::lane<0>(ends) - 3 * room;
+  counts[1] = simd::lane<1>(ends) - 2 * room;
+  counts[2] = simd::lane<2>(ends) - room;
+  counts[3] = simd::lane<3>(ends);
 }
 
 /// Tries rays with the four triangles from the first of a leaf on. The list of rays is used up.

@@ -30,24 +30,27 @@ struct alignas(16) Node {
   std::uint32_t child[4];
 };
 
-/// Four triangles for nearest points, each in a frame of its own in which it lies flat: origin A at one end of its
-/// longest edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B.
-/// Unused lanes are infinitely far away.
-struct alignas(16) NearLeaf {
-  /// What makes a coordinate of a point: where the middle of the cage is, from which the point is counted, and a unit
-  /// vector.
+/// Triangles for closest points, each in a frame of its own in which it lies flat: origin A at one end of its longest
+/// edge, x along that edge to B, z along the normal; so C is above the edge AB, and its foot between A and B.
+/// @tparam n  Triangles side by side: 4 for a leaf, or 1.
+template <int n>
+struct alignas(16) FlatTriangles {
+  /// What makes a coordinate of a point that is counted from the middle of the cage.
   struct Axis {
-    float middle[4];
-    float direction[3][4];
+    float offset[n];        ///< Coordinate of the middle of the cage.
+    float direction[3][n];  ///< Unit vector.
   };
   Axis axes[3];
-  /// The two upper edges, AC on the left and BC, each from its foot on AB to C; x is counted from that foot, towards
-  /// the other one. Unit vectors, and lengths. What is of the left one is as `simd::toChoose` has it.
-  float rightX[4], rightY[4], leftY[4], leftX[4];
-  float rightLength[4];
-  float base[4];  ///< B = (base, 0).
-  float foot[4];  ///< x of C.
-  float leftLength[4];
+  /// The upper edges, AC on the left and BC on the right, each from its end on AB to C; x is counted towards the foot
+  /// of C. Unit vectors, and lengths.
+  float leftX[n], leftY[n], leftLength[n];
+  float rightX[n], rightY[n], rightLength[n];
+  float base[n];  ///< B = (base, 0).
+  float foot[n];  ///< x of C.
+};
+
+/// The triangles of a leaf. Unused lanes are infinitely far away.
+struct NearLeaf : FlatTriangles<4> {
   std::uint32_t slot[4];  ///< The place in `Cage::triangles`.
 };
 
@@ -112,17 +115,12 @@ class NearestSearch {
   std::uint32_t candidates(std::uint32_t i, std::uint32_t* found) noexcept;
   /// The same where there is but one, as most often: quicker.
   /// @return That triangle; `kSeveral` if there are more.
-  [[nodiscard]] std::uint32_t onlyCandidate(std::uint32_t i) const noexcept {
-    const unsigned lanes = found_[i] & 15;
-    if (nearCount_[i] >= kRoom || foundCount_[i] != 1 || (lanes & (lanes - 1)) != 0) return kSeveral;
-    return tree_.near[found_[i] >> 4].slot[std::countr_zero(lanes)];
-  }
+  [[nodiscard]] std::uint32_t onlyCandidate(std::uint32_t i) const noexcept;
   static constexpr std::uint32_t kSeveral = UINT32_MAX;
 
  private:
-  /// Leaves whose distances are kept at a time: a tag tells them apart.
-  static constexpr int kTagBits = 6;
-  static constexpr std::uint32_t kBatch = 1u << kTagBits;
+  /// Leaves whose distances are kept at a time.
+  static constexpr std::uint32_t kBatch = 64;
   /// One more than the leaves to remember of a point; if more come close, `candidates` looks again.
   static constexpr std::uint32_t kRoom = 8;
 
@@ -135,9 +133,6 @@ class NearestSearch {
   /// Searches up to `kBatch` leaves for each of `count` points.
   void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept;
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
-  /// Searches a leaf for all of `count` points.
-  /// @param place  How many leaves they have been searched for before: triangles of each came within the limit.
-  void searchSeed(std::uint32_t leaf, std::uint32_t place, std::uint32_t count) noexcept;
 
   const CageTree& tree_;
   double slack_;      ///< The s of `kRelativeSlack`.
@@ -146,16 +141,14 @@ class NearestSearch {
   std::uint32_t lastLeaf_ = 0;
   const float* positions_ = nullptr;           ///< Of the last search.
   alignas(16) float points_[kGroup][4];        ///< x, y, z, 0 each, from the middle of the cage.
-  alignas(32) float columns_[3][kGroup] = {};  ///< The same, by axis; any, where points are fewer.
-  alignas(32) float limits_[kGroup];           ///< Squared distance within which a triangle is of interest.
+  alignas(16) float columns_[3][kGroup] = {};  ///< The same, by axis; any, where points are fewer.
+  alignas(16) float limits_[kGroup];           ///< Squared distance within which a triangle is of interest.
   std::uint32_t* list_;                        ///< Room for all leaves, and four more.
   std::uint32_t* otherList_;
-  alignas(16) std::uint32_t nearCount_[kGroup];  ///< From `kRoom` on some may be written over.
+  std::uint32_t nearCount_[kGroup];  ///< From `kRoom` on some may be written over.
   // Of each point's leaves that had triangles within the limit, as it was then:
-  alignas(32) float squaredDistances_[kRoom][kGroup];    ///< that of the nearest of these triangles,
-  alignas(16) std::uint32_t lanes_[kRoom][kGroup] = {};  ///< which they were, a bit each, below the leaf's index,
-  alignas(16) std::uint32_t foundCount_[kGroup];         ///< how many leaves still have some in the end,
-  alignas(16) std::uint32_t found_[kGroup];              ///< and, if one has, its `lanes_`.
+  float squaredDistances_[kRoom][kGroup];  ///< that of the nearest of these triangles,
+  std::uint32_t lanes_[kRoom][kGroup];     ///< which they were, a bit each, below the leaf's index.
 };
 
 /// Four triangles for rays.

@@ -16,17 +16,14 @@ namespace {
 /// the ray's origin by at most 2^-23 of their size, and this is eight times that. The lattice tests leak without it.
 constexpr float kPadding = 1e-6f;
 
-/// The same for boxes that are turned: `NearestSearch` writes a tag over the last bits of the squared distance, which
-/// makes the distance larger by up to 2^-18 of itself, that is of √3 scenes at most; coordinates along axes, themselves
-/// rounded, are sums of a few products that are each rounded by up to 2^-24 of a scene, of the box's corners and of
-/// points alike.
-constexpr float kTurnedPadding = 1.2e-5f;
+/// The same for boxes that are turned. Coordinates along their axes are sums of three products, which are each rounded
+/// by up to 2^-24 of a scene, of the box's corners and of points alike; this is ten times what these come to.
+constexpr float kTurnedPadding = 5e-6f;
 
 /// A coordinate where nothing is: products with it, and its square, are still finite.
 constexpr float kFar = 1e15f;
 
 using simd::f32x4;
-using simd::f64x2;
 using simd::load;
 using simd::splat;
 
@@ -75,46 +72,38 @@ void setChildren(Node& node, const Box (&boxes)[4]) {
   }
 }
 
-/// Sets two lanes of a leaf.
-/// @param lane    The first of them.
+/// Sets one lane of a leaf.
 /// @param middle  Of the cage.
-void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& one, const CageTriangle& other,
-                      const float* middle) {
-  const float* const corners[2][3] = {{one.a, one.b, one.c}, {other.a, other.b, other.c}};
-  const auto points = [&](std::size_t i, std::size_t j) { return pointsAt(corners[0][i % 3], corners[1][j % 3]); };
-  const TwoVec3 asTheyAre[3] = {points(0, 0), points(1, 1), points(2, 2)};
-  double squares[3][2];
+void setNearTriangle(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& t, const float* middle) {
+  const Vec3 corners[3] = {Vec3::from(t.a), Vec3::from(t.b), Vec3::from(t.c)};
+  std::size_t longest = 0;
+  double most = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const TwoVec3 edges = asTheyAre[(i + 1) % 3] - asTheyAre[i];
-    simd::store(squares[i], dot(edges, edges));
+    const Vec3 edge = corners[(i + 1) % 3] - corners[i];
+    if (dot(edge, edge) > most) {
+      most = dot(edge, edge);
+      longest = i;
+    }
   }
-  const auto longest = [&](int k) {
-    const std::size_t first = squares[1][k] > squares[0][k] ? 1 : 0;
-    return squares[2][k] > squares[first][k] ? std::size_t{2} : first;
-  };
-  const std::size_t i = longest(0);
-  const std::size_t j = longest(1);
-  const TwoVec3 a = points(i, j);
-  const TwoVec3 ab = points(i + 1, j + 1) - a;
-  const TwoVec3 ac = points(i + 2, j + 2) - a;
-  const f64x2 base = length(ab);
-  const TwoVec3 axisX = simd::splatDouble(1) / base * ab;
-  const Vec3& n = one.normal.exact;
-  const Vec3& m = other.normal.exact;
-  const TwoVec3 axisZ = {simd::doubles(n.x, m.x), simd::doubles(n.y, m.y), simd::doubles(n.z, m.z)};
-  const TwoVec3 axisY = cross(axisZ, axisX);
-  const f64x2 footX = dot(ac, axisX);
-  const f64x2 height = dot(ac, axisY);
+  const Vec3 a = corners[longest];
+  const Vec3 ab = corners[(longest + 1) % 3] - a;
+  const Vec3 ac = corners[(longest + 2) % 3] - a;
+  const double base = length(ab);
+  const Vec3 axisX = 1 / base * ab;
+  const Vec3& axisZ = t.normal.exact;
+  const Vec3 axisY = cross(axisZ, axisX);
+  const double footX = dot(ac, axisX);
+  const double height = dot(ac, axisY);
 
-  const auto put = [lane](float(&to)[4], f64x2 values) { simd::storeRounded(to + lane, values); };
-  const auto putAxis = [&put, fromA = pointsAt(middle, middle) - a](NearLeaf::Axis& axis, const TwoVec3& direction) {
-    put(axis.middle, dot(fromA, direction));
+  const auto put = [lane](float(&to)[4], double value) { to[lane] = static_cast<float>(value); };
+  const auto putAxis = [&put, fromA = Vec3::from(middle) - a](NearLeaf::Axis& axis, Vec3 direction) {
+    put(axis.offset, dot(fromA, direction));
     put(axis.direction[0], direction.x);
     put(axis.direction[1], direction.y);
     put(axis.direction[2], direction.z);
   };
-  const auto putEdge = [&](f64x2 toFoot, float(&x)[4], float(&y)[4], float(&along)[4]) {
-    const f64x2 edgeLength = sqrt(toFoot * toFoot + height * height);
+  const auto putEdge = [&](double toFoot, float(&x)[4], float(&y)[4], float(&along)[4]) {
+    const double edgeLength = std::sqrt(toFoot * toFoot + height * height);
     put(x, toFoot / edgeLength);
     put(y, height / edgeLength);
     put(along, edgeLength);
@@ -130,7 +119,7 @@ void setNearTriangles(NearLeaf& leaf, std::uint32_t lane, const CageTriangle& on
 
 void clearNearTriangle(NearLeaf& leaf, std::uint32_t lane) {
   for (int i = 0; i < 3; ++i) {
-    leaf.axes[i].middle[lane] = kFar;
+    leaf.axes[i].offset[lane] = kFar;
     for (int k = 0; k < 3; ++k) leaf.axes[i].direction[k][lane] = i == k ? 1.0f : 0.0f;
   }
   leaf.base[lane] = leaf.foot[lane] = 0;
@@ -384,16 +373,9 @@ bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree&
       for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
       for (std::uint32_t k = 0; k < 3; ++k) corners[3 * i + k] = kCageStride * slot + k;
     }
-    for (std::uint32_t lane = 0; lane < 4; lane += 2)
-      setNearTriangles(nearLeaves[leaf], lane, *triangles[lane], *triangles[lane + 1], out.middle);
+    for (std::uint32_t lane = 0; lane < 4; ++lane)
+      setNearTriangle(nearLeaves[leaf], lane, *triangles[lane], out.middle);
     for (std::uint32_t lane = 4; 4 * leaf + lane > cage.count;) clearNearTriangle(nearLeaves[leaf], --lane);
-    NearLeaf& near = nearLeaves[leaf];
-    const auto prepare = [](float* left, const float* right) {
-      simd::store(left, simd::toChoose(load(left), load(right)));
-    };
-    prepare(near.leftX, near.rightX);
-    prepare(near.leftY, near.rightY);
-    prepare(near.leftLength, near.rightLength);
     boxes[leaf] = box.padded(kPadding * units.reach);
     new (leafBoxes + leaf) LeafBox(boxAround(triangles, out.middle, kTurnedPadding * units.reach));
   }

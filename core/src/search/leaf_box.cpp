@@ -104,7 +104,7 @@ LeafBox boxAround(const CageTriangle* const (&triangles)[4], const float* middle
     const f32x4 alongX = splatLane<0>(place);
     const f32x4 alongY = splatLane<1>(place);
     rangeX.grow(multiplyAdd(alongX, cosines, alongY * sines));
-    rangeY.grow(simd::subtractProduct(alongY * cosines, alongX, sines));
+    rangeY.grow(alongY * cosines - alongX * sines);
     range.grow(place);
   }
   float areas[4];

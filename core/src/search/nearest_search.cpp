@@ -11,11 +11,8 @@ namespace cagecast {
 namespace {
 
 using simd::f32x4;
-using simd::kWide;
 using simd::load;
-using simd::loadWide;
 using simd::splat;
-using simd::wide;
 
 /// Squared distance of a box to four boxes.
 f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x4 (&high)[3]) {
@@ -26,30 +23,6 @@ f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x
   }
   return sum;
 }
-
-/// Squared distance of p to four triangles.
-/// @param p  From the middle of the cage.
-f32x4 squaredDistanceToTriangles(const NearLeaf& leaf, f32x4 p) {
-  return squaredDistances(leaf, simd::splatLane<0>(p), simd::splatLane<1>(p), simd::splatLane<2>(p),
-                          [](const float(&field)[4]) { return load(field); });
-}
-
-/// For every choice of a node's children, a bit each: which they are, one after the other, and each as its number below
-/// 0.
-constexpr auto kChosen = [] {
-  struct Table {
-    alignas(16) std::uint32_t rows[16][4];
-  } table{};
-  for (std::uint32_t choice = 0; choice < 16; ++choice) {
-    std::uint32_t* next = table.rows[choice];
-    for (std::uint32_t lane = 0; lane < 4; ++lane) {
-      if (choice >> lane & 1) *next++ = 0 - lane;
-    }
-  }
-  return table;
-}();
-/// How many they are, a hexadecimal digit for each choice.
-constexpr std::uint64_t kChosenCounts = 0x4332'3221'3221'2110;
 
 }  // namespace
 
@@ -85,8 +58,11 @@ void NearestSearch::widen(double more, double distance) noexcept {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t node = from[i];
       const unsigned close = simd::bits(squaredDistanceToBoxes(row[node], ownLow, ownHigh) <= limit);
-      simd::store(end, simd::splatCount(4 * node) - simd::load(kChosen.rows[close]));
-      end += kChosenCounts >> 4 * close & 7;
+      // No branch: which children are close is a coin toss. One that is not is written over by the next.
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        *end = 4 * node + lane;
+        end += close >> lane & 1;
+      }
     }
     count = static_cast<std::uint32_t>(end - to);
     std::swap(from, to);
@@ -112,98 +88,69 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
   const f32x4 slack = splat(fixedSlack_);
   for (; members != 0; members &= members - 1) {
     const int i = std::countr_zero(members);
-    const f32x4 squared = squaredDistanceToTriangles(leaf, load(points_[i]));
+    const f32x4 squared = squaredDistances(leaf, splat(points_[i][0]), splat(points_[i][1]), splat(points_[i][2]));
     const f32x4 least = simd::lowest(squared);
     const f32x4 limit = simd::min(simd::multiplyAdd(least, growth, slack), splat(limits_[i]));
     const unsigned lanes = simd::bits(squared <= limit);
-    limits_[i] = simd::first(limit);
+    limits_[i] = simd::lane<0>(limit);
     // No branch: whether a leaf is of interest is a coin toss. One that is not is written over by the next.
     const std::uint32_t count = nearCount_[i];
-    squaredDistances_[count % kRoom][i] = simd::first(least);
+    squaredDistances_[count % kRoom][i] = simd::lane<0>(least);
     lanes_[count % kRoom][i] = leafIndex << 4 | lanes;
     nearCount_[i] = count + (lanes != 0);
   }
 }
 
-void NearestSearch::searchSeed(std::uint32_t leafIndex, std::uint32_t place, std::uint32_t count) noexcept {
-  const NearLeaf& leaf = tree_.near[leafIndex];
-  for (std::uint32_t i = 0; i < count; i += kWide) {
-    // Where all points are looked at, each has a lane, and triangles come one after the other.
-    const wide x = loadWide(columns_[0] + i), y = loadWide(columns_[1] + i), z = loadWide(columns_[2] + i);
-    alignas(32) float squared[4][kWide];
-    wide least = simd::splatWide(std::numeric_limits<float>::max());
-#pragma GCC unroll 1
-    for (int lane = 0; lane < 4; ++lane) {
-      const wide one =
-          squaredDistances(leaf, x, y, z, [lane](const float(&field)[4]) { return simd::splatWide(field[lane]); });
-      simd::store(squared[lane], one);
-      least = simd::min(one, least);
-    }
-    const wide limit = simd::min(simd::multiplyAdd(least, simd::splatWide(growth_), simd::splatWide(fixedSlack_)),
-                                 loadWide(limits_ + i));
-    simd::store(limits_ + i, limit);
-    simd::store(squaredDistances_[place] + i, least);
-    simd::count4 lanes[simd::kParts];
-    for (simd::count4& l : lanes) l = simd::splatCount(leafIndex);
-    for (int lane = 4; lane-- > 0;) {
-      simd::forParts(loadWide(squared[lane]) <= limit, [&](int part, simd::mask4 isNear) {
-        lanes[part] = simd::countTrue(lanes[part] + lanes[part], isNear);
-      });
-    }
-    simd::forParts(least <= limit, [&](int part, simd::mask4 isNear) {
-      const std::uint32_t at = i + static_cast<std::uint32_t>(part) * simd::kWidth;
-      simd::store(lanes_[place] + at, lanes[part]);
-      simd::store(nearCount_ + at, simd::countTrue(simd::splatCount(place), isNear));
-    });
-  }
-}
-
 void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept {
-  // Squared distances of the points to the leaves' boxes, each tagged with its leaf, and the least of each point.
-  alignas(32) float distances[kBatch][kGroup];
-  wide nearest[kGroup / kWide];
-  for (wide& n : nearest) n = simd::splatWide(std::numeric_limits<float>::infinity());
+  constexpr unsigned kVectors = kGroup / simd::kWidth;
+  // Squared distances of the points to the leaves' boxes; and for each point the least, and which leaf's it is.
+  alignas(16) float distances[kBatch][kGroup];
+  f32x4 nearest[kVectors];
+  f32x4 nearestLeaf[kVectors];
+  for (f32x4& n : nearest) n = splat(std::numeric_limits<float>::infinity());
+  for (f32x4& n : nearestLeaf) n = splat(0);
   const LeafBox* const boxes = tree_.boxes;
   for (std::uint32_t j = 0; j < leafCount; ++j) {
     const LeafBox& box = boxes[leaves[j]];
-    wide squared[kGroup / kWide];
-    const auto addAxis = [&]<int axis>(std::integral_constant<int, axis>) {
-      const wide x = simd::splatWideAt<axis>(box.axes[0]);
-      const wide y = simd::splatWideAt<axis>(box.axes[1]);
-      const wide z = simd::splatWideAt<axis>(box.axes[2]);
-      const wide low = simd::splatWideAt<axis>(box.low);
-      const wide high = simd::splatWideAt<axis>(box.high);
-      for (unsigned i = 0; i < kGroup; i += kWide) {
-        const wide place =
-            simd::multiplyAdd(z, loadWide(columns_[2] + i),
-                              simd::multiplyAdd(y, loadWide(columns_[1] + i), x * loadWide(columns_[0] + i)));
-        const wide outside = place - simd::clamp(place, low, high);
-        wide& sum = squared[i / kWide];
-        sum = axis == 0 ? outside * outside : simd::multiplyAdd(outside, outside, sum);
+    f32x4 squared[kVectors];
+    for (int axis = 0; axis < 3; ++axis) {
+      const f32x4 x = splat(box.axes[0][axis]);
+      const f32x4 y = splat(box.axes[1][axis]);
+      const f32x4 z = splat(box.axes[2][axis]);
+      const f32x4 low = splat(box.low[axis]);
+      const f32x4 high = splat(box.high[axis]);
+      for (unsigned i = 0; i < kVectors; ++i) {
+        const f32x4 place =
+            simd::multiplyAdd(z, load(columns_[2] + 4 * i),
+                              simd::multiplyAdd(y, load(columns_[1] + 4 * i), x * load(columns_[0] + 4 * i)));
+        const f32x4 outside = place - min(max(place, low), high);
+        squared[i] = axis == 0 ? outside * outside : simd::multiplyAdd(outside, outside, squared[i]);
       }
-    };
-    addAxis(std::integral_constant<int, 0>{});
-    addAxis(std::integral_constant<int, 1>{});
-    addAxis(std::integral_constant<int, 2>{});
-    for (unsigned i = 0; i < kGroup; i += kWide) {
-      const wide tagged = simd::withTag<kTagBits>(squared[i / kWide], j);
-      simd::store(distances[j] + i, tagged);
-      nearest[i / kWide] = simd::min(tagged, nearest[i / kWide]);
+    }
+    for (unsigned i = 0; i < kVectors; ++i) {
+      simd::store(distances[j] + 4 * i, squared[i]);
+      nearestLeaf[i] = select(squared[i] < nearest[i], splat(static_cast<float>(j)), nearestLeaf[i]);
+      nearest[i] = min(squared[i], nearest[i]);
     }
   }
-  alignas(32) float least[kGroup];
-  for (unsigned i = 0; i < kGroup; i += kWide) simd::store(least + i, nearest[i / kWide]);
   // Each point begins with the leaf whose box is nearest to it: the other leaves then have little to offer.
+  alignas(16) float least[kGroup];
+  alignas(16) float leastLeaf[kGroup];
+  for (unsigned i = 0; i < kVectors; ++i) {
+    simd::store(least + 4 * i, nearest[i]);
+    simd::store(leastLeaf + 4 * i, nearestLeaf[i]);
+  }
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!(least[i] <= limits_[i])) continue;
-    const std::uint32_t j = simd::tagOf<kTagBits>(least[i]);
+    const auto j = static_cast<std::uint32_t>(leastLeaf[i]);
     searchLeaf(leaves[j], 1u << i);
     distances[j][i] = std::numeric_limits<float>::infinity();
   }
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    simd::wideMask close[kGroup / kWide];
-    for (unsigned i = 0; i < kGroup; i += kWide) close[i / kWide] = loadWide(distances[j] + i) <= loadWide(limits_ + i);
-    if (const unsigned members = simd::bits(close); members != 0) searchLeaf(leaves[j], members);
+    unsigned members = 0;
+    for (unsigned i = 0; i < kVectors; ++i)
+      members |= simd::bits(load(distances[j] + 4 * i) <= load(limits_ + 4 * i)) << 4 * i;
+    searchLeaf(leaves[j], members);
   }
 }
 
@@ -224,8 +171,6 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
     for (int k = 0; k < 3; ++k) simd::store(columns_[k] + i, rows[k]);
     simd::store(limits_ + i, splat(std::numeric_limits<float>::max()));
-    for (auto& squaredDistances : squaredDistances_)
-      simd::store(squaredDistances + i, splat(std::numeric_limits<float>::infinity()));
   }
   const f32x4 low[3] = {simd::splatLane<0>(lowCorner), simd::splatLane<1>(lowCorner), simd::splatLane<2>(lowCorner)};
   const f32x4 high[3] = {simd::splatLane<0>(highCorner), simd::splatLane<1>(highCorner),
@@ -234,8 +179,10 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   // For limits to begin with: a leaf near where the last group ends, and one near where this one does.
   const std::uint32_t last = count - 1;
   const std::uint32_t seeds[] = {lastLeaf_, leafNear(load(positions + Points::kStride * last))};
-  searchSeed(seeds[0], 0, count);
-  if (seeds[1] != seeds[0]) searchSeed(seeds[1], 1, count);
+  std::fill(nearCount_, nearCount_ + count, 0u);
+  const unsigned all = (1u << count) - 1;
+  searchLeaf(seeds[0], all);
+  if (seeds[1] != seeds[0]) searchLeaf(seeds[1], all);
   f32x4 most = load(limits_);
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
@@ -248,27 +195,26 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
   }
 
-  // For all points at once: how many leaves each still has would be guessed wrong.
-  for (std::uint32_t i = 0; i < count; i += simd::kWidth) {
-    const f32x4 limits = load(limits_ + i);
-    simd::count4 foundCount = simd::splatCount(0);
-    simd::count4 found = foundCount;
-#pragma GCC unroll 1
-    for (std::uint32_t j = 0; j < kRoom; ++j) {
-      const simd::mask4 isNear = load(squaredDistances_[j] + i) <= limits;
-      foundCount = simd::countTrue(foundCount, isNear);
-      found = simd::with(found, simd::load(lanes_[j] + i), isNear);
-    }
-    simd::store(foundCount_ + i, foundCount);
-    simd::store(found_ + i, found);
-  }
-
   // Where the last point is nearest, the next group begins.
   std::uint32_t nearest = 0;
   for (std::uint32_t j = 1; j < std::min(nearCount_[last], kRoom); ++j) {
     if (squaredDistances_[j][last] < squaredDistances_[nearest][last]) nearest = j;
   }
   lastLeaf_ = lanes_[nearest][last] >> 4;
+}
+
+std::uint32_t NearestSearch::onlyCandidate(std::uint32_t i) const noexcept {
+  if (nearCount_[i] >= kRoom) return kSeveral;
+  std::uint32_t found = 0;
+  std::uint32_t foundCount = 0;
+  for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
+    const bool isNear = squaredDistances_[j][i] <= limits_[i];
+    found = isNear ? lanes_[j][i] : found;
+    foundCount += isNear;
+  }
+  const unsigned lanes = found & 15;
+  if (foundCount != 1 || (lanes & (lanes - 1)) != 0) return kSeveral;
+  return tree_.near[found >> 4].slot[std::countr_zero(lanes)];
 }
 
 std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) noexcept {

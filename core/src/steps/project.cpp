@@ -39,7 +39,9 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
                                   : Candidate{only, closestPointOnTriangle(cage.triangles[only], p)};
 
     const ClosestPoint& q = nearest.place;
-    simd::storeRounded(out.uvs + std::size_t{2} * i, blendUvs(cage.triangles[nearest.slot], q));
+    const Uv uv = uvAt(cage.triangles[nearest.slot], q);
+    out.uvs[2 * std::size_t{i}] = static_cast<float>(uv.u);
+    out.uvs[2 * std::size_t{i} + 1] = static_cast<float>(uv.v);
     out.distances[i] = static_cast<float>(q.distance);
     out.cageTriangles[i] = nearest.slot;
     // Strictly inside its triangle, q = p − height · n, so the point's ray meets the cage at −height.
