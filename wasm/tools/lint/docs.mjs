@@ -24,7 +24,7 @@ const kWords = {
 
 /** Where users read. */
 const isForUsers = (path) =>
-  /^(README|CONTRIBUTING|SECURITY)\.md$|^docs\/|^examples\/(node|three|native)\/|^core\/include\/|^wasm\/src\/|^web\/index\.html$/.test(
+  /^(README|CONTRIBUTING|SECURITY)\.md$|^docs\/|^examples\/(node|three|native)\/|^core\/include\/|^wasm\/src\/(api|generated|cli)\/|^web\/index\.html$/.test(
     path,
   ) &&
   /\.(md|hpp|def|ts|js|cpp|html)$/.test(path) &&
