@@ -32,7 +32,7 @@ const kVisits = [
 ] as const;
 
 for (const { name, ...options } of kVisits) {
-  test(`${name}: axe finds nothing wrong with the page in any of its states`, async () => {
+  test(`${name}: axe finds no problems in any state of the page`, async () => {
     const { page } = await site.visit(options);
     assert.deepEqual(await faults(page), [], 'as it opens');
 
@@ -49,7 +49,7 @@ for (const { name, ...options } of kVisits) {
   });
 }
 
-test('nor with any of the tools chosen', async () => {
+test('axe finds no problems with any tool chosen', async () => {
   const { page } = await site.visit({ viewport: { width: 700, height: 480 } });
   for (const tool of await page.locator('#tools input').all()) {
     await tool.check({ force: true });
@@ -57,7 +57,7 @@ test('nor with any of the tools chosen', async () => {
   }
 });
 
-test('nor with files of one’s own: with morphs, an animation, layers of all kinds, a note on what was saved, and work under way', async () => {
+test('axe finds no problems with own files: morphs, an animation, layers, notes, and work in progress', async () => {
   const { page } = await site.visit({ viewport: { width: 700, height: 480 }, colorScheme: 'dark' });
   await drop(page, [
     await islandCage(1.1),
@@ -85,7 +85,7 @@ test('nor with files of one’s own: with morphs, an animation, layers of all ki
   assert.equal(await settled(page), 'ready', await shownError(page));
 });
 
-test('nor without WebGL', async () => {
+test('axe finds no problems without WebGL', async () => {
   const { page } = await site.visit(
     { viewport: { width: 390, height: 844 } },
     `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {

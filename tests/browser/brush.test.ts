@@ -63,7 +63,7 @@ const isGreen = ({ hue, saturation }: { hue: number; saturation: number }): bool
   Math.abs(hue - 140) < 15 && saturation > 0.5;
 const kHard = { 'brush-hardness': '100', 'brush-opacity': '100', 'brush-color': kGreen };
 
-test('a stroke appears on the model as it is drawn, on a layer of its own, and undoing gives back every byte', async () => {
+test('a stroke appears while it is drawn, on a new layer, and undo restores every byte', async () => {
   const { page, complaints } = visit;
   await openBall();
   const area = await modelArea(page);
@@ -110,7 +110,7 @@ test('a stroke appears on the model as it is drawn, on a layer of its own, and u
   assert.deepEqual(complaints, []);
 });
 
-test('a stroke across a seam of the texture has no gap, near and far', async () => {
+test('a stroke across a UV seam has no gap, near and far', async () => {
   const { page } = visit;
   await openBall();
   const area = await modelArea(page);
@@ -146,7 +146,7 @@ test('a stroke across a seam of the texture has no gap, near and far', async () 
   }
 });
 
-test('a stroke is one way across, not a string of beads, however fast the pointer goes', async () => {
+test('a fast stroke is continuous, not a string of dots', async () => {
   const { page } = visit;
   await openBall();
   const area = await modelArea(page);
@@ -168,7 +168,7 @@ test('a stroke is one way across, not a string of beads, however fast the pointe
   }
 });
 
-test('with the mirror on, the other half of the cage gets the same', async () => {
+test('mirroring paints the other half of the cage too', async () => {
   const { page } = visit;
   await openBall();
   const area = await modelArea(page);
@@ -194,7 +194,7 @@ test('with the mirror on, the other half of the cage gets the same', async () =>
   );
 });
 
-test('the eraser takes off what was painted, and nothing of the layers below', async () => {
+test('the eraser removes painting, but nothing of the layers below', async () => {
   const { page } = visit;
   await openBall();
   const area = await modelArea(page);
@@ -219,7 +219,7 @@ test('the eraser takes off what was painted, and nothing of the layers below', a
   assert.ok(isGreen(hueAt(picture, 0.55 * area.width, 0.4 * area.height)), 'left');
 });
 
-test('a stroke stops at what must not be painted, and goes on behind it', async () => {
+test('a stroke skips unpainted zones, and continues behind them', async () => {
   const { page, complaints } = visit;
   await page.getByTestId('sample-select').selectOption({ index: 0 });
   assert.equal(await settled(page), 'ready');
@@ -256,7 +256,7 @@ test('a stroke stops at what must not be painted, and goes on behind it', async 
   assert.deepEqual(complaints, []);
 });
 
-test('fine painting goes on a layer of its own, with twice as many texels along a side, and is undone to the byte as well', async () => {
+test('fine painting uses a separate layer of twice the resolution, and undo restores every byte', async () => {
   const { page, complaints } = visit;
   await openBall();
   const area = await modelArea(page);
@@ -297,7 +297,7 @@ test('fine painting goes on a layer of its own, with twice as many texels along 
   assert.deepEqual(complaints, []);
 });
 
-test('a lost graphics context costs nobody a stroke', async () => {
+test('strokes survive a lost graphics context', async () => {
   const { page } = visit;
   const before = await savedTexture(page);
   assert.ok(filled(before) > 0);
@@ -320,7 +320,7 @@ test('a lost graphics context costs nobody a stroke', async () => {
   assert.equal(Buffer.compare((await savedTexture(page)).data, before.data), 0);
 });
 
-test('where nothing was painted there is nothing to erase, and the page says so', async () => {
+test('erasing without a painting shows a message', async () => {
   const { page } = visit;
   await openBall();
   const area = await modelArea(page);

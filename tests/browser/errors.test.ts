@@ -116,7 +116,7 @@ const kBad: { what: string; input: 'target' | 'cage' | 'texture'; file: Upload; 
 ];
 
 for (const { what, input, file, says } of kBad) {
-  test(`${what} is told in plain words, and the page goes on with the next file`, async () => {
+  test(`${what} is reported, and the next file works`, async () => {
     const { page, complaints } = visit;
     const before = await shownCounts(page);
     await page.getByTestId(`${input}-input`).setInputFiles(file);
@@ -137,7 +137,7 @@ for (const { what, input, file, says } of kBad) {
   });
 }
 
-test('a target whose image is damaged is shown in white, and one line says which and what is wrong with it', async () => {
+test('a damaged image is shown in white, and reported', async () => {
   const { page, complaints } = visit;
   await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(4), 'thing')));
   const png = PNG.sync.write(
@@ -183,7 +183,7 @@ test('a target whose image is damaged is shown in white, and one line says which
   complaints.length = 0;
 });
 
-test('of what is dropped the page takes what it knows, and says what it does not, in one sentence', async () => {
+test('known files are opened and others are reported', async () => {
   const { page } = visit;
   const text = { name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('hello') };
   await drop(page, [text]);
@@ -222,7 +222,7 @@ test('of what is dropped the page takes what it knows, and says what it does not
   }
 });
 
-test('folders may be dropped, with what lies in them; an empty one is told of, and a file too large', async () => {
+test('folders can be dropped; empty ones and files that are too large are reported', async () => {
   const { page, complaints } = visit;
   const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-drop-'));
   try {
@@ -259,7 +259,7 @@ test('folders may be dropped, with what lies in them; an empty one is told of, a
   }
 });
 
-test('a page without its samples says so and takes files all the same', async () => {
+test('missing samples are reported, and own files work', async () => {
   const { page } = await site.visit(
     { viewport: { width: 700, height: 500 } },
     `const fetched = fetch
@@ -273,7 +273,7 @@ test('a page without its samples says so and takes files all the same', async ()
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
 });
 
-test('a worker that cannot be had is told of, and the next transfer has another', async () => {
+test('a worker that fails to start is reported, and the next transfer starts another', async () => {
   const kWorker = /\/transfer-worker-[^/]*\.js$/;
   const { page } = await site.visit({ viewport: { width: 700, height: 500 } }, async (page) => {
     await page.route(kWorker, (route) => route.abort());
@@ -286,7 +286,7 @@ test('a worker that cannot be had is told of, and the next transfer has another'
   assert.equal(await shownError(page), '');
 });
 
-test('a sample of which a file cannot be had leaves nothing behind, and files that still wait for another do not mix with what is shown', async () => {
+test('a sample that fails to load has no effect, and waiting files do not mix with the current scene', async () => {
   const { page } = await site.visit({}, (page) =>
     page.route(/(car\/target|human\/cage)\.glb$/, (route) => route.abort()).then(() => {}),
   );
@@ -321,7 +321,7 @@ test('a sample of which a file cannot be had leaves nothing behind, and files th
   assert.deepEqual(await shownCounts(page), straight);
 });
 
-test('what is said of files stays while borders are cut', async () => {
+test('warnings about files stay while borders are cut', async () => {
   const { page } = await site.visit();
   await page.getByTestId('exact-borders').check({ force: true });
   assert.equal(await settled(page), 'ready');

@@ -40,7 +40,7 @@ async function cut(page: Page): Promise<void> {
   assert.equal(await settled(page), 'ready', await shownError(page));
 }
 
-test('exact borders are off at first, load what cuts when they are asked for, change the picture, and leave numbers alone', async () => {
+test('exact borders are off by default, load their code on demand, change the view, and keep the counts', async () => {
   const { page, complaints } = visit;
   const box = page.getByTestId('exact-borders');
   assert.equal(await box.isChecked(), false);
@@ -77,7 +77,7 @@ async function watchNote(page: Page): Promise<() => Promise<string[]>> {
   return () => page.evaluate(() => (globalThis as unknown as { seen: string[] }).seen);
 }
 
-test('another threshold, lock or paint is shown at once, and cut again where it decides otherwise', async () => {
+test('another threshold, lock or paint is shown at once, and cut again if the zones change', async () => {
   const { page, complaints } = visit;
   await page.getByTestId('exact-borders').check();
   await cut(page);
@@ -101,7 +101,7 @@ test('another threshold, lock or paint is shown at once, and cut again where it 
   assert.deepEqual(complaints, []);
 });
 
-test('the model is saved as the command line says and makes it, and a link restores the switch', async () => {
+test('the saved model equals that of the command line shown, and a link restores the switch', async () => {
   const { page } = await site.visit();
   await page.getByTestId('exact-borders').check();
   await cut(page);
@@ -147,7 +147,7 @@ test('the model is saved as the command line says and makes it, and a link resto
   assert.deepEqual(again.complaints, []);
 });
 
-test('cutting can be given up: the switch goes off, and what was on show stays', async () => {
+test('cancelling switches exact borders off and keeps the view', async () => {
   const { page, complaints } = await site.visit({}, kSlowWorker);
   await chooseMode(page, 'result');
   const area = await modelArea(page);
@@ -163,7 +163,7 @@ test('cutting can be given up: the switch goes off, and what was on show stays',
   assert.deepEqual(complaints, []);
 });
 
-test('what is decided otherwise while borders are cut is cut in its place, once', async () => {
+test('a change during cutting replaces the cut, once', async () => {
   const { page, complaints } = await site.visit({}, kSlowWorker);
   const seen = await watchNote(page);
   // Within the page: from outside it may come when all is done.
@@ -192,7 +192,7 @@ test('what is decided otherwise while borders are cut is cut in its place, once'
 });
 
 for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
-  test(`the paint lies on a model that is cut as it does on a whole one: ${name}`, async () => {
+  test(`a cut model is painted like a whole one: ${name}`, async () => {
     const { page, complaints } = await site.visit();
     await drop(page, [await ball(options), await islandCage(1), islandPaint()]);
     assert.equal(await settled(page), 'ready', await shownError(page));

@@ -40,7 +40,7 @@ async function ask(page: Page, x: number, y: number): Promise<string> {
   return (await page.getByTestId('explain-bubble').isVisible()) ? bubble(page) : '';
 }
 
-test('the explanation of a spot is what the picture shows there', async () => {
+test('the explanation of a spot agrees with the view', async () => {
   const { page, complaints } = visit;
   const area = await modelArea(page);
   const violet = new PNG({ width: 8, height: 8 });
@@ -75,7 +75,7 @@ test('the explanation of a spot is what the picture shows there', async () => {
   assert.deepEqual(complaints, []);
 });
 
-test('the explanation follows the mouse, stays with a click, follows the threshold, and ends with Escape as if it had not been', async () => {
+test('the explanation follows the mouse, is pinned by a click, follows the threshold, and ends with Escape without a trace', async () => {
   const { page } = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 });
   visit.page = page;
   await mode(page, 'result');
@@ -127,7 +127,7 @@ async function findEye(page: Page, area: Area): Promise<{ x: number; y: number }
   throw new Error(`none of ${pixels.length} pixels is on the eye`);
 }
 
-test('by keyboard: X chooses the tool, Enter explains the centre, and a screen reader is told all of it', async () => {
+test('keyboard: X chooses the tool, Enter explains the centre, and screen readers get the whole text', async () => {
   const { page } = visit;
   await drop(page, [await ball(), await islandCage(1)]);
   assert.equal(await settled(page), 'ready', await shownError(page));
@@ -169,7 +169,7 @@ test('a pinned explanation follows the model as it moves', async () => {
 });
 
 for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'skinned and morphed': { pose: true } })) {
-  test(`${name}: what is asked about is what is seen, not what lies behind`, async () => {
+  test(`${name}: the visible surface is explained, not what lies behind it`, async () => {
     const { page } = visit;
     const nearest = async (target: Upload): Promise<string> => {
       await drop(page, [target, await islandCage(1)]);
@@ -182,7 +182,7 @@ for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'sk
   });
 }
 
-test('each way to be left out, and each to be let in, has words of its own', async () => {
+test('each reason for being painted or not has its own text', async () => {
   const { page } = visit;
   const open = async (size: number): Promise<string> => {
     await drop(page, [
@@ -209,7 +209,7 @@ test('each way to be left out, and each to be let in, has words of its own', asy
   assert.match(await bubble(page), /Not painted: culled\s+you excluded “thing”/);
 });
 
-test('on a phone a tap asks, and a swipe still turns the model', async () => {
+test('on a phone a tap explains, and a swipe still turns the model', async () => {
   const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   await choose(page, 'Explain');
   const area = await modelArea(page);

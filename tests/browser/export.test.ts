@@ -60,7 +60,7 @@ async function runCommand(line: string): Promise<string> {
   return files['painted.glb']!;
 }
 
-test('the model is saved as the command line saves it: zones, UVs, an overlay with the paint, by the rules and locks on the page', async () => {
+test('the saved model equals that of the command line: zones, UVs and overlay, with the rules and locks of the page', async () => {
   const { page, complaints } = await site.visit();
   await page.getByTestId('preset').selectOption('paper');
   assert.equal(await settled(page), 'ready');
@@ -99,7 +99,7 @@ test('the model is saved as the command line saves it: zones, UVs, an overlay wi
   assert.deepEqual(complaints, []);
 });
 
-test('what is saved keeps skins, morphs and animations; models of several files and compressed ones are saved as well', async () => {
+test('saving keeps skins, morphs and animations, and works for multi-file and compressed models', async () => {
   const { page, complaints } = await site.visit();
   const cage = await islandCage(1);
   await drop(page, [cage, { ...(await ball({ pose: true })), name: 'target.glb' }]);
@@ -133,7 +133,7 @@ test('what is saved keeps skins, morphs and animations; models of several files 
   assert.deepEqual(complaints, []);
 });
 
-test('the zones are saved as numbers, the same as on the page', async () => {
+test('the saved zones equal those of the page', async () => {
   const { page } = await site.visit();
   const { name, bytes } = await saved(page, 'export-zones');
   assert.equal(name, 'target-zones.json');
@@ -154,7 +154,7 @@ function goTo(page: Page, hash: string): Promise<void> {
   }, hash);
 }
 
-test('a link restores the sample, its paint, rules, locks, view and angle, in another visit and in this one', async () => {
+test('a link restores sample, paint, rules, locks, view and camera, in this visit and in another', async () => {
   const { page } = await site.visit();
   await page.getByTestId('sample-select').selectOption({ index: 1 });
   await settled(page);
@@ -212,7 +212,7 @@ test('a link restores the sample, its paint, rules, locks, view and angle, in an
   await check(other.page);
 });
 
-test('a link that is damaged, or names what is not there, opens what there is', async () => {
+test('an invalid link opens as much as possible', async () => {
   const { page, complaints } = await site.visit(
     {},
     undefined,
@@ -226,7 +226,7 @@ test('a link that is damaged, or names what is not there, opens what there is', 
   assert.deepEqual([...complaints, ...unknown.complaints], []);
 });
 
-test('the link is copied by a click; for files of one’s own there is none, and the page says why', async () => {
+test('a click copies the link; own files have no link, and the page says why', async () => {
   const { page } = await site.visit({ permissions: ['clipboard-read', 'clipboard-write'] });
   await page.getByTestId('share-link').click();
   await page.locator('#copy-note', { hasText: 'copied' }).waitFor();
@@ -239,7 +239,7 @@ test('the link is copied by a click; for files of one’s own there is none, and
   assert.equal(await page.getByTestId('share-link').getAttribute('href'), null);
 });
 
-test('the code for three.js has the options as they stand', async () => {
+test('the three.js code has the current options', async () => {
   const { page } = await site.visit();
   const code = page.getByTestId('code');
   assert.match((await code.textContent())!, /applyTransfer\(target\.scene, cage\.scene, \{ texture \}\)/);

@@ -89,7 +89,7 @@ async function fresh(): Promise<Visit> {
 }
 
 for (const { name, target, cage } of pairs()) {
-  test(`${name}: the page counts what the command line reports, by both presets, and lists the same segments`, async () => {
+  test(`${name}: the page shows the counts and segments of the command line, with both presets`, async () => {
     const { page, complaints } = await fresh();
     await drop(page, [read(target), read(cage)]);
     for (const preset of ['default', 'paper'] as const) {
@@ -103,7 +103,7 @@ for (const { name, target, cage } of pairs()) {
   });
 }
 
-test('a model that was painted before is opened without the overlay it has', async () => {
+test('a model with an overlay opens without it', async () => {
   const { page, complaints } = await fresh();
   const cage = path.join(kLizard, 'cage.glb');
   const folder = await mkdtemp(path.join(tmpdir(), 'cagecast-painted-'));
@@ -126,7 +126,7 @@ test('a model that was painted before is opened without the overlay it has', asy
   assert.deepEqual(complaints, []);
 });
 
-test('the threshold changes the counts at once, to what a transfer with it gives', async () => {
+test('the threshold changes the counts at once, as a new transfer would', async () => {
   const { page, complaints } = await fresh();
   const [target, cage] = [path.join(kLizard, 'target.glb'), path.join(kLizard, 'cage.glb')];
   const seen = new Set<string>();
@@ -141,7 +141,7 @@ test('the threshold changes the counts at once, to what a transfer with it gives
   assert.deepEqual(complaints, []);
 });
 
-test('a sample can be chosen again after files of one’s own, and everything is as before', async () => {
+test('a sample can be chosen again after own files, with the same result', async () => {
   const { page } = await fresh();
   const before = await shownCounts(page);
   const area = await modelArea(page);
@@ -160,7 +160,7 @@ test('a sample can be chosen again after files of one’s own, and everything is
   assert.ok(difference(picture, await look(page, area)) < 0.002);
 });
 
-test('of two models dropped together whose names say nothing, the simpler one is the cage, and they can be swapped', async () => {
+test('of two dropped models with neutral names the simpler one is the cage, and they can be swapped', async () => {
   const { page } = await fresh();
   const target = { ...read(path.join(kLizard, 'target.glb')), name: 'b.glb' };
   const cage = { ...read(path.join(kLizard, 'cage.glb')), name: 'a.glb' };
@@ -176,7 +176,7 @@ test('of two models dropped together whose names say nothing, the simpler one is
   assert.deepEqual(await shownCounts(page), expected);
 });
 
-test('the last of several files in a row wins', async () => {
+test('the last of several files wins', async () => {
   const { page } = await fresh();
   const input = page.getByTestId('target-input');
   await page.getByTestId('cage-input').setInputFiles(glb('cage.glb', glbOf(tetrahedron(2), 'thing')));
@@ -186,7 +186,7 @@ test('the last of several files in a row wins', async () => {
   assert.deepEqual(await shownCounts(page), { cosmetic: 4, occluded: 0, uncovered: 0, culled: 0 });
 });
 
-test('a paint of one’s own, PNG or JPEG, is drawn on the model', async () => {
+test('an own paint, PNG or JPEG, is drawn on the model', async () => {
   const { page, complaints } = await fresh();
   await page.locator('input[value=result]').check({ force: true });
   const area = await modelArea(page);
@@ -217,7 +217,7 @@ test('a paint of one’s own, PNG or JPEG, is drawn on the model', async () => {
   assert.deepEqual(complaints, []);
 });
 
-test('a glTF takes its buffer from a file dropped with it, and asks for it when it is missing', async () => {
+test('a glTF finds its buffer among the dropped files, or asks for it', async () => {
   const { page } = await fresh();
   const whole = glbOf(tetrahedron(), 'thing');
   const jsonLength = whole.readUInt32LE(12);
@@ -241,7 +241,7 @@ test('a glTF takes its buffer from a file dropped with it, and asks for it when 
 
 const formats = process.env.CAGECAST_ASSETS && path.join(process.env.CAGECAST_ASSETS, 'formats');
 for (const name of formats && existsSync(formats) ? readdirSync(formats) : []) {
-  test(`${name} opens, and counts what the command line reports`, async () => {
+  test(`${name} opens, with the counts of the command line`, async () => {
     const { page, complaints } = await fresh();
     const target = path.join(formats!, name);
     const cage = path.join(kLizard, 'cage.glb');

@@ -41,7 +41,7 @@ async function found(): Promise<{ verdict: string; findings: { sentence: string;
 }
 
 for (const name of ['car', 'human-misaligned', 'lizard']) {
-  test(`${name}: the page finds of its cage what the command finds`, async () => {
+  test(`${name}: the page shows the findings of cagecast inspect`, async () => {
     const { page, complaints } = visit;
     await drop(page, [
       glb('target.glb', readFileSync(asset(name, 'target.glb'))),
@@ -57,7 +57,7 @@ for (const name of ['car', 'human-misaligned', 'lizard']) {
   });
 }
 
-test('a part in doubt lights up with its finding, and is locked as that proposes', async () => {
+test('a finding highlights its part, and locks it as proposed', async () => {
   const { page } = visit;
   await page.getByTestId('sample-select').selectOption({ index: 0 });
   await page.getByTestId('preset').selectOption('paper');
@@ -92,7 +92,7 @@ test('a part in doubt lights up with its finding, and is locked as that proposes
   assert.equal(await settled(page), 'ready');
 });
 
-test('a large model is inspected when that is asked for', async () => {
+test('a large model is inspected on request', async () => {
   const { page } = visit;
   const small = tetrahedron();
   // Most of them without area, which cost no time to draw.

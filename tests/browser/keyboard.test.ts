@@ -36,7 +36,7 @@ async function chooseFile(page: Page, file: string): Promise<void> {
   await (await chooser).setFiles(file);
 }
 
-test('by keyboard alone: files are loaded, transferred by other rules, and the model is saved', async () => {
+test('keyboard only: load files, change the rules, and save the model', async () => {
   const { page, complaints } = await site.visit();
   // Choosers are caught as long as somebody listens. Who begins to listen just before a key is pressed may be too late.
   page.on('filechooser', () => {});
@@ -79,7 +79,7 @@ test('by keyboard alone: files are loaded, transferred by other rules, and the m
   assert.deepEqual(complaints, []);
 });
 
-test('by keyboard alone: what is undone to the end is done again, and the other way round', async () => {
+test('keyboard only: undo everything, and redo it', async () => {
   const { page } = await site.visit();
   await page.getByTestId('add-painting').click();
   await page.getByTestId('undo').focus();

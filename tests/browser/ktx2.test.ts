@@ -76,7 +76,7 @@ const kPaints: Record<string, readonly boolean[]> = {
   ETC1S: [false, true],
 };
 
-test('KTX2 textures are shown under the page’s own security policy, saved as they came, and painted into', async () => {
+test('KTX2 textures work under the content security policy, are saved unchanged, and can be painted', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } });
   await page.getByTestId('cage-input').setInputFiles(await islandCage(1));
   await settled(page);
@@ -129,7 +129,7 @@ test('KTX2 textures are shown under the page’s own security policy, saved as t
   assert.deepEqual(complaints, []);
 });
 
-test('a damaged KTX2 texture leaves its model white, and the page says so', async () => {
+test('a damaged KTX2 texture is shown in white, and reported', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } });
   await page.getByTestId('cage-input').setInputFiles(await islandCage(1));
   await settled(page);
@@ -148,7 +148,7 @@ test('a damaged KTX2 texture leaves its model white, and the page says so', asyn
   );
 });
 
-test('in development the transcoder is served as it is in the built page, and its address to modules that ask for that', async () => {
+test('the development server serves the transcoder as in the build, and its URL to modules', async () => {
   const { createServer } = await import('vite');
   const server = await createServer({
     configFile: inRepository('web/vite.config.ts'),

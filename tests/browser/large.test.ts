@@ -53,7 +53,7 @@ test('while a large model is transferred, progress is shown', async () => {
 });
 
 for (const way of ['button', 'Escape'] as const) {
-  test(`what takes long can be given up by ${way}, and what was on show stays`, async () => {
+  test(`${way} cancels long work and keeps the current model`, async () => {
     const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
     const before = await shownCounts(page);
     const givenUp = cancelOnceShown(page, way);
@@ -72,7 +72,7 @@ for (const way of ['button', 'Escape'] as const) {
   });
 }
 
-test('a preset that is given up is not the one that is said and saved', async () => {
+test('a cancelled preset is not shown or exported', async () => {
   const { page } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
   const before = await shownCounts(page);
   const givenUp = cancelOnceShown(page, 'button');
@@ -85,7 +85,7 @@ test('a preset that is given up is not the one that is said and saved', async ()
   assert.notDeepEqual(await shownCounts(page), before);
 });
 
-test('a sample that is given up is not the one that is named', async () => {
+test('a cancelled sample is not shown as chosen', async () => {
   const { page } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
   const samples = page.getByTestId('sample-select');
   const name = await samples.inputValue();
@@ -95,7 +95,7 @@ test('a sample that is given up is not the one that is named', async () => {
   assert.equal(await samples.inputValue(), name);
 });
 
-test('it is too late to give up what is already on show: paint and all, it stays', async () => {
+test('cancelling is too late once the model is shown', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } }, kSlowWorker);
   const before = await shownCounts(page);
   // Watched from before there is anything to see: a quick machine is done by the time that one asks.

@@ -91,7 +91,7 @@ async function add(upload: Upload): Promise<void> {
   await row(upload.name).waitFor();
 }
 
-test('a sample’s paint is the lowest layer, and another one takes its place', async () => {
+test('a sample’s paint is the base layer, and another paint replaces it', async () => {
   const { page } = visit;
   assert.deepEqual(await names(page), ['Tiger stripes']);
   const area = await modelArea(page);
@@ -102,7 +102,7 @@ test('a sample’s paint is the lowest layer, and another one takes its place', 
   assert.ok(difference(tiger, await look(page, area)) > 0.05);
 });
 
-test('layers join by the formulas of their blend modes, in linear light, with alpha', async () => {
+test('layers blend by the formulas of their modes, in linear light, with alpha', async () => {
   const { page } = visit;
   await control('button', 'Remove War paint').click();
   assert.deepEqual(await names(page), []);
@@ -117,7 +117,7 @@ test('layers join by the formulas of their blend modes, in linear light, with al
   }
 });
 
-test('a file is made of the texture off the page’s thread, where browsers wait for seconds until that rests', async () => {
+test('the texture is encoded off the main thread', async () => {
   const { page } = visit;
   const texture = await savedTexture(page);
   await page.locator('#paint-into [value=overlay]').check({ force: true });
@@ -131,7 +131,7 @@ test('a file is made of the texture off the page’s thread, where browsers wait
   assert.equal(await page.evaluate('encoded'), 0);
 });
 
-test('opacity, tint and the eye of a layer act by the same formulas', async () => {
+test('opacity, tint and visibility of a layer follow the same formulas', async () => {
   await control('combobox', 'Blending of above.png').selectOption('multiply');
   await control('slider', 'Opacity of above.png').fill('40');
   await assertTexture((column, row) => joined(below(column), above(row), 'multiply', 0.4), 'at 40 %');
@@ -146,7 +146,7 @@ test('opacity, tint and the eye of a layer act by the same formulas', async () =
   await assertTexture((column, row) => joined(below(column), above(row), 'normal'), 'as before');
 });
 
-test('the order changes by the keys of a layer’s grip, which stays under them, and by dragging it', async () => {
+test('layers are reordered with the keys, which keep the focus, and by dragging', async () => {
   const { page } = visit;
   await control('button', 'Reorder above.png').focus();
   await page.keyboard.press('ArrowDown');
@@ -170,7 +170,7 @@ test('the order changes by the keys of a layer’s grip, which stays under them,
   await assertTexture((column, row) => joined(below(column), above(row), 'normal'), 'dragged back');
 });
 
-test('removing a layer is undone with all that was said of it, and done again', async () => {
+test('undo restores a removed layer with its style, and redo removes it', async () => {
   const { page } = visit;
   await control('combobox', 'Blending of above.png').selectOption('screen');
   const before = await savedTexture(page);
@@ -186,7 +186,7 @@ test('removing a layer is undone with all that was said of it, and done again', 
   assert.deepEqual((await savedTexture(page)).data, before.data);
 });
 
-test('the stack stays when another model is opened; only the lowest paint is the model’s', async () => {
+test('the layers stay when another model is opened; only the base paint changes', async () => {
   const { page } = visit;
   await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true });
   assert.equal(await settled(page), 'ready');
@@ -198,7 +198,7 @@ test('the stack stays when another model is opened; only the lowest paint is the
   assert.equal(await control('combobox', 'Blending of above.png').inputValue(), 'screen');
 });
 
-test('layers are put together when something changes, and not when the model turns', async () => {
+test('layers are composited when something changes, and not when the model turns', async () => {
   const { page } = visit;
   const area = await modelArea(page);
   const composed = (): Promise<number> => page.evaluate('composed') as Promise<number>;
@@ -215,7 +215,7 @@ test('layers are put together when something changes, and not when the model tur
   assert.ok((await composed()) > before);
 });
 
-test('a larger image makes the texture larger, texel by texel, and what has fewer texels is spread over it', async () => {
+test('a larger image enlarges the texture, and smaller layers are interpolated', async () => {
   const { page } = visit;
   await add(
     image('large.png', 2048, (x, y) => [(x % 2) * 255, (y % 2) * 255, (x * 7 + y) % 256, y < 1024 ? 255 : 128]),
@@ -233,7 +233,7 @@ test('a larger image makes the texture larger, texel by texel, and what has fewe
   assert.equal((await savedTexture(page)).width, 1024);
 });
 
-test('there are eight layers at most; one more is refused in words', async () => {
+test('a ninth layer is refused with a message', async () => {
   const { page, complaints } = visit;
   for (let i = 0; i < 4; i++) await page.getByTestId('add-painting').click();
   assert.equal((await names(page)).length, 8);
@@ -245,7 +245,7 @@ test('there are eight layers at most; one more is refused in words', async () =>
   assert.deepEqual(complaints, []);
 });
 
-test('a sample’s paint lies over the others as well, and a link brings back how all of them lie', async () => {
+test('a sample’s paint can be added as a layer, and a link restores all layers', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
   await page.getByRole('button', { name: 'Add War paint as a layer' }).click();
   await rows(page).filter({ hasText: 'War paint' }).waitFor();
@@ -278,7 +278,7 @@ test('a sample’s paint lies over the others as well, and a link brings back ho
   assert.deepEqual([...complaints, ...other.complaints], []);
 });
 
-test('a link that is given up takes no layer away and brings none', async () => {
+test('cancelling a link changes no layers', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } }, kSlowWorker);
   await page.getByRole('button', { name: 'Add War paint as a layer' }).click();
   await rows(page).filter({ hasText: 'War paint' }).waitFor();
@@ -293,7 +293,7 @@ test('a link that is given up takes no layer away and brings none', async () => 
   assert.deepEqual(complaints, []);
 });
 
-test('where a link’s paint cannot be had, that is told, and what lies there stays', async () => {
+test('a missing paint of a link is reported, and the layers stay', async () => {
   const { page } = await site.visit({ viewport: { width: 900, height: 500 } }, (page) =>
     page.route(/paint-war-paint\.png$/, (route) => route.abort()).then(() => {}),
   );

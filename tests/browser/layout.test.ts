@@ -36,7 +36,7 @@ async function openAll({ page }: Visit, open = true): Promise<void> {
 }
 
 for (const { name, text, ...viewport } of kSizes) {
-  test(`${name}: nothing sticks out sideways, and every control can be reached and hit`, async () => {
+  test(`${name}: no horizontal overflow, and every control is reachable and large enough`, async () => {
     const { page, complaints } = visit;
     const devTools = await page.context().newCDPSession(page);
     await devTools.send('Page.setFontSizes', { fontSizes: { standard: text ?? 16 } });
@@ -75,7 +75,7 @@ for (const { name, text, ...viewport } of kSizes) {
   });
 }
 
-test('the Tab key reaches every control, and each says what it is', async () => {
+test('the Tab key reaches every control, and each has a name', async () => {
   const { page } = visit;
   await page.setViewportSize({ width: 1440, height: 900 });
   await openAll(visit, false);
@@ -130,7 +130,7 @@ test('the Tab key reaches every control, and each says what it is', async () => 
 });
 
 for (const colorScheme of ['light', 'dark'] as const) {
-  test(`${colorScheme}: text stands out from its ground by 4.5 to 1 or more`, async () => {
+  test(`${colorScheme}: text has a contrast of at least 4.5 to 1`, async () => {
     const { page } = visit;
     await page.emulateMedia({ colorScheme });
     await openAll(visit);
@@ -139,7 +139,7 @@ for (const colorScheme of ['light', 'dark'] as const) {
   });
 }
 
-test('on a phone the picture stays in sight while the panel scrolls', async () => {
+test('on a phone the view stays visible while the panel scrolls', async () => {
   const { page } = visit;
   await page.setViewportSize({ width: 390, height: 844 });
   await page.getByTestId('threshold').scrollIntoViewIfNeeded();
@@ -149,7 +149,7 @@ test('on a phone the picture stays in sight while the panel scrolls', async () =
   assert.ok(slider.y >= stage.y + stage.height, 'the slider is below it, not behind');
 });
 
-test('a finger turns the model and moves the line', async () => {
+test('a finger turns the model and moves the divider', async () => {
   const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   const area = await modelArea(page);
   const session = await page.context().newCDPSession(page);
@@ -206,7 +206,7 @@ const contrastFaults = `() => {
   return faults
 }`;
 
-test('what is said on the picture is not covered by what is pressed there', async () => {
+test('messages on the view are not covered by controls', async () => {
   const { page } = (visit = await site.visit({ hasTouch: true }));
   const covered: string[] = [];
   for (const [width, height] of [
@@ -246,7 +246,7 @@ test('what is said on the picture is not covered by what is pressed there', asyn
   assert.deepEqual(covered, []);
 });
 
-test('where a system has colours of its own, what is chosen still looks chosen', async () => {
+test('with forced colours, chosen controls still look chosen', async () => {
   const { page } = visit;
   await page.emulateMedia({ forcedColors: 'active' });
   // As it is drawn: what a style is computed to be knows nothing of those colours.

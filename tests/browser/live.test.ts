@@ -49,7 +49,7 @@ function moved(mesh: Mesh, how: Deform, amount: number, extent: Extent): Mesh {
   return { ...mesh, positions };
 }
 
-test('a deformed model counts what a transfer of its moved vertices gives, with a cage that goes along and one that stays', async () => {
+test('a deformed model has the counts of a transfer of its deformed vertices, with the cage deformed or not', async () => {
   await init();
   const { page, complaints } = await site.visit({ viewport: { width: 960, height: 500 } });
   const [targetFile, cageFile] = [{ ...(await ball()), name: 'target.glb' }, await islandCage(0.85)];
@@ -80,7 +80,7 @@ test('a deformed model counts what a transfer of its moved vertices gives, with 
   assert.deepEqual(complaints, []);
 });
 
-test('a deformed model is seen so, with the paint on it, and goes back to rest to the pixel', async () => {
+test('a deformed model is shown with its paint, and returns to the same pixels', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 600 } });
   await page.locator('input[value=result]').check({ force: true });
   const area = await modelArea(page);
@@ -101,7 +101,7 @@ test('a deformed model is seen so, with the paint on it, and goes back to rest t
   assert.deepEqual(complaints, []);
 });
 
-test('the model follows every step while naive and filtered are compared, and once parts were lit', async () => {
+test('the view follows every step in compare mode and after highlighting', async () => {
   const { page } = await site.visit({ viewport: { width: 1000, height: 600 } });
   const area = await modelArea(page);
   const paint = page.locator('#show-paint');
@@ -122,7 +122,7 @@ test('the model follows every step while naive and filtered are compared, and on
   assert.equal(difference(at, await bare()), 0);
 });
 
-test('how far a model is seen to bend does not hang on its size', async () => {
+test('the deformation is relative to the size of the model', async () => {
   const { page } = await site.visit({ viewport: { width: 1000, height: 600 } });
   await page.locator('input[value=naive]').check({ force: true });
   const pictures: PNG[] = [];
@@ -139,7 +139,7 @@ test('how far a model is seen to bend does not hang on its size', async () => {
   );
 });
 
-test('it moves by itself, frame after frame, until it is told to stop or another model is opened', async () => {
+test('Animate runs until it is switched off or another model is opened', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 960, height: 500 } });
   const amount = (): Promise<string> => page.getByTestId('amount').inputValue();
   await page.getByTestId('deform-moves').check();
@@ -163,7 +163,7 @@ test('it moves by itself, frame after frame, until it is told to stop or another
   assert.deepEqual(complaints, []);
 });
 
-test('an animated model plays on with the paint on it', async () => {
+test('an animated model plays with its paint', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 600 } });
   const paint = islandPaint();
   await drop(page, [await islandCage(1), { ...(await ball({ animated: true })), name: 'target.glb' }, paint]);

@@ -38,7 +38,7 @@ function middle({ data, width, height }: PNG): number[] {
   return [...data.subarray(at, at + 3)];
 }
 
-test('each mode shows another picture, comes back as it was, and says what its colours mean', async () => {
+test('each view mode shows a different picture and a legend, and returns unchanged', async () => {
   const { page, complaints } = visit;
   assert.deepEqual(
     await page
@@ -72,7 +72,7 @@ test('each mode shows another picture, comes back as it was, and says what its c
   assert.deepEqual(complaints, []);
 });
 
-test('the keyboard goes through the modes', async () => {
+test('the keyboard cycles through the view modes', async () => {
   const { page } = visit;
   await page.locator('#view-mode input[value=compare]').focus();
   for (const mode of kModes.slice(1)) {
@@ -82,7 +82,7 @@ test('the keyboard goes through the modes', async () => {
   await choose(page, 'compare');
 });
 
-test('the checker covers all of the model, whatever may be painted', async () => {
+test('the checker covers the whole model', async () => {
   const { page } = visit;
   const area = await modelArea(page);
   await choose(page, 'checker');
@@ -94,7 +94,7 @@ test('the checker covers all of the model, whatever may be painted', async () =>
   await setThreshold(page, 0.5);
 });
 
-test('parts have colours of their own, far apart', async () => {
+test('parts have distinct colours', async () => {
   const { page } = visit;
   await choose(page, 'segments');
   const picture = await look(page, await modelArea(page));
@@ -105,7 +105,7 @@ test('parts have colours of their own, far apart', async () => {
   assert.ok(shareOfHue(picture, 198) > 0.1, 'the skin is of one');
 });
 
-test('the distance to the cage is coloured by a scale in shares of the model’s diagonal', async () => {
+test('the distance to the cage has a scale in shares of the model’s diagonal', async () => {
   const page = await open(await ball(), await islandCage(1));
   const area = await modelArea(page);
   await choose(page, 'distance');
@@ -121,7 +121,7 @@ test('the distance to the cage is coloured by a scale in shares of the model’s
   assert.ok(far[1] > far[0] && far[1] > far[2], `35 % of the diagonal away it is green: ${far}`);
 });
 
-test('stretch is judged where there is paint, and tells where a triangle is drawn over half of the atlas', async () => {
+test('stretch is shown on painted triangles, and reveals one that spans half of the texture', async () => {
   const page = await open(await ball(), await islandCage(1));
   const area = await modelArea(page);
   await choose(page, 'stretch');

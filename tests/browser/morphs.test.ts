@@ -84,7 +84,7 @@ async function cageMesh({ buffer }: Upload): Promise<Mesh> {
   };
 }
 
-test('a morphed model counts what a transfer of its morphed vertices gives; meshes that share a name move together, bent ones too', async () => {
+test('a morphed model has the counts of a transfer of its morphed vertices; meshes with the same morph move together', async () => {
   await init();
   const { page, complaints } = await site.visit({ viewport: { width: 960, height: 500 } });
   const [target, cage] = [await morphingBalls(), await islandCage(0.8)];
@@ -116,7 +116,7 @@ test('a morphed model counts what a transfer of its morphed vertices gives; mesh
   assert.deepEqual(complaints, []);
 });
 
-test('it is seen morphed, paint and all, and goes back to the pixel', async () => {
+test('a morphed model is shown with its paint, and returns to the same pixels', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 600 } });
   await open(page, [await islandCage(1.1), await morphingBalls(), islandPaint()]);
   await page.locator('input[value=result]').check({ force: true });
@@ -140,7 +140,7 @@ test('it is seen morphed, paint and all, and goes back to the pixel', async () =
   assert.deepEqual(complaints, []);
 });
 
-test('every morph has a slider, those without a name too; a model without any has none', async () => {
+test('every morph has a slider, even without a name', async () => {
   const { page } = await site.visit();
   assert.equal(await page.getByTestId('morphs').isVisible(), false);
   await open(page, [await islandCage(1), await morphingBalls({ names: [], count: 20 })]);
@@ -154,7 +154,7 @@ test('every morph has a slider, those without a name too; a model without any ha
   assert.equal(await page.getByTestId('morphs').isVisible(), false);
 });
 
-test('morphs and an animation that moves the same do not get into each other’s way', async () => {
+test('morphs and an animation of the same morphs exclude each other', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 600 } });
   await open(page, [await islandCage(1.1), await morphingBalls({ animated: true }), islandPaint()]);
   await page.locator('input[value=result]').check({ force: true });
@@ -176,7 +176,7 @@ test('morphs and an animation that moves the same do not get into each other’s
   assert.deepEqual(complaints, []);
 });
 
-test('a moved model is saved in the shape of its file, and the page says so', async () => {
+test('a deformed model is saved undeformed, and the page says so', async () => {
   const { page } = await site.visit();
   const target = await morphingBalls();
   await open(page, [target, await islandCage(0.8)]);
@@ -190,7 +190,7 @@ test('a moved model is saved in the shape of its file, and the page says so', as
   await page.getByTestId('pose-note').waitFor({ state: 'hidden' });
 });
 
-test('a model that is morphed when its cage is changed stays so, and is counted with the other cage', async () => {
+test('a morphed model stays morphed when its cage is replaced', async () => {
   await init();
   const { page } = await site.visit();
   const [target, wide] = [await morphingBalls(), await islandCage(0.95)];
@@ -211,7 +211,7 @@ test('a model that is morphed when its cage is changed stays so, and is counted 
   assert.equal((await shownCounts(page)).cosmetic, await count(0));
 });
 
-test('a link brings back the shape that a sample was moved into, and no link one that is at rest', async () => {
+test('a link restores the deformation of a sample, and omits the rest shape', async () => {
   const [target, cage] = [await morphingBalls(), await islandCage(1.1)];
   // The samples that come with the page have no morphs: this one takes the place of the first.
   const samples = async (page: Page): Promise<void> => {

@@ -7,7 +7,7 @@ let site: Site;
 before(async () => void (site = await Site.open()));
 after(() => site?.close());
 
-test('after one visit the page opens without a network, with every sample and every decoder', async () => {
+test('after one visit the page works offline, with every sample and decoder', async () => {
   const { page, complaints, foreign } = await site.visit({ serviceWorkers: 'allow' });
   const online = await shownCounts(page);
   await page.evaluate(() => navigator.serviceWorker.ready);
@@ -38,7 +38,7 @@ test('after one visit the page opens without a network, with every sample and ev
   assert.deepEqual(foreign, []);
 });
 
-test('what is not of the page is not kept, and asks the network', async () => {
+test('requests outside the page are not cached', async () => {
   const { page } = await site.visit({ serviceWorkers: 'allow' });
   await page.evaluate(() => navigator.serviceWorker.ready);
   const ask = (): Promise<string> =>
@@ -53,7 +53,7 @@ test('what is not of the page is not kept, and asks the network', async () => {
   assert.equal(await ask(), 'failed');
 });
 
-test('so it does where the server sends from index.html to the folder, beside another copy of the page', async () => {
+test('it works offline if the server redirects index.html to the folder, beside another copy of the page', async () => {
   const { preview } = await import('vite');
   const server = await preview({
     configFile: false,

@@ -13,7 +13,7 @@ before(async () => {
 });
 after(() => site?.close());
 
-test('the page opens with the first sample transferred, silently and without asking other hosts', async () => {
+test('the page opens with the first sample, without complaints or requests to other hosts', async () => {
   const { page, complaints, foreign } = visit;
   assert.equal(await page.getByTestId('status').textContent(), 'ready');
   assert.equal(await shownError(page), '');
@@ -27,7 +27,7 @@ test('the page opens with the first sample transferred, silently and without ask
   assert.deepEqual(foreign, []);
 });
 
-test('after a while the page tells how long a transfer takes once the browser has compiled it, and what the first one took', async () => {
+test('the page retimes the transfer once the browser has compiled it, and keeps the first time', async () => {
   const { page } = visit;
   const first = page.locator('#time-first');
   await first.waitFor({ state: 'visible' });
@@ -41,7 +41,7 @@ test('after a while the page tells how long a transfer takes once the browser ha
   assert.ok((await shown()) < Number(before), 'another threshold does not bring the first time back');
 });
 
-test('paint, zones and cage are really drawn, and the line shows naive and filtered side by side', async () => {
+test('paint, zones and cage are drawn, and the divider separates naive and filtered', async () => {
   const { page, complaints } = visit;
   const area = await modelArea(page);
   const mode = (value: string): Promise<void> => page.locator(`input[value=${value}]`).check({ force: true });
@@ -76,7 +76,7 @@ test('paint, zones and cage are really drawn, and the line shows naive and filte
   assert.deepEqual(complaints, []);
 });
 
-test('the line moves with the pointer and with the keys of a slider', async () => {
+test('the divider moves with the pointer and the keyboard', async () => {
   const { page } = visit;
   const divider = page.getByTestId('compare-slider');
   const value = async (): Promise<number> => Number(await divider.getAttribute('aria-valuenow'));
@@ -100,7 +100,7 @@ test('the line moves with the pointer and with the keys of a slider', async () =
   assert.ok(Math.abs((await value()) - 70) <= 1, `dragged to ${await value()}`);
 });
 
-test('the model turns by mouse and by keys, and comes back home', async () => {
+test('the model turns with mouse and keys, and Home resets it', async () => {
   const { page } = visit;
   await page.locator('input[value=result]').check({ force: true });
   const area = await modelArea(page);
@@ -118,7 +118,7 @@ test('the model turns by mouse and by keys, and comes back home', async () => {
   assert.ok(difference(home, await look(page, area)) > 0.02, 'a drag turns it');
 });
 
-test('what the visitor looks at stays when the picture gets higher or lower, as when a phone hides its address bar', async () => {
+test('the camera angle stays when the height of the view changes', async () => {
   const { page } = visit;
   const angle = async (): Promise<string[]> => {
     await page.locator('#share-link').focus();
@@ -171,7 +171,7 @@ test('the content security policy forbids other hosts, inline scripts and eval',
   assert.match(policy!, /script-src 'self' 'wasm-unsafe-eval';/);
 });
 
-test('the model turns by itself until it is touched, and not for those who want no motion', async () => {
+test('the model turns by itself until it is touched, but not with reduced motion', async () => {
   const moving = await site.visit({ reducedMotion: 'no-preference', viewport: { width: 800, height: 700 } });
   const area = await modelArea(moving.page);
   const first = await look(moving.page, area);
@@ -188,7 +188,7 @@ test('the model turns by itself until it is touched, and not for those who want 
   assert.equal(difference(before, await look(still.page, area)), 0);
 });
 
-test('without WebGL the page says so, and still counts', async () => {
+test('without WebGL the page says so, and still transfers', async () => {
   const { page } = await site.visit(
     {},
     `HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {

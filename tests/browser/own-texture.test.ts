@@ -50,7 +50,7 @@ const apart = (a: number[], b: number[]): number => Math.max(...[0, 1, 2].map((k
 const toLinear = (byte: number): number => new Color().setRGB(byte / 255, 0, 0, SRGBColorSpace).r;
 const toByte = (linear: number): number => 255 * new Color(linear, 0, 0).convertLinearToSRGB().r;
 
-test('the lizard’s own texture has the paint where the overlay has it, and is as it was elsewhere', async () => {
+test('the lizard’s own texture has the paint where the overlay has it, and is unchanged elsewhere', async () => {
   const { page, complaints } = await site.visit();
   const laid = await validModel((await saved(page, 'export-glb')).bytes);
   const { document, note } = await savedInTexture(page);
@@ -111,7 +111,7 @@ test('the lizard’s own texture has the paint where the overlay has it, and is 
   assert.deepEqual(complaints, []);
 });
 
-test('exact borders go into the texture as well', async () => {
+test('exact borders are baked into the texture too', async () => {
   const { page } = await site.visit();
   const skinOf = (document: Document): PNG =>
     textureOf(
@@ -136,7 +136,7 @@ test('exact borders go into the texture as well', async () => {
   assert.ok(changed > 0.0002 && changed < 0.1, `${changed} of the texture is another`);
 });
 
-test('what is saved so looks as the painted model on the page does, without a paint', async () => {
+test('a saved model with baked paint looks like the painted model on the page', async () => {
   const { page } = await site.visit();
   await page.locator('input[value=result]').check({ force: true });
   const area = await modelArea(page);
@@ -161,7 +161,7 @@ const own = (size: number, color: readonly number[]): Upload =>
 const one = (colorAt: (u: number, v: number) => readonly number[]): Upload =>
   image('paint.png', 256, (x, y) => colorAt((x + 0.5) / 256, (y + 0.5) / 256));
 
-test('islands are painted to their edge and a margin beyond it; beyond that every byte is as it was, transparent ones too', async () => {
+test('charts are painted up to their edge and a margin; every byte beyond is unchanged, transparent ones too', async () => {
   const { page, complaints } = await site.visit();
   const base = own(1024, [10, 20, 200]);
   await drop(page, [await islandCage(1), await texturedBox(base.buffer), one(() => [230, 30, 40, 255])]);
@@ -186,7 +186,7 @@ test('islands are painted to their edge and a margin beyond it; beyond that ever
   assert.deepEqual(complaints, []);
 });
 
-test('halves that share their texels are told of; one of them is painted whole', async () => {
+test('mirrored halves that share texels are reported; one of them is painted completely', async () => {
   const { page } = await site.visit();
   const cells = one((u, v) => (u < 1 / 3 && v < 1 / 2 ? [230, 30, 40, 255] : [20, 200, 60, 255]));
   await drop(page, [
@@ -205,7 +205,7 @@ test('halves that share their texels are told of; one of them is painted whole',
   assert.equal(seen.size, 1, [...seen].slice(0, 5).join(' '));
 });
 
-test('a material that moves its texture is painted in the same places', async () => {
+test('KHR_texture_transform is applied', async () => {
   const { page } = await site.visit();
   await page.locator('input[value=result]').check({ force: true });
   const area = await modelArea(page);
@@ -232,7 +232,7 @@ test('a material that moves its texture is painted in the same places', async ()
   );
 });
 
-test('a small texture is painted larger, a large one smaller, and a colour that it is multiplied by goes into it', async () => {
+test('textures are resized to the limits, and the base colour factor is baked in', async () => {
   const { page } = await site.visit();
   const half = one((u) => (u < 0.5 ? [230, 30, 40, 255] : [0, 0, 0, 0]));
   for (const [from, to] of [
@@ -256,7 +256,7 @@ test('a small texture is painted larger, a large one smaller, and a colour that 
   }
 });
 
-test('what has no texture keeps an overlay, and is named; without any there is no choice', async () => {
+test('parts without a texture keep an overlay and are named; the choice is disabled without any texture', async () => {
   const { page } = await site.visit();
   await page.getByTestId('sample-select').selectOption('car');
   assert.equal(await settled(page), 'ready');

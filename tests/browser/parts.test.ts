@@ -39,7 +39,7 @@ const counted = (flags: { keep?: string; exclude?: string }) =>
 const choice = ({ name }: ShownPart): Locator =>
   table().getByRole('combobox', { name: `Override for ${name}`, exact: true });
 
-test('the table lists the parts by name, those that are covered least first, with a verdict for each', async () => {
+test('the table lists the parts by name and verdict, the least covered first', async () => {
   const parts = await shownParts(visit.page);
   assert.ok(parts.length > 1);
   assert.ok(parts.some(({ culled }) => culled) && parts.some(({ culled }) => !culled), 'some pass, some do not');
@@ -56,7 +56,7 @@ test('the table lists the parts by name, those that are covered least first, wit
   assert.equal(await table().getByRole('rowheader').count(), parts.length);
 });
 
-test('the teeth that nothing covers share a row, and what is said of it holds for all of them', async () => {
+test('uncovered teeth share a row, and its override applies to all', async () => {
   const { page } = visit;
   const counts = await shownCounts(page);
   const parts = await shownParts(page);
@@ -74,7 +74,7 @@ test('the teeth that nothing covers share a row, and what is said of it holds fo
   assert.deepEqual(await shownCounts(page), counts);
 });
 
-test('excluding and keeping a part acts at once on counts and picture, lasts over presets, and can be taken back', async () => {
+test('excluding and keeping a part changes counts and view at once, survives presets, and is reversible', async () => {
   const { page, complaints } = visit;
   await page.locator('input[value=result]').check({ force: true });
   await page.mouse.move(5, 5); // off the table, where it would light up a part
@@ -120,7 +120,7 @@ test('excluding and keeping a part acts at once on counts and picture, lasts ove
   assert.deepEqual(complaints, []);
 });
 
-test('the part that is pointed at, or that has the keyboard, lights up', async () => {
+test('the hovered or focused part is highlighted', async () => {
   const { page } = visit;
   const area = await modelArea(page);
   await page.mouse.move(5, 5);
@@ -136,7 +136,7 @@ test('the part that is pointed at, or that has the keyboard, lights up', async (
   assert.ok(difference(before, await look(page, area)) < 0.0005);
 });
 
-test('a part that has the keyboard as soon as the card is open stays lit', async () => {
+test('a part focused when the card opens stays highlighted', async () => {
   const { page } = visit;
   const area = await modelArea(page);
   await page.locator('#parts').evaluate((card: HTMLDetailsElement) => (card.open = false));
@@ -151,7 +151,7 @@ test('a part that has the keyboard as soon as the card is open stays lit', async
   assert.ok(difference(before, await look(page, area)) < 0.0005, 'and dark again');
 });
 
-test('the keyboard opens the table, and chooses in it', async () => {
+test('the keyboard opens the table and sets overrides', async () => {
   const { page } = visit;
   const counts = await shownCounts(page);
   const summary = page.locator('#parts summary');
@@ -173,7 +173,7 @@ test('the keyboard opens the table, and chooses in it', async () => {
   assert.deepEqual(await shownCounts(page), counts);
 });
 
-test('while the model moves, the table tells of it as it is', async () => {
+test('the table follows a moving model', async () => {
   const { page } = visit;
   const before = await shownParts(page);
   const inflate = async (amount: string): Promise<void> => {
@@ -195,7 +195,7 @@ test('while the model moves, the table tells of it as it is', async () => {
   assert.deepEqual(await shownParts(page), before);
 });
 
-test('of a model in very many parts the largest fifty are listed; what was said of another model is forgotten', async () => {
+test('of very many parts the largest fifty are listed; overrides of another model are dropped', async () => {
   const { page } = visit;
   const [first] = await shownParts(page);
   await choice(first!).selectOption('keep');
@@ -218,7 +218,7 @@ test('of a model in very many parts the largest fifty are listed; what was said 
   ]);
 });
 
-test('on a phone a row that is touched stays lit until something else is', async () => {
+test('on a phone a tapped row stays highlighted until something else is tapped', async () => {
   const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   // What is said of the cage's fit comes later, and moves what is below it out from under a finger.
   await page.waitForFunction(() => document.querySelector('#fit-verdict')!.textContent !== '');

@@ -50,7 +50,7 @@ for (const [screen, viewport, most] of [
   ['a desk', { width: 1440, height: 900 }, 0.01],
   ['a phone', { width: 390, height: 844 }, 0.05],
 ] as const) {
-  test(`before any script runs, the page shows what it will draw first, on ${screen}`, async () => {
+  test(`before any script runs, the poster image matches the first frame on ${screen}`, async () => {
     let early: PNG | undefined;
     const { page, complaints } = await site.visit({ viewport, deviceScaleFactor: 1 }, async (page) => {
       const letGo = await hold(page, kScript);
@@ -68,7 +68,7 @@ for (const [screen, viewport, most] of [
   });
 }
 
-test('nothing that tells of loading lies over the poster image, be it that scripts are waited for or the model', async () => {
+test('no loading message covers the poster image, while scripts or the model load', async () => {
   for (const viewport of [
     { width: 390, height: 844 },
     { width: 1440, height: 900 },
@@ -101,7 +101,7 @@ test('nothing that tells of loading lies over the poster image, be it that scrip
   }
 });
 
-test('on a processor slowed to a quarter the poster image is on the screen before anything is drawn in 3D', async () => {
+test('with the CPU slowed four times, the poster image appears before anything is drawn in 3D', async () => {
   const { page } = await site.visit({}, async (page) => {
     const session = await page.context().newCDPSession(page);
     await session.send('Emulation.setCPUThrottlingRate', { rate: 4 });
@@ -125,7 +125,7 @@ test('on a processor slowed to a quarter the poster image is on the screen befor
   );
 });
 
-test('it fades into the drawing, and gives way at once for those who want no motion', async () => {
+test('the poster image fades out, or disappears at once with reduced motion', async () => {
   for (const [reducedMotion, fades] of [
     ['no-preference', 1],
     ['reduce', 0],
@@ -142,7 +142,7 @@ test('it fades into the drawing, and gives way at once for those who want no mot
   }
 });
 
-test('who comes by a link to another sample does not see the first one', async () => {
+test('a link to another sample does not show the poster image of the first', async () => {
   let seen: number | undefined;
   await site.visit(
     {},

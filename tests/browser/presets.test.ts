@@ -44,7 +44,7 @@ async function open(target: Upload): Promise<Visit> {
   return visit;
 }
 
-test('the preset is default at first; paper gives other counts, takes fewer steps, and default comes back as it was', async () => {
+test('the preset starts as default; paper has other counts and fewer steps, and switching back restores both', async () => {
   const { page, complaints } = visit;
   const preset = page.getByTestId('preset');
   assert.equal(await preset.inputValue(), 'default');
@@ -66,7 +66,7 @@ test('the preset is default at first; paper gives other counts, takes fewer step
   assert.deepEqual(complaints, []);
 });
 
-test('in default too the threshold acts at once, as a transfer with it does', async () => {
+test('with the default preset the threshold acts at once, as a new transfer would', async () => {
   const { page } = visit;
   const file = (name: string): string => inRepository('build/assets/lizard', `${name}.glb`);
   for (const threshold of [0, 0.9, 1]) {
@@ -85,7 +85,7 @@ for (const [name, options] of Object.entries({
   mirrored: { mirrored: true },
   'skinned and morphed': { pose: true },
 })) {
-  test(`${name}: no triangle stretches from one island of the paint to another, and the paint lies on the surface`, async () => {
+  test(`${name}: no triangle stretches across UV charts, and the paint lies on the surface`, async () => {
     const { page, complaints } = await open(await ball(options));
     const area = await modelArea(page);
     const shares = async (): Promise<{ violet: number; blue: number; green: number }> => {

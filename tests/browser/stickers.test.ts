@@ -59,7 +59,7 @@ test('one finger paints', async () => {
   await undone();
 });
 
-test('two fingers turn the model, and the first of them has not painted', async () => {
+test('two fingers turn the model, and the first one leaves no paint', async () => {
   const { page } = visit;
   const before = await seen();
   await touch(
@@ -89,7 +89,7 @@ test('two fingers turn the model, and the first of them has not painted', async 
   assert.ok(difference(before, await seen()) < 0.01);
 });
 
-test('nor has the second, where the first was put down beside the model', async () => {
+test('two fingers leave no paint if the first came down beside the model', async () => {
   const { page } = visit;
   const before = await seen();
   await touch(
@@ -113,7 +113,7 @@ test('nor has the second, where the first was put down beside the model', async 
   assert.ok(difference(before, await seen()) < 0.01);
 });
 
-test('a text is stuck on by a tap, in its colour, size and turn', async () => {
+test('a tap places a text sticker in its colour, size and rotation', async () => {
   const { page } = visit;
   await choose('Sticker');
   await set({ 'sticker-text': 'HI', 'brush-color': '#00c040', 'brush-size': '80' });
@@ -133,7 +133,7 @@ test('a text is stuck on by a tap, in its colour, size and turn', async () => {
   await undone();
 });
 
-test('an image is stuck on the right way up and round, and follows the finger until it is lifted', async () => {
+test('an image sticker is upright and not mirrored, and follows the finger until release', async () => {
   const { page } = visit;
   // Red on the left and blue on the right above, violet and cyan below.
   const quarters = [
@@ -173,7 +173,7 @@ test('an image is stuck on the right way up and round, and follows the finger un
   await undone();
 });
 
-test('the space bar paints in the middle of the picture, and the arrow keys draw while it is held', async () => {
+test('the space bar paints at the centre of the view, and the arrow keys draw while it is held', async () => {
   const { page, complaints } = visit;
   await page.locator('#view').focus();
   await page.keyboard.press('b');

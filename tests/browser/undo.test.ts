@@ -48,7 +48,7 @@ async function state(): Promise<object> {
 /** Two things that a hand does are not done within a moment. */
 const pause = (): Promise<void> => visit.page.waitForTimeout(700);
 
-test('whatever is done to a layer is a step: undone and redone in turn, with strokes between', async () => {
+test('every edit of a layer is an undo step, also between strokes', async () => {
   const { page, complaints } = visit;
   const tint = (color: string): Promise<void> => page.getByLabel('Tint of blue.png').fill(color);
   const area = await modelArea(page);
@@ -115,7 +115,7 @@ test('whatever is done to a layer is a step: undone and redone in turn, with str
   assert.deepEqual(complaints, []);
 });
 
-test('a drag is one step, and so is a key held down', async () => {
+test('a drag is one undo step, and so is a held key', async () => {
   const { page } = visit;
   await rows(page).filter({ hasText: 'red.png' }).locator('.choose').click();
   const slider = control('slider', 'Opacity of red.png');
@@ -167,7 +167,7 @@ test('a drag is one step, and so is a key held down', async () => {
   assert.deepEqual(await names(page), order);
 });
 
-test('nothing is undone while a hand is at it, and nothing of what it does is lost', async () => {
+test('undo is blocked during an edit, which is kept', async () => {
   const { page, complaints } = visit;
   const area = await modelArea(page);
   const before = [await undoTitle(), await state()];
@@ -232,7 +232,7 @@ test('nothing is undone while a hand is at it, and nothing of what it does is lo
   assert.deepEqual(complaints, []);
 });
 
-test('undoing leaves alone what came of another model since', async () => {
+test('undo does not affect the paint of a model opened since', async () => {
   const { page } = visit;
   await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true });
   assert.equal(await settled(page), 'ready', await shownError(page));
@@ -253,7 +253,7 @@ test('undoing leaves alone what came of another model since', async () => {
   assert.doesNotMatch(await undoTitle(), /choice/);
 });
 
-test('a stroke that made its layer takes it along, and one that is given up leaves none', async () => {
+test('undoing the stroke that created a layer removes it, and so does cancelling', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 }, hasTouch: true });
   visit = { page, complaints, foreign: [] };
   const area = await modelArea(page);

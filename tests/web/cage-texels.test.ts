@@ -40,7 +40,7 @@ function random(seed: number): () => number {
   };
 }
 
-test('each texel of an island knows its place on the cage, and those just around it a place on the border', () => {
+test('each texel of a chart maps to its point on the cage, and the gutter to the border', () => {
   const texels = new CageTexels(cageOf(box()), kSize);
   // The middle of the fifth side, which faces +z.
   const { point, normal } = texels.at(1.5 / 3, 1.5 / 2)!;
@@ -53,7 +53,7 @@ test('each texel of an island knows its place on the cage, and those just around
   assert.equal(texels.at(left - 6 / kSize, 1.5 / 2), undefined, 'nothing is there');
 });
 
-test('UVs outside 0..1 are repeated, as the texture is', () => {
+test('UVs outside 0..1 repeat', () => {
   const [inside, outside] = [0, 2.5].map((move) => new CageTexels(cageOf(new SphereGeometry(1, 24, 16), move), kSize));
   for (let i = 0; i < 50; i++) {
     const [u, v] = [(i * 0.379) % 1, 0.2 + ((i * 0.713) % 0.6)];
@@ -62,7 +62,7 @@ test('UVs outside 0..1 are repeated, as the texture is', () => {
   }
 });
 
-test('what a brush is said to touch holds every texel whose place is near its way, and faces it; what it is said to enclose none else', () => {
+test('`touched` covers every texel near the brush that faces it, and `enclosed` no others', () => {
   const next = random(7);
   let enclosed = 0;
   for (const geometry of [box(), new SphereGeometry(1, 24, 16)]) {
@@ -107,7 +107,7 @@ test('what a brush is said to touch holds every texel whose place is near its wa
   assert.ok(enclosed > 100, `${enclosed} triangles were enclosed`);
 });
 
-test('parts of a texture are joined until none overlap, and cover what they did', () => {
+test('`disjoint` covers the same texels without overlap', () => {
   const next = random(3);
   const rects: Rect[] = Array.from({ length: 40 }, () => {
     const [left, top] = [Math.floor(100 * next()), Math.floor(100 * next())];
@@ -127,7 +127,7 @@ test('parts of a texture are joined until none overlap, and cover what they did'
   }
 });
 
-test('the history forgets the oldest commands where memory ends, and what was undone once something else is done', () => {
+test('the history drops the oldest commands at its memory limit, and undone ones after a new command', () => {
   const history = new History();
   const log: string[] = [];
   const command = (name: string, megabytes = 0) => ({
@@ -159,7 +159,7 @@ test('the history forgets the oldest commands where memory ends, and what was un
   assert.equal(history.last, failing, 'what cannot be undone stays done');
 });
 
-test('between two places around an edge of the cage a stroke keeps to the cage, and leaps over no air', () => {
+test('a stroke around an edge of the cage stays on the cage', () => {
   const texels = new CageTexels(cageOf(box()), kSize);
   const [front, right] = [texels.at((1 + 0.2 + 0.6 * 0.9) / 3, 1.5 / 2)!, texels.at((0.2 + 0.6 * 0.1) / 3, 0.5 / 2)!];
   assert.ok(Math.abs(front.point.z - 1) < 1e-6 && Math.abs(right.point.x - 1) < 1e-6, 'on two sides of one edge');

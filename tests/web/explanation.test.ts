@@ -28,7 +28,7 @@ function withPrimitives(mesh: Mesh) {
 }
 
 for (const folder of modelFolders()) {
-  test(`${path.basename(folder)}: what is told of a triangle is whether it is painted, and why its part passes or does not`, async () => {
+  test(`${path.basename(folder)}: explanations agree with the zones and the verdicts`, async () => {
     const [target, cage] = await Promise.all(
       ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
     );
@@ -66,7 +66,7 @@ for (const folder of modelFolders()) {
   });
 }
 
-test('of a part that a hole is meant for that is told, and by the other rules it is painted', () => {
+test('a part that a hole is meant for is explained so, and is painted without that rule', () => {
   const { cage, target } = smallHole();
   const projection = project(cage, target);
   const shown = { target: { mesh: withPrimitives(target) }, cage: { mesh: cage }, projection } as unknown as Shown;
@@ -95,7 +95,7 @@ test('of a part that a hole is meant for that is told, and by the other rules it
   );
 });
 
-test('of a part that is locked only that is told', async () => {
+test('a locked part is explained by its lock only', async () => {
   const folder = modelFolders()[0]!;
   const [target, cage] = await Promise.all(
     ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),

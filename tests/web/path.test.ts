@@ -14,7 +14,7 @@ const kAsked = 600; // vertices of each model
 before(() => init());
 
 for (const folder of modelFolders()) {
-  test(`${path.basename(folder)}: the way that the page shows of a vertex leads to the zone that the transfer found`, async () => {
+  test(`${path.basename(folder)}: the path of a vertex leads to the zone of the transfer`, async () => {
     const [target, cage] = await Promise.all(
       ['target', 'cage'].map((name) => readPlain(path.join(folder, `${name}.glb`))),
     );

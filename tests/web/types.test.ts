@@ -4,7 +4,7 @@ import { promisify } from 'node:util';
 import { inRepository } from '../support/site';
 
 for (const project of ['web', 'web/service-worker', 'tests/browser']) {
-  test(`${project}: the types are right, also those of the package it uses`, async () => {
+  test(`${project}: type check`, async () => {
     await promisify(execFile)(inRepository('node_modules/.bin/tsc'), ['-p', inRepository(project)]).catch(
       ({ stdout }) => {
         throw new Error(stdout);

@@ -9,7 +9,7 @@ let site: Site;
 before(async () => void (site = await Site.open()));
 after(() => site?.close());
 
-test('until the poster image is on the screen the page computes for less than a second, slowed to a quarter', async () => {
+test('with the CPU slowed four times, less than a second of computing before the poster image', async () => {
   const { page } = await site.visit();
   // By processor time, as a busy machine stretches any other, and against what always takes the same, as it stretches even that.
   const reload = async (): Promise<void> => {
@@ -33,7 +33,7 @@ test('until the poster image is on the screen the page computes for less than a 
   );
 });
 
-test('the first picture takes little of the processor, and most of that is not the page’s own', async () => {
+test('processor time of the first frame, in the page and in the GPU process', async () => {
   // By processor time, as a busy machine stretches any other; and in proportion, as those on the same cores stretch even that.
   const runs: { page: number; graphics: number; computation: number; picture: number }[] = [];
   for (let run = 0; run < 3; run++) runs.push(await processorTime(site));

@@ -106,7 +106,7 @@ async function costOf(page: Page, session: CDPSession, run: () => Promise<unknow
 // The largest, of 40 % of the cage, takes 28 to 35 ms.
 const kBrushes = { 'as it comes': '50', 'of 20 % of the cage': '85' };
 
-test('from a pointer’s move to painted texels takes less than 16 ms of processor time, with every brush up to 20 % of the cage, drawing by the processor included', async () => {
+test('a pointer move is painted within 16 ms of processor time, with brushes up to 20 % of the cage', async () => {
   const { page } = await site.visit({ viewport: { width: 400, height: 400 } }, kMeasures);
   const session = await page.context().newCDPSession(page);
   await session.send('Performance.enable', { timeDomain: 'threadTicks' });
