@@ -106,7 +106,7 @@ test('KTX2 textures work under the content security policy, are saved unchanged,
       const document = await validModel((await saved(page, 'export-glb')).bytes);
       assert.equal(
         await page.getByTestId('export-note').textContent(),
-        'The paint is in one texture of the model’s own.',
+        'The paint is in one of the model’s own textures.',
       );
       assert.ok(
         document

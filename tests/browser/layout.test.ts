@@ -120,7 +120,7 @@ test('the Tab key reaches every control, and each has a name', async () => {
     ['radio', /Result/],
     ['radio', /Zones/],
     ['checkbox', /Cage/],
-    ['radiogroup', /shown/],
+    ['radiogroup', /View mode/],
   ] as const) {
     assert.equal(await page.getByRole(role, { name }).count(), 1, `${role} ${name}`);
   }
