@@ -41,20 +41,14 @@ async function sampleFiles(): Promise<string[]> {
   return samples.flatMap(({ target, cage, paints }) => [target, cage, ...paints.map(({ file }) => file)]);
 }
 
-/** Uses the package's separate .wasm files: page and worker share them, and they compile while they load. */
+/** Uses the package's separate .wasm file: page and worker share it, and it compiles while it loads. */
 function slim(): Plugin {
-  const slimOf = new Map(
-    [
-      ['index.js', 'slim.js'],
-      ['borders.js', 'slim-borders.js'],
-    ].map((names) => names.map((name) => path.join(kRepository, 'dist', name)) as [string, string]),
-  );
   return {
     name: 'cagecast-slim',
     enforce: 'pre',
     async resolveId(source, importer, options) {
       const found = await this.resolve(source, importer, { ...options, skipSelf: true });
-      return found && (slimOf.get(found.id) ?? found);
+      return found?.id === path.join(kRepository, 'dist/index.js') ? path.join(kRepository, 'dist/slim.js') : found;
     },
   };
 }

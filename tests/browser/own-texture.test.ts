@@ -54,7 +54,7 @@ test('the lizard’s own texture has the paint where the overlay has it, and is 
   const { page, complaints } = await site.visit();
   const laid = await validModel((await saved(page, 'export-glb')).bytes);
   const { document, note } = await savedInTexture(page);
-  assert.equal(note, 'The paint is in one texture of the model’s own.');
+  assert.equal(note, 'The paint is in one of the model’s own textures.');
   assert.equal(primitivesOf(document).filter(isOverlay).length, 0);
   assert.equal(
     document.getRoot().listTextures().length,
@@ -167,7 +167,7 @@ test('charts are painted up to their edge and a margin; every byte beyond is unc
   await drop(page, [await islandCage(1), await texturedBox(base.buffer), one(() => [230, 30, 40, 255])]);
   assert.equal(await settled(page), 'ready', await shownError(page));
   const { document, note } = await savedInTexture(page);
-  assert.equal(note, 'The paint is in one texture of the model’s own.');
+  assert.equal(note, 'The paint is in one of the model’s own textures.');
   const [before, after] = [PNG.sync.read(base.buffer), textureOf(primitivesOf(document)[0]!.getMaterial())];
   const counts = { painted: 0, margin: 0, kept: 0 };
   for (let y = 0; y < 1024; y++) {
@@ -222,7 +222,7 @@ test('KHR_texture_transform is applied', async () => {
     await page.locator('#show-paint').uncheck({ force: true });
     const bare = await look(page, area);
     const { document, note } = await savedInTexture(page);
-    assert.equal(note, 'The paint is in one texture of the model’s own.');
+    assert.equal(note, 'The paint is in one of the model’s own textures.');
     found.push({ bare, texture: textureOf(primitivesOf(document)[0]!.getMaterial()) });
   }
   assert.ok(difference(found[0]!.bare, found[1]!.bare) < 0.001, 'its own texture is seen in the same places');

@@ -49,11 +49,10 @@ export class Overlay {
     const call = ++this.#version;
     for (const primitive of this.#primitives) primitive.clearCut();
     if (!cut) return;
-    const { cutGeometry } = await import('cagecast/three');
     const pace = new Pace();
     for (const primitive of this.#primitives) {
       if (call !== this.#version) return;
-      primitive.setCut(cut, this.#vertexCount, cutGeometry);
+      primitive.setCut(cut, this.#vertexCount);
       await pace.rest();
     }
   }

@@ -1,4 +1,5 @@
 import type { Classification, CutTarget, SplitVertices } from 'cagecast';
+import { cutGeometry } from 'cagecast/three';
 import {
   BufferAttribute,
   BufferGeometry,
@@ -42,8 +43,6 @@ const kLinear = Uint16Array.from({ length: 256 }, (_, byte) =>
 );
 
 const kExcludedZones = [1, 2, 3] as const;
-
-export type CutGeometry = typeof import('cagecast/three')['cutGeometry'];
 
 /** The overlay on one mesh of the target. */
 export class PrimitiveOverlay {
@@ -103,7 +102,7 @@ export class PrimitiveOverlay {
   }
 
   /** Shows the filtered paint on the cut target. @param vertexCount Of the whole target before cutting. */
-  setCut(cut: CutTarget, vertexCount: number, cutGeometry: CutGeometry): void {
+  setCut(cut: CutTarget, vertexCount: number): void {
     const { mesh, mirrored } = this.#primitive;
     const geometry = shareVertices(mesh.geometry);
     geometry.morphAttributes = { ...geometry.morphAttributes }; // a copy, as `cutGeometry` replaces entries
