@@ -12,7 +12,12 @@ let session: CDPSession;
 // On a phone: what works there by hand works elsewhere too.
 before(async () => {
   site = await Site.open();
-  visit = await site.visit({ viewport: { width: 390, height: 700 }, hasTouch: true, isMobile: true });
+  visit = await site.visit({
+    viewport: { width: 390, height: 700 },
+    hasTouch: true,
+    isMobile: true,
+    deviceScaleFactor: 0.5,
+  });
   const { page } = visit;
   await page.locator('#view-mode input[value=result]').check({ force: true });
   session = await page.context().newCDPSession(page);
