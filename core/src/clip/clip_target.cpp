@@ -17,6 +17,7 @@ namespace {
 bool joinEqualPositions(std::span<const float> positions, Arena& arena, std::uint8_t* takesPart) noexcept {
   struct Position {
     float x, y, z;
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): equal bits are what counts.
     bool operator==(const Position& other) const { return std::memcmp(this, &other, sizeof(Position)) == 0; }
   };
   const auto count = static_cast<std::uint32_t>(positions.size() / 3);

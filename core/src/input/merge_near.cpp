@@ -109,7 +109,7 @@ bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t coun
       if (std::lexicographical_compare(from, from + kStride, to, to + kStride)) std::copy(from, from + kStride, to);
     }
     return true;
-  } catch (const std::bad_alloc&) {
+  } catch (...) {  // Of memory alone: nothing else is thrown here.
     return false;
   }
 }
@@ -125,7 +125,7 @@ bool nearestSites(const float* sites, std::uint32_t siteCount, const float* poin
       nearest[i] = found.site();
     }
     return true;
-  } catch (const std::bad_alloc&) {
+  } catch (...) {  // Of memory alone: nothing else is thrown here.
     return false;
   }
 }

@@ -21,6 +21,7 @@ Status splitVertices(std::span<const std::uint32_t> indices, std::span<const flo
   struct Corner {
     std::uint32_t vertex;
     float u, v;
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): equal bits are what counts.
     bool operator==(const Corner& other) const { return std::memcmp(this, &other, sizeof(Corner)) == 0; }
   };
   const auto corner = [&](std::size_t i) {
