@@ -113,7 +113,7 @@ async function buildPackage() {
     const entryPoints = [at('wasm/src', entry)];
     const { metafile } = await build({ ...common, ...options, entryPoints, outfile, platform });
     for (const path of Object.keys(metafile.inputs)) bundled.add(path);
-    if (shipped) withoutDigits(`${outfile}.map`);
+    if (existsSync(`${outfile}.map`)) tidyMap(`${outfile}.map`);
   };
   await bundle('index.ts', 'index.js', 'neutral', { ...eager, plugins: [wasmModules('wasm-inline.ts')] });
   if (shipped) {
@@ -160,6 +160,7 @@ async function bundleCommand(bundle) {
   ];
   await bundle('cli/main.ts', 'cli.js', 'node', {
     target: 'node20',
+    sourcemap: false, // most of it is what others wrote
     banner: { js: banner.join('\n') },
     loader: { '.wasm': 'binary' },
     plugins: [wasmModules('wasm-inline.ts')],
@@ -191,10 +192,11 @@ function wasmModules(wasm, index) {
   };
 }
 
-/** Takes the digits of the WebAssembly module out of a source map: nobody reads them. */
-function withoutDigits(path) {
+/** Makes a source map fit to be packed: without the digits of the WebAssembly module, with paths from dist/ on. */
+function tidyMap(path) {
   const map = JSON.parse(readFileSync(path, 'utf8'));
   map.sourcesContent = map.sourcesContent.map((text, i) => (map.sources[i].endsWith('.wasm') ? null : text));
+  map.sources = map.sources.map((source) => source.replace(/^(\.\.\/)+/, '../'));
   writeFileSync(path, JSON.stringify(map));
 }
 
