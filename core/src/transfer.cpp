@@ -83,20 +83,6 @@ void writeProjection(const Scene& scene, const PointData& data, Projection& out)
   for (std::size_t v = 0; v < out.recovery.size(); ++v) out.recovery[v] = from.recovery[from.points.ofVertex[v]];
 }
 
-/// Step 9: UVs per triangle corner.
-void projectCorners(const Scene& scene, const PointData& data, Array<float>& cornerUvs) {
-  const bool isWanted =
-      scene.options.seams == Seams::corner && scene.options.steps.projection == ProjectionMode::nearestPoint;
-  if (scene.arena.failed() || !cornerUvs.reset(isWanted ? 2 * scene.targetMesh.indices.size() : 0)) {
-    return scene.arena.fail();
-  }
-  if (!isWanted) return;
-  if (!findCornerUvs(scene.targetMesh, scene.points, scene.cage, scene.halfEdges, scene.cageTree, scene.units, data,
-                     scene.arena, cornerUvs.data())) {
-    scene.arena.fail();
-  }
-}
-
 template <typename... T>
 std::uint64_t bytesOf(const Array<T>&... arrays) {
   return ((arrays.size() * sizeof(T)) + ...);
@@ -124,7 +110,12 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
   timed(times.segments, [&] { measureSegments(scene, points, out.segmentStats); });
   findRecovery(scene, points, out);
   timed(times.segments, [&] { writeProjection(scene, points, out); });
-  timed(times.seams, [&] { projectCorners(scene, points, out.cornerUvs); });
+  const bool hasCornerUvs = options.seams == Seams::corner && options.steps.projection == ProjectionMode::nearestPoint;
+  if (hasCornerUvs) {
+    timed(times.seams, [&] { projectCorners(scene, points, out.cornerUvs); });
+  } else if (!out.cornerUvs.reset(0)) {
+    arena->fail();
+  }
 
   out.peakBytes = arena->peak() + bytesOf(out.uvs, out.cornerUvs, out.zones, out.triangles, out.distances, out.segments,
                                           out.segmentStats, out.recovery, out.holeShares);

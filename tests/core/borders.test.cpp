@@ -46,7 +46,7 @@ double openLength(const MeshView& mesh) {
   return sum;
 }
 
-/// On which side of the loops a place is, by brute force.
+/// Whether a point lies beyond a boundary loop, by brute force.
 class Sides {
  public:
   Sides(const MeshView& cage, const MeshView& target)
@@ -187,7 +187,7 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
     for (const double share : {0.05, 0.35, 0.65, 0.95}) {
       const Vec at = p + (q - p) * share;
       const bool isBeyond = sides.isBeyond(at);
-      // The nearest place on the other side, in the planes of both triangles: looked for in eight directions, ever
+      // The nearest point on the other side, in the planes of both triangles: searched in eight directions, ever
       // farther.
       double least = 10 * kTolerance;
       for (const std::int64_t t : both) {
@@ -355,7 +355,7 @@ TEST_CASE("a result of another target with as many vertices cuts what that says"
   CHECK(after == Approx(before));
 }
 
-TEST_CASE("a cage of thousands of islands, each a triangle, cuts a target at all of them", "[borders]") {
+TEST_CASE("a cage of thousands of charts, each a triangle, cuts a target at all of them", "[borders]") {
   const scenes::Mesh whole = scenes::ellipsoid({}, {1.1f, 1.1f, 1.1f}, 14),
                      target = scenes::ellipsoid({}, {1, 1, 1}, 6);
   scenes::Mesh cage;
@@ -370,7 +370,7 @@ TEST_CASE("a cage of thousands of islands, each a triangle, cuts a target at all
   const CutTarget cut = cutOf(cage.view(), target.view(), cutting());
   const scenes::Mesh mesh = meshOf(target.view(), cut);
   CHECK(cut.origins.size() > cage.triangleCount());
-  // In each piece that is larger than what may be overlooked, all UVs are of one island.
+  // In each piece that is larger than what may be overlooked, all UVs are of one chart.
   std::size_t torn = 0, large = 0;
   for (std::size_t t = 0; t < cut.origins.size(); ++t) {
     if (length(areaOf(mesh.view(), t)) < 1e-5) continue;
@@ -387,8 +387,8 @@ TEST_CASE("a cage of thousands of islands, each a triangle, cuts a target at all
   CHECK(torn == 0);
 }
 
-TEST_CASE("a triangle that spans hundreds of islands is cut at all of them", "[borders]") {
-  // Each quad of a lumpy box is an island.
+TEST_CASE("a triangle that spans hundreds of charts is cut at all of them", "[borders]") {
+  // Each quad of a lumpy box is a chart.
   const scenes::Mesh whole = scenes::mapped(scenes::box({}, {1, 1, 1}, 12), [](scenes::Point p) {
     const float out = 1.1f + 0.1f * p[0] * p[1] * p[2] - 0.06f * (p[0] + p[1] * p[2]);
     return scenes::Point{out * p[0], out * p[1], out * p[2]};
@@ -416,10 +416,10 @@ TEST_CASE("a triangle that spans hundreds of islands is cut at all of them", "[b
         std::max({length(corner(1) - corner(0)), length(corner(2) - corner(1)), length(corner(0) - corner(2))});
     all += area;
     if (area < kTolerance * scene.diag * longest) continue;  // It may lie wholly within what a border may be off.
-    const auto island = project(scene, (corner(0) + corner(1) + corner(2)) * (1.0 / 3)).triangle->index / 2;
+    const auto chart = project(scene, (corner(0) + corner(1) + corner(2)) * (1.0 / 3)).triangle->index / 2;
     const float* uv = cut.cornerUvs.data() + 6 * t;
     const auto cell = [&](int k) { return static_cast<std::uint32_t>((uv[k] + uv[k + 2] + uv[k + 4]) / 3 * kRow); };
-    if (cell(0) + kRow * cell(1) != island) elsewhere += area;
+    if (cell(0) + kRow * cell(1) != chart) elsewhere += area;
   }
   CHECK(cut.origins.size() > cage.triangleCount());
   CHECK(elsewhere < 1e-3 * all);

@@ -5,7 +5,7 @@
 
 #include "cuts.hpp"
 
-// What holds for a cut whatever is cut: on triangles and their edges, where `borders.test.cpp` looks at places and
+// What holds for every cut mesh, tested on triangles and their edges. `borders.test.cpp` tests points and
 // lengths.
 using namespace cagecast;
 

@@ -24,9 +24,9 @@ TransferResult withCorners(const MeshView& cage, const MeshView& target, float w
 
 struct Found {
   std::size_t triangles = 0;
-  std::size_t unstable = 0;   ///< Those whose patch rounding decides.
-  std::size_t mended = 0;     ///< Those whose corners do not have the UVs of their vertices.
-  std::size_t different = 0;  ///< Stable ones whose UVs are not the reference's.
+  std::size_t unstable = 0;     ///< Those whose patch rounding decides.
+  std::size_t reprojected = 0;  ///< Those whose corners do not have the UVs of their vertices.
+  std::size_t different = 0;    ///< Stable ones whose UVs are not the reference's.
 };
 
 /// Compares the UVs of all corners with the reference's.
@@ -45,13 +45,13 @@ Found compareCorners(const std::string& name, const MeshView& cage, const MeshVi
   found.triangles = target.indices.size() / 3;
   std::string details;
   for (std::size_t t = 0; t < found.triangles; ++t) {
-    bool isMended = false, isOther = false;
+    bool isReprojected = false, isOther = false;
     for (std::size_t i = 6 * t; i < 6 * t + 6; ++i) {
       const float want = expected.cornerUvs[i];
-      isMended = isMended || got[i] != product.projection.uvs[target.indices[i / 2] * std::size_t{2} + i % 2];
+      isReprojected = isReprojected || got[i] != product.projection.uvs[target.indices[i / 2] * std::size_t{2} + i % 2];
       isOther = isOther || !(std::abs(got[i] - want) <= kTolerance * std::max(1.0f, std::abs(want)));
     }
-    found.mended += isMended;
+    found.reprojected += isReprojected;
     if (expected.stableCorners[t] == 0) {
       ++found.unstable;
     } else if (isOther) {
@@ -63,7 +63,7 @@ Found compareCorners(const std::string& name, const MeshView& cage, const MeshVi
   return found;
 }
 
-/// A tube around the y axis whose texture is one island, cut open along one line; u goes around.
+/// A tube around the y axis whose texture is one chart, cut open along one line; u goes around.
 scenes::Mesh tube(float radius, int around, int along) {
   // A square blown up to a circle, so that no sine is needed.
   const auto onCircle = [&](int i) {
@@ -175,16 +175,16 @@ void requireSameCorners(const MeshView& target, const Array<float>& cornerUvs, c
 
 }  // namespace
 
-TEST_CASE("corners get the reference's UVs in cages of six islands", "[seams]") {
-  std::size_t mended = 0;
+TEST_CASE("corners get the reference's UVs in cages of six charts", "[seams]") {
+  std::size_t reprojected = 0;
   for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 15; ++seed) {
     const scenes::Scene scene = scenes::strewn(seed, seed % 3 == 0 ? 800 : 60);
     INFO("CAGECAST_SEED=" << seed);
     const Found found = compareCorners(scene.name, scene.cage.view(), scene.target.view());
     CHECK(found.unstable * 50 <= found.triangles);
-    mended += found.mended;
+    reprojected += found.reprojected;
   }
-  CHECK(mended > 100);
+  CHECK(reprojected > 100);
 }
 
 TEST_CASE("corners get the reference's UVs where everything lies on a grid", "[seams]") {
@@ -201,7 +201,7 @@ TEST_CASE("corners get the reference's UVs on a head, and on all fixed scenes", 
   for (const int cells : {8, 20, 31}) {
     const scenes::Scene scene = scenes::head(cells);
     const Found found = compareCorners(scene.name, scene.cage.view(), scene.target.view());
-    CHECK(found.mended > 10);
+    CHECK(found.reprojected > 10);
     CHECK(found.unstable * 100 <= found.triangles);
   }
   for (const scenes::Scene& scene : scenes::golden())
@@ -212,16 +212,16 @@ TEST_CASE("corners get the reference's UVs where places tie, as on cuts", "[seam
   for (const scenes::Scene& scene : scenes::goldenBorders()) {
     scenes::Mesh pieces = meshOf(scene.target.view(), cutOf(scene.cage.view(), scene.target.view(), cutting()));
     pieces.uvs.clear();  // The target's own are none of ours.
-    CHECK(compareCorners(scene.name + ", cut", scene.cage.view(), pieces.view()).mended > 10);
+    CHECK(compareCorners(scene.name + ", cut", scene.cage.view(), pieces.view()).reprojected > 10);
   }
 }
 
-TEST_CASE("corners get the reference's UVs where an island meets itself along its cut", "[seams]") {
+TEST_CASE("corners get the reference's UVs where a chart meets itself along its cut", "[seams]") {
   const scenes::Mesh ball = scenes::ellipsoid({}, {1, 1.5f, 1}, 14);
   for (const int around : {8, 24, 60}) {
     const scenes::Mesh cage = tube(1.2f, around, around / 2);
     const Found found = compareCorners("tube of " + std::to_string(around), cage.view(), ball.view());
-    CHECK(found.mended > 10);
+    CHECK(found.reprojected > 10);
     CHECK(found.unstable * 50 <= found.triangles);
     CHECK(smearOf(cage.view(), ball.view(), withCorners(cage.view(), ball.view())).vertex > 0.01);
     CHECK(smearOf(cage.view(), ball.view(), withCorners(cage.view(), ball.view())).corner < 0.001);
@@ -238,14 +238,14 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
   SECTION("coarser than the target") {
     compareCorners("coarse", scenes::box({}, {1.5f, 1.4f, 1.6f}, 1).view(), ball.view());
   }
-  SECTION("each triangle an island") {
+  SECTION("each triangle a chart") {
     scenes::Mesh apart;
     for (const std::uint32_t index : strewn.cage.indices) {
       const auto number = static_cast<float>(apart.vertexCount());
       apart.addVertex(strewn.cage.vertex(index), number / 1000, number / 500);
     }
     for (std::uint32_t i = 0; i < apart.vertexCount(); i += 3) apart.addTriangle(i, i + 1, i + 2);
-    CHECK(compareCorners("apart", apart.view(), ball.view()).mended > 50);
+    CHECK(compareCorners("apart", apart.view(), ball.view()).reprojected > 50);
     compareCorners("apart", apart.view(), strewn.target.view());
   }
   SECTION("its triangles stacked on each other: edges of many triangles") {
@@ -260,7 +260,7 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
     for (int copy = 1; copy < 200; ++copy)
       stacked.indices.insert(stacked.indices.end(), once.indices.begin(), once.indices.end());
     const scenes::Mesh fine = scenes::ellipsoid({0.02f, -0.03f, 0.01f}, {1, 1.5f, 0.9f}, 40);
-    CHECK(compareCorners("once", once.view(), fine.view()).mended > 100);
+    CHECK(compareCorners("once", once.view(), fine.view()).reprojected > 100);
     CHECK(copied(withCorners(stacked.view(), fine.view()).projection.cornerUvs) ==
           copied(withCorners(once.view(), fine.view()).projection.cornerUvs));
   }
@@ -285,7 +285,7 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
       if (t % 3 == 0) add(t, 0);
       if (t % 5 == 0) add(t, 5.0f + static_cast<float>(t));
     }
-    CHECK(compareCorners("mixed", mixed.view(), ball.view()).mended > 50);
+    CHECK(compareCorners("mixed", mixed.view(), ball.view()).reprojected > 50);
   }
   SECTION("vertices split, or equal up to the sign of zero, hold together all the same") {
     scenes::Mesh split;
@@ -311,7 +311,7 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
   SECTION("all UVs the same") {
     scenes::Mesh flat = strewn.cage;
     std::fill(flat.uvs.begin(), flat.uvs.end(), 0.5f);
-    CHECK(compareCorners("flat", flat.view(), ball.view()).mended == 0);
+    CHECK(compareCorners("flat", flat.view(), ball.view()).reprojected == 0);
   }
   SECTION("far from the origin") {
     const auto move = [](scenes::Point p) { return scenes::Point{p[0] + 512, p[1] - 1024, p[2] + 256}; };
@@ -324,7 +324,7 @@ TEST_CASE("corners get the reference's UVs when vertices are welded within a tol
   scenes::Random random(firstSeed());
   for (float& x : scene.target.positions) x += random.between(-1e-6f, 1e-6f);
   INFO("CAGECAST_SEED=" << firstSeed());
-  CHECK(compareCorners(scene.name, scene.cage.view(), scene.target.view(), 1e-4f).mended > 10);
+  CHECK(compareCorners(scene.name, scene.cage.view(), scene.target.view(), 1e-4f).reprojected > 10);
 }
 
 TEST_CASE("corner UVs do not depend on the order of the target's vertices and triangles, nor on the unit", "[seams]") {
@@ -456,7 +456,7 @@ TEST_CASE("on real models corners get the reference's UVs, and at most a hundred
     REQUIRE(splitVertices(target.indices, result.projection.cornerUvs, vertexCount, split).ok());
     requireSameCorners(target.view(), result.projection.cornerUvs, split);
     std::cout << name << ": " << found.different << " differences at " << found.triangles << " triangles, "
-              << found.unstable << " unstable, " << found.mended << " mended; smeared: " << 100 * smear.vertex
+              << found.unstable << " unstable, " << found.reprojected << " reprojected; smeared: " << 100 * smear.vertex
               << " % by vertex, " << 100 * smear.corner << " % by corner; " << vertexCount << " vertices become "
               << split.sources.size() << '\n';
     INFO(name);

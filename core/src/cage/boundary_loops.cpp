@@ -8,8 +8,8 @@
 namespace cagecast {
 namespace {
 
-/// A place within this share of the diagonal of an open edge is on it, so that rounding does not decide.
-constexpr double kOnRim = 1e-6;
+/// Points this close to an open edge, as a share of the diagonal, are on it, so that rounding does not decide.
+constexpr double kOnLoop = 1e-6;
 
 /// A triangle's corners, its edges as unit vectors and their lengths, and its outward normal.
 struct Frame {
@@ -29,10 +29,10 @@ struct Frame {
   [[nodiscard]] Vec3 back(std::uint32_t k) const noexcept { return -1 * edges[(k + 2) % 3]; }
 };
 
-/// How far places are from another in a direction: the least of them.
-double leastAlong(Vec3 direction, Vec3 from, std::span<const Vec3> places) {
+/// The least distance of some points from another in a direction.
+double leastAlong(Vec3 direction, Vec3 from, std::span<const Vec3> points) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Vec3 p : places) least = std::min(least, dot(p - from, direction));
+  for (const Vec3 p : points) least = std::min(least, dot(p - from, direction));
   return least;
 }
 
@@ -50,64 +50,63 @@ double BoundaryLoops::Box::diagonal() const noexcept {
   return length(Vec3{high[0] - low[0], high[1] - low[1], high[2] - low[2]});
 }
 
-std::uint32_t BoundaryLoops::sideAt(const CageTriangle& triangle, std::uint32_t slot, Vec3 q,
-                                    double diagonal) const noexcept {
-  if (!touches(slot)) return kNone;
-  const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
+std::uint32_t BoundaryLoops::elementAt(const CageTriangle& triangle, std::uint32_t cageTriangle, Vec3 q,
+                                       double diagonal) const noexcept {
+  if (!touches(cageTriangle)) return kNone;
+  const std::uint32_t* loops = loopOf + std::size_t{6} * cageTriangle;
   const Vec3 corners[3] = {Vec3::from(triangle.a), Vec3::from(triangle.b), Vec3::from(triangle.c)};
-  const double near = kOnRim * diagonal * kOnRim * diagonal;  // All squared: no roots.
+  const double near = kOnLoop * diagonal * kOnLoop * diagonal;  // Squared, as all distances here.
   for (std::uint32_t k = 0; k < 3; ++k) {
     const Vec3 edge = corners[(k + 1) % 3] - corners[k];
-    if (sides[k] == kNone) continue;
-    const Vec3 beside = cross(edge, q - corners[k]);
-    if (dot(beside, beside) <= near * dot(edge, edge)) return k;
+    if (loops[k] == kNone) continue;
+    const Vec3 normal = cross(edge, q - corners[k]);
+    if (dot(normal, normal) <= near * dot(edge, edge)) return k;
   }
   for (std::uint32_t k = 0; k < 3; ++k) {
     const Vec3 offset = q - corners[k];
-    if (sides[3 + k] != kNone && dot(offset, offset) <= near) return 3 + k;
+    if (loops[3 + k] != kNone && dot(offset, offset) <= near) return 3 + k;
   }
   return kNone;
 }
 
-bool BoundaryLoops::areOff(const CageTriangle& triangle, std::uint32_t slot, std::span<const Vec3> corners,
-                           double diagonal) const noexcept {
-  if (!touches(slot)) return true;
-  const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
+bool BoundaryLoops::areSurelyOff(const CageTriangle& triangle, std::uint32_t cageTriangle, std::span<const Vec3> hull,
+                                 double diagonal) const noexcept {
+  if (!touches(cageTriangle)) return true;
+  const std::uint32_t* loops = loopOf + std::size_t{6} * cageTriangle;
   const Frame frame(triangle);
   const double doubleArea = dot(frame.corners[2] - frame.corners[0], frame.inward(0)) * frame.lengths[0];
-  const double near = 2 * kOnRim * diagonal;
+  const double near = 2 * kOnLoop * diagonal;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const Vec3 corner = frame.corners[k];
-    // On the inner side of an edge no place is nearest to it but for its ends,
-    if (sides[k] != kNone && leastAlong(frame.inward(k), corner, corners) < near) return false;
-    if (sides[3 + k] == kNone) continue;
-    // and none is to a corner that is on the way to another. So far from there the two edges are far enough from each
-    // other.
+    // A point on the inner side of an edge is not closest to the edge, except perhaps to its ends,
+    if (loops[k] != kNone && leastAlong(frame.inward(k), corner, hull) < near) return false;
+    if (loops[3 + k] == kNone) continue;
+    // and it is not closest to a corner if it is ahead of it along one of the two edges there. So far ahead, the edges
+    // are far enough from each other for rounding not to matter.
     const double enough = near * frame.lengths[k] * frame.lengths[(k + 2) % 3] / doubleArea;
     if (doubleArea < 2 * enough * frame.lengths[(k + 1) % 3]) return false;
-    if (leastAlong(frame.edges[k], corner, corners) < enough && leastAlong(frame.back(k), corner, corners) < enough)
+    if (leastAlong(frame.edges[k], corner, hull) < enough && leastAlong(frame.back(k), corner, hull) < enough)
       return false;
   }
   return true;
 }
 
-bool BoundaryLoops::areOn(const CageTriangle& triangle, std::uint32_t slot,
-                          std::span<const Vec3> corners) const noexcept {
-  if (!touches(slot)) return false;
-  const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
+bool BoundaryLoops::areSurelyOn(const CageTriangle& triangle, std::uint32_t cageTriangle,
+                                std::span<const Vec3> hull) const noexcept {
+  if (!touches(cageTriangle)) return false;
+  const std::uint32_t* loops = loopOf + std::size_t{6} * cageTriangle;
   const Frame frame(triangle);
   for (std::uint32_t k = 0; k < 3; ++k) {
     const std::uint32_t next = (k + 1) % 3;
     const Vec3 start = frame.corners[k], end = frame.corners[next];
-    const auto areBehind = [corners](Vec3 direction, Vec3 from) {
-      return leastAlong(-1 * direction, from, corners) >= 0;
-    };
+    const auto areBehind = [hull](Vec3 direction, Vec3 from) { return leastAlong(-1 * direction, from, hull) >= 0; };
     const bool areBehindBack = areBehind(frame.back(k), start);
-    // A corner is nearest to what lies behind it along both its edges,
-    if (sides[3 + k] != kNone && areBehindBack && areBehind(frame.edges[k], start)) return true;
-    // and an edge to what lies beyond it, at either end not past that, or behind the other edge there.
-    if (sides[k] != kNone && areBehind(frame.inward(k), start) &&
-        (areBehindBack || leastAlong(frame.edges[k], start, corners) >= 0) &&
+    // Points behind a corner along both of its edges are closest to the corner,
+    if (loops[3 + k] != kNone && areBehindBack && areBehind(frame.edges[k], start)) return true;
+    // and points beyond an edge are closest to the edge if, at either end, they are not past that end, or are behind
+    // the other edge there.
+    if (loops[k] != kNone && areBehind(frame.inward(k), start) &&
+        (areBehindBack || leastAlong(frame.edges[k], start, hull) >= 0) &&
         (areBehind(frame.edges[next], end) || areBehind(frame.edges[k], end))) {
       return true;
     }
@@ -115,53 +114,51 @@ bool BoundaryLoops::areOn(const CageTriangle& triangle, std::uint32_t slot,
   return false;
 }
 
-bool findBoundaryLoops(const Cage& cage, const HalfEdges& edges, Arena& arena, BoundaryLoops& out) noexcept {
-  const std::uint32_t sideCount = 3 * cage.count;
-  const std::uint32_t vertexCount = edges.vertexCount;
-  const std::uint32_t* starts = edges.starts;
-  auto* ofSides = arena.allocate<std::uint32_t>(std::size_t{2} * sideCount);
-  auto* boxes = arena.allocate<BoundaryLoops::Box>(std::min(sideCount, vertexCount));
-  const Arena::Mark mark = arena.mark();
-  auto* open = arena.allocate<std::uint32_t>(sideCount);  // Sides that no other triangle has.
+bool findBoundaryLoops(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, BoundaryLoops& out) noexcept {
+  const std::uint32_t halfEdgeCount = 3 * cage.count;
+  const std::uint32_t vertexCount = halfEdges.vertexCount;
+  const std::uint32_t* origins = halfEdges.origins;
+  auto* loopOf = arena.allocate<std::uint32_t>(std::size_t{2} * halfEdgeCount);
+  auto* boxes = arena.allocate<BoundaryLoops::Box>(std::min(halfEdgeCount, vertexCount));
+  const Arena::Scope scope(arena);
+  auto* open = arena.allocate<std::uint32_t>(halfEdgeCount);
   auto* parents = arena.allocate<std::uint32_t>(vertexCount);
   auto* loopAt = arena.allocate<std::uint32_t>(vertexCount);
   if (arena.failed()) return false;
 
-  const auto isOpen = [&edges](std::uint32_t side) { return edges.next[side] == side; };
-  const auto endOf = [&edges](std::uint32_t side) { return edges.starts[HalfEdges::after(side)]; };
+  const auto isOpen = [&](std::uint32_t halfEdge) { return halfEdges.nextOfEdge[halfEdge] == halfEdge; };
+  const auto endOf = [&](std::uint32_t halfEdge) { return origins[HalfEdges::after(halfEdge)]; };
   std::uint32_t openCount = 0;
-  for (std::uint32_t side = 0; side < sideCount; ++side) {
-    open[openCount] = side;
-    openCount += isOpen(side);
+  for (std::uint32_t halfEdge = 0; halfEdge < halfEdgeCount; ++halfEdge) {
+    if (isOpen(halfEdge)) open[openCount++] = halfEdge;
   }
   UnionFind sets(parents, vertexCount);
-  for (std::uint32_t i = 0; i < openCount; ++i) sets.join(starts[open[i]], endOf(open[i]));
+  for (std::uint32_t i = 0; i < openCount; ++i) sets.join(origins[open[i]], endOf(open[i]));
   std::fill(loopAt, loopAt + vertexCount, BoundaryLoops::kNone);
   out.count = 0;
   for (std::uint32_t i = 0; i < openCount; ++i) {
-    const std::uint32_t side = open[i];
-    std::uint32_t& loop = loopAt[sets.find(starts[side])];
+    const std::uint32_t halfEdge = open[i];
+    std::uint32_t& loop = loopAt[sets.find(origins[halfEdge])];
     if (loop == BoundaryLoops::kNone) {
       boxes[out.count] = {};
       loop = out.count++;
     }
-    loopAt[starts[side]] = loopAt[endOf(side)] = loop;
-    const CageTriangle& t = cage.triangles[side / 3];
+    loopAt[origins[halfEdge]] = loopAt[endOf(halfEdge)] = loop;
+    const CageTriangle& t = cage.triangles[halfEdge / 3];
     const float* corners[3] = {t.a, t.b, t.c};
-    boxes[loop].grow(Vec3::from(corners[side % 3]));
-    boxes[loop].grow(Vec3::from(corners[(side % 3 + 1) % 3]));
+    boxes[loop].grow(Vec3::from(corners[halfEdge % 3]));
+    boxes[loop].grow(Vec3::from(corners[(halfEdge % 3 + 1) % 3]));
   }
   for (std::uint32_t t = 0; t < cage.count; ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t side = 3 * t + k;
-      const std::uint32_t loop = loopAt[starts[side]];
-      ofSides[6 * std::size_t{t} + k] = isOpen(side) ? loop : BoundaryLoops::kNone;
-      ofSides[6 * std::size_t{t} + 3 + k] = loop;
+      const std::uint32_t halfEdge = 3 * t + k;
+      const std::uint32_t loop = loopAt[origins[halfEdge]];
+      loopOf[6 * std::size_t{t} + k] = isOpen(halfEdge) ? loop : BoundaryLoops::kNone;
+      loopOf[6 * std::size_t{t} + 3 + k] = loop;
     }
   }
   out.boxes = boxes;
-  out.ofSides = ofSides;
-  arena.rewind(mark);
+  out.loopOf = loopOf;
   return true;
 }
 

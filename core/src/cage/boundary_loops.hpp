@@ -11,12 +11,12 @@
 
 namespace cagecast {
 
-/// The loops of the cage: the connected components of its open edges, those of exactly one triangle. Vertices with
-/// equal positions are one, so that a seam of the texture is no loop.
+/// The boundary loops of the cage: the connected components of its open edges, which belong to exactly one triangle.
+/// Vertices with equal positions are one, so a seam of the texture is no loop.
 struct BoundaryLoops {
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
-  /// A box around a loop, scaled.
+  /// A bounding box, scaled.
   struct Box {
     double low[3] = {kFar, kFar, kFar};
     double high[3] = {-kFar, -kFar, -kFar};
@@ -28,45 +28,47 @@ struct BoundaryLoops {
   };
 
   std::uint32_t count = 0;
-  const Box* boxes = nullptr;
-  /// 6 per triangle of the cage: the loop that its edges ab, bc, ca lie on, and the one that its corners a, b, c do.
-  const std::uint32_t* ofSides = nullptr;
+  const Box* boxes = nullptr;  ///< 1 per loop.
+  /// 6 per cage triangle: the loop that each of its edges ab, bc, ca lies on, and each of its corners a, b, c; or
+  /// `kNone`.
+  const std::uint32_t* loopOf = nullptr;
 
-  /// The side of its triangle that a place on a loop lies on, or `kNone`: an edge 0, 1, 2 or else a corner 3, 4, 5.
-  /// @param slot  The triangle of the place.
-  /// @param q     Where it is: see `positionOf`.
-  [[nodiscard]] std::uint32_t sideAt(const CageTriangle& triangle, std::uint32_t slot, Vec3 q,
-                                     double diagonal) const noexcept;
+  /// The part of a triangle's boundary that lies on a loop and contains a point: an edge 0, 1, 2 or else a corner
+  /// 3, 4, 5; `kNone` if the point is on no loop.
+  /// @param q         The point, on the triangle: see `positionOf`.
+  /// @param diagonal  Of the target, scaled.
+  [[nodiscard]] std::uint32_t elementAt(const CageTriangle& triangle, std::uint32_t cageTriangle, Vec3 q,
+                                        double diagonal) const noexcept;
 
-  /// The loop that a place lies on, or `kNone`.
-  [[nodiscard]] std::uint32_t at(const CageTriangle& triangle, std::uint32_t slot, Vec3 q,
+  /// The loop that a point on a triangle lies on, or `kNone`.
+  [[nodiscard]] std::uint32_t at(const CageTriangle& triangle, std::uint32_t cageTriangle, Vec3 q,
                                  double diagonal) const noexcept {
-    const std::uint32_t side = sideAt(triangle, slot, q, diagonal);
-    return side == kNone ? kNone : ofSides[std::size_t{6} * slot + side];
+    const std::uint32_t element = elementAt(triangle, cageTriangle, q, diagonal);
+    return element == kNone ? kNone : loopOf[std::size_t{6} * cageTriangle + element];
   }
 
-  /// Whether, for sure, no place between some corners of which this triangle is the nearest is nearest to a loop of it.
-  [[nodiscard]] bool areOff(const CageTriangle& triangle, std::uint32_t slot, std::span<const Vec3> corners,
-                            double diagonal) const noexcept;
-  /// Whether, for sure, all of them are. Not all that are are known.
-  [[nodiscard]] bool areOn(const CageTriangle& triangle, std::uint32_t slot,
-                           std::span<const Vec3> corners) const noexcept;
+  /// Whether surely no point of a convex hull has its closest point, on this triangle, on a loop.
+  [[nodiscard]] bool areSurelyOff(const CageTriangle& triangle, std::uint32_t cageTriangle, std::span<const Vec3> hull,
+                                  double diagonal) const noexcept;
+  /// Whether surely all points of a convex hull do. A sufficient condition.
+  [[nodiscard]] bool areSurelyOn(const CageTriangle& triangle, std::uint32_t cageTriangle,
+                                 std::span<const Vec3> hull) const noexcept;
 
-  /// Whether a triangle of the cage comes to a loop at all.
-  [[nodiscard]] bool touches(std::uint32_t slot) const noexcept {
-    const std::uint32_t* sides = ofSides + std::size_t{6} * slot;
-    // A loop at an edge is one at its corners.
-    return (sides[3] & sides[4] & sides[5]) != kNone;
+  /// Whether any edge or corner of a triangle lies on a loop.
+  [[nodiscard]] bool touches(std::uint32_t cageTriangle) const noexcept {
+    const std::uint32_t* loops = loopOf + std::size_t{6} * cageTriangle;
+    // The ends of an edge on a loop are corners on it.
+    return (loops[3] & loops[4] & loops[5]) != kNone;
   }
 };
 
-/// Where a place is.
+/// The position of a closest point.
 inline Vec3 positionOf(const CageTriangle& t, const ClosestPoint& place) {
   const Vec3 a = Vec3::from(t.a);
   return a + place.v * (Vec3::from(t.b) - a) + place.w * (Vec3::from(t.c) - a);
 }
 
 /// @return false if memory ran out.
-bool findBoundaryLoops(const Cage& cage, const HalfEdges& edges, Arena& arena, BoundaryLoops& out) noexcept;
+bool findBoundaryLoops(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, BoundaryLoops& out) noexcept;
 
 }  // namespace cagecast

@@ -40,7 +40,7 @@ double stretchOf(const CageTriangle& triangle) {
 /// @param fans   For the edges of three or more triangles.
 void linkHalfEdges(const HalfEdges& halfEdges, const UvBits* uvs, std::uint32_t count, HashIndex& fans,
                    std::uint32_t* nextHalfEdge) {
-  const std::uint32_t* origins = halfEdges.starts;
+  const std::uint32_t* origins = halfEdges.origins;
   const auto isSameEdge = [=](std::uint32_t halfEdge, std::uint32_t other) {
     const std::uint32_t end = HalfEdges::after(halfEdge);
     std::uint32_t from = other, to = HalfEdges::after(other);
@@ -52,9 +52,9 @@ void linkHalfEdges(const HalfEdges& halfEdges, const UvBits* uvs, std::uint32_t 
     return HashIndex::mix(HashIndex::mix(0, origins[halfEdge]), uvs[halfEdge]);
   };
   for (std::uint32_t halfEdge = 0; halfEdge < count; ++halfEdge) {
-    std::uint32_t other = halfEdges.next[halfEdge];
+    std::uint32_t other = halfEdges.nextOfEdge[halfEdge];
     nextHalfEdge[halfEdge] = halfEdge;
-    if (halfEdges.next[other] == halfEdge) {
+    if (halfEdges.nextOfEdge[other] == halfEdge) {
       nextHalfEdge[halfEdge] = isSameEdge(halfEdge, other) ? other : halfEdge;
       continue;
     }
@@ -73,7 +73,7 @@ bool findUvCharts(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, Uv
   out.neighbors = arena.allocate<ChartNeighbors>(cage.count);
   out.charts = arena.allocate<std::uint32_t>(cage.count);
   out.stretch = arena.allocate<double>(cage.count);
-  const Arena::Mark mark = arena.mark();
+  const Arena::Scope scope(arena);
   auto* uvs = arena.allocate<UvBits>(halfEdgeCount);
   HashIndex fans(halfEdgeCount, arena);
   if (arena.failed()) return false;
@@ -102,7 +102,6 @@ bool findUvCharts(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, Uv
     sets.join({t, next[0], next[1], next[2]});
   }
   sets.flatten(cage.count);
-  arena.rewind(mark);
   return true;
 }
 

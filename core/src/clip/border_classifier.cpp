@@ -94,7 +94,7 @@ BorderSample BorderClassifier::classify(const Candidate& nearest) const noexcept
   const Vec3 closest = positionOf(t, place);
   const std::uint32_t region = charts_ != nullptr
                                    ? charts_->charts[cageTriangle]
-                                   : cage_.loops.sideAt(t, cageTriangle, closest, diagonal_) != BoundaryLoops::kNone;
+                                   : cage_.loops.elementAt(t, cageTriangle, closest, diagonal_) != BoundaryLoops::kNone;
   return {region, cageTriangle, closest, uvAt(t, place)};
 }
 
@@ -146,8 +146,8 @@ bool BorderClassifier::isSurelyIn(std::uint32_t region, NearbyTriangles nearby, 
   return std::all_of(begin, begin + nearby.count, [&](std::uint32_t cageTriangle) {
     if (charts_ != nullptr) return charts_->charts[cageTriangle] == region;
     const CageTriangle& t = cage_.cage.triangles[cageTriangle];
-    return region == 0 ? cage_.loops.areOff(t, cageTriangle, hull, diagonal_)
-                       : cage_.loops.areOn(t, cageTriangle, hull);
+    return region == 0 ? cage_.loops.areSurelyOff(t, cageTriangle, hull, diagonal_)
+                       : cage_.loops.areSurelyOn(t, cageTriangle, hull);
   });
 }
 

@@ -4,10 +4,11 @@
 #include <span>
 
 #include "base/list.hpp"
+#include "base/units.hpp"
 #include "cage/boundary_loops.hpp"
 #include "cage/uv_charts.hpp"
 #include "clip/boundary_lines.hpp"
-#include "steps/steps.hpp"
+#include "search/kd_tree.hpp"
 
 /// docs/method.md, step 10: which region of the target a point is in. Borders run between regions.
 namespace cagecast {

@@ -5,56 +5,69 @@
 
 #include "clip/clip_target.hpp"
 #include "input/validate.hpp"
+#include "steps/classify.hpp"
+#include "steps/scene.hpp"
 
 namespace cagecast {
 namespace {
 
 constexpr Status kOutOfMemory{Code::outOfMemory};
 
-/// Which vertices can be on a triangle that is painted, or on an edge of one.
-bool findParts(const DecidedTarget& decided, const Points& points, Arena& arena, std::uint8_t* takesPart) {
-  auto* isSeen = arena.allocate<bool>(points.count);
+/// Finds the vertices that may be on a painted triangle: their segment is not culled, and one of their triangles is not
+/// occluded at all three corners.
+/// @param[out] takesPart  1 per vertex.
+/// @return false if memory ran out.
+bool findPaintable(const DecidedTarget& decided, const Points& points, Arena& arena, std::uint8_t* takesPart) {
+  auto* isVisible = arena.allocate<bool>(points.count);
   if (arena.failed()) return false;
-  std::fill(isSeen, isSeen + points.count, false);
+  std::fill_n(isVisible, points.count, false);
   for (std::size_t i = 0; i < decided.mesh.indices.size(); i += 3) {
     const auto isOccluded = [&](std::uint32_t v) { return decided.zones[v] == Zone::occluded; };
     const auto corners = decided.mesh.indices.subspan(i, 3);
     if (std::all_of(corners.begin(), corners.end(), isOccluded)) continue;
-    for (const std::uint32_t v : corners) isSeen[points.ofVertex[v]] = true;
+    for (const std::uint32_t v : corners) isVisible[points.ofVertex[v]] = true;
   }
   for (std::size_t v = 0; v < decided.mesh.positions.size() / 3; ++v) {
-    const bool passes = decided.culledBy[decided.segments[v]] == CulledBy::none;
-    takesPart[v] = passes && isSeen[points.ofVertex[v]];
+    const bool isKept = decided.culledBy[decided.segments[v]] == CulledBy::none;
+    takesPart[v] = isKept && isVisible[points.ofVertex[v]];
   }
   return true;
 }
 
-/// Finds what is needed to cut the target, and cuts it.
-Status cutAlone(const MeshView& cageMesh, const DecidedTarget& decided, const TransferOptions& options, Arena& arena,
-                ClippedMesh& out) {
-  const MeshView& target = decided.mesh;
-  Units units;
-  if (const Status status = checkMeshes(cageMesh, target, units); !status.ok()) return status;
-  Cage cage;
-  CageTree cageTree;
-  HalfEdges edges;
-  BoundaryLoops loops;
+/// Cuts the triangles of the target, without a transfer.
+Status clip(const MeshView& cage, const DecidedTarget& decided, const TransferOptions& options, Arena& arena,
+            ClippedMesh& out) {
+  const std::size_t vertexCount = decided.mesh.positions.size() / 3;
+  Scene scene(cage, decided.mesh, options, arena);
+  if (const Status status = scene.load(); !status.ok()) return status;
+  auto* takesPart = arena.allocate<std::uint8_t>(vertexCount);
+  if (arena.failed() || !findPaintable(decided, scene.points, arena, takesPart)) return kOutOfMemory;
+  // A target whose vertices are all at one position has nothing to cut, and no diagonal to search by.
+  if (options.steps.projection != ProjectionMode::nearestPoint || !(scene.units.diagonal > 0))
+    std::fill_n(takesPart, vertexCount, std::uint8_t{0});
   UvCharts charts;
-  Points points;
-  auto* takesPart = arena.allocate<std::uint8_t>(target.positions.size() / 3);
-  if (arena.failed() || !gatherCage(cageMesh, units, arena, cage)) return kOutOfMemory;
-  if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
-  if (!weld(target, units, options.weldTolerance, arena, points) || !findParts(decided, points, arena, takesPart))
-    return kOutOfMemory;
-  // A target in one place has nothing to cut, nor a length to search by.
-  if (options.steps.projection != ProjectionMode::nearestPoint || !(units.diagonal > 0))
-    std::fill(takesPart, takesPart + target.positions.size() / 3, std::uint8_t{0});
+  const bool hasSeams = options.seams == Seams::corner;
   const bool isDone =
-      buildCageTree(cage, units, arena, cageTree) && findHalfEdges(cageMesh, cage, arena, edges) &&
-      findBoundaryLoops(cage, edges, arena, loops) && findUvCharts(cage, edges, arena, charts) &&
-      clipTarget({cageMesh, cage, cageTree, loops, options.seams == Seams::corner ? &charts : nullptr, units}, target,
-                 takesPart, arena, out);
+      buildCageTree(scene.cage, scene.units, arena, scene.cageTree) &&
+      findHalfEdges(cage, scene.cage, arena, scene.halfEdges) &&
+      findBoundaryLoops(scene.cage, scene.halfEdges, arena, scene.loops) &&
+      findUvCharts(scene.cage, scene.halfEdges, arena, charts) &&
+      clipTarget({cage, scene.cage, scene.cageTree, scene.loops, hasSeams ? &charts : nullptr, scene.units},
+                 decided.mesh, takesPart, arena, out);
   return isDone ? Status{} : kOutOfMemory;
+}
+
+/// Brings the zones of the vertices and triangles in line with the cuts, along which a transfer alone would leave it to
+/// rounding: what lies beyond a boundary loop is uncovered, even if the hole is assigned to other parts, and what lies
+/// on the border is not.
+void applyCuts(const ClippedMesh& cut, const TransferOptions& options, Zones& zones) {
+  for (std::size_t v = 0; v < cut.loopSides.size(); ++v) {
+    Zone& zone = zones.zones[v];
+    if (cut.loopSides[v] == LoopSide::beyond && zone == Zone::cosmetic) zone = Zone::uncovered;
+    if (cut.loopSides[v] == LoopSide::onBorder && zone == Zone::uncovered) zone = Zone::cosmetic;
+  }
+  markCosmetic(zones.zones, cut.indices, options, zones.cosmeticTriangles);
+  for (std::size_t t = 0; t < cut.areBeyond.size(); ++t) zones.cosmeticTriangles[t] &= cut.areBeyond[t] == 0;
 }
 
 }  // namespace
@@ -73,7 +86,7 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   Arena* const arena = workspace.restart();
   if (arena == nullptr) return kOutOfMemory;
   ClippedMesh cut;
-  if (const Status status = cutAlone(cage, decided, options, *arena, cut); !status.ok()) return status;
+  if (const Status status = clip(cage, decided, options, *arena, cut); !status.ok()) return status;
   const std::size_t count = cut.loopSides.size();
   Array<std::uint32_t> groups, segments;
   Array<LockEntry> locks;
@@ -87,7 +100,8 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
     if (!groups.empty()) groups[v] = target.groups[source];
     segments[v] = decided.segments[source];
   }
-  std::fill(stats.begin(), stats.end(), SegmentStats{});  // Locks have the last word.
+  // Every segment gets a lock, so the statistics do not matter.
+  std::fill(stats.begin(), stats.end(), SegmentStats{});
   for (std::uint32_t s = 0; s < segmentCount; ++s)
     locks[s] = {s, decided.culledBy[s] != CulledBy::none ? Lock::exclude : Lock::keep};
 
@@ -101,15 +115,7 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   Zones zones;
   const ProjectionView view{again.zones, segments, stats, again.recovery, {}};
   if (const Status status = classify(view, cut.indices, locked, zones); !status.ok()) return status;
-  // What lies beyond a loop is uncovered, however the hole is explained; what lies on the border is not.
-  for (std::size_t v = 0; v < count; ++v) {
-    Zone& zone = zones.zones[v];
-    if (cut.loopSides[v] == LoopSide::beyond && zone == Zone::cosmetic) zone = Zone::uncovered;
-    if (cut.loopSides[v] == LoopSide::onBorder && zone == Zone::uncovered) zone = Zone::cosmetic;
-  }
-  markCosmetic(zones.zones, cut.indices, options, zones.cosmeticTriangles);
-  for (std::size_t t = 0; t < cut.areBeyond.size(); ++t) zones.cosmeticTriangles[t] &= cut.areBeyond[t] == 0;
-
+  applyCuts(cut, options, zones);
   out = {
       std::move(cut.sources), std::move(cut.weights),     std::move(cut.indices), std::move(cut.origins),
       std::move(again.uvs),   std::move(again.cornerUvs), std::move(zones.zones), std::move(zones.cosmeticTriangles)};

@@ -25,7 +25,7 @@ bool joinEqualPositions(std::span<const float> positions, Arena& arena, std::uin
     const float* p = positions.data() + std::size_t{3} * v;
     return Position{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // −0 becomes 0.
   };
-  const Arena::Mark mark = arena.mark();
+  const Arena::Scope scope(arena);
   HashIndex index(count, arena);
   auto* first = arena.allocate<std::uint32_t>(count);
   if (arena.failed()) return false;
@@ -36,7 +36,6 @@ bool joinEqualPositions(std::span<const float> positions, Arena& arena, std::uin
     takesPart[first[v]] |= takesPart[v];
   }
   for (std::uint32_t v = 0; v < count; ++v) takesPart[v] = takesPart[first[v]];
-  arena.rewind(mark);
   return true;
 }
 
@@ -126,7 +125,7 @@ bool mergePass(const MeshView& target, const ClippedTriangles& pass, ClippedMesh
 /// @return false if memory ran out.
 bool clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
                     ClippedMesh& out) noexcept {
-  const Arena::Mark mark = arena.mark();
+  const Arena::Scope scope(arena);
   BorderClassifier classifier(cage, BorderKind::loops, arena);
   ClippedTriangles pass;
   const ClipInput input{target, static_cast<double>(cage.units.scale), cage.units.diagonal, takesPart};
@@ -150,7 +149,6 @@ bool clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::uin
   for (std::size_t v = 0; v < out.loopSides.size(); ++v) {
     if (pass.onBorder[v] != 0) out.loopSides[v] = LoopSide::onBorder;
   }
-  arena.rewind(mark);
   return true;
 }
 
@@ -161,7 +159,7 @@ bool clipAlongSeams(const ClipCage& cage, const MeshView& target, const std::uin
                     ClippedMesh& mesh) noexcept {
   const std::size_t targetCount = target.positions.size() / 3;
   const std::size_t count = mesh.loopSides.size();
-  const Arena::Mark mark = arena.mark();
+  const Arena::Scope scope(arena);
   auto* mayBePainted = arena.allocate<std::uint8_t>(count);
   BorderClassifier classifier(cage, BorderKind::seams, arena);
   if (arena.failed()) return false;
@@ -190,7 +188,6 @@ bool clipAlongSeams(const ClipCage& cage, const MeshView& target, const std::uin
   if (!mergePass(target, pass, mesh)) return false;
   mesh.areBeyond = std::move(areBeyond);
   mesh.loopSides = std::move(sides);
-  arena.rewind(mark);
   return true;
 }
 

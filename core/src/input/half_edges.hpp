@@ -8,16 +8,18 @@
 namespace cagecast {
 
 /// Which triangles of the cage share an edge. Vertices with equal positions are one.
-/// Side 3 · t + k goes from corner k of triangle t to the next one.
+/// Half-edge 3 · t + k goes from corner k of triangle t to the next corner.
 struct HalfEdges {
   std::uint32_t vertexCount = 0;  ///< Of the mesh.
-  const std::uint32_t* starts =
-      nullptr;  ///< 1 per side: the vertex that it begins at, by the first in the mesh with its position.
-  const std::uint32_t* next =
-      nullptr;  ///< 1 per side: another side on the same edge; all sides of an edge form a ring.
+  /// 1 per half-edge: its origin, as the first vertex of the mesh with that position.
+  const std::uint32_t* origins = nullptr;
+  /// 1 per half-edge: the next one of the same edge. Those of an edge form a ring; alone it points to itself.
+  const std::uint32_t* nextOfEdge = nullptr;
 
-  /// The side that begins where this one ends.
-  static std::uint32_t after(std::uint32_t side) noexcept { return side % 3 == 2 ? side - 2 : side + 1; }
+  /// The half-edge that begins where this one ends.
+  static std::uint32_t after(std::uint32_t halfEdge) noexcept {
+    return halfEdge % 3 == 2 ? halfEdge - 2 : halfEdge + 1;
+  }
 };
 
 /// @param mesh  The cage as it was given: positions are compared as they are there, not scaled.

@@ -9,28 +9,29 @@
 
 namespace cagecast {
 
-ChartFlood::ChartFlood(const Cage& cage, const CageTree& tree, const UvCharts& charts, double diagonal,
-                       Arena& arena) noexcept
-    : cage_(cage),
-      tree_(tree),
+ChartFlood::ChartFlood(const Scene& scene, const UvCharts& charts) noexcept
+    : cage_(scene.cage),
+      tree_(scene.cageTree),
       charts_(charts),
-      fixedSlack_(fixedSlack(slackOf(tree, diagonal), kRelativeSlack)),
-      triangles_(arena.allocate<FlatTriangles<1>>(cage.count)),
-      patches_(arena.allocate<ChartPatch>(kMaxPatches)),
-      groups_(arena.allocate<Group>(kMaxGroups)),
-      candidates_(arena.allocate<PatchCandidate>(kCandidateRoom + std::size_t{3} * cage.count)),
-      candidateRoom_(kCandidateRoom + 3 * cage.count),
-      queue_(arena.allocate<std::uint32_t>(std::size_t{cage.count} + 1)),
-      members_(arena.allocate<std::uint32_t>(cage.count)),
-      squares_(arena.allocate<float>(ChartPatch::kPoints * (std::size_t{cage.count} + 1))),
-      outside_(arena.allocate<OutOfReach>(cage.count)),
-      met_(arena.allocate<std::uint32_t>(cage.count)),
-      edgeMet_(arena.allocate<std::uint32_t>(std::size_t{3} * cage.count)) {
+      fixedSlack_(fixedSlack(slackOf(scene.cageTree, scene.units.diagonal), kRelativeSlack)),
+      candidateRoom_(kCandidateRoom + 3 * scene.cage.count) {
+  const std::size_t count = cage_.count;
+  Arena& arena = scene.arena;
+  triangles_ = arena.allocate<FlatTriangles<1>>(count);
+  patches_ = arena.allocate<ChartPatch>(kMaxPatches);
+  groups_ = arena.allocate<Group>(kMaxGroups);
+  candidates_ = arena.allocate<PatchCandidate>(candidateRoom_);
+  queue_ = arena.allocate<std::uint32_t>(count + 1);  // One more, which `flood` may write and not keep.
+  members_ = arena.allocate<std::uint32_t>(count);
+  squares_ = arena.allocate<float>(ChartPatch::kPoints * count);
+  outside_ = arena.allocate<OutOfReach>(count);
+  met_ = arena.allocate<std::uint32_t>(count);
+  edgeMet_ = arena.allocate<std::uint32_t>(3 * count);
   if (arena.failed()) return;
-  std::fill(met_, met_ + cage.count, 0u);
-  std::fill(edgeMet_, edgeMet_ + std::size_t{3} * cage.count, 0u);
-  for (std::uint32_t i = 0; i < cage.count; ++i)
-    triangles_[tree.near[i / 4].slot[i % 4]] = triangleOf(tree.near[i / 4], i % 4);
+  std::fill_n(met_, count, 0u);
+  std::fill_n(edgeMet_, 3 * count, 0u);
+  for (std::uint32_t i = 0; i < count; ++i)
+    triangles_[tree_.near[i / 4].slot[i % 4]] = triangleOf(tree_.near[i / 4], i % 4);
 }
 
 ChartPatch& ChartFlood::add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept {

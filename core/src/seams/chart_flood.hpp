@@ -2,13 +2,13 @@
 
 #include <cstdint>
 
-#include "base/arena.hpp"
 #include "cage/uv_charts.hpp"
 #include "geometry/closest_point.hpp"
 #include "input/cage.hpp"
 #include "search/kd_tree.hpp"
 #include "search/near_kernel.hpp"
 #include "simd/simd.hpp"
+#include "steps/scene.hpp"
 
 namespace cagecast {
 
@@ -52,8 +52,8 @@ class ChartFlood {
   /// Target triangles at a time: most of them share closest points.
   static constexpr std::uint32_t kBatch = 256;
 
-  /// Allocates its working memory from `arena`; check `arena.failed()` afterwards.
-  ChartFlood(const Cage& cage, const CageTree& tree, const UvCharts& charts, double diagonal, Arena& arena) noexcept;
+  /// Allocates its working memory; check `scene.arena.failed()` afterwards.
+  ChartFlood(const Scene& scene, const UvCharts& charts) noexcept;
 
   /// Forgets all patches.
   void clear() noexcept { patchCount_ = groupCount_ = grownGroups_ = candidateCount_ = 0; }

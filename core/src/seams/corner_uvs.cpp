@@ -15,21 +15,21 @@ namespace {
 /// Tells in float which target triangles surely lie across no seam: most of them.
 class SeamFilter {
  public:
-  /// Allocates its working memory from `arena`; check `arena.failed()` afterwards.
-  SeamFilter(const UvCharts& charts, std::uint32_t cageCount, const Points& points, const PointResults& results,
-             Arena& arena) noexcept
-      : positions_(points.positions), samples_(arena.allocate<Sample>(points.count)) {
-    auto* explained = arena.allocate<float>(cageCount);
-    if (arena.failed()) return;
+  /// Allocates its working memory; check `scene.arena.failed()` afterwards.
+  SeamFilter(const Scene& scene, const UvCharts& charts, const PointData& data) noexcept
+      : positions_(data.points.positions), samples_(scene.arena.allocate<Sample>(data.points.count)) {
+    const std::uint32_t cageCount = scene.cage.count;
+    auto* explained = scene.arena.allocate<float>(cageCount);
+    if (scene.arena.failed()) return;
     const bool isUsable = charts.maxUv <= kMaxUv && cageCount <= kMaxCharts;
     for (std::uint32_t t = 0; t < cageCount; ++t) {
       // Finite, so that its product with 0 is a number. Without any explained length no triangle passes.
       const double ofTriangle = std::min(kSmearShare * charts.stretch[t] * charts.stretch[t], 1e30);
       explained[t] = isUsable ? static_cast<float>(ofTriangle) : -std::numeric_limits<float>::infinity();
     }
-    for (std::uint32_t i = 0; i < points.count; ++i) {
-      const std::uint32_t t = results.cageTriangles[i];
-      samples_[i] = {results.uvs[2 * i], results.uvs[2 * i + 1], explained[t], static_cast<float>(charts.charts[t])};
+    for (std::uint32_t i = 0; i < data.points.count; ++i) {
+      const std::uint32_t t = data.cageTriangles[i];
+      samples_[i] = {data.uvs[2 * i], data.uvs[2 * i + 1], explained[t], static_cast<float>(charts.charts[t])};
     }
   }
 
@@ -89,28 +89,29 @@ const std::uint32_t* pointsOfTriangles(std::span<const std::uint32_t> indices, c
 
 }  // namespace
 
-bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage& cage, const HalfEdges& halfEdges,
-                   const CageTree& tree, const Units& units, const PointResults& results, Arena& arena,
-                   float* cornerUvs) noexcept {
-  const Arena::Mark mark = arena.mark();
+void projectCorners(const Scene& scene, const PointData& data, Array<float>& cornerUvs) noexcept {
+  const std::span<const std::uint32_t> indices = scene.targetMesh.indices;
+  if (scene.arena.failed()) return;
+  if (!cornerUvs.reset(2 * indices.size())) return scene.arena.fail();
+  const Points& points = data.points;
+  const Arena::Scope scope(scene.arena);
   UvCharts charts;
-  if (!findUvCharts(cage, halfEdges, arena, charts)) return false;
-  SeamResolver resolver(cage, tree, charts, units.diagonal, arena);
-  const SeamFilter filter(charts, cage.count, points, results, arena);
-  const std::uint32_t* corners = pointsOfTriangles(targetMesh.indices, points, arena);
-  if (arena.failed()) return false;
+  if (!findUvCharts(scene.cage, scene.halfEdges, scene.arena, charts)) return;
+  SeamResolver resolver(scene, charts);
+  const SeamFilter filter(scene, charts, data);
+  const std::uint32_t* corners = pointsOfTriangles(indices, points, scene.arena);
+  if (scene.arena.failed()) return;
 
-  for (std::size_t first = 0; first < targetMesh.indices.size(); first += 3) {
+  for (std::size_t first = 0; first < indices.size(); first += 3) {
     const std::uint32_t* triangle = corners + first;
+    float* uvs = cornerUvs.data() + 2 * first;
     for (std::size_t c = 0; c < 3; ++c)
-      std::memcpy(cornerUvs + 2 * (first + c), results.uvs + std::size_t{2} * triangle[c], 2 * sizeof(float));
+      std::memcpy(uvs + 2 * c, data.uvs + std::size_t{2} * triangle[c], 2 * sizeof(float));
     if (filter.isWhole(triangle)) continue;
     const Vec3 normal = areaNormal(points.at(triangle[0]), points.at(triangle[1]), points.at(triangle[2]));
-    if (dot(normal, normal) > 0) resolver.add(points, results, triangle, cornerUvs + 2 * first);
+    if (dot(normal, normal) > 0) resolver.add(data, triangle, uvs);
   }
   resolver.finish();
-  arena.rewind(mark);
-  return true;
 }
 
 }  // namespace cagecast

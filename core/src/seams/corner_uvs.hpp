@@ -1,19 +1,17 @@
 #pragma once
 
-#include "steps/steps.hpp"
+#include "cagecast/array.hpp"
+#include "steps/point_data.hpp"
+#include "steps/scene.hpp"
 
 namespace cagecast {
 
-/// Step 9: gives the triangles that lie across a seam of the cage's texture UVs of their own, so that none of them
-/// stretches over the charts: all three corners are projected onto the part of the cage around one of them that hangs
-/// together in the texture.
-/// @param[out] cornerUvs  2 per index of the target. Where no seam is, and of triangles without an area, those of the
-/// vertices.
-/// @return false if memory ran out.
-/// Cost: O(N + M) for N triangles of the target and M of the cage; a triangle across a seam costs as much as the cage
+/// Step 9: gives every triangle corner of the target a UV. Those of a triangle across a seam of the cage's texture are
+/// its own, so that it does not stretch over several charts: its three corners are projected onto a part of the cage
+/// that is connected in UV, around the closest point of one of them. All other corners have the UVs of their vertices.
+/// Cost: O(N + M) for N triangles of the target and M of the cage. A triangle across a seam costs as much as the cage
 /// has triangles within 1.5 of its edges.
-bool findCornerUvs(const MeshView& targetMesh, const Points& points, const Cage& cage, const HalfEdges& edges,
-                   const CageTree& tree, const Units& units, const PointResults& results, Arena& arena,
-                   float* cornerUvs) noexcept;
+/// @param[out] cornerUvs  2 per index of the target.
+void projectCorners(const Scene& scene, const PointData& data, Array<float>& cornerUvs) noexcept;
 
 }  // namespace cagecast

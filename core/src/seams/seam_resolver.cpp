@@ -25,22 +25,20 @@ double roughSum(Corner* const (&corners)[3], const ChartPatch* patch, const std:
 
 }  // namespace
 
-SeamResolver::SeamResolver(const Cage& cage, const CageTree& tree, const UvCharts& charts, double diagonal,
-                           Arena& arena) noexcept
-    : cage_(cage),
-      tree_(tree),
+SeamResolver::SeamResolver(const Scene& scene, const UvCharts& charts) noexcept
+    : cage_(scene.cage),
+      tree_(scene.cageTree),
       charts_(charts),
-      diagonal_(diagonal),
-      flood_(cage, tree, charts, diagonal, arena),
-      candidates_(arena.allocate<Candidate>(cage.count)),
-      corners_(arena.allocate<Corner>(kMaxCorners)),
-      recent_(arena.allocate<std::uint32_t>(kRecent)),
-      queue_(arena.allocate<Queued>(kMaxTriangles)) {
-  if (!arena.failed()) std::fill_n(recent_, kRecent, 0u);
+      diagonal_(scene.units.diagonal),
+      flood_(scene, charts),
+      candidates_(scene.arena.allocate<Candidate>(scene.cage.count)),
+      corners_(scene.arena.allocate<Corner>(kMaxCorners)),
+      recent_(scene.arena.allocate<std::uint32_t>(kRecent)),
+      queue_(scene.arena.allocate<Queued>(kMaxTriangles)) {
+  if (!scene.arena.failed()) std::fill_n(recent_, kRecent, 0u);
 }
 
-void SeamResolver::add(const Points& points, const PointResults& results, const std::uint32_t* triangle,
-                       float* uvs) noexcept {
+void SeamResolver::add(const PointData& data, const std::uint32_t* triangle, float* uvs) noexcept {
   if (cornerCount_ + 3 > kMaxCorners || queuedCount_ == kMaxTriangles) finish();
   Queued& queued = queue_[queuedCount_];
   for (int c = 0; c < 3; ++c) {
@@ -48,7 +46,7 @@ void SeamResolver::add(const Points& points, const PointResults& results, const 
     std::uint32_t& i = recent_[point % kRecent];
     if (i >= cornerCount_ || corners_[i].point != point) {
       i = cornerCount_++;
-      setCorner(corners_[i], point, points.at(point), results.cageTriangles[point]);
+      setCorner(corners_[i], point, data.points.at(point), data.cageTriangles[point]);
     }
     queued.corners[c] = corners_ + i;
   }

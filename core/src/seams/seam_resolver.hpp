@@ -3,20 +3,20 @@
 #include <cstdint>
 
 #include "seams/chart_flood.hpp"
-#include "steps/steps.hpp"
+#include "steps/point_data.hpp"
 
 namespace cagecast {
 
 /// Gives target triangles that lie across a seam UVs of their own: step 9. Works on a batch of triangles at a time.
 class SeamResolver {
  public:
-  /// Allocates its working memory from `arena`; check `arena.failed()` afterwards.
-  SeamResolver(const Cage& cage, const CageTree& tree, const UvCharts& charts, double diagonal, Arena& arena) noexcept;
+  /// Allocates its working memory; check `scene.arena.failed()` afterwards.
+  SeamResolver(const Scene& scene, const UvCharts& charts) noexcept;
 
   /// Queues a triangle if a seam separates its corners. Its UVs are written at the latest by `finish`.
   /// @param triangle   3 points.
   /// @param[out] uvs   6 floats.
-  void add(const Points& points, const PointResults& results, const std::uint32_t* triangle, float* uvs) noexcept;
+  void add(const PointData& data, const std::uint32_t* triangle, float* uvs) noexcept;
 
   /// Writes the UVs of all queued triangles.
   void finish() noexcept;

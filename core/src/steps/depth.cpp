@@ -46,7 +46,7 @@ void findTypicalDepths(const Scene& scene, const Covered* ofTriangles, double de
   if (scene.arena.failed()) return;
   std::fill(aroundVertices, aroundVertices + halfEdges.vertexCount, Covered{});
   const auto aroundCorner = [&](std::uint32_t t, std::size_t corner) -> Covered& {
-    return aroundVertices[halfEdges.starts[std::size_t{3} * t + corner]];
+    return aroundVertices[halfEdges.origins[std::size_t{3} * t + corner]];
   };
   for (std::uint32_t t = 0; t < scene.cage.count; ++t) {
     if (ofTriangles[t].area == 0) continue;
