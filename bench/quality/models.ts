@@ -88,7 +88,7 @@ export async function loadFiles({ name, kind, folder }: ModelFiles): Promise<Mod
   return { name, kind, truth, folder, scene: { cage: cage!, target: target! } };
 }
 
-/** The models of tests/core/traps.cpp, which the reference writes. */
+/** The models of tests/core/scenes/traps.cpp, which the reference writes. */
 async function loadTraps(): Promise<Model[]> {
   let reference = process.env['CAGECAST_REFERENCE'];
   if (reference === undefined) {

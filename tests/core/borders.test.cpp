@@ -10,7 +10,7 @@
 #include "cuts.hpp"
 #include "hash.hpp"
 #include "reference/scene.hpp"
-#include "traps.hpp"
+#include "scenes/traps.hpp"
 #ifdef CAGECAST_GLTF
 #include "assets.hpp"
 #endif

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "reference/reference.hpp"
-#include "scenes.hpp"
+#include "scenes/scenes.hpp"
 
 /// What several tests ask.
 namespace cagecast {

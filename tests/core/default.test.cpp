@@ -7,7 +7,7 @@
 
 #include "checks.hpp"
 #include "hash.hpp"
-#include "traps.hpp"
+#include "scenes/traps.hpp"
 
 using namespace cagecast;
 

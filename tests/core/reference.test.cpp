@@ -4,7 +4,7 @@
 #include <set>
 
 #include "checks.hpp"
-#include "traps.hpp"
+#include "scenes/traps.hpp"
 
 using namespace cagecast;
 

@@ -68,27 +68,26 @@ class Digits {
   int count_, bits_;
 };
 
-/// A vertex as weld sees it, scaled. Adding 0 made 0 of −0, so equal is the same as equal to the bit.
-struct Site {
+/// A vertex as it is compared: its scaled position, without −0, and its group.
+struct alignas(16) Site {
   float x, y, z;
   std::uint32_t group;
 
-  void put(f32x4 position, std::uint32_t itsGroup) {
-    simd::store(&x, position);
-    group = itsGroup;
+  static Site of(f32x4 position, std::uint32_t group) {
+    float lanes[4];
+    simd::store(lanes, position);
+    return {lanes[0], lanes[1], lanes[2], group};
   }
-  /// Makes a point of it: the group takes the place of the fourth float.
-  void putAt(float* position) const { std::memcpy(position, this, sizeof(Site)); }
-  [[nodiscard]] bool isAt(const float* position) const {
+
+  /// Without −0, equal positions have equal bits.
+  friend bool operator==(const Site& a, const Site& b) {
     // By halves: memcmp is a loop in WebAssembly.
     std::uint64_t halves[2];
     std::uint64_t others[2];
-    std::memcpy(halves, this, sizeof halves);
-    std::memcpy(others, position, sizeof others);
+    std::memcpy(halves, &a, sizeof halves);
+    std::memcpy(others, &b, sizeof others);
     return ((halves[0] ^ others[0]) | (halves[1] ^ others[1])) == 0;
   }
-
-  friend bool operator==(const Site& a, const Site& b) { return a.isAt(&b.x); }
   friend bool operator<(const Site& a, const Site& b) {
     return std::tie(a.x, a.y, a.z, a.group) < std::tie(b.x, b.y, b.z, b.group);
   }
@@ -105,32 +104,39 @@ void sortCell(Placed* begin, const Site* sites) {
   });
 }
 
-/// Makes points of the vertices, in the order of their cells and, within, of the first vertex at each.
-/// @param placed  Sorted, and `kFew` more that are of no cell.
-/// @return How many there are.
-std::uint32_t weldEqual(Placed* placed, std::uint32_t vertexCount, const Site* sites, float* positions,
-                        std::uint32_t* places, std::uint32_t* ofVertex) {
+/// The points that vertices are welded to.
+struct Welded {
+  std::uint32_t* firstVertex;  ///< 1 per point.
+  std::uint32_t* places;       ///< 1 per point: its cell.
+  std::uint32_t* ofVertex;     ///< 1 per vertex: its point.
+};
+
+/// Makes points of the vertices, in the order of their cells and, within a cell, of the first vertex of each point.
+/// @param placed  Sorted by cell; after the last come `kFew` entries of no cell.
+/// @return How many points there are.
+std::uint32_t weldEqual(Placed* placed, std::uint32_t vertexCount, const Site* sites, const Welded& out) {
   std::uint32_t count = 0;
-  std::uint32_t first = 0;  // Point of the cell, or of those that a vertex may still be equal to.
-  bool crowded = false;
+  std::uint32_t first = 0;  // The first point that the vertex can be equal to.
+  bool isCrowded = false;
   std::uint32_t lastKey = kNoKey;
   for (Placed* const end = placed + vertexCount; placed < end; ++placed) {
     const std::uint32_t key = keyOf(*placed);
     if (key != lastKey) {
       lastKey = key;
       first = count;
-      crowded = keyOf(placed[kFew]) == key;
-      if (crowded) sortCell(placed, sites);
+      isCrowded = keyOf(placed[kFew]) == key;
+      if (isCrowded) sortCell(placed, sites);
     }
     const std::uint32_t v = vertexOf(*placed);
     std::uint32_t point = first;
-    while (point < count && !sites[v].isAt(positions + Points::kStride * point)) ++point;
-    ofVertex[v] = point;
+    while (point < count && !(sites[v] == sites[out.firstVertex[point]])) ++point;
+    out.ofVertex[v] = point;
     if (point < count) continue;
-    sites[v].putAt(positions + Points::kStride * point);
-    places[point] = key;
+    out.firstVertex[point] = v;
+    out.places[point] = key;
     ++count;
-    if (crowded) first = point;
+    // In a crowded cell equal vertices follow each other.
+    if (isCrowded) first = point;
   }
   return count;
 }
@@ -188,6 +194,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
   auto* sites = arena.allocate<Site>(vertexCount);
   auto* unsorted = arena.allocate<Placed>(vertexCount + kFew);
   auto* spare = arena.allocate<Placed>(vertexCount + kFew);
+  auto* firstVertex = arena.allocate<std::uint32_t>(vertexCount);
   if (arena.failed()) return false;
 
   // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
@@ -205,7 +212,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
   const f32x4 low = simd::load3(units.low);
   for (std::uint32_t v = 0; v < vertexCount; ++v, position += 3) {
     const f32x4 p = simd::load3(position) * scale + simd::splat(0);
-    sites[v].put(p, groupOf == nullptr ? 0 : groupOf[v]);
+    sites[v] = Site::of(p, groupOf == nullptr ? 0 : groupOf[v]);
     const simd::u32x4 cell = simd::rounded((p - low) * simd::splat(cells));
     const std::uint32_t key = curve.key(simd::lane<0>(cell), simd::lane<1>(cell), simd::lane<2>(cell));
     digits.count(key, counts);
@@ -214,15 +221,11 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
   Placed* placed = digits.sort(unsorted, spare, vertexCount, counts);
   std::fill_n(placed + vertexCount, kFew, Placed{kNoKey} << 32);
 
-  std::uint32_t pointCount = weldEqual(placed, vertexCount, sites, positions, places, ofVertex);
-  if (!target.groups.empty()) {
-    for (std::uint32_t i = 0; i < pointCount; ++i) {
-      float& group = positions[Points::kStride * i + 3];
-      if (tolerant) std::memcpy(&groups[i], &group, sizeof group);
-      group = 0;
-    }
-  } else if (tolerant) {
-    std::fill(groups, groups + pointCount, 0u);
+  std::uint32_t pointCount = weldEqual(placed, vertexCount, sites, {firstVertex, places, ofVertex});
+  for (std::uint32_t i = 0; i < pointCount; ++i) {
+    const Site& site = sites[firstVertex[i]];
+    simd::store(positions + Points::kStride * i, simd::of(site.x, site.y, site.z, 0));
+    if (tolerant) groups[i] = site.group;
   }
   arena.rewind(mark);
 

@@ -32,8 +32,8 @@
 #include <vector>
 
 #include "reference/reference.hpp"
-#include "scenes.hpp"
-#include "traps.hpp"
+#include "scenes/scenes.hpp"
+#include "scenes/traps.hpp"
 
 namespace {
 

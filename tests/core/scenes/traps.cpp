@@ -1,4 +1,4 @@
-#include "traps.hpp"
+#include "scenes/traps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scenes.hpp"
+#include "scenes/scenes.hpp"
 
 /// Models made to be difficult, with the truth about each: the same bits on every platform, like all scenes.
 namespace cagecast::scenes {

@@ -1,4 +1,4 @@
-#include "scenes.hpp"
+#include "scenes/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
