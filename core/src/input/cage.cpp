@@ -16,9 +16,7 @@ RayDirection RayDirection::along(Vec3 unit) noexcept {
   RayDirection ray{{}, unit};
   Rough& rough = ray.rough;
   // A component of 0 gives a large finite number, so that 0 · inverse is 0 and not NaN.
-  const simd::f32x4 direction = simd::of(x, y, z, 1);
-  const simd::f32x4 size = simd::splat(1) / simd::max(simd::abs(direction), simd::splat(1e-20f));
-  simd::store(rough.inverse, simd::select(direction < simd::splat(0), simd::splat(0) - size, size));
+  for (int k = 0; k < 3; ++k) rough.inverse[k] = std::copysign(1 / std::max(std::abs(row[k]), 1e-20f), row[k]);
   // No branch: nobody can guess where rays go.
   const auto second = static_cast<std::uint32_t>(std::abs(y) > std::abs(x));
   rough.z = second + (2 - second) * static_cast<std::uint32_t>(std::abs(z) > std::max(std::abs(x), std::abs(y)));

@@ -14,7 +14,7 @@ namespace cagecast {
 struct RayDirection {
   /// For filters.
   struct Rough {
-    float inverse[4];      ///< 1 / component, of at most 1e20; the last is any.
+    float inverse[3];      ///< 1 / component, of at most 1e20.
     float shearX, shearY;  ///< −x/z and −y/z of the direction.
     float scaleZ;          ///< −1/z.
     std::uint32_t z;       ///< Which axis serves as z; the next two, with x after z, as x and y.
@@ -34,11 +34,6 @@ struct alignas(16) CageTriangle {
   Vec3 gradientB, gradientC;
   RayDirection normal;  ///< Outward; the direction of the rays of the points that project here.
 };
-
-/// In an array of cage triangles, seen as positions of four floats, corner a of one is so many after that of the one
-/// before.
-inline constexpr std::uint32_t kCageStride = sizeof(CageTriangle) / (4 * sizeof(float));
-static_assert(sizeof(CageTriangle) % (4 * sizeof(float)) == 0);
 
 /// The cage without its degenerate triangles, in the caller's order.
 struct Cage {

@@ -44,6 +44,9 @@ constexpr float kDepthRounding = 0x1p-19f;
 /// The most that the edge functions of a ray that comes into a leaf's box add up to, in squares of the box's size.
 constexpr float kMostSum = 24.0f;
 
+/// Axes in a row: from each of them on the next two follow.
+constexpr std::uint32_t kAxes[] = {0, 1, 2, 0, 1};
+
 /// The distance of a ray that hits nothing, and the end of one that need not look any further.
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
@@ -57,7 +60,8 @@ constexpr float kStrictEnd = 0.999996f;
 /// Four triangles side by side, put so when rays come to them: a leaf is visited by a few rays at a time, and three
 /// times as large as what it is made from.
 struct RayLeaf {
-  float corner[Ray::kRow][3][4];  ///< corner[axis in a row][a, b, c][lane].
+  static constexpr int kRow = 5;  ///< x, y, z, x, y: from each axis on the next two follow.
+  float corner[kRow][3][4];       ///< corner[axis in a row][a, b, c][lane].
   float rounding;                 ///< What the edge functions of a ray that hits may be off in float.
   float nearest;  ///< The least that the distance of such a hit, times the sum of these functions, may come out at.
 
@@ -71,7 +75,7 @@ struct RayLeaf {
       const auto row = [&](int lane) { return load(tree.positions + std::size_t{4} * index[3 * lane + i]); };
       f32x4 rows[4] = {row(0), row(1), row(2), row(3)};
       simd::transpose(rows[0], rows[1], rows[2], rows[3]);
-      for (int k = 0; k < Ray::kRow; ++k) simd::store(corner[k][i], rows[k % 3]);
+      for (int k = 0; k < kRow; ++k) simd::store(corner[k][i], rows[k % 3]);
     }
   }
 };
@@ -124,12 +128,12 @@ struct Estimate {
 };
 
 inline Estimate estimate(const RayLeaf& leaf, const RoughRay& ray) {
-  const f32x4 shearX = splat(ray.direction.shearX);
-  const f32x4 shearY = splat(ray.direction.shearY);
+  const f32x4 shearX = splat(ray.shearX);
+  const f32x4 shearY = splat(ray.shearY);
   const f32x4 originZ = splat(ray.origin[0]);
   const f32x4 originX = splat(ray.origin[1]);
   const f32x4 originY = splat(ray.origin[2]);
-  const float(*corner)[3][4] = leaf.corner + ray.direction.z;
+  const float(*corner)[3][4] = leaf.corner + ray.axis;
   // From the corners to the origin: in this order a processor subtracts while it loads. The edge functions do not mind.
   Estimate of;
   auto& [x, y, z, least, most, sum, depthWeighting, distances] = of;
@@ -146,7 +150,7 @@ inline Estimate estimate(const RayLeaf& leaf, const RoughRay& ray) {
   most = simd::max(u, simd::max(v, w));
   sum = u + v + w;
   depthWeighting = simd::multiplyAdd(w, z[2], simd::multiplyAdd(v, z[1], u * z[0]));
-  const f32x4 scaled = depthWeighting * splat(ray.direction.scaleZ);
+  const f32x4 scaled = depthWeighting * splat(ray.scaleZ);
   distances = simd::select(sum < splat(0), splat(0) - scaled, scaled);
   return of;
 }
@@ -210,15 +214,19 @@ void HitSearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noe
   for (std::uint32_t i = 0; i < count; ++i) {
     const Ray& ray = rays[i];
     const RayDirection::Rough& direction = ray.direction->rough;
-    const f32x4 inverse = load(direction.inverse);
-    const f32x4 shear = load(&direction.shearX);
-    simd::store(rough[i].origin, load(ray.place + direction.z));
-    simd::store(rough[i].offset, (splat(0) - load(ray.place)) * inverse);
-    simd::store(rough[i].direction.inverse, inverse);
-    simd::store(&rough[i].direction.shearX, shear);
-    rough[i].endAt(looseEnd(ray.end));
+    RoughRay& to = rough[i];
+    for (int k = 0; k < 3; ++k) {
+      to.inverse[k] = direction.inverse[k];
+      to.offset[k] = -ray.position[k] * direction.inverse[k];
+    }
+    to.end = looseEnd(ray.end);
+    to.shearX = direction.shearX;
+    to.shearY = direction.shearY;
+    to.scaleZ = direction.scaleZ;
+    to.axis = direction.z;
+    for (std::uint32_t k = 0; k < 3; ++k) to.origin[k] = ray.position[kAxes[direction.z + k]];
     hit[i] = false;
-    list[i] = static_cast<std::uint16_t>(i * kStep);
+    list[i] = static_cast<std::uint16_t>(i);
   }
   if (count > 0) enter(tree_.nodes[0], lists_, count, lists_ + count + 1);
 }
@@ -271,12 +279,12 @@ void HitSearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t c
   simd::u32x4 ends = simd::of(3 * room, 2 * room, room, 0u);  // Of the lists.
   for (const std::uint16_t* next = rays; next < rays + count; ++next) {
     const std::uint16_t ray = *next;
-    const RoughRay& rough = roughRay(ray);
+    const RoughRay& rough = rough_[ray];
     f32x4 first = from;
-    f32x4 last = splat(rough.direction.inverse[3]);
+    f32x4 last = splat(rough.end);
     for (int axis = 0; axis < 3; ++axis) {
       // Rays of all directions go together: which side is the near one shows only now.
-      const f32x4 inverse = splat(rough.direction.inverse[axis]);
+      const f32x4 inverse = splat(rough.inverse[axis]);
       const f32x4 offset = splat(rough.offset[axis]);
       const f32x4 toLow = simd::multiplyAdd(low[axis], inverse, offset);
       const f32x4 toHigh = simd::multiplyAdd(high[axis], inverse, offset);
@@ -303,14 +311,14 @@ void HitSearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
   const float soonest = loose_;
   const f32x4 zero = splat(zero_);
   // No branch on what is a coin toss: a ray that surely hits nothing is written over by the next.
-  static_assert(kStep > 15);  // So the mask fits below what names a ray.
+  static_assert(kMostRays <= 1u << 12);  // So four bits are left beside what names a ray.
   std::uint32_t left = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint16_t ray = rays[i];
-    const RoughRay& rough = roughRay(ray);
-    if (rough.end() < soonest) continue;
+    const RoughRay& rough = rough_[ray];
+    if (rough.end < soonest) continue;
     const unsigned close = mightHit(leaf, estimate(leaf, rough), zero);
-    rays[left] = static_cast<std::uint16_t>(ray | close);
+    rays[left] = static_cast<std::uint16_t>(ray << 4 | close);
     left += close != 0;
   }
   if (left > 0) decide(leaf, rays, left);
@@ -320,15 +328,15 @@ void HitSearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
 /// @param rays  With the triangles that they might hit: a bit each.
 void HitSearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::size_t id = rays[i] / kStep;
+    const std::size_t id = rays[i] >> 4;
     Ray& ray = rays_[id];
     RoughRay& rough = rough_[id];
-    unsigned open = rays[i] % kStep;
+    unsigned open = rays[i] & 15;
     if (find_ == Find::any) {
-      const Verdict verdict = judge(estimate(leaf, rough), tree_.reach, loose_, strict_, kStrictEnd * rough.end());
+      const Verdict verdict = judge(estimate(leaf, rough), tree_.reach, loose_, strict_, kStrictEnd * rough.end);
       if (verdict.hit != 0) {
         hit_[id] = true;
-        rough.endAt(static_cast<float>(kNowhere));
+        rough.end = static_cast<float>(kNowhere);
         continue;
       }
       open &= verdict.open;
@@ -338,7 +346,7 @@ void HitSearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint
       if (!(distance > from_ && distance <= ray.end)) continue;
       hit_[id] = true;
       ray.end = distance;
-      rough.endAt(find_ == Find::any ? static_cast<float>(kNowhere) : looseEnd(distance));
+      rough.end = find_ == Find::any ? static_cast<float>(kNowhere) : looseEnd(distance);
     }
   }
 }

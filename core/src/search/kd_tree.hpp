@@ -119,8 +119,6 @@ class NearestSearch {
   static constexpr std::uint32_t kSeveral = UINT32_MAX;
 
  private:
-  /// Leaves whose distances are kept at a time.
-  static constexpr std::uint32_t kBatch = 64;
   /// One more than the leaves to remember of a point; if more come close, `candidates` looks again.
   static constexpr std::uint32_t kRoom = 8;
 
@@ -130,8 +128,9 @@ class NearestSearch {
                            std::uint32_t*& leaves) const noexcept;
   /// Some leaf whose box is near a point: at each node the nearest child.
   [[nodiscard]] std::uint32_t leafNear(simd::f32x4 point) const noexcept;
-  /// Searches up to `kBatch` leaves for each of `count` points.
-  void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept;
+  /// Searches those of some leaves whose boxes are near enough to a point, for those points.
+  void searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount) noexcept;
+  /// Searches a leaf for some points of the group, a bit each.
   void searchLeaf(std::uint32_t leaf, unsigned members) noexcept;
 
   const CageTree& tree_;
@@ -154,38 +153,33 @@ class NearestSearch {
 /// Four triangles for rays.
 struct RayLeaf;
 
-/// A ray: r(t) = origin + rest + t · direction.
+/// A ray: r(t) = position + rest + t · direction.
 struct Ray {
-  /// Axes in a row go x, y, z, x, y: from each of them on the next two follow.
-  static constexpr int kRow = 5;
-  /// The origin in floats, in a row; then what the exact one has beyond them: x, y, z. So four can be loaded from each
-  /// axis on.
-  float place[kRow + 3];
+  float position[3];
+  float rest[3];  ///< What the exact origin has beyond `position`.
   const RayDirection* direction;
   double end = std::numeric_limits<double>::infinity();  ///< Hits beyond it do not count.
 
-  /// @param position  x, y, z, and a fourth float,
-  /// @param rest      and what the exact origin has beyond them.
-  void startAt(const float* position, const float* rest) noexcept {
-    const simd::f32x4 from = simd::load(position);
-    simd::store(place, from);
-    simd::store(place + 3, from);
-    for (int axis = 0; axis < 3; ++axis) place[kRow + axis] = rest[axis];
+  void startAt(const float* from, const float* restOfIt) noexcept {
+    for (int axis = 0; axis < 3; ++axis) {
+      position[axis] = from[axis];
+      rest[axis] = restOfIt[axis];
+    }
   }
   [[nodiscard]] double origin(std::uint32_t axis) const noexcept {
-    return static_cast<double>(place[axis]) + static_cast<double>(place[kRow + axis]);
+    return static_cast<double>(position[axis]) + static_cast<double>(rest[axis]);
   }
 };
 
-/// What filters look at of a ray, side by side.
+/// What filters look at of a ray.
 struct alignas(16) RoughRay {
-  float origin[4];  ///< For leaves: x, y, z of it, from the direction's own z on; the last is any.
-  float offset[4];  ///< For boxes: −origin · inverse.
-  RayDirection::Rough direction;
-
-  /// Not before the ray's end; less than anything once there is no more to find.
-  [[nodiscard]] float end() const noexcept { return direction.inverse[3]; }
-  void endAt(float end) noexcept { direction.inverse[3] = end; }
+  float inverse[3];      ///< 1 / component of the direction, of at most 1e20.
+  float end;             ///< Not before the ray's end; less than anything once there is no more to find.
+  float offset[3];       ///< For boxes: −origin · inverse.
+  float shearX, shearY;  ///< `RayDirection::Rough`.
+  float scaleZ;
+  float origin[3];     ///< For leaves: z, x, y of it, as `axis` has them.
+  std::uint32_t axis;  ///< Which axis of space serves as z.
 };
 
 /// Finds which rays hit a triangle at a distance greater than `from` and up to their end, from either side. Watertight:
@@ -220,13 +214,6 @@ class HitSearch {
   static constexpr std::uint32_t kLong = 256;
   /// What is left of it for rays that go alone, four lists with room for two at each level: a tree is not that deep.
   static constexpr std::ptrdiff_t kLastRoom = 8 * 64;
-
-  /// Lists name rays by where in memory they are, from the first on, in halves of their size.
-  static constexpr std::uint32_t kStep = sizeof(RoughRay) / 2;
-  static_assert(kMostRays * kStep <= std::size_t{1} << 16);
-  [[nodiscard]] const RoughRay& roughRay(std::uint16_t ray) const noexcept {
-    return *reinterpret_cast<const RoughRay*>(reinterpret_cast<const char*>(rough_) + std::size_t{2} * ray);
-  }
 
   void enter(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept;
   void testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,

@@ -251,45 +251,39 @@ class CageOrder {
   Item* items_;
 };
 
-/// The children of a node to be: nodes, or leaves with the high bit set, their first triangle, and in the lowest two
-/// bits how many more they have.
-struct Children {
-  static constexpr std::uint32_t kNone = UINT32_MAX;
-  std::uint32_t of[4];
-};
-
 std::uint32_t firstPointOf(const std::uint32_t* corner) { return std::min({corner[0], corner[1], corner[2]}); }
 
 /// Cuts triangles that are in the order of a curve where the curve goes from one half of a cell to the other, so that
 /// what is between two cuts has a box of its own.
 class CurveCuts {
  public:
-  /// Nodes that n triangles make at most: it is a chain, in which each has three leaves of one triangle.
-  static constexpr std::uint32_t mostNodes(std::uint32_t triangles) { return std::max(1u, triangles / 3); }
-
   /// @param corners  Of the triangles, in the order of their first points.
   /// @param places   Of the points along the curve, ascending.
-  CurveCuts(const std::uint32_t* corners, const std::uint32_t* places, Children* nodes)
-      : corners_(corners), places_(places), nodes_(nodes) {}
+  CurveCuts(const std::uint32_t* corners, const std::uint32_t* places) : corners_(corners), places_(places) {}
 
-  [[nodiscard]] std::uint32_t nodeCount() const { return count_; }
+  /// What `add` notes for a leaf: its first triangle, and in the lowest two bits how many more it has.
+  static constexpr std::uint32_t kNone = UINT32_MAX;
 
-  /// Makes a node, and all that are below it, which come after it.
-  /// @return Its index.
-  std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
-    const std::uint32_t node = count_++;
+  /// How many nodes there are for a range of triangles, the root included.
+  [[nodiscard]] std::uint32_t count(std::uint32_t begin, std::uint32_t end) const {
     std::uint32_t cuts[5];
-    if (const std::uint32_t count = end - begin; count <= kFew) {
-      std::uint32_t run = 4;
-      while (4 * run < count) run *= 4;
-      for (std::uint32_t i = 0; i < 5; ++i) cuts[i] = begin + std::min(run * i, count);
-    } else {
-      cutCells(begin, end, cuts);
-    }
+    cut(begin, end, cuts);
+    std::uint32_t nodes = 1;
+    for (std::uint32_t i = 0; i < 4; ++i) nodes += cuts[i + 1] - cuts[i] > 4 ? count(cuts[i], cuts[i + 1]) : 0;
+    return nodes;
+  }
+
+  /// Notes the children of a node, and of all that are below it, which come after it.
+  /// @param nodes  Room for as many as `count` says, and `next` of them used.
+  /// @return Its index.
+  std::uint32_t add(std::uint32_t begin, std::uint32_t end, Node* nodes, std::uint32_t& next) const {
+    const std::uint32_t node = next++;
+    std::uint32_t cuts[5];
+    cut(begin, end, cuts);
     for (std::uint32_t i = 0; i < 4; ++i) {
       const std::uint32_t size = cuts[i + 1] - cuts[i];
-      const std::uint32_t leaf = size > 0 ? kLeafBit | cuts[i] << 2 | (size - 1) : Children::kNone;
-      nodes_[node].of[i] = size > 4 ? add(cuts[i], cuts[i + 1]) : leaf;
+      const std::uint32_t leaf = size > 0 ? kLeafBit | cuts[i] << 2 | (size - 1) : kNone;
+      nodes[node].child[i] = size > 4 ? add(cuts[i], cuts[i + 1], nodes, next) : leaf;
     }
     return node;
   }
@@ -297,6 +291,14 @@ class CurveCuts {
  private:
   /// So few triangles are cut into full leaves instead: cells would cost more time than they save.
   static constexpr std::uint32_t kFew = 256;
+
+  void cut(std::uint32_t begin, std::uint32_t end, std::uint32_t (&cuts)[5]) const {
+    const std::uint32_t count = end - begin;
+    if (count > kFew) return cutCells(begin, end, cuts);
+    std::uint32_t run = 4;
+    while (4 * run < count) run *= 4;
+    for (std::uint32_t i = 0; i < 5; ++i) cuts[i] = begin + std::min(run * i, count);
+  }
 
   /// Cuts in two, and twice what is largest then.
   void cutCells(std::uint32_t begin, std::uint32_t end, std::uint32_t (&cuts)[5]) const {
@@ -331,8 +333,6 @@ class CurveCuts {
 
   const std::uint32_t* corners_;
   const std::uint32_t* places_;
-  Children* nodes_;
-  std::uint32_t count_ = 0;
 };
 
 }  // namespace
@@ -340,6 +340,7 @@ class CurveCuts {
 bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree& out) noexcept {
   const std::uint32_t leafCount = groupsOfFour(cage.count);
   auto* corners = arena.allocate<std::uint32_t>(std::size_t{12} * leafCount);
+  auto* positions = arena.allocate<float>(std::size_t{12} * cage.count);
   auto* nearLeaves = arena.allocate<NearLeaf>(leafCount);
   auto* leafBoxes = arena.allocate<LeafBox>(leafCount);
   auto* nodes = takeNodes(leafCount, arena, out);
@@ -355,6 +356,8 @@ bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree&
     all.grow(box);
     simd::store(items[i].centre, box.low + box.high);
     items[i].slot = i;
+    int corner = 0;
+    for (const float* from : {t.a, t.b, t.c}) simd::store(positions + std::size_t{12} * i + 4 * corner++, load(from));
   }
   simd::store(out.middle, all.low * splat(0.5f) + all.high * splat(0.5f));
   std::uint32_t run = 4;
@@ -371,7 +374,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree&
       triangles[lane] = &t;
       nearLeaves[leaf].slot[lane] = slot;
       for (const float* corner : {t.a, t.b, t.c}) box.grow(load(corner));
-      for (std::uint32_t k = 0; k < 3; ++k) corners[3 * i + k] = kCageStride * slot + k;
+      for (std::uint32_t k = 0; k < 3; ++k) corners[3 * i + k] = 3 * slot + k;
     }
     for (std::uint32_t lane = 0; lane < 4; ++lane)
       setNearTriangle(nearLeaves[leaf], lane, *triangles[lane], out.middle);
@@ -381,7 +384,7 @@ bool buildCageTree(const Cage& cage, const Units& units, Arena& arena, CageTree&
   }
   fillNodes(boxes, nodes, out);
   arena.rewind(mark);
-  out.rays = {nodes, cage.triangles->a, corners, units.reach};
+  out.rays = {nodes, positions, corners, units.reach};
   out.near = nearLeaves;
   out.boxes = leafBoxes;
   float sides[4];
@@ -396,7 +399,6 @@ bool buildTargetTree(const Points& target, const Units& units, Arena& arena, Ray
   auto* corners = arena.allocate<std::uint32_t>(std::size_t{3} * (count + kBeyond));
   const Arena::Mark mark = arena.mark();
   auto* starts = arena.allocate<std::uint32_t>(target.count);
-  auto* children = arena.allocate<Children>(CurveCuts::mostNodes(count));
   if (arena.failed()) return false;
 
   // Points are in curve order; sorting triangles by their first point puts them in curve order as well.
@@ -416,26 +418,23 @@ bool buildTargetTree(const Points& target, const Units& units, Arena& arena, Ray
     to[2] = c;
   }
   std::fill_n(corners + std::size_t{3} * count, 3 * kBeyond, 0u);
-  CurveCuts cuts(corners, target.places, children);
-  cuts.add(0, count);
-
-  // How many nodes there are is known only now: they take the place of what they were found from.
-  const std::uint32_t nodeCount = cuts.nodeCount();
   arena.rewind(mark);
+  const CurveCuts cuts(corners, target.places);
+  const std::uint32_t nodeCount = cuts.count(0, count);
   auto* nodes = arena.allocate<Node>(nodeCount);
   const Arena::Mark end = arena.mark();
-  auto* found = arena.allocate<Children>(nodeCount);
   auto* boxes = arena.allocate<Box>(nodeCount);
   if (arena.failed()) return false;
-  std::memmove(found, children, nodeCount * sizeof(Children));
+  std::uint32_t used = 0;
+  cuts.add(0, count, nodes, used);
   const float* const positions = target.positions;
   const float padding = kPadding * units.reach;
   for (std::uint32_t node = nodeCount; node-- > 0;) {
     Box below[4];
     Box around;
     for (int lane = 0; lane < 4; ++lane) {
-      const std::uint32_t child = found[node].of[lane];
-      if (child == Children::kNone) {
+      const std::uint32_t child = nodes[node].child[lane];
+      if (child == CurveCuts::kNone) {
         nodes[node].child[lane] = kLeafBit;
         below[lane] = Box::nowhere();
         continue;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -23,6 +24,18 @@ f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x
   }
   return sum;
 }
+
+/// The lanes of each set of lanes, one after the other; the rest of a row is any.
+constexpr auto kLanes = [] {
+  std::array<std::array<std::uint32_t, 4>, 16> table{};
+  for (std::uint32_t set = 0; set < 16; ++set) {
+    std::size_t count = 0;
+    for (std::uint32_t lane = 0; lane < 4; ++lane) {
+      if (set >> lane & 1) table[set][count++] = lane;
+    }
+  }
+  return table;
+}();
 
 }  // namespace
 
@@ -58,11 +71,9 @@ void NearestSearch::widen(double more, double distance) noexcept {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t node = from[i];
       const unsigned close = simd::bits(squaredDistanceToBoxes(row[node], ownLow, ownHigh) <= limit);
-      // No branch: which children are close is a coin toss. One that is not is written over by the next.
-      for (std::uint32_t lane = 0; lane < 4; ++lane) {
-        *end = 4 * node + lane;
-        end += close >> lane & 1;
-      }
+      // No branch: which children are close is a coin toss.
+      for (std::uint32_t k = 0; k < 4; ++k) end[k] = 4 * node + kLanes[close][k];
+      end += std::popcount(close);
     }
     count = static_cast<std::uint32_t>(end - to);
     std::swap(from, to);
@@ -101,14 +112,8 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
   }
 }
 
-void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount, std::uint32_t count) noexcept {
+void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount) noexcept {
   constexpr unsigned kVectors = kGroup / simd::kWidth;
-  // Squared distances of the points to the leaves' boxes; and for each point the least, and which leaf's it is.
-  alignas(16) float distances[kBatch][kGroup];
-  f32x4 nearest[kVectors];
-  f32x4 nearestLeaf[kVectors];
-  for (f32x4& n : nearest) n = splat(std::numeric_limits<float>::infinity());
-  for (f32x4& n : nearestLeaf) n = splat(0);
   const LeafBox* const boxes = tree_.boxes;
   for (std::uint32_t j = 0; j < leafCount; ++j) {
     const LeafBox& box = boxes[leaves[j]];
@@ -127,29 +132,8 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
         squared[i] = axis == 0 ? outside * outside : simd::multiplyAdd(outside, outside, squared[i]);
       }
     }
-    for (unsigned i = 0; i < kVectors; ++i) {
-      simd::store(distances[j] + 4 * i, squared[i]);
-      nearestLeaf[i] = select(squared[i] < nearest[i], splat(static_cast<float>(j)), nearestLeaf[i]);
-      nearest[i] = min(squared[i], nearest[i]);
-    }
-  }
-  // Each point begins with the leaf whose box is nearest to it: the other leaves then have little to offer.
-  alignas(16) float least[kGroup];
-  alignas(16) float leastLeaf[kGroup];
-  for (unsigned i = 0; i < kVectors; ++i) {
-    simd::store(least + 4 * i, nearest[i]);
-    simd::store(leastLeaf + 4 * i, nearestLeaf[i]);
-  }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (!(least[i] <= limits_[i])) continue;
-    const auto j = static_cast<std::uint32_t>(leastLeaf[i]);
-    searchLeaf(leaves[j], 1u << i);
-    distances[j][i] = std::numeric_limits<float>::infinity();
-  }
-  for (std::uint32_t j = 0; j < leafCount; ++j) {
     unsigned members = 0;
-    for (unsigned i = 0; i < kVectors; ++i)
-      members |= simd::bits(load(distances[j] + 4 * i) <= load(limits_ + 4 * i)) << 4 * i;
+    for (unsigned i = 0; i < kVectors; ++i) members |= simd::bits(squared[i] <= load(limits_ + 4 * i)) << 4 * i;
     searchLeaf(leaves[j], members);
   }
 }
@@ -191,9 +175,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
     if (std::uint32_t* const known = std::find(leaves, leaves + leafCount, seed); known < leaves + leafCount)
       *known = leaves[--leafCount];
   }
-  for (std::uint32_t begin = 0; begin < leafCount; begin += kBatch) {
-    searchLeaves(leaves + begin, std::min(kBatch, leafCount - begin), count);
-  }
+  searchLeaves(leaves, leafCount);
 
   // Where the last point is nearest, the next group begins.
   std::uint32_t nearest = 0;
