@@ -10,11 +10,11 @@
 
 namespace cagecast {
 
-/// Tells which of a row of things are equal, in one pass: a hash table of their indices, open-addressed.
+/// Finds which of many items are equal, in one pass: an open-addressed hash table of their indices.
 class HashIndex {
  public:
-  /// Takes its memory from `arena`; `arena.failed()` tells if that was there.
-  /// @param count  Most things that will be put in.
+  /// Allocates from `arena`; check `arena.failed()` afterwards.
+  /// @param count  Most items that will be added.
   HashIndex(std::size_t count, Arena& arena) noexcept {
     const auto bits = static_cast<int>(std::bit_width(2 * count + 1));
     shift_ = 64 - bits;
@@ -24,11 +24,11 @@ class HashIndex {
     for (std::size_t i = 0; i <= mask_; ++i) slots_[i] = kFree;
   }
 
-  /// Finds what was put in and is equal, or else puts this in.
-  /// @param index  Of this thing.
-  /// @param hash   Of this thing.
-  /// @param equal  Whether this equals the thing of another index.
-  /// @return The index of the first thing equal to this: its own if it is that.
+  /// Finds the item that was added and is equal to this one; adds this one if there is none.
+  /// @param index  Of this item.
+  /// @param hash   Of this item.
+  /// @param equal  Takes the index of another item, and tells whether it equals this one.
+  /// @return The index of the first equal item, or its own.
   template <typename Equal>
   std::uint32_t firstEqual(std::uint32_t index, std::uint64_t hash, Equal equal) noexcept {
     auto slot = static_cast<std::size_t>(hash >> shift_);
@@ -37,7 +37,7 @@ class HashIndex {
     return slots_[slot];
   }
 
-  /// Hashes the bytes of a thing (it must have no padding); the high bits depend on all of them.
+  /// Hashes the bytes of a value without padding. The high bits depend on all of them.
   template <typename Thing>
   static std::uint64_t hash(const Thing& thing) noexcept {
     static_assert(std::is_trivially_copyable_v<Thing> && sizeof(Thing) % 4 == 0);
@@ -47,7 +47,7 @@ class HashIndex {
     for (const std::uint32_t word : words) all = mix(all, word);
     return all;
   }
-  /// Stirs another word into a hash.
+  /// Mixes another word into a hash.
   static std::uint64_t mix(std::uint64_t hash, std::uint64_t word) noexcept {
     hash ^= word;
     return (hash ^ hash >> 32) * 0x9E3779B97F4A7C15u;  // 2^64 / the golden ratio.

@@ -8,8 +8,9 @@ namespace cagecast {
 using GoesBefore = bool (*)(const void* order, std::uint64_t s, std::uint64_t t);
 void heapSort(std::uint64_t* begin, std::uint64_t* end, const void* order, GoesBefore goesBefore) noexcept;
 
-/// Sorts what is seldom sorted: by heap, and all by the same code. std::sort would be 5 KB of WebAssembly for each.
-/// @param order  Takes two items, and tells whether the first goes before the other.
+/// Heap sort, one function for all orders, for sorting that takes little of the time: each instance of std::sort would
+/// add 5 KB to the WebAssembly module.
+/// @param order  Takes two items, and tells whether the first goes before the second.
 template <typename Order>
 void heapSort(std::uint64_t* begin, std::uint64_t* end, const Order& order) noexcept {
   heapSort(begin, end, &order,

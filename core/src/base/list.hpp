@@ -10,12 +10,12 @@
 
 namespace cagecast {
 
-/// What all lists have in common.
+/// The part of a list that does not depend on its element type.
 class AnyList {
  public:
   [[nodiscard]] bool failed() const noexcept { return failed_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// Takes away the last elements.
+  /// Removes the elements from `size` on.
   void cut(std::size_t size) noexcept { size_ = size < size_ ? size : size_; }
 
  protected:
@@ -29,7 +29,7 @@ class AnyList {
   bool failed_ = false;
 };
 
-/// A row of plain values that grows. Like `Array` it reports a lack of memory; what was added after that is lost.
+/// A growable array of plain values. Like `Array` it reports a lack of memory; what was added after that is lost.
 template <typename T>
 class List : public AnyList {
   static_assert(std::is_trivially_copyable_v<T>, "elements are copied as bytes");
@@ -44,7 +44,7 @@ class List : public AnyList {
     if (size_ == room_ && !grow()) return;
     data_[size_++] = value;
   }
-  /// Takes one element away; the later ones move up.
+  /// Removes one element; later ones move forward.
   void remove(std::size_t i) noexcept { std::memmove(data_ + i, data_ + i + 1, (--size_ - i) * sizeof(T)); }
 
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }

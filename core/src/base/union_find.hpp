@@ -13,7 +13,7 @@ class UnionFind {
   UnionFind(std::uint32_t* parents, std::uint32_t count) noexcept : parents_(parents) {
     for (std::uint32_t i = 0; i < count; ++i) parents_[i] = i;
   }
-  /// Not inlined: where it is called often, it is seldom needed.
+  /// Not inlined: most calls of `join` return before they need it.
   [[gnu::noinline]] std::uint32_t find(std::uint32_t i) noexcept {
     std::uint32_t parent = parents_[i];
     for (;;) {
@@ -30,7 +30,7 @@ class UnionFind {
     b = find(b);
     parents_[std::max(a, b)] = std::min(a, b);
   }
-  /// Joins several at once. No branch on whether they are joined already: that is a coin toss.
+  /// Joins several at once, without a branch on whether they are joined already, which is unpredictable.
   template <std::size_t n>
   void join(const std::uint32_t (&members)[n]) noexcept {
     std::uint32_t roots[n];
@@ -42,7 +42,7 @@ class UnionFind {
     const std::uint32_t root = *std::min_element(roots, roots + n);
     for (std::size_t i = 0; i < n; ++i) parents_[roots[i]] = parents_[members[i]] = root;
   }
-  /// Makes every parent a root, once all is joined.
+  /// Makes every parent a root, after the last join.
   void flatten(std::uint32_t count) noexcept {
     // A parent comes before its children, so it points to a root already.
     for (std::uint32_t i = 0; i < count; ++i) parents_[i] = parents_[parents_[i]];
