@@ -318,7 +318,7 @@ void HitSearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
     const RoughRay& rough = rough_[ray];
     if (rough.end < soonest) continue;
     const unsigned close = mightHit(leaf, estimate(leaf, rough), zero);
-    rays[left] = static_cast<std::uint16_t>(ray << 4 | close);
+    rays[left] = static_cast<std::uint16_t>(unsigned{ray} << 4 | close);
     left += close != 0;
   }
   if (left > 0) decide(leaf, rays, left);
