@@ -193,7 +193,7 @@ TEST_CASE("sizes beyond the limits are errors before anything is read", "[errors
   }
 }
 
-TEST_CASE("coordinates out of all proportion are an error, in proportion they may be huge or tiny", "[errors]") {
+TEST_CASE("coordinates too far from the origin are an error; meshes may be huge or tiny", "[errors]") {
   for (const float far : {3e30f, -3e38f, 1e12f}) {
     Case call;
     call.cage.positions[30] = far;

@@ -119,7 +119,7 @@ TEST_CASE("the sentence about an option names its value and its range", "[option
   CHECK(describe(call.transfer(), {}, {}) == "options.occlusionReach = -1 is not a number of at least 0");
   call.options = {};
   call.options.steps.floor = static_cast<Floor>(3);
-  CHECK(describe(call.transfer(), {}, {}) == "options.steps.floor = 3 is none of (none, area, depth)");
+  CHECK(describe(call.transfer(), {}, {}) == "options.steps.floor = 3 is not one of (none, area, depth)");
 }
 
 TEST_CASE("options as constructed are the preset `default`, and `paper` turns its steps off", "[options]") {

@@ -438,14 +438,14 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     rmSync(flat);
   });
 
-  test('a cage out of all proportion', () => {
+  test('a cage with a vertex too far away', () => {
     const far = write(
       'far-away.glb',
       glbOf({ ...scene.cage, positions: scene.cage.positions.map((x, i) => (i === 7 ? 1e30 : x)) }),
     );
     fails(
       ['transfer', at('target.glb'), '--cage', far],
-      /far-away\.glb: cage\.positions\[7\] = .* is out of all proportion .* \(meshes\[0\]\.primitives\[0\], "only"\)/,
+      /far-away\.glb: cage\.positions\[7\] = .* is too far from the origin .* \(meshes\[0\]\.primitives\[0\], "only"\)/,
     );
     rmSync(far);
   });

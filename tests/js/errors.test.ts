@@ -130,7 +130,7 @@ describe('errors', () => {
       (error: unknown) =>
         error instanceof CagecastError &&
         error.code === 'tooLarge' &&
-        /cage\.positions\[7\] = .* out of all proportion/.test(error.message),
+        /cage\.positions\[7\] = .* is too far from the origin/.test(error.message),
     );
     worksAgain();
   });

@@ -21,7 +21,8 @@ const typeOf = ({ kind, range }) =>
 /** What its values are, for people. */
 function rangeOf({ kind, range }) {
   if (kind === 'toggle') return 'true or false';
-  if (kind === 'choice') return range.map((name) => `\`${name}\``).join(' or ');
+  if (kind === 'choice')
+    return new Intl.ListFormat('en', { type: 'disjunction' }).format(range.map((name) => `\`${name}\``));
   const limits = range[1] === Infinity ? `at least ${range[0]}` : `${range[0]} to ${range[1]}`;
   return kind === 'length' ? `${limits}, as a share of the target's diagonal` : limits;
 }
@@ -66,8 +67,8 @@ function makeOptions(options) {
     kHead('options.def'),
     interfaceOf('ProjectStage', 'Options that `project` reads.', of('project', false)),
     interfaceOf('ClassifyStage', 'Options that `classify` reads.', of('classify', false)),
-    interfaceOf('ProjectSteps', 'Switches of the steps in `project`, for measuring them.', of('project', true)),
-    interfaceOf('ClassifySteps', 'Switches of the steps in `classify`, for measuring them.', of('classify', true)),
+    interfaceOf('ProjectSteps', 'Switches for single steps in `project`, for measuring them.', of('project', true)),
+    interfaceOf('ClassifySteps', 'Switches for single steps in `classify`, for measuring them.', of('classify', true)),
     `/** Every option: which function reads it, whether it is in \`steps\`, and what its values are. */\nexport const optionTable = {\n${options.map(row).join('')}} as const;\n`,
     `/** The command's flags, one for each option outside \`steps\`. */\nexport const optionFlags = [\n${options
       .filter(({ isStep }) => !isStep)
@@ -78,7 +79,7 @@ function makeOptions(options) {
 
 function makeCodes(codes) {
   return `${kHead('codes.def')}
-/** What the core finds wrong. */
+/** Errors that the core reports. */
 export type CoreCode =
 ${codes.map(({ name, text }) => `${comment(text)}  | '${name}'`).join('\n')};
 `;
@@ -110,17 +111,17 @@ function makePage(options) {
 <!-- Made by wasm/tools/generate.mjs from core/include/cagecast/options.def. Do not edit. -->
 
 C++ (\`TransferOptions\`), JavaScript and the command have the same options with the same defaults. \`transfer\` and
-\`cutBorders\` read all of them, \`project\` and \`classify\` those of their stage. An option that is not given has the value of
-the preset: \`default\`, or \`paper\` for the method as published.
+\`cutBorders\` read all of them, \`project\` and \`classify\` those of their own stage. Options that are not given have the value
+of the preset: \`default\`, or \`paper\` for the method as published.
 
 ${head}${rows(false)}
-Besides, JavaScript has \`preset\`, \`locks\` (parts that are always or never painted) and \`reuse\` (an earlier result whose arrays
-are written over). The command has ${flags.join(', ')}, \`--preset\`, \`--keep\` and \`--exclude\`.
+JavaScript also has \`preset\`, \`locks\` (parts that are always or never painted) and \`reuse\` (an earlier result whose arrays are
+overwritten). The command has ${flags.join(', ')}, \`--preset\`, \`--keep\` and \`--exclude\`.
 
 ## Steps
 
-The switches in \`steps\` turn single steps of the [method](method.md) on and off. They are meant for measuring what a step is
-worth and are not part of the stable interface.
+The switches in \`steps\` turn single steps of the [method](method.md) on and off. They are meant for measuring what each step
+contributes and are not part of the stable interface.
 
 ${head}${rows(true)}`;
 }

@@ -8,10 +8,10 @@
 
 namespace cagecast {
 
-/// An owned, movable array of plain values, whose growth can fail without an exception.
+/// An owning, movable array of plain values. It reports a lack of memory without an exception.
 ///
-/// The core reports a lack of memory as `Code::outOfMemory` instead of ending the process: `std::vector` cannot do that
-/// in a build without exceptions (WebAssembly), so results live in this.
+/// Results use it because the core reports a lack of memory as `Code::outOfMemory` instead of ending the process, which
+/// `std::vector` cannot do in a build without exceptions (WebAssembly).
 template <typename T>
 class Array {
   static_assert(std::is_trivially_copyable_v<T>, "elements are copied as bytes");
@@ -28,7 +28,7 @@ class Array {
   Array& operator=(const Array&) = delete;
   ~Array() { std::free(data_); }
 
-  /// Makes room for exactly `count` elements, with unspecified values; earlier ones are lost.
+  /// Sets the size to `count`. The values are unspecified: earlier ones are lost.
   /// @return false, with the array empty, if there is not enough memory.
   [[nodiscard]] bool reset(std::size_t count) noexcept {
     if (count == size_) return true;

@@ -7,31 +7,31 @@
 /// The options of all functions. options.def lists them, with their ranges and what each does.
 namespace cagecast {
 
-/// How a target vertex finds its place on the cage.
+/// Where a target vertex takes its UV from.
 enum class ProjectionMode : std::uint8_t {
-  nearestPoint,   ///< The nearest point of the cage's surface: the method.
-  nearestVertex,  ///< The nearest vertex of the cage, nothing filtered: the classical baseline, for comparison.
+  nearestPoint,   ///< The nearest point on the surface of the cage: the method.
+  nearestVertex,  ///< The nearest vertex of the cage, without any filtering: a baseline for comparison.
 };
 
-/// Where UVs are kept.
+/// Where UVs are given.
 enum class Seams : std::uint8_t {
   vertex,  ///< Per vertex only: a triangle across a seam of the cage's texture stretches over the charts.
   corner,  ///< Also per triangle corner, in `Projection::cornerUvs`: no triangle stretches.
 };
 
-/// What a segment needs besides the threshold, so that light leaking into a hidden part is not taken for skin: step 5′.
+/// What a segment needs besides the threshold, so that a hidden part with a small exposed area is not painted: step 5.
 /// A, C and D are the whole, the covered and the depth-weighted area of the segment; F is its coverage.
 enum class Floor : std::uint8_t {
   none,   ///< Nothing.
   area,   ///< C > 0, and C ≥ `minCovered` · A.
-  depth,  ///< C > 0, and D · F ≥ `minCovered` · A, or as `minOfAll` and `maxUncovered` say.
+  depth,  ///< C > 0, and D · F ≥ `minCovered` · A, or `minOfAll` and `maxUncovered` let it pass.
 };
 
-/// What the user says about a segment.
+/// An override by the user: whether a segment is culled.
 enum class Lock : std::uint8_t {
-  automatic,  ///< Nothing: its areas decide.
-  keep,       ///< It is not culled, whatever its areas. Its occluded and uncovered points stay so.
-  exclude,    ///< It is culled, whatever its areas, and like any culled segment it explains the holes over it.
+  automatic,  ///< No override: its score decides.
+  keep,       ///< Never culled, whatever its score. Its points may still be occluded or uncovered.
+  exclude,    ///< Always culled, whatever its score. Like any culled segment, it explains the holes over it.
 };
 
 /// A lock and what it applies to.
@@ -40,10 +40,10 @@ struct LockEntry {
   Lock lock = Lock::automatic;
 };
 
-/// The last word about single segments. A lock by segment takes precedence over one by group; of several for the same
-/// segment or group the last one counts.
+/// Overrides for single segments. A lock by segment takes precedence over one by group. If there are several for the
+/// same segment or group, the last one counts.
 struct Locks {
-  std::span<const LockEntry> segments = {};  ///< By number, as in `Projection::segments`.
+  std::span<const LockEntry> segments = {};  ///< By segment number, as in `Projection::segments`.
   std::span<const LockEntry> groups = {};    ///< By `SegmentStats::group`: the group of the segment's first vertex.
 };
 
@@ -55,15 +55,15 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 #define CAGECAST_TYPE_toggle bool
 #define CAGECAST_TYPE_choice(type) type
 
-/// Switches of single steps of the method. They exist for measuring what each step is worth, and are not part of the
-/// stable interface.
+/// Switches for single steps of the method. They only exist to measure what each step contributes, and are not part of
+/// the stable interface.
 struct Steps {
 #define CAGECAST_STEP(stage, name, kind, standard, paper, range, text) CAGECAST_TYPE_##kind name = standard;
 #include "cagecast/options.def"
 };
 
-/// The options of `project`, `classify`, `transfer` and `cutBorders`. Each function reads its share: options.def names
-/// the stage of every option. As constructed, it is the preset `default`.
+/// The options of `project`, `classify`, `transfer` and `cutBorders`. Each function reads the options of its stages,
+/// which options.def names. A default-constructed object is the preset `default`.
 struct TransferOptions {
 #define CAGECAST_OPTION(stage, name, kind, standard, paper, range, text) CAGECAST_TYPE_##kind name = standard;
 #include "cagecast/options.def"

@@ -12,7 +12,7 @@ namespace cagecast {
 /// Why a vertex may, or may not, be painted. All but `cosmetic` are Non-Cosmetic Zones (NCZ).
 enum class Zone : std::uint8_t {
   cosmetic = 0,   ///< May be painted.
-  occluded = 1,   ///< The target itself lies over it.
+  occluded = 1,   ///< Another surface of the target lies over it.
   uncovered = 2,  ///< The cage has a hole over it, or it lies outside the cage.
   culled = 3,     ///< Its segment is culled; see `CulledBy`.
 };
@@ -20,12 +20,12 @@ enum class Zone : std::uint8_t {
 /// Why a segment is culled, that is, why none of it may be painted.
 enum class CulledBy : std::uint8_t {
   none,      ///< It is not culled.
-  coverage,  ///< Too little of it is covered.
+  coverage,  ///< The cage covers too little of it.
   hole,      ///< A hole of the cage is meant for it.
   lock,      ///< `Lock::exclude`.
 };
 
-/// CPU time of each step in milliseconds; wall time in WebAssembly, which has no other clock.
+/// CPU time of each step in milliseconds; in WebAssembly wall time, the only clock there.
 struct Timings {
   double weld = 0;        ///< Checking the input and welding the target's vertices.
   double build = 0;       ///< Building the search trees, and the boundary loops of the cage.
@@ -33,26 +33,26 @@ struct Timings {
   double occluded = 0;    ///< Step 2: self-intersection.
   double covered = 0;     ///< Step 3: cage intersection.
   double segments = 0;    ///< Steps 4 and 5′: connected components, their areas and twins.
-  double secondLook = 0;  ///< Step 6: occluded points that are seen in another direction.
-  double holes = 0;       ///< Step 7: what lies under the holes of the cage.
+  double secondLook = 0;  ///< Step 6: more rays from occluded points.
+  double holes = 0;       ///< Step 7: uncovered points and the holes over them.
   double seams = 0;       ///< Step 9: UVs per triangle corner.
-  double classify = 0;    ///< Step 5 and 8: which segments are culled; zones of vertices and triangles.
-  double total = 0;       ///< All of it.
+  double classify = 0;    ///< Steps 5 and 8: which segments are culled; zones of vertices and triangles.
+  double total = 0;       ///< The whole call.
 };
 
-/// What is known of one segment: a connected component of the welded target. Areas are in squared units of the input.
+/// The properties of one segment: a connected component of the welded target. Areas are in squared units of the input.
 struct SegmentStats {
-  std::uint32_t points = 0;  ///< Welded points.
+  std::uint32_t points = 0;  ///< Number of welded points.
   std::uint32_t group = 0;   ///< The group of its first vertex; 0 if the target has no groups.
-  std::uint32_t twinOf = 0;  ///< The first of the segments that are its copies; itself without `depthWeighting`.
+  std::uint32_t twinOf = 0;  ///< The first segment of the same shape, or itself; itself without `depthWeighting`.
   CulledBy culledBy = CulledBy::none;  ///< Set by `transfer`; `project` leaves `none`.
   double area = 0;                     ///< A: its whole area.
-  double exposedArea = 0;              ///< E: the area that the target does not occlude.
-  double coveredArea = 0;              ///< C: what of E the cage covers.
-  double depthWeightedArea = 0;        ///< D: C, counted less where it is unusually deep under the cage; C without
-                                       ///< `depthWeighting`.
-  /// How many times what it needs it has: it is kept from 1 on, unless a lock decides. Infinity if nothing is needed,
-  /// and before `transfer` sets it.
+  double exposedArea = 0;              ///< E: the area that is not occluded.
+  double coveredArea = 0;              ///< C: the part of E that the cage covers.
+  double depthWeightedArea = 0;        ///< D: C, weighted less where it is unusually deep under the cage; equal to
+                                       ///< C without `depthWeighting`.
+  /// How well it meets the rules of step 5, as the ratio of actual to required area: a segment with a score of at least
+  /// 1 is kept, unless a lock decides. Infinity if no area is required, and until `transfer` sets it.
   double score = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] bool culled() const noexcept { return culledBy != CulledBy::none; }
@@ -60,8 +60,8 @@ struct SegmentStats {
   [[nodiscard]] double coverage() const noexcept { return exposedArea > 0 ? coveredArea / exposedArea : 0; }
 };
 
-/// Whether an occluded or uncovered vertex becomes cosmetic if its segment is not culled: `never`, `always`, or, from
-/// `throughHole` on, if hole number `value − throughHole` is explained by a culled segment behind it.
+/// Whether an occluded or uncovered vertex becomes cosmetic if its segment is not culled: `never`, `always`, or, for
+/// values of at least `throughHole`, if a culled segment lies behind hole number `value − throughHole` and explains it.
 struct Recovery {
   static constexpr std::uint32_t never = 0;
   static constexpr std::uint32_t always = 1;
@@ -73,16 +73,16 @@ struct Recovery {
 struct HoleShare {
   std::uint32_t hole = 0;  ///< The number of the boundary loop.
   std::uint32_t segment = 0;
-  double exposedArea = 0;    ///< Area that the target does not occlude.
-  double uncoveredArea = 0;  ///< What of that the cage does not cover.
-  /// Area that the target occludes and the cage does not cover; 0 if `occlusionReach` is infinite, and in segments
-  /// nothing of which is covered.
+  double exposedArea = 0;    ///< Area that is not occluded.
+  double uncoveredArea = 0;  ///< The part of it that the cage does not cover.
+  /// Occluded area that the cage does not cover; 0 if `occlusionReach` is infinite or nothing of the segment is
+  /// covered.
   double hiddenArea = 0;
 };
 
-/// What `classify` needs of a projection, seen but not owned.
+/// A non-owning view of what `classify` needs of a projection.
 struct ProjectionView {
-  std::span<const Zone> zones;  ///< The fields are those of `Projection`.
+  std::span<const Zone> zones;  ///< All fields are as in `Projection`.
   std::span<const std::uint32_t> segments;
   std::span<const SegmentStats> segmentStats;
   std::span<const std::uint32_t> recovery = {};
@@ -91,7 +91,7 @@ struct ProjectionView {
 
 /// The result of `project`: steps 1 to 4, and what later steps need.
 struct Projection {
-  Array<float> uvs;  ///< 2 per target vertex: its place in the cage's texture, NCZ or not.
+  Array<float> uvs;  ///< 2 per target vertex: its UV in the cage's texture, also where it may not be painted.
   /// 2 per target index with `Seams::corner` and `ProjectionMode::nearestPoint`, else empty. They differ from `uvs`
   /// only where a seam of the cage's texture runs through a triangle.
   Array<float> cornerUvs;
@@ -103,18 +103,18 @@ struct Projection {
   Array<std::uint32_t> recovery;     ///< 1 per vertex, see `Recovery`, with `secondLook` or `holes`; else empty.
   Array<HoleShare> holeShares;       ///< 1 per hole and segment near it, with `holes`; ordered by hole.
   Timings timings;
-  std::uint64_t peakBytes = 0;  ///< Most memory in use at once during the call, beyond the caller's inputs.
+  std::uint64_t peakBytes = 0;  ///< Peak memory during the call, without the caller's inputs.
 
   [[nodiscard]] ProjectionView view() const noexcept { return {zones, segments, segmentStats, recovery, holeShares}; }
 };
 
-/// The result of `classify`: step 5, and what follows from it.
+/// The result of `classify`: steps 5 and 8.
 struct Zones {
   Array<Zone> zones;                      ///< 1 per target vertex.
   Array<std::uint8_t> cosmeticTriangles;  ///< 1 per target triangle: 1 if it may be painted; see `partialTriangles`.
   Array<CulledBy> culledBy;               ///< 1 per segment.
   Array<double> scores;                   ///< 1 per segment; see `SegmentStats::score`.
-  /// 1 per hole up to the last of `holeShares`: 1 if a culled segment behind it explains it.
+  /// 1 per hole, up to the last one in `holeShares`: 1 if a culled segment lies behind it and explains it.
   Array<std::uint8_t> explainedHoles;
 };
 

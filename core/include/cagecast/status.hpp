@@ -22,8 +22,8 @@ struct [[nodiscard]] Status {
   Code code = Code::ok;
   Argument argument = Argument::none;  ///< The argument at fault.
   std::uint32_t at = 0;                ///< The element at fault; codes.def says what it counts.
-  Option option = Option::none;        ///< With `badOption`: which one.
-  float value = 0;                     ///< With `badOption`: the value it was given; of a choice, its number.
+  Option option = Option::none;        ///< With `badOption`: the option at fault.
+  float value = 0;                     ///< With `badOption`: the given value; for a choice, its number.
   [[nodiscard]] constexpr bool ok() const noexcept { return code == Code::ok; }
 };
 

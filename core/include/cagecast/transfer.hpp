@@ -20,11 +20,11 @@ namespace cagecast {
 
 class Arena;
 
-/// The working memory of calls. It grows to what the largest call needed and keeps that for the next one, so reusing a
-/// workspace saves allocations. One workspace serves one call at a time; threads need one each.
+/// The working memory of calls. It grows to the need of the largest call and is kept between calls, so reusing a
+/// workspace saves allocations. It serves one call at a time: give each thread its own.
 class Workspace {
  public:
-  /// @param limit  Most bytes of working memory; a call that needs more ends with outOfMemory.
+  /// @param limit  Maximum size of the working memory in bytes; a call that needs more ends with outOfMemory.
   explicit Workspace(std::size_t limit = SIZE_MAX) noexcept : limit_(limit) {}
   Workspace(Workspace&& other) noexcept;
   Workspace& operator=(Workspace&& other) noexcept;
@@ -33,7 +33,7 @@ class Workspace {
   /// Frees the memory it keeps. The workspace can be used again.
   void release() noexcept;
 
-  /// For the library: the arena, emptied for a new call; null if there is no memory for one.
+  /// For the library: the arena, emptied for a new call; null if there is not enough memory.
   [[nodiscard]] Arena* restart() noexcept;
 
  private:
@@ -41,8 +41,8 @@ class Workspace {
   std::size_t limit_;
 };
 
-/// Finds, for every vertex of the target, its place on the cage and what lies over it: steps 1 to 4, 6, 7 and 9. The
-/// threshold plays no part yet.
+/// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 6, 7 and 9. The
+/// result does not depend on the threshold.
 /// @return badOption, or any code about the meshes, or outOfMemory.
 /// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage.
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
@@ -50,8 +50,8 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
 
 /// Decides which segments are culled, and so the zone of every vertex: steps 5 and 8.
 /// Takes microseconds for small targets; call it again for another threshold or other locks.
-/// @param projection  `Projection::view()`, of any options.
-/// @param indices     The target's, 3 per triangle.
+/// @param projection  `Projection::view()` of a projection with any options.
+/// @param indices     The indices of the target, 3 per triangle.
 /// @return badOption or outOfMemory.
 /// Cost: linear.
 Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices,

@@ -56,7 +56,7 @@ std::string describeOption(const Status& status) {
   const std::string given = name + " = " + number(static_cast<double>(status.value));
   const OptionEntry* entry = findOption(status.option);
   if (entry == nullptr) return "options are not valid";
-  if (entry->names != nullptr) return given + " is none of " + entry->names;
+  if (entry->names != nullptr) return given + " is not one of " + entry->names;
   if (std::isinf(entry->high)) return given + " is not a number of at least " + number(entry->low);
   return given + " is not within " + number(entry->low) + ".." + number(entry->high);
 }
@@ -88,7 +88,7 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
     case Code::groupCountMismatch:
       return name + ".groups has " + std::to_string(mesh.groups.size()) + " entries, not 1 for each of " + vertices;
     case Code::cornerUvCountMismatch:
-      return "cornerUvs has not 2 numbers for each of " + std::to_string(mesh.indices.size()) + " indices";
+      return "cornerUvs does not have 2 numbers for each of " + std::to_string(mesh.indices.size()) + " indices";
     case Code::indexOutOfRange:
       return name + ".indices" + at + " = " + std::to_string(mesh.indices[status.at]) + " is out of range (" +
              vertices + ")";
@@ -106,11 +106,11 @@ std::string describe(const Status& status, const MeshView& cage, const MeshView&
                std::to_string(kMaxTriangles);
       }
       return name + ".positions" + at + " = " + number(static_cast<double>(mesh.positions[status.at])) +
-             " is out of all proportion (farther from the origin than 1e8 diagonals of the target)";
+             " is too far from the origin (more than 1e8 diagonals of the target)";
     case Code::badOption: return describeOption(status);
     case Code::resultMismatch:
-      return "the result is of " + std::to_string(status.at) + " vertices, or of other segments; the target has " +
-             vertices;
+      return "the result does not belong to this target: it has " + std::to_string(status.at) + " zones for " +
+             vertices + ", or its segments do not match";
     case Code::outOfMemory: return "not enough memory for this target and cage";
   }
   return "unknown";

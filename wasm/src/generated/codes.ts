@@ -1,8 +1,8 @@
 // Made by wasm/tools/generate.mjs from core/include/cagecast/codes.def. Do not edit.
 
-/** What the core finds wrong. */
+/** Errors that the core reports. */
 export type CoreCode =
-  /** A mesh without vertices or without triangles. */
+  /** A mesh has no vertices or no triangles. */
   | 'emptyMesh'
   /** The number of position floats is not a multiple of three. */
   | 'positionsNotTriples'
@@ -10,28 +10,28 @@ export type CoreCode =
   | 'indicesNotTriples'
   /** The cage has no UVs. */
   | 'missingUvs'
-  /** UVs are not two per vertex. */
+  /** There are not two UV floats per vertex. */
   | 'uvCountMismatch'
-  /** Groups are not one per vertex. */
+  /** There is not one group per vertex. */
   | 'groupCountMismatch'
-  /** UVs per corner are not two per index. */
+  /** There are not two UV floats per index. */
   | 'cornerUvCountMismatch'
-  /** An index is not less than the number of vertices; `at` is its place in `indices`. */
+  /** An index is not less than the number of vertices; `at` is its position in `indices`. */
   | 'indexOutOfRange'
-  /** A coordinate is not a finite number; `at` is its place in `positions`. */
+  /** A coordinate is not a finite number; `at` is its position in `positions`. */
   | 'nonFinitePosition'
-  /** A UV is not a finite number; `at` is its place in `uvs`. */
+  /** A UV is not a finite number; `at` is its position in `uvs`. */
   | 'nonFiniteUv'
   /** Every triangle of the cage has zero area. */
   | 'noUsableCageTriangle'
   /**
    * More vertices or triangles than the limit (`at` says how many), or a coordinate too far from the origin for the
-   * size of the target (`at` is its place in `positions`).
+   * size of the target (`at` is its position in `positions`).
    */
   | 'tooLarge'
   /** The value of `option` is out of its range, or a lock names a segment or a group that does not exist (`at`). */
   | 'badOption'
   /** The given zones or segments do not belong to this target; `at` is the number of zones. */
   | 'resultMismatch'
-  /** The work or its result does not fit into memory; nothing was computed. */
+  /** There is not enough memory for the call or its result; nothing was computed. */
   | 'outOfMemory';

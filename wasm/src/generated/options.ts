@@ -3,8 +3,8 @@
 /** Options that `project` reads. */
 export interface ProjectStage {
   /**
-   * Where UVs are kept: per vertex, or also per triangle corner, so that no triangle stretches across a seam of the
-   * texture. `vertex` or `corner`. Default: `corner`; in the preset `paper`: `vertex`.
+   * Whether UVs are given per vertex only, or also per triangle corner, so that no triangle stretches across a seam of
+   * the texture. `vertex` or `corner`. Default: `corner`; in the preset `paper`: `vertex`.
    */
   seams?: 'vertex' | 'corner' | undefined;
   /**
@@ -32,85 +32,85 @@ export interface ClassifyStage {
    */
   threshold?: number | undefined;
   /**
-   * A segment is painted only if at least this share of its whole area is covered; needs a floor. 0 to 1. Default:
-   * `0.2`.
+   * A segment is painted only if at least this share of its whole area is covered; ignored if steps.floor is none, as
+   * in preset paper. 0 to 1. Default: `0.2`.
    */
   minCovered?: number | undefined;
 }
 
-/** Switches of the steps in `project`, for measuring them. */
+/** Switches for single steps in `project`, for measuring them. */
 export interface ProjectSteps {
   /**
-   * How a vertex finds its place on the cage: at the nearest point of the surface, or, as a baseline, at the nearest
-   * vertex with nothing filtered. `nearestPoint` or `nearestVertex`. Default: `nearestPoint`.
+   * Where a vertex takes its UV from: the nearest point on the surface of the cage, or, as a baseline without any
+   * filtering, the nearest vertex of the cage. `nearestPoint` or `nearestVertex`. Default: `nearestPoint`.
    */
   projection?: 'nearestPoint' | 'nearestVertex' | undefined;
   /**
-   * Step 4′: large triangles of small segments near a hole are sampled inside instead of at their corners. True or
-   * false. Default: `true`; in the preset `paper`: `false`.
+   * Step 4′: judges large triangles by samples inside them instead of by their corners, in segments of few points near
+   * a hole. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   interiorSamples?: boolean | undefined;
   /**
-   * Step 4′: a hole is near a segment if it is no farther than the cage; otherwise only within 0.01 of the diagonal.
-   * True or false. Default: `true`; in the preset `paper`: `false`.
+   * Step 4′: counts a hole as near a segment if it is no farther away than the cage is; if false, only within 0.01 of
+   * the diagonal. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   farLoops?: boolean | undefined;
   /**
-   * Step 5′: covered area counts less the deeper it lies under the cage; also finds the twins among segments. True or
-   * false. Default: `true`; in the preset `paper`: `false`.
+   * Step 5′: counts covered area less the deeper it lies under the cage. Also finds twins: segments of the same shape.
+   * True or false. Default: `true`; in the preset `paper`: `false`.
    */
   depthWeighting?: boolean | undefined;
   /**
-   * Step 6: restores occluded points that can be seen from the cage in another direction. True or false. Default:
-   * `true`; in the preset `paper`: `false`.
+   * Step 6: casts more rays from occluded points, and recovers a point if rays in other directions reach the cage
+   * freely. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   secondLook?: boolean | undefined;
   /**
-   * Step 6: points whose triangles all have copies in reverse winding look to both sides. True or false. Default:
-   * `true`; in the preset `paper`: `false`.
+   * Step 6: casts these rays to both sides of the surface where every triangle has a copy with reverse winding. True or
+   * false. Default: `true`; in the preset `paper`: `false`.
    */
   bothSides?: boolean | undefined;
   /**
-   * Step 6: only the exposed points of a segment decide to which side its points look. True or false. Default: `true`;
-   * in the preset `paper`: `false`.
+   * Step 6: finds the outer side of a segment from its exposed points only; if false, from all its points. True or
+   * false. Default: `true`; in the preset `paper`: `false`.
    */
   exposedSide?: boolean | undefined;
   /**
-   * Step 7: restores uncovered points unless the hole over them is meant for them. True or false. Default: `true`; in
-   * the preset `paper`: `false`.
+   * Step 7: recovers uncovered points, except those under a hole that is meant to leave them unpainted. True or false.
+   * Default: `true`; in the preset `paper`: `false`.
    */
   holes?: boolean | undefined;
 }
 
-/** Switches of the steps in `classify`, for measuring them. */
+/** Switches for single steps in `classify`, for measuring them. */
 export interface ClassifySteps {
   /**
-   * Step 5′: what a segment needs besides the threshold: nothing, enough covered area, or enough depth-weighted area.
-   * `none` or `area` or `depth`. Default: `depth`; in the preset `paper`: `none`.
+   * Step 5: what a segment needs besides the threshold: nothing, enough covered area, or enough depth-weighted area.
+   * `none`, `area`, or `depth`. Default: `depth`; in the preset `paper`: `none`.
    */
   floor?: 'none' | 'area' | 'depth' | undefined;
   /**
-   * Step 5′: with floor 'depth', this share of the covered area of all segments is enough as well. 0 to 1. Default:
-   * `0.005`.
+   * Step 5: with floor depth, a segment may pass by having this share of the covered area of all segments instead of
+   * minCovered. 0 to 1. Default: `0.005`.
    */
   minOfAll?: number | undefined;
   /**
-   * Step 5′: a segment that minOfAll lets pass is uncovered in at most this share of its exposed area. 0 to 1. Default:
+   * Step 5: a segment passes by minOfAll only if at most this share of its exposed area is uncovered. 0 to 1. Default:
    * `0.25`.
    */
   maxUncovered?: number | undefined;
   /**
-   * Step 5′: twins with scores near 1 are judged together; needs a floor. True or false. Default: `true`; in the preset
-   * `paper`: `false`.
+   * Step 5′: judges twins with scores near 1 together; needs depthWeighting, and a floor other than none. True or
+   * false. Default: `true`; in the preset `paper`: `false`.
    */
   twins?: boolean | undefined;
   /**
-   * Step 5″: culls small segments that a hole of the cage is meant for; needs holes. True or false. Default: `true`; in
-   * the preset `paper`: `false`.
+   * Step 5″: culls a small segment if a hole of the cage is meant for it; needs holes. True or false. Default: `true`;
+   * in the preset `paper`: `false`.
    */
   holeContents?: boolean | undefined;
   /**
-   * Step 8: a triangle is painted if one corner is cosmetic and the others are cosmetic or occluded; otherwise all
+   * Step 8: paints a triangle if at least one corner is cosmetic and the others are cosmetic or occluded; if false, all
    * three must be cosmetic. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   partialTriangles?: boolean | undefined;
@@ -154,7 +154,7 @@ export const optionFlags = [
     flag: '--seams',
     kind: 'choice',
     range: ['vertex', 'corner'],
-    text: 'Where UVs are kept: per vertex, or also per triangle corner, so that no triangle stretches across a seam of the texture.',
+    text: 'Whether UVs are given per vertex only, or also per triangle corner, so that no triangle stretches across a seam of the texture.',
   },
   {
     name: 'weldTolerance',
@@ -182,6 +182,6 @@ export const optionFlags = [
     flag: '--min-covered',
     kind: 'share',
     range: [0, 1],
-    text: 'A segment is painted only if at least this share of its whole area is covered; needs a floor.',
+    text: 'A segment is painted only if at least this share of its whole area is covered; ignored if steps.floor is none, as in preset paper.',
   },
 ] as const;

@@ -4,7 +4,7 @@
 export const Zone = {
   /** May be painted. */
   Cosmetic: 0,
-  /** The target itself lies over it. */
+  /** Another surface of the target lies over it. */
   Occluded: 1,
   /** The cage has a hole over it, or it lies outside the cage. */
   Uncovered: 2,
