@@ -1,4 +1,4 @@
-// A square of four vertices under a cage of one large triangle: where it lies in the texture, and what may be painted.
+// Transfers UVs to a square of four vertices under a cage of one large triangle.
 #include <cagecast/transfer.hpp>
 
 #include <cstdint>

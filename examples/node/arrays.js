@@ -1,4 +1,4 @@
-// The same on bare arrays: a square of four vertices under a cage of one large triangle.
+// Transfers UVs to raw arrays: a square of four vertices under a cage of one large triangle.
 import { init, transfer, Zone } from 'cagecast';
 
 await init();

@@ -1,4 +1,4 @@
-// Puts a paint on a model: node examples/node/transfer.js head.glb cage.glb paint.png painted.glb
+// Applies a paint to a model: node examples/node/transfer.js head.glb cage.glb paint.png painted.glb
 import { readFile } from 'node:fs/promises';
 import { NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
