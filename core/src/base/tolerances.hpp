@@ -15,4 +15,9 @@ inline constexpr double kTiePlane = 1e-7;
 /// starts from; it meets the cage from as far behind its start, so that a point on the cage is covered.
 inline constexpr double kRayStart = 1e-5;
 
+/// Step 9: a target edge is smeared if its UV length exceeds the UV length that the cage explains by this factor,
+inline constexpr double kSmear = 4;
+/// plus this UV length: edges that are shorter than it in the texture are never smeared.
+inline constexpr double kSmearSlack = 0.005;
+
 }  // namespace cagecast

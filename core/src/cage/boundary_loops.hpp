@@ -62,12 +62,6 @@ struct BoundaryLoops {
   }
 };
 
-/// The position of a closest point.
-inline Vec3 positionOf(const CageTriangle& t, const ClosestPoint& place) {
-  const Vec3 a = Vec3::from(t.a);
-  return a + place.v * (Vec3::from(t.b) - a) + place.w * (Vec3::from(t.c) - a);
-}
-
 /// @return false if memory ran out.
 bool findBoundaryLoops(const Cage& cage, const HalfEdges& halfEdges, Arena& arena, BoundaryLoops& out) noexcept;
 

@@ -5,16 +5,11 @@
 #include <cstdint>
 
 #include "base/arena.hpp"
-#include "geometry/closest_point.hpp"
+#include "base/tolerances.hpp"
 #include "input/cage.hpp"
 #include "input/half_edges.hpp"
 
 namespace cagecast {
-
-/// docs/method.md, step 9: an edge is smeared if its UV length exceeds the length that the cage explains by this
-/// factor plus this slack.
-inline constexpr double kSmear = 4;
-inline constexpr double kSmearSlack = 0.005;
 
 /// The closest point of a target vertex, as far as the texture is concerned.
 struct UvSample {

@@ -63,8 +63,8 @@ const Candidate& BorderClassifier::nearestOf(const std::uint32_t* cageTriangles,
     // A triangle is no nearer than its plane.
     if (std::abs(dot(p - Vec3::from(t.a), t.normal.exact)) > limit) continue;
     candidates_[found] = {cageTriangles[i], closestPointOf(t, p)};
-    if (candidates_[found].place.distance > limit) continue;
-    limit = std::min(limit, candidates_[found].place.distance + slack_);
+    if (candidates_[found].point.distance > limit) continue;
+    limit = std::min(limit, candidates_[found].point.distance + slack_);
     ++found;
   }
   return cagecast::nearestOf(candidates_, found, diagonal_);
@@ -111,7 +111,7 @@ NearbyTriangles BorderClassifier::listNearby(Hull hull, double distance) noexcep
 NearbyTriangles BorderClassifier::narrow(NearbyTriangles nearby, Hull hull) noexcept {
   if (nearby.count <= 1) return nearby;
   const Vec3 centre = Ball(hull).centre;
-  const std::uint32_t nearest = nearestOf(&listed_[nearby.first], nearby.count, centre).slot;
+  const std::uint32_t nearest = nearestOf(&listed_[nearby.first], nearby.count, centre).cageTriangle;
   // The distance to a triangle is a convex function. So, within the part, the distance to the cage is at most what is
   // interpolated between the corners' distances to one triangle,
   double limits[kMaxCorners];

@@ -1,69 +1,63 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "input/cage.hpp"
-#include "search/kd_tree.hpp"
+#include "geometry/triangle.hpp"
 
-/// Places on the cage, decided in double: which triangle is nearest, and where on it.
+/// Closest points on triangles, in double precision.
 namespace cagecast {
 
-/// The point of a cage triangle that is nearest to a point p.
+/// The point of a triangle that is closest to a point p.
 struct ClosestPoint {
-  double distance;
-  double v, w;    ///< Barycentrics of corners b and c.
-  double height;  ///< Of p over the triangle's plane.
-  bool inside;    ///< Strictly: not on an edge or a corner.
+  double distance;  ///< From p.
+  double v, w;      ///< Barycentric coordinates of corners b and c.
+  double height;    ///< Of p above the triangle's plane; negative below it.
+  bool inside;      ///< Whether it lies strictly inside the triangle, not on an edge or a corner.
 };
 
-/// The point of a triangle's border that is nearest to a point p.
-struct BorderPlace {
-  double distance;
-  double v, w;
+/// The point of a triangle's edges that is closest to a point p.
+struct ClosestEdgePoint {
+  double distance;  ///< From p.
+  double v, w;      ///< Barycentric coordinates of corners b and c.
 };
 
-/// Finds it for a point that lies beside the triangle: on one of the edges that its foot is beyond.
-/// @param v,w  Barycentrics of b and c of its foot.
-BorderPlace placeOnBorder(const CageTriangle& t, const Vec3& p, double v, double w) noexcept;
+/// Finds it for a point p whose projection onto the triangle's plane is not inside the triangle.
+/// @param v,w  The barycentric coordinates of b and c of that projection.
+ClosestEdgePoint closestPointOnEdges(const Triangle& t, const Vec3& p, double v, double w) noexcept;
 
-/// Finds the point of a triangle that is nearest to p.
-inline ClosestPoint closestPointOnTriangle(const CageTriangle& t, const Vec3& p) {
+/// Finds the point of a triangle that is closest to p.
+inline ClosestPoint closestPointOnTriangle(const Triangle& t, const Vec3& p) {
   const Vec3 offset = p - Vec3::from(t.a);
   const double height = dot(offset, t.normal.exact);
-  // Most points lie straight under their triangle.
   const double v = dot(offset, t.gradientB);
   const double w = dot(offset, t.gradientC);
+  // The projection of most points is inside.
   if (v > 0 && w > 0 && v + w < 1) return {std::abs(height), v, w, height, true};
-  const BorderPlace place = placeOnBorder(t, p, v, w);
-  return {place.distance, place.v, place.w, height, false};
+  const ClosestEdgePoint onEdge = closestPointOnEdges(t, p, v, w);
+  return {onEdge.distance, onEdge.v, onEdge.w, height, false};
 }
 
-/// A triangle that could be the nearest.
+/// The position of a closest point.
+inline Vec3 positionOf(const Triangle& t, const ClosestPoint& closest) {
+  const Vec3 a = Vec3::from(t.a);
+  return a + closest.v * (Vec3::from(t.b) - a) + closest.w * (Vec3::from(t.c) - a);
+}
+
+/// A triangle that could be the closest one.
 struct Candidate {
-  std::uint32_t slot;
-  ClosestPoint place;
+  std::uint32_t cageTriangle;
+  ClosestPoint point;
 };
 
-/// Picks, of the triangles that could be the nearest, the one that the tie rule of docs/method.md, step 1, names: of
-/// those within `kTieDistance` of the nearest the one whose plane is farthest from p, of equals the first.
+/// Picks one of at least one candidate by the tie rule of docs/method.md, step 1: of those within `kTieDistance` of the
+/// closest the one whose plane is farthest from p, of equals the one with the lowest index.
+/// @param diagonal  Of the target, scaled.
 const Candidate& nearestOf(const Candidate* candidates, std::uint32_t count, double diagonal) noexcept;
 
-/// A place in the texture.
+/// A point in the texture.
 struct Uv {
   double u, v;
 };
-
-/// Blends the UVs of a triangle's corners at a place on it.
-inline Uv uvAt(const CageTriangle& t, const ClosestPoint& place) {
-  const auto blend = [&](int axis) {
-    const auto a = static_cast<double>(t.uvs[axis]);
-    const double ab = static_cast<double>(t.uvs[2 + axis]) - a;
-    const double ac = static_cast<double>(t.uvs[4 + axis]) - a;
-    return a + place.v * ab + place.w * ac;
-  };
-  return {blend(0), blend(1)};
-}
 
 }  // namespace cagecast

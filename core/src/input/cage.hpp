@@ -4,36 +4,29 @@
 
 #include "base/arena.hpp"
 #include "cagecast/mesh.hpp"
-#include "geometry/vec3.hpp"
+#include "geometry/closest_point.hpp"
+#include "geometry/triangle.hpp"
 #include "input/validate.hpp"
 
 namespace cagecast {
 
-/// A direction, prepared for intersection: the axis it points along most becomes z, and a shear makes it the z-axis
-/// (Woop, Benthin, Wald, "Watertight ray/triangle intersection", JCGT 2013). No reciprocal is infinite.
-struct RayDirection {
-  /// For filters.
-  struct Rough {
-    float inverse[3];      ///< 1 / component, of at most 1e20.
-    float shearX, shearY;  ///< −x/z and −y/z of the direction.
-    float scaleZ;          ///< −1/z.
-    std::uint32_t z;       ///< Which axis serves as z; the next two, with x after z, as x and y.
+/// A triangle of the cage that has an area, scaled. Its normal points outward, and is the direction of the rays of the
+/// points that project onto it.
+struct alignas(16) CageTriangle : Triangle {
+  float uvs[6];         ///< u, v of each corner.
+  std::uint32_t index;  ///< In the caller's mesh.
+};
+
+/// Blends the UVs of a triangle's corners at a point on it.
+inline Uv uvAt(const CageTriangle& t, const ClosestPoint& closest) {
+  const auto blend = [&](int axis) {
+    const auto a = static_cast<double>(t.uvs[axis]);
+    const double ab = static_cast<double>(t.uvs[2 + axis]) - a;
+    const double ac = static_cast<double>(t.uvs[4 + axis]) - a;
+    return a + closest.v * ab + closest.w * ac;
   };
-  Rough rough;
-  Vec3 exact;  ///< Unit length.
-
-  static RayDirection along(Vec3 unit) noexcept;
-};
-
-/// A triangle of the cage that has an area.
-struct alignas(16) CageTriangle {
-  float a[4], b[4], c[4];  ///< Corners (x, y, z, 0), scaled.
-  float uvs[6];            ///< Of the corners.
-  std::uint32_t index;     ///< In the caller's mesh.
-  /// Of the barycentrics of b and c: times p − a, they are those of the foot of p.
-  Vec3 gradientB, gradientC;
-  RayDirection normal;  ///< Outward; the direction of the rays of the points that project here.
-};
+  return {blend(0), blend(1)};
+}
 
 /// The cage without its degenerate triangles, in the caller's order.
 struct Cage {

@@ -77,8 +77,8 @@ ChartFlood::Group& ChartFlood::groupWith(Corner* const (&corners)[3], int k, std
 ChartFlood::Group& ChartFlood::addGroup(Corner& own) noexcept {
   own.group = groupCount_++;
   Group& group = groups_[own.group];
-  group.cageTriangle = own.closest.slot;
-  group.centre = positionOf(cage_.triangles[group.cageTriangle], own.closest.place);
+  group.cageTriangle = own.closest.cageTriangle;
+  group.centre = positionOf(cage_.triangles[group.cageTriangle], own.closest.point);
   const double centre[3] = {group.centre.x, group.centre.y, group.centre.z};
   // Unused points lie at the centre, so that the kernel has numbers to work on.
   for (int axis = 0; axis < 3; ++axis)

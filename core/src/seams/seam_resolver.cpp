@@ -20,7 +20,7 @@ constexpr double kTieSum = 1e-7;
 double roughSum(Corner* const (&corners)[3], const ChartPatch* patch, const std::uint8_t (&inGroup)[3], int k) {
   if (patch == nullptr) return std::numeric_limits<double>::infinity();
   const auto distance = [&](int c) { return std::sqrt(static_cast<double>(patch->leastSquared[inGroup[c]])); };
-  return corners[k]->closest.place.distance + distance((k + 1) % 3) + distance((k + 2) % 3);
+  return corners[k]->closest.point.distance + distance((k + 1) % 3) + distance((k + 2) % 3);
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ void SeamResolver::setCorner(Corner& corner, std::uint32_t point, const float* p
   corner.p = Vec3::from(position);
   const CageTriangle& triangle = cage_.triangles[cageTriangle];
   corner.closest = {cageTriangle, closestPointOnTriangle(triangle, corner.p)};
-  corner.uv = uvAt(triangle, corner.closest.place);
+  corner.uv = uvAt(triangle, corner.closest.point);
 }
 
 /// Whether a seam separates any two corners, in double.
@@ -87,8 +87,8 @@ bool SeamResolver::isAcrossSeam(const Corner* const (&corners)[3]) const noexcep
   for (int k = 0; k < 3; ++k) {
     const Corner& a = *corners[k];
     const Corner& b = *corners[(k + 1) % 3];
-    const UvSample from{a.closest.slot, a.closest.place.distance, a.uv};
-    const UvSample to{b.closest.slot, b.closest.place.distance, b.uv};
+    const UvSample from{a.closest.cageTriangle, a.closest.point.distance, a.uv};
+    const UvSample to{b.closest.cageTriangle, b.closest.point.distance, b.uv};
     if (charts_.separates(from, to, length(b.p - a.p))) return true;
   }
   return false;
@@ -103,8 +103,9 @@ void SeamResolver::addPatches(Queued& queued) noexcept {
   }
   const double reach = kPatchEdges * std::sqrt(longestSquared) + kPatchSlack * diagonal_;
   for (int k = 0; k < 3; ++k) {
-    const bool isKnown =
-        std::any_of(corners, corners + k, [&](const Corner* c) { return c->closest.slot == corners[k]->closest.slot; });
+    const bool isKnown = std::any_of(corners, corners + k, [&](const Corner* c) {
+      return c->closest.cageTriangle == corners[k]->closest.cageTriangle;
+    });
     queued.patches[k] = isKnown ? nullptr : &flood_.add(corners, k, reach, queued.inGroup[k]);
   }
 }
@@ -141,8 +142,8 @@ void SeamResolver::projectOnto(const Queued& queued, int k, Projected& out) noex
     const Corner& corner = *queued.corners[c];
     const Candidate& closest =
         i == 0 ? corner.closest : closestOnPatch(corner, *queued.patches[k], queued.inGroup[k][c]);
-    out.sum += closest.place.distance;
-    const Uv uv = uvAt(cage_.triangles[closest.slot], closest.place);
+    out.sum += closest.point.distance;
+    const Uv uv = uvAt(cage_.triangles[closest.cageTriangle], closest.point);
     out.uvs[2 * c] = static_cast<float>(uv.u);
     out.uvs[2 * c + 1] = static_cast<float>(uv.v);
   }
@@ -155,12 +156,12 @@ const Candidate& SeamResolver::closestOnPatch(const Corner& corner, const ChartP
   const PatchCandidate* const end = patch.candidates + patch.candidateCount;
   std::uint32_t count = 0;
   for (const PatchCandidate* candidate = patch.candidates; candidate < end; ++candidate) {
-    if (candidate->cageTriangle == corner.closest.slot) return corner.closest;
-    candidates_[count].slot = candidate->cageTriangle;
+    if (candidate->cageTriangle == corner.closest.cageTriangle) return corner.closest;
+    candidates_[count].cageTriangle = candidate->cageTriangle;
     count += candidate->points >> inGroup & 1;
   }
   for (std::uint32_t i = 0; i < count; ++i)
-    candidates_[i].place = closestPointOnTriangle(cage_.triangles[candidates_[i].slot], corner.p);
+    candidates_[i].point = closestPointOnTriangle(cage_.triangles[candidates_[i].cageTriangle], corner.p);
   return count == 1 ? candidates_[0] : nearestOf(candidates_, count, diagonal_);
 }
 

@@ -38,12 +38,12 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
                                   ? nearestOfSeveral(member, p)
                                   : Candidate{only, closestPointOnTriangle(cage.triangles[only], p)};
 
-    const ClosestPoint& q = nearest.place;
-    const Uv uv = uvAt(cage.triangles[nearest.slot], q);
+    const ClosestPoint& q = nearest.point;
+    const Uv uv = uvAt(cage.triangles[nearest.cageTriangle], q);
     out.uvs[2 * std::size_t{i}] = static_cast<float>(uv.u);
     out.uvs[2 * std::size_t{i} + 1] = static_cast<float>(uv.v);
     out.distances[i] = static_cast<float>(q.distance);
-    out.cageTriangles[i] = nearest.slot;
+    out.cageTriangles[i] = nearest.cageTriangle;
     // Strictly inside its triangle, q = p − height · n, so the point's ray meets the cage at −height.
     out.meetsCage[i] = q.inside && -q.height > -start;
     if (out.cageDistances != nullptr) out.cageDistances[i] = std::max(0.0, -q.height);
