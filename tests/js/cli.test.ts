@@ -125,8 +125,8 @@ describe('usage', () => {
       [[...ok, '--preset', 'papre'], /--preset.*'papre' is invalid.*paper/],
       [[...ok, '--output', at('out.obj')], /must end in \.glb/],
       [[...ok, '--texture', at('paint.png')], /--texture needs -o/],
-      [[...ok, '-o', at('target.glb')], /would be written over another file/],
-      [[...ok, '-o', at('out.glb'), '--report', at('out.glb')], /would be written over another file/],
+      [[...ok, '-o', at('target.glb')], /would overwrite another file/],
+      [[...ok, '-o', at('out.glb'), '--report', at('out.glb')], /would overwrite another file/],
       [[...ok, 'extra.glb', '-o', at('out.glb')], /too many arguments/],
       [[...ok, '--colour', 'red'], /unknown option '--colour'/],
       [['transmogrify'], /unknown command 'transmogrify'/],
@@ -520,7 +520,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
       at('way/same.glb'),
     );
     assert.equal(clash.status, 2);
-    assert.match(clash.stderr, /would be written over another file of this command/);
+    assert.match(clash.stderr, /would overwrite another file of this command/);
     assert.deepEqual(readdirSync(at('folder')), ['later.glb']);
     chmodSync(at('folder/later.glb'), 0o600);
     assert.equal(
@@ -540,7 +540,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     const { status, stderr } = cagecast('transfer', file, '--cage', at('cage.glb'), '-o', link);
     assert.deepEqual(
       [status, stderr],
-      [2, `cagecast: ${realpathSync(file)} would be written over another file of this command\n`],
+      [2, `cagecast: ${realpathSync(file)} would overwrite another file of this command\n`],
     );
     rmSync(link);
     rmSync(file);
@@ -699,10 +699,10 @@ describe('transfer', () => {
     for (const [flags, message] of [
       [
         ['--keep', 'eyes*'],
-        /named\.glb: --keep eyes\*: no node or material is called that; there are: head, skin, eye\.left, glass, tongue, flesh$/,
+        /named\.glb: --keep eyes\*: no node or material has this name; there are: head, skin, eye\.left, glass, tongue, flesh$/,
       ],
       [['--exclude', 'eye?left'], /--exclude eye\?left: no node/],
-      [['--keep', '*', '--exclude', 'skin'], /--keep \* and --exclude skin both mean "head"$/],
+      [['--keep', '*', '--exclude', 'skin'], /--keep \* and --exclude skin both match "head"$/],
     ] as const) {
       const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), ...flags);
       assert.equal(status, 1);

@@ -172,7 +172,7 @@ describe('errors', () => {
     fails(
       untyped(cage, target, { locks: { segments: { '': 'keep' } } }),
       'badOption',
-      'transfer: options.locks.segments has the key "", which is not a number of one',
+      'transfer: options.locks.segments has the key "", which is not the number of a segment',
     );
     fails(untyped(cage, target, 0.5), 'badOption', 'transfer: options is 0.5, not an object');
     fails(

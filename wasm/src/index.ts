@@ -1,5 +1,5 @@
 /**
- * Carries a texture that was drawn for a cage onto any mesh, and finds the Non-Cosmetic Zones that must not receive it.
+ * Transfers a texture that was drawn for a cage to any mesh, and finds the Non-Cosmetic Zones, which must not be painted.
  * @module cagecast
  */
 

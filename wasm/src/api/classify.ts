@@ -8,7 +8,7 @@ import { checkReuse, handOver, type Reuse } from './reuse.js';
 
 /**
  * Decides which segments are culled, and so the zone of every vertex, in microseconds.
- * @param options  With `reuse`, an earlier classification becomes this one.
+ * @param options  With `reuse`, an earlier classification is overwritten and returned.
  * @throws {CagecastError} `badArgument` if `projection` is not what `project` returned; `badOption`.
  */
 export function classify(projection: Projection, options?: ClassifyOptions & Reuse<Classification>): Classification {
@@ -23,8 +23,9 @@ const wrong = (text: string, at = 0) =>
   new CagecastError('badArgument', `classify: projection${text}; pass what project() returned`, at);
 
 /**
- * Checks that `projection` is whole: it is plain data, which may have been stored or sent, and the core trusts it.
- * @returns it as the core takes it.
+ * Checks that `projection` is complete and consistent, because it is plain data that may have been stored or sent, and the core
+ * does not check it.
+ * @returns the projection in the form that the core takes.
  */
 function checkProjection(projection: Projection): CoreProjection {
   if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
@@ -66,11 +67,11 @@ function checkSegment(segment: SegmentStats, s: number, segments: number): Segme
   const numbers = [points, area, exposedArea, coveredArea, depthWeightedArea, group];
   if (!numbers.every(Number.isFinite) || !isBelow(twinOf, segments))
     throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
-  // What `classify` decides, and what follows from the rest, may be missing.
+  // Fields that `classify` computes may be missing.
   return { ...segment, coverage: 0, score: Number.POSITIVE_INFINITY, culled: false, culledBy: 'none' };
 }
 
-/** More holes than a cage can have would only ask for memory. */
+/** A limit no cage exceeds: the core allocates memory for as many holes as the largest number says. */
 const mostHoles = 2 ** 28;
 
 /** @returns the number of holes. */

@@ -7,19 +7,19 @@ import type { TransferResult } from './result.js';
 
 /**
  * A target whose triangles are cut along the borders of the paint. The target's vertices keep their numbers, and new ones follow.
- * An edge is cut at the same places for all of its triangles, so that the surface stays as watertight as it was. The caller owns
- * every array.
+ * All triangles at an edge are cut at the same places, so that the surface stays as watertight as it was. The caller owns every
+ * array.
  */
 export interface CutTarget {
-  /** 3 per new vertex: the vertices of the target that it blends, corners of one triangle. One may be there twice. */
+  /** 3 per new vertex: the vertices of the target that it blends, which are corners of one triangle. A vertex may occur twice. */
   sources: Uint32Array<ArrayBuffer>;
   /** 3 per new vertex: how much of each source; they add up to 1. */
   weights: Float32Array<ArrayBuffer>;
   /** 3 per triangle. */
   indices: Uint32Array<ArrayBuffer>;
-  /** 1 per triangle: the triangle of the target that it is a part of, ascending. */
+  /** 1 per triangle: the triangle of the target that it was cut from; ascending. */
   triangles: Uint32Array<ArrayBuffer>;
-  /** 2 per vertex, new ones included: its place in the cage's texture. */
+  /** 2 per vertex, including new ones: its UV in the cage's texture. */
   uvs: Float32Array<ArrayBuffer>;
   /** 2 per index, with `seams: 'corner'`; else empty. */
   cornerUvs: Float32Array<ArrayBuffer>;
@@ -31,15 +31,15 @@ export interface CutTarget {
 
 /**
  * Cuts a target along the projected borders of the cage and its holes, and, with `seams: 'corner'`, along the seams of the
- * texture, so that every triangle lies on one side. Segments stay culled or kept. With `steps.projection: 'nearestVertex'`
- * nothing is cut.
+ * texture, so that every triangle lies on one side. Which segments are culled does not change. With
+ * `steps.projection: 'nearestVertex'` nothing is cut.
  *
- * It takes about as long as a transfer, and about twenty searches for a nearest point for each edge that is cut.
+ * Cost: that of a transfer, and about twenty nearest-point searches per cut edge.
  *
  * @param cage     As for `transfer`.
  * @param target   As for `transfer`. The attributes of a new vertex are those of its `sources`, blended by `weights`.
  * @param result   What `transfer` returned for the same cage, target and options.
- * @param options  Those of the transfer; its `locks` are in the result already.
+ * @param options  The options of the transfer. `locks` are ignored: the result already contains their effect.
  * @throws {CagecastError} `resultMismatch` if the result does not belong to this target; else as `transfer` does.
  *
  * @example
@@ -58,7 +58,7 @@ export function cutBorders(
   return callCore('cutBorders', ({ workspace }) => workspace.cutBorders(cageMesh, targetMesh, decision, checked.core));
 }
 
-/** Checks that a result is whole and belongs to this target: the core trusts what is in it. */
+/** Checks that a result is complete and belongs to this target, because the core does not check it. */
 function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision {
   const wrong = (text: string) =>
     new CagecastError('badArgument', `cutBorders: result${text}; pass what transfer() returned`);

@@ -1,22 +1,22 @@
 import type { CoreCode } from '../generated/codes.js';
 
 /**
- * What went wrong, for programs: what the core finds wrong, or
+ * What went wrong, for programs: an error that the core reports, or
  *
  * - `badArgument`: an argument has the wrong type.
  * - `notInitialised`: `init()` has not resolved yet.
  * - `unsupported`: this host cannot run the WebAssembly module.
- * - `aborted`: the call was given up through its `AbortSignal`.
+ * - `aborted`: the worker was terminated before the call ended.
  * - `internal`: a defect of Cagecast; please report it.
  */
 export type Code = CoreCode | 'badArgument' | 'notInitialised' | 'unsupported' | 'aborted' | 'internal';
 
-/** The one error that Cagecast throws. Its message names the function, the argument, the value and the limit. */
+/** The only class of errors that Cagecast throws. Its message names the function, the argument, the value and the limit. */
 export class CagecastError extends Error {
   override readonly name = 'CagecastError';
   /** What went wrong, for programs. */
   readonly code: Code;
-  /** The element at fault, counted in the array that the message names; how many there are, where that is the fault; else 0. */
+  /** The index of the element at fault in the array that the message names, or a count if the number of elements is wrong; else 0. */
   readonly at: number;
 
   constructor(code: Code, message: string, at = 0, options?: ErrorOptions) {
@@ -26,7 +26,7 @@ export class CagecastError extends Error {
   }
 }
 
-/** Names a value in a message: what it is, and how much of it. */
+/** Describes a value in a message: short values in full, others by their type. */
 export function show(value: unknown): string {
   if (typeof value === 'string') return JSON.stringify(value.length > 40 ? `${value.slice(0, 40)}…` : value);
   if (value === null || value === undefined || typeof value === 'number' || typeof value === 'boolean')

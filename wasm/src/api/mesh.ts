@@ -1,18 +1,18 @@
 import { CagecastError, show } from './error.js';
 
-/** A triangle mesh. Its arrays stay the caller's: they are only read, and copied. */
+/** A triangle mesh. Its arrays are copied and never changed. */
 export interface Mesh {
-  /** 3 numbers per vertex (x, y, z), finite; cage and target share space and unit. */
+  /** 3 numbers per vertex (x, y, z), finite; cage and target are in the same space and unit. */
   positions: Float32Array;
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array | Uint16Array | Uint8Array;
-  /** 2 numbers per vertex, finite. A cage must have them, a target need not. */
+  /** 2 numbers per vertex, finite. Required for a cage, optional for a target. */
   uvs?: Float32Array | undefined;
-  /** 1 per vertex or none, usually the mesh or material it belongs to: vertices of different groups are never welded. */
+  /** 1 per vertex, usually the number of its mesh or material: vertices of different groups are never welded. Default: all 0. */
   groups?: Uint32Array | undefined;
 }
 
-/** A mesh whose arrays are of the right types, with empty ones in place of those that it lacks. */
+/** A mesh whose arrays have the right types; missing ones are empty. */
 export interface CheckedMesh {
   positions: Float32Array;
   indices: Uint32Array | Uint16Array | Uint8Array;
@@ -24,7 +24,7 @@ const noUvs = new Float32Array(0);
 const noGroups = new Uint32Array(0);
 
 /**
- * Checks the types of a mesh's arrays and fills in the missing ones, empty. The core checks what is in them.
+ * Checks the types of a mesh's arrays and adds empty ones for those that are missing. The core checks the values.
  * @throws {CagecastError} `badArgument`
  */
 export function checkMesh(fn: string, name: 'cage' | 'target', mesh: unknown): CheckedMesh {
@@ -41,7 +41,7 @@ export function checkMesh(fn: string, name: 'cage' | 'target', mesh: unknown): C
   if (uvs !== undefined && uvs !== null && !(uvs instanceof Float32Array)) throw wrong('uvs', uvs, 'Float32Array');
   if (groups !== undefined && groups !== null && !(groups instanceof Uint32Array))
     throw wrong('groups', groups, 'Uint32Array');
-  // An empty array of UVs or groups with vertices there is a mistake of the caller that the core would take for "none".
+  // With vertices, an empty array of groups is a mistake of the caller, which the core would take for "no groups".
   if (groups?.length === 0 && positions.length > 0) {
     throw new CagecastError(
       'groupCountMismatch',

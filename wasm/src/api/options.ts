@@ -11,19 +11,19 @@ import { CagecastError, show } from './error.js';
 
 /**
  * A named set of values for all options. `paper` is the method as published: *Cage-based Texture Transfer with Geometric
- * Filtering* (SIGGRAPH Posters '26, DOI 10.1145/3799825.3818741). `default` adds steps for bodies, cars and cages of many pieces;
+ * Filtering* (SIGGRAPH Posters '26, DOI 10.1145/3799825.3818741). `default` adds steps for bodies, cars and cages with many UV charts;
  * docs/method.md describes them.
  */
 export type Preset = 'default' | 'paper';
 
-/** What the user of a model says about a segment: its areas decide, it is always painted, or never. */
+/** An override for a segment: its score decides (`auto`), it is never culled (`keep`), or always (`exclude`). */
 export type Lock = 'auto' | 'keep' | 'exclude';
 
-/** The last word about parts of the target. A lock by segment takes precedence over one by group. */
+/** Overrides for parts of the target. A lock by segment takes precedence over one by group. */
 export interface Locks {
-  /** By segment: a number in `result.segments`. */
+  /** By segment number, as in `result.segments`. */
   segments?: Readonly<Record<number, Lock>> | undefined;
-  /** By group: a number in `target.groups`; 0 if the target has none. A segment has the group of its first vertex. */
+  /** By group number, as in `target.groups`, or 0 if the target has no groups. A segment has the group of its first vertex. */
   groups?: Readonly<Record<number, Lock>> | undefined;
 }
 
@@ -69,7 +69,7 @@ export interface CheckedOptions {
   locks: CoreLocks;
 }
 
-/** A function that takes options, and which of them besides those of its stages. */
+/** For each function, the stages whose options it takes, and its other options. */
 const functions = {
   project: { stages: ['project'], others: ['reuse'] },
   classify: { stages: ['classify'], others: ['locks', 'reuse'] },
@@ -98,7 +98,7 @@ function typeOf(name: string): string | undefined {
 }
 
 /**
- * Returns the value of every option in a preset, but for `locks`.
+ * Returns the value of every option in a preset, except `locks`.
  * @throws {CagecastError} `notInitialised`, `badOption`
  */
 export function presetOptions(preset: Preset = 'default'): PresetOptions {
@@ -185,7 +185,7 @@ function checkLocks(fn: string, locks: unknown = {}): CoreLocks {
     out[field] = Object.entries(entries).map(([id, lock]) => {
       // Segments and groups have 32-bit numbers.
       if (!/^(0|[1-9][0-9]*)$/.test(id) || Number(id) >= 2 ** 32)
-        throw wrong(`.${field} has the key ${show(id)}, which is not a number of one`);
+        throw wrong(`.${field} has the key ${show(id)}, which is not the number of a ${field.slice(0, -1)}`);
       if (!lockNames.includes(lock as Lock))
         throw wrong(`.${field}[${id}] = ${show(lock)} is unknown; there are: ${lockNames.map(show).join(', ')}`);
       return { id: Number(id), lock: useCore(fn, ({ module }) => module['Lock']![lock as Lock]!) };

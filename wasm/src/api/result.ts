@@ -1,6 +1,6 @@
 import type { Preset } from './options.js';
 
-/** CPU time of each step, in milliseconds. */
+/** The time of each step, in milliseconds. */
 export interface Timings {
   /** Checking the input and welding the target's vertices. */
   weld: number;
@@ -14,54 +14,54 @@ export interface Timings {
   covered: number;
   /** Steps 4 and 5′: connected components, their areas and twins. */
   segments: number;
-  /** Step 6: occluded points that are seen in another direction. */
+  /** Step 6: more rays from occluded points. */
   secondLook: number;
-  /** Step 7: what lies under the holes of the cage. */
+  /** Step 7: uncovered points and the holes over them. */
   holes: number;
   /** Step 9: UVs per triangle corner. */
   seams: number;
-  /** Steps 5 and 8: which segments are culled, the zones of vertices and triangles. 0 after `project`. */
+  /** Steps 5 and 8: which segments are culled, and the zones of vertices and triangles. 0 after `project`. */
   classify: number;
-  /** All of it. */
+  /** The whole call. */
   total: number;
 }
 
-/** What is known of one segment, a connected component of the target. Areas are in squared units of the input. */
+/** The properties of one segment, a connected component of the target. Areas are in squared units of the input. */
 export interface SegmentStats {
-  /** Welded points. */
+  /** Number of welded points. */
   points: number;
   /** A: its whole area. */
   area: number;
-  /** E: the area that the target does not occlude. */
+  /** E: the area that is not occluded. */
   exposedArea: number;
   /** C: the exposed area that the cage covers. */
   coveredArea: number;
   /** F = C / E, the share of the exposed area that the cage covers; 0 if nothing is exposed. */
   coverage: number;
-  /** D: C, counted less where it is unusually deep under the cage; C without `steps.depthWeighting`. */
+  /** D: C, weighted less where it is unusually deep under the cage; equal to C without `steps.depthWeighting`. */
   depthWeightedArea: number;
   /** The group of its first vertex, in `target.groups`; 0 if the target has none. */
   group: number;
-  /** The first of the segments that have the same shape, possibly itself; itself without `steps.depthWeighting`. */
+  /** The first segment of the same shape, or itself; itself without `steps.depthWeighting`. */
   twinOf: number;
   /**
-   * How many times the area that it needs it has: from 1 on it is kept, unless a hole or a lock decides. Infinity if nothing is
-   * needed, and after `project`.
+   * How well it meets the rules of step 5, as the ratio of actual to required area: a segment with a score of at least 1 is kept,
+   * unless a lock decides. Infinity if no area is required, and after `project`.
    */
   score: number;
   /** Whether none of it may be painted. `false` after `project`. */
   culled: boolean;
-  /** Why it is culled: too little of it is covered, a hole of the cage is meant for it, or a lock excludes it. */
+  /** Why it is culled: the cage covers too little of it, a hole of the cage is meant for it, or a lock excludes it. */
   culledBy: 'none' | 'coverage' | 'hole' | 'lock';
 }
 
 /** What `project` and `transfer` both return. The caller owns every array. */
 export interface Projected {
-  /** 2 per target vertex: its place in the cage's texture, whatever its zone. */
+  /** 2 per target vertex, in every zone: its UV in the cage's texture. */
   uvs: Float32Array<ArrayBuffer>;
   /**
    * 2 per triangle corner, in the order of `target.indices`, with `seams: 'corner'`; else empty. They differ from `uvs` only where
-   * a seam of the cage's texture runs through a triangle. `splitVertices` makes a mesh of them.
+   * a seam of the cage's texture runs through a triangle. `splitVertices` makes a mesh from them.
    */
   cornerUvs: Float32Array<ArrayBuffer>;
   /** 1 per vertex, a `Zone`. After `project` none is `Culled`. */
@@ -76,7 +76,7 @@ export interface Projected {
   segmentStats: SegmentStats[];
   /** How long each step took. */
   timings: Timings;
-  /** The most memory in use at once during the call, without the inputs, in bytes. */
+  /** Peak memory during the call in bytes, without the inputs. */
   peakBytes: number;
 }
 
@@ -86,24 +86,23 @@ export interface HoleShare {
   hole: number;
   /** The number of the segment. */
   segment: number;
-  /** The area that the target does not occlude. */
+  /** Area that is not occluded. */
   exposedArea: number;
-  /** The exposed area that the cage does not cover. */
+  /** Exposed area that the cage does not cover. */
   uncoveredArea: number;
   /**
-   * The area that the target occludes and the cage does not cover; 0 if `occlusionReach` is infinite, and in segments nothing of
-   * which is covered.
+   * Occluded area that the cage does not cover; 0 if `occlusionReach` is infinite or nothing of the segment is covered.
    */
   hiddenArea: number;
 }
 
 /** The part of the result that does not depend on the threshold: plain data that can be kept, sent or stored. */
 export interface Projection extends Projected {
-  /** The preset that it was made with, which is the default for `classify`. */
+  /** The preset of the projection, which is also the default preset for `classify`. */
   preset: Preset;
   /**
    * 1 per vertex, with `steps.secondLook` or `steps.holes`; else empty. Whether an occluded or uncovered vertex becomes cosmetic if
-   * its segment is kept: 0 never, 1 always, 2 and above if hole number `value - 2` is explained by a culled segment behind it.
+   * its segment is kept: 0 never, 1 always, 2 and above if a culled segment lies behind hole number `value - 2` and explains it.
    */
   recovery: Uint32Array<ArrayBuffer>;
   /** 1 per hole and segment near it, with `steps.holes`; ordered by hole. */

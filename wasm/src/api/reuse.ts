@@ -4,9 +4,9 @@ import { CagecastError, show } from './error.js';
 /** An option of functions that return arrays. */
 export interface Reuse<Result> {
   /**
-   * An earlier result of the same function that is no longer needed; it becomes the new result and is returned. Its typed arrays
-   * are overwritten where they have the right length, and replaced where not, so that repeated calls allocate little. They may be
-   * the arrays of the arguments, too. If the call throws, nothing of it has changed.
+   * An earlier result of the same function that is no longer needed. It becomes the new result and is returned: typed arrays of the
+   * right length are overwritten, others are replaced, so that repeated calls allocate little. The arguments of the call may use
+   * the same arrays. If the call throws, the earlier result is unchanged.
    */
   reuse?: Result | undefined;
 }
@@ -34,7 +34,7 @@ const namesOf = {
 } as const satisfies Record<string, readonly (keyof typeof types)[]>;
 
 /**
- * Checks that `reuse` is a result of the function, and can be written to.
+ * Checks that `reuse` is a result of the function and can be overwritten.
  * @returns its arrays by name.
  * @throws {CagecastError} `badOption`
  */
@@ -66,6 +66,6 @@ export function checkReuse(fn: keyof typeof namesOf, reuse: unknown): Reusable {
   return arrays;
 }
 
-/** Returns a result: as an earlier one, if there is one to reuse. */
+/** Returns the result, written into the earlier one if there is one to reuse. */
 export const handOver = <Result extends object>(result: Result, reuse: Result | undefined): Result =>
   reuse ? Object.assign(reuse, result) : result;

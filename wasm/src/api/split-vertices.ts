@@ -2,24 +2,24 @@ import { callCore } from '../core/engine.js';
 import { CagecastError, show } from './error.js';
 import { checkMesh, type Mesh } from './mesh.js';
 
-/** A mesh whose vertices are split wherever the UVs of their corners differ. Every array is the caller's own. */
+/** A mesh whose vertices are split wherever the UVs of their corners differ. The caller owns every array. */
 export interface SplitVertices {
-  /** 1 per new vertex: the vertex that it is a copy of. In the order in which `indices` uses them. */
+  /** 1 per new vertex: the vertex that it copies. New vertices are in the order in which `indices` first uses them. */
   sources: Uint32Array<ArrayBuffer>;
-  /** As many as before, into the new vertices. */
+  /** The same triangles, as indices of new vertices. */
   indices: Uint32Array<ArrayBuffer>;
   /** 2 per new vertex. */
   uvs: Float32Array<ArrayBuffer>;
 }
 
 /**
- * Splits the vertices of a target so that every corner of a triangle has the UV that is given for it. Corners of a vertex
- * that agree share one new vertex; vertices that no triangle uses are left out. Everything else about a new vertex
- * (position, normal, skin weights, morph deltas, zone) is that of its source.
+ * Splits the vertices of a target so that every corner of a triangle has the UV that is given for it. Corners at the
+ * same vertex with the same UV share one new vertex; vertices that no triangle uses are left out. A new vertex has the position,
+ * normal, skin weights, morph deltas and zone of its source.
  *
- * @param target     What the transfer was made to; only its indices and the number of its vertices count.
- * @param cornerUvs  2 per index: `result.cornerUvs`, of a transfer with `seams: 'corner'`.
- * @throws {CagecastError} `cornerUvCountMismatch`, and for an unusable target.
+ * @param target     The target of the transfer; only its indices and the number of its vertices are used.
+ * @param cornerUvs  2 per index: `result.cornerUvs`, from a transfer with `seams: 'corner'`.
+ * @throws {CagecastError} `cornerUvCountMismatch`; and if the target cannot be used.
  *
  * @example
  * const { cornerUvs, zones } = transfer(cage, target);

@@ -5,12 +5,12 @@ import type { Projection, TransferResult } from './result.js';
 import { checkReuse, handOver, type Reuse } from './reuse.js';
 
 /**
- * Carries the cage's UVs to the target and finds its Non-Cosmetic Zones, the vertices that must not be painted.
+ * Transfers the cage's UVs to the target and finds its Non-Cosmetic Zones, the vertices that must not be painted.
  *
- * @param cage    The mesh that the texture was drawn for; it must have UVs.
- * @param target  The mesh that receives it, in the same space and unit.
- * @param options  With `reuse`, an earlier result becomes this one.
- * @throws {CagecastError} if a mesh or an option is unusable, and `outOfMemory`.
+ * @param cage     The mesh that the texture was drawn for; it must have UVs.
+ * @param target   The mesh that receives the texture, in the same space and unit.
+ * @param options  With `reuse`, an earlier result is overwritten and returned.
+ * @throws {CagecastError} if a mesh or an option cannot be used, and `outOfMemory`.
  *
  * @example
  * await init();
@@ -27,9 +27,9 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & R
 }
 
 /**
- * Does the costly part of `transfer`, which does not depend on the threshold: steps 1 to 4 of the method, and what later steps
- * need. Pass the result to `classify`, for as many thresholds as you like.
- * @param options  With `reuse`, an earlier projection becomes this one.
+ * Does the costly part of `transfer`, which does not depend on the threshold: steps 1 to 4, 6, 7 and 9 of the method. Pass the
+ * result to `classify`, once for each threshold that you want to try.
+ * @param options  With `reuse`, an earlier projection is overwritten and returned.
  * @throws {CagecastError} as `transfer` does.
  */
 export function project(cage: Mesh, target: Mesh, options?: ProjectOptions & Reuse<Projection>): Projection {

@@ -10,7 +10,7 @@ import { type Run, run } from './run.js';
 import { cut, fateText, integer, percent, scoreText, short, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
-/** What `cagecast inspect` was asked for. */
+/** The arguments of `cagecast inspect`. */
 export interface InspectCommand {
   target: string;
   cage: string;
@@ -19,7 +19,7 @@ export interface InspectCommand {
   rules: Rules;
 }
 
-/** What it prints as JSON: the inspection, and what it was made of. */
+/** The JSON output of `inspect`: the inspection, and its inputs. */
 export interface InspectionReport extends Inspection {
   versions: { cagecast: string; node: string };
   target: { file: string; vertices: number; triangles: number; points: number; diagonal: number };
@@ -82,7 +82,7 @@ function makeReport(
   };
 }
 
-/** The most rows of a table that people read. */
+/** How many rows a table has at most. */
 const mostRows = 15;
 const conclusions: Record<Verdict, string> = {
   good: 'GOOD: the cage fits.',
@@ -142,7 +142,7 @@ function describe(report: InspectionReport, html: string | undefined): string {
     `  cage vertices inside the target: ${integer(inside.vertices)} (${percent(inside.area)} by area)`,
     '',
     'cage',
-    `  turned inward: ${integer(inward.triangles.length)} triangles; without area: ${integer(topology.degenerateTriangles)}; doubled: ${integer(topology.doubledTriangles)}; edges of more than two triangles: ${integer(topology.nonManifoldEdges)}; cracks: ${integer(topology.crackEdges + topology.slits)}; pieces: ${integer(topology.pieces)}`,
+    `  facing inward: ${integer(inward.triangles.length)} triangles; without area: ${integer(topology.degenerateTriangles)}; doubled: ${integer(topology.doubledTriangles)}; edges of more than two triangles: ${integer(topology.nonManifoldEdges)}; cracks: ${integer(topology.crackEdges + topology.slits)}; pieces: ${integer(topology.pieces)}`,
     `  UVs: ${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}, ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that twice; ${integer(uv.outside.vertices)} vertices outside 0..1; ${integer(uv.withoutArea.triangles)} triangles without area`,
     '',
     `holes: ${integer(holes.length)}${more(holes.length)}`,

@@ -22,9 +22,9 @@ const cageColor: Rgb = [60, 70, 90];
 const borderColor: Rgb = [20, 20, 20];
 /** Distances beyond this share of the diagonal all look alike. */
 const farthest = 0.1;
-/** The most triangles that a layout is drawn with. */
+/** How many triangles a UV layout is drawn with at most. */
 const mostDrawn = 20000;
-/** The most segments that are listed. */
+/** How many segments are listed at most. */
 const mostSegments = 40;
 
 const views: readonly { name: string; view: View }[] = [
@@ -34,7 +34,7 @@ const views: readonly { name: string; view: View }[] = [
   { name: 'its right', view: { right: [0, 0, 1], up: [0, 1, 0], eye: [-1, 0, 0] } },
 ];
 
-/** Writes an inspection as a page of its own, with pictures of zones, fit and UVs; it needs nothing else. */
+/** Writes an inspection as a self-contained page, with pictures of zones, fit and UVs. */
 export function inspectionPage(report: InspectionReport, { target, cage, result }: Run): string {
   const { verdict, findings, holes, segments, placement, uv, options } = report;
   const scene = sceneOf(cage.mesh, target.mesh, result, options.threshold, target.parts);
@@ -63,12 +63,12 @@ export function inspectionPage(report: InspectionReport, { target, cage, result 
 </style>
 <h1><span class="verdict ${verdict}">${verdict}</span> ${title}</h1>
 <p>${integer(report.target.triangles)} triangles under a cage of ${integer(report.cage.triangles)}; preset ${text(options.preset)}, threshold ${options.threshold}. Cagecast ${text(report.versions.cagecast)}.</p>
-${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<li><i class="${mark(weight)}"></i>${text(sentence)}.<small>${text(advice)}</small></li>`).join('')}</ol>` : '<p>Nothing to find fault with.</p>'}
+${findings.length > 0 ? `<ol>${findings.map(({ weight, sentence, advice }) => `<li><i class="${mark(weight)}"></i>${text(sentence)}.<small>${text(advice)}</small></li>`).join('')}</ol>` : '<p>No problems found.</p>'}
 <h2>Zones</h2>
 <p>${(['cosmetic', 'occluded', 'uncovered', 'culled'] as const).map((zone, z) => `<span class="key" style="background:rgb(${zoneColors[z]!.join()})"></span>${zone} ${percent(report.coverage[zone])}`).join('')}</p>
 <div class="row">${views.map(({ name, view }) => figure(name, drawZones(scene, view))).join('')}</div>
 <h2>Fit</h2>
-<p><span class="key" style="background:rgb(${outsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>touching it<span class="key" style="background:rgb(${shade(farthest).join()})"></span>${percent(farthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: the cage, its borders dark.</p>
+<p><span class="key" style="background:rgb(${outsideColor.join()})"></span>outside the cage: ${percent(placement.outside.exposedArea)} of the exposed area<span class="key" style="background:rgb(${shade(0).join()})"></span>at the cage<span class="key" style="background:rgb(${shade(farthest).join()})"></span>${percent(farthest)} of the diagonal beneath. Median ${percent(placement.distances.p50)}, 99 % within ${percent(placement.distances.p99)}. Lines: edges of the cage, open edges dark.</p>
 <div class="row">${views.map(({ name, view }) => figure(name, drawFit(scene, view))).join('')}</div>
 <h2>UVs</h2>
 <p>${counted(uv.charts, 'chart')}, ${counted(uv.seams.edges, 'seam edge')}; ${percent(uv.used)} of the texture in use, ${percent(uv.overlap.share)} of that more than once.</p>

@@ -29,12 +29,14 @@ const common = (command: Command): Command =>
   addRuleFlags(
     command
       .argument('<TARGET>', 'GLB or glTF that receives the texture')
-      .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it needs UVs')
+      .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it must have UVs')
       .allowExcessArguments(false),
   );
 
 const program = new Command('cagecast')
-  .description('Carries a texture drawn once for a cage onto any mesh, and keeps it off what must not be painted.')
+  .description(
+    'Transfers a texture, drawn once for a cage, to any mesh, and leaves out parts that must not be painted.',
+  )
   .version(CAGECAST_VERSION, '--version', 'print the version')
   .helpOption('-h, --help', 'print help')
   .helpCommand(false)
@@ -56,15 +58,18 @@ Examples:
   cagecast transfer head.glb --cage cage.glb -o head-with-uvs.glb --report report.json
   cagecast inspect head.glb --cage cage.glb
 
-Exit codes: 0 done, 1 an input is unusable, 2 wrong usage, 3 inspect finds the cage unfit.`,
+Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect finds the cage unfit.`,
   );
 
 common(program.command('transfer'))
-  .description('write TARGET with a new UV set and the _NCZ attribute, all else as it was')
-  .option('--texture <PAINT>', "PNG or JPEG in the cage's UVs: show it as an overlay of the cosmetic triangles")
+  .description('write TARGET with a new UV set and the attribute _NCZ, otherwise unchanged')
+  .option(
+    '--texture <PAINT>',
+    "PNG or JPEG in the cage's UV space, shown as an overlay on the triangles that may be painted",
+  )
   .addOption(new Option('-o, --output <OUT.glb>', 'where to write the GLB').argParser(endingIn('.glb')))
   .addOption(
-    new Option('--borders <HOW>', "let paint end at the target's own triangles, or cut these at holes and seams")
+    new Option('--borders <HOW>', 'end the paint at existing triangle edges, or cut triangles at holes and seams')
       .choices(['triangle', 'cut'])
       .default('triangle'),
   )
@@ -72,10 +77,12 @@ common(program.command('transfer'))
   .addHelpText(
     'after',
     `
-_NCZ is 0 for a vertex that may be painted. Otherwise it says why not: 1 the target lies over it, 2 the cage has a hole over
-it, 3 its segment (connected component) is culled: too little of it is covered, or a hole of the cage is meant for it.
-Where triangles that share a vertex need different UVs, copies of the vertex are added after the existing ones, with all
-attributes; --seams vertex adds none. --borders cut adds vertices too, each a blend of those around it.
+_NCZ is 0 for a vertex that may be painted. Other values say why it must not be painted:
+  1  occluded: another surface of the target lies over it
+  2  uncovered: the cage has a hole over it, or it lies outside the cage
+  3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
+If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
+existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
@@ -90,14 +97,14 @@ Examples:
     ) => {
       const { cage, texture, output, report, borders } = flags;
       if (texture !== undefined && output === undefined)
-        command.error('--texture needs -o OUT.glb to show it in', { exitCode: wrongUsage });
+        command.error('--texture needs -o OUT.glb, the file to add it to', { exitCode: wrongUsage });
       if (borders === 'cut' && output === undefined)
-        command.error('--borders cut needs -o OUT.glb to write the cut target to', { exitCode: wrongUsage });
+        command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
       const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => placeOf(path));
       const outputs = [output, report].filter((path) => path !== undefined).map((path) => placeOf(path));
       const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
       if (clash !== undefined)
-        command.error(`${clash} would be written over another file of this command`, { exitCode: wrongUsage });
+        command.error(`${clash} would overwrite another file of this command`, { exitCode: wrongUsage });
       const text = await transferCommand(
         { target, cage, texture, output, report, borders, rules: rulesOf(flags) },
         progress,
@@ -108,14 +115,14 @@ Examples:
   );
 
 common(program.command('inspect'))
-  .description('is this cage fit for this target? numbers, causes, what to do')
+  .description('check whether the cage fits TARGET; print a verdict, reasons and advice')
   .option('--json', 'print JSON', false)
   .addOption(new Option('--html <REPORT.html>', 'where to write a page with pictures').argParser(endingIn('.html')))
   .addHelpText(
     'after',
     `
-The verdict is good, usable (fits, with reservations) or unfit, with the reasons in the order of their weight.
-Exit codes: 0 good or usable, 1 an input is unusable, 2 wrong usage, 3 unfit.
+The verdict is good, usable (fits, with reservations) or unfit. The most important reasons come first.
+Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.
 
 Examples:
   cagecast inspect head.glb --cage cage.glb
@@ -125,7 +132,7 @@ Examples:
   .action(async (target: string, flags: CommonFlags & { json: boolean; html?: string }, command: Command) => {
     const { cage, json, html } = flags;
     if (html !== undefined && [target, cage].some((path) => placeOf(path) === placeOf(html))) {
-      command.error(`${placeOf(html)} would be written over another file of this command`, { exitCode: wrongUsage });
+      command.error(`${placeOf(html)} would overwrite another file of this command`, { exitCode: wrongUsage });
     }
     const { text, verdict } = await inspectCommand({ target, cage, json, html, rules: rulesOf(flags) }, progress);
     progress.clear();
@@ -133,7 +140,7 @@ Examples:
     if (verdict === 'unfit') process.exitCode = unfit;
   });
 
-// A reader that has seen enough, as `head` has, is no failure.
+// A reader that closes the pipe early, such as `head`, is not an error.
 process.stdout.on('error', (error: NodeJS.ErrnoException) => process.exit(error.code === 'EPIPE' ? 0 : unusable));
 
 try {
@@ -141,7 +148,7 @@ try {
 } catch (error) {
   progress.clear();
   if (error instanceof CommanderError) {
-    // Help that was not asked for, as without a command, is wrong usage.
+    // Help that is printed because no command was given counts as wrong usage.
     process.exitCode = error.exitCode === 0 && error.code !== 'commander.help' ? 0 : wrongUsage;
   } else {
     const known = error instanceof InputError || error instanceof CagecastError;

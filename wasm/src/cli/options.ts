@@ -6,7 +6,7 @@ import { type Lock, type Preset, type PresetOptions, presetOptions, type Transfe
 
 type Single = Partial<Omit<PresetOptions, 'steps'>>;
 
-/** What the command line says about how to transfer. */
+/** The options of a transfer, from the command line. */
 export interface Rules {
   preset: Preset;
   /** Options of `transfer` that were given. */
@@ -17,7 +17,7 @@ export interface Rules {
   exclude: string[];
 }
 
-/** Flags about how to transfer, as commander parses them. */
+/** The flags of these options, as commander parses them. */
 export interface RuleFlags extends Single {
   preset: Preset;
   keep: string[];
@@ -28,7 +28,7 @@ export interface RuleFlags extends Single {
 export function addRuleFlags(command: Command): Command {
   const oneMore = (name: string, before: string[]) => [...before, name];
   command.addOption(
-    new Option('--preset <NAME>', 'the values of all options that are not given')
+    new Option('--preset <NAME>', 'values of the options that are not given')
       .choices(['default', 'paper'])
       .default('default'),
   );
@@ -46,12 +46,15 @@ export function addRuleFlags(command: Command): Command {
   }
   return command
     .addOption(
-      new Option('--keep <NAME>', 'always paint parts of this node or material, * for any text; may be repeated')
+      new Option(
+        '--keep <NAME>',
+        'keep parts of this node or material even if the rules would cull them (* matches any text); may be repeated',
+      )
         .default([], '')
         .argParser(oneMore),
     )
     .addOption(
-      new Option('--exclude <NAME>', 'never paint parts of this node or material; may be repeated')
+      new Option('--exclude <NAME>', 'never paint parts of this node or material (* matches any text); may be repeated')
         .default([], '')
         .argParser(oneMore),
     );
@@ -87,8 +90,8 @@ export function effectiveOptions({ preset, single, keep, exclude }: Rules): Effe
 }
 
 /**
- * The options of `transfer`, with the names as locks: a part is a group.
- * @throws {InputError} for a name that nothing has, or a part that is to be both kept and excluded.
+ * The options of `transfer`. Names of parts become locks by group, because each part is a group.
+ * @throws {InputError} if nothing has a given name, or a part is both kept and excluded.
  */
 export function transferOptions({ preset, single, keep, exclude }: Rules, { parts }: Extracted): TransferOptions {
   const groups: Record<number, Lock> = {};
@@ -103,13 +106,13 @@ export function transferOptions({ preset, single, keep, exclude }: Rules, { part
       if (found.length === 0) {
         const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
         throw new InputError(
-          `--${lock} ${pattern}: no node or material is called that; there are: ${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
+          `--${lock} ${pattern}: no node or material has this name; there are: ${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
         );
       }
       for (const p of found) {
         if (groups[p] !== undefined && groups[p] !== lock)
           throw new InputError(
-            `--${groups[p]} ${saidBy.get(p)} and --${lock} ${pattern} both mean "${parts[p]!.name}"`,
+            `--${groups[p]} ${saidBy.get(p)} and --${lock} ${pattern} both match "${parts[p]!.name}"`,
           );
         groups[p] = lock;
         saidBy.set(p, pattern);
@@ -119,10 +122,10 @@ export function transferOptions({ preset, single, keep, exclude }: Rules, { part
   return { preset, ...single, locks: { groups } };
 }
 
-/** The most names that a message lists. */
+/** How many names a message lists at most. */
 const mostNames = 20;
 
-/** Whether a name is one, or, with `*` for any text, one of many. */
+/** Returns a test whether a name matches a pattern, in which `*` matches any text. */
 function matcher(pattern: string): (name: string) => boolean {
   const expression = new RegExp(
     `^${pattern

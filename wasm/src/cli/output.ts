@@ -3,9 +3,9 @@ import { basename, dirname, join, resolve } from 'node:path';
 import { firstLine, InputError } from '../gltf/input-error.js';
 
 /**
- * Writes files, all of them or none: each under another name first, which it gives up once all are complete. Links lead to
- * the file that is replaced, also where there is none yet; a file that is replaced keeps its permissions. What is no file, as
- * a pipe or /dev/null, is written to as it is.
+ * Writes all of the files or none: each is first written under a temporary name, and renamed once all are complete. Symbolic links
+ * are followed, even to files that do not exist yet; a replaced file keeps its permissions. Pipes and devices such as /dev/null
+ * are written to directly.
  * @throws {InputError} that names the file that cannot be written.
  */
 export function writeFiles(files: readonly { path: string; data: Uint8Array | string }[]): void {
@@ -25,16 +25,16 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
   }
 }
 
-/** Writes what is to replace a file, if that is there, under another name. */
+/** Writes a file under a temporary name, with the permissions of the file that it will replace, if there is one. */
 function writeAs(place: string, temporary: string, data: Uint8Array | string): void {
   const before = statSync(place, { throwIfNoEntry: false });
   if (before?.isDirectory()) throw Object.assign(new Error('is a folder'), { code: 'EISDIR' });
   const mode = before && before.mode & 0o777;
   writeFileSync(temporary, data, { mode: mode ?? 0o666 });
-  if (mode !== undefined) chmodSync(temporary, mode); // whatever the process leaves out of those that it makes
+  if (mode !== undefined) chmodSync(temporary, mode); // the umask of the process does not apply to chmod
 }
 
-/** The file that a path leads to, behind links, from the root; there may be none yet. @param links  That may still be followed. */
+/** The absolute path of a file, with symbolic links resolved; the file need not exist. @param links  How many links may still be followed. */
 export function placeOf(path: string, links = 40): string {
   try {
     return realpathSync(path);
@@ -48,7 +48,7 @@ export function placeOf(path: string, links = 40): string {
   }
 }
 
-/** Whether a path is of something that is no file and no folder: replacing it would do harm far beyond this command. */
+/** Whether a path is a pipe or a device: it must be written to, not replaced. */
 function isStream(path: string): boolean {
   const found = statSync(path, { throwIfNoEntry: false });
   return found !== undefined && !found.isFile() && !found.isDirectory();

@@ -1,4 +1,4 @@
-/** Says on a terminal what is going on, in one line that goes away again. Silent where stderr is not a terminal. */
+/** Shows the current step in one line of the terminal, and clears it afterwards. Silent if stderr is not a terminal. */
 export class Progress {
   readonly #stream = process.stderr;
   #shown = false;
@@ -11,7 +11,7 @@ export class Progress {
     this.#shown = true;
   }
 
-  /** Takes the line away. */
+  /** Clears the line. */
   clear(): void {
     if (this.#shown) this.#stream.write('\r\x1b[K');
     this.#shown = false;

@@ -3,17 +3,17 @@ import type { Vector } from '../inspect/geometry.js';
 /** Red, green, blue; 0 … 255. */
 export type Rgb = readonly [number, number, number];
 
-/** From where a picture is taken: directions to the right, up, and towards the eye; unit, at right angles. */
+/** The axes of a picture: right, up and towards the eye, as orthogonal unit vectors. */
 export interface View {
   right: Vector;
   up: Vector;
   eye: Vector;
 }
 
-/** An orthographic picture with a depth buffer: enough to look at a model from a few sides. */
+/** An orthographic picture with a depth buffer. */
 export class Picture {
   readonly size: number;
-  /** Red, green, blue, alpha of every pixel, from the top left on; transparent where nothing is. */
+  /** Red, green, blue, alpha of every pixel, from the top left; transparent in the background. */
   readonly pixels: Uint8Array;
   readonly #depths: Float32Array;
   readonly #view: View;
@@ -34,7 +34,7 @@ export class Picture {
     this.#scale = size / 2 / (radius || 1);
   }
 
-  /** Pixel column, pixel row, and height towards the eye, in pixels too. */
+  /** Pixel column, pixel row, and height towards the eye, all in pixels. */
   #project(p: Vector): Vector {
     const { right, up, eye } = this.#view;
     const [x, y, z] = [p[0] - this.#middle[0], p[1] - this.#middle[1], p[2] - this.#middle[2]];

@@ -65,7 +65,7 @@ function usable(file: GltfFile, extracted: Extracted): Extracted {
   return extracted;
 }
 
-/** Says in which file, and where in it, lies what the core found; any other error stays what it is. */
+/** Adds the file, and the place in it, to an error of the core; returns any other error unchanged. */
 export function inFile(
   error: unknown,
   { targetFile, target, cageFile, cage }: Omit<Run, 'options' | 'result'>,

@@ -2,7 +2,7 @@ import type { SegmentStats } from '../index.js';
 
 export { percent } from '../inspect/finding.js';
 
-/** Lays rows out in columns; all but the first are set to the right. */
+/** Lays out rows in columns; all but the first are right-aligned. */
 export function table(rows: readonly (readonly string[])[], indent = '  '): string {
   const widths = (rows[0] ?? []).map((_, column) => Math.max(...rows.map((row) => row[column]?.length ?? 0)));
   return rows
@@ -39,5 +39,5 @@ export function scoreText(score: number | null): string {
 
 /** Why a segment is not painted, if it is not. */
 export function fateText(culledBy: SegmentStats['culledBy']): string {
-  return { none: '', coverage: 'culled', hole: 'culled: a hole', lock: 'culled: a lock' }[culledBy];
+  return { none: '', coverage: 'culled', hole: 'culled (hole)', lock: 'culled (lock)' }[culledBy];
 }

@@ -13,20 +13,20 @@ import { inFile, type Run, run } from './run.js';
 import { integer, percent, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
-/** What `cagecast transfer` was asked for. */
+/** The arguments of `cagecast transfer`. */
 export interface TransferCommand {
   target: string;
   cage: string;
   texture?: string | undefined;
   output?: string | undefined;
   report?: string | undefined;
-  /** Whether paint ends at the target's own triangles, or these are cut where it does. */
+  /** Whether the paint ends at existing triangle edges, or triangles are cut where it ends. */
   borders: 'triangle' | 'cut';
   rules: Rules;
 }
 
 /**
- * Transfers, and writes what was asked for.
+ * Runs the transfer and writes the requested files.
  * @returns a summary for people.
  * @throws {InputError} that names the file at fault; then no file is written.
  */
@@ -86,8 +86,8 @@ export interface Report {
   areas: PerZone & { total: number };
   triangles: { total: number; cosmetic: number };
   /**
-   * The target as it is written, where its borders were cut, before vertices are split; else `null`. All else in this report is of
-   * the target as it was read.
+   * The target after borders were cut and before vertices are split; `null` if borders were not cut. All other fields describe the
+   * target as it was read.
    */
   cut: { vertices: number; counts: PerZone; triangles: { total: number; cosmetic: number } } | null;
   /** Every connected component of the target, in the order of their first vertices. */
@@ -100,15 +100,15 @@ export interface Report {
     coveredArea: number;
     coverage: number;
     depthWeightedArea: number;
-    /** `null` if it needs no area. */
+    /** `null` if no area is required. */
     score: number | null;
     culled: boolean;
     culledBy: Run['result']['segmentStats'][number]['culledBy'];
   }[];
   /**
-   * Every primitive of every node, in scene order. Without output `uvSet`, the attribute added, is `null`; so is
-   * `splitVertices`, how many vertices were added because the corners that shared one have different UVs, and `cutTriangles`,
-   * how many triangles by cutting borders.
+   * Every primitive of every node, in scene order. `uvSet` is the added attribute, `splitVertices` the number of vertices that were
+   * added because corners at the same vertex have different UVs, and `cutTriangles` the number of triangles that were added by
+   * cutting borders; these three are `null` if no output was written.
    */
   parts: {
     name: string;
@@ -176,7 +176,7 @@ function makeReport(
         coveredArea,
         coverage,
         depthWeightedArea,
-        score: Number.isFinite(score) ? score : null, // it needs no area
+        score: Number.isFinite(score) ? score : null, // no area is required
         culled,
         culledBy,
       }),
@@ -218,7 +218,7 @@ function summary(
       : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
     command.report === undefined ? '' : `wrote ${command.report}`,
     output === null && command.report === undefined
-      ? 'nothing written; -o OUT.glb and --report R.json keep the result'
+      ? 'nothing written; to save the result, add -o OUT.glb or --report R.json'
       : '',
   ];
   return lines.filter(Boolean).join('\n');
