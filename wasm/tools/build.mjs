@@ -40,6 +40,7 @@ const common = {
   format: 'esm',
   target: 'es2022',
   minify: true,
+  charset: 'utf8', // the text that is the WebAssembly module in two bytes a character at most, not in escapes of four
   legalComments: 'none', // THIRD-PARTY-NOTICES.txt has them
   sourcemap: shipped ? 'linked' : false,
   metafile: true,
@@ -175,7 +176,7 @@ async function bundleCommand(bundle) {
 function wasmModules(wasm, index) {
   const files = {
     '#glue': at('build', preset, 'wasm/cagecast.js'),
-    '#wasm-digits': at('build', preset, 'wasm/cagecast.wasm'),
+    '#wasm-text': at('build', preset, 'wasm/cagecast.wasm'),
     '#wasm': at('wasm/src/core', wasm),
   };
   return {
@@ -185,14 +186,14 @@ function wasmModules(wasm, index) {
       build.onResolve({ filter: /^#read-wasm$/ }, ({ path }) => ({ path, external: true }));
       if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
-        contents: readFileSync(path).toString('hex'),
+        contents: readFileSync(path).toString('latin1'),
         loader: 'text',
       }));
     },
   };
 }
 
-/** Makes a source map fit to be packed: without the digits of the WebAssembly module, with paths from dist/ on. */
+/** Makes a source map fit to be packed: without the text of the WebAssembly module, with paths from dist/ on. */
 function tidyMap(path) {
   const map = JSON.parse(readFileSync(path, 'utf8'));
   map.sourcesContent = map.sourcesContent.map((text, i) => (map.sources[i].endsWith('.wasm') ? null : text));

@@ -48,7 +48,7 @@ export function readOptions(root) {
 /** @return {{name: string, text: string}[]}  All codes but `ok`. */
 export function readCodes(root) {
   return entriesOf(root, 'core/include/cagecast/codes.def', /^CAGECAST_CODE\((\w+), (.*)\)$/)
-    .map(({ match: [, name, text] }) => ({ name, text: textOf(text) }))
+    .map(({ match: [, name, columns] }) => ({ name, text: textOf(splitColumns(columns)[0]) }))
     .filter(({ name }) => name !== 'ok');
 }
 

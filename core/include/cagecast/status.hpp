@@ -10,7 +10,7 @@ namespace cagecast {
 
 /// What went wrong; `ok` if nothing did. codes.def says what each code means.
 enum class Code : std::uint8_t {
-#define CAGECAST_CODE(name, text) name,
+#define CAGECAST_CODE(name, text, sentence) name,
 #include "cagecast/codes.def"
 };
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <string_view>
 
 #include "cagecast/status.hpp"
 #include "input/option_list.hpp"
@@ -12,7 +13,12 @@ namespace cagecast {
 namespace {
 
 constexpr const char* kCodeNames[] = {
-#define CAGECAST_CODE(name, text) #name,
+#define CAGECAST_CODE(name, text, sentence) #name,
+#include "cagecast/codes.def"
+};
+
+constexpr const char* kSentences[] = {
+#define CAGECAST_CODE(name, text, sentence) sentence,
 #include "cagecast/codes.def"
 };
 
@@ -61,6 +67,34 @@ std::string describeOption(const Status& status) {
   return given + " is not within " + number(entry->low) + ".." + number(entry->high);
 }
 
+/// The value that a name in braces stands for in a sentence.
+std::string valueOf(std::string_view name, const Status& status, const MeshView& mesh) {
+  const auto vertices = mesh.positions.size() / 3;
+  if (name == "mesh") return status.argument == Argument::cage ? "cage" : "target";
+  if (name == "at") return std::to_string(status.at);
+  if (name == "missing") return mesh.positions.empty() ? "vertices" : "triangles";
+  if (name == "vertices") return std::to_string(vertices);
+  if (name == "triangles") return std::to_string(mesh.indices.size() / 3);
+  if (name == "positions") return std::to_string(mesh.positions.size());
+  if (name == "indices") return std::to_string(mesh.indices.size());
+  if (name == "uvs") return std::to_string(mesh.uvs.size());
+  if (name == "groups") return std::to_string(mesh.groups.size());
+  if (name == "index at") return std::to_string(mesh.indices[status.at]);
+  if (name == "most vertices") return std::to_string(kMaxVertices);
+  if (name == "most triangles") return std::to_string(kMaxTriangles);
+  return number(static_cast<double>((name == "uv at" ? mesh.uvs : mesh.positions)[status.at]));
+}
+
+/// The sentence of a status, with names in braces.
+const char* sentenceOf(const Status& status, const MeshView& mesh) {
+  if (status.code == Code::tooLarge) {
+    if (mesh.positions.size() / 3 > kMaxVertices) return "{mesh} has {vertices} vertices, more than {most vertices}";
+    if (mesh.indices.size() / 3 > kMaxTriangles) return "{mesh} has {triangles} triangles, more than {most triangles}";
+  }
+  const auto i = static_cast<std::size_t>(status.code);
+  return i < std::size(kSentences) ? kSentences[i] : "unknown";
+}
+
 }  // namespace
 
 const char* codeName(Code code) noexcept {
@@ -69,51 +103,18 @@ const char* codeName(Code code) noexcept {
 }
 
 std::string describe(const Status& status, const MeshView& cage, const MeshView& target) {
-  const bool isCage = status.argument == Argument::cage;
-  const MeshView& mesh = isCage ? cage : target;
-  const std::string name = isCage ? "cage" : "target";
-  const std::string at = "[" + std::to_string(status.at) + "]";
-  const std::string vertices = std::to_string(mesh.positions.size() / 3) + " vertices";
-  switch (status.code) {
-    case Code::ok: return "ok";
-    case Code::emptyMesh:
-      return name + (mesh.positions.empty() ? " has no vertices" : " has no triangles") + "; at least one is needed";
-    case Code::positionsNotTriples:
-      return name + ".positions has " + std::to_string(mesh.positions.size()) + " numbers, not 3 per vertex";
-    case Code::indicesNotTriples:
-      return name + ".indices has " + std::to_string(mesh.indices.size()) + " entries, not 3 per triangle";
-    case Code::missingUvs: return name + ".uvs is missing: the texture is drawn in the cage's UVs, 2 per vertex";
-    case Code::uvCountMismatch:
-      return name + ".uvs has " + std::to_string(mesh.uvs.size()) + " numbers, not 2 for each of " + vertices;
-    case Code::groupCountMismatch:
-      return name + ".groups has " + std::to_string(mesh.groups.size()) + " entries, not 1 for each of " + vertices;
-    case Code::cornerUvCountMismatch:
-      return "cornerUvs does not have 2 numbers for each of " + std::to_string(mesh.indices.size()) + " indices";
-    case Code::indexOutOfRange:
-      return name + ".indices" + at + " = " + std::to_string(mesh.indices[status.at]) + " is out of range (" +
-             vertices + ")";
-    case Code::nonFinitePosition:
-      return name + ".positions" + at + " = " + number(static_cast<double>(mesh.positions[status.at])) +
-             " is not a finite number";
-    case Code::nonFiniteUv:
-      return name + ".uvs" + at + " = " + number(static_cast<double>(mesh.uvs[status.at])) + " is not a finite number";
-    case Code::noUsableCageTriangle: return "cage has no triangle with an area";
-    case Code::tooLarge:
-      if (mesh.positions.size() / 3 > kMaxVertices)
-        return name + " has " + vertices + ", more than " + std::to_string(kMaxVertices);
-      if (mesh.indices.size() / 3 > kMaxTriangles) {
-        return name + " has " + std::to_string(mesh.indices.size() / 3) + " triangles, more than " +
-               std::to_string(kMaxTriangles);
-      }
-      return name + ".positions" + at + " = " + number(static_cast<double>(mesh.positions[status.at])) +
-             " is too far from the origin (more than 1e8 diagonals of the target)";
-    case Code::badOption: return describeOption(status);
-    case Code::resultMismatch:
-      return "the result does not belong to this target: it has " + std::to_string(status.at) + " zones for " +
-             vertices + ", or its segments do not match";
-    case Code::outOfMemory: return "not enough memory for this target and cage";
+  if (status.code == Code::badOption) return describeOption(status);
+  const MeshView& mesh = status.argument == Argument::cage ? cage : target;
+  std::string out;
+  std::string_view rest = sentenceOf(status, mesh);
+  for (auto open = rest.find('{'); open != std::string_view::npos; open = rest.find('{')) {
+    const auto close = rest.find('}');
+    out.append(rest.substr(0, open));
+    out.append(valueOf(rest.substr(open + 1, close - open - 1), status, mesh));
+    rest.remove_prefix(close + 1);
   }
-  return "unknown";
+  out.append(rest);
+  return out;
 }
 
 }  // namespace cagecast

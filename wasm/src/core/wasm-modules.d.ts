@@ -5,10 +5,10 @@ declare module '#glue' {
   export default function createModule(module: object): PromiseLike<unknown>;
 }
 
-/** The WebAssembly module in hexadecimal digits, without capitals. */
-declare module '#wasm-digits' {
-  const digits: string;
-  export default digits;
+/** The WebAssembly module, one character (0 to 255) for each byte. */
+declare module '#wasm-text' {
+  const text: string;
+  export default text;
 }
 
 /** Google's Draco decoder; its package has types for its main module only. */
