@@ -66,7 +66,7 @@ test('a finding highlights its part, and locks it as proposed', async () => {
   const eye = page
     .getByTestId('inspect-panel')
     .locator('li')
-    .filter({ hasText: /"l-eye" is not painted, but nearly/ });
+    .filter({ hasText: /"l-eye" is not painted, but only just/ });
   await eye.waitFor();
   const area = await modelArea(page);
   await page.mouse.move(5, 5);

@@ -172,12 +172,12 @@ describe('a cage for a part of the target', () => {
     const inspection = inspect(cap, target, { parts });
     assert.match(
       find(inspection, 'nothingToPaint').sentence,
-      /of "skin" \d+\.\d % is covered, less than the threshold of 0\.5/,
+      /covers \d+\.\d % of the exposed area of "skin", less than the threshold of 0\.5/,
     );
     // At a lower threshold it is the floor that it misses.
     assert.match(
       find(inspect(cap, target, { parts, threshold: 0.05 }), 'nothingToPaint').sentence,
-      /and it has 0\.\d+ times the covered area that it needs/,
+      /and it has 0\.\d+ times the required covered area/,
     );
     assert.notEqual(inspect(cap, target, { parts, threshold: 0.05, steps: { floor: 'none' } }).verdict, 'unfit');
     const { locks } = find(inspection, 'nothingToPaint');
@@ -186,7 +186,7 @@ describe('a cage for a part of the target', () => {
 });
 
 describe('normals', () => {
-  test('all turned inward: that is the one reason, all else is judged as if they were not', () => {
+  test('all turned inward: this is the only finding, and the rest is judged as if they were flipped', () => {
     const indices = cage.indices.map((_, i, all) => all[i % 3 === 0 ? i : i - (i % 3) + 3 - (i % 3)]!);
     const inspection = look({ indices });
     assert.equal(inspection.verdict, 'unfit');
@@ -313,7 +313,7 @@ describe('UVs', () => {
     assert.equal(inspection.uv.overlap.layers, 2);
   });
 
-  test('in crumbs: every triangle a chart', () => {
+  test('every triangle a chart of its own', () => {
     const corners = [...cage.indices];
     const side = Math.ceil(Math.sqrt(corners.length / 3));
     const crumbs: Mesh = {
@@ -346,7 +346,7 @@ describe('holes and segments', () => {
     });
     assert.throws(() => inspect(cage, target, { result: project(cage, target) as unknown as TransferResult }), {
       code: 'badArgument',
-      message: /result\.cosmeticTriangles is undefined: nothing was decided yet/,
+      message: /result\.cosmeticTriangles is undefined, as in a projection that was not classified/,
     });
     assert.throws(() => inspect(cage, target, { result: 5 as unknown as TransferResult }), { code: 'badArgument' });
   });
@@ -384,7 +384,7 @@ describe('holes and segments', () => {
     });
     assert.match(
       find(inspection, 'segmentInDoubt').sentence,
-      /"eye" is not painted, but nearly: F = 0\.\d\d, less than the threshold/,
+      /"eye" is not painted, but only just: its coverage is 0\.\d\d, less than the threshold/,
     );
   });
 

@@ -102,11 +102,11 @@ describe('suggest', () => {
     assert.equal(suggest(shrunk, target)[0]!.code, 'cageTooSmall');
   });
 
-  test('near the threshold on either side: what it is held against, and the lock that turns it', () => {
+  test('near the threshold on either side: the reason, and the lock that reverses the verdict', () => {
     const [, eye] = transfer(cage, target).segmentStats;
     for (const [threshold, words] of [
-      [eye!.coverage - 0.02, /is painted, but barely: .* against the threshold/],
-      [eye!.coverage + 0.02, /is not painted, but nearly: .* less than the threshold/],
+      [eye!.coverage - 0.02, /is painted, but only just: .* and the threshold is/],
+      [eye!.coverage + 0.02, /is not painted, but only just: .* less than the threshold/],
     ] as const) {
       const options = { threshold, steps: { floor: 'none', holeContents: false } } as const;
       const { sentence, advice, places, locks } = find(suggest(cage, target, options), 'segmentInDoubt');
@@ -123,7 +123,7 @@ describe('suggest', () => {
     const { sentence, places, locks } = find(suggest(cage, target), 'segmentInDoubt');
     assert.match(
       sentence,
-      /^"group 1" is not painted, but nearly: F = 0\.82, but a hole of the cage seems to be meant for it/,
+      /^"group 1" is not painted, but only just: its coverage is 0\.82, but a hole of the cage seems to be meant for it/,
     );
     assert.deepEqual(
       places!.map(({ segment }) => segment),
@@ -144,7 +144,7 @@ describe('suggest', () => {
     } as const;
     assert.match(
       find(suggest(cage, target, options), 'segmentInDoubt').sentence,
-      /"group 0" is painted, but barely: F = \d\.\d\d, and it has 1\.1 times the covered area that it needs/,
+      /"group 0" is painted, but only just: its coverage is \d\.\d\d, and it has 1\.1 times the required covered area/,
     );
   });
 
@@ -161,7 +161,7 @@ describe('suggest', () => {
     const one = { ...balls, groups: undefined };
     const found = suggest(upper, one, { preset: 'paper' }).filter(({ code }) => code === 'segmentInDoubt');
     assert.equal(found.length, 1);
-    assert.match(found[0]!.sentence, /^5 segments of "target" are painted, but barely/);
+    assert.match(found[0]!.sentence, /^5 segments of "target" are painted, but only just/);
     assert.equal(found[0]!.places!.length, 5);
   });
 
@@ -172,7 +172,7 @@ describe('suggest', () => {
       ball([4, 0, 0], () => 1, 16, 24),
     );
     const { places, locks, sentence } = find(suggest(shell, twins), 'twinsDiffer');
-    assert.equal(sentence, 'Of 2 equal pieces like "group 0" 1 is painted and 1 is not');
+    assert.equal(sentence, 'Of 2 segments with the shape of "group 0", 1 is painted and 1 is not');
     assert.deepEqual(places!.map(({ segment }) => segment).sort(), [0, 1]);
     assert.deepEqual(locks, { segments: { 1: 'keep' } });
   });

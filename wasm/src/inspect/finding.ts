@@ -1,34 +1,34 @@
 import type { Locks } from '../index.js';
 
-/** A segment of the target, and where it is. */
+/** A segment of the target and its part. */
 export interface Place {
   /** Its number in `result.segments`. */
   segment: number;
-  /** Of its first vertex, in `target.groups`. */
+  /** The group of its first vertex, in `target.groups`. */
   group: number;
-  /** The part that it begins in. */
+  /** The part of its first vertex. */
   part: string;
 }
 
-/** Something about a cage, or what comes of it, that its author should know. */
+/** A problem of a cage, or of its result, that its author should know about. */
 export interface Finding {
   /** What it is, for programs. */
   code: FindingCode;
-  /** How heavy it weighs: from `unfitFrom` on the cage is unfit, from `usableFrom` on no better than usable; less is a remark. */
+  /** Its severity: from `unfitFrom` on the cage is unfit, from `usableFrom` on at best usable; less is a remark. */
   weight: number;
-  /** What is the matter, with its number, for people. */
+  /** What the problem is, with numbers, for people. */
   sentence: string;
   /** What to do about it. */
   advice: string;
-  /** The measures behind it; shares are of 1, lengths are shares of the target's diagonal. */
+  /** The measured values; lengths are shares of the target's diagonal. */
   numbers: Record<string, number | number[]>;
-  /** The segments that it is about, if it is about some: the largest first. */
+  /** The segments concerned, if any: the largest first. */
   places?: Place[];
-  /** What decides these segments the other way, if that is what is wanted: an option of `transfer` and `classify`. */
+  /** Locks that reverse the verdicts on these segments: an option of `transfer` and `classify`. */
   locks?: Locks;
 }
 
-/** Every finding there is, by what it is about. */
+/** The codes of all findings, by topic. */
 export type FindingCode =
   // Where the cage is.
   | 'cageElsewhere'
@@ -48,14 +48,14 @@ export type FindingCode =
   | 'uvsWithoutArea'
   | 'uvsOverlap'
   | 'uvsInPieces'
-  // What comes of it.
+  // The result.
   | 'nothingToPaint'
   | 'holeUnexplained'
   | 'segmentInDoubt'
   | 'twinsDiffer'
   | 'muchCulled';
 
-/** Whether a cage fits its target: as it should, with reservations, or not. */
+/** Whether a cage fits its target: well, with reservations, or not at all. */
 export type Verdict = 'good' | 'usable' | 'unfit';
 
 /** A finding of this weight alone makes a cage unfit. */

@@ -4,35 +4,35 @@ import type { Reverse } from './reverse.js';
 import { partsOf, type Scene } from './scene.js';
 import { placeOf, type Segment } from './segments.js';
 
-/** A hole explains itself if at least this much of what it is meant for lies in it, as a share of what it cuts off. */
+/** A hole is explained if the unpainted parts at it have at least this share of the area that it cuts off. */
 const leastExplained = 0.02;
-/** What the cage cuts off in a hole matters from this share of the exposed area on. */
+/** The area that a hole cuts off is reported from this share of the exposed area on. */
 const leastCut = 5e-4;
-/** What lies more sideways than this (the sine) of a hole's surface does not lie beneath it. */
+/** A surface does not lie beneath a hole if its direction from the hole deviates from the normal by more than this sine. */
 const mostSideways = 0.7;
 
 /** A hole in the cage, or a border where it ends. Lengths are shares of the target's diagonal, areas of the target's exposed area. */
 export interface Hole {
-  /** `end`: nothing of the target lies beneath it, but all beside, as where a neck is cut. */
+  /** `end`: the cage ends here, and the target lies beside the loop instead of beneath it, as at the neck of a head. */
   kind: 'hole' | 'end';
-  /** Of its box. */
+  /** Diagonal of its bounding box. */
   diagonal: number;
   perimeter: number;
-  /** Of the surface that spans it. */
+  /** Area of the surface that spans it. */
   area: number;
-  /** In the middle of its border, in the space of the input. */
+  /** The middle of its border, in the space of the input. */
   centre: [number, number, number];
-  /** Parts of the target that lie beneath it, and over what share of it, the largest first. */
+  /** Parts of the target that lie beneath it, with the share of the hole that they fill, the largest first. */
   beneath: { part: string; share: number }[];
-  /** What the hole keeps bare though its segment passes. */
+  /** Area that the hole leaves unpainted although its segment is painted. */
   cutOff: number;
-  /** The numbers of the segments that this is of, that with the most first. */
+  /** The numbers of the segments with such area, the largest share first. */
   cuts: number[];
-  /** What of segments that may not be painted has its nearest place on the hole's border, hidden or not. */
+  /** Area of unpainted segments whose nearest point of the cage is on the hole's border, occluded or not. */
   excluded: number;
 }
 
-/** Points on the surfaces that span the cage's holes: of each triangle from an edge to the middle, two. 3 numbers each. */
+/** Points on the surfaces that span the cage's holes: two in each triangle between an edge and the middle. 3 numbers each. */
 export function spanPoints({ surface, cage }: Scene): Float32Array {
   const points: number[] = [];
   for (const { edges, centre } of surface.loops) {
@@ -44,13 +44,13 @@ export function spanPoints({ surface, cage }: Scene): Float32Array {
   }
   return Float32Array.from(points);
 }
-/** How much of such a point is its edge; the rest is the middle. They halve the triangle's area, about. */
+/** The weights of the edge in these points; the rest is the weight of the middle. Each stands for about half of the triangle. */
 const spanWeights = [0.4, 0.85];
 
 /**
  * Finds the cage's holes, largest first, and what lies beneath them.
- * @param reversed   The target as seen from the points of `spanPoints`.
- * @param firstPoint  The number of the first of them.
+ * @param reversed    The nearest points on the target, for the points of `spanPoints` among others.
+ * @param firstPoint  The number of the first point of `spanPoints`.
  */
 export function holesOf(
   { surface, cage, target, parts, areas, diagonal, sides, result }: Scene,
@@ -114,7 +114,7 @@ function isBeneath(reversed: Reverse, point: number, from: Vector, normal: Vecto
   return size === 0 || Math.abs(dot(way, normal)) >= Math.sqrt(1 - mostSideways ** 2) * size;
 }
 
-/** Holes that cut the paint off where nothing that must stay bare is seen. */
+/** Holes that cut off paint although no unpainted part lies behind them. */
 export function checkHoles(holes: readonly Hole[], segments: readonly Segment[]): Finding[] {
   const unexplained = holes.filter(
     ({ kind, cutOff, excluded }) => kind === 'hole' && cutOff >= leastCut && excluded < leastExplained * cutOff,
@@ -128,8 +128,8 @@ export function checkHoles(holes: readonly Hole[], segments: readonly Segment[])
     {
       code: 'holeUnexplained',
       weight: 0.3,
-      sentence: `${unexplained.length === 1 ? 'A hole of the cage lies' : `${unexplained.length} holes of the cage lie`} over ${where} alone: only the hole's outline keeps the paint off what is beneath (${percent(cut)} of the exposed area)`,
-      advice: 'If eyes or the like are there, make them a mesh or material of their own; if not, close the hole.',
+      sentence: `${unexplained.length === 1 ? 'A hole of the cage has' : `${unexplained.length} holes of the cage have`} only ${where} behind ${unexplained.length === 1 ? 'it' : 'them'}, and no part that stays unpainted: ${percent(cut)} of the exposed area is left bare there`,
+      advice: 'If there are eyes or similar parts, give them a mesh or material of their own. If not, close the hole.',
       numbers: { holes: unexplained.length, cutOff: cut },
       places: [...new Set(unexplained.flatMap(({ cuts }) => cuts))].map((s) => placeOf(s, segments[s]!)),
     },

@@ -1,5 +1,5 @@
 /**
- * Is this cage fit for this target? Numbers, causes, and what to do.
+ * Checks whether a cage fits a target: verdict, reasons and advice.
  * @module cagecast/inspect
  */
 
@@ -28,35 +28,35 @@ import { checkUvs, type UvLayout, uvLayoutOf } from './uv.js';
 export type { Finding, FindingCode, Hole, Inside, PartName, Place, Placement, Segment, Topology, UvLayout, Verdict };
 export { unfitFrom, usableFrom };
 
-/** Options of `inspect`: those of the transfer, and what is known already. */
+/** Options of `inspect`: those of the transfer, and its result if there is one. */
 export interface InspectOptions extends TransferOptions {
-  /** What `transfer` gave for the same arguments, if it was called already. */
+  /** The result of `transfer` for the same arguments, if it was called already. */
   result?: TransferResult | undefined;
-  /** Names for ranges of the target's vertices; without, its groups are numbered. */
+  /** Names for ranges of the target's vertices. Default: the numbers of its groups. */
   parts?: readonly PartName[] | undefined;
 }
 
-/** What `inspect` found out: plain data. */
+/** The result of `inspect`: plain data. */
 export interface Inspection {
   verdict: Verdict;
-  /** What the author of the cage should know, the heaviest first. */
+  /** The problems found, the most severe first. */
   findings: Finding[];
   placement: Placement;
-  /** Of the cage's area, how much is turned inward; `triangles` are their numbers. */
+  /** The share of the cage's area that faces inward, and the numbers of the triangles. */
   inward: { share: number; triangles: number[] };
   inside: Inside;
   topology: Topology;
   uv: UvLayout;
-  /** The largest first. */
+  /** The cage's holes, the largest first. */
   holes: Hole[];
   /** In the order of their numbers. */
   segments: Segment[];
 }
 
 /**
- * Finds out whether a cage fits a target, why not, and what to do about it.
+ * Checks whether a cage fits a target, and if not, why, and what to do about it.
  *
- * Takes one transfer and a projection, another transfer if triangles are turned inward, and about as long again.
+ * Cost: about twice that of a transfer and a projection, and another transfer if triangles face inward.
  * @throws {CagecastError} as `transfer` does.
  *
  * @example
@@ -83,11 +83,11 @@ export function inspect(cage: Mesh, target: Mesh, options?: InspectOptions): Ins
 }
 
 /**
- * Says what a user of a result should look at, the heaviest first: where the cage is inside the target or out of place, parts
- * that are barely decided, or unlike their copies, holes that nothing explains, too little left to paint. Each comes with a
- * sentence and an advice, with the segments that it is about, and with the locks that decide them the other way.
+ * Finds what the user of a result should check, the most severe first: a cage inside the target or misplaced, parts with close
+ * verdicts, twins with different verdicts, holes that no part explains, too little to paint. Each finding has a sentence, an
+ * advice, the segments concerned, and the locks that reverse the verdicts on them.
  *
- * These are the findings of `inspect` but for those about the surface and the UVs of the cage, in about half the time.
+ * These are the findings of `inspect` except those about the surface and the UVs of the cage, in about half the time.
  * @throws {CagecastError} as `transfer` does.
  *
  * @example
@@ -100,7 +100,7 @@ export function suggest(cage: Mesh, target: Mesh, options?: InspectOptions): Fin
 
 const heaviestFirst = (findings: readonly Finding[]): Finding[] => [...findings].sort((a, b) => b.weight - a.weight);
 
-/** Where the cage lies, and what comes of it. */
+/** The placement of the cage, and the findings about it and about the result. */
 function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
   if (typeof given !== 'object' || given === null)
     throw new CagecastError('badOption', `inspect: options is ${show(given)}, not an object`);
@@ -129,14 +129,14 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
   ];
   return { scene, orientation, findings, placement, inside, holes, segments };
 
-  // One cause, one finding: all else is judged as if triangles that are turned inward were not.
+  // One cause, one finding: everything else is judged as if inward-facing triangles were flipped.
   function uprightScene() {
     const turned = turnedRight(cage, orientation);
     return sceneOf(turned, target, transfer(turned, target, options), scene.threshold, scene.parts);
   }
 }
 
-/** Checks that a result is one, and of this target. */
+/** Checks that a result is complete and belongs to this target. */
 function checkResult(result: TransferResult, { positions }: Mesh): void {
   const wrong = (text: string) =>
     new CagecastError('badArgument', `inspect: result${text}; pass what transfer() returned`);
@@ -144,7 +144,7 @@ function checkResult(result: TransferResult, { positions }: Mesh): void {
   const { zones, segments, triangles, distances, segmentStats, cosmeticTriangles } = result;
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
   if (!ArrayBuffer.isView(cosmeticTriangles))
-    throw wrong(`.cosmeticTriangles is ${show(cosmeticTriangles)}: nothing was decided yet`);
+    throw wrong(`.cosmeticTriangles is ${show(cosmeticTriangles)}, as in a projection that was not classified`);
   for (const [name, array] of Object.entries({ zones, segments, triangles, distances })) {
     if (!ArrayBuffer.isView(array)) throw wrong(`.${name} is ${show(array)}, not a typed array`);
     if (array.length !== positions.length / 3)

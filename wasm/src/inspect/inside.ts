@@ -5,20 +5,20 @@ import type { Scene } from './scene.js';
 
 /** How deep in the target a vertex of the cage lies, as a share of the diagonal, before it counts as inside. */
 const depth = 0.0025;
-/** The most of a fit cage's vertices, by area, that are inside the target. */
+/** A cage is unfit if more than this share of its vertices, by area, is inside the target. */
 const mostInside = 0.15;
 
 /** The cage's vertices that lie inside the target. */
 export interface Inside {
-  /** How many places of the cage. */
+  /** How many vertices, counting those at the same position once. */
   vertices: number;
-  /** Their share of the cage's area, that of borders aside. */
+  /** Their share of the cage's area, not counting vertices at borders. */
   area: number;
 }
 
 /**
- * Finds the vertices of the cage that lie inside the target: beneath the nearest of its surface, as the target's normal
- * says and the cage's too. Borders, which may lie anywhere, are left out.
+ * Finds the vertices of the cage that lie inside the target: behind the nearest triangle of the target, whose normal must also
+ * agree with the cage's. Vertices at borders are left out, because they may lie anywhere.
  */
 export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse | undefined): Inside {
   if (!reversed) return { vertices: 0, area: 0 };
@@ -51,7 +51,7 @@ export function insideOf({ surface, cage, diagonal }: Scene, reversed: Reverse |
   return { vertices, area: total > 0 ? inside / total : 0 };
 }
 
-/** A cage that dives into its target. */
+/** A cage that lies partly inside its target. */
 export function checkInside({ vertices, area }: Inside): Finding[] {
   if (vertices === 0) return [];
   return [
@@ -59,7 +59,7 @@ export function checkInside({ vertices, area }: Inside): Finding[] {
       code: 'cageInsideTarget',
       weight: area / mostInside,
       sentence: `${vertices} of the cage's vertices, ${percent(area)} by area, lie inside the target`,
-      advice: 'Pull them out, until they lie over its surface.',
+      advice: 'Move them outwards until they lie above its surface.',
       numbers: { vertices, area },
     },
   ];

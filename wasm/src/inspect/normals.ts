@@ -4,19 +4,19 @@ import { cross, dot, minus, pointAt, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
 import { type Edge, middleOf, type Surface } from './surface.js';
 
-/** A cage with more of its area than this turned inward is unfit: there the paint is lost. */
+/** A cage is unfit if more than this share of its area faces inward, because the paint is lost there. */
 const mostInward = 0.1;
 /**
  * A piece of a cage, its holes spanned, is a solid if its volume is at least this share of its area to the power of 1.5
- * (a ball has 0.094, a bowl 0.13 of its own area, a flat patch 0). A flatter one has no inside of its own: then it is
- * the target that says which side is the inner one.
+ * (a ball has 0.094, a bowl 0.13 of its own area, a flat patch 0). For a flatter piece, the side of the target decides which side
+ * is the inner one.
  */
 const leastVolume = 0.02;
 
-/** So clear must the target's vote be that a flat piece is turned inward: those against less those for, of all that vote, */
-const clearVote = 0.5;
-/** and so much of the target's area must vote on it: below, a fold of the target decides. */
-const leastVote = 0.005;
+/** A flat piece faces inward if the target's area on its outer side exceeds that on its inner side by this share of both, */
+const clearMajority = 0.5;
+/** and if at least this share of the target's area is near it; with less, it might only be near a fold of the target. */
+const leastArea = 0.005;
 
 /** Which triangles of the cage are turned inward. */
 export interface Orientation {
@@ -27,18 +27,17 @@ export interface Orientation {
 }
 
 /**
- * Tells the cage's outside from its inside, without regard to how its triangles are wound: pieces are joined over edges
- * of two triangles, and the volume that a piece encloses once its holes are spanned is positive. Doubled triangles are
- * judged once.
+ * Finds the outer side of the cage regardless of how its triangles are wound: pieces are joined over edges of two triangles, and
+ * the volume that a piece encloses, with its holes spanned, must be positive. Duplicate triangles are judged once.
  */
 export function orientationOf(scene: Scene): Orientation {
   const { surface } = scene;
   const turned = new Int8Array(surface.areas.length); // 1 as the piece's first triangle is wound, -1 against it
   const pieceOf = new Int32Array(surface.areas.length).fill(-1);
   const pieces = windAlike(surface, turned, pieceOf);
-  const votes = votesOf(scene, pieceOf, pieces.length, turned);
+  const targetSides = targetSidesOf(scene, pieceOf, pieces.length, turned);
   const borders = bordersOf(surface, pieceOf, pieces.length);
-  const voters = votes.totals.reduce((sum, total) => sum + total, 0);
+  const total = targetSides.totals.reduce((sum, area) => sum + area, 0);
   const inward = new Uint8Array(surface.areas.length);
   let area = 0;
   pieces.forEach((triangles, p) => {
@@ -47,7 +46,7 @@ export function orientationOf(scene: Scene): Orientation {
     const outward =
       Math.abs(volume) >= leastVolume * pieceArea ** 1.5
         ? volume > 0
-        : votes.totals[p]! < leastVote * voters || votes.sums[p]! >= -clearVote * votes.totals[p]!;
+        : targetSides.totals[p]! < leastArea * total || targetSides.sums[p]! >= -clearMajority * targetSides.totals[p]!;
     for (const t of triangles) {
       if ((turned[t] === 1) === outward) continue;
       inward[t] = 1;
@@ -57,13 +56,13 @@ export function orientationOf(scene: Scene): Orientation {
   return { inward, share: surface.area > 0 ? Math.min(1, area / surface.area) : 0 };
 }
 
-/** Collects pieces of triangles joined by edges of two, and says which of a piece are wound alike. */
+/** Collects pieces of triangles joined by edges of two triangles, and finds which triangles of a piece are wound alike. */
 function windAlike({ areas, doubled, edges }: Surface, turned: Int8Array, pieceOf: Int32Array): number[][] {
   const neighbours: { triangle: number; alike: boolean }[][] = Array.from(areas, () => []);
   for (const { uses } of edges) {
     if (uses.length !== 2) continue;
     const [one, other] = uses as [Edge['uses'][0], Edge['uses'][0]];
-    const alike = one.forward !== other.forward; // a shared edge is run through both ways
+    const alike = one.forward !== other.forward; // neighbours with the same winding use their edge in opposite directions
     neighbours[one.triangle]!.push({ triangle: other.triangle, alike });
     neighbours[other.triangle]!.push({ triangle: one.triangle, alike });
   }
@@ -147,7 +146,7 @@ function volumeOf(
 }
 
 /** For each piece, the target's area that lies on its inner side less that on its outer side, as its first triangle is wound. */
-function votesOf(
+function targetSidesOf(
   { areas, sides, result }: Scene,
   pieceOf: Int32Array,
   pieces: number,
@@ -164,7 +163,7 @@ function votesOf(
   return { sums, totals };
 }
 
-/** The cage with the triangles that are turned inward turned round. */
+/** The cage with inward-facing triangles flipped. */
 export function turnedRight(cage: Mesh, { inward }: Orientation): Mesh {
   const indices = cage.indices.slice();
   for (let t = 0; t < inward.length; ++t) {
@@ -181,13 +180,13 @@ export function checkNormals({ inward, share }: Orientation): Finding[] {
   return [
     {
       code: 'normalsInward',
-      // What else follows from it weighs less, however far it goes.
+      // Heavier than all findings that follow from it.
       weight: share > mostInward ? 20 * share + 1 : Math.max(share / mostInward, 0.25),
       sentence: all
         ? 'The cage is inside out: all its triangles face inward'
         : `${percent(share)} of the cage's area (${triangles} of its triangles) faces inward`,
       advice:
-        'Turn these triangles round ("recalculate normals outside"): seen from outside, a cage is wound counter-clockwise. All else here is judged as if they were.',
+        'Flip these triangles ("recalculate normals outside"): seen from outside, a cage must be wound counter-clockwise. The other findings assume that they are flipped.',
       numbers: { share, triangles },
     },
   ];

@@ -4,46 +4,46 @@ import type { Scene } from './scene.js';
 
 /** How far outside the cage a vertex may lie, as a share of the diagonal, before it counts as poking through. */
 const pokeThrough = 0.0025;
-/** The most of the exposed area that pokes through a cage that is fit. */
+/** A cage is unfit if more than this share of the exposed area pokes out of it. */
 const mostOutside = 0.1;
-/** From here on, as a share of the diagonal, a cage that could be moved to stand off evenly is worth a remark. */
+/** An uneven distance is reported if moving the cage by at least this share of the diagonal would even it out. */
 const unevenFrom = 0.02;
-/** The farthest that a cage stands off what lies beneath it at the median. */
+/** A cage is unfit if its median distance to the target exceeds this share of the diagonal. */
 const farCage = 0.15;
-/** The least of the exposed area that a cage lies over; a face is a hundredth of a body. */
+/** A cage must lie over at least this share of the exposed area; a face is a hundredth of a body. */
 const leastBeneath = 0.002;
 /**
- * A point so far outside, as a share of the diagonal, is not poking through but belongs to another part of the target, if
- * what should be beneath the nearest triangle of the cage is there: the flank beside a sleeve, one leg beside the other.
+ * A point that is farther outside than this share of the diagonal does not poke out, but belongs to another part of the target, if
+ * the nearest triangle of the cage has some target close beneath it: the flank beside a sleeve, one leg beside the other.
  */
 const elsewhere = 0.02;
-/** That much, as a share of the triangle's own area, is enough to be there. */
+/** A triangle has target beneath it if that has at least this share of the triangle's own area. */
 const leastServed = 0.3;
-/** Nor may much of the cage lie over nothing: then it is the cage that is elsewhere. */
+/** At least this share of the cage must have target beneath it; otherwise the cage is misplaced. */
 const allServed = 0.95;
-/** And so near must it be, as a share of the diagonal. */
+/** How close the target must be beneath such a triangle, as a share of the diagonal. */
 const close = 0.04;
 
-/** Where the target lies about the cage. Lengths are shares of the target's diagonal. */
+/** How the target lies relative to the cage. Lengths are shares of the target's diagonal. */
 export interface Placement {
   /**
-   * Share of the target on the outer side of the cage: of its vertices, of its area, and, farther out than 0.25 % of the
-   * diagonal, of the area that nothing occludes and that the cage lies over: not beside its open borders.
+   * Share of the target on the outer side of the cage: of its vertices, of its area, and of the exposed area under the cage (not
+   * beside its open borders); the last one counts only what is farther out than 0.25 % of the diagonal.
    */
   outside: { vertices: number; area: number; exposedArea: number };
   /** Distance from target to cage: quantiles over the vertices. */
   distances: { p50: number; p90: number; p99: number; max: number };
-  /** What the cage lies over: its share of the exposed area, and its median distance. */
+  /** The target under the cage: its share of the exposed area, and its median distance. */
   beneath: { share: number; distance: number };
-  /** How the cage would have to be moved, turned (about the target's middle; degrees) and grown to fit best. */
+  /** How to move, rotate (around the target's middle, in degrees) and enlarge the cage for the best fit. */
   correction: { move: Vector; turn: Vector; grow: number };
-  /** What would remain outside after moving and turning alone. */
+  /** Share of the exposed area that would remain outside after only moving and rotating. */
   outsideOnceMoved: number;
-  /** How much larger the cage's box is along x, y and z than that of the target's points that are judged. */
+  /** How much larger than the target's bounding box the cage's is, along x, y and z; only vertices under the cage count. */
   room: Vector;
 }
 
-/** Measures where the target lies about the cage. */
+/** Measures how the target lies relative to the cage. */
 export function placementOf(scene: Scene): Placement {
   const { areas, diagonal, sides, result } = scene;
   let [vertices, area, total, exposed, beneath, exposedOutside] = [0, 0, 0, 0, 0, 0];
@@ -145,7 +145,7 @@ function correct(
   let weights = 0;
   for (const v of judged) {
     const s = sides.signed[v]! / diagonal;
-    // What is far from the cage lies in a fold of the target; it says nothing of the fit.
+    // Vertices far from the cage lie in folds of the target and say nothing about the fit.
     const weight = areas[v]! / (1 + (s / 0.03) ** 2);
     rowOf(v);
     weights += weight;
@@ -154,7 +154,7 @@ function correct(
       matrix[i]![unknowns]! += weight * row[i]! * s;
     }
   }
-  // A ball can be turned at will: without this the equations would not know how far.
+  // Regularisation: the rotation of a ball, for example, is undetermined.
   for (let i = 0; i < 6; ++i) matrix[i]![i]! += 1e-3 * (weights || 1);
   matrix[6]![6]! += 1e-9 * (weights || 1);
   const x = solve(matrix);
@@ -192,7 +192,7 @@ function solve(matrix: Float64Array[]): number[] {
 
 const centreOf = ({ min, max }: Box): Vector => [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
 
-/** The target outside the cage, the cage elsewhere or far off. */
+/** A cage that is misplaced, too small or too far away. */
 export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   const { targetBox, diagonal } = scene;
   const cageBox = boxOf(scene.cage.positions, scene.cage.indices);
@@ -206,7 +206,7 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
       {
         code: 'cageElsewhere',
         weight: 100,
-        sentence: `The cage is elsewhere: between it and the target there is a gap of ${percent(gap)} of the target's diagonal; it is ${size.toPrecision(2)} times as large as the target`,
+        sentence: `The cage is not around the target: the gap between them is ${percent(gap)} of the target's diagonal, and the cage is ${size.toPrecision(2)} times as large as the target`,
         advice: 'Move it around the target, in the same unit; check that transforms were applied on export.',
         numbers: { gap, size },
       },
@@ -218,7 +218,7 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
     findings.push({
       code: 'cageElsewhere',
       weight: 50,
-      sentence: `The cage lies over no more than ${percent(beneath.share)} of what is exposed of the target; it is ${size.toPrecision(2)} times as large`,
+      sentence: `The cage lies over only ${percent(beneath.share)} of the target's exposed area; it is ${size.toPrecision(2)} times as large as the target`,
       advice: 'Move it around the target, in the same unit; check that transforms were applied on export.',
       numbers: { gap, size, beneath: beneath.share },
     });
@@ -226,12 +226,12 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   const share = outside.exposedArea;
   const cause = causeOf(placement);
   if (share > 0 || cause === 'cageMisplaced') {
-    const out = `${percent(share)} of what is exposed of the target pokes out of the cage by more than ${percent(pokeThrough)} of the diagonal`;
+    const out = `${percent(share)} of the target's exposed area pokes out of the cage by more than ${percent(pokeThrough)} of the diagonal`;
     const { sentence, advice } = describe(
       cause,
       placement,
       diagonal,
-      share > 0 ? out : 'it stands off the target unevenly',
+      share > 0 ? out : 'its distance to the target is uneven',
     );
     const uneven = Math.hypot(...placement.correction.move) / (4 * unevenFrom);
     findings.push({
@@ -253,9 +253,9 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
     findings.push({
       code: 'cageTooFar',
       weight: beneath.distance / farCage,
-      sentence: `Half of what the cage lies over is farther than ${percent(beneath.distance)} of the diagonal from it; it is ${size.toPrecision(2)} times as large as the target`,
+      sentence: `Half of the exposed vertices under the cage are more than ${percent(beneath.distance)} of the diagonal away from it; the cage is ${size.toPrecision(2)} times as large as the target`,
       advice:
-        'Fit the cage more closely: the farther off, the more the texture is distorted. Check that both are in the same unit.',
+        'Fit the cage more closely: the greater the distance, the more the texture is distorted. Check that both are in the same unit.',
       numbers: { median: beneath.distance, size },
     });
   }
@@ -264,13 +264,13 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
 
 type Cause = 'cageMisplaced' | 'cageTooSmall' | 'targetPokesOut';
 
-/** Why the target is outside: what would help most. */
+/** The reason why the target is outside: which correction would help most. */
 function causeOf({ outside, outsideOnceMoved, correction, room }: Placement): Cause {
   const share = outside.exposedArea;
   if (share === 0 ? Math.hypot(...correction.move) >= unevenFrom : outsideOnceMoved < 0.5 * share)
     return 'cageMisplaced';
   if (correction.grow > 0 || room[0] + room[1] + room[2] < 0) return 'cageTooSmall';
-  // Large enough, and yet much is outside: it is turned or moved too far for an estimate.
+  // The cage is large enough, yet much is outside: it is moved or rotated too far for an estimate.
   return share > 2 * mostOutside ? 'cageMisplaced' : 'targetPokesOut';
 }
 
@@ -283,26 +283,26 @@ function describe(
   if (cause === 'cageTooSmall')
     return {
       sentence: `The cage is too small: ${out}`,
-      advice: 'Grow it along its normals until the target is inside.',
+      advice: 'Enlarge it along its normals until the target is inside.',
     };
   if (cause === 'targetPokesOut')
-    return { sentence: out, advice: 'Pull the cage out there, or grow it along its normals.' };
+    return { sentence: out, advice: 'Move the cage outwards there, or enlarge it along its normals.' };
   if (outside.exposedArea > 0 && outsideOnceMoved >= 0.5 * outside.exposedArea) {
     return {
-      sentence: `The cage is misplaced, or made for something else: ${out}, though it is large enough`,
-      advice: 'Move and turn it onto the target; check that it belongs to it.',
+      sentence: `The cage is misplaced or was made for another model: ${out}, although the cage is large enough`,
+      advice: 'Move and rotate it onto the target, and check that it was made for this target.',
     };
   }
   const moved = Math.hypot(...correction.move);
   const turned = Math.hypot(...correction.turn);
   const how = [
-    moved >= 0.002 ? `moved by about ${percent(moved)} of the diagonal` : '',
-    turned >= 0.5 ? `turned by about ${turned.toFixed(1)}°` : '',
+    moved >= 0.002 ? `shifted by about ${percent(moved)} of the diagonal` : '',
+    turned >= 0.5 ? `rotated by about ${turned.toFixed(1)}°` : '',
   ].filter(Boolean);
   const moves = correction.move.map((share) => Number((share * diagonal).toPrecision(2))).join(', ');
   const turns = correction.turn.map((degrees) => `${degrees.toFixed(1)}°`).join(', ');
   return {
     sentence: `The cage is misplaced${how.length > 0 ? `, ${how.join(' and ')}` : ''}: ${out}`,
-    advice: `Move it by about (${moves}) and turn it by about (${turns}) about x, y and z.`,
+    advice: `Move it by about (${moves}) and rotate it by about (${turns}) around x, y and z.`,
   };
 }

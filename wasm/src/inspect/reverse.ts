@@ -2,13 +2,13 @@ import { project } from '../index.js';
 import { joined, nearestPoint, pointAt, type Vector } from './geometry.js';
 import type { Scene } from './scene.js';
 
-/** The target as it is seen from points of the cage. */
+/** For points of the cage, the nearest points of the target. */
 export interface Reverse {
   /** 1 per point: the nearest triangle of the target. */
   triangles: Uint32Array;
   /** 1 per point, in units of the input. */
   distances: Float32Array;
-  /** The nearest point of the target itself. */
+  /** The nearest point of the target. */
   nearest(point: number): Vector;
   /** The nearest triangle's corners. */
   corners(point: number): [Vector, Vector, Vector];
@@ -21,9 +21,9 @@ export interface Reverse {
  */
 export function reverse({ target, targetBox, cage, areas }: Scene, points: Float32Array): Reverse | undefined {
   if (!areas.some((area) => area > 0)) return undefined;
-  // The core wants UVs of what it projects onto; nobody reads them here.
+  // The core requires UVs on the mesh that it projects onto; they are not used here.
   const uvs = new Float32Array((target.positions.length / 3) * 2);
-  // With the corners of the target's box among them, a cage that is a speck beside the target is in proportion to it.
+  // The corners of the target's box are added so that a cage that is tiny beside the target does not exceed the core's limit of size.
   const positions = joined(points, Float32Array.of(...targetBox.min, ...targetBox.max));
   const { triangles, distances } = project(
     { positions: target.positions, indices: target.indices, uvs },

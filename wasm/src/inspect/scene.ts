@@ -10,7 +10,7 @@ export interface PartName {
   vertexCount: number;
 }
 
-/** All that the checks look at. */
+/** The input of all checks. */
 export interface Scene {
   cage: Mesh;
   surface: Surface;
@@ -19,23 +19,23 @@ export interface Scene {
   /** 1 per target vertex: a third of the area of each of its triangles. */
   areas: Float64Array;
   targetBox: Box;
-  /** Of the target's box; never 0. */
+  /** The diagonal of the target's box; never 0. */
   diagonal: number;
   threshold: number;
-  /** What came of the transfer. */
+  /** The result of the transfer. */
   result: TransferResult;
   sides: Sides;
 }
 
-/** Where a target vertex lies as the cage sees it. */
+/** On which side of the cage each target vertex lies. */
 export interface Sides {
-  /** Distance to the cage, negative on the inner side of the nearest triangle's plane, where a target belongs. */
+  /** Distance to the cage, negative on the inner side of the nearest triangle's plane, where a target should be. */
   signed: Float64Array;
-  /** The loop of open edges that the nearest point of the cage lies on, so that the cage says nothing of the vertex; -1 without. */
+  /** The loop of open edges on which the nearest point of the cage lies, so that the cage says nothing about the vertex; else -1. */
   loops: Int32Array;
 }
 
-/** Puts together what the checks need. */
+/** Prepares the input of the checks. */
 export function sceneOf(
   cage: Mesh,
   target: Mesh,

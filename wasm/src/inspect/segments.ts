@@ -2,20 +2,20 @@ import type { Locks, SegmentStats } from '../index.js';
 import { counted, type Finding, type Place, percent } from './finding.js';
 import { partsOf, type Scene } from './scene.js';
 
-/** A segment whose score is within this factor of 1 is nearly decided the other way. */
+/** A segment is in doubt if its score is within this factor of 1. */
 const doubt = 1.25;
-/** Of at least this share of the exposed area, with others of its part. */
+/** Segments of a part are reported from this share of the exposed area on. */
 const leastArea = 0.001;
 /** From this share of the exposed area on, culling is worth a remark. */
 const muchCulled = 0.3;
-/** The least of what is exposed and lies over the cage, not beside its borders, that must be paintable. */
+/** At least this share of the exposed area under the cage must be paintable. */
 const leastCosmetic = 0.02;
 
 /** A connected component of the target. */
 export interface Segment {
-  /** The part that it begins in. */
+  /** The part of its first vertex. */
   part: string;
-  /** Of its first vertex, in `target.groups`. */
+  /** The group of its first vertex, in `target.groups`. */
   group: number;
   points: number;
   /** A, E and C, in squared units of the input, and F = C/E. */
@@ -23,7 +23,7 @@ export interface Segment {
   exposedArea: number;
   coveredArea: number;
   coverage: number;
-  /** How many times the area that it needs it has: kept from 1 on, unless a hole or a lock decides. `null` if it needs none. */
+  /** The ratio of actual to required area: kept from 1 on, unless a lock decides. `null` if no area is required. */
   score: number | null;
   culled: boolean;
   culledBy: SegmentStats['culledBy'];
@@ -53,7 +53,7 @@ export function segmentsOf({ parts, result }: Scene): Segment[] {
 /** A segment and its number. */
 type Numbered = Segment & { s: number };
 
-/** What is left to paint, what is barely decided, what is decided unlike its like. */
+/** Reports if too little is painted, if verdicts are close, if twins differ, and if much is culled. */
 export function checkSegments(scene: Scene, segments: readonly Segment[]): Finding[] {
   const numbered = segments.map((segment, s) => ({ ...segment, s })).sort((a, b) => b.exposedArea - a.exposedArea);
   const exposed = numbered.reduce((sum, { exposedArea }) => sum + exposedArea, 0);
@@ -79,27 +79,25 @@ function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonl
   const share = over > 0 ? cosmetic / over : 0;
   if (share >= leastCosmetic) return [];
   const only =
-    cosmetic === 0
-      ? 'Nothing of the target'
-      : `Only ${percent(share)} of what is exposed of the target, beneath the cage,`;
+    cosmetic === 0 ? 'No part of the target' : `Only ${percent(share)} of the target's exposed area under the cage`;
   const largest = cut > 0.5 * over ? numbered.find(({ culled }) => culled) : undefined;
   return [
     {
       code: 'nothingToPaint',
       weight: 2,
       sentence: largest
-        ? `${only} may be painted: of "${largest.part}" ${percent(largest.coverage)} is covered, ${reason(largest, threshold)}`
+        ? `${only} may be painted: the cage covers ${percent(largest.coverage)} of the exposed area of "${largest.part}", ${reason(largest, threshold)}`
         : `${only} may be painted`,
       advice: largest
-        ? `If the cage is meant for a part of it only, lock it (${option(largest)}), or make that part a mesh of its own; otherwise extend the cage.`
-        : 'See the other findings and the zones for the reason: uncovered means that the cage is not over it.',
+        ? `If the cage should cover only a region of "${largest.part}", override this (${option(largest)}) or make that region a mesh of its own. Otherwise extend the cage.`
+        : 'The other findings and the zones show the reason; uncovered vertices, for example, have no cage over them.',
       numbers: { share, culled: over > 0 ? cut / over : 0 },
       ...(largest && { places: [placeOf(largest.s, largest)], locks: locksFor([largest]) }),
     },
   ];
 }
 
-/** Parts that the areas barely decide: those that pass and those that do not, each by itself. */
+/** Parts with scores near 1, reported separately for painted and culled segments. */
 function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
   const doubtful = numbered.filter(({ score }) => score !== null && score > 1 / doubt && score < doubt);
   return grouped(doubtful, ({ group, part, culled }) => `${group} ${culled} ${part}`).flatMap((alike): Finding[] => {
@@ -113,8 +111,8 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
       {
         code: 'segmentInDoubt',
         weight: Math.min(0.9, 0.2 + 2 * area),
-        sentence: `${one} ${is} ${culled ? 'not painted, but nearly' : 'painted, but barely'}: F = ${coverage.toFixed(2)}, ${reason(largest, threshold)}; ${percent(area)} of the exposed area`,
-        advice: `If that is wrong, lock ${alike.length === 1 ? 'it' : 'them'} (${option(largest)}); or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
+        sentence: `${one} ${is} ${culled ? 'not painted' : 'painted'}, but only just: ${alike.length === 1 ? 'its coverage is' : 'the largest has a coverage of'} ${coverage.toFixed(2)}, ${reason(largest, threshold)} (${percent(area)} of the target's exposed area)`,
+        advice: `If that is wrong, override it (${option(largest)}), or widen or close the holes over ${alike.length === 1 ? 'it' : 'them'}.`,
         numbers: { segments: alike.length, area, score: largest.score! },
         places: alike.map((segment) => placeOf(segment.s, segment)),
         locks: locksFor(alike),
@@ -123,7 +121,7 @@ function checkDoubt({ threshold }: Scene, numbered: readonly Numbered[], exposed
   });
 }
 
-/** Twins of which some are painted and some not. */
+/** Segments of the same shape, of which only some are painted. */
 function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: number): Finding[] {
   const seen = numbered.filter(({ exposedArea }) => exposedArea >= leastArea * exposed);
   return grouped(seen, ({ s }) => result.segmentStats[s]!.twinOf).flatMap((twins): Finding[] => {
@@ -135,8 +133,8 @@ function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: n
       {
         code: 'twinsDiffer',
         weight: 0.2,
-        sentence: `Of ${twins.length} equal pieces like "${largest.part}" ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${bare} ${bare === 1 ? 'is' : 'are'} not`,
-        advice: 'If they should be alike, lock some of them; check whether the cage covers them alike.',
+        sentence: `Of ${twins.length} segments with the shape of "${largest.part}", ${painted} ${painted === 1 ? 'is' : 'are'} painted and ${bare} ${bare === 1 ? 'is' : 'are'} not`,
+        advice: 'If they should be treated alike, lock some of them, and check whether the cage covers them equally.',
         numbers: { painted, bare },
         places: twins.map((twin) => placeOf(twin.s, twin)),
         locks: locksFor(culled),
@@ -145,7 +143,7 @@ function checkTwins({ result }: Scene, numbered: readonly Numbered[], exposed: n
   });
 }
 
-/** Much is exposed and yet not painted. */
+/** Much of the exposed area is not painted. */
 function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] {
   const all = numbered.filter(({ culled, exposedArea }) => culled && exposedArea > 0);
   const share = all.reduce((sum, { exposedArea }) => sum + exposedArea, 0) / exposed;
@@ -155,8 +153,8 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
     {
       code: 'muchCulled',
       weight: 0.2,
-      sentence: `${percent(share)} of what is exposed of the target is culled, as too little of its ${counted(all.length, 'segment')} is covered; most of it of "${largest.part}"`,
-      advice: `If some of it should be painted, lock it (${option(largest)}), or close the holes of the cage over it.`,
+      sentence: `${percent(share)} of the target's exposed area is culled, in ${counted(all.length, 'segment')}; the largest belongs to "${largest.part}"`,
+      advice: `If some of it should be painted, override this (${option(largest)}), or close the holes of the cage over it.`,
       numbers: { share },
       places: all
         .filter(({ exposedArea }) => exposedArea >= leastArea * exposed)
@@ -166,18 +164,21 @@ function checkCulled(numbered: readonly Numbered[], exposed: number): Finding[] 
   ];
 }
 
-/** What the areas of a segment are held against, and how near they come. */
+/** Why a segment is culled or kept, as the end of a sentence about its coverage. */
 function reason({ coverage, culled, culledBy, score }: Segment, threshold: number): string {
+  if (culledBy === 'lock') return 'but a lock excludes it';
   if (culledBy === 'hole') return 'but a hole of the cage seems to be meant for it';
   const byThreshold = culled ? coverage < threshold : score !== null && Math.abs(score * threshold - coverage) <= 1e-6;
-  if (byThreshold) return `${culled ? 'less than' : 'against'} the threshold of ${threshold}`;
-  return `and it has ${score === null ? 'more than' : `${score.toPrecision(2)} times`} the covered area that it needs`;
+  if (byThreshold) return culled ? `less than the threshold of ${threshold}` : `and the threshold is ${threshold}`;
+  return score === null
+    ? 'and no area is required'
+    : `and it has ${score.toPrecision(2)} times the required covered area`;
 }
 
 /** Where a segment is. */
 export const placeOf = (segment: number, { group, part }: Segment): Place => ({ segment, group, part });
 
-/** The lock that decides a segment the other way, as an option of the command. */
+/** The lock that reverses the verdict on a segment, as an option of the command. */
 const option = ({ part, culled }: Segment): string => `--${culled ? 'keep' : 'exclude'} "${part}"`;
 
 const locksFor = (segments: readonly Numbered[]): Locks => ({

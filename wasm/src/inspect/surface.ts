@@ -1,45 +1,45 @@
 import type { Mesh } from '../api/mesh.js';
 import { boxOf, doubleAreaNormal, firstInPlace, length, pointAt, UnionFind, type Vector } from './geometry.js';
 
-/** An edge between two places, and the triangles that have it. */
+/** An edge between two positions, and its triangles. */
 export interface Edge {
-  /** Places: the first vertex of each. */
+  /** The first vertex at each of its two positions. */
   a: number;
   b: number;
-  /** Each triangle at it, doubled ones once, the corner it begins at there, and whether it runs from `a` to `b`. */
+  /** Its triangles, duplicates once: the corner where the edge begins, and whether the triangle runs from `a` to `b`. */
   uses: { triangle: number; corner: number; forward: boolean }[];
 }
 
-/** A closed chain of open edges, or several that touch: the border of a hole, or where the cage ends. */
+/** A boundary loop: a closed chain of open edges, or several that touch, around a hole or at the end of the cage. */
 export interface Loop {
   edges: Edge[];
-  /** Summed length of its edges, in units of the input. */
+  /** Total length of its edges, in units of the input. */
   perimeter: number;
-  /** Diagonal of its box. */
+  /** Diagonal of its bounding box. */
   diagonal: number;
-  /** Area of the surface that spans it from its middle. */
+  /** Area of the triangles between its edges and its middle. */
   area: number;
   centre: Vector;
 }
 
-/** A cage as a surface. Triangles without area take no part in it, doubled ones count once, vertices in one place are one. */
+/** A cage as a surface. Triangles without area are ignored, duplicates count once, and vertices at the same position are one. */
 export interface Surface {
   mesh: Mesh;
-  /** 1 per vertex: the first vertex in the same place. */
+  /** 1 per vertex: the first vertex at the same position. */
   place: Uint32Array;
-  /** 1 per triangle: its area, 0 if it takes no part. */
+  /** 1 per triangle: its area; 0 if it is ignored. */
   areas: Float64Array;
-  /** 1 per triangle: 1 if an earlier one has the same corners, in whatever order. */
+  /** 1 per triangle: 1 if an earlier one has the same corners, in any order. */
   doubled: Uint8Array;
-  /** Of all triangles. */
+  /** The area of all triangles. */
   area: number;
   edges: Edge[];
   loops: Loop[];
-  /** 1 per vertex: the loop that its place lies on, -1 without. */
+  /** 1 per vertex: the loop that it lies on, or -1. */
   loopOfVertex: Int32Array;
-  /** The loop of an open edge between two places, by `edgeKey`. */
+  /** The loop of an open edge, by `edgeKey`. */
   loopOfEdge: Map<number, number>;
-  /** The key of the edge between two places. */
+  /** The key of the edge between two positions. */
   edgeKey(a: number, b: number): number;
 }
 
@@ -109,7 +109,7 @@ export function surfaceOf(mesh: Mesh): Surface {
   };
 }
 
-/** The middle of a chain of edges, each counted by its length. */
+/** The middle of a chain of edges, weighted by length. */
 export function middleOf(positions: Float32Array, edges: readonly Edge[]): Vector {
   const sum = [0, 0, 0];
   let perimeter = 0;

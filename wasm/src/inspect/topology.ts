@@ -3,7 +3,7 @@ import { length, minus, pointAt, UnionFind } from './geometry.js';
 import type { Scene } from './scene.js';
 import type { Surface } from './surface.js';
 
-/** Open edges nearer to each other than this share of the diagonal are a crack: vertices that were meant to be one. */
+/** Open edges closer together than this share of the diagonal are a crack: their vertices should be merged. */
 const crackWidth = 1e-4;
 /** A hole is a slit if its area is less than this share of its perimeter squared (a circle has 0.08), */
 const narrow = 0.002;
@@ -14,21 +14,21 @@ const mostCompared = 20000;
 
 /** What is wrong with a cage as a surface. */
 export interface Topology {
-  /** Triangles without area: they take no part. */
+  /** Triangles without area, which are ignored. */
   degenerateTriangles: number;
-  /** Triangles with the same corners as an earlier one, in whatever order. */
+  /** Triangles with the same corners as an earlier one, in any order. */
   doubledTriangles: number;
-  /** Edges of more than two triangles, doubled ones aside. */
+  /** Edges of more than two triangles, not counting duplicate triangles. */
   nonManifoldEdges: number;
-  /** Open edges that run along another one, so close that a gap cannot be meant. */
+  /** Open edges so close to another one that the gap cannot be intended. */
   crackEdges: number;
-  /** Holes that are too narrow or too small to be meant. */
+  /** Holes that are too narrow or too small to be intended. */
   slits: number;
   /** Connected components, over edges. */
   pieces: number;
 }
 
-/** Looks at a cage's triangles and edges; vertices in one place count as one. */
+/** Examines a cage's triangles and edges; vertices at the same position count as one. */
 export function topologyOf({ surface, diagonal }: Scene): Topology {
   const degenerateTriangles = surface.areas.reduce((sum, area) => sum + (area === 0 ? 1 : 0), 0);
   const nonManifoldEdges = surface.edges.filter(({ uses }) => uses.length > 2).length;
@@ -88,7 +88,7 @@ export function checkTopology(
     findings.push({
       code: 'degenerateTriangles',
       weight: Math.min(0.9, (2 * degenerateTriangles) / surface.areas.length),
-      sentence: `${counted(degenerateTriangles, 'triangle')} of the cage ${degenerateTriangles === 1 ? 'has' : 'have'} no area and ${degenerateTriangles === 1 ? 'takes' : 'take'} no part`,
+      sentence: `${counted(degenerateTriangles, 'triangle')} of the cage ${degenerateTriangles === 1 ? 'has' : 'have'} no area and ${degenerateTriangles === 1 ? 'is' : 'are'} ignored`,
       advice: 'Remove them ("degenerate dissolve").',
       numbers: { triangles: degenerateTriangles },
     });
@@ -97,8 +97,9 @@ export function checkTopology(
     findings.push({
       code: 'doubledTriangles',
       weight: Math.min(0.9, 0.25 + doubledTriangles / surface.areas.length),
-      sentence: `${counted(doubledTriangles, 'triangle')} of the cage ${doubledTriangles === 1 ? 'is' : 'are'} there twice`,
-      advice: 'Remove doubled triangles, also those that face the other way: a cage is one skin around the target.',
+      sentence: `${counted(doubledTriangles, 'triangle')} of the cage ${doubledTriangles === 1 ? 'is a duplicate' : 'are duplicates'}`,
+      advice:
+        'Remove duplicate triangles, including those that face the other way: a cage is a single layer around the target.',
       numbers: { triangles: doubledTriangles },
     });
   }
@@ -107,17 +108,17 @@ export function checkTopology(
       code: 'nonManifoldEdges',
       weight: Math.min(0.9, 0.25 + (2 * nonManifoldEdges) / surface.edges.length),
       sentence: `${counted(nonManifoldEdges, 'edge')} of the cage ${nonManifoldEdges === 1 ? 'belongs' : 'belong'} to more than two triangles`,
-      advice: 'Remove inner faces: a cage is one skin around the target.',
+      advice: 'Remove inner faces: a cage is a single layer around the target.',
       numbers: { edges: nonManifoldEdges },
     });
   }
   if (crackEdges > 0 || slits > 0) {
     const share = crackEdges / surface.edges.length;
-    const edges = `${counted(crackEdges, 'open edge')} of the cage ${crackEdges === 1 ? 'runs' : 'run'} along another one less than ${percent(crackWidth)} of the diagonal away`;
+    const edges = `${counted(crackEdges, 'open edge')} ${crackEdges === 1 ? 'runs' : 'run'} along another one, less than ${percent(crackWidth)} of the diagonal away`;
     findings.push({
       code: 'cracks',
       weight: Math.min(0.9, 0.1 + 4 * share),
-      sentence: `The cage has cracks, through which rays slip: ${[crackEdges > 0 ? edges : '', slits > 0 ? `${counted(slits, 'hole')} too narrow or too small to be meant` : ''].filter(Boolean).join('; ')}`,
+      sentence: `The cage has cracks through which rays pass: ${[crackEdges > 0 ? edges : '', slits > 0 ? `${counted(slits, 'hole')} ${slits === 1 ? 'is' : 'are'} too narrow or too small to be intended` : ''].filter(Boolean).join('; ')}`,
       advice:
         'Merge vertices by distance, and fill such holes. Vertices that are split for UVs must be in exactly the same place.',
       numbers: { edges: crackEdges, share, slits },

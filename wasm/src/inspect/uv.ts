@@ -6,24 +6,24 @@ import type { Scene } from './scene.js';
 const samples = 1024;
 /** A UV triangle smaller than this, in units of the texture's area, shows nothing of it: a hundredth of a pixel of 4096². */
 const leastArea = 6e-10;
-/** The most of the cage's area that may be without UVs. */
+/** A cage is unfit if more than this share of its area has no UV area. */
 const mostWithoutArea = 0.2;
-/** The most of the texture's area in use that may be used twice; a mirrored layout uses all of it twice. */
+/** Overlaps weigh half at this share of the used area; a mirrored layout uses all of it twice. */
 const mostOverlap = 0.05;
 
-/** What a cage's UVs are like. Shares are of the area that the UVs of triangles have, where not said otherwise. */
+/** The properties of a cage's UVs. */
 export interface UvLayout {
   /** Vertices whose UV lies outside 0 … 1, and the share of the cage's vertices. */
   outside: { vertices: number; share: number };
   /** Triangles whose UVs have no area, and their share of the cage's own area. */
   withoutArea: { triangles: number; share: number };
-  /** Share of the texture's area in use that more than one triangle uses, and how many use it at most. */
+  /** Share of the texture's used area that belongs to more than one triangle, and the maximum number of triangles. */
   overlap: { share: number; layers: number };
-  /** Islands: components over edges that both triangles share in UV. */
+  /** Number of charts: connected components over edges that are shared in UV. */
   charts: number;
-  /** Edges where charts, or two sides of one, meet; and their share of the length of all inner edges. */
+  /** Edges where charts meet, or a chart meets itself; and their share of the length of all inner edges. */
   seams: { edges: number; share: number };
-  /** Share of the texture 0 … 1 that is in use. */
+  /** Share of the texture (0 … 1) that is used. */
   used: number;
 }
 
@@ -93,7 +93,7 @@ function coverageOf(
   areas: Float64Array,
 ): { used: number; share: number; layers: number } {
   const counts = new Uint16Array(samples * samples);
-  // UVs in pixels, or otherwise far out, would take forever: then the layout as a whole is looked at.
+  // UVs in pixels, or far outside for another reason, would take too long: then the whole layout is scaled to the grid.
   let [low, high] = [Infinity, -Infinity];
   for (const value of uvs) {
     if (value < low) low = value;
@@ -145,7 +145,7 @@ function fill(x: readonly number[], y: readonly number[], pixel: (column: number
   }
 }
 
-/** UVs outside the texture, without area, one over another, or in crumbs. */
+/** UVs outside the texture, without area, overlapping, or in too many charts. */
 export function checkUvs(
   { surface, cage }: Scene,
   { outside, withoutArea, overlap, charts, seams }: UvLayout,
@@ -155,7 +155,7 @@ export function checkUvs(
     findings.push({
       code: 'uvsWithoutArea',
       weight: withoutArea.share / mostWithoutArea,
-      sentence: `${percent(withoutArea.share)} of the cage's area (${counted(withoutArea.triangles, 'triangle')}) has UVs without area: there a single point of the texture is smeared`,
+      sentence: `${percent(withoutArea.share)} of the cage's area (${counted(withoutArea.triangles, 'triangle')}) has UVs without area, so a single point of the texture is smeared over it`,
       advice: 'Unwrap these triangles.',
       numbers: { share: withoutArea.share, triangles: withoutArea.triangles },
     });
@@ -166,18 +166,18 @@ export function checkUvs(
     findings.push({
       code: 'uvsOutside',
       weight: vast ? 1.5 : 0.1 + 0.8 * outside.share,
-      sentence: `${counted(outside.vertices, 'vertex', 'vertices')} of the cage (${percent(outside.share)}) ${outside.vertices === 1 ? 'has its UV' : 'have their UVs'} outside 0 … 1${vast ? ', some so far that they may be meant in pixels' : ''}`,
-      advice: 'Fine where the texture is meant to repeat; otherwise move the UVs into 0 … 1.',
+      sentence: `${counted(outside.vertices, 'vertex', 'vertices')} of the cage (${percent(outside.share)}) ${outside.vertices === 1 ? 'has its UV' : 'have their UVs'} outside 0 … 1${vast ? ', some so far that they may be in pixels' : ''}`,
+      advice: 'This is fine if the texture should repeat; otherwise move the UVs into 0 … 1.',
       numbers: { vertices: outside.vertices, share: outside.share },
     });
   }
-  // A pixel or two at an edge come of rounding.
+  // A pixel or two at an edge may come from rounding.
   if (overlap.share > 1e-4) {
     findings.push({
       code: 'uvsOverlap',
       weight: overlap.layers > 4 && overlap.share > 0.5 ? 1.2 : Math.min(0.9, (0.5 * overlap.share) / mostOverlap),
-      sentence: `${percent(overlap.share)} of the texture in use is used by more than one place of the cage, by up to ${overlap.layers}`,
-      advice: 'Fine where both sides are meant to look alike (a mirrored layout); otherwise unwrap without overlaps.',
+      sentence: `${percent(overlap.share)} of the used area of the texture belongs to more than one triangle of the cage, at most to ${overlap.layers}`,
+      advice: 'This is fine if both sides should look alike (a mirrored layout); otherwise unwrap without overlaps.',
       numbers: { share: overlap.share, layers: overlap.layers },
     });
   }
@@ -187,7 +187,7 @@ export function checkUvs(
       code: 'uvsInPieces',
       weight: perChart < 3 ? 0.6 : 0.3,
       sentence: `The cage's UVs are in ${charts} charts of ${perChart.toFixed(1)} triangles on average; ${percent(seams.share)} of its edges, by length, are seams`,
-      advice: 'Unwrap it in fewer, larger charts: every seam may show, and a texture is easier to draw without.',
+      advice: 'Unwrap it into fewer, larger charts: every seam may be visible, and makes the texture harder to draw.',
       numbers: { charts, seams: seams.share },
     });
   }
