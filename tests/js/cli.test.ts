@@ -220,8 +220,8 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
       /bad\.glb: is a GLB of version 1/,
     ],
     ['a file that is no GLB', () => 'hello, world\n', /bad\.glb: is neither a GLB nor a glTF file/],
-    ['JSON that is no glTF', () => '{"hello": 1}', /bad\.glb: is JSON but no glTF/],
-    ['null', () => 'null', /bad\.glb: is JSON but no glTF/],
+    ['JSON that is no glTF', () => '{"hello": 1}', /bad\.glb: is JSON but not glTF/],
+    ['null', () => 'null', /bad\.glb: is JSON but not glTF/],
     ['an empty file', () => '', /bad\.glb: the file is empty/],
     ['glTF 1.0', () => '{"asset": {"version": "1.0"}}', /bad\.glb: is glTF 1\.0; only 2\.x/],
     [
@@ -275,7 +275,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
       'a buffer on another host',
       () =>
         JSON.stringify({ asset: { version: '2.0' }, buffers: [{ uri: 'https://example.com/a.bin', byteLength: 4 }] }),
-      /bad\.glb: buffers\[0\] is at https:.* only files are read/,
+      /bad\.glb: buffers\[0\] is at https:.* only local files can be read/,
     ],
     [
       'a data URI that is none',
@@ -284,7 +284,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
           asset: { version: '2.0' },
           buffers: [{ uri: 'data:application/octet-stream;base64', byteLength: 4 }],
         }),
-      /bad\.glb: buffers\[0\] is "data:[^"]*", no data URI\n/,
+      /bad\.glb: buffers\[0\] is "data:[^"]*", not a valid data URI\n/,
     ],
     [
       'an attribute of too few vertices',
@@ -328,12 +328,12 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
       /bad\.glb: nodes\[0\] is twice a root of scenes\[0\]/,
     ],
     [
-      'morph targets that are no list',
+      'morph targets that are not an array',
       () =>
         changed(({ json }) => {
           Object.assign(json.meshes![0]!.primitives[0]!, { targets: -1 });
         }),
-      /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets is not a list of objects/,
+      /bad\.glb: meshes\[0\]\.primitives\[0\]\.targets is not an array of objects/,
     ],
     [
       'a morph target that is nowhere',
@@ -459,7 +459,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     const half = write('half.png', paint().subarray(0, 60));
     fails(
       ['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', half],
-      /half\.png: is truncated: the PNG image has no end/,
+      /half\.png: is truncated: the PNG image is incomplete/,
     );
     rmSync(text);
     rmSync(half);
@@ -1143,13 +1143,13 @@ describe('the same mesh in other forms gives the same answer', () => {
     });
     const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '-o', at('instanced-out.glb'));
     assert.equal(status, 1);
-    assert.match(stderr, /instanced\.glb: nodes\[0\] shows its mesh in many places at once/);
+    assert.match(stderr, /instanced\.glb: nodes\[0\] is instanced, so its mesh is in many places at once/);
   });
 
   test('skins that refer to what is not there are told of', () => {
     for (const [skin, says] of [
       [{ joints: [99] }, /skins\[0\]\.joints/],
-      [{ joints: 'all' }, /skins\[0\]\.joints is not a list of numbers/],
+      [{ joints: 'all' }, /skins\[0\]\.joints is not an array of numbers/],
       [{ joints: [0], inverseBindMatrices: 99 }, /skins\[0\]\.inverseBindMatrices/],
     ] as const) {
       const path = made('stray', (maker) => {

@@ -148,10 +148,15 @@ describe('extract', () => {
     fails(/cagecast\/three: options\.texture is paint\.png, not a Texture/, target, cage, { texture: 'paint.png' });
     fails(/cagecast\/three: options\.material is an object, not a Material/, target, cage, { material: {} });
     fails(/cagecast\/three: options\.channel is 7, not 1, 2 or 3/, target, cage, { channel: 7 });
-    fails(/cagecast\/three: options\.result\.zones is no list, the target needs \d+; extract it before/, target, cage, {
-      result: {},
-    });
-    fails(/cagecast\/three: options\.result\.uvs is no list/, target, cage, {
+    fails(
+      /cagecast\/three: options\.result\.zones is not an array, the target needs \d+; extract it before/,
+      target,
+      cage,
+      {
+        result: {},
+      },
+    );
+    fails(/cagecast\/three: options\.result\.uvs is not an array/, target, cage, {
       result: { ...transfer(scene.cage, { ...scene.target, groups: undefined }), uvs: undefined },
     });
   });
@@ -299,7 +304,7 @@ describe('applyTransfer', () => {
       (error) =>
         error instanceof CagecastError &&
         error.code === 'badArgument' &&
-        /classification\.segmentStats is no list/.test(error.message),
+        /classification\.segmentStats is not an array/.test(error.message),
     );
     // The renderer frees what a geometry has when it goes.
     let freed: unknown[] = [target.geometry.getAttribute('position')];

@@ -41,8 +41,8 @@ function instantiate(module: WebAssembly.Module): Core {
 }
 
 /**
- * Makes Cagecast ready: compiles the WebAssembly module. Nothing starts before it is called.
- * It may be called any number of times, also at once: all calls share one start.
+ * Compiles the WebAssembly module. Importing the package alone does nothing. It may be called several times, even at the same time:
+ * all calls share one module.
  * @throws {CagecastError} `unsupported` if the host cannot run WebAssembly with SIMD; the next call tries again.
  */
 export function init(): Promise<void> {
@@ -66,7 +66,7 @@ async function start(): Promise<void> {
 export type Reusable = Record<string, Uint8Array | Uint32Array | Float32Array>;
 
 /**
- * Uses the core, and outlives its end: a call that runs out of memory or traps costs its instance, not the next call.
+ * Uses the core. If a call runs out of memory or traps, its instance is discarded, and the next call gets a new one.
  * @throws {CagecastError} `notInitialised`, `outOfMemory`, `internal`
  */
 export function useCore<A>(fn: string, use: (core: Core) => A): A {
@@ -88,10 +88,10 @@ export function useCore<A>(fn: string, use: (core: Core) => A): A {
 }
 
 /**
- * Calls a function of the core. Arrays of `reusable` that have the name and the length of one of the answer become that one,
- * unless the call throws.
- * @returns the answer, with arrays of the caller's own.
- * @throws {CagecastError} with what the core reports; and as `useCore`.
+ * Calls a function of the core. Arrays of the answer are written into arrays of `reusable` with the same name and length, unless the
+ * call throws.
+ * @returns the answer; the caller owns its arrays.
+ * @throws {CagecastError} with the error that the core reports; and as `useCore`.
  */
 export function callCore<A extends Answer>(fn: string, call: (core: Core) => A, reusable: Reusable = {}): Own<A> {
   const { status, ...answer } = useCore(fn, (core) => {
@@ -147,7 +147,7 @@ function copyViews(views: object, reusable: Reusable): object {
 const fits = (array: Reusable[string] | undefined, { length }: Uint8Array): boolean =>
   length > 0 && array?.length === length;
 
-/** Gives the instance's memory back; the next call makes a new one. WebAssembly memory grows but never shrinks. */
+/** Frees the instance's memory, which can grow but never shrink. The next call makes a new instance. */
 export function dropInstance(): void {
   instance = undefined;
 }

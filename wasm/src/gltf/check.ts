@@ -4,7 +4,7 @@ import { InputError } from './input-error.js';
 
 const componentBytes: Record<number, number> = { 5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4 };
 const typeComponents: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 };
-/** The most elements of an accessor: beyond it a few bytes of JSON could ask for all of the memory. */
+/** The maximum count of an accessor, because a few bytes of JSON could otherwise request all memory. */
 const maxCount = 2 ** 28;
 
 /** The JSON of extensions that compress a buffer view; both have the same shape. */
@@ -26,7 +26,7 @@ export function meshoptView(view: GLTF.IBufferView): MeshoptView | undefined {
 }
 
 /**
- * Checks that all lists of a glTF are lists, so that they can be walked.
+ * Checks that all arrays of a glTF are arrays, so that they can be iterated.
  * @throws {InputError}
  */
 export function checkLists(json: GLTF.IGLTF): void {
@@ -50,7 +50,7 @@ export function checkLists(json: GLTF.IGLTF): void {
   listOf('extensionsRequired', json.extensionsRequired, isText, 'names');
   for (const name of ['buffers', 'images'] as const) {
     json[name]?.forEach(({ uri }: { uri?: unknown }, i) => {
-      if (uri !== undefined && !isText(uri)) throw new InputError(`${name}[${i}].uri is not a text`);
+      if (uri !== undefined && !isText(uri)) throw new InputError(`${name}[${i}].uri is not a string`);
     });
   }
   json.meshes?.forEach((mesh, m) => {
@@ -66,12 +66,12 @@ export function checkLists(json: GLTF.IGLTF): void {
 
 function listOf(name: string, value: unknown, fits: (item: unknown) => boolean, what: string): void {
   if (value !== undefined && !(Array.isArray(value) && value.every(fits)))
-    throw new InputError(`${name} is not a list of ${what}`);
+    throw new InputError(`${name} is not an array of ${what}`);
 }
 
 /**
- * Checks what reading the geometry of a glTF relies on: that every reference leads somewhere and every range of bytes
- * is there, so that a damaged file ends in one sentence about it and not in the depths of a decoder.
+ * Checks that every reference and every range of bytes that the geometry of a glTF needs exists, so that a damaged file causes a
+ * clear message and not an error inside a decoder.
  * @param bytes  The size of each buffer, `undefined` for one without bytes (a fallback for compressed views).
  * @throws {InputError}
  */

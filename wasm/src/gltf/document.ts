@@ -49,7 +49,7 @@ export interface DocumentPart extends Piece {
   primitive: Primitive;
 }
 
-/** All triangles of a document's scene as arrays, and the parts they come from. */
+/** All triangles of a document's scene as arrays, and the parts that they come from. */
 export interface ExtractedDocument {
   /** With one group per part; with UVs if every primitive has a first set. */
   mesh: Mesh & { indices: Uint32Array };
@@ -156,9 +156,9 @@ function matrixOfSkin(skin: Skin, primitive: Primitive, positions: Float32Array)
 }
 
 /**
- * Adds what was transferred to a document, as the command does to a file: to every primitive a new UV set and `_NCZ`, and,
- * with a texture, an overlay primitive of its cosmetic triangles; new vertices along borders that are cut, and copies of those
- * whose triangles have different UVs there, after those that it has. A mesh that several nodes show becomes one for each.
+ * Adds the result of a transfer to a document, as the command does to a file: every primitive gets a new UV set and `_NCZ` and, with
+ * a texture, an overlay primitive of its cosmetic triangles. New vertices at cut borders, and copies of vertices whose triangles
+ * need different UVs, are added after the existing ones. If several nodes share a mesh, each gets a copy.
  */
 export function addTransfer(
   document: Document,
@@ -232,7 +232,7 @@ export function addTransfer(
         if (isMorphed(semantic, overlay.getAttribute('NORMAL') !== null))
           own.setAttribute(semantic, morph.getAttribute(semantic));
       }
-      // One without anything in it is not allowed.
+      // An empty morph target is not allowed.
       if (own.listSemantics().length === 0)
         own.setAttribute('POSITION', attribute(new Float32Array(3 * split.sources.length), 'VEC3'));
       overlay.addTarget(own);
@@ -263,8 +263,8 @@ function blender(primitive: Primitive, blends: Blends): Extend {
 }
 
 /**
- * Gives a primitive new vertices, those that `extend` makes and copies, in all of its attributes and morph targets. What nothing
- * else uses is let go.
+ * Adds new vertices, those that `extend` makes and copies, to all attributes and morph targets of a primitive. Accessors that
+ * nothing else uses are disposed.
  */
 function remakePrimitive(
   primitive: Primitive,
@@ -300,8 +300,8 @@ const isUnused = (property: Property): boolean =>
   property.listParents().every((parent) => parent.propertyType === 'Root');
 
 /**
- * Gives every node that is transferred to a mesh and primitives of its own; those that are not, as of other scenes, share a mesh
- * that stays as it is. The first to show one keeps it.
+ * Gives every node of the transfer a mesh and primitives of its own. Other nodes, such as those of other scenes, share an unchanged
+ * copy. The first node with a mesh keeps the original.
  * @returns the primitive of each part.
  */
 function separatePrimitives(document: Document, parts: readonly DocumentPart[]): Primitive[] {
@@ -332,7 +332,7 @@ function separatePrimitives(document: Document, parts: readonly DocumentPart[]):
   return parts.map(({ node, primitive }) => ownOf.get(node)!.get(primitive)!);
 }
 
-/** A material that shows the texture alone, as rough and as two-sided as the base's. */
+/** A material that shows the texture, with the roughness and sidedness of the base's material. */
 function materialOn(
   document: Document,
   texture: Texture,

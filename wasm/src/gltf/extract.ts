@@ -23,7 +23,7 @@ export interface Part extends Piece {
   primitive: number;
 }
 
-/** All triangles of a glTF's scene as arrays, and the parts they come from. */
+/** All triangles of a glTF's scene as arrays, and the parts that they come from. */
 export interface Extracted {
   /** With one group per part; with UVs if every primitive has a first set. */
   mesh: Mesh & { indices: Uint32Array };
@@ -35,9 +35,9 @@ export interface Extracted {
  * Collects the triangles of a glTF's default scene (else its first), depth first, in the scene's space.
  *
  * Vertices keep their order and number; each primitive of each node is a group of its own. Transforms are applied in
- * double precision and rounded last; the winding of mirrored parts is turned, so that outside stays outside. A skinned
- * mesh is taken where its skeleton holds it, in its bind pose: as the format demands, the transform of its node does not move it.
- * Points and lines are left out, and so are morphs, and overlays that were added before.
+ * double precision and rounded once; the winding of mirrored parts is reversed. Skinned meshes are placed by their skeleton, in the
+ * bind pose; as the format demands, the transform of their node is ignored. Points, lines and overlays that were added before are
+ * left out, and morph targets are not applied.
  * @throws {InputError} that names the file, the primitive and the element.
  */
 export function extract(file: GltfFile): Extracted {
@@ -66,7 +66,7 @@ function listParts(file: GltfFile): Part[] {
   const parts: Part[] = [];
   let firstVertex = 0;
   let firstTriangle = 0;
-  // A stack of its own: a chain of nodes may be longer than the one of JavaScript.
+  // An explicit stack: a chain of nodes may be longer than JavaScript's call stack.
   const placeOf = placeNodes(file.json);
   const stack = [...roots(file.json)].reverse();
   for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
@@ -140,11 +140,11 @@ function matrixOfSkin(
   return skinMatrix(products, usedJoints(held, weights), positions, isFloat, identity);
 }
 
-/** The matrix of each node to the scene, of those too that no scene shows. */
+/** The matrix of each node to the scene, including nodes that are in no scene. */
 function placeNodes({ nodes = [] }: GLTF.IGLTF): Matrix[] {
   const children = new Set(nodes.flatMap((node) => node.children ?? []));
   const places = nodes.map(() => identity);
-  // Those in a cycle are reached from nowhere.
+  // Nodes in a cycle have no root and are never reached.
   const stack = nodes.flatMap((_, node) => (children.has(node) ? [] : [{ node, parent: identity }]));
   for (let next = stack.pop(); next; next = stack.pop()) {
     const place = multiply(next.parent, localMatrix(nodes[next.node]!));
@@ -157,7 +157,7 @@ function placeNodes({ nodes = [] }: GLTF.IGLTF): Matrix[] {
 function roots({ scene, scenes = [], nodes = [] }: GLTF.IGLTF): number[] {
   const chosen = scenes[scene ?? 0];
   if (chosen) return chosen.nodes ?? [];
-  // A file without scenes is a library of nodes: all of it, then.
+  // A file without scenes is a library of nodes; all of them are used.
   const children = new Set(nodes.flatMap((node) => node.children ?? []));
   return nodes.map((_, n) => n).filter((n) => !children.has(n));
 }

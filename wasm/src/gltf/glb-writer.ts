@@ -30,10 +30,10 @@ function align(values: AttributeArray, size: number): { aligned: AttributeArray;
 }
 
 /**
- * A glTF file about to become a GLB with something added to it.
+ * Writes a GLB that has everything of a glTF file, with additions.
  *
- * It works on the file's JSON and bytes as they are, not on a decoded document: whatever the file has, also what no
- * library knows of (extensions of avatars, extras, compressed data), stays as it was, byte for byte.
+ * It works on the file's JSON and bytes, not on a decoded document. So all contents stay unchanged, byte for byte, even those that
+ * no library knows (extensions for avatars, extras, compressed data).
  */
 export class GlbWriter {
   /** The JSON of the file to be written; add to it freely. */
@@ -88,7 +88,7 @@ export class GlbWriter {
       if (image.uri === undefined) continue;
       const bytes = await readUri(`images[${i}]`, image.uri, folder);
       const mimeType = image.mimeType ?? imageType(bytes) ?? /^data:([^;,]+)/.exec(image.uri)?.[1];
-      if (mimeType === undefined) throw new InputError(`images[${i}] is no image that a GLB can hold`);
+      if (mimeType === undefined) throw new InputError(`images[${i}] is not an image that a GLB can contain`);
       delete image.uri;
       image.mimeType = mimeType;
       image.bufferView = this.#addView(bytes);

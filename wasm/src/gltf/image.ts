@@ -8,7 +8,7 @@ export function imageType(bytes: Uint8Array): 'image/png' | 'image/jpeg' | 'imag
   return undefined;
 }
 
-/** Whether a PNG or JPEG file goes on to its end: to its closing chunk or marker. */
+/** Whether a PNG or JPEG file is complete, up to its closing chunk or marker. */
 export function imageIsWhole(bytes: Uint8Array): boolean {
   if (imageType(bytes) === 'image/png') {
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

@@ -1,5 +1,5 @@
 /**
- * Cagecast as a function for glTF-Transform: the new UV set, the Non-Cosmetic Zones and an overlay, in a pipeline of one's own.
+ * Cagecast as a function for glTF-Transform: adds a UV set, the Non-Cosmetic Zones and an overlay to a document.
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
@@ -18,9 +18,9 @@ import { addTransfer, extractDocument } from './document.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
-/** Where a part of a document lies in the arrays of a result. */
+/** The ranges of a part of a document in the arrays of a result. */
 export interface PartRange {
-  /** Its node's name, with its material's where that adds something. */
+  /** The name of its node, followed by that of its material if they differ. */
   name: string;
   firstVertex: number;
   vertexCount: number;
@@ -30,27 +30,27 @@ export interface PartRange {
 
 /** Options of `cagecast`: those of `transfer`, and what to transfer. */
 export interface CagecastOptions extends TransferOptions {
-  /** What the texture was drawn for: a document, whose scene is taken, or a mesh; it must have UVs. */
+  /** The cage that the texture was drawn for: a mesh, or a document, of which the default scene is used. It must have UVs. */
   cage: Document | Mesh;
-  /** A PNG or JPEG file's bytes, in the cage's UVs: shown as an overlay of the cosmetic triangles. Without, there is none. */
+  /** The bytes of a PNG or JPEG file in the cage's UV space, shown as an overlay on the cosmetic triangles. Default: no overlay. */
   texture?: Uint8Array | undefined;
   /**
-   * Lets paint end at the target's own triangles (`triangle`, by default), or cuts these where it does, at holes and seams (`cut`):
-   * straight borders, more triangles.
+   * Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are
+   * then cut (`cut`): smooth borders, but more triangles.
    */
   borders?: Borders | undefined;
-  /** Is called with the result, and with what its arrays refer to, in order. */
+  /** Called with the result, and with the parts of the document in the order of the result's arrays. */
   onResult?: ((result: TransferResult, parts: PartRange[]) => void) | undefined;
 }
 
 /**
- * A transform that carries a cage's UVs to a document's meshes, as `cagecast transfer` does to a file.
+ * Makes a transform that adds a cage's UVs to the meshes of a document, as `cagecast transfer` does for a file.
  *
- * Every primitive of triangles in the document's scene gets a new `TEXCOORD` set and `_NCZ` (0 may be painted; else the
- * `Zone`), and, with a texture, an overlay primitive of its cosmetic triangles. All else stays as it is; a mesh that several
- * nodes show becomes one for each. Vertices that cutting adds are blends of those around them in all of their attributes, skin
- * weights and morph deltas. If it throws, the document is as it was.
- * @throws {CagecastError} whose message says what is wrong with target, cage, texture or options, and where.
+ * Every triangle primitive in the document's default scene gets a new `TEXCOORD` set and `_NCZ` (the `Zone`: 0 may be painted) and,
+ * with a texture, an overlay primitive of its cosmetic triangles. Everything else stays unchanged; if several nodes share a mesh,
+ * each gets a copy. Cut borders add vertices that blend existing ones, in all attributes, skin weights and morph deltas. If the
+ * transform throws, the document is unchanged.
+ * @throws {CagecastError} with the reason and the place, if target, cage, texture or options cannot be used.
  *
  * @example
  * import { NodeIO } from '@gltf-transform/core';

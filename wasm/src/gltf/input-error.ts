@@ -1,4 +1,4 @@
-/** A file that cannot be used. Its message says what is wrong, where, and, once it is known, in which file. */
+/** A file cannot be used. The message says what is wrong and where, and names the file once it is known. */
 export class InputError extends Error {
   override readonly name = 'InputError';
 

@@ -1,5 +1,6 @@
-/** The extension by which a node shows its mesh many times, in many places. */
+/** The extension by which a node draws many instances of its mesh. */
 export const instancing = 'EXT_mesh_gpu_instancing';
 
-/** What is wrong with such a node: there is one UV for each vertex, but not one place. */
-export const isInstanced = 'shows its mesh in many places at once (instances); give each a node of its own first';
+/** Error message for such a node: a vertex has one UV, but several positions. */
+export const isInstanced =
+  'is instanced, so its mesh is in many places at once; give each instance a node of its own first';

@@ -63,5 +63,5 @@ export function determinant(m: Matrix): number {
   return a * (e * i - f * h) - d * (b * i - c * h) + g * (b * f - c * e);
 }
 
-/** Whether a matrix mirrors, so that triangles have to be turned for their outside to stay outside. */
+/** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
 export const isTurned = (matrix: Matrix): boolean => determinant(matrix) < 0;

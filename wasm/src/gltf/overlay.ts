@@ -4,19 +4,18 @@ import { InputError } from './input-error.js';
 import { determinant } from './matrix.js';
 import type { Piece } from './pieces.js';
 
-/** The attribute that holds each vertex's `Zone`, as a float: 0 may be painted, all else is a Non-Cosmetic Zone. */
+/** The attribute with the `Zone` of each vertex, as a float: 0 may be painted, other values are Non-Cosmetic Zones. */
 export const zoneAttribute = '_NCZ';
 
 /**
- * How far the overlay stands off the surface, as a share of the target's diagonal. Two equal surfaces would do in
- * viewers that draw a later one of equal depth on top, as most do, but path tracers and strict depth tests make noise
- * of them. This is half a millimetre on a metre: not seen, and beyond the resolution of a 24-bit depth buffer.
+ * The distance of the overlay from the surface, as a share of the target's diagonal. With distance 0, most viewers would draw the
+ * overlay on top, but path tracers and strict depth tests would show noise. Half a millimetre per metre is invisible, and above the
+ * resolution of a 24-bit depth buffer.
  */
 export const overlayOffset = 5e-4;
 
 /**
- * In the `extras` of overlays: they are no part of the model when it is read again. By the same name `cagecast/three` marks its
- * own, and knows these.
+ * Marks overlays in their `extras`, so that they are skipped when the model is read again. `cagecast/three` uses the same name.
  */
 export const overlayMark = { cagecastOverlay: true } as const;
 
@@ -32,14 +31,14 @@ export interface Paint {
 }
 
 /**
- * Checks an image and says what it is.
+ * Checks an image and finds its type.
  * @throws {InputError} if it is neither a whole PNG nor a whole JPEG file.
  */
 export function paintOf(bytes: Uint8Array, name = 'paint'): Paint {
   const mimeType = imageType(bytes);
   if (mimeType !== 'image/png' && mimeType !== 'image/jpeg') throw new InputError('is neither a PNG nor a JPEG image');
   if (!imageIsWhole(bytes))
-    throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image has no end`);
+    throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image is incomplete`);
   return { name, mimeType, bytes };
 }
 
@@ -56,17 +55,17 @@ export function cosmeticCorners(indices: Uint32Array, cosmetic: Uint8Array): Uin
 }
 
 /**
- * Whether an overlay takes an attribute over from its base: what it is lit and moved by. Not colours, which would tint the
- * texture, nor tangents, which its material has no use for.
+ * Whether an overlay copies an attribute of its base: those for lighting and deformation. Not colours, which would tint the texture,
+ * nor tangents, which its material does not use.
  */
 export const isOverlaid = (semantic: string): boolean =>
   semantic === 'NORMAL' || /^(JOINTS|WEIGHTS)_\d+$/.test(semantic);
 
-/** Which deltas of a morph target an overlay takes from its base: those of what it has as well, but not of UVs, which are the paint's. */
+/** Whether an overlay copies the deltas of an attribute from its base: if it has the attribute, but not for UVs, which differ. */
 export const isMorphed = (semantic: string, hasNormals: boolean): boolean =>
   semantic === 'POSITION' || (semantic === 'NORMAL' && hasNormals);
 
-/** The positions of an overlay: those of the piece, moved a little off the surface along their normals, by `offset` units of the scene. */
+/** The positions of an overlay: those of the piece, moved along their normals by `offset` units of the scene. */
 export function overlayPositions(piece: Piece, offset: number): Float32Array {
   const step = offset / Math.cbrt(Math.abs(determinant(piece.matrix)) || 1);
   const normals = weldedNormals(piece);

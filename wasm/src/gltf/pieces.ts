@@ -4,13 +4,13 @@ import type { PartGeometry } from '../parts/split-part.js';
 import { InputError } from './input-error.js';
 import { identity, isTurned, type Matrix } from './matrix.js';
 
-/** One primitive of one node, and where its elements lie in the concatenated arrays. */
+/** One primitive of one node, and the ranges of its elements in the joined arrays. */
 export interface Piece {
-  /** Its node's name, with its material's where that adds something: "head", "head/skin". */
+  /** The name of its node, followed by that of its material if they differ: "head", "head/skin". */
   name: string;
-  /** What it can be called by: its node, its mesh, its material, and `name`. */
+  /** The names that select it: of its node, its mesh and its material, and `name`. */
   aliases: string[];
-  /** From its own space to the scene's, column by column; the identity for a skinned mesh. */
+  /** The matrix from its own space to the scene's, column-major; the identity for a skinned mesh. */
   matrix: Matrix;
   firstVertex: number;
   vertexCount: number;
@@ -34,8 +34,8 @@ const triangleFan = 6;
 export const hasTriangles = (mode: number): boolean => mode >= triangles && mode <= triangleFan;
 
 /**
- * Joins pieces into arrays in the scene's space, a group for each: vertices keep their order, transforms are applied in
- * double precision and rounded last, the winding of mirrored pieces is turned, so that outside stays outside.
+ * Joins pieces into arrays in the scene's space, with a group for each. Vertices keep their order, transforms are applied in double
+ * precision and rounded once, and the winding of mirrored pieces is reversed.
  */
 export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Array } {
   const last = pieces.at(-1);

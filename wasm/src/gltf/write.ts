@@ -29,20 +29,19 @@ export interface Added {
   uvSet: string;
   /** Triangles of the overlay; 0 if there is none. */
   overlayTriangles: number;
-  /** Vertices that were added because the corners that shared one have different UVs. */
+  /** Number of vertices added because corners at the same vertex have different UVs. */
   splitVertices: number;
-  /** Triangles that there are more since the target was cut. */
+  /** Number of triangles added by cutting. */
   cutTriangles: number;
 }
 
 /**
- * Writes the target with what was transferred: to every primitive a new UV set and `_NCZ`, and, with a texture, an
- * overlay primitive of its cosmetic triangles. All that the file had stays as it was, also its compression; but where
- * triangles that share a vertex have different UVs there, the primitive gets copies of that vertex after those that it has,
- * with all that belongs to it, and is no longer compressed by Draco.
- * A target that was cut gets new vertices in the same way: what belongs to one is a blend of what belongs to its sources.
- * A mesh that several nodes show becomes one mesh for each of them.
- * @param cut  The target as `cutBorders` made it of `result`, if it did.
+ * Writes the target with the result of a transfer: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
+ * primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
+ * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices, and the
+ * primitive is no longer compressed by Draco. New vertices of a cut target are added in the same way, as blends of their sources.
+ * If several nodes share a mesh, each gets a copy.
+ * @param cut  The cut target that `cutBorders` made from `result`, if any.
  * @returns the bytes of a GLB, and what was added to each part.
  * @throws {InputError} if an image beside the target cannot be read.
  */
@@ -100,7 +99,7 @@ export async function writeTransfer(
   return { glb: writer.finish(), added };
 }
 
-/** Gives a primitive new vertices, blends and copies: in all of its attributes and morph targets, uncompressed. */
+/** Adds new vertices, blends and copies, to all attributes and morph targets of a primitive, uncompressed. */
 function rewritePrimitive(
   writer: GlbWriter,
   file: GltfFile,
@@ -126,7 +125,7 @@ function rewritePrimitive(
     const known = made.get(key);
     if (known !== undefined) return known;
     const values = gather(pulls ?? blend(array, size, blends, rule), size, sources);
-    // The bounds are not those in the file where Draco has rounded what lies between them.
+    // Draco has rounded the values, so the bounds in the file may be wrong.
     const more = {
       type: decoded.getType(),
       ...(normalized && { normalized }),
@@ -163,7 +162,7 @@ function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max
 
 const draco = 'KHR_draco_mesh_compression';
 
-/** Says no more that the file is compressed by Draco if no primitive is. */
+/** Removes the Draco extension from the file's lists if no primitive uses it any more. */
 function dropDraco(json: GLTF.IGLTF): void {
   if (json.meshes?.some(({ primitives }) => primitives.some(dracoOf))) return;
   for (const list of ['extensionsUsed', 'extensionsRequired'] as const) {
@@ -174,8 +173,8 @@ function dropDraco(json: GLTF.IGLTF): void {
 }
 
 /**
- * Gives every node that is transferred to a mesh of its own; those that are not, as of other scenes, share one that stays as it
- * is. The first to show a mesh keeps it. What an animation does to a mesh, it does to the copies.
+ * Gives every node of the transfer a mesh of its own. Other nodes, such as those of other scenes, share an unchanged copy. The first
+ * node with a mesh keeps the original. Animations of a mesh are repeated for its copies.
  * @returns the mesh of each node.
  */
 function separateMeshes(json: GLTF.IGLTF, parts: Part[]): Map<number, number> {
@@ -222,7 +221,7 @@ class Painter {
   readonly #offset: number;
   readonly #materials = new Map<string, number>();
 
-  /** @param offset  How far overlays stand off, in units of the scene. */
+  /** @param offset  The distance of overlays from the surface, in units of the scene. */
   constructor(writer: GlbWriter, file: GltfFile, paint: Paint, offset: number) {
     this.#writer = writer;
     this.#file = file;
@@ -230,7 +229,7 @@ class Painter {
     this.#offset = offset;
   }
 
-  /** A primitive of the cosmetic triangles of `base`, moved and deformed as it is; none if there are none. */
+  /** A primitive of the cosmetic triangles of `base`, with the same skin and morph targets; `undefined` if there are none. */
   overlay(
     piece: Piece,
     { sources, indices }: SplitPart,
@@ -280,7 +279,7 @@ class Painter {
     return this.#writer.addAttribute(positions, 3, boundsOf(positions, 3));
   }
 
-  /** A material that shows the texture alone, as rough and as two-sided as the base's. */
+  /** A material that shows the texture, with the roughness and sidedness of the base's material. */
   #material(base: GLTF.IMeshPrimitive): number {
     const { json } = this.#writer;
     const source = base.material === undefined ? undefined : json.materials?.[base.material];

@@ -1,8 +1,8 @@
-/** The vertices that cutting added to a part, in order after those that it has. */
+/** The vertices that cutting added to a part, in order, after the existing ones. */
 export interface Blends {
-  /** 3 per new vertex: of which vertices of the part it is a blend. */
+  /** 3 per new vertex: the vertices of the part that it blends. */
   sources: Uint32Array;
-  /** 3 per new vertex: how much of each; they add up to 1. */
+  /** 3 per new vertex: the weights of these vertices; they add up to 1. */
   weights: Float32Array;
 }
 
@@ -10,10 +10,10 @@ export const noBlends: Blends = { sources: new Uint32Array(0), weights: new Floa
 
 export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
 
-/** What of an attribute a new vertex gets: the mean of its sources, the same as a direction, or all that its heaviest source has. */
+/** How a new vertex gets an attribute: as the mean of its sources, as a normalised mean direction, or from its heaviest source. */
 type Rule = 'mean' | 'direction' | 'heaviest';
 
-/** Whole numbers that nothing scales are names of something: there is nothing between them. */
+/** Integers that are not normalised are identifiers, so they are not averaged. */
 export function ruleOf(semantic: string, values: AttributeArray, normalized: boolean): Rule {
   if (semantic === 'NORMAL' || semantic === 'TANGENT') return 'direction';
   return semantic.startsWith('JOINTS_') ||
@@ -34,7 +34,7 @@ function extended<A extends AttributeArray>(values: A, size: number, { sources }
   return out;
 }
 
-/** The source that a new vertex is most like. */
+/** The source of a new vertex with the greatest weight. */
 export function heaviestOf({ sources, weights }: Blends, n: number): number {
   const first = weights[3 * n + 1]! > weights[3 * n]! ? 3 * n + 1 : 3 * n;
   return sources[weights[3 * n + 2]! > weights[first]! ? 3 * n + 2 : first]!;
@@ -65,8 +65,8 @@ export function blend<A extends AttributeArray>(values: A, size: number, blends:
 }
 
 /**
- * The joints and weights of a part's vertices, and of its new ones, by semantic: what pulls at their sources, the strongest
- * first, as many as there is room for; they add up to 1.
+ * The joints and weights of a part's vertices, new ones included, by semantic. A new vertex has the strongest joints of its sources,
+ * as many as there is room for; the weights add up to 1.
  * @param arrayOf  What belongs to a semantic, 4 numbers per vertex; sets are numbered without gaps.
  */
 export function blendSkin<A extends AttributeArray>(
@@ -98,7 +98,7 @@ export function blendSkin<A extends AttributeArray>(
     const strongest = [...pulls].sort(([a, x], [b, y]) => y - x || a - b).slice(0, 4 * joints.length);
     const sum = strongest.reduce((all, [, pull]) => all + pull, 0);
     let left = 1;
-    // From the weakest on, so that what rounding leaves goes to the strongest.
+    // From the weakest on, so that the strongest gets the remainder of rounding.
     for (let place = strongest.length - 1; place >= 0; --place) {
       const [joint, pull] = strongest[place]!;
       const [set, slot] = [place >> 2, joints[0]!.length + 4 * n + (place & 3)];

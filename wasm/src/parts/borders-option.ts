@@ -1,9 +1,9 @@
 import { CagecastError } from '../index.js';
 
-/** Where paint ends: at the target's own triangles, or at the borders of the cage, along which these are cut. */
+/** Where the paint ends: at existing triangle edges, or at the borders of the cage, along which triangles are cut. */
 export type Borders = 'triangle' | 'cut';
 
-/** Whether borders are to be cut. @throws {CagecastError} `badOption` */
+/** Whether to cut borders. @throws {CagecastError} `badOption` */
 export function isCut(fn: string, borders: Borders = 'triangle'): boolean {
   if (borders !== 'triangle' && borders !== 'cut')
     throw new CagecastError(

@@ -3,18 +3,18 @@ import type { Classification } from '../api/result.js';
 import { type Blends, heaviestOf } from './blend.js';
 import { gather, type PartGeometry } from './split-part.js';
 
-/** A part as it was cut, as if there were no other, and what was transferred to it. */
+/** A cut part, numbered as if it were the only one, and the result for it. */
 export interface CutPart {
   geometry: PartGeometry;
   result: Pick<CutTarget, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>;
   /** Its vertices that are new. */
   blends: Blends;
-  /** 1 per triangle: the triangle of the whole target that it is a part of. */
+  /** 1 per triangle: the triangle of the whole target that it was cut from. */
   origins: Uint32Array;
 }
 
 /**
- * Takes a part out of a target that was cut. Vertices keep their numbers, new ones come after them.
+ * Extracts a part from a cut target. Vertices keep their order; new ones come after them.
  * @param ownCount  Vertices of the whole target before it was cut.
  */
 export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget, ownCount: number): CutPart {
@@ -64,8 +64,8 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
 type Decision = Pick<Classification, 'zones' | 'cosmeticTriangles'>;
 
 /**
- * What another decision makes of a part that was cut by a first one: where a segment has another verdict now, its pieces follow
- * the triangles that they are of.
+ * Applies another classification to a cut part: in segments whose verdict has changed, pieces take the result of the whole triangle
+ * that they were cut from.
  * @param part     As it was before it was cut.
  * @param indices  Of the whole target, as the decision is.
  * @param isOther  1 per vertex of the whole target: whether its segment has another verdict.
@@ -79,7 +79,7 @@ export function decideAgain(
 ): Decision {
   return {
     zones: result.zones.map((zone, v) => {
-      // All of a piece, and all that a new vertex is a blend of, is of one segment.
+      // A piece, and all sources of a new vertex, belong to one segment.
       const n = v - vertexCount;
       const source = firstVertex + (n < 0 ? v : heaviestOf(blends, n));
       return isOther[source] ? now.zones[source]! : zone;

@@ -1,12 +1,12 @@
-/** So much, as a share of a mesh's size, may joints be apart that hold it at the same place. */
+/** Joints place a mesh equally if they differ by at most this share of its size. */
 const same = 1e-3;
 
 /**
- * Where a skeleton at rest holds a skinned mesh. Files that are quantised, or whose rig has another unit or axis than their
- * scene, say so nowhere else: the vertices are wherever the inverse bind matrices expect them.
+ * Returns the matrix by which a skeleton at rest places a skinned mesh in the scene. Files that are quantised, or whose rig has
+ * another unit or axis than the scene, store this only in the inverse bind matrices.
  *
- * In the bind pose all joints hold it at the same place: that one. If some have moved, the mesh is taken in its bind pose as it
- * is stored, unless that can be no pose at all, as it is quantised or of another size; then where the first joint holds it.
+ * In the bind pose all joints give the same matrix, which is returned. If some joints have moved, the mesh is taken as it is stored,
+ * unless that cannot be right because it is quantised or of another size; then the first joint's matrix is returned.
  * @param joints     1 per joint: its matrix in the scene · its inverse bind matrix, column by column.
  * @param used       The joints that hold any vertex.
  * @param positions  3 per vertex, as they are stored.

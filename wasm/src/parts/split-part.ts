@@ -1,26 +1,26 @@
 import { splitVertices, type TransferResult } from '../index.js';
 
-/** Where a part lies in the arrays of a result, and which triangles it has. */
+/** The ranges of a part in the arrays of a result, and its triangles. */
 export interface PartGeometry {
   firstVertex: number;
   vertexCount: number;
   firstTriangle: number;
   triangleCount: number;
-  /** Whether its triangles were turned on the way into the arrays: their second and third corners changed places. */
+  /** Whether the winding of its triangles is reversed in the arrays: second and third corners are swapped. */
   turned: boolean;
-  /** 3 per triangle, among the part's own vertices, as they are before they are turned. */
+  /** 3 per triangle, as numbers of the part's own vertices, before the winding is reversed. */
   localIndices: ArrayLike<number>;
 }
 
-/** A part's vertices with UVs that fit every corner: those that it has keep their numbers, copies come after them. */
+/** A part's vertices with a UV each that is right for all corners: existing vertices keep their numbers, copies come after them. */
 export interface SplitPart {
   /** 2 per vertex, copies included. */
   uvs: Float32Array<ArrayBuffer>;
-  /** 1 per vertex, copies included: the vertex that it is like, but for its UV. */
+  /** 1 per vertex, copies included: the vertex that it copies, except for its UV. */
   sources: Uint32Array<ArrayBuffer>;
-  /** As many as before. */
+  /** 3 per triangle, with copies where needed. */
   indices: Uint32Array<ArrayBuffer>;
-  /** Vertices that had to be added; with none the part is as it was. */
+  /** Number of added vertices; if 0, the part is unchanged. */
   copies: number;
 }
 

@@ -5,7 +5,7 @@ import { type CutPart, cutPart } from '../parts/cut-part.js';
 import { type PartGeometry, type SplitPart, splitPart } from '../parts/split-part.js';
 import { type Attribute, likeAttribute, remakeGeometry, splitGeometry, valuesOf } from './split.js';
 
-/** glTF's names of what is not just a mean where triangles are cut. */
+/** glTF's names of attributes that are not blended by a simple mean. */
 const semantics: Record<string, string> = {
   normal: 'NORMAL',
   tangent: 'TANGENT',
@@ -16,16 +16,16 @@ const nameOf = (semantic: string): string => Object.keys(semantics).find((name) 
 
 type Values = Parameters<typeof blend>[0];
 
-/** Where a part lies in the arrays of a target, and whether its triangles were turned on the way there, as it is mirrored. */
+/** The ranges of a part in the arrays of a target, and whether the winding of its triangles was reversed because it is mirrored. */
 export type PartRange = Omit<PartGeometry, 'localIndices'>;
 
 /**
- * Gives the geometry of a part of a target its triangles and vertices as it was cut: new vertices are blends of others in all
- * attributes and morph targets, copies at seams come after them. It stays the same object; groups and the range that is drawn
- * follow. Needs `init`.
- * @param ownCount  Vertices of the whole target before it was cut.
- * @returns the part as it was cut, `pieces`, with which of its triangles may be painted; and of each vertex that the geometry has
- * now which of the pieces' it is, `split.sources`, and its UV, `split.uvs`.
+ * Replaces the triangles and vertices of a part's geometry by the cut ones. New vertices are blends in all attributes and morph
+ * targets; copies at seams come after them. The geometry stays the same object; its groups and draw range are adapted. Needs
+ * `init`.
+ * @param ownCount  Number of vertices of the whole target before it was cut.
+ * @returns `pieces`, the cut part and which of its triangles may be painted; `split.sources`, for each vertex of the geometry the
+ * vertex of `pieces` that it copies; and `split.uvs`, its UV.
  */
 export function cutGeometry(
   geometry: BufferGeometry,
@@ -65,7 +65,7 @@ function blendGeometry(
     const semantic = semantics[name] ?? name;
     const pulls = isMorph ? undefined : skin.get(semantic);
     const values = valuesOf(attribute) as Values;
-    // What is added to a direction is none itself.
+    // The delta of a direction is not a direction itself.
     const rule = isMorph && geometry.morphTargetsRelative ? 'mean' : ruleOf(semantic, values, attribute.normalized);
     const isHalf = 'isFloat16BufferAttribute' in attribute;
     const blended: TypedArray =

@@ -10,11 +10,11 @@ import {
 import { CagecastError, type Mesh } from '../index.js';
 import { skinMatrix, usedJoints } from '../parts/skin.js';
 
-/** One mesh of a scene, or a geometry alone, and where its elements lie in the concatenated arrays. */
+/** One mesh of a scene, or a single geometry, and the ranges of its elements in the joined arrays. */
 export interface Part {
-  /** The mesh's name, or that of the node above it. */
+  /** The name of the mesh, or of its parent if it has none. */
   name: string;
-  /** The mesh; none if a geometry was given. */
+  /** The mesh; `undefined` if a geometry was given. */
   mesh: ThreeMesh | undefined;
   geometry: BufferGeometry;
   /** From the geometry's space to that of the arrays. */
@@ -25,7 +25,7 @@ export interface Part {
   triangleCount: number;
 }
 
-/** All triangles of a scene as arrays, and the parts they come from. */
+/** All triangles of a scene as arrays, and the parts that they come from. */
 export interface Extracted {
   /** With UVs if every part has the attribute `uv`. */
   mesh: Mesh & { indices: Uint32Array };
@@ -38,10 +38,10 @@ const identity = new Matrix4();
 /**
  * Collects the triangles of a geometry, or of all meshes of a scene, depth first, as arrays for `transfer`.
  *
- * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision
- * and rounded last, the winding of mirrored meshes is turned. A skinned mesh is taken where its skeleton holds it, in its bind
- * pose, a morphed one at rest. Each mesh is a group of its own, and so is each of its material groups.
- * @param argument  What it is, for messages.
+ * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision and
+ * rounded once, and the winding of mirrored meshes is reversed. Skinned meshes are placed by their skeleton, in the bind pose;
+ * morph targets are not applied. Each mesh, or each of its material groups, is a group.
+ * @param argument  The name of the argument, for messages.
  * @throws {CagecastError} that names the part and the element.
  */
 export function extract(object: Object3D | BufferGeometry, argument: 'cage' | 'target' = 'target'): Extracted {
@@ -75,7 +75,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
       throw wrong(
         argument,
         name,
-        'shows its geometry in many places at once (instances); make each a mesh of its own first',
+        'is instanced, so its geometry is in many places at once; make each instance a mesh of its own first',
       );
     }
     const position = geometry.getAttribute('position') as Attribute | undefined;
@@ -116,8 +116,8 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
 }
 
 /**
- * Where a mesh lies in the scene, as a transfer sees it: by its matrix, or, if it is skinned, where its skeleton holds it, in its
- * bind pose. World matrices have to be up to date. Cost: that of a look at all vertices, if it is skinned.
+ * Returns the matrix from a mesh to the scene: its world matrix, or, for a skinned mesh, the one by which its skeleton places it in
+ * the bind pose. World matrices must be up to date. Cost: linear in the vertices for a skinned mesh.
  */
 export function placeOf(mesh: ThreeMesh): Matrix4 {
   if (!isSkinned(mesh)) return mesh.matrixWorld;
@@ -125,7 +125,7 @@ export function placeOf(mesh: ThreeMesh): Matrix4 {
   const [position, held, weights] = ['position', 'skinIndex', 'skinWeight'].map(
     (name) => geometry.getAttribute(name) as Attribute | undefined,
   );
-  // Three moves the vertices by the bind matrix first.
+  // Three applies the bind matrix to the vertices first.
   if (!position || !held || !weights || !skeleton) return bindMatrix;
   const products = skeleton.bones.map(
     (bone, b) =>
@@ -151,25 +151,25 @@ function valuesOf(attribute: Attribute): Float32Array {
 }
 
 /**
- * In `userData` of the overlays that are added to a scene, so that they are no part of it when it is read again; and of the
- * geometries that GLTFLoader makes of those that are in a file already (`extras`, gltf/overlay.ts).
+ * Marks overlays in their `userData`, so that `extract` skips them. GLTFLoader sets the same mark on overlays from a file, from
+ * their `extras` (gltf/overlay.ts).
  */
 export const overlayMark = 'cagecastOverlay';
 
-// By three's own marks, not by class: a page may have a second copy of three.
+// Tested by three's own flags, not by class, because a page may have a second copy of three.
 const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry =>
   (object as BufferGeometry | undefined)?.isBufferGeometry === true;
 const isObject = (object: Object3D): boolean => object?.isObject3D === true;
 export const isSkinned = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).isSkinnedMesh === true;
 const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
-/** What a value of the wrong kind is, for messages. */
+/** Describes a value of the wrong type, for messages. */
 export const nameOf = (value: unknown): string => (typeof value === 'object' && value ? 'an object' : String(value));
 
 const wrong = (argument: string, name: string, text: string, at = 0): CagecastError =>
   new CagecastError('badArgument', `cagecast/three: ${argument}: "${name}" ${text}`, at);
 
-/** Whether a matrix mirrors, so that triangles have to be turned for their outside to stay outside. */
+/** Whether a matrix mirrors, so that the winding of triangles must be reversed. */
 export const isTurned = (matrix: Matrix4): boolean => matrix.determinant() < 0;
 
 function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {

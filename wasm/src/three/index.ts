@@ -1,5 +1,5 @@
 /**
- * Cagecast for three.js: a loaded model in, its meshes with new UVs, zones and a cosmetic overlay out.
+ * Cagecast for three.js: adds UVs, zones and a painted overlay to the meshes of a loaded model.
  * @module cagecast/three
  */
 import { BufferAttribute, type BufferGeometry, type Material, type Mesh, type Object3D, type Texture } from 'three';
@@ -34,64 +34,64 @@ export {
   type SplitPart,
 };
 
-/** The attribute that holds each vertex's `Zone`: the name that GLTFLoader gives to `_NCZ`. */
+/** The attribute with the `Zone` of each vertex. GLTFLoader gives `_NCZ` the same name. */
 export const zoneAttribute = '_ncz';
 
-/** Options of `applyTransfer`: those of `transfer`, and what to show. */
+/** Options of `applyTransfer`: those of `transfer`, and what to display. */
 export interface ApplyOptions extends TransferOptions {
-  /** What `transfer` or `cagecast/worker` gave for the meshes that `extract` made of `cage` and `target`, if that is done already. */
+  /** A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for `cage` and `target`. */
   result?: TransferResult | undefined;
-  /** The paint, in the cage's UVs: shown as an overlay of the cosmetic triangles. Its `channel` and `flipY` are left alone unless `uv` says otherwise. */
+  /** The paint, in the cage's UV space, shown as an overlay on the cosmetic triangles. Its `channel` is set, its `flipY` is not. */
   texture?: Texture | undefined;
-  /** The material of the overlays, in place of one that shows `texture` with the gloss and relief of what it lies on. */
+  /** The material of the overlays. Default: one that shows `texture` with the gloss and relief of the material below it. */
   material?: Material | undefined;
   /**
-   * The channel of the new UVs, 1 … 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten; by default the lowest that no geometry
-   * has of its own. `texture.channel` is set to it.
+   * The channel of the new UVs, 1 to 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten. Default: the lowest that no
+   * geometry uses already. `texture.channel` is set to it.
    */
   channel?: 1 | 2 | 3 | undefined;
   /**
-   * Lets paint end at the target's own triangles (`triangle`, by default), or cuts these where it does, at holes and seams (`cut`):
-   * straight borders, more triangles.
+   * Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are
+   * then cut (`cut`): smooth borders, but more triangles.
    */
   borders?: Borders | undefined;
 }
 
 /** What was added to a scene. */
 export interface Applied {
-  /** For the vertices that the target had. */
+  /** The result for the original vertices of the target. */
   result: TransferResult;
-  /** How many vertices were added because triangles that share one have different UVs there; 0 with `seams: 'vertex'`. */
+  /** The number of vertices added because triangles at the same vertex need different UVs; 0 with `seams: 'vertex'`. */
   splitVertices: number;
-  /** How many triangles there are more since borders were cut. */
+  /** The number of triangles added by cutting borders. */
   cutTriangles: number;
   parts: Part[];
-  /** One for each part that is a mesh, with a texture or a material; children of the meshes they lie on. */
+  /** With a texture or a material: one overlay for each part that is a mesh, as a child of that mesh. */
   overlays: Mesh[];
   /**
-   * Shows another decision of `classify`, in microseconds. Where borders were cut, a segment that has another verdict now ends at its
-   * own triangles. Nothing of the decision is kept: the next `classify` may have it as `into`, as it may not have `result`.
-   * @throws {CagecastError} `badArgument` if it is of another target.
+   * Shows another classification, in microseconds. If borders were cut, segments whose verdict has changed are painted by whole
+   * triangles. The classification is not kept, so the next `classify` may overwrite it (`reuse`); it must not overwrite `result`.
+   * @throws {CagecastError} `badArgument` if the classification is of another target.
    */
   update(classification: Classification): void;
-  /** Takes the overlays away and frees their buffers. The new attributes stay. */
+  /** Removes the overlays and frees their buffers. The new attributes stay. */
   dispose(): void;
 }
 
 /**
- * Carries a cage's UVs to the meshes of a scene: each geometry gets the attributes `uv1` (2 per vertex; `uv2` or `uv3` if some
- * have one of their own) and `_ncz` (the `Zone`: 0 may be painted), and, with a texture, each mesh a child that shows the texture
- * on the cosmetic triangles.
- * Skins and morph targets keep working: the overlays share them. A geometry that several meshes show is copied for all but
- * the first. Where triangles that share a vertex have different UVs there, the geometry gets copies of it after the vertices
- * that it has, with all of its attributes and morph deltas, so that no triangle stretches across the texture. Where borders are
- * cut, it gets vertices that are blends of others.
+ * Transfers a cage's UVs to the meshes of a scene. Each geometry gets the attributes `uv1` (2 per vertex; `uv2` or `uv3` if some
+ * geometry uses `uv1` already) and `_ncz` (the `Zone`: 0 may be painted). With a texture, each mesh gets a child that shows the
+ * texture on the cosmetic triangles.
  *
- * `await init()` once before; or leave the main thread free with `extract`, `cagecast/worker` and the option `result`.
+ * Skins and morph targets keep working, because the overlays share them. If several meshes share a geometry, all but the first get
+ * a copy. If triangles at the same vertex need different UVs, copies of the vertex, with all attributes and morph deltas, are added
+ * after the existing vertices. Cut borders add vertices that blend existing ones.
+ *
+ * Call `await init()` once before. To keep the main thread free, use `extract`, `cagecast/worker` and the option `result` instead.
  *
  * @param target  A loaded scene, a mesh, or a geometry (which gets the attributes, but no overlay).
- * @param cage    The same, with the attribute `uv`; in the same space as the target.
- * @throws {CagecastError} as `transfer` does, and for parts that cannot be read.
+ * @param cage    Of the same types, with the attribute `uv`, and in the same space as the target.
+ * @throws {CagecastError} as `transfer` does, and if a part cannot be read.
  *
  * @example
  * import { init } from 'cagecast';
@@ -100,7 +100,7 @@ export interface Applied {
  * await init();
  * const [head, cage] = await Promise.all(['head.glb', 'cage.glb'].map((url) => loader.loadAsync(url)));
  * const paint = await new TextureLoader().loadAsync('paint.png');
- * paint.flipY = false; // as all textures of glTF
+ * paint.flipY = false; // as for all textures of glTF
  * paint.colorSpace = SRGBColorSpace;
  * applyTransfer(head.scene, cage.scene, { texture: paint });
  * scene.add(head.scene);
@@ -148,19 +148,19 @@ function resultOf({ mesh }: Extracted, options: ApplyOptions, cage: () => Arrays
   return result;
 }
 
-/** Checks that what is given is of this target: by how long its lists are. */
+/** Checks by the lengths of its arrays that an argument belongs to this target. */
 function checkLengths(name: string, given: object, lengths: Record<string, number>, hint = ''): void {
   for (const [field, length] of Object.entries(lengths)) {
     const found = (given as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
     if (found !== length)
       throw new CagecastError(
         'badArgument',
-        `cagecast/three: ${name}.${field} ${found === undefined ? 'is no list' : `has ${found} entries`}, the target needs ${length}${hint}`,
+        `cagecast/three: ${name}.${field} ${found === undefined ? 'is not an array' : `has ${found} entries`}, the target needs ${length}${hint}`,
       );
   }
 }
 
-/** What was given to geometries before, to be overwritten by the next transfer. */
+/** The channels that earlier transfers added to geometries, to be overwritten by the next one. */
 const givenChannels = new WeakMap<BufferGeometry, number>();
 
 function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
@@ -170,7 +170,7 @@ function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
   if (free === undefined)
     throw new CagecastError(
       'badArgument',
-      'cagecast/three: target has uv1, uv2 and uv3 of its own; say by options.channel which of them is to go',
+      'cagecast/three: target has uv1, uv2 and uv3 of its own; choose the one to overwrite with options.channel',
     );
   return free;
 }
@@ -251,7 +251,7 @@ function apply(
     dispose() {
       for (const overlay of overlays) {
         overlay.removeFromParent();
-        // The renderer frees the buffers of all attributes of what goes, whoever else uses them: these are the model's.
+        // Disposing a geometry frees the buffers of all its attributes, but these belong to the model.
         for (const name of Object.keys(overlay.geometry.attributes)) overlay.geometry.deleteAttribute(name);
         overlay.geometry.dispose();
       }

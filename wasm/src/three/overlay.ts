@@ -47,12 +47,12 @@ export function makeOverlay(part: Part, base: Mesh, uvName: string, material: Ma
   overlay.renderOrder = base.renderOrder + 1;
   overlay.receiveShadow = base.receiveShadow;
   overlay.layers.mask = base.layers.mask;
-  // What it shows is under the pointer already.
+  // Rays already hit the mesh below.
   overlay.raycast = () => {};
   return overlay;
 }
 
-/** Lets an overlay draw those triangles of its part for which `cosmetic` is 1. */
+/** Makes an overlay draw the triangles of its part for which `cosmetic` is 1. */
 export function showTriangles({ geometry }: Mesh, { geometry: { index } }: Part, cosmetic: Uint8Array): void {
   const corners = new Uint32Array(3 * cosmetic.reduce((sum, one) => sum + one, 0));
   let filled = 0;
@@ -61,7 +61,7 @@ export function showTriangles({ geometry }: Mesh, { geometry: { index } }: Part,
   geometry.setIndex(new BufferAttribute(corners, 1));
 }
 
-/** A material that shows a texture alone, with the gloss and relief of what it lies on. */
+/** A material that shows a texture, with the gloss and relief of the material below it. */
 export function paintMaterial(base: Material | undefined, texture: Texture): MeshStandardMaterial {
   const material = new MeshStandardMaterial({ roughness: 0.8 });
   if ((base as MeshStandardMaterial | undefined)?.isMeshStandardMaterial) {
@@ -75,7 +75,7 @@ export function paintMaterial(base: Material | undefined, texture: Texture): Mes
   return material;
 }
 
-/** Lets a material lie on the surface that it shares its vertices with. */
+/** Makes a material draw on top of a surface with the same vertices. */
 export function layOnSurface(material: Material): void {
   material.transparent = true;
   material.depthWrite = false;

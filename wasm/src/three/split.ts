@@ -3,7 +3,7 @@ import { gather, type SplitPart } from '../parts/split-part.js';
 
 export type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
-/** Gives a geometry copies of vertices, in all of its attributes and morph targets. It stays the same object. */
+/** Adds copies of vertices to a geometry, in all attributes and morph targets. The geometry stays the same object. */
 export function splitGeometry(geometry: BufferGeometry, { sources, indices }: SplitPart): void {
   remakeGeometry(geometry, indices, (attribute) =>
     likeAttribute(attribute, gather(valuesOf(attribute) as Float32Array, attribute.itemSize, sources)),
@@ -23,7 +23,7 @@ export function valuesOf(attribute: Attribute): TypedArray {
 /** An attribute of the same kind with other values. */
 export function likeAttribute(attribute: Attribute, values: TypedArray): BufferAttribute {
   const { itemSize, normalized } = attribute;
-  // What makes the values of a class of three's own what they are, as of half floats, is in the class.
+  // Some classes of three define how values are encoded, such as half floats, so the class must be kept.
   const Class = (
     'isInterleavedBufferAttribute' in attribute ? BufferAttribute : attribute.constructor
   ) as typeof BufferAttribute;
@@ -36,7 +36,7 @@ export function likeAttribute(attribute: Attribute, values: TypedArray): BufferA
   return made;
 }
 
-/** Replaces all attributes and morph targets of a geometry, and its triangles, and has its buffers on the graphics card made anew. */
+/** Replaces all attributes, morph targets and triangles of a geometry, and has its GPU buffers made again. */
 export function remakeGeometry(
   geometry: BufferGeometry,
   indices: Uint32Array,

@@ -24,11 +24,11 @@ import type { Reply, Request, Thread } from './protocol.js';
 
 export * from '../index.js';
 
-/** How a call is made. */
+/** Options of every call. */
 export interface CallOptions {
-  /** Gives the call up: its promise rejects with the signal's reason, and work under way ends at once. */
+  /** Cancels the call: its promise rejects with the signal's reason, and running work ends at once. */
   signal?: AbortSignal | undefined;
-  /** Hands the arrays of the arguments over instead of copying them: the caller's are empty from then on. */
+  /** Transfers the arrays of the arguments to the worker instead of copying them; the caller's arrays are empty afterwards. */
   move?: boolean | undefined;
 }
 
@@ -42,7 +42,7 @@ interface Job {
 
 let thread: Thread | undefined;
 let lastId = 0;
-/** The first one is under way. */
+/** The first job is running. */
 const jobs: Job[] = [];
 
 /** Starts the worker before it is needed. Not necessary: every call does it. @throws {CagecastError} `unsupported` */
@@ -50,7 +50,7 @@ export function init(): Promise<void> {
   return call('init', [], {});
 }
 
-/** As `transfer` of `cagecast`, off the main thread; without `reuse`: all arrays are new. */
+/** As `transfer` of `cagecast`, off the main thread. There is no `reuse`: all arrays are new. */
 export function transfer(
   cage: Mesh,
   target: Mesh,
@@ -64,7 +64,7 @@ export function project(cage: Mesh, target: Mesh, options: ProjectOptions & Call
   return withOptions('project', [cage, target], options);
 }
 
-/** As `classify` of `cagecast`, off the main thread. It takes microseconds, less than the way there and back. */
+/** As `classify` of `cagecast`, off the main thread. On the main thread it takes microseconds, less than the messages do. */
 export function classify(projection: Projection, options: ClassifyOptions & CallOptions = {}): Promise<Classification> {
   return withOptions('classify', [projection], options);
 }
@@ -78,7 +78,7 @@ export function splitVertices(
   return withOptions('splitVertices', [target, cornerUvs], options);
 }
 
-/** As `cutBorders` of `cagecast`, off the main thread. Of `result` only what is needed is copied. */
+/** As `cutBorders` of `cagecast`, off the main thread. Only the required fields of `result` are copied. */
 export function cutBorders(
   cage: Mesh,
   target: Mesh,
@@ -94,7 +94,7 @@ export function presetOptions(preset?: Preset, options: CallOptions = {}): Promi
   return withOptions('presetOptions', [preset], options);
 }
 
-/** Ends the worker and gives its memory back. Calls that wait are given up, with code `aborted`; the next one starts afresh. */
+/** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
 export function terminate(): void {
   stop();
   for (const job of jobs.splice(0)) {
@@ -128,7 +128,7 @@ function call<T>(fn: Request['fn'], args: unknown[], { signal, move = false }: C
       job.settle();
       reject(signal?.reason);
       if (place > 0) return;
-      // A call into WebAssembly cannot be interrupted, its worker can.
+      // A call into WebAssembly cannot be interrupted, but its worker can be ended.
       stop();
       next();
     };
