@@ -341,7 +341,7 @@ TEST_CASE("a result of another target is refused", "[borders]") {
   CHECK(codeOf({scene.target.view(), zones.zones, {}, zones.culledBy}) == Code::resultMismatch);
 }
 
-TEST_CASE("a result of another target with as many vertices cuts what that says", "[borders]") {
+TEST_CASE("a result of another target with as many vertices is accepted", "[borders]") {
   const scenes::Scene scene = scenes::head(8);
   scenes::Random random(firstSeed());
   std::vector<std::uint32_t> order;
@@ -425,7 +425,7 @@ TEST_CASE("a triangle that spans hundreds of charts is cut at all of them", "[bo
   CHECK(elsewhere < 1e-3 * all);
 }
 
-TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut", "[borders]") {
+TEST_CASE("defects of a target stay the same when it is cut", "[borders]") {
   scenes::Scene scene = scenes::head(8);
   scenes::Mesh& target = scene.target;
   const auto indices = target.indices;
@@ -438,7 +438,7 @@ TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut",
       target.addTriangle(indices[i], middle, indices[i + 1]);
     }
   }
-  SECTION("triangles that are there twice, and turned") {
+  SECTION("duplicate triangles, also with reverse winding") {
     for (std::size_t i = 0; i < indices.size(); i += 9) target.addTriangle(indices[i], indices[i + 1], indices[i + 2]);
     for (std::size_t i = 3; i < indices.size(); i += 9) target.addTriangle(indices[i], indices[i + 2], indices[i + 1]);
   }
@@ -458,7 +458,7 @@ TEST_CASE("what is wrong with a target stays as wrong as it was when it is cut",
 }
 
 // As for the presets: the same file is asserted in every build.
-TEST_CASE("what is cut on fixed scenes has the golden hash", "[borders][golden]") {
+TEST_CASE("cut borders of fixed scenes have the golden hash", "[borders][golden]") {
   Hash hash;
   for (const Seams seams : {Seams::vertex, Seams::corner}) {
     for (const scenes::Scene& scene : scenes::goldenBorders()) {

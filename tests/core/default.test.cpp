@@ -238,7 +238,7 @@ TEST_CASE("no step of the preset depends on the order of the target's vertices a
   }
 }
 
-TEST_CASE("a new threshold decides what a new transfer would", "[default]") {
+TEST_CASE("a new threshold gives the result of a new transfer", "[default]") {
   const scenes::Scene scene = crowdedHead(20, 0.06f);
   TransferOptions options = preset();
   const TransferResult first = transferred(scene.cage.view(), scene.target.view(), options);
@@ -252,7 +252,7 @@ TEST_CASE("a new threshold decides what a new transfer would", "[default]") {
   }
 }
 
-TEST_CASE("a lock is the last word about its segment", "[default]") {
+TEST_CASE("a lock overrides the verdict on its segment", "[default]") {
   const scenes::Scene scene = crowdedHead(16, 0);
   const TransferResult result = transferred(scene.cage.view(), scene.target.view(), preset());
   const std::size_t segments = result.projection.segmentStats.size();
@@ -284,7 +284,8 @@ TEST_CASE("a lock is the last word about its segment", "[default]") {
   }
 }
 
-TEST_CASE("a small part that a hole bares fails, unless it is kept or something else explains the hole", "[default]") {
+TEST_CASE("a small part bare under a hole is culled, unless it is kept or another part explains the hole",
+          "[default]") {
   const scenes::Trap trap = scenes::aside();
   const TransferResult result = transferred(trap.scene.cage.view(), trap.scene.target.view(), preset());
   REQUIRE(result.projection.segmentStats.size() == 3);

@@ -158,7 +158,7 @@ TEST_CASE("points and lines are passed over, and a scene of nothing else is an e
 
 TEST_CASE("quantised numbers are decoded", "[gltf]") {
   File file;
-  SECTION("plain integers stand for themselves") {
+  SECTION("integers that are not normalised keep their value") {
     file.accessor(file.view<std::int16_t>({-5, 0, 7, 0, 300, 0, 0, 0, 1, 0, -32768, 0}, 8), kShort, "VEC3", 3);
     CHECK(readable(file.bytes()).positions == Floats{-5, 0, 7, 300, 0, 0, 1, 0, -32768});
   }
@@ -244,7 +244,7 @@ TEST_CASE("world transforms are applied down the tree, in scene order", "[gltf]"
   CHECK(model.indices == Indices{0, 1, 2, 5, 6, 7, 10, 11, 12});
 }
 
-TEST_CASE("a mirrored node has its triangles turned round", "[gltf]") {
+TEST_CASE("a mirrored node has the winding of its triangles reversed", "[gltf]") {
   File file = triangle();
   for (const char* scale : {"[-1,1,1]", "[1,1,-2]", "[-1,-1,-1]"}) {
     file.nodes = std::string(R"({"mesh":0,"scale":)") + scale + "}";
@@ -269,7 +269,7 @@ TEST_CASE("numbers that are not finite reach the library, which names them", "[g
   CHECK(std::isnan(readable(file.bytes()).positions[4]));
 }
 
-TEST_CASE("the default scene is read, the first if none is said, all roots if there is none", "[gltf]") {
+TEST_CASE("the default scene is read, or the first if none is named, or all roots if there is no scene", "[gltf]") {
   File file = triangle();
   file.nodes = R"({"name":"a","mesh":0},{"name":"b","mesh":0,"children":[2]},{"name":"c"})";
   std::string json = file.json();
@@ -328,14 +328,14 @@ TEST_CASE("a .gltf file with a buffer beside it is read, and a missing one is na
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("pictures are not looked at", "[gltf]") {
+TEST_CASE("images are not read", "[gltf]") {
   File file = triangle();
   file.extra =
       R"(,"images":[{"uri":"nowhere.png"},{"bufferView":0,"mimeType":"image/png"},{"uri":"data:image/png;base64,AAAA"}])";
   CHECK(readable(file.bytes()).indices.size() == 3);
 }
 
-TEST_CASE("a file that is missing, empty, a folder, or no glTF is named", "[gltf]") {
+TEST_CASE("an error names a file that is missing, empty, a folder or not glTF", "[gltf]") {
   gltf::Model model;
   CHECK_THAT(gltf::read("/nowhere/at-all.glb", model).error, StartsWith("/nowhere/at-all.glb: cannot be read"));
   CHECK_THAT(gltf::read(std::filesystem::temp_directory_path().string(), model).error, Contains("cannot be read"));
@@ -384,7 +384,7 @@ TEST_CASE("a GLB with any byte changed is read or refused, never worse", "[gltf]
   }
 }
 
-TEST_CASE("compression that is not understood is named", "[gltf]") {
+TEST_CASE("unsupported compression is an error that names it", "[gltf]") {
   File file = triangle();
   file.extra =
       R"(,"extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"])";
@@ -406,7 +406,7 @@ TEST_CASE("compression that is not understood is named", "[gltf]") {
   CHECK_THAT(errorOf(file.bytes()), Contains("meshopt"));
 }
 
-TEST_CASE("references that lead nowhere are named", "[gltf]") {
+TEST_CASE("broken references are errors that name them", "[gltf]") {
   File file = triangle();
   SECTION("index out of range") {
     file.accessors.clear();
@@ -497,7 +497,7 @@ TEST_CASE("hostile files are refused", "[gltf]") {
     file.nodes = R"({"children":[1,1]},{"mesh":0})";
     CHECK_THAT(errorOf(file.bytes()), Contains("twice"));
   }
-  SECTION("counts that nothing in the file stands for") {
+  SECTION("counts larger than the data in the file") {
     for (const std::size_t count : {std::size_t{100'000'000}, std::size_t{4'294'967'295}, std::size_t{1} << 62}) {
       File file;
       file.view<float>({0});

@@ -142,7 +142,7 @@ TEST_CASE("a comparison finds every kind of difference", "[reference]") {
   CHECK_THAT(differences().details, Catch::Matchers::Contains("zone") && Catch::Matchers::Contains("cage triangle"));
 }
 
-TEST_CASE("what lies beyond the cage hides a point only within reach", "[reference]") {
+TEST_CASE("a surface beyond the cage hides a point only within occlusionReach", "[reference]") {
   // The shade is moved over the first triangle; the diagonal of it all is about 12 units, the reach about 0.36.
   const auto zoneUnder = [](float height, bool ends) {
     scenes::Scene scene = nearEdge(-1);
@@ -164,7 +164,7 @@ TEST_CASE("a point that pokes through the cage by very little is covered", "[ref
   CHECK(zonesOf(levelAt(2.02f), Options::paper())[0] == Zone::uncovered);
 }
 
-TEST_CASE("a window of two triangles interiorSamples from within, not from its frame", "[reference]") {
+TEST_CASE("a window of two triangles is judged inside, not at its frame", "[reference]") {
   scenes::Scene scene;
   scene.cage = without(scenes::box({}, {6, 6, 1}, 12),
                        [](scenes::Point p) { return p[2] > 0.9f && std::abs(p[0]) < 2 && std::abs(p[1]) < 2; });
@@ -181,7 +181,7 @@ TEST_CASE("a window of two triangles interiorSamples from within, not from its f
   CHECK(zonesOf(scene, options).back() == Zone::cosmetic);
 }
 
-TEST_CASE("on the models made to be difficult, what must stay bare does and the rest is painted", "[reference]") {
+TEST_CASE("on difficult models, what must stay bare does and the rest is painted", "[reference]") {
   for (const scenes::Trap& trap : scenes::traps()) {
     INFO(trap.scene.name);
     for (const double threshold : {0.3, 0.5, 0.8}) {
@@ -200,7 +200,7 @@ TEST_CASE("on the models made to be difficult, what must stay bare does and the 
   }
 }
 
-TEST_CASE("the models made to be difficult are: the rule as it was first written down fails on each", "[reference]") {
+TEST_CASE("difficult models are difficult: an earlier version of the rules fails on each", "[reference]") {
   for (const scenes::Trap& trap : scenes::traps()) {
     if (trap.scene.name == "twins 1") continue;  // Its twins happen to fall on the same side.
     if (trap.scene.name == "wrapped" || trap.scene.name == "domed") continue;  // They ask for other steps, see below.
@@ -256,7 +256,7 @@ TEST_CASE("a triangle is painted if a corner is cosmetic and none is uncovered o
   CHECK(partly > 0);
 }
 
-TEST_CASE("the corners of a triangle lie on one island of the texture", "[reference]") {
+TEST_CASE("the corners of a triangle lie on one chart of the texture", "[reference]") {
   const scenes::Scene scene = scenes::head(12);  // Its cage has six islands, in three columns and two rows.
   const auto result = reference::transfer(scene.cage.view(), scene.target.view(), Options::standard());
   const auto fits = [](const auto& uvAt) {

@@ -254,7 +254,7 @@ TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
       stacked.indices.insert(stacked.indices.end(), strewn.cage.indices.begin(), strewn.cage.indices.end());
     compareCorners("stacked", stacked.view(), ball.view());
   }
-  SECTION("so many of its triangles equally near that those of a few corners are all that can be listed at once") {
+  SECTION("more equally near triangles than can be listed at once") {
     const scenes::Mesh once = tube(1.5f, 4, 2);
     scenes::Mesh stacked = once;
     for (int copy = 1; copy < 200; ++copy)
@@ -381,7 +381,7 @@ TEST_CASE("corners of whole triangles, and of those without an area, have the UV
   CHECK_FALSE(isAsVertices(2));
 }
 
-TEST_CASE("there are corner UVs only where they were asked for and mean something", "[seams]") {
+TEST_CASE("there are corner UVs only with seams: corner and nearestPoint", "[seams]") {
   const scenes::Scene scene = scenes::head(8);
   TransferOptions options = TransferOptions::paper();
   TransferResult result;

@@ -83,7 +83,7 @@ describe('init', () => {
   });
 });
 
-describe('a file of WebAssembly that is not as it was shipped', () => {
+describe('a modified WebAssembly file', () => {
   const folder = mkdtempSync(join(tmpdir(), 'cagecast-file-'));
   after(() => rmSync(folder, { recursive: true, force: true }));
   const start = (file: Buffer) => {
@@ -99,12 +99,12 @@ describe('a file of WebAssembly that is not as it was shipped', () => {
   };
   const shipped = readFileSync('dist/cagecast.wasm');
 
-  test('is run as it is, where a tool has put something in', () => {
+  test('runs if a tool has added to it', () => {
     const section = Buffer.from([0, 3, 2, 104, 105]); // one of its own, by the name of "hi"
     assert.equal(start(Buffer.concat([shipped.subarray(0, 8), section, shipped.subarray(8)])), 'ready');
   });
 
-  test('is called what it is, where it is something else', () => {
+  test('is reported if it is something else', () => {
     assert.match(
       start(Buffer.from('<!doctype html><title>Not found</title>')),
       /cannot run the WebAssembly module .*magic/,
@@ -207,7 +207,7 @@ describe('transfer', () => {
     }
   });
 
-  test('areas near the largest float there is are what they are', () => {
+  test('areas near the largest float are exact', () => {
     const sides = [-1, 1, 1, 1, -1, -1, -1, -1, 1]; // a triangle across a box
     const at = (size: number, times: number): Mesh => ({
       positions: Float32Array.from({ length: 9 * times }, (_, i) => size * sides[i % 9]!),
@@ -220,7 +220,7 @@ describe('transfer', () => {
     assert.ok(Math.abs(areaOf(3e38) / areaOf(1) - 1) < 1e-6, `${areaOf(3e38)} ${areaOf(1)}`);
   });
 
-  test('results are owned: later calls and a growing memory leave them as they were', () => {
+  test('results are owned: later calls and a growing memory do not change them', () => {
     const { cage, target } = head(4, 10);
     const result = transfer(cage, target);
     const copy = bytes(result);
@@ -241,7 +241,7 @@ describe('transfer', () => {
     assert.deepEqual({ cage, target }, copy);
   });
 
-  test('takes indices of 8, 16 and 32 bits, views into larger buffers, and meshes without what they need not have', () => {
+  test('takes indices of 8, 16 and 32 bits, views into larger buffers, and meshes without optional arrays', () => {
     const { cage, target } = smallest();
     const expected = bytes(transfer(cage, target));
     const padded = new Float32Array(20);
@@ -294,7 +294,7 @@ describe('project and classify', () => {
   before(init);
 
   for (const preset of presets) {
-    test(`give together what transfer gives, for any threshold: ${preset}`, () => {
+    test(`together give the result of transfer, for any threshold: ${preset}`, () => {
       for (const { name, cage, target } of [head(8), soup(9)]) {
         const projection = project(cage, target, { preset });
         assert.ok(projection.zones.every((zone) => zone !== Zone.Culled));
@@ -336,7 +336,7 @@ describe('project and classify', () => {
     );
   });
 
-  test('classify leaves the projection as it was', () => {
+  test('classify does not change the projection', () => {
     const { cage, target } = head(11, 8);
     const projection = project(cage, target);
     const copy = structuredClone(projection);
@@ -417,7 +417,7 @@ describe('locks', () => {
     return result;
   };
 
-  test('exclude and keep a group whatever its areas', () => {
+  test('exclude and keep a group regardless of its areas', () => {
     assert.ok(vertices(locked({}), 0).includes(Zone.Cosmetic));
     const excluded = locked({ groups: { 0: 'exclude' } });
     assert.ok(!vertices(excluded, 0).includes(Zone.Cosmetic));
@@ -428,7 +428,7 @@ describe('locks', () => {
     assert.ok(!vertices(kept, 1).includes(Zone.Culled));
   });
 
-  test('a lock of a segment outdoes one of its group', () => {
+  test('a lock of a segment overrides one of its group', () => {
     const segment = transfer(cage, target).segments[0]!;
     const locks = (lock: Lock) => ({ groups: { 0: 'exclude' }, segments: { [segment]: lock } }) as const;
     assert.ok(vertices(locked(locks('keep')), 0).includes(Zone.Cosmetic));
@@ -436,7 +436,7 @@ describe('locks', () => {
     assert.deepEqual(locked({ segments: { [segment]: 'exclude' } }).zones, locked({ groups: { 0: 'exclude' } }).zones);
   });
 
-  test('what is not there cannot be locked', () => {
+  test('a segment or group that does not exist cannot be locked', () => {
     const fails = (locks: unknown, message: RegExp) => {
       for (const call of [
         () => transfer(cage, target, { locks: locks as Locks }),
@@ -484,7 +484,7 @@ describe('splitVertices', () => {
     }
   });
 
-  test('what cannot be split is said', () => {
+  test('input that cannot be split is an error', () => {
     const { target } = smallest();
     const fails = (call: () => unknown, code: string, message: RegExp) =>
       assert.throws(

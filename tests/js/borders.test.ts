@@ -172,7 +172,7 @@ describe('cutBorders', () => {
     });
   }
 
-  test('paint on the lizard ends where the rims of the cage are projected to, within 0.1 % of the diagonal', async (context) => {
+  test('paint on the lizard ends at the projected boundary loops of the cage, within 0.1 % of the diagonal', async (context) => {
     const [lizardCage, lizard] = (await Promise.all(
       ['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)),
     )) as [Mesh, Mesh];
@@ -198,7 +198,7 @@ describe('cutBorders', () => {
     assert.ok(transfer(cage, target).cosmeticTriangles.some((one, t) => isOfLocked(t) && one === 1));
   });
 
-  test('a result of another target, or none, is refused in words', () => {
+  test('a result of another target, or none, is an error', () => {
     const result = transfer(cage, target);
     const code = (given: unknown, expected: string, message: RegExp) =>
       assert.throws(
@@ -613,7 +613,7 @@ describe('with borders: cut', () => {
     }
   });
 
-  test('another decision is shown on the pieces, and on whole triangles where a segment has another verdict', async () => {
+  test('another classification is shown on the pieces, and on whole triangles in segments with another verdict', async () => {
     const mesh = new ThreeMesh(plainGeometry(target), new MeshStandardMaterial());
     const plain = { ...target, groups: undefined };
     const projection = project(cage, plain);
@@ -643,7 +643,7 @@ describe('with borders: cut', () => {
     assert.equal(shown(), painted + more);
   });
 
-  test('of what is excluded later no piece stays painted, and of what is kept later none stays bare', async () => {
+  test('segments excluded later have no painted piece, segments kept later no bare one', async () => {
     // Points that are hidden or uncovered never change to or from "culled".
     const [cage, mesh] = (await Promise.all(
       ['cage', 'target'].map((name) => readPlain(`build/assets/lizard/${name}.glb`)),
@@ -673,7 +673,7 @@ describe('with borders: cut', () => {
     );
   });
 
-  test('unknown borders are refused in words, and nothing is changed', async () => {
+  test('an unknown value of borders is an error, and nothing is changed', async () => {
     const geometry = plainGeometry(target);
     assert.throws(
       // @ts-expect-error no such borders
@@ -697,7 +697,7 @@ describe('with borders: cut', () => {
     assert.equal(document.getRoot().listMeshes()[0]!.listPrimitives()[0]!.getAttribute('_NCZ'), null);
   });
 
-  test('what fails while borders are cut names the file, and nothing is written', () => {
+  test('an error while borders are cut names the file, and nothing is written', () => {
     // The transfer copies three such arrays out of WebAssembly memory; what is cut cannot be had.
     writeFileSync(
       at('full.mjs'),

@@ -409,7 +409,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     });
   }
 
-  test('a node that is its own ancestor, out of the scene, does no harm', () => {
+  test('a node outside the scene that is its own ancestor is ignored', () => {
     const path = write(
       'loop.glb',
       changed(({ json }) => {
@@ -450,7 +450,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     rmSync(far);
   });
 
-  test('a texture that is no image, and half of one', () => {
+  test('a texture that is not an image, and half of one', () => {
     const text = write('text.png', 'no image');
     fails(
       ['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', text],
@@ -502,7 +502,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     assert.ok(!readdirSync(folder).some((name) => name.endsWith('.tmp')));
   });
 
-  test('a link to what is not there yet is written through, one folder by two names is one, and permissions stay', () => {
+  test('a link to a file that does not exist yet is followed, two names of one folder are the same, and permissions stay', () => {
     mkdirSync(at('folder'));
     symlinkSync(at('folder'), at('way'));
     symlinkSync('folder/later.glb', at('link.glb'));
@@ -611,7 +611,7 @@ describe('files damaged at random', () => {
 });
 
 describe('transfer', () => {
-  test('reports what the package answers', () => {
+  test('reports the result of the package', () => {
     const { counts, areas, segments, parts, target, options, versions, timings } = report(at('target.glb'));
     // The file holds one primitive, so one group.
     const result = transfer(scene.cage, { ...scene.target, groups: undefined });
@@ -921,7 +921,7 @@ describe('what a target has is kept', () => {
     assert.deepEqual(written!.getArray()!.subarray(0, 3 * vertices), before!.getArray());
   });
 
-  test('with --seams vertex: skins, morphs, animations, materials, extras, colours, attributes of others, extensions nobody knows', async () => {
+  test('with --seams vertex: skins, morphs, animations, materials, extras, colours, attributes of others, unknown extensions', async () => {
     const path = write('rich.glb', rich());
     assert.deepEqual(
       (await validate(path)).filter((issue) => !/ACME|UNUSED/.test(issue)),
@@ -963,7 +963,7 @@ describe('what a target has is kept', () => {
     assert.deepEqual(Buffer.from(afterwards.bin.subarray(byteOffset, byteOffset + byteLength)), paint());
   });
 
-  test('the overlay has the cosmetic triangles alone, a hair off the surface', async () => {
+  test('the overlay has the cosmetic triangles only, a little above the surface', async () => {
     const out = at('overlay.glb');
     cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', at('paint.png'), '-o', out);
     const [base, overlay] = (await new NodeIO().read(out)).getRoot().listMeshes()[0]!.listPrimitives();
@@ -1132,7 +1132,7 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(made('rigged', (maker) => rigged(maker, 128))), expected());
   });
 
-  test('a mesh that a node shows in many places is told of, and not taken for one', () => {
+  test('a mesh with instances is an error', () => {
     const path = made('instanced', (maker) => {
       const translation = maker.accessor(new Float32Array([0, 0, 0, 3, 0, 0]), 'VEC3');
       maker.node({
@@ -1146,7 +1146,7 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.match(stderr, /instanced\.glb: nodes\[0\] is instanced, so its mesh is in many places at once/);
   });
 
-  test('skins that refer to what is not there are told of', () => {
+  test('skins with broken references are errors', () => {
     for (const [skin, says] of [
       [{ joints: [99] }, /skins\[0\]\.joints/],
       [{ joints: 'all' }, /skins\[0\]\.joints is not an array of numbers/],
@@ -1288,7 +1288,7 @@ describe('the same mesh in other forms gives the same answer', () => {
     }
   });
 
-  test('the buffer that has all bytes stands in for nothing, whatever it was before', async () => {
+  test('the joined buffer is not marked as a fallback', async () => {
     const path = made('stand-in', (maker) => {
       maker.node({ mesh: maker.mesh(scene.target) });
       maker.json.extensionsUsed = ['EXT_meshopt_compression'];
@@ -1301,7 +1301,7 @@ describe('the same mesh in other forms gives the same answer', () => {
     );
   });
 
-  test('a file beside it may have a name that is no address', () => {
+  test('a file beside it may have a name that is not URI-encoded', () => {
     const { json, bin } = unpackGlb(glbOf(scene.target));
     json.buffers![0]!.uri = 'head 50%.bin';
     writeFileSync(at('head 50%.bin'), bin);
@@ -1309,7 +1309,7 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(at('percent.gltf')), expected());
   });
 
-  test('an extension of materials that nobody knows, though required, is no obstacle', () => {
+  test('an unknown extension of materials, though required, is accepted', () => {
     const path = made('required', (maker) => {
       maker.node({ mesh: maker.mesh(scene.target) });
       maker.json.extensionsUsed = maker.json.extensionsRequired = ['ACME_materials'];
@@ -1501,7 +1501,7 @@ describe('inspect', () => {
     );
   });
 
-  test('a reader that leaves early is no failure', () => {
+  test('a reader that closes the pipe early is not an error', () => {
     const shell = `'${process.execPath}' dist/cli.js inspect '${at('target.glb')}' --cage '${at('cage.glb')}' | true; echo "\${PIPESTATUS[0]}"`;
     const { stdout, stderr } = spawnSync('bash', ['-c', shell], { encoding: 'utf8' });
     assert.equal(stdout.trim(), '0', stderr);
@@ -1585,7 +1585,7 @@ describe('models', () => {
   }
 
   if (assets !== undefined) {
-    test('the sedan of the wild, Draco in a data URI, gives the counts of the plain one', () => {
+    test('a real sedan, with Draco in a data URI, gives the counts of the uncompressed one', () => {
       const cage = join(assets, 'kenney_sedan/cage.glb');
       assert.deepEqual(
         report(join(assets, 'formats/kenney_sedan_draco_datauri.gltf'), cage).counts,

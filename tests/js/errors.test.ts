@@ -135,7 +135,7 @@ describe('errors', () => {
     worksAgain();
   });
 
-  test('of arguments that TypeScript would not let through', () => {
+  test('of arguments of the wrong type', () => {
     fails(untyped(), 'badArgument', 'transfer: cage is undefined, not a mesh { positions, indices, … }');
     fails(untyped(cage, null), 'badArgument', 'transfer: target is null, not a mesh { positions, indices, … }');
     fails(
@@ -273,7 +273,7 @@ describe('errors', () => {
     worksAgain();
   });
 
-  test('of a projection that is not whole', () => {
+  test('of an incomplete projection', () => {
     const projection = project(cage, target);
     const call = (change: object) => () => classify({ ...projection, ...change });
     fails(
@@ -341,7 +341,7 @@ describe('memory', () => {
     worksAgain();
   });
 
-  test('wherever memory runs out it is outOfMemory, and the next call gives the same bits as ever', () => {
+  test('wherever memory runs out the error is outOfMemory, and the next call gives the same bits', () => {
     const scene = head(20, 60);
     const expected = transfer(scene.cage, scene.target);
     const { grow } = WebAssembly.Memory.prototype;

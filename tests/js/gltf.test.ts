@@ -159,7 +159,7 @@ describe('document.transform(cagecast(…))', () => {
     assert.equal(document.getRoot().listNodes()[0]!.getMesh()!.listPrimitives().length, 2);
   });
 
-  test('an overlay has the deltas of what it has, and none of UVs, which are the paint’s', async () => {
+  test('an overlay has the morph deltas of its attributes, except for UVs', async () => {
     const document = await documentOf(glbOf(scene.target));
     const [primitive] = primitives(document);
     const count = scene.target.positions.length / 3;
@@ -291,7 +291,7 @@ describe('document.transform(cagecast(…))', () => {
     );
   });
 
-  test('what cannot be used is said in one error, and the document stays as it was', async () => {
+  test('unusable input is one error, and the document stays unchanged', async () => {
     const fails = async (
       make: () => Promise<{ target?: Uint8Array; cage?: Document | Mesh; texture?: Uint8Array; threshold?: number }>,
       code: string,
@@ -346,7 +346,7 @@ describe('document.transform(cagecast(…))', () => {
     );
   });
 
-  test('compressed files of the wild can be targets', {
+  test('real compressed files can be targets', {
     skip: process.env['CAGECAST_ASSETS'] === undefined && 'CAGECAST_ASSETS is not set',
   }, async () => {
     const path = join(process.env['CAGECAST_ASSETS']!, 'formats/cat_meshopt_quantized.glb');

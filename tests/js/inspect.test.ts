@@ -30,7 +30,7 @@ const diagonal = (() => {
 })();
 
 describe('inspect', () => {
-  test('finds a cage that fits good, and tells what it is like', () => {
+  test('a cage that fits is good, and is described', () => {
     const inspection = look({});
     assert.equal(inspection.verdict, 'good', JSON.stringify(inspection.findings));
     assert.equal(inspection.topology.pieces, 1);
@@ -55,7 +55,7 @@ describe('inspect', () => {
     assert.equal(inspection.uv.overlap.share, 0);
   });
 
-  test('takes a result that is known, and gives plain data', () => {
+  test('takes an existing result, and gives plain data', () => {
     const result = transfer(cage, target);
     const again = inspect(cage, target, { result, parts });
     assert.deepEqual(again, look({}));
@@ -66,7 +66,7 @@ describe('inspect', () => {
     );
   });
 
-  test('findings come with the heaviest first, a sentence, an advice and numbers', () => {
+  test('findings have a sentence, an advice and numbers, the most severe first', () => {
     const { findings, verdict } = look({
       positions: moved((p) => p.map((x) => 0.9 * x)),
       uvs: cage.uvs.map((x) => x + 0.5),
@@ -162,7 +162,7 @@ describe('a cage for a part of the target', () => {
     assert.equal(codes(inspect(thin, body))[0], 'cageTooSmall');
   });
 
-  test('half a cage: nothing of the segment passes, and why', () => {
+  test('half a cage: the segment does not pass, and the reason', () => {
     const cap = {
       ...cage,
       indices: Uint32Array.from(cage.indices).filter((_, i) =>
@@ -255,7 +255,7 @@ describe('the surface', () => {
     assert.ok(codes(finned).includes('nonManifoldEdges'));
   });
 
-  test('an edge that is open by itself has nothing beneath it, not a share of nothing', () => {
+  test('a single open edge has nothing beneath it', () => {
     const corners = Array.from(
       { length: cage.indices.length / 3 },
       (_, t) => [...cage.indices.slice(3 * t, 3 * t + 3)] as [number, number, number],
@@ -338,7 +338,7 @@ describe('UVs', () => {
 });
 
 describe('holes and segments', () => {
-  test('a result of another target is told of', () => {
+  test('a result of another target is an error', () => {
     const [target, other] = [ball([0, 0, 0], () => 1, 12, 24), ball([0, 0, 0], () => 1, 8, 12)];
     assert.throws(() => inspect(cage, target, { result: transfer(cage, other) }), {
       code: 'resultMismatch',
@@ -351,7 +351,7 @@ describe('holes and segments', () => {
     assert.throws(() => inspect(cage, target, { result: 5 as unknown as TransferResult }), { code: 'badArgument' });
   });
 
-  test('a hole over skin alone is pointed out', () => {
+  test('a hole over skin alone is reported', () => {
     const skin = ball([0, 0, 0], () => 1, 24, 48);
     const inspection = inspect(cage, skin);
     assert.ok(codes(inspection).includes('holeUnexplained'), JSON.stringify(inspection.holes));
@@ -374,7 +374,7 @@ describe('holes and segments', () => {
     );
   });
 
-  test('a segment near the threshold is named', () => {
+  test('a segment near the threshold is reported', () => {
     const { segments } = look({});
     const eye = segments.find(({ part }) => part === 'eye')!;
     const inspection = inspect(cage, target, {
@@ -388,12 +388,12 @@ describe('holes and segments', () => {
     );
   });
 
-  test('a cage that is a speck beside its target is unfit, not an error', () => {
+  test('a cage that is tiny beside its target is unfit, not an error', () => {
     const { verdict } = look({ positions: cage.positions.map((x) => 1e-20 * x) });
     assert.equal(verdict, 'unfit');
   });
 
-  test('options that are no object are named', () => {
+  test('options that are not an object are an error', () => {
     assert.throws(
       () => (inspect as (...args: unknown[]) => unknown)(cage, target, null),
       (error) => error instanceof CagecastError && error.message === 'inspect: options is null, not an object',

@@ -28,7 +28,7 @@ describe('an option is one line in options.def', () => {
     generate();
   });
 
-  test('what is generated is as it is checked in, and a stale file is told', () => {
+  test('generated files equal those checked in, and a stale file is reported', () => {
     execFileSync(process.execPath, ['wasm/tools/generate.mjs', '--check']);
     generate('--check');
     writeFileSync(join(folder, 'docs/options.md'), 'old');
@@ -39,7 +39,7 @@ describe('an option is one line in options.def', () => {
     generate();
   });
 
-  test('TypeScript has it with its text, and knows which function reads it', () => {
+  test('TypeScript has the option with its text, for the function that reads it', () => {
     const types = read('wasm/src/generated/options.ts');
     const [, stage] = /export interface ProjectStage \{([^}]*)\}/.exec(types)!;
     assert.match(

@@ -49,7 +49,7 @@ describe('quality', () => {
       assert.ok(paper.forbidden > 0 && paper.suppressed < sound.suppressed, JSON.stringify(paper));
   });
 
-  test('what paints all, or nothing, misses the goals', () => {
+  test('painting everything, or nothing, misses the goals', () => {
     const { lizard } = results;
     const withDefault = (suppressed: number, kept: number, forbidden: number, bare: number): string => {
       const methods = {
@@ -67,7 +67,7 @@ describe('quality', () => {
     assert.match(withDefault(NaN, NaN, NaN, NaN), /suppressed.*\n.*kept.*\n.*none must be.*\n.*without paint/);
   });
 
-  test('pictures show what lies in front, from all around', () => {
+  test('pictures show the front surface, from all sides', () => {
     // A box in a larger one: nothing of the inner one is seen, and every side of the outer, though not from everywhere.
     const corners = (s: number): number[] =>
       [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? s : -s]);

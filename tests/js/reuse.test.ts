@@ -61,7 +61,7 @@ describe('reuse', () => {
   const other = head(41, 11);
 
   for (const fn of functions) {
-    test(`${fn} returns it, with its arrays where they are as long as is needed, and new ones where not`, () => {
+    test(`${fn} returns it, reusing arrays of the right length and replacing others`, () => {
       const reuse = calls[fn](one);
       const arrays = { ...reuse };
       Object.assign(reuse, { timings: undefined, peakBytes: undefined });
@@ -89,7 +89,7 @@ describe('reuse', () => {
     });
   }
 
-  test('a long sequence of scenes and options gives in one answer what each gives in one of its own', () => {
+  test('reusing one result for many scenes and options gives the same results as new ones', () => {
     const scenes = [
       one,
       other,
@@ -129,7 +129,7 @@ describe('reuse', () => {
     }
   });
 
-  test('it may share its arrays with the arguments', () => {
+  test('the reused result may share arrays with the arguments', () => {
     // As many corners as vertices, so that the arrays of the answer can hold the input.
     const { cage, target } = soup(44, 80);
     const expected = { project: lasting(project(cage, target)), transfer: lasting(transfer(cage, target)) };
@@ -172,7 +172,7 @@ describe('reuse', () => {
     structuredClone(null, { transfer: arraysOf(reuse).map(([, { buffer }]) => buffer as ArrayBuffer) });
   });
 
-  test('a call that throws leaves it as it was', () => {
+  test('a call that throws leaves the reused result unchanged', () => {
     const reuse = transfer(one.cage, one.target);
     const { cage, target } = other;
     const call =
@@ -194,7 +194,7 @@ describe('reuse', () => {
     assert.deepEqual(lasting(transfer(cage, target, { reuse })), lasting(transfer(cage, target)));
   });
 
-  test('where one new array cannot be had, no other is written over', () => {
+  test('if one new array cannot be allocated, no other is overwritten', () => {
     const reuse = { ...transfer(one.cage, one.target), segments: new Uint32Array(1) };
     const moved = { ...one.target, positions: one.target.positions.map((x) => 1.01 * x) };
     const isHad = (count: number): boolean => {
@@ -224,7 +224,7 @@ describe('reuse', () => {
     assert.notDeepEqual(reuse.distances, before.distances);
   });
 
-  test('what is no earlier answer of the function is said', () => {
+  test('a reused object that is not an earlier result is an error', () => {
     const answers = {
       transfer: transfer(one.cage, one.target),
       project: project(one.cage, one.target),
@@ -270,7 +270,7 @@ describe('reuse', () => {
     );
   });
 
-  test('a worker has no use for it, and says so', async () => {
+  test('a worker refuses `reuse`', async () => {
     const reuse = transfer(one.cage, one.target);
     const before = structuredClone(reuse);
     await assert.rejects(worker.transfer(one.cage, one.target, { reuse } as object), (error) => {

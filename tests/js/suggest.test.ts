@@ -21,7 +21,7 @@ const culled = (options: TransferOptions): boolean[] =>
   transfer(cage, target, options).segmentStats.map((segment) => segment.culled);
 
 describe('score', () => {
-  test('is at least 1 where a segment passes, less where it is culled, whatever locks say', () => {
+  test('is at least 1 if a segment passes without its lock, and less if it is culled', () => {
     for (const options of [
       {},
       { preset: 'paper' },
@@ -50,7 +50,7 @@ describe('score', () => {
 });
 
 describe('suggest', () => {
-  test('has nothing to say where the cage fits and nothing is in doubt', async () => {
+  test('is empty if the cage fits and nothing is in doubt', async () => {
     assert.deepEqual(suggest(cage, target), []);
     for (const name of ['lizard', 'human']) {
       const scene = await sample(name);
@@ -58,7 +58,7 @@ describe('suggest', () => {
     }
   });
 
-  test('says what inspect says of the outcome, no more and no less', async () => {
+  test('gives exactly the findings of inspect about the result', async () => {
     for (const name of ['human-fused', 'human-misaligned', 'car']) {
       const scene = await sample(name);
       const suggestions = suggest(scene.cage, scene.target);
@@ -76,7 +76,7 @@ describe('suggest', () => {
     }
   });
 
-  test('eyes fused with the skin: the holes over them, and whose skin they cut', async () => {
+  test('eyes fused with the skin: the holes over them, and the segments that they cut', async () => {
     const scene = await sample('human-fused');
     const { places, sentence } = find(suggest(scene.cage, scene.target), 'holeUnexplained');
     assert.match(sentence, /^2 holes/);
@@ -87,7 +87,7 @@ describe('suggest', () => {
     );
   });
 
-  test('a cage out of place: that first, then the skin in doubt, and the lock that decides it', async () => {
+  test('a misplaced cage: that first, then the skin in doubt, and the lock that decides it', async () => {
     const scene = await sample('human-misaligned');
     const suggestions = suggest(scene.cage, scene.target);
     assert.equal(suggestions[0]!.code, 'cageMisplaced');
@@ -177,7 +177,7 @@ describe('suggest', () => {
     assert.deepEqual(locks, { segments: { 1: 'keep' } });
   });
 
-  test('takes a result that is known, and gives plain data', () => {
+  test('takes an existing result, and gives plain data', () => {
     const options = {
       threshold: 0.99,
       parts: [{ name: 'all', firstVertex: 0, vertexCount: target.positions.length / 3 }],

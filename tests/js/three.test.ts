@@ -52,7 +52,7 @@ describe('extract', () => {
     assert.deepEqual(extract(new Group().add(meshOf(scene.target))).mesh, single);
   });
 
-  test('meshes of a scene are joined, moved, and a group each; mirrored ones keep their outside', () => {
+  test('meshes of a scene are joined and moved, with a group each; mirrored ones keep their outside', () => {
     const small = ball([0, 0, 0], () => 0.2, 6, 9);
     const left = meshOf(small);
     left.position.x = -0.6;
@@ -106,7 +106,7 @@ describe('extract', () => {
     assert.deepEqual([...extract(quantised).mesh.positions], [0, 0, 0, 1, 0, 0, 0, 1, 0]);
   });
 
-  test('what cannot be read is named', () => {
+  test('an error names what cannot be read', () => {
     const bad = geometryOf({ positions: new Float32Array(9), indices: new Uint32Array([0, 1, 7]) });
     bad.name = 'broken';
     assert.throws(
@@ -130,7 +130,7 @@ describe('extract', () => {
     );
   });
 
-  test('arguments that TypeScript would not let through are named', () => {
+  test('arguments of the wrong type are errors', () => {
     const fails = (message: RegExp, ...args: unknown[]) =>
       assert.throws(
         () => (applyTransfer as (...args: unknown[]) => unknown)(...args),
@@ -199,7 +199,7 @@ function assertSplit(geometry: BufferGeometry, before: BufferGeometry, result: T
 }
 
 describe('applyTransfer', () => {
-  test('splits vertices at the seams of the texture, with all that belongs to them', () => {
+  test('splits vertices with all their attributes at the seams of the texture', () => {
     const vertices = scene.target.positions.length / 3;
     const target = meshOf(scene.target);
     const { geometry } = target;
@@ -332,7 +332,7 @@ describe('applyTransfer', () => {
     assert.throws(() => applyTransfer(other, meshOf(scene.cage)), /has uv1, uv2 and uv3 of its own/);
   });
 
-  test('instances are told of, and not taken for one mesh', () => {
+  test('instances are an error', () => {
     const { geometry, material } = meshOf(scene.target);
     assert.throws(() => extract(new Group().add(new InstancedMesh(geometry, material, 2))), /many places at once/);
     assert.throws(
@@ -349,13 +349,13 @@ describe('applyTransfer', () => {
     assert.equal(extract(new Group().add(meshOf(scene.target), overlay)).parts.length, 1);
   });
 
-  test('applied again, it does not take its own overlays for the model', () => {
+  test('applied again, it ignores its own overlays', () => {
     const target = new Group().add(meshOf(scene.target));
     applyTransfer(target, meshOf(scene.cage), { texture: new Texture() });
     assert.equal(applyTransfer(target, meshOf(scene.cage)).parts.length, 1);
   });
 
-  test('a result from elsewhere is taken as it is', () => {
+  test('a result from elsewhere is used as it is', () => {
     const target = meshOf(scene.target);
     const known = transfer(extract(meshOf(scene.cage), 'cage').mesh, extract(target).mesh);
     const applied = applyTransfer(target, meshOf(scene.cage), { result: known });

@@ -31,7 +31,7 @@ async function failure(promise: Promise<unknown>): Promise<unknown> {
 describe('the worker', () => {
   before(() => direct.init());
 
-  test('answers as the package does, without init', async () => {
+  test('gives the results of the package, without init', async () => {
     const projection = await project(scene.cage, scene.target);
     const expected = direct.project(scene.cage, scene.target);
     for (const name of [
@@ -91,7 +91,7 @@ describe('the worker', () => {
     assert.ok(error instanceof CagecastError, String(error));
   });
 
-  test('errors come over as they are', async () => {
+  test('errors keep their class, code and message', async () => {
     const error = await failure(transfer(scene.cage, { ...scene.target, indices: new Uint32Array([0, 1, 99999]) }));
     assert.ok(error instanceof CagecastError);
     assert.equal(error.code, 'indexOutOfRange');
@@ -117,7 +117,7 @@ describe('the worker', () => {
     await transfer(scene.cage, scene.target);
   });
 
-  test('a call under way is given up at once, the ones behind it go on', async () => {
+  test('a running call is cancelled at once, and later ones continue', async () => {
     const controller = new AbortController();
     const first = failure(transfer(large.cage, large.target, { signal: controller.signal }));
     const second = transfer(scene.cage, scene.target);
@@ -126,7 +126,7 @@ describe('the worker', () => {
     assert.deepEqual((await second).zones, direct.transfer(scene.cage, scene.target).zones);
   });
 
-  test('a call that waits is given up, the one under way goes on', async () => {
+  test('a waiting call is cancelled, and the running one continues', async () => {
     const controller = new AbortController();
     const first = transfer(scene.cage, scene.target);
     const second = failure(transfer(scene.cage, scene.target, { signal: controller.signal }));
@@ -139,7 +139,7 @@ describe('the worker', () => {
     );
   });
 
-  test('terminate gives up what waits; the next call starts afresh', async () => {
+  test('terminate cancels waiting calls; the next call starts a new worker', async () => {
     const given = failure(transfer(large.cage, large.target));
     terminate();
     const error = await given;
@@ -162,7 +162,7 @@ describe('the worker', () => {
     );
   });
 
-  test('where no worker may be started, that is said, not that the arguments were wrong', () => {
+  test('if no worker can be started, the error says so', () => {
     const script = `
       import { init, transfer } from 'cagecast/worker';
       const mesh = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), indices: new Uint32Array([0, 1, 2]), uvs: new Float32Array(6) };
@@ -184,7 +184,7 @@ describe('the worker', () => {
 });
 
 describe('slim', () => {
-  test('is the same with the WebAssembly beside it', async () => {
+  test('gives the same with the WebAssembly in a separate file', async () => {
     await Promise.all([slim.init(), direct.init()]);
     const { timings: _, peakBytes: _expectedBytes, ...expected } = direct.transfer(scene.cage, scene.target);
     const { timings: __, peakBytes: _resultBytes, ...result } = slim.transfer(scene.cage, scene.target);

@@ -95,7 +95,7 @@ describe('the packed package', () => {
     );
   });
 
-  test('has what its manifest promises, and only what belongs to it', () => {
+  test('has the files that its manifest names, and no others', () => {
     const { exports, bin } = JSON.parse(readFileSync(join(installed, 'package.json'), 'utf8')) as {
       exports: Record<string, unknown>;
       bin: Record<string, string>;
@@ -111,7 +111,7 @@ describe('the packed package', () => {
     for (const name of distFiles()) assert.match(name, /\.(js|js\.map|d\.ts|wasm|txt)$/);
   });
 
-  test('holds nothing of the machine it was built on', () => {
+  test('contains nothing about the machine it was built on', () => {
     const places = [process.cwd(), process.env['HOME']].filter(
       (place) => place !== undefined && place.length > 3,
     ) as string[];

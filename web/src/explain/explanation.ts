@@ -151,7 +151,7 @@ function rayStep({ shown }: Facts, { outcome, cage, model, outside }: Path, diag
   }
 }
 
-/** What the second look and the hole rule decided; empty if they do not apply. */
+/** The outcome of the second look and of the hole rule; empty if they do not apply. */
 function secondLookStep({ shown: { projection }, classification }: Facts, vertex: number): string {
   const first = projection.zones[vertex]!;
   const recovery = projection.recovery[vertex] ?? 0;
@@ -160,9 +160,9 @@ function secondLookStep({ shown: { projection }, classification }: Facts, vertex
     return 'The second look would restore it, but its part is culled.';
   if (first === Zone.Occluded) return 'Rays in other directions reach the cage freely, so the second look restores it.';
   if (recovery === 1)
-    return 'The edge of the hole is not the closest point of the cage, or the spot lies hardly beyond it, so it is restored.';
+    return 'The closest point of the cage is not on the edge of the hole, or the spot lies hardly beyond that edge, so it is restored.';
   return classification.zones[vertex] === Zone.Cosmetic
-    ? 'The hole is meant for the part behind it, not for this rim, so the rim is restored.'
+    ? 'The hole is meant for the part behind it, not for the edge around that part, so this spot is restored.'
     : 'No unpainted part lies behind this hole, so we assume the hole itself is meant to stay unpainted.';
 }
 
