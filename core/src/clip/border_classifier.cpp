@@ -71,7 +71,7 @@ const Candidate& BorderClassifier::nearestOf(const std::uint32_t* cageTriangles,
 }
 
 /// Finds, in `found_`, the cage triangles that are farther from a point than the nearest one by up to `more`.
-/// @param distance  As in `NearestSearch::widen`.
+/// @param distance  As in `ClosestPointSearch::widen`.
 /// @return How many there are.
 std::uint32_t BorderClassifier::findWithin(Vec3 p, double more, double distance) noexcept {
   search_.widen(more, distance);

@@ -8,7 +8,7 @@
 #include "cage/boundary_loops.hpp"
 #include "cage/uv_charts.hpp"
 #include "clip/boundary_lines.hpp"
-#include "search/kd_tree.hpp"
+#include "search/closest_point_search.hpp"
 
 /// docs/method.md, step 10: which region of the target a point is in. Borders run between regions.
 namespace cagecast {
@@ -93,7 +93,7 @@ class BorderClassifier {
   const UvCharts* charts_;  ///< Null for boundary loops.
   double diagonal_;
   double slack_;  ///< A triangle farther than the nearest one by more than this is not the answer.
-  NearestSearch search_;
+  ClosestPointSearch search_;
   std::uint32_t* found_;  ///< 1 per cage triangle: the result of `findWithin`.
   Candidate* candidates_;
   List<std::uint32_t> listed_;

@@ -12,7 +12,7 @@ BoundaryLines::BoundaryLines(const Cage& cage, const CageTree& tree, const Bound
   if (arena.failed()) return;
   for (std::uint32_t i = 0; i < 3 * cage.count; ++i) {
     // Successive leaves of the tree are close to each other in space.
-    const std::uint32_t cageTriangle = tree.near[i / 12].slot[i / 3 % 4], k = i % 3;
+    const std::uint32_t cageTriangle = tree.leaves[i / 12].cageTriangles[i / 3 % 4], k = i % 3;
     if (loops.loopOf[std::size_t{6} * cageTriangle + k] == BoundaryLoops::kNone) continue;
     const CageTriangle& t = cage.triangles[cageTriangle];
     const float* corners[3] = {t.a, t.b, t.c};

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "cage/boundary_loops.hpp"
-#include "search/kd_tree.hpp"
+#include "search/cage_tree.hpp"
 
 namespace cagecast {
 

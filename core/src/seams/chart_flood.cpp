@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "cage/boundary_loops.hpp"
-#include "search/near_kernel.hpp"
 
 namespace cagecast {
 
@@ -31,7 +30,7 @@ ChartFlood::ChartFlood(const Scene& scene, const UvCharts& charts) noexcept
   std::fill_n(met_, count, 0u);
   std::fill_n(edgeMet_, 3 * count, 0u);
   for (std::uint32_t i = 0; i < count; ++i)
-    triangles_[tree_.near[i / 4].slot[i % 4]] = triangleOf(tree_.near[i / 4], i % 4);
+    triangles_[tree_.leaves[i / 4].cageTriangles[i % 4]] = triangleOf(tree_.leaves[i / 4], i % 4);
 }
 
 ChartPatch& ChartFlood::add(Corner* const (&corners)[3], int k, double reach, std::uint8_t (&inGroup)[3]) noexcept {
@@ -82,7 +81,7 @@ ChartFlood::Group& ChartFlood::addGroup(Corner& own) noexcept {
   const double centre[3] = {group.centre.x, group.centre.y, group.centre.z};
   // Unused points lie at the centre, so that the kernel has numbers to work on.
   for (int axis = 0; axis < 3; ++axis)
-    std::fill_n(group.positions[axis], ChartPatch::kPoints, static_cast<float>(centre[axis]) - tree_.middle[axis]);
+    std::fill_n(group.positions[axis], ChartPatch::kPoints, static_cast<float>(centre[axis]) - tree_.centre[axis]);
   std::fill_n(group.points, ChartPatch::kPoints, UINT32_MAX);
   group.points[kCentre] = own.point;
   group.count = kCentre + 1;
@@ -92,7 +91,7 @@ ChartFlood::Group& ChartFlood::addGroup(Corner& own) noexcept {
 
 void ChartFlood::setPoint(Group& group, std::uint32_t at, const Corner& corner) const noexcept {
   group.points[at] = corner.point;
-  for (int axis = 0; axis < 3; ++axis) group.positions[axis][at] = corner.position[axis] - tree_.middle[axis];
+  for (int axis = 0; axis < 3; ++axis) group.positions[axis][at] = corner.position[axis] - tree_.centre[axis];
 }
 
 void ChartFlood::grow() noexcept {

@@ -5,8 +5,8 @@
 #include "cage/uv_charts.hpp"
 #include "geometry/closest_point.hpp"
 #include "input/cage.hpp"
-#include "search/kd_tree.hpp"
-#include "search/near_kernel.hpp"
+#include "search/cage_tree.hpp"
+#include "search/flat_triangles.hpp"
 #include "simd/simd.hpp"
 #include "steps/scene.hpp"
 

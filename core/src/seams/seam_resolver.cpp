@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "search/near_kernel.hpp"
-
 namespace cagecast {
 namespace {
 

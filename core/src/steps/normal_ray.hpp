@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "input/cage.hpp"
-#include "search/kd_tree.hpp"
+#include "search/ray.hpp"
 #include "steps/point_data.hpp"
 
 namespace cagecast {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/tolerances.hpp"
+#include "search/ray_search.hpp"
 #include "steps/normal_ray.hpp"
 
 namespace cagecast {
@@ -10,17 +11,17 @@ namespace cagecast {
 void markOccluded(const Scene& scene, PointData& data) noexcept {
   Arena& arena = scene.arena;
   const Arena::Scope scope(arena);
-  auto* rays = arena.allocate<Ray>(HitSearch::kMostRays);
-  auto* hit = arena.allocate<bool>(HitSearch::kMostRays);
+  auto* rays = arena.allocate<Ray>(RaySearch::kMostRays);
+  auto* hit = arena.allocate<bool>(RaySearch::kMostRays);
   // Triangles at the point itself are hit at distance 0, exactly, and so do not count.
-  HitSearch search(scene.targetTree, scene.length(kRayStart), arena);
+  RaySearch search(scene.targetTree, scene.length(kRayStart), arena);
   if (arena.failed()) return;
   const double reach = scene.length(static_cast<double>(scene.options.occlusionReach));
   // Copies on the stack: their pointers need no reload after each store to a ray.
   const PointData of = data;
   const Cage cage = scene.cage;
-  for (std::uint32_t begin = 0; begin < of.points.count; begin += HitSearch::kMostRays) {
-    const std::uint32_t count = std::min(HitSearch::kMostRays, of.points.count - begin);
+  for (std::uint32_t begin = 0; begin < of.points.count; begin += RaySearch::kMostRays) {
+    const std::uint32_t count = std::min(RaySearch::kMostRays, of.points.count - begin);
     for (std::uint32_t i = 0; i < count; ++i) {
       setNormalRay(rays[i], of, cage, begin + i);
       if (of.cageDistances != nullptr) rays[i].end = of.cageDistances[begin + i] + reach;

@@ -4,6 +4,7 @@
 
 #include "base/tolerances.hpp"
 #include "geometry/closest_point.hpp"
+#include "search/closest_point_search.hpp"
 
 namespace cagecast {
 
@@ -18,7 +19,7 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
   // Interior samples are rounded to floats before the search. A diagonal that is longer by the reach makes the search
   // allow for more than that rounding.
   const double diagonal = units.diagonal + (points.rests == nullptr ? 0 : static_cast<double>(units.reach));
-  NearestSearch search(scene.cageTree, diagonal, arena);
+  ClosestPointSearch search(scene.cageTree, diagonal, arena);
   if (arena.failed()) return;
 
   const auto nearestOfSeveral = [&](std::uint32_t member, Vec3 p) {
@@ -30,11 +31,11 @@ void projectPoints(const Scene& scene, PointData& data) noexcept {
   const PointData out = data;  // A copy on the stack: its pointers need no reload after each store.
   const double start = scene.length(kRayStart);
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    const std::uint32_t member = i % NearestSearch::kGroup;
-    if (member == 0) search.search(points.at(i), std::min(NearestSearch::kGroup, points.count - i));
+    const std::uint32_t member = i % ClosestPointSearch::kGroup;
+    if (member == 0) search.search(points.at(i), std::min(ClosestPointSearch::kGroup, points.count - i));
     const Vec3 p = points.exactly(i);
     const std::uint32_t only = search.onlyCandidate(member);
-    const Candidate nearest = only == NearestSearch::kSeveral
+    const Candidate nearest = only == ClosestPointSearch::kSeveral
                                   ? nearestOfSeveral(member, p)
                                   : Candidate{only, closestPointOnTriangle(cage.triangles[only], p)};
 

@@ -1,6 +1,7 @@
 #include "steps/scene.hpp"
 
 #include "input/validate.hpp"
+#include "search/target_tree.hpp"
 
 namespace cagecast {
 

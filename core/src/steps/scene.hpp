@@ -9,7 +9,8 @@
 #include "input/cage.hpp"
 #include "input/half_edges.hpp"
 #include "input/weld.hpp"
-#include "search/kd_tree.hpp"
+#include "search/cage_tree.hpp"
+#include "search/ray_tree.hpp"
 
 namespace cagecast {
 

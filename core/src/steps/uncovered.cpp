@@ -5,6 +5,7 @@
 
 #include "base/tolerances.hpp"
 #include "geometry/closest_point.hpp"
+#include "search/ray_search.hpp"
 #include "steps/normal_ray.hpp"
 
 namespace cagecast {
@@ -14,13 +15,13 @@ namespace {
 /// @param isWanted  Takes a point.
 /// @param take      Takes a point, its ray after the search, and whether the ray hit the cage.
 template <typename IsWanted, typename Take>
-void sendToCage(const Scene& scene, const PointData& data, HitSearch::Find find, IsWanted isWanted, Take take) {
+void sendToCage(const Scene& scene, const PointData& data, RaySearch::Find find, IsWanted isWanted, Take take) {
   Arena& arena = scene.arena;
   const Arena::Scope scope(arena);
-  auto* rays = arena.allocate<Ray>(HitSearch::kMostRays);
-  auto* pointOfRay = arena.allocate<std::uint32_t>(HitSearch::kMostRays);
-  auto* hit = arena.allocate<bool>(HitSearch::kMostRays);
-  HitSearch search(scene.cageTree.rays, -scene.length(kRayStart), arena);
+  auto* rays = arena.allocate<Ray>(RaySearch::kMostRays);
+  auto* pointOfRay = arena.allocate<std::uint32_t>(RaySearch::kMostRays);
+  auto* hit = arena.allocate<bool>(RaySearch::kMostRays);
+  RaySearch search(scene.cageTree.rays, -scene.length(kRayStart), arena);
   if (arena.failed()) return;
   std::uint32_t count = 0;
   const auto send = [&] {
@@ -32,7 +33,7 @@ void sendToCage(const Scene& scene, const PointData& data, HitSearch::Find find,
     if (!isWanted(i)) continue;
     pointOfRay[count] = i;
     setNormalRay(rays[count++], data, scene.cage, i);
-    if (count == HitSearch::kMostRays) send();
+    if (count == RaySearch::kMostRays) send();
   }
   send();
 }
@@ -51,7 +52,7 @@ bool pokesThrough(const Scene& scene, const PointData& data, std::uint32_t point
 void findCageDistances(const Scene& scene, PointData& data) noexcept {
   if (data.cageDistances == nullptr || scene.arena.failed()) return;
   sendToCage(
-      scene, data, HitSearch::Find::nearest, [&](std::uint32_t i) { return !data.meetsCage[i]; },
+      scene, data, RaySearch::Find::nearest, [&](std::uint32_t i) { return !data.meetsCage[i]; },
       [&](std::uint32_t i, const Ray& ray, bool hit) {
         data.meetsCage[i] = hit;
         data.cageDistances[i] = hit ? std::max(0.0, ray.end) : std::numeric_limits<double>::infinity();
@@ -71,7 +72,7 @@ void markUncovered(const Scene& scene, PointData& data) noexcept {
     return;
   }
   sendToCage(
-      scene, data, HitSearch::Find::any,
+      scene, data, RaySearch::Find::any,
       [&](std::uint32_t i) { return data.zones[i] == Zone::cosmetic && !data.meetsCage[i]; },
       [&](std::uint32_t i, const Ray&, bool hit) { mark(i, hit); });
 }

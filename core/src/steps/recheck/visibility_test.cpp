@@ -41,10 +41,10 @@ VisibilityTest::VisibilityTest(const Scene& scene, const Facing& facing) noexcep
       pastTarget_(scene.targetTree, scene.length(kRayStart), scene.arena),
       toCage_(scene.cageTree.rays, -scene.length(kRayStart), scene.arena),
       tests_(scene.arena.allocate<Test>(kMostTests)),
-      directions_(scene.arena.allocate<RayDirection>(HitSearch::kMostRays)),
-      rays_(scene.arena.allocate<Ray>(HitSearch::kMostRays)),
-      testOfRay_(scene.arena.allocate<std::uint16_t>(HitSearch::kMostRays)),
-      hit_(scene.arena.allocate<bool>(HitSearch::kMostRays)) {
+      directions_(scene.arena.allocate<RayDirection>(RaySearch::kMostRays)),
+      rays_(scene.arena.allocate<Ray>(RaySearch::kMostRays)),
+      testOfRay_(scene.arena.allocate<std::uint16_t>(RaySearch::kMostRays)),
+      hit_(scene.arena.allocate<bool>(RaySearch::kMostRays)) {
   static_assert(std::size(kDirections) == kDirectionCount);
 }
 
@@ -57,7 +57,7 @@ void VisibilityTest::sendRays() noexcept {
   std::uint32_t rayCount = 0;
   for (std::uint32_t i = 0; i < count_; ++i) {
     const unsigned more = *std::upper_bound(std::begin(kStages), std::end(kStages), tests_[i].sent) - tests_[i].sent;
-    if (rayCount + more > HitSearch::kMostRays) break;
+    if (rayCount + more > RaySearch::kMostRays) break;
     std::fill(testOfRay_ + rayCount, testOfRay_ + rayCount + more, static_cast<std::uint16_t>(i));
     setRays(tests_[i], more, rayCount);
     rayCount += more;

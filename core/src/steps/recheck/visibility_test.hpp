@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "search/kd_tree.hpp"
+#include "search/ray_search.hpp"
 #include "steps/recheck/facing.hpp"
 #include "steps/scene.hpp"
 
@@ -47,7 +47,7 @@ class VisibilityTest {
   /// A point sends this many rays first, then, while it is undecided, up to the next of these. Fewer at a time would
   /// need fewer rays, but many rays that begin close together are faster than few.
   static constexpr unsigned kStages[] = {5, kDirectionCount - 1, kDirectionCount};
-  static constexpr std::uint32_t kMostTests = HitSearch::kMostRays / kStages[0];
+  static constexpr std::uint32_t kMostTests = RaySearch::kMostRays / kStages[0];
 
   /// A point on one of its sides.
   struct Test {
@@ -64,8 +64,8 @@ class VisibilityTest {
   Points points_;
   const Facing& facing_;
   double lift_;
-  HitSearch pastTarget_;
-  HitSearch toCage_;
+  RaySearch pastTarget_;
+  RaySearch toCage_;
   Test* tests_;
   std::uint32_t count_ = 0;
   RayDirection* directions_;  ///< 1 per ray.

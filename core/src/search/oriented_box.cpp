@@ -1,10 +1,10 @@
-#include "search/leaf_box.hpp"
+#include "search/oriented_box.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "search/kd_tree.hpp"
+#include "simd/simd.hpp"
 
 namespace cagecast {
 namespace {
@@ -17,20 +17,20 @@ using simd::splatLane;
 
 constexpr int kCorners = 12;
 
-/// Of 0°, 22.5°, 45° and 67.5°: a rectangle that is turned farther is nearly one of these again.
+/// The orientations tried: 0°, 22.5°, 45° and 67.5°. At 90° a rectangle would be the first one again.
 constexpr float kCosines[4] = {1, 0.92387953f, 0.70710678f, 0.38268343f};
 constexpr float kSines[4] = {0, 0.38268343f, 0.70710678f, 0.92387953f};
 
-Vec3 exactly(f32x4 v) {
+Vec3 toVec3(f32x4 v) {
   float lanes[4];
   simd::store(lanes, v);
   return Vec3::from(lanes);
 }
 
-/// A direction in which the corners lie nearly as close together as in any; 0 if there is none.
-/// @param guess  Another one.
-Vec3 flatAxis(const f32x4 (&corners)[kCorners], Vec3 guess) {
-  // Their second moments about their mean.
+/// The normal of the plane that fits the corners best, approximately; 0 if there is none.
+/// @param guess  The normal of one of the triangles.
+Vec3 fittedNormal(const f32x4 (&corners)[kCorners], Vec3 guess) {
+  // The covariance matrix of the corners, row by row.
   f32x4 sum = splat(0);
   f32x4 row0 = splat(0);
   f32x4 row1 = splat(0);
@@ -45,17 +45,15 @@ Vec3 flatAxis(const f32x4 (&corners)[kCorners], Vec3 guess) {
     sum = sum + corner;
   }
   add(sum * splat(-1.0f / kCorners), sum);
-  const Vec3 a = exactly(row0);
-  const Vec3 b = exactly(row1);
-  const Vec3 c = exactly(row2);
-  // The adjugate of this matrix has the same axes, but stretches the flat one most: a product with it turns the guess
-  // there.
+  const Vec3 a = toVec3(row0);
+  const Vec3 b = toVec3(row1);
+  const Vec3 c = toVec3(row2);
+  // Its eigenvector with the least eigenvalue, by one step of inverse iteration with the adjugate.
   const Vec3 turned = guess.x * cross(b, c) + guess.y * cross(c, a) + guess.z * cross(a, b);
   const double size = length(turned);
   return size > 0 ? 1 / size * turned : Vec3{0, 0, 0};
 }
 
-/// From where to where something reaches.
 struct Range {
   f32x4 low = splat(std::numeric_limits<float>::infinity());
   f32x4 high = splat(-std::numeric_limits<float>::infinity());
@@ -68,7 +66,7 @@ struct Range {
 
 }  // namespace
 
-LeafBox boxAround(const CageTriangle* const (&triangles)[4], const float* middle, float padding) noexcept {
+OrientedBox orientedBoxAround(const Triangle* const (&triangles)[4], const float* centre, float padding) noexcept {
   const f32x4 origin = load(triangles[0]->a);
   f32x4 corners[kCorners];
   for (int i = 0; i < 4; ++i) {
@@ -77,12 +75,12 @@ LeafBox boxAround(const CageTriangle* const (&triangles)[4], const float* middle
     corners[3 * i + 2] = load(triangles[i]->c) - origin;
   }
   const Vec3 normal = triangles[0]->normal.exact;
-  Vec3 z = flatAxis(corners, normal);
+  Vec3 z = fittedNormal(corners, normal);
   if (!(dot(z, z) > 0)) z = normal;
   const Vec3 aside = std::abs(z.x) < 0.5 ? Vec3{0, z.z, -z.y} : Vec3{-z.z, 0, z.x};
   const Vec3 x = 1 / length(aside) * aside;
   const Vec3 y = cross(z, x);
-  LeafBox box{};
+  OrientedBox box{};
   const auto putAxis = [&box](int i, Vec3 axis) {
     box.axes[0][i] = static_cast<float>(axis.x);
     box.axes[1][i] = static_cast<float>(axis.y);
@@ -95,7 +93,7 @@ LeafBox boxAround(const CageTriangle* const (&triangles)[4], const float* middle
   putAxis(0, x);
   putAxis(1, y);
   putAxis(2, z);
-  // Rectangles around the corners in the plane of x and y, turned, one per lane; along z all are alike.
+  // One lane for each orientation of the rectangle in the plane of x and y. The extent along z is the same for all.
   const f32x4 cosines = load(kCosines);
   const f32x4 sines = load(kSines);
   Range rangeX, rangeY, range;
@@ -115,7 +113,7 @@ LeafBox boxAround(const CageTriangle* const (&triangles)[4], const float* middle
   const auto sine = static_cast<double>(kSines[least]);
   putAxis(0, cosine * x + sine * y);
   putAxis(1, cosine * y - sine * x);
-  const f32x4 start = placeOf(origin - load(middle));
+  const f32x4 start = placeOf(origin - load(centre));
   const auto putEnds = [&](float(&to)[4], f32x4 endX, f32x4 endY, f32x4 end, float beyond) {
     float lanes[3][4];
     simd::store(lanes[0], endX);

@@ -3,10 +3,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 #include <utility>
 
-#include "search/near_kernel.hpp"
+#include "search/closest_point_search.hpp"
 
 namespace cagecast {
 namespace {
@@ -25,7 +24,7 @@ f32x4 squaredDistanceToBoxes(const Node& node, const f32x4 (&low)[3], const f32x
   return sum;
 }
 
-/// The lanes of each set of lanes, one after the other; the rest of a row is any.
+/// For each set of lanes, a bit each, the lanes in it. The rest of a row is 0.
 constexpr auto kLanes = [] {
   std::array<std::array<std::uint32_t, 4>, 16> table{};
   for (std::uint32_t set = 0; set < 16; ++set) {
@@ -39,7 +38,7 @@ constexpr auto kLanes = [] {
 
 }  // namespace
 
-NearestSearch::NearestSearch(const CageTree& tree, double diagonal, Arena& arena) noexcept
+ClosestPointSearch::ClosestPointSearch(const CageTree& tree, double diagonal, Arena& arena) noexcept
     : tree_(tree),
       slack_(slackOf(tree, diagonal)),
       growth_(1 + static_cast<float>(kRelativeSlack)),
@@ -47,19 +46,18 @@ NearestSearch::NearestSearch(const CageTree& tree, double diagonal, Arena& arena
       list_(arena.allocate<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)),
       otherList_(arena.allocate<std::uint32_t>(std::size_t{tree.leafCount} + CageTree::kMostEntries + 4)) {}
 
-void NearestSearch::widen(double more, double distance) noexcept {
+void ClosestPointSearch::widen(double more, double distance) noexcept {
   const double slack = slack_ + more;
   const double ratio = std::max(slack / distance, kRelativeSlack);
   growth_ = static_cast<float>(1 + ratio);
   fixedSlack_ = fixedSlack(slack, ratio);
 }
 
-// Not inlined: it is long, and called from two places.
-[[gnu::noinline]] std::uint32_t NearestSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit,
-                                                          std::uint32_t*& leaves) const noexcept {
+std::uint32_t ClosestPointSearch::listLeaves(const f32x4 (&low)[3], const f32x4 (&high)[3], f32x4 limit,
+                                             std::uint32_t*& leaves) const noexcept {
   std::uint32_t* from = list_;
   std::uint32_t* to = otherList_;
-  // Copies stay in registers: the others might be what is written to.
+  // Copies stay in registers: the compiler would reload the parameters after each store.
   const f32x4 ownLow[3] = {low[0], low[1], low[2]};
   const f32x4 ownHigh[3] = {high[0], high[1], high[2]};
   std::uint32_t count = tree_.entryCount;
@@ -71,7 +69,7 @@ void NearestSearch::widen(double more, double distance) noexcept {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t node = from[i];
       const unsigned close = simd::bits(squaredDistanceToBoxes(row[node], ownLow, ownHigh) <= limit);
-      // No branch: which children are close is a coin toss.
+      // Without branches, which could not be predicted.
       for (std::uint32_t k = 0; k < 4; ++k) end[k] = 4 * node + kLanes[close][k];
       end += std::popcount(close);
     }
@@ -82,7 +80,7 @@ void NearestSearch::widen(double more, double distance) noexcept {
   return count;
 }
 
-std::uint32_t NearestSearch::leafNear(f32x4 point) const noexcept {
+std::uint32_t ClosestPointSearch::leafNear(f32x4 point) const noexcept {
   const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
   for (std::uint32_t i = 0;;) {
     const Node& node = tree_.rays.nodes[i];
@@ -93,8 +91,8 @@ std::uint32_t NearestSearch::leafNear(f32x4 point) const noexcept {
   }
 }
 
-void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
-  const NearLeaf& leaf = tree_.near[leafIndex];
+void ClosestPointSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexcept {
+  const FlatLeaf& leaf = tree_.leaves[leafIndex];
   const f32x4 growth = splat(growth_);
   const f32x4 slack = splat(fixedSlack_);
   for (; members != 0; members &= members - 1) {
@@ -104,7 +102,7 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
     const f32x4 limit = simd::min(simd::multiplyAdd(least, growth, slack), splat(limits_[i]));
     const unsigned lanes = simd::bits(squared <= limit);
     limits_[i] = simd::lane<0>(limit);
-    // No branch: whether a leaf is of interest is a coin toss. One that is not is written over by the next.
+    // Without a branch, which could not be predicted: a leaf without candidates is overwritten by the next.
     const std::uint32_t count = nearCount_[i];
     squaredDistances_[count % kRoom][i] = simd::lane<0>(least);
     lanes_[count % kRoom][i] = leafIndex << 4 | lanes;
@@ -112,11 +110,11 @@ void NearestSearch::searchLeaf(std::uint32_t leafIndex, unsigned members) noexce
   }
 }
 
-void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount) noexcept {
+void ClosestPointSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leafCount) noexcept {
   constexpr unsigned kVectors = kGroup / simd::kWidth;
-  const LeafBox* const boxes = tree_.boxes;
+  const OrientedBox* const boxes = tree_.leafBoxes;
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    const LeafBox& box = boxes[leaves[j]];
+    const OrientedBox& box = boxes[leaves[j]];
     f32x4 squared[kVectors];
     for (int axis = 0; axis < 3; ++axis) {
       const f32x4 x = splat(box.axes[0][axis]);
@@ -125,10 +123,10 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
       const f32x4 low = splat(box.low[axis]);
       const f32x4 high = splat(box.high[axis]);
       for (unsigned i = 0; i < kVectors; ++i) {
-        const f32x4 place =
+        const f32x4 coordinate =
             simd::multiplyAdd(z, load(columns_[2] + 4 * i),
                               simd::multiplyAdd(y, load(columns_[1] + 4 * i), x * load(columns_[0] + 4 * i)));
-        const f32x4 outside = place - min(max(place, low), high);
+        const f32x4 outside = coordinate - min(max(coordinate, low), high);
         squared[i] = axis == 0 ? outside * outside : simd::multiplyAdd(outside, outside, squared[i]);
       }
     }
@@ -138,9 +136,9 @@ void NearestSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t leaf
   }
 }
 
-void NearestSearch::search(const float* positions, std::uint32_t count) noexcept {
+void ClosestPointSearch::search(const float* positions, std::uint32_t count) noexcept {
   positions_ = positions;
-  const f32x4 middle = load(tree_.middle);
+  const f32x4 centre = load(tree_.centre);
   f32x4 lowCorner = load(positions);
   f32x4 highCorner = lowCorner;
   for (std::uint32_t i = 0; i < count; i += simd::kWidth) {
@@ -149,7 +147,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
       rows[j] = load(positions + Points::kStride * std::min(i + j, count - 1));
       lowCorner = simd::min(lowCorner, rows[j]);
       highCorner = simd::max(highCorner, rows[j]);
-      rows[j] = rows[j] - middle;
+      rows[j] = rows[j] - centre;
       simd::store(points_[i + j], rows[j]);
     }
     simd::transpose(rows[0], rows[1], rows[2], rows[3]);
@@ -160,7 +158,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   const f32x4 high[3] = {simd::splatLane<0>(highCorner), simd::splatLane<1>(highCorner),
                          simd::splatLane<2>(highCorner)};
   std::fill(limits_ + count, limits_ + kGroup, -1.0f);
-  // For limits to begin with: a leaf near where the last group ends, and one near where this one does.
+  // The limits to begin with: from a leaf near the end of the last group, and one near the end of this one.
   const std::uint32_t last = count - 1;
   const std::uint32_t seeds[] = {lastLeaf_, leafNear(load(positions + Points::kStride * last))};
   std::fill(nearCount_, nearCount_ + count, 0u);
@@ -177,7 +175,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   }
   searchLeaves(leaves, leafCount);
 
-  // Where the last point is nearest, the next group begins.
+  // The leaf closest to the last point is likely to be close to the next group.
   std::uint32_t nearest = 0;
   for (std::uint32_t j = 1; j < std::min(nearCount_[last], kRoom); ++j) {
     if (squaredDistances_[j][last] < squaredDistances_[nearest][last]) nearest = j;
@@ -185,7 +183,7 @@ void NearestSearch::search(const float* positions, std::uint32_t count) noexcept
   lastLeaf_ = lanes_[nearest][last] >> 4;
 }
 
-std::uint32_t NearestSearch::onlyCandidate(std::uint32_t i) const noexcept {
+std::uint32_t ClosestPointSearch::onlyCandidate(std::uint32_t i) const noexcept {
   if (nearCount_[i] >= kRoom) return kSeveral;
   std::uint32_t found = 0;
   std::uint32_t foundCount = 0;
@@ -196,15 +194,15 @@ std::uint32_t NearestSearch::onlyCandidate(std::uint32_t i) const noexcept {
   }
   const unsigned lanes = found & 15;
   if (foundCount != 1 || (lanes & (lanes - 1)) != 0) return kSeveral;
-  return tree_.near[found >> 4].slot[std::countr_zero(lanes)];
+  return tree_.leaves[found >> 4].cageTriangles[std::countr_zero(lanes)];
 }
 
-std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) noexcept {
+std::uint32_t ClosestPointSearch::candidates(std::uint32_t i, std::uint32_t* found) noexcept {
   std::uint32_t count = 0;
-  const auto take = [&](std::uint32_t place) {
-    const NearLeaf& leaf = tree_.near[lanes_[place][i] >> 4];
-    for (unsigned lanes = lanes_[place][i] & 15; lanes != 0; lanes &= lanes - 1)
-      found[count++] = leaf.slot[std::countr_zero(lanes)];
+  const auto take = [&](std::uint32_t leafOfPoint) {
+    const FlatLeaf& leaf = tree_.leaves[lanes_[leafOfPoint][i] >> 4];
+    for (unsigned lanes = lanes_[leafOfPoint][i] & 15; lanes != 0; lanes &= lanes - 1)
+      found[count++] = leaf.cageTriangles[std::countr_zero(lanes)];
   };
   if (nearCount_[i] < kRoom) {
     for (std::uint32_t j = 0; j < nearCount_[i]; ++j) {
@@ -212,13 +210,13 @@ std::uint32_t NearestSearch::candidates(std::uint32_t i, std::uint32_t* found) n
     }
     return count;
   }
-  // A fan around a corner, or a stack of copies: collect all within the limit, which is known by now.
+  // A fan around a corner, or a stack of copies: search again, with the limit that is known by now.
   const f32x4 point = load(positions_ + Points::kStride * i);
   const f32x4 box[3] = {simd::splatLane<0>(point), simd::splatLane<1>(point), simd::splatLane<2>(point)};
   std::uint32_t* leaves;
   const std::uint32_t leafCount = listLeaves(box, box, splat(limits_[i]), leaves);
   for (std::uint32_t j = 0; j < leafCount; ++j) {
-    nearCount_[i] = 0;  // What is found is the first then.
+    nearCount_[i] = 0;  // So `searchLeaf` writes entry 0.
     searchLeaf(leaves[j], 1u << i);
     take(0);
   }

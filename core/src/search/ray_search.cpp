@@ -1,0 +1,191 @@
+#include "search/ray_search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace cagecast {
+namespace {
+
+using simd::f32x4;
+using simd::load;
+using simd::splat;
+
+/// x and y are repeated so that the next two axes follow each axis.
+constexpr std::uint32_t kAxes[] = {0, 1, 2, 0, 1};
+
+/// The end of a ray that needs no further tests.
+constexpr auto kDone = -std::numeric_limits<float>::infinity();
+
+/// An end in single precision that is not before the exact one.
+float looseEnd(double end) { return static_cast<float>(end + 1e-6 * std::abs(end)); }
+/// Times a loose end of at least 0, an end that is not beyond the exact one.
+constexpr float kStrictEnd = 0.999996f;
+
+}  // namespace
+
+RaySearch::RaySearch(const RayTree& tree, double from, Arena& arena) noexcept
+    : tree_(tree),
+      from_(from),
+      boxFrom_(static_cast<float>(from)),
+      limits_{static_cast<float>(from > 0 ? from / 2 : from * 2), static_cast<float>(from > 0 ? from * 2 : from / 2),
+              from > 0 ? 0.0f : -1.0f},
+      floatRays_(arena.allocate<FloatRay>(kMostRays)),
+      lists_(arena.allocate<std::uint16_t>(kListRoom)) {}
+
+void RaySearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noexcept {
+  rays_ = rays;
+  hit_ = hit;
+  find_ = find;
+  // Copies of the pointers: the compiler would reload the members after each store.
+  FloatRay* const floatRays = floatRays_;
+  std::uint16_t* const list = lists_;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Ray& ray = rays[i];
+    const RayDirection::Rough& direction = ray.direction->rough;
+    FloatRay& to = floatRays[i];
+    for (int k = 0; k < 3; ++k) {
+      to.inverse[k] = direction.inverse[k];
+      to.offset[k] = -ray.position[k] * direction.inverse[k];
+    }
+    to.end = looseEnd(ray.end);
+    to.shearX = direction.shearX;
+    to.shearY = direction.shearY;
+    to.scaleZ = direction.scaleZ;
+    to.axis = direction.z;
+    for (std::uint32_t k = 0; k < 3; ++k) to.origin[k] = ray.position[kAxes[direction.z + k]];
+    hit[i] = false;
+    list[i] = static_cast<std::uint16_t>(i);
+  }
+  if (count > 0) visit(tree_.nodes[0], lists_, count, lists_ + count + 1);
+}
+
+/// Traces rays through a node.
+/// @param rays  A list of rays with room for one more. It may be overwritten.
+/// @param free  Where lists may be written: after `rays`.
+void RaySearch::visit(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* free) noexcept {
+  const std::ptrdiff_t room = lists_ + kListRoom - kLastRoom - free;
+  if (count > 1 && room < 4 * static_cast<std::ptrdiff_t>(count + 1)) {
+    visit(node, rays + count / 2, count - count / 2, free);
+    visit(node, rays, count / 2, free);
+    return;
+  }
+  // The last child's list comes first in memory. So each child's own lists can overwrite those of children done before.
+  const std::uint32_t size = count + 1;
+  std::uint16_t* lists[4] = {free + 3 * size, free + 2 * size, free + size, free};
+  std::uint32_t counts[4];
+  testBoxes(node, rays, count, free, counts);
+  // Neighbouring rays enter the same nodes, so most lists are short of `size`. Long ones are moved together, which
+  // leaves room for the levels below.
+  if (count >= kLong) {
+    for (int i = 3; i-- > 0;) {
+      std::uint16_t* const list = lists[i + 1] + counts[i + 1] + 1;
+      std::memmove(list, lists[i], counts[i] * sizeof *list);
+      lists[i] = list;
+    }
+  }
+  // Unrolled so that each child has branches of its own, which are predicted better.
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    if (counts[i] == 0) continue;
+    if (isLeaf(node.child[i])) {
+      testLeaf(node, i, lists[i], counts[i]);
+    } else {
+      visit(tree_.nodes[node.child[i]], lists[i], counts[i], lists[i] + counts[i] + 1);
+    }
+  }
+}
+
+/// Lists, for each of four boxes, the rays that enter it at a distance between `from` and their end.
+/// @param lists  The four lists are written here one after the other, the last one first, each with room for all rays
+///               and one more.
+void RaySearch::testBoxes(const Node& node, std::uint16_t* rays, std::uint32_t count, std::uint16_t* lists,
+                          std::uint32_t (&counts)[4]) const noexcept {
+  f32x4 low[3];
+  f32x4 high[3];
+  for (int k = 0; k < 3; ++k) {
+    low[k] = load(node.low[k]);
+    high[k] = load(node.high[k]);
+  }
+  const f32x4 from = splat(boxFrom_);
+  const std::uint32_t room = count + 1;
+  simd::u32x4 ends = simd::of(3 * room, 2 * room, room, 0u);  // Of the lists.
+  for (const std::uint16_t* next = rays; next < rays + count; ++next) {
+    const std::uint16_t ray = *next;
+    const FloatRay& floatRay = floatRays_[ray];
+    f32x4 first = from;
+    f32x4 last = splat(floatRay.end);
+    for (int axis = 0; axis < 3; ++axis) {
+      const f32x4 inverse = splat(floatRay.inverse[axis]);
+      const f32x4 offset = splat(floatRay.offset[axis]);
+      const f32x4 toLow = simd::multiplyAdd(low[axis], inverse, offset);
+      const f32x4 toHigh = simd::multiplyAdd(high[axis], inverse, offset);
+      first = simd::max(first, simd::min(toLow, toHigh));
+      last = simd::min(last, simd::max(toLow, toHigh));
+    }
+    // Without a branch, which could not be predicted: the ray is written to the end of every list, but only counted
+    // in those of the boxes that it enters.
+    lists[simd::lane<0>(ends)] = ray;
+    lists[simd::lane<1>(ends)] = ray;
+    lists[simd::lane<2>(ends)] = ray;
+    lists[simd::lane<3>(ends)] = ray;
+    ends = simd::countTrue(ends, first <= last);
+  }
+  counts[0] = simd::lane<0>(ends) - 3 * room;
+  counts[1] = simd::lane<1>(ends) - 2 * room;
+  counts[2] = simd::lane<2>(ends) - room;
+  counts[3] = simd::lane<3>(ends);
+}
+
+/// Tests rays against a leaf.
+/// @param rays  The list is overwritten.
+void RaySearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::uint32_t count) noexcept {
+  const auto side = [&](int k) { return node.high[k][child] - node.low[k][child]; };
+  const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2), limits_.loose);
+  const FloatRay* const floatRays = floatRays_;
+  const float soonest = limits_.loose;
+  const float zero = limits_.zero;
+  // The list becomes one of the rays that may hit something, each with its possible hits in the lowest four bits.
+  // Without a branch, which could not be predicted: a ray without possible hits is overwritten by the next.
+  static_assert(kMostRays <= 1u << 12);
+  std::uint32_t left = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint16_t ray = rays[i];
+    const FloatRay& floatRay = floatRays[ray];
+    if (floatRay.end < soonest) continue;
+    const unsigned possible = possibleHits(leaf, estimateHits(leaf, floatRay), zero);
+    rays[left] = static_cast<std::uint16_t>(ray << 4 | possible);
+    left += possible != 0;
+  }
+  if (left > 0) decide(leaf, rays, left);
+}
+
+/// Decides which rays hit a leaf's triangles.
+/// @param rays  Each with its possible hits, as `testLeaf` lists them.
+void RaySearch::decide(const RayLeaf& leaf, const std::uint16_t* rays, std::uint32_t count) noexcept {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t id = rays[i] >> 4;
+    Ray& ray = rays_[id];
+    FloatRay& floatRay = floatRays_[id];
+    unsigned open = rays[i] & 15u;
+    if (find_ == Find::any) {
+      const Verdict verdict = judge(leaf, floatRay, tree_.reach, limits_, kStrictEnd * floatRay.end);
+      if (verdict.hit != 0) {
+        hit_[id] = true;
+        floatRay.end = kDone;
+        continue;
+      }
+      open &= verdict.open;
+    }
+    for (; open != 0; open &= open - 1) {
+      const double distance = hitDistance(leaf, std::countr_zero(open), ray);
+      if (!(distance > from_ && distance <= ray.end)) continue;
+      hit_[id] = true;
+      ray.end = distance;
+      floatRay.end = find_ == Find::any ? kDone : looseEnd(distance);
+    }
+  }
+}
+
+}  // namespace cagecast
