@@ -53,8 +53,8 @@ const worst = (scores: Iterable<Score>): Score => {
 
 const rowNames: Record<MethodName, string> = {
   naive: 'naive transfer (step 1)',
-  'step 2': 'without what the target occludes (2)',
-  'step 3': 'nor what the cage does not cover (3)',
+  'step 2': 'without occluded vertices (2)',
+  'step 3': 'nor uncovered vertices (3)',
   paper: '**`paper`: nor segments below the threshold (5)**',
   default: '**`default`**',
 };
@@ -190,17 +190,17 @@ export function qualityReport(results: QualityResults): string {
   const parts = [
     `# Quality, measured on ${date}`,
     `${machine.processor}, ${machine.cores} cores, Node ${machine.node}. Written by \`npm run quality\`; all numbers: [quality.json](quality.json).`,
-    `- *suppressed*: of the area that must not be painted, the share whose vertices are not; *kept*: of the area that is to be
-  painted, the share whose vertices are. Vertices that are hidden or a matter of taste are not scored; nor are, for *kept*,
+    `- *suppressed*: share of the area that must not be painted whose vertices are not cosmetic; *kept*: share of the area that should
+  be painted whose vertices are cosmetic. Vertices that are hidden, or acceptable either way, are not scored; nor are, for *kept*,
   those whose closest point is on a boundary loop of the cage, because the cage says nothing about them.
-- *painted where forbidden*: of the pixels that show the model, in 12 pictures from all around, those that show paint where
-  none must be; *bare*: of those that show what is to be painted (in the same sense), those without.
-- *latency*: the package in Node, raw arrays in, answer out; CPU time, medians. The first rows are the first steps of \`paper\`.`,
+- *painted where forbidden*: share of the model's pixels, in 12 pictures from all sides, that show paint on a surface that must not
+  be painted; *bare*: share of the pixels of surfaces that should be painted that show no paint.
+- *latency*: the package in Node, from raw arrays to the result; CPU time, medians. The first rows are the first steps of \`paper\`.`,
     ...(Object.values(models).some(({ kind }) => kind === 'sample') ? [posterTable(results), quotes] : []),
     missed.length === 0 ? 'All goals are reached.' : `Goals missed:\n\n${missed.map((line) => `- ${line}`).join('\n')}`,
     '![Suppressed and kept by threshold](quality-thresholds.svg)',
     '## Every model',
-    'Suppressed · kept. A *trap* is made to be difficult. A *spoiled* model is made to fail, as on the poster, and not held to any goal.',
+    'Suppressed · kept. A *trap* is difficult on purpose. A *spoiled* model is expected to fail, as on the poster, and has no goals.',
     byModel(models, ['', 'triangles', ...scoresHead], (quality) => [
       quality.kind,
       quality.triangles.toLocaleString('en'),
@@ -209,8 +209,8 @@ export function qualityReport(results: QualityResults): string {
     'In the picture: painted where forbidden · bare.',
     byModel(models, scoresHead, (quality) => methodScores(quality, byPixel)),
     '## Where it fails',
-    'Where eyes are of one piece with the skin, and where the cage is out of place, as the poster says. `cagecast inspect` calls such a cage unfit. [More](../../docs/evaluation.md#where-it-fails).',
-    '![A face whose eyes are of one piece with its skin, and one under a cage that is turned and moved, by every method](../../docs/pictures/failures.jpg)',
+    'Eyes fused to the skin, and a misplaced cage, as the poster says. `cagecast inspect` reports such a cage as unfit. [More](../../docs/evaluation.md#where-it-fails).',
+    '![A face with eyes fused to the skin, and one under a cage that is rotated and moved, by every method](../../docs/pictures/failures.jpg)',
     '## Why vertices are left out, and the cost',
     `Vertices occluded / uncovered / culled; milliseconds; peak memory beyond cage and target (the poster: “~20 MB”); share of the
 painted area whose texture is smeared, with UVs per vertex, with UVs per corner, and with cut borders.`,
@@ -221,8 +221,8 @@ others: that option as in \`paper\`.`,
     stepTable(models, byArea),
     'In the picture: painted where forbidden · bare.',
     stepTable(models, byPixel),
-    '## How near the floor is',
-    '*Reach* is the score without the threshold: a segment passes the floor from 1 on. Of the segments with F of at least 0.3, the five nearest to 1 of each kind.',
+    '## Segments close to the floor',
+    '*Reach* is the score without the threshold: a segment with at least 1 passes the floor. Listed are, of the segments with F of at least 0.3, the five of each kind that are nearest to 1.',
     floorTable(models),
   ];
   return `${parts.map((part) => part.trim()).join('\n\n')}\n`;

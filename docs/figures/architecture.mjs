@@ -41,7 +41,7 @@ export function architecture() {
   return figure(860, 690, 'The parts of Cagecast, the call path, and the steps', [
     box(20, 20, 180, 84, 'web/', ['the page; imports the', 'package by its name'], culled),
     box(220, 20, 180, 84, 'three, gltf, command', ['adapters in wasm/src:', 'models in, models out'], culled),
-    box(420, 20, 180, 84, 'examples/, bench/', ['users like any other'], culled),
+    box(420, 20, 180, 84, 'examples/, bench/', ['programs that use it'], culled),
     box(640, 20, 200, 84, 'C++ programs', ['cagecast::cagecast (CMake)', 'spans in, arrays out'], culled),
     arrow([110, 104], [110, 132], target),
     arrow([310, 104], [310, 132], target),
@@ -86,7 +86,7 @@ export function architecture() {
     step(6, '6', 'recheck occluded', 'recovery: always'),
     step(7, '7', 'assign holes', 'recovery: through hole h · holeShares'),
     step(8, '9', 'corner UVs', 'cornerUvs'),
-    text([300, 616], 'Projection: kept; no threshold in it', { size: 12, color: uncovered }),
+    text([300, 616], 'Projection: independent of the threshold', { size: 12, color: uncovered }),
     line(
       [
         [300, 604],

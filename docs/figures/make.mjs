@@ -102,7 +102,7 @@ const project = () => {
     label([610, 78], 'T₂', cage),
     lines(
       [380, 186],
-      ['q lies on both. The one whose plane is farthest from', 'p decides (here T₂); then the lowest index.'],
+      ['q lies on both. The triangle whose plane is farthest', 'from p is taken (here T₂), then the lowest index.'],
       small,
     ),
   ]);
@@ -142,7 +142,7 @@ const occludedFigure = () => {
     text([508, 178], 'reach', mid),
     lines(
       [530, 228],
-      ['The other leg lies farther beyond the cage than', 'the reach of 0.03: it hides nothing here.'],
+      ['The other leg lies farther beyond the cage than', 'the reach of 0.03, so p is not occluded.'],
       mid,
     ),
   ]);
@@ -321,7 +321,7 @@ const holeContents = () =>
     ),
     lines(
       [20, 214],
-      ['Mostly covered, but more than 0.15 of it lies', 'bare under a hole that nothing else explains.'],
+      ['Mostly covered, but more than 0.15 of it lies', 'bare under a hole that no other part explains.'],
       small,
     ),
     title(380, '5″ · Hidden: behind glasses'),
@@ -355,7 +355,7 @@ const recheck = () => {
   const p = [150, 168];
   const fan = [-84, -70, -56, -42, -28, -14, 14, 28, 42, 56, 70, 84];
   const seen = new Set([14, 28]);
-  return figure(700, 250, 'Occluded points that the cage sees from another direction are recovered', [
+  return figure(700, 250, 'Occluded points are recovered if rays in other directions reach the cage', [
     title(20, '6 · Twelve directions'),
     curve(at('20,108 90,62 170,50 250,62 325,108'), cage, { width: 3 }),
     curve(
@@ -409,13 +409,13 @@ const recheck = () => {
     text([386, 160], 'not occluded', small),
     text([476, 160], 'recovered', small),
     text([556, 160], 'rejected', small),
-    text([612, 160], 'not queued', small),
+    text([612, 160], 'not tested', small),
     lines(
       [380, 196],
       [
         'Begin next to points that are not occluded.',
-        'A recovered point queues its occluded',
-        'neighbours; a rejected one does not.',
+        'After a recovered point, its occluded',
+        'neighbours are tested too.',
       ],
       small,
     ),
@@ -440,7 +440,7 @@ const holes = () =>
     dot([152, 112], cosmetic),
     lines([183, 160], ['eyeball,', 'culled'], { ...mid, color: culled }),
     lines([20, 220], ['h ≤ 0.03, and an eyeball explains the hole.'], small),
-    title(380, 'The cut at a neck is obeyed'),
+    title(380, 'The open end of a cage at a neck'),
     line(at('440,60 440,132'), cage, { width: 3 }),
     line(at('640,60 640,132'), cage, { width: 3 }),
     dot([440, 132], cage, 4),
@@ -453,7 +453,7 @@ const holes = () =>
     dot([629, 160], uncovered),
     text([540, 100], 'neck', mid),
     text([540, 182], 'no part lies here', mid),
-    lines([380, 220], ['Nothing explains it: below stays uncovered.'], small),
+    lines([380, 220], ['No part explains it: points below stay uncovered.'], small),
   ]);
 
 const triangles = () => {
@@ -477,7 +477,7 @@ const triangles = () => {
     one(535, [occluded, occluded, occluded], false, ['none cosmetic', 'not painted']),
     key([40, 212], cosmetic, 'cosmetic'),
     key([150, 212], occluded, 'occluded'),
-    key([260, 212], uncovered, 'uncovered (culled counts alike)'),
+    key([260, 212], uncovered, 'uncovered (or culled)'),
   ]);
 };
 

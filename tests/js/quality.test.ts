@@ -38,7 +38,7 @@ describe('quality', () => {
     }
   });
 
-  test('eyes of one piece with the skin, or a cage out of place, let paint through, as the poster says', async () => {
+  test('eyes fused to the skin, or a misplaced cage, let paint through, as the poster says', async () => {
     const sound = results['human']!.methods.paper;
     assert.equal(sound.forbidden, 0);
     const spoiled = await Promise.all(filesOf('spoiled').map(measureFiles));
