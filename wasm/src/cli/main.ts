@@ -69,7 +69,10 @@ common(program.command('transfer'))
   )
   .addOption(new Option('-o, --output <OUT.glb>', 'where to write the GLB').argParser(endingIn('.glb')))
   .addOption(
-    new Option('--borders <HOW>', 'end the paint at existing triangle edges, or cut triangles at holes and seams')
+    new Option(
+      '--borders <HOW>',
+      'triangle: the paint ends at existing triangle edges; cut: triangles are cut at holes and seams',
+    )
       .choices(['triangle', 'cut'])
       .default('triangle'),
   )
@@ -116,7 +119,7 @@ Examples:
 
 common(program.command('inspect'))
   .description('check whether the cage fits TARGET; print a verdict, reasons and advice')
-  .option('--json', 'print JSON', false)
+  .option('--json', 'print JSON')
   .addOption(new Option('--html <REPORT.html>', 'where to write a page with pictures').argParser(endingIn('.html')))
   .addHelpText(
     'after',
@@ -129,8 +132,8 @@ Examples:
   cagecast inspect head.glb --cage cage.glb --html report.html
   cagecast inspect head.glb --cage cage.glb --json`,
   )
-  .action(async (target: string, flags: CommonFlags & { json: boolean; html?: string }, command: Command) => {
-    const { cage, json, html } = flags;
+  .action(async (target: string, flags: CommonFlags & { json?: boolean; html?: string }, command: Command) => {
+    const { cage, json = false, html } = flags;
     if (html !== undefined && [target, cage].some((path) => placeOf(path) === placeOf(html))) {
       command.error(`${placeOf(html)} would overwrite another file of this command`, { exitCode: wrongUsage });
     }

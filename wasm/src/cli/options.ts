@@ -50,12 +50,12 @@ export function addRuleFlags(command: Command): Command {
         '--keep <NAME>',
         'keep parts of this node or material even if the rules would cull them (* matches any text); may be repeated',
       )
-        .default([], '')
+        .default([], 'none')
         .argParser(oneMore),
     )
     .addOption(
       new Option('--exclude <NAME>', 'never paint parts of this node or material (* matches any text); may be repeated')
-        .default([], '')
+        .default([], 'none')
         .argParser(oneMore),
     );
 }

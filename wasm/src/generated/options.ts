@@ -32,8 +32,8 @@ export interface ClassifyStage {
    */
   threshold?: number | undefined;
   /**
-   * A segment is painted only if at least this share of its whole area is covered; ignored if steps.floor is none, as
-   * in preset paper. 0 to 1. Default: `0.2`.
+   * A segment is painted only if at least this share of its whole area is covered; ignored in preset paper, where
+   * steps.floor is none. 0 to 1. Default: `0.2`.
    */
   minCovered?: number | undefined;
 }
@@ -182,6 +182,6 @@ export const optionFlags = [
     flag: '--min-covered',
     kind: 'share',
     range: [0, 1],
-    text: 'A segment is painted only if at least this share of its whole area is covered; ignored if steps.floor is none, as in preset paper.',
+    text: 'A segment is painted only if at least this share of its whole area is covered; ignored in preset paper, where steps.floor is none.',
   },
 ] as const;
