@@ -32,7 +32,7 @@ export interface InspectionReport extends Inspection {
 }
 
 /**
- * Finds out whether a cage fits a target.
+ * Checks whether a cage fits a target.
  * @returns text for people, or JSON, and the verdict.
  * @throws {InputError} that names the file at fault.
  */

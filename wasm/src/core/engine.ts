@@ -18,7 +18,7 @@ export interface Core {
 function instantiate(module: WebAssembly.Module): Core {
   const glue: Partial<CoreModule> = {};
   let failure: unknown;
-  // The glue takes the instance and registers the functions at once; what it returns is a promise for the same object.
+  // The glue registers the functions synchronously; the promise that it returns is for the same object.
   createModule(
     Object.assign(glue, {
       instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
@@ -123,7 +123,7 @@ function withNames(core: Core, answer: { segmentStats?: CoreSegment[] }): object
 
 /** Replaces the views of WebAssembly memory in an answer by copies of them. */
 function copyViews(views: object, reusable: Reusable): object {
-  // What is new first: if there is no memory for it, nothing is written over.
+  // Allocate first: if that fails, no array of the caller is overwritten.
   const entries = Object.entries(views).map(([name, value]) => {
     const isReused = ArrayBuffer.isView(value) && fits(reusable[name], value as Uint8Array);
     return {

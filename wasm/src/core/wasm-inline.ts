@@ -1,8 +1,8 @@
 import text from '#wasm-text';
 
 /**
- * Compiles the WebAssembly module that this script carries within itself. It is the one form that works unchanged in
- * every bundler, server and worker; `cagecast/slim` has the module as a file of its own.
+ * Compiles the WebAssembly module that is inlined in this script. Only this form works unchanged in every bundler, server and
+ * worker; `cagecast/slim` has the module as a separate file.
  */
 export function compile(): Promise<WebAssembly.Module> {
   return WebAssembly.compile(bytesOf(text));

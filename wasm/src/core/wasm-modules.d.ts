@@ -1,4 +1,4 @@
-// What the build puts in by these names: see wasm/tools/build.mjs.
+// Modules and constants that the build provides: see wasm/tools/build.mjs.
 
 /** The glue that Emscripten makes of bindings.cpp. */
 declare module '#glue' {

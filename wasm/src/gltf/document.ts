@@ -59,8 +59,8 @@ export interface ExtractedDocument {
 
 /**
  * Collects the triangles of a document's default scene (else its first), depth first, in the scene's space, by the same
- * rules as the command does from a file: vertices keep their order, every primitive of every node is a group of its own,
- * skinned meshes are taken where their skeletons hold them, in their bind pose.
+ * rules as the command: vertices keep their order, every primitive of every node is a group of its own, and skinned meshes are placed
+ * by their skeletons, in the bind pose.
  * @throws {InputError} that names the primitive and the element.
  */
 export function extractDocument(document: Document): ExtractedDocument {
@@ -169,7 +169,7 @@ export function addTransfer(
 ): void {
   const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
   const attribute = (array: Float32Array, type: 'SCALAR' | 'VEC2' | 'VEC3') =>
-    // A copy with a buffer of its own: views into one that is shared would be written whole, once for each.
+    // A copy with a buffer of its own: for a view, the whole shared buffer would be written, once per view.
     document.createAccessor().setType(type).setArray(new Float32Array(array)).setBuffer(buffer);
   const texture =
     paint &&

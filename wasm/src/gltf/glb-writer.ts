@@ -46,7 +46,7 @@ export class GlbWriter {
   }
 
   /**
-   * Starts from a file: all its buffers become one, and images that lie beside it move in.
+   * Starts from a file: its buffers are joined into one, and images in separate files are embedded.
    * @throws {InputError} if such an image cannot be read.
    */
   static async from(file: GltfFile): Promise<GlbWriter> {
@@ -61,7 +61,7 @@ export class GlbWriter {
     const offsets = buffers.map((bytes, b) =>
       bytes ? this.#append(bytes.subarray(0, json.buffers![b]!.byteLength)) : 0,
     );
-    // Buffers without bytes only stand for compressed views; they keep doing so, after the one that has them all.
+    // Buffers without bytes are fallbacks for compressed views; they are kept after the joined buffer.
     const kept = buffers.flatMap((bytes, b) => (bytes ? [] : [b]));
     const numbers = buffers.map((bytes, b) => (bytes ? 0 : 1 + kept.indexOf(b)));
     const move = (view: { buffer: number; byteOffset?: number }) => {
@@ -77,7 +77,7 @@ export class GlbWriter {
     const fallbacks = kept.map((b) => json.buffers![b]!);
     const first = buffers[0] ? json.buffers![0]! : { byteLength: 0 };
     delete first.uri;
-    // It has bytes now, whatever it had before: those of all others too.
+    // The joined buffer has bytes, so it must not be marked as a fallback.
     for (const name of meshoptExtensions) delete first.extensions?.[name];
     if (Object.keys(first.extensions ?? {}).length === 0) delete first.extensions;
     json.buffers = [first, ...fallbacks];

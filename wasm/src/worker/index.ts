@@ -1,7 +1,7 @@
 /**
  * The functions of `cagecast`, off the main thread: the same names and arguments, with promises.
  *
- * All calls share one worker, which starts with the first of them, and are carried out in order.
+ * All calls share one worker, which starts with the first call and runs them in order.
  * @module cagecast/worker
  */
 import { spawn } from '#spawn';
@@ -163,7 +163,7 @@ function next(): void {
     thread.setBusy(true);
     thread.post(job.request, job.move ? buffersOf(job.request.args) : []);
   } catch (cause) {
-    // An argument that cannot be sent, as a function or an array that has been moved away.
+    // An argument cannot be sent, such as a function or an array that was transferred before.
     finish(
       job,
       new CagecastError(
@@ -207,7 +207,7 @@ function buffersOf(args: unknown[]): ArrayBuffer[] {
     ArrayBuffer.isView(arg) ? [arg] : typeof arg === 'object' && arg !== null ? Object.values(arg) : [],
   );
   const buffers = values.filter((value) => ArrayBuffer.isView(value)).map((view) => view.buffer);
-  // An empty one may have been moved away before. Listed, it would be lost on the way; left to be copied, it throws.
+  // An empty buffer may have been transferred before. If it is listed, it arrives empty; if it is copied, the call throws.
   return [...new Set(buffers)].filter(
     (buffer): buffer is ArrayBuffer => buffer instanceof ArrayBuffer && buffer.byteLength > 0,
   );

@@ -7,7 +7,7 @@ export interface Request {
   args: unknown[];
 }
 
-/** What became of it. */
+/** The answer to a call. */
 export type Reply =
   | { id: number; result: unknown }
   | { id: number; error: { code: Code; message: string; at: number } };
@@ -15,7 +15,7 @@ export type Reply =
 /** A worker on some host. */
 export interface Thread {
   post(request: Request, move: ArrayBuffer[]): void;
-  /** Ends it at once, whatever it is doing. */
+  /** Ends it at once, even during a call. */
   terminate(): void;
   /** Says whether there is work: an idle worker must not keep a process alive. */
   setBusy(busy: boolean): void;

@@ -3,7 +3,7 @@ import type { Spawn } from './protocol.js';
 
 /** Starts a worker thread in Node. */
 export const spawn: Spawn = (onReply, onFailure) => {
-  // Without the flags of this process: some, as --input-type, are not for a file, and none is needed.
+  // Do not inherit the flags of this process: some, such as --input-type, are invalid for a file, and none is needed.
   const worker = new Worker(new URL('./worker-thread-node.js', import.meta.url), { execArgv: [] });
   worker.on('message', onReply);
   worker.on('error', (error) => onFailure(error.message));

@@ -2,7 +2,7 @@ import type { Reply, Spawn } from './protocol.js';
 
 /** Starts a worker in a browser. */
 export const spawn: Spawn = (onReply, onFailure) => {
-  // In this form bundlers find the worker's script.
+  // Bundlers find the worker's script only in this form.
   const worker = new Worker(new URL('./worker-thread.js', import.meta.url), { type: 'module' });
   worker.onmessage = ({ data }: MessageEvent<Reply>) => onReply(data);
   worker.onerror = (event) => {
