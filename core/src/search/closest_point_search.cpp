@@ -132,7 +132,7 @@ void ClosestPointSearch::searchLeaves(const std::uint32_t* leaves, std::uint32_t
     }
     unsigned members = 0;
     for (unsigned i = 0; i < kVectors; ++i) members |= simd::bits(squared[i] <= load(limits_ + 4 * i)) << 4 * i;
-    searchLeaf(leaves[j], members);
+    if (members != 0) searchLeaf(leaves[j], members);
   }
 }
 
@@ -164,7 +164,7 @@ void ClosestPointSearch::search(const float* positions, std::uint32_t count) noe
   std::fill(nearCount_, nearCount_ + count, 0u);
   const unsigned all = (1u << count) - 1;
   searchLeaf(seeds[0], all);
-  if (seeds[1] != seeds[0]) searchLeaf(seeds[1], all);
+  if (seeds[1] != seeds[0]) searchLeaves(seeds + 1, 1);
   f32x4 most = load(limits_);
   for (std::uint32_t i = simd::kWidth; i < kGroup; i += simd::kWidth) most = simd::max(most, load(limits_ + i));
   std::uint32_t* leaves;
