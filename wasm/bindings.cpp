@@ -323,4 +323,6 @@ EMSCRIPTEN_BINDINGS(cagecast) {
       .function("cutBorders", &Calls::cutBorders)
       .function("release", &Calls::release);
   function("presetOptions", &presetOptions);
+  constant("throughHole", Recovery::throughHole);
+  constant("maxTriangles", kMaxTriangles);
 }

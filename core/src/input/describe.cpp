@@ -32,7 +32,7 @@ std::string number(double value) {
   int exponent = 6;  // value = digits · 10^(exponent − 6)
   for (; digits >= 1e7; ++exponent) digits /= 10;
   for (; digits < 1e6; --exponent) digits *= 10;
-  auto rounded = static_cast<std::uint32_t>(digits + 0.5);
+  auto rounded = static_cast<std::uint32_t>(std::lround(digits));
   if (rounded == 10'000'000) {
     rounded /= 10;
     ++exponent;

@@ -83,8 +83,8 @@ class JoinNear {
 
 }  // namespace
 
-bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius, std::uint32_t* joined,
-               std::uint32_t& joinedCount) noexcept {
+std::uint32_t mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius,
+                        std::uint32_t* joined) noexcept {
   try {
     const Cloud cloud{positions, count};
     const Tree tree(3, cloud);
@@ -95,7 +95,7 @@ bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t coun
       near.around(i);
       tree.findNeighbors(near, positions + kStride * i, nanoflann::SearchParams());
     }
-    joinedCount = 0;
+    std::uint32_t joinedCount = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t root = sets.find(i);  // Never behind i, so it has its number already.
       const float* from = positions + kStride * i;
@@ -108,9 +108,9 @@ bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t coun
       float* to = positions + kStride * joined[i];
       if (std::lexicographical_compare(from, from + kStride, to, to + kStride)) std::copy(from, from + kStride, to);
     }
-    return true;
+    return joinedCount;
   } catch (...) {  // Of memory alone: nothing else is thrown here.
-    return false;
+    return 0;
   }
 }
 

@@ -10,10 +10,9 @@ namespace cagecast {
 /// @param[in,out] positions  x, y, z, 0 per point; on return those of the joined points.
 /// @param groups             1 per point.
 /// @param[out] joined        The joined point of each point.
-/// @param[out] joinedCount  the number of joined points.
-/// @return false if memory ran out.
-bool mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius, std::uint32_t* joined,
-               std::uint32_t& joinedCount) noexcept;
+/// @return How many points are left; 0 if memory ran out.
+std::uint32_t mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius,
+                        std::uint32_t* joined) noexcept;
 
 /// Finds the nearest of `sites` for each of `points`; of equally near ones the first.
 /// @param sites,points  x, y, z, 0 each.

@@ -234,7 +234,8 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
     auto* merged = arena.allocate<std::uint32_t>(all);
     if (arena.failed()) return false;
     const double radius = static_cast<double>(tolerance) * units.diagonal;
-    if (!mergeNear(positions, groups, all, radius, merged, pointCount)) return false;
+    pointCount = mergeNear(positions, groups, all, radius, merged);
+    if (pointCount == 0) return false;
     // Joined points keep the order of their first members, and the places of these.
     for (std::uint32_t i = 0, next = 0; i < all; ++i) {
       if (merged[i] == next) places[next++] = places[i];

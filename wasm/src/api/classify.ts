@@ -1,5 +1,6 @@
 import { callCore, useCore } from '../core/engine.js';
 import type { CoreProjection } from '../core/module.js';
+import { Zone } from '../generated/zone.js';
 import { CagecastError, show } from './error.js';
 import { count } from './mesh.js';
 import { type ClassifyOptions, checkOptions } from './options.js';
@@ -39,22 +40,27 @@ function checkProjection(projection: Projection): CoreProjection {
   if (recovery.length !== 0 && recovery.length !== zones.length)
     throw wrong(` has ${zones.length} zones but ${recovery.length} entries of recovery`);
   if (indices.length % 3 !== 0) throw wrong(`.indices has ${indices.length} entries, not 3 per triangle`);
-  const none = useCore('classify', ({ module }) => module['CulledBy']!['none']!);
+  const { none, throughHole, maxTriangles } = useCore('classify', ({ module }) => ({
+    none: module['CulledBy']!['none']!,
+    throughHole: module.throughHole,
+    maxTriangles: module.maxTriangles,
+  }));
   const stats = segmentStats.map((segment, s) => ({
     ...checkSegment(segment, s, segmentStats.length),
     culledBy: none,
   }));
-  const holes = checkShares(holeShares, segmentStats.length);
+  const holes = checkShares(holeShares, segmentStats.length, maxTriangles);
 
   const outOfRange = (name: string, array: Uint32Array, limit: number, what: string) => {
     for (let i = 0; i < array.length; ++i)
       if (array[i]! >= limit) throw wrong(`.${name}[${i}] = ${array[i]} is out of range (${what})`, i);
   };
   outOfRange('segments', segments, segmentStats.length, `${segmentStats.length} segments`);
-  outOfRange('recovery', recovery, 2 + holes, `${holes} holes`);
+  outOfRange('recovery', recovery, throughHole + holes, `${holes} holes`);
   outOfRange('indices', indices, zones.length, count(zones.length, 'vertex'));
   for (let v = 0; v < zones.length; ++v) {
-    if (zones[v]! > 2) throw wrong(`.zones[${v}] = ${zones[v]} is not a zone that project() gives (0..2)`, v);
+    if (zones[v]! > Zone.Uncovered)
+      throw wrong(`.zones[${v}] = ${zones[v]} is not a zone that project() gives (0..${Zone.Uncovered})`, v);
   }
   return { zones, segments, segmentStats: stats, recovery, holeShares, indices };
 }
@@ -71,11 +77,11 @@ function checkSegment(segment: SegmentStats, s: number, segments: number): Segme
   return { ...segment, coverage: 0, score: Number.POSITIVE_INFINITY, culled: false, culledBy: 'none' };
 }
 
-/** A limit no cage exceeds: the core allocates memory for as many holes as the largest number says. */
-const mostHoles = 2 ** 28;
-
-/** @returns the number of holes. */
-function checkShares(holeShares: readonly HoleShare[], segments: number): number {
+/**
+ * @param mostHoles  A limit no cage exceeds: the core allocates memory for as many holes as the largest number says.
+ * @returns the number of holes.
+ */
+function checkShares(holeShares: readonly HoleShare[], segments: number, mostHoles: number): number {
   let holes = 0;
   holeShares.forEach((share, i) => {
     const { hole, segment, exposedArea, uncoveredArea, hiddenArea } = share ?? {};

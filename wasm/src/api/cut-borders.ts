@@ -1,5 +1,6 @@
 import { callCore, useCore } from '../core/engine.js';
 import type { CoreDecision } from '../core/module.js';
+import { Zone } from '../generated/zone.js';
 import { CagecastError, show } from './error.js';
 import { type CheckedMesh, checkMesh, count, type Mesh } from './mesh.js';
 import { checkOptions, type TransferOptions } from './options.js';
@@ -75,8 +76,8 @@ function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision 
         length,
       );
   }
-  const unknown = zones.findIndex((zone) => zone > 3);
-  if (unknown >= 0) throw mismatch(`zones[${unknown}] = ${zones[unknown]} is not a zone (0..3)`, unknown);
+  const unknown = zones.findIndex((zone) => zone > Zone.Culled);
+  if (unknown >= 0) throw mismatch(`zones[${unknown}] = ${zones[unknown]} is not a zone (0..${Zone.Culled})`, unknown);
   const stray = segments.findIndex((segment) => segment >= segmentStats.length);
   if (stray >= 0)
     throw mismatch(`segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);

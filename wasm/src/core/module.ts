@@ -109,6 +109,10 @@ export interface Workspace {
 export type CoreModule = {
   Workspace: new () => Workspace;
   presetOptions(preset: EnumValue): CoreOptions;
+  /** The value of `recovery` from which on it names a hole. */
+  throughHole: number;
+  /** The most triangles a mesh may have. */
+  maxTriangles: number;
 } & { [type: string]: Enum };
 
 type Core = { module: CoreModule };
