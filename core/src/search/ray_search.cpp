@@ -155,7 +155,7 @@ void RaySearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
     const FloatRay& floatRay = floatRays[ray];
     if (floatRay.end < soonest) continue;
     const unsigned possible = possibleHits(leaf, estimateHits(leaf, floatRay), zero);
-    rays[left] = static_cast<std::uint16_t>(ray << 4 | possible);
+    rays[left] = static_cast<std::uint16_t>(unsigned{ray} << 4 | possible);
     left += possible != 0;
   }
   if (left > 0) decide(leaf, rays, left);
