@@ -470,10 +470,14 @@ describe('with borders: cut', () => {
     return at('command.glb');
   }
 
+  const saved = (name: string, bytes: Uint8Array) => {
+    writeFileSync(at(name), bytes);
+    return at(name);
+  };
   const richFiles = richScales.map((scale, i) => ({
     name: i === 0 ? 'skinned and morphing' : 'mirrored',
-    target: () => (writeFileSync(at('rich.glb'), rich(scale)), at('rich.glb')),
-    cage: () => (writeFileSync(at('cage.glb'), glbOf(cage)), at('cage.glb')),
+    target: () => saved('rich.glb', rich(scale)),
+    cage: () => saved('cage.glb', glbOf(cage)),
   }));
   const modelFiles = modelFolders().map((model) => ({
     name: model,

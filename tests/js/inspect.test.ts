@@ -207,7 +207,11 @@ describe('normals', () => {
   test('flat pieces are judged by the target', () => {
     const plate = (z: number): Whole => {
       const [positions, uvs, indices]: [number[], number[], number[]] = [[], [], []];
-      for (let y = 0; y <= 8; ++y) for (let x = 0; x <= 8; ++x) positions.push(x / 8, y / 8, z), uvs.push(x / 8, y / 8);
+      for (let i = 0; i < 81; ++i) {
+        const [x, y] = [(i % 9) / 8, Math.floor(i / 9) / 8];
+        positions.push(x, y, z);
+        uvs.push(x, y);
+      }
       for (let y = 0; y < 8; ++y)
         for (let x = 0; x < 8; ++x)
           indices.push(9 * y + x, 9 * y + x + 1, 9 * y + x + 10, 9 * y + x, 9 * y + x + 10, 9 * y + x + 9);
