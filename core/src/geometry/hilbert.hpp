@@ -6,21 +6,21 @@
 
 namespace cagecast {
 
-/// Positions along a three-dimensional Hilbert curve, so that neighbours in space are neighbours in memory.
-/// After Hamilton and Rau-Chaplin, "Compact Hilbert indices" (2008), by table, two levels at a time.
-/// Unlike Morton order it has no jumps.
+/// Positions along a three-dimensional Hilbert curve. Sorting points by them makes neighbours in space neighbours in
+/// memory; unlike Morton order, the curve has no jumps. After Hamilton and Rau-Chaplin, "Compact Hilbert indices"
+/// (2008), with a table for two levels at a time.
 class HilbertCurve {
  public:
-  /// Makes its tables, in a microsecond: as constants they would be a tenth of the WebAssembly.
-  /// @param levels  6, 8 or 10: of 2^levels cells on each axis.
+  /// Computes the tables, which takes a microsecond. As constants they would be a tenth of the WebAssembly.
+  /// @param levels  6, 8 or 10: the grid has 2^levels cells on each axis.
   explicit HilbertCurve(int levels) noexcept : unused_(kBits - 3 * levels) {
-    // Octants begin at the highest bit, where the way to them begins.
+    // The octant of the first level is in the highest three bits.
     spread_[1] = 1u << unused_;
     for (std::size_t x = 1; x < std::size_t{1} << (levels - 1); ++x) {
       spread_[2 * x] = spread_[x] << 3;
       spread_[2 * x + 1] = spread_[x] << 3 | spread_[1];
     }
-    // What follows a step is a row of the table; four of its octants at a time.
+    // The second step begins in the state that the first one leads to. Four 16-bit entries are written at a time.
     for (std::size_t step = 0; step < kSteps.size(); ++step) {
       std::uint64_t row[2];
       std::memcpy(row, &kSteps[kSteps[step] / 64 * std::size_t{8}], sizeof row);
@@ -29,7 +29,7 @@ class HilbertCurve {
     }
   }
 
-  /// The place of a cell on the curve, less than 8^levels.
+  /// The position of a cell along the curve, less than 8^levels.
   /// @param x,y,z  The cell, 0 .. 2^levels − 1 on each axis.
   [[nodiscard]] std::uint32_t key(std::uint32_t x, std::uint32_t y, std::uint32_t z) const noexcept {
     const std::uint32_t octants = spread_[x] | spread_[y] << 1 | spread_[z] << 2;
@@ -54,7 +54,7 @@ class HilbertCurve {
   static constexpr std::uint32_t kStates = 24;  ///< Entry corners times directions.
   static constexpr int kBits = 30;              ///< Three times ten.
 
-  /// state times 8 | octant → next state times 64 | its place along the curve.
+  /// [state · 8 | octant] is the next state · 64 | the octant's position along the curve.
   static constexpr auto kSteps = [] {
     const auto rotateRight = [](unsigned bits, unsigned by) { return (bits >> by | bits << (3 - by)) & 7; };
     const auto rotateLeft = [](unsigned bits, unsigned by) { return (bits << by | bits >> (3 - by)) & 7; };
@@ -79,11 +79,11 @@ class HilbertCurve {
     return steps;
   }();
 
-  /// The same for two octants, 64 times.
+  /// The same for two levels: [state · 64 | two octants].
   std::array<std::uint16_t, kStates * 64> doubleSteps_;
-  /// Two zeros between the bits of a number.
+  /// Numbers with two zeros between their bits.
   std::array<std::uint32_t, 1024> spread_{0};
-  int unused_;  ///< Bits below the octants.
+  int unused_;  ///< Bits below the last octant.
 };
 
 }  // namespace cagecast

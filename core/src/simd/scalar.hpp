@@ -88,7 +88,7 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
 }
 
 inline u32x4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) { return {{a, b, c, d}}; }
-// From 2^23 on floats are whole: the sum is rounded as the processor rounds.
+// Floats from 2^23 to 2^24 are integers, so the addition rounds.
 inline u32x4 rounded(f32x4 a) {
   return eachLane<u32x4>([&](int i) { return static_cast<std::uint32_t>(a.v[i] + 0x1p23f) - 0x80'0000u; });
 }

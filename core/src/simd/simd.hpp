@@ -2,11 +2,12 @@
 
 #include <cstdint>
 
-/// Four floats at a time: one set of operations over SSE2, NEON, WebAssembly SIMD and plain C++. Each instruction set
-/// implements them in a file of its own; what they do is documented here.
+/// Four floats at a time: the operations are declared and documented here, and implemented for SSE2, NEON, WebAssembly
+/// SIMD and plain C++ in a file each.
 ///
 /// All four give the same bits, with two exceptions: `multiplyAdd` rounds once where the processor can, else twice, and
-/// what `min` and `max` return for NaN, or for 0 and −0, differs. Both belong into filters, not into decisions.
+/// what `min` and `max` return for NaN, or for 0 and −0, differs. So decisions must not depend on them, only filters
+/// may.
 
 #if defined(CAGECAST_SCALAR)
 #define CAGECAST_SIMD_SCALAR
@@ -37,7 +38,7 @@ inline f32x4 load3(const float* p);
 inline void store(float* p, f32x4 a);
 /// x in all lanes.
 inline f32x4 splat(float x);
-/// Four numbers, without a way through memory.
+/// Four numbers, without storing them to memory.
 inline f32x4 of(float a, float b, float c, float d);
 /// One lane as a number.
 template <int i>
@@ -69,12 +70,12 @@ inline f32x4 select(mask4 m, f32x4 a, f32x4 b);
 /// Bit i is lane i.
 inline unsigned bits(mask4 m);
 
-/// Turns four rows into four columns.
+/// Transposes a matrix of four rows.
 inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d);
 
 /// Four counters.
 inline u32x4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
-/// Numbers from 0 to 2^22 rounded to whole ones, halves to even ones.
+/// Rounds numbers from 0 to 2^22 to the nearest integer, halves to even.
 inline u32x4 rounded(f32x4 a);
 /// Adds 1 where the mask is true.
 inline u32x4 countTrue(u32x4 c, mask4 m);

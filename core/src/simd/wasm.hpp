@@ -68,7 +68,7 @@ inline void transpose(f32x4& a, f32x4& b, f32x4& c, f32x4& d) {
 inline u32x4 of(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   return {wasm_i32x4_make(static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d))};
 }
-// From 2^23 on floats are whole, and their last bits are what they have beyond it.
+// Floats from 2^23 to 2^24 are integers, so the addition rounds; their lowest bits are what they exceed 2^23 by.
 inline u32x4 rounded(f32x4 a) {
   return {wasm_v128_and(wasm_f32x4_add(a.v, wasm_f32x4_splat(0x1p23f)), wasm_i32x4_splat(0x7F'FFFF))};
 }
