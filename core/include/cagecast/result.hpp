@@ -20,7 +20,7 @@ enum class Zone : std::uint8_t {
 /// Why a segment is culled, that is, why none of it may be painted.
 enum class CulledBy : std::uint8_t {
   none,      ///< It is not culled.
-  coverage,  ///< The cage covers too little of it.
+  coverage,  ///< Its score is below 1: because of the threshold, the floor or its twins.
   hole,      ///< A hole of the cage is meant for it.
   lock,      ///< `Lock::exclude`.
 };
@@ -32,7 +32,7 @@ struct Timings {
   double project = 0;     ///< Step 1: the nearest point of the cage for every point of the target.
   double occluded = 0;    ///< Step 2: self-intersection.
   double covered = 0;     ///< Step 3: cage intersection.
-  double segments = 0;    ///< Steps 4 and 5′: connected components, their areas and twins.
+  double segments = 0;    ///< Steps 4, 5′ and 5‴: connected components, their areas and twins.
   double secondLook = 0;  ///< Step 6: more rays from occluded points.
   double holes = 0;       ///< Step 7: uncovered points and the holes over them.
   double seams = 0;       ///< Step 9: UVs per triangle corner.
@@ -68,8 +68,9 @@ struct Recovery {
   static constexpr std::uint32_t throughHole = 2;
 };
 
-/// The part of a segment that lies nearest to the boundary loop of one hole of the cage. Areas are in squared units of
-/// the input, rounded so that sums of them are exact.
+/// The part of a segment that lies nearest to the boundary loop of one hole of the cage. All areas are those at this
+/// loop only, and of points only, without interior samples. They are in squared units of the input, rounded so that
+/// sums of them are exact.
 struct HoleShare {
   std::uint32_t hole = 0;  ///< The number of the boundary loop.
   std::uint32_t segment = 0;
@@ -95,7 +96,7 @@ struct Projection {
   /// 2 per target index with `Seams::corner` and `ProjectionMode::nearestPoint`, else empty. They differ from `uvs`
   /// only where a seam of the cage's texture runs through a triangle.
   Array<float> cornerUvs;
-  Array<Zone> zones;                 ///< 1 per vertex: cosmetic, occluded or uncovered; `classify` adds culled.
+  Array<Zone> zones;                 ///< 1 per vertex: cosmetic (here: covered), occluded or uncovered.
   Array<std::uint32_t> triangles;    ///< 1 per vertex: the nearest cage triangle.
   Array<float> distances;            ///< 1 per vertex: the distance to it, in units of the input.
   Array<std::uint32_t> segments;     ///< 1 per vertex: its segment. Segments are numbered by their first vertex.

@@ -41,14 +41,14 @@ class Workspace {
   std::size_t limit_;
 };
 
-/// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 6, 7 and 9. The
-/// result does not depend on the threshold.
+/// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 5′, 6, 7 and 9,
+/// and the twins of 5‴. The result does not depend on threshold, floor or locks.
 /// @return badOption, or any code about the meshes, or outOfMemory.
 /// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage.
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                Projection& out) noexcept;
 
-/// Decides which segments are culled, and so the zone of every vertex: steps 5 and 8.
+/// Decides which segments are culled, and so the zone of every vertex: steps 5, 5″, 5‴ and 8.
 /// Takes microseconds for small targets; call it again for another threshold or other locks.
 /// @param projection  `Projection::view()` of a projection with any options.
 /// @param indices     The indices of the target, 3 per triangle.

@@ -22,7 +22,7 @@ void sumAreas(const Scene& scene, const InteriorSamples& samples, PointData& dat
   Arena& arena = scene.arena;
   const Points points = data.points;
   auto* const all = data.areas = arena.allocate<std::int64_t>(points.count);
-  auto* const own = data.ownAreas = samples.triangleCount > 0 ? arena.allocate<std::int64_t>(points.count) : all;
+  auto* const own = data.unsampledAreas = samples.triangleCount > 0 ? arena.allocate<std::int64_t>(points.count) : all;
   const Arena::Scope scope(arena);
   auto* sums = arena.allocate<Sums>(stats.size());
   if (arena.failed()) return;

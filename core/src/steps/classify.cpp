@@ -9,29 +9,29 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, step 7: a hole is explained if the culled area there is at least this share of the uncovered area.
+/// docs/method.md, section 5″. V and U are the areas at one hole, E, C, U_s and H_s those of one segment there.
+/// A hole is explained if the exposed area of culled segments there, V, is at least this share of the uncovered area of
+/// the other segments there, U.
 constexpr double kExplaining = 0.02;
-
-/// docs/method.md, step 5″: a small segment has less than this share of the covered area of all segments. A hole is
-/// meant for it if the hole is unexplained and the segment is uncovered there in at least
+/// A segment is small if its covered area, C, is less than this share of the covered area of all segments, K.
 constexpr double kSmallSegment = 0.02;
-/// this share of its exposed area
-constexpr double kUncoveredOfSegment = 0.15;
-/// and this share of the uncovered area at the hole;
-constexpr double kUncoveredOfHole = 0.25;
-/// or if the area hidden there is at least this share of its exposed area and the hidden area together.
+/// A small segment is culled if it is hidden under a hole in more than this share of E + H_s.
 constexpr double kHidden = 0.25;
+/// A small segment is culled if it is uncovered at an unexplained hole in more than this share of its exposed area, E.
+constexpr double kUncoveredOfSegment = 0.15;
+/// The previous rule applies only if the segment has at least this share of the uncovered area at the hole, U.
+constexpr double kUncoveredOfHole = 0.25;
 
-/// docs/method.md, step 5′: twins with scores within this factor of 1 are judged together.
+/// docs/method.md, section 5‴: twins with scores within this factor of 1 are judged together.
 constexpr double kDoubt = 2;
 
 /// How many times what it needs something has.
 double ratio(double has, double needs) { return needs > 0 ? has / needs : std::numeric_limits<double>::infinity(); }
 
-/// The areas of a segment, or of several that are judged together.
+/// The areas of a segment, or of several that are judged together: A, E, C and D of docs/method.md.
 struct Areas {
   double all = 0, exposed = 0, covered = 0, depthWeighted = 0;
-  double segments = 0;
+  double segments = 0;  ///< How many segments.
 
   static Areas of(const SegmentStats& s) { return {s.area, s.exposedArea, s.coveredArea, s.depthWeightedArea, 1}; }
   void add(const Areas& other) {
@@ -51,7 +51,7 @@ class Scoring {
     for (const SegmentStats& s : stats) allCovered_ += s.coveredArea;
   }
 
-  /// The covered area of all segments.
+  /// K, the covered area of all segments.
   [[nodiscard]] double allCovered() const noexcept { return allCovered_; }
 
   /// @param[out] scores  1 per segment.
@@ -74,15 +74,17 @@ class Scoring {
     const Steps& steps = options_.steps;
     if (steps.floor == Floor::none) return coverage;
     if (!(areas.covered > 0)) return 0;
-    const double ofItself = static_cast<double>(options_.minCovered) * areas.all;
-    if (steps.floor == Floor::area) return std::min(coverage, ratio(areas.covered, ofItself));
-    // What is meant to be painted is covered almost wherever it is exposed; an eye or a lamp in its hole is not.
-    const double counted = areas.depthWeighted * (areas.covered / areas.exposed);
+    const double neededOfItself = static_cast<double>(options_.minCovered) * areas.all;
+    if (steps.floor == Floor::area) return std::min(coverage, ratio(areas.covered, neededOfItself));
+    // X = D · F. What is meant to be painted is covered almost wherever it is exposed; an eye or a lamp in its hole is
+    // not.
+    const double x = areas.depthWeighted * (areas.covered / areas.exposed);
     // A segment that is mostly hidden is kept for its share of the whole, if it is clearly covered where it is exposed.
-    const double ofAll =
-        std::min(ratio(counted, static_cast<double>(steps.minOfAll) * allCovered_ * areas.segments),
-                 ratio(static_cast<double>(steps.maxUncovered) * areas.exposed, areas.exposed - areas.covered));
-    return std::min(coverage, std::max(ratio(counted, ofItself), ofAll));
+    const double neededOfAll = static_cast<double>(steps.minOfAll) * allCovered_ * areas.segments;
+    const double allowedUncovered = static_cast<double>(steps.maxUncovered) * areas.exposed;
+    const double shareOfAll = std::min(ratio(x, neededOfAll), ratio(allowedUncovered, areas.exposed - areas.covered));
+    const double floor = std::max(ratio(x, neededOfItself), shareOfAll);
+    return std::min(coverage, floor);
   }
 
   /// Gives twins in doubt the score of their areas together, so that they are not culled one by one by accident.
@@ -101,7 +103,7 @@ class Scoring {
 
   std::span<const SegmentStats> stats_;
   const TransferOptions& options_;
-  double allCovered_ = 0;
+  double allCovered_ = 0;  ///< K of docs/method.md.
 };
 
 /// Steps 5″ and 7: what the holes mean, given which segments are culled.
@@ -111,26 +113,24 @@ class HoleJudge {
       : shares_(projection.holeShares), stats_(projection.segmentStats), out_(out) {}
 
   /// Finds which holes are explained by culled segments behind them.
-  void explainHoles() const noexcept { judge(0); }
-  /// The same, and lowers the scores of segments with less than `small` covered area that a hole is meant for.
-  void judgeContents(double small) const noexcept { judge(small); }
-
- private:
-  [[nodiscard]] bool isCulled(std::size_t s) const { return out_.culledBy[s] != CulledBy::none; }
-
-  void judge(double small) const noexcept {
+  void explainHoles() const noexcept {
     std::fill(out_.explainedHoles.begin(), out_.explainedHoles.end(), std::uint8_t{0});
-    for (std::size_t i = 0, end = 0; i < shares_.size(); i = end) {
-      double culled = 0;
-      double uncovered = 0;
-      for (; end < shares_.size() && shares_[end].hole == shares_[i].hole; ++end) {
-        const HoleShare& share = shares_[end];
-        (isCulled(share.segment) ? culled : uncovered) +=
-            isCulled(share.segment) ? share.exposedArea : share.uncoveredArea;
+    eachHole([&](std::span<const HoleShare> shares) {
+      double culledArea = 0;
+      for (const HoleShare& share : shares) {
+        if (isCulled(share.segment)) culledArea += share.exposedArea;
       }
-      const bool isExplained = culled > 0 && culled >= kExplaining * uncovered;
-      out_.explainedHoles[shares_[i].hole] = isExplained;
-      for (const HoleShare& share : shares_.subspan(i, end - i)) {
+      const bool isExplained = culledArea > 0 && culledArea >= kExplaining * uncoveredArea(shares);
+      out_.explainedHoles[shares.front().hole] = isExplained;
+    });
+  }
+
+  /// Lowers the scores of segments with less than `small` covered area that a hole is meant for. Needs `explainHoles`.
+  void judgeContents(double small) const noexcept {
+    eachHole([&](std::span<const HoleShare> shares) {
+      const bool isExplained = out_.explainedHoles[shares.front().hole] != 0;
+      const double uncovered = uncoveredArea(shares);
+      for (const HoleShare& share : shares) {
         const SegmentStats& segment = stats_[share.segment];
         if (isCulled(share.segment) || segment.coveredArea >= small) continue;
         double& score = out_.scores[share.segment];
@@ -138,7 +138,28 @@ class HoleJudge {
         if (isExplained || share.uncoveredArea < kUncoveredOfHole * uncovered) continue;
         score = std::min(score, ratio(kUncoveredOfSegment * segment.exposedArea, share.uncoveredArea));
       }
+    });
+  }
+
+ private:
+  [[nodiscard]] bool isCulled(std::size_t s) const { return out_.culledBy[s] != CulledBy::none; }
+
+  /// Calls with the shares of each hole.
+  template <typename Call>
+  void eachHole(Call call) const {
+    for (std::size_t i = 0, end = 0; i < shares_.size(); i = end) {
+      while (end < shares_.size() && shares_[end].hole == shares_[i].hole) ++end;
+      call(shares_.subspan(i, end - i));
     }
+  }
+
+  /// U of docs/method.md: the uncovered area of the segments at a hole that are not culled.
+  [[nodiscard]] double uncoveredArea(std::span<const HoleShare> shares) const {
+    double sum = 0;
+    for (const HoleShare& share : shares) {
+      if (!isCulled(share.segment)) sum += share.uncoveredArea;
+    }
+    return sum;
   }
 
   std::span<const HoleShare> shares_;
@@ -163,13 +184,14 @@ Status cullSegments(const ProjectionView& projection, const TransferOptions& opt
   }
   const HoleJudge holes(projection, out);
   if (options.steps.holeContents) {
+    holes.explainHoles();
     holes.judgeContents(kSmallSegment * scoring.allCovered());
     for (std::size_t s = 0; s < stats.size(); ++s) {
       const bool isLowered = out.culledBy[s] == CulledBy::none && out.scores[s] < 1;
       if (isLowered && lockOf(s) == Lock::automatic) out.culledBy[s] = CulledBy::hole;
     }
   }
-  holes.explainHoles();
+  holes.explainHoles();  // Again, by the final verdicts.
   return {};
 }
 
@@ -179,16 +201,17 @@ void writeZones(const ProjectionView& projection, Zones& out) {
   const std::span<const std::uint32_t> recovery = projection.recovery;
   const auto isCulled = [&](std::size_t s) { return out.culledBy[s] != CulledBy::none; };
   for (std::size_t v = 0; v < projection.zones.size(); ++v) {
-    // Without a branch, which is unpredictable here: only cosmetic, which is 0, is less than the 1 of a culled segment.
-    const auto zone = static_cast<unsigned>(projection.zones[v]);
-    const unsigned culled = unsigned{isCulled(segments[v])} > zone ? static_cast<unsigned>(Zone::culled) : 0;
-    out.zones[v] = static_cast<Zone>(zone | culled);
+    const Zone zone = projection.zones[v];
+    out.zones[v] = isCulled(segments[v]) && zone == Zone::cosmetic ? Zone::culled : zone;
   }
   for (std::size_t v = 0; v < recovery.size(); ++v) {
     if (recovery[v] == Recovery::never || isCulled(segments[v])) continue;
-    const std::size_t hole = recovery[v] - Recovery::throughHole;
-    const bool isExplained = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
-    if (recovery[v] == Recovery::always || isExplained) out.zones[v] = Zone::cosmetic;
+    bool isRecovered = true;
+    if (recovery[v] >= Recovery::throughHole) {
+      const std::size_t hole = recovery[v] - Recovery::throughHole;
+      isRecovered = hole < out.explainedHoles.size() && out.explainedHoles[hole] != 0;
+    }
+    if (isRecovered) out.zones[v] = Zone::cosmetic;
   }
 }
 

@@ -26,7 +26,7 @@ void eachCovered(const PointData& data, const InteriorSamples& samples, const Ar
   const Points& points = data.points;
   for (std::uint32_t i = 0; i < points.count; ++i) {
     if (data.zones[i] != Zone::cosmetic) continue;
-    call(data.segments[i], data.cageTriangles[i], static_cast<double>(data.distances[i]), data.ownAreas[i]);
+    call(data.segments[i], data.cageTriangles[i], static_cast<double>(data.distances[i]), data.unsampledAreas[i]);
   }
   for (std::uint32_t i = 0; i < samples.data.points.count; ++i) {
     if (samples.data.zones[i] != Zone::cosmetic) continue;

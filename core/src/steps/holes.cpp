@@ -26,8 +26,8 @@ struct Share {
   std::int64_t exposed, uncovered, hidden;
 };
 
-/// Whether a point takes part in the areas at holes: not if the target occludes it and the cage covers it as well, or
-/// nothing of its segment is covered.
+/// Whether a point takes part in the areas at holes. Exposed points take part. Occluded ones only if their ray misses
+/// the cage and their segment has C > 0.
 bool takesPart(const PointData& data, const Array<SegmentStats>& stats, std::uint32_t point) {
   if (data.zones[point] != Zone::occluded) return true;
   const bool isUnderCage =

@@ -38,8 +38,8 @@ struct PointData {
 
   // Of steps 4 and 5:
   std::uint32_t* segments = nullptr;
-  std::int64_t* areas = nullptr;     ///< A third of each triangle at the point, in an `AreaUnit`.
-  std::int64_t* ownAreas = nullptr;  ///< The same without the triangles that have interior samples.
+  std::int64_t* areas = nullptr;           ///< A third of each triangle at the point, in an `AreaUnit`.
+  std::int64_t* unsampledAreas = nullptr;  ///< The same without the triangles that have interior samples.
 
   /// Of steps 6 and 7: values of `Recovery`. Null if there is neither.
   std::uint32_t* recovery = nullptr;

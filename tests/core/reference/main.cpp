@@ -1,8 +1,11 @@
 /// Runs the brute-force reference, or the library itself, over one scene file, so that hosts in other languages can
 /// compare their answer with it on exactly the same arrays.
 ///
-///     cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked]
-///     [--product] cagecast_reference --golden FOLDER cagecast_reference --traps FOLDER
+// clang-format off
+///     cagecast_reference SCENE RESULT [--preset paper|default|earlier] [--without STEP] [--threshold T] [--unchecked] [--product]
+///     cagecast_reference --golden FOLDER
+///     cagecast_reference --traps FOLDER
+// clang-format on
 ///
 /// --without leaves a step of the preset `default` out (may be given more than once): groups, end-of-self-ray, pokes,
 /// interior-samples, far-loops, floor, twins, hole-contents, second-look, both-sides, exposed-side, holes, triangles,

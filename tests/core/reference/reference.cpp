@@ -640,7 +640,8 @@ void failBaredParts(const Scene& scene, const std::vector<Voter>& samples, State
     Verdict& pass = state.passes[s];
     if (fails[s].might != fails[s].must && pass.might) result.firmAreas[s] = 0;
     pass = {pass.is && !fails[s].is, pass.might && !fails[s].must, pass.must && !fails[s].might};
-    result.segmentStats[s].culledBy = pass.is ? CulledBy::none : CulledBy::coverage;
+    CulledBy& culledBy = result.segmentStats[s].culledBy;
+    if (culledBy == CulledBy::none && !pass.is) culledBy = CulledBy::hole;
   }
 }
 

@@ -12,7 +12,7 @@ export interface Timings {
   occluded: number;
   /** Step 3: cage intersection. */
   covered: number;
-  /** Steps 4 and 5′: connected components, their areas and twins. */
+  /** Steps 4, 5′ and 5‴: connected components, their areas and twins. */
   segments: number;
   /** Step 6: more rays from occluded points. */
   secondLook: number;
@@ -51,7 +51,10 @@ export interface SegmentStats {
   score: number;
   /** Whether none of it may be painted. `false` after `project`. */
   culled: boolean;
-  /** Why it is culled: the cage covers too little of it, a hole of the cage is meant for it, or a lock excludes it. */
+  /**
+   * Why it is culled. `coverage`: its score is below 1, because of the threshold, the floor or its twins. `hole`: a hole of the cage
+   * is meant for it. `lock`: a lock excludes it.
+   */
   culledBy: 'none' | 'coverage' | 'hole' | 'lock';
 }
 
@@ -64,7 +67,7 @@ export interface Projected {
    * a seam of the cage's texture runs through a triangle. `splitVertices` makes a mesh from them.
    */
   cornerUvs: Float32Array<ArrayBuffer>;
-  /** 1 per vertex, a `Zone`. After `project` none is `Culled`. */
+  /** 1 per vertex, a `Zone`. After `project` none is `Culled`, and `Cosmetic` means covered. */
   zones: Uint8Array<ArrayBuffer>;
   /** 1 per vertex: the nearest triangle of the cage. */
   triangles: Uint32Array<ArrayBuffer>;
@@ -80,7 +83,10 @@ export interface Projected {
   peakBytes: number;
 }
 
-/** The part of a segment that lies nearest to one hole of the cage. Areas are in squared units of the input. */
+/**
+ * The part of a segment that lies nearest to one hole of the cage. All areas are those at this hole only, and of points only,
+ * without interior samples; in squared units of the input.
+ */
 export interface HoleShare {
   /** The number of the hole. */
   hole: number;

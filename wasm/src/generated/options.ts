@@ -32,8 +32,9 @@ export interface ClassifyStage {
    */
   threshold?: number | undefined;
   /**
-   * A segment is painted only if at least this share of its whole area is covered; ignored in preset paper, where
-   * steps.floor is none. 0 to 1. Default: `0.2`.
+   * A segment is painted only if at least this share of its whole area counts as covered. In preset default its covered
+   * area counts less where it lies deep under the cage, and is multiplied by its coverage; steps.minOfAll is an
+   * alternative. Ignored in preset paper, where steps.floor is none. 0 to 1. Default: `0.2`.
    */
   minCovered?: number | undefined;
 }
@@ -56,8 +57,8 @@ export interface ProjectSteps {
    */
   farLoops?: boolean | undefined;
   /**
-   * Step 5′: counts covered area less the deeper it lies under the cage. Also finds twins: segments of the same shape.
-   * True or false. Default: `true`; in the preset `paper`: `false`.
+   * Step 5′: counts covered area less the deeper it lies under the cage. Also finds the twins of 5‴: segments of the
+   * same shape. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   depthWeighting?: boolean | undefined;
   /**
@@ -100,7 +101,7 @@ export interface ClassifySteps {
    */
   maxUncovered?: number | undefined;
   /**
-   * Step 5′: judges twins with scores near 1 together; needs depthWeighting, and a floor other than none. True or
+   * Step 5‴: judges twins with scores near 1 together; needs depthWeighting, and a floor other than none. True or
    * false. Default: `true`; in the preset `paper`: `false`.
    */
   twins?: boolean | undefined;
@@ -182,6 +183,6 @@ export const optionFlags = [
     flag: '--min-covered',
     kind: 'share',
     range: [0, 1],
-    text: 'A segment is painted only if at least this share of its whole area is covered; ignored in preset paper, where steps.floor is none.',
+    text: 'A segment is painted only if at least this share of its whole area counts as covered. In preset default its covered area counts less where it lies deep under the cage, and is multiplied by its coverage; steps.minOfAll is an alternative. Ignored in preset paper, where steps.floor is none.',
   },
 ] as const;

@@ -169,27 +169,43 @@ function secondLookStep({ shown: { projection }, classification }: Facts, vertex
 function partStep({ classification, locks }: Facts, part: SegmentFacts, options: PresetOptions): string {
   const { name, segment, coverage, threshold, passes } = part;
   const { area, exposedArea, coveredArea, depthWeightedArea, culledBy } = classification.segmentStats[segment]!;
+  const { floor, minOfAll, maxUncovered } = options.steps;
   const lock: Lock = locks[segment] ?? 'auto';
   const whole = `It belongs to ${name}.`;
   if (lock !== 'auto')
     return `${whole} You chose to ${lock} it, regardless of its areas: it ${passes ? 'passes' : 'is culled'}.`;
   if (exposedArea === 0) return `${whole} Nothing of it is exposed${passes ? '.' : ', so it is culled as a whole.'}`;
   const share = `${whole} The cage covers ${percent(coverage)} of its exposed area`;
-  const enough = coverage >= threshold;
-  if (enough && passes) return `${share}, at least the threshold of ${percent(threshold)}: it passes.`;
-  if (!enough && !passes) return `${share}, less than the threshold of ${percent(threshold)}: it is culled as a whole.`;
-  if (passes)
-    return `${share}, less than the threshold of ${percent(threshold)}; but it is judged together with its twins, which have the same shape, and they pass.`;
+  const isEnough = coverage >= threshold;
+  const compared = isEnough ? 'which is enough' : `less than the threshold of ${percent(threshold)}`;
   if (culledBy === 'hole')
-    return `${share}, which is enough. But it is small, and much of it is hidden or lies under a hole of the cage, which therefore seems to be meant for it. It is culled as a whole.`;
-  const counted = options.steps.floor === 'depth' ? depthWeightedArea * coverage : coveredArea;
-  if (counted >= options.minCovered * area)
-    return `${share}, which is enough; but it is judged together with its twins, which have the same shape, and they do not pass.`;
+    return `${share}${isEnough ? ', which is enough' : ''}. But it is small, and much of it is hidden or lies under a hole of the cage, which therefore seems to be meant for it. It is culled as a whole.`;
+  if (!isEnough && !passes) return `${share}, ${compared}: it is culled as a whole.`;
+
+  // The alternatives of the floor in step 5, for this segment without its twins.
+  const counted = floor === 'depth' ? depthWeightedArea * coverage : coveredArea;
+  const allCovered = classification.segmentStats.reduce((sum, other) => sum + other.coveredArea, 0);
+  const isMostlyCovered = 1 - coverage <= maxUncovered;
+  const reachesFloor =
+    floor === 'none' ||
+    counted >= options.minCovered * area ||
+    (floor === 'depth' && isMostlyCovered && counted >= minOfAll * allCovered);
+  if (isEnough && passes && reachesFloor)
+    return `${share}, at least the threshold of ${percent(threshold)}: it passes.`;
+  if (passes || reachesFloor)
+    return `${share}, ${compared}${isEnough && !reachesFloor ? ', though its covered area is small' : ''}; but it is judged together with its twins, which have the same shape, and they ${passes ? '' : 'do not '}pass.`;
   const deep =
-    options.steps.floor === 'depth' && depthWeightedArea < coveredArea / 2
+    floor === 'depth' && depthWeightedArea < coveredArea / 2
       ? ' and lies deeper under the cage than its surroundings'
       : '';
-  return `${share}, which is enough. But the covered area is small${deep}: it counts as ${percent(counted / area)} of the whole area, and at least ${percent(options.minCovered)} is required. It is culled as a whole.`;
+  const required = `it counts as ${percent(counted / area)} of the whole area, and at least ${percent(options.minCovered)} is required`;
+  const alternative =
+    floor !== 'depth'
+      ? ''
+      : isMostlyCovered
+        ? `, or ${percent(minOfAll)} of the covered area of all parts, of which it has ${percent(counted / allCovered)}`
+        : `, because more than ${percent(maxUncovered)} of its exposed area is uncovered`;
+  return `${share}, which is enough. But the covered area is small${deep}: ${required}${alternative}. It is culled as a whole.`;
 }
 
 function brief(

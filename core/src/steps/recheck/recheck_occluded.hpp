@@ -7,8 +7,8 @@
 namespace cagecast {
 
 /// Step 6: finds the occluded points that can be seen from the cage in other directions than along their rays, and sets
-/// their `data.recovery` to `Recovery::always`. Segments nothing of which is covered are left out: they are culled, but
-/// for a threshold of 0 without a floor, or a lock.
+/// their `data.recovery` to `Recovery::always`. Segments with no covered area are left out: they are
+/// culled unless locked to keep, or the threshold is 0 and there is no floor.
 void recheckOccluded(const Scene& scene, PointData& data, const Array<SegmentStats>& stats) noexcept;
 
 }  // namespace cagecast
