@@ -182,7 +182,7 @@ const scripts = chosen.filter((name) => name !== 'lint' && name !== 'core');
 if (chosen.includes('lint')) await add(['lint'], () => timed('lint', lint));
 // The builds take turns at being held up by a single process, so they run at the same time.
 const native = timed('build native', () =>
-  chosen.includes('core') || scripts.includes('package') ? buildNative() : 0,
+  chosen.includes('core') || scripts.includes('package') ? buildNative(chosen.includes('core')) : 0,
 );
 const wasm = timed('build package', () => (scripts.length > 0 ? buildPackage() : 0));
 const built = await Promise.allSettled([native, wasm]);
