@@ -44,7 +44,7 @@ void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& s
   findTwins(scene, data, stats);
 }
 
-/// Steps 6 and 7: which points are restored if their segment is not culled.
+/// Steps 6 and 7: which points are recovered if their segment is not culled.
 void findRecovery(const Scene& scene, PointData& data, Projection& out) {
   const Steps& steps = scene.options.steps;
   if (steps.projection != ProjectionMode::nearestPoint || !(steps.secondLook || steps.holes)) return;

@@ -27,17 +27,17 @@ struct Step {
 
 /// Each step of the preset, as something to add to `paper`.
 constexpr Step kSteps[] = {
-    {"an end for the self ray", [](TransferOptions& o) { o.occlusionReach = preset().occlusionReach; }},
+    {"occlusion reach", [](TransferOptions& o) { o.occlusionReach = preset().occlusionReach; }},
     {"poke-through", [](TransferOptions& o) { o.pokeThrough = preset().pokeThrough; }},
-    {"interiorSamples", [](TransferOptions& o) { o.steps.interiorSamples = true; }},
-    {"interiorSamples under far loops", [](TransferOptions& o) { o.steps.interiorSamples = o.steps.farLoops = true; }},
+    {"interior samples", [](TransferOptions& o) { o.steps.interiorSamples = true; }},
+    {"interior samples at far loops", [](TransferOptions& o) { o.steps.interiorSamples = o.steps.farLoops = true; }},
     {"the floor of area", [](TransferOptions& o) { o.steps.floor = Floor::area; }},
     {"the floor of depth", [](TransferOptions& o) { o.steps.floor = Floor::depth, o.steps.depthWeighting = true; }},
-    {"copies", [](TransferOptions& o) { o.steps.floor = Floor::depth, o.steps.depthWeighting = o.steps.twins = true; }},
-    {"bared parts", [](TransferOptions& o) { o.steps.holes = o.steps.holeContents = true; }},
-    {"the second look", [](TransferOptions& o) { o.steps.secondLook = true; }},
-    {"the second look to both sides", [](TransferOptions& o) { o.steps.secondLook = o.steps.bothSides = true; }},
-    {"the second look by what is exposed", [](TransferOptions& o) { o.steps.secondLook = o.steps.exposedSide = true; }},
+    {"twins", [](TransferOptions& o) { o.steps.floor = Floor::depth, o.steps.depthWeighting = o.steps.twins = true; }},
+    {"hole contents", [](TransferOptions& o) { o.steps.holes = o.steps.holeContents = true; }},
+    {"recheck", [](TransferOptions& o) { o.steps.secondLook = true; }},
+    {"recheck to both sides", [](TransferOptions& o) { o.steps.secondLook = o.steps.bothSides = true; }},
+    {"recheck by the exposed side", [](TransferOptions& o) { o.steps.secondLook = o.steps.exposedSide = true; }},
     {"holes", [](TransferOptions& o) { o.steps.holes = true; }},
     {"partial triangles", [](TransferOptions& o) { o.steps.partialTriangles = true; }},
 };

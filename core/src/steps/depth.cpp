@@ -87,6 +87,7 @@ void weightByDepth(const Scene& scene, const PointData& data, const InteriorSamp
 
   std::fill(weighted, weighted + stats.size(), 0);
   eachCovered(data, samples, unit, [&](std::uint32_t segment, std::uint32_t t, double depth, std::int64_t area) {
+    // area · min(1, typical depth / depth)²; what is not deep keeps its area without rounding.
     const double share = typicalDepth[t] / std::max(depth, typicalDepth[t]);
     weighted[segment] +=
         depth > typicalDepth[t] ? static_cast<std::int64_t>(static_cast<double>(area) * (share * share)) : area;

@@ -7,8 +7,8 @@
 
 namespace cagecast {
 
-/// Step 5′: finds the depth-weighted area of every segment: its covered area, counted less where it lies deeper under
-/// the cage than what else is covered around there.
+/// Step 5′: finds the depth-weighted area of every segment: its covered area, where each
+/// sample counts as area · min(1, typical depth / depth)². The typical depth is that of what is covered around it.
 void weightByDepth(const Scene& scene, const PointData& data, const InteriorSamples& samples,
                    Array<SegmentStats>& stats) noexcept;
 

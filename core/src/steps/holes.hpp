@@ -6,7 +6,7 @@
 
 namespace cagecast {
 
-/// Step 7: finds for every uncovered point whether it is restored, and which hole that depends on (`data.recovery`);
+/// Step 7: finds for every uncovered point whether it is recovered, and which hole that depends on (`data.recovery`);
 /// and what part of which segment lies at which hole.
 /// @param[out] shares  Ordered by hole.
 void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>& stats,

@@ -150,13 +150,13 @@ Trap doubled(bool own) {
   Scene plain = head(24);
   // A fold under the brow, that goes in and up.
   const auto depthAt = [](Point p) { return p[2] < 0 ? 0 : ramp(p[1], 0.35f, 0.6f) * (1 - ramp(p[1], 0.6f, 0.75f)); };
-  std::vector<float> depthWeighting;
+  std::vector<float> depths;
   std::size_t v = 0;
   for (; v < plain.target.vertexCount(); ++v)
-    depthWeighting.push_back(plain.target.groups[v] == plain.target.groups[0] ? depthAt(plain.target.vertex(v)) : 0);
+    depths.push_back(plain.target.groups[v] == plain.target.groups[0] ? depthAt(plain.target.vertex(v)) : 0);
   v = 0;
   plain.target = mapped(plain.target, [&](Point p) {
-    const float depth = depthWeighting[v++], in = 1 - 0.35f * depth;
+    const float depth = depths[v++], in = 1 - 0.35f * depth;
     return Point{p[0] * in, p[1] + 0.12f * depth, p[2] * in};
   });
   Trap trap;
@@ -168,7 +168,7 @@ Trap doubled(bool own) {
     float besides = 1e9f;
     for (const Point hole : {Point{0.35f, 0.25f, 0.85f}, Point{-0.35f, 0.25f, 0.85f}, Point{0, -0.4f, 0.95f}})
       besides = std::min(besides, distance(target.vertex(v), hole));
-    const Wanted skin = depthWeighting[v] > 0.7f || besides < 0.32f ? Wanted::either : Wanted::painted;
+    const Wanted skin = depths[v] > 0.7f || besides < 0.32f ? Wanted::either : Wanted::painted;
     trap.truth.push_back(target.groups[v] == target.groups[0] ? skin : Wanted::bare);
   }
   const std::size_t triangles = target.triangleCount();

@@ -24,7 +24,7 @@ void recheckOccluded(const Scene& scene, PointData& data, const Array<SegmentSta
   VisibilityTest test(scene, facing);
   if (arena.failed()) return;
 
-  // Whether a point is seen depends on no other point, so the points restored do not depend on the order of the queue.
+  // Whether a point is seen depends on no other point, so the points recovered do not depend on the order of the queue.
   for (std::uint32_t next = 0; next < end || !test.isIdle();) {
     for (; next < end && test.hasRoom(); ++next) {
       const std::uint32_t p = queue[next];
