@@ -13,7 +13,9 @@ const kOldestNode = 20;
 
 const command = (name) => () => spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
 const header = (path) => () =>
-  ['/usr/include', '/usr/local/include', '/opt/homebrew/include'].some((folder) => existsSync(`${folder}/${path}`));
+  ['/usr/include', '/usr/local/include', '/opt/homebrew/include', '/usr/include/eigen3'].some((folder) =>
+    existsSync(`${folder}/${path}`),
+  );
 
 /** What is needed beyond Node: how to see that it is there, and the Debian package that brings it. */
 const kNeeds = {
@@ -21,6 +23,7 @@ const kNeeds = {
   cmake: { what: 'CMake 3.25 or newer', there: command('cmake') },
   'ninja-build': { what: 'Ninja', there: command('ninja') },
   'libnanoflann-dev': { what: 'nanoflann 1.4 or newer (nanoflann.hpp)', there: header('nanoflann.hpp') },
+  'libeigen3-dev': { what: 'Eigen 3.4 (Eigen/SparseCholesky)', there: header('Eigen/SparseCholesky') },
   'g++': { what: 'a C++20 compiler', there: () => Boolean(process.env.CXX) || command('c++')() },
   'libtinygltf-dev': { what: 'tinygltf 2.7 or newer (tiny_gltf.h)', there: header('tiny_gltf.h') },
   'nlohmann-json3-dev': { what: 'nlohmann/json 3 (nlohmann/json.hpp)', there: header('nlohmann/json.hpp') },
@@ -34,9 +37,9 @@ const kNeeds = {
   doxygen: { what: 'Doxygen 1.9', there: command('doxygen') },
   'clang-tidy': { what: 'clang-tidy 14', there: command('clang-tidy') },
 };
-const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev'];
+const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev', 'libeigen3-dev'];
 // clang-tidy reads the sources as they are compiled, so it needs what they need.
-const kLint = ['cmake', 'ninja-build', 'g++', 'libnanoflann-dev', 'clang-format', 'clang-tidy'];
+const kLint = ['cmake', 'ninja-build', 'g++', 'libnanoflann-dev', 'libeigen3-dev', 'clang-format', 'clang-tidy'];
 // Valgrind counts instructions, which a test holds against a budget.
 const kTests = [...kPage, ...kLint, 'libtinygltf-dev', 'nlohmann-json3-dev', 'catch2', 'chromium', 'valgrind'];
 const kPurposes = {

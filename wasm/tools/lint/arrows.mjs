@@ -7,7 +7,7 @@ import { isCpp, isScript } from './files.mjs';
 const kCoreOrder = ['base', 'simd', 'geometry', 'input', 'search', 'cage', 'steps', 'seams', 'clip', 'transfer'];
 
 /** Where a quoted include is looked up, after the folder of the file itself. */
-const kIncludeFolders = ['core/src', 'core/include', 'core', 'tests/core'];
+const kIncludeFolders = ['core/src', 'core/include', 'core/cages', 'core', 'tests/core'];
 
 /**
  * What C++ files may include, by where they are; the first line that fits counts. Folders that are not listed, the tests and
@@ -16,6 +16,11 @@ const kIncludeFolders = ['core/src', 'core/include', 'core', 'tests/core'];
 const kCppRules = [
   { from: 'core/include/', may: ['core/include/'], rule: 'public headers include public headers only' },
   { from: 'core/src/', may: ['core/include/', 'core/src/'], rule: 'the core includes nothing but itself' },
+  {
+    from: 'core/cages/',
+    may: ['core/include/', 'core/src/', 'core/cages/'],
+    rule: 'core/cages uses the core and itself only',
+  },
   { from: 'core/gltf/', may: ['core/include/', 'core/gltf/'], rule: 'core/gltf uses the public headers only' },
   { from: 'wasm/', may: ['core/include/', 'wasm/'], rule: 'the bindings use the public headers only' },
   {

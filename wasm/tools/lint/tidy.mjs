@@ -6,7 +6,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { dirname, join, normalize } from 'node:path';
 
-const kIncludeFolders = ['core/src', 'core/include', 'core'];
+const kIncludeFolders = ['core/src', 'core/include', 'core/cages', 'core'];
 const kInclude = /^\s*#\s*include\s+["<]([^">]+)[">]/gm;
 
 /** The file and all headers of the project that it includes, directly or not. */

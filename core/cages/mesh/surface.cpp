@@ -1,0 +1,150 @@
+#include "mesh/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/arena.hpp"
+#include "base/tolerances.hpp"
+#include "geometry/closest_point.hpp"
+#include "input/cage.hpp"
+#include "search/cage_tree.hpp"
+#include "search/closest_point_search.hpp"
+#include "search/ray_search.hpp"
+
+namespace cagecast::cages {
+
+struct Surface::Trees {
+  Arena arena;
+  Units units;
+  cagecast::Cage cage;
+  CageTree tree;
+  Vec3 centre{};  ///< Of the box: coordinates relative to it have smaller rounding errors.
+
+  [[nodiscard]] Vec3 scaled(const Vec3& p) const { return static_cast<double>(units.scale) * (p - centre); }
+  [[nodiscard]] Vec3 unscaled(const Vec3& p) const { return 1 / static_cast<double>(units.scale) * p + centre; }
+};
+
+Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
+  Trees& trees = *trees_;
+  Vec3 low = mesh.positions[0], high = low;
+  for (const Vec3& p : mesh.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  trees.centre = 0.5 * (low + high);
+  const double diagonal = length(high - low);
+  int exponent = 0;
+  std::frexp(diagonal, &exponent);
+  trees.units.scale = static_cast<float>(std::ldexp(1.0, 1 - exponent));
+  trees.units.diagonal = diagonal * static_cast<double>(trees.units.scale);
+  trees.units.reach = static_cast<float>(8 * trees.units.diagonal);
+  std::vector<float> positions;
+  positions.reserve(3 * mesh.positions.size());
+  MeshView view;
+  for (const Vec3& p : mesh.positions) {
+    const Vec3 q = trees.scaled(p);
+    for (const double x : {q.x, q.y, q.z}) positions.push_back(static_cast<float>(x));
+  }
+  std::vector<std::uint32_t> indices;
+  indices.reserve(3 * mesh.triangles.size());
+  for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  const std::vector<float> uvs(2 * mesh.positions.size(), 0.0f);
+  Units identity = trees.units;
+  identity.scale = 1;  // Positions are scaled already.
+  gatherCage({positions, indices, uvs}, identity, trees.arena, trees.cage);
+  buildCageTree(trees.cage, identity, trees.arena, trees.tree);
+}
+
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+Surface::~Surface() = default;
+
+std::vector<SurfacePoint> Surface::closest(std::span<const Vec3> points) const {
+  Trees& trees = *trees_;
+  const Arena::Scope scope(trees.arena);
+  const std::uint32_t triangleCount = trees.cage.count;
+  auto* found = trees.arena.allocate<std::uint32_t>(triangleCount);
+  auto* candidates = trees.arena.allocate<Candidate>(triangleCount);
+  // The search takes floats; the slack allows for the rounding of the points.
+  ClosestPointSearch search(trees.tree, trees.units.diagonal + static_cast<double>(trees.units.reach), trees.arena);
+  std::vector<SurfacePoint> out(points.size());
+  constexpr std::uint32_t kGroup = ClosestPointSearch::kGroup;
+  float group[4 * kGroup] = {};
+  for (std::size_t first = 0; first < points.size(); first += kGroup) {
+    const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(kGroup, points.size() - first));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3 p = trees.scaled(points[first + i]);
+      group[4 * i] = static_cast<float>(p.x);
+      group[4 * i + 1] = static_cast<float>(p.y);
+      group[4 * i + 2] = static_cast<float>(p.z);
+    }
+    search.search(group, count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3 p = trees.scaled(points[first + i]);
+      const std::uint32_t candidateCount = search.candidates(i, found);
+      for (std::uint32_t c = 0; c < candidateCount; ++c)
+        candidates[c] = {found[c], closestPointOnTriangle(trees.cage.triangles[found[c]], p)};
+      const Candidate& best = nearestOf(candidates, candidateCount, trees.units.diagonal);
+      const CageTriangle& triangle = trees.cage.triangles[best.cageTriangle];
+      SurfacePoint& point = out[first + i];
+      const double toModel = 1 / static_cast<double>(trees.units.scale);
+      point.triangle = triangle.index;
+      point.position = trees.unscaled(positionOf(triangle, best.point));
+      point.weights = {1 - best.point.v - best.point.w, best.point.v, best.point.w};
+      point.distance = best.point.distance * toModel;
+      point.height = best.point.height * toModel;
+    }
+  }
+  return out;
+}
+
+SurfacePoint Surface::closest(const Vec3& point) const { return closest(std::span(&point, 1))[0]; }
+
+std::vector<RayHit> Surface::trace(std::span<const SurfaceRay> rays, double from) const {
+  Trees& trees = *trees_;
+  std::vector<RayHit> out(rays.size());
+  std::vector<Vec3> hitPoints;
+  std::vector<std::size_t> hitRays;
+  {
+    const Arena::Scope scope(trees.arena);
+    const auto scale = static_cast<double>(trees.units.scale);
+    RaySearch search(trees.tree.rays, from * scale, trees.arena);
+    std::vector<Ray> chunk(RaySearch::kMostRays);
+    std::vector<RayDirection> directions(RaySearch::kMostRays);
+    const auto hit = std::make_unique<bool[]>(RaySearch::kMostRays);
+    for (std::size_t first = 0; first < rays.size(); first += RaySearch::kMostRays) {
+      const auto count = static_cast<std::uint32_t>(std::min<std::size_t>(RaySearch::kMostRays, rays.size() - first));
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec3 origin = trees.scaled(rays[first + i].origin);
+        const double exact[3] = {origin.x, origin.y, origin.z};
+        float position[3];
+        float rest[3];
+        for (int k = 0; k < 3; ++k) {
+          position[k] = static_cast<float>(exact[k]);
+          rest[k] = static_cast<float>(exact[k] - static_cast<double>(position[k]));
+        }
+        directions[i] = RayDirection::along(rays[first + i].direction);
+        chunk[i].startAt(position, rest);
+        chunk[i].direction = &directions[i];
+        chunk[i].end = std::numeric_limits<double>::infinity();
+      }
+      search.search(chunk.data(), count, hit.get(), RaySearch::Find::nearest);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (!hit[i]) {
+          out[first + i].distance = std::numeric_limits<double>::infinity();
+          continue;
+        }
+        out[first + i].distance = chunk[i].end / scale;
+        hitRays.push_back(first + i);
+        hitPoints.push_back(rays[first + i].origin + out[first + i].distance * rays[first + i].direction);
+      }
+    }
+  }
+  // The ray search tells how far; the triangle is the one that the hit lies on.
+  const std::vector<SurfacePoint> on = closest(hitPoints);
+  for (std::size_t i = 0; i < on.size(); ++i) out[hitRays[i]].triangle = on[i].triangle;
+  return out;
+}
+
+}  // namespace cagecast::cages

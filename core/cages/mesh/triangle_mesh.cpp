@@ -1,0 +1,109 @@
+#include "mesh/triangle_mesh.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <unordered_map>
+
+namespace cagecast::cages {
+
+TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* vertexOf,
+                         std::vector<std::uint32_t>* triangleOf) {
+  struct Hash {
+    std::size_t operator()(const std::array<float, 3>& p) const noexcept {
+      std::uint32_t bits[3];
+      std::memcpy(bits, p.data(), sizeof bits);
+      std::size_t hash = bits[0];
+      hash = hash * 0x9E3779B1u + bits[1];
+      return hash * 0x9E3779B1u + bits[2];
+    }
+  };
+  TriangleMesh out;
+  const std::size_t count = mesh.positions.size() / 3;
+  std::vector<std::uint32_t> newVertex(count);
+  std::unordered_map<std::array<float, 3>, std::uint32_t, Hash> seen;
+  seen.reserve(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    std::array<float, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.positions[3 * v + k] + 0.0f;  // -0 becomes 0.
+    const auto [found, isNew] = seen.try_emplace(p, static_cast<std::uint32_t>(out.positions.size()));
+    if (isNew) out.positions.push_back(Vec3::from(p.data()));
+    newVertex[v] = found->second;
+  }
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+    const Triangle3 triangle = {newVertex[mesh.indices[3 * t]], newVertex[mesh.indices[3 * t + 1]],
+                                newVertex[mesh.indices[3 * t + 2]]};
+    if (!(length(areaNormal(out, triangle)) > 0)) continue;
+    out.triangles.push_back(triangle);
+    if (triangleOf != nullptr) triangleOf->push_back(static_cast<std::uint32_t>(t));
+  }
+  if (vertexOf != nullptr) *vertexOf = std::move(newVertex);
+  return out;
+}
+
+TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTriangle) {
+  TriangleMesh out;
+  constexpr std::uint32_t kNone = UINT32_MAX;
+  std::vector<std::uint32_t> newVertex(mesh.positions.size(), kNone);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!keepTriangle[t]) continue;
+    Triangle3 triangle = mesh.triangles[t];
+    for (std::uint32_t& v : triangle) {
+      if (newVertex[v] == kNone) {
+        newVertex[v] = static_cast<std::uint32_t>(out.positions.size());
+        out.positions.push_back(mesh.positions[v]);
+      }
+      v = newVertex[v];
+    }
+    out.triangles.push_back(triangle);
+  }
+  return out;
+}
+
+double diagonalOf(const TriangleMesh& mesh) {
+  if (mesh.positions.empty()) return 0;
+  Vec3 low = mesh.positions[0], high = low;
+  for (const Vec3& p : mesh.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return length(high - low);
+}
+
+std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
+  std::vector<Vec3> normals(mesh.positions.size(), Vec3{0, 0, 0});
+  for (const Triangle3& t : mesh.triangles) {
+    const Vec3 n = areaNormal(mesh, t);
+    for (const std::uint32_t v : t) normals[v] = normals[v] + n;
+  }
+  for (Vec3& n : normals) {
+    const double size = length(n);
+    n = size > 0 ? 1 / size * n : Vec3{0, 0, 0};
+  }
+  return normals;
+}
+
+std::vector<std::vector<std::uint32_t>> boundaryLoops(const TriangleMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const Triangle3& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
+  std::multimap<std::uint32_t, std::uint32_t> next;
+  for (const auto& [edge, uses] : edges)
+    if (edges.find({edge.second, edge.first}) == edges.end()) next.emplace(edge.first, edge.second);
+  std::vector<std::vector<std::uint32_t>> loops;
+  while (!next.empty()) {
+    std::vector<std::uint32_t> loop;
+    const std::uint32_t start = next.begin()->first;
+    for (auto edge = next.begin(); edge != next.end(); edge = next.find(loop.back())) {
+      if (loop.empty()) loop.push_back(start);
+      const std::uint32_t to = edge->second;
+      next.erase(edge);
+      if (to == start) break;
+      loop.push_back(to);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+}  // namespace cagecast::cages

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "cagecast/mesh.hpp"
+#include "geometry/vec3.hpp"
+
+namespace cagecast::cages {
+
+using Triangle3 = std::array<std::uint32_t, 3>;
+
+/// A mesh that is being worked on, in double precision and in the space of the model.
+struct TriangleMesh {
+  std::vector<Vec3> positions;
+  std::vector<Triangle3> triangles;
+
+  [[nodiscard]] bool empty() const noexcept { return triangles.empty(); }
+};
+
+/// A copy of a mesh in which equal positions are one vertex and degenerate triangles are left out.
+/// @param[out] vertexOf  If not null: the vertex of the copy for each vertex of `mesh`.
+/// @param[out] triangleOf  If not null: the triangle of `mesh` for each triangle of the copy.
+TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* vertexOf = nullptr,
+                         std::vector<std::uint32_t>* triangleOf = nullptr);
+
+/// The part of a mesh made of some of its triangles; vertices that none of them uses are dropped.
+TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTriangle);
+
+/// The length of the diagonal of the bounding box.
+double diagonalOf(const TriangleMesh& mesh);
+
+/// Twice the area times the unit normal.
+inline Vec3 areaNormal(const TriangleMesh& mesh, const Triangle3& t) {
+  const Vec3& a = mesh.positions[t[0]];
+  return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+}
+
+/// A unit normal per vertex, weighted by area; zero where it is not defined.
+std::vector<Vec3> vertexNormals(const TriangleMesh& mesh);
+
+/// The open edges as closed walks of vertices, each with the mesh on its left.
+std::vector<std::vector<std::uint32_t>> boundaryLoops(const TriangleMesh& mesh);
+
+}  // namespace cagecast::cages

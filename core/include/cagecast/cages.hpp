@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cagecast/mesh.hpp"
+
+/// Cages for models that have none: made afresh for one model, fitted from a template, or moved into place.
+///
+/// A library of its own (`cagecast::cages`), and a WebAssembly module of its own, because it needs Eigen and
+/// meshoptimizer and takes seconds instead of milliseconds. Single-threaded and deterministic.
+namespace cagecast::cages {
+
+using Position = std::array<float, 3>;  ///< x, y, z in the space of the model.
+
+/// A named spot on a model, such as `nose_tip` or `eye_centre_left`; docs/cages.md lists the names.
+struct Landmark {
+  std::string name;
+  Position position{};
+  float confidence = 1;  ///< 0..1; 1 for those that a person or a bone gave.
+};
+
+/// A joint of the model's skeleton, in the pose in which the mesh is given.
+struct Joint {
+  std::string name;  ///< As in the file; `fitCage` and `findLandmarks` know the names of common rigs.
+  Position position{};
+  std::int32_t parent = -1;  ///< Its place in the list; -1 for a root.
+};
+
+/// What a cage is made for. The arrays belong to the caller and are only read.
+struct Model {
+  MeshView mesh;                             ///< UVs are not used. `groups` number the parts.
+  std::vector<std::string> parts = {};       ///< Name of each part; may be empty.
+  std::vector<Joint> joints = {};            ///< May be empty.
+  std::span<const std::uint8_t> marks = {};  ///< 1 per triangle or none: 1 must not be painted, as by a brush.
+};
+
+/// A cage, with what is known about it.
+struct Cage {
+  std::vector<float> positions;        ///< 3 per vertex, in the space of the model.
+  std::vector<float> uvs;              ///< 2 per vertex, 0..1. Seams have a vertex for each side.
+  std::vector<std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise seen from outside.
+  std::vector<Landmark> landmarks;     ///< Spots of the model that it was made for.
+
+  [[nodiscard]] MeshView view() const noexcept { return {positions, indices, uvs}; }
+};
+
+/// What a model is, which decides resolution, tightness and seams.
+enum class Kind : std::uint8_t { automatic, head, body, prop };
+
+/// Name patterns of parts that are not painted: `*` stands for any text, case does not matter.
+const std::vector<std::string>& defaultExclusions();
+
+/// Lengths are shares of the diagonal of the model's bounding box. 0 means: by kind.
+struct MakeOptions {
+  Kind kind = Kind::automatic;
+  std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
+  std::uint32_t triangles = 0;                             ///< Of the cage, about: heads and props 600, bodies 1500.
+  float closing = 0;         ///< Gaps narrower than twice this are bridged: heads and props 0.02, bodies 0.008.
+  float offset = 0;          ///< Distance of the cage from the model: 0.01, bodies 0.004.
+  std::uint32_t voxels = 0;  ///< Along the longest side: 140.
+};
+
+struct FitOptions {
+  Kind kind = Kind::automatic;
+  std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
+};
+
+struct RefineOptions {
+  float reach = 0.05f;  ///< How far off the cage may be, as a share of the diagonal.
+};
+
+/// Reports how far a call is, as a share 0..1, and what it does ("hull", "unwrap"). Called at least every 50 ms of
+/// work. Return false to cancel.
+using Progress = std::function<bool(float share, const char* stage)>;
+
+enum class Problem : std::uint8_t {
+  none,
+  badModel,      ///< Empty, not finite, out of range, too large, no closed surface, several figures.
+  badTemplate,   ///< The template cage or the model that it belongs to.
+  badLandmarks,  ///< Contradicting, unknown, too few, or not on the model.
+  badOptions,
+  cancelled,
+};
+
+/// How a call ended. Unless `ok()`, nothing in its output is valid.
+struct [[nodiscard]] Outcome {
+  Problem problem = Problem::none;
+  std::string message;  ///< One sentence that names the argument, the element, its value and the limit.
+  [[nodiscard]] bool ok() const noexcept { return problem == Problem::none; }
+};
+
+/// What was found on a model.
+struct FoundLandmarks {
+  std::vector<Landmark> landmarks;
+  std::vector<std::string> missing;  ///< Names that were looked for in vain, or that are too uncertain: ask for these.
+  std::string rig;                   ///< "VRM", "Mixamo", "Ready Player Me", "Roblox R15"; "unknown" or empty.
+  Kind kind = Kind::prop;            ///< What the model seems to be.
+};
+
+/// Finds the landmarks of a head or a figure by part names, joint names and shape.
+Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmarks& out);
+
+/// Makes a cage for a model: a hull around it, with holes over the parts that are not painted, unwrapped.
+Outcome makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out);
+
+/// A cage that was made for one model and is to be fitted to others.
+struct Template {
+  MeshView cage;                    ///< With UVs.
+  std::vector<Landmark> landmarks;  ///< Of the model that it was made for.
+};
+
+/// What a fit used and could not find.
+struct FitReport {
+  std::vector<Landmark> used;        ///< On the target.
+  std::vector<std::string> missing;  ///< Of the template's landmarks: ask for these.
+  std::vector<std::string> notes;    ///< Sentences for people.
+};
+
+/// Moves a template cage onto another model; triangles, UVs and holes stay.
+/// @param landmarks  Of the model; those that are given override found ones. May be empty.
+Outcome fitCage(const Template& from, const Model& model, const std::vector<Landmark>& landmarks,
+                const FitOptions& options, const Progress& progress, Cage& out, FitReport& report);
+
+/// Moves and bends a cage that is slightly off its model into place. A cage in place stays as it is.
+Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions& options, const Progress& progress,
+                   Cage& out);
+
+}  // namespace cagecast::cages

@@ -1,0 +1,81 @@
+#include "mesh/surface.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "geometry/closest_point.hpp"
+
+using namespace cagecast;
+using namespace cagecast::cages;
+
+namespace {
+
+TriangleMesh randomMesh(std::mt19937& random, std::size_t triangles, Vec3 centre, double size) {
+  std::uniform_real_distribution<double> share(-1, 1);
+  TriangleMesh mesh;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const Vec3 at = centre + size * Vec3{share(random), share(random), share(random)};
+    for (int i = 0; i < 3; ++i)
+      mesh.positions.push_back(at + 0.2 * size * Vec3{share(random), share(random), share(random)});
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return mesh;
+}
+
+/// The distance to a triangle, by another formula than the library's: to its plane, its edges and its corners.
+double distanceTo(const TriangleMesh& mesh, const Triangle3& t, const Vec3& p) {
+  const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+  const Vec3 n = cross(b - a, c - a);
+  double least = std::numeric_limits<double>::infinity();
+  const Vec3 corners[] = {a, b, c};
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 from = corners[i], edge = corners[(i + 1) % 3] - from;
+    const double along = std::min(1.0, std::max(0.0, dot(p - from, edge) / dot(edge, edge)));
+    least = std::min(least, length(p - (from + along * edge)));
+    inside = inside && dot(cross(edge, p - from), n) >= 0;
+  }
+  return inside ? std::abs(dot(p - a, n)) / length(n) : least;
+}
+
+}  // namespace
+
+TEST_CASE("closest points on a surface are those of brute force", "[cages][surface]") {
+  const std::uint32_t seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(-2, 2);
+  const Vec3 centre{3, -20, 7};
+  const TriangleMesh mesh = randomMesh(random, 200, centre, 5);
+  const Surface surface(mesh);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 100; ++i) points.push_back(centre + 5 * Vec3{share(random), share(random), share(random)});
+  const std::vector<SurfacePoint> found = surface.closest(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Triangle3& t : mesh.triangles) least = std::min(least, distanceTo(mesh, t, points[i]));
+    CHECK(found[i].distance == Approx(least).margin(1e-4));
+    CHECK(length(found[i].position - points[i]) == Approx(found[i].distance).margin(1e-4));
+    const Triangle3& t = mesh.triangles[found[i].triangle];
+    const Vec3 blended = found[i].weights[0] * mesh.positions[t[0]] + found[i].weights[1] * mesh.positions[t[1]] +
+                         found[i].weights[2] * mesh.positions[t[2]];
+    CHECK(length(blended - found[i].position) < 1e-4);
+  }
+}
+
+TEST_CASE("a ray meets the first triangle on its way", "[cages][surface]") {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 3}, {1, 0, 3}, {0, 1, 3}};
+  mesh.triangles = {{3, 4, 5}, {0, 1, 2}};
+  const Surface surface(mesh);
+  const SurfaceRay rays[] = {{{0.2, 0.2, 0}, {0, 0, 1}}, {{0.2, 0.2, 2}, {0, 0, 1}}, {{0.8, 0.8, 0}, {0, 0, 1}}};
+  const std::vector<RayHit> hits = surface.trace(rays);
+  CHECK(hits[0].distance == Approx(1));
+  CHECK(hits[0].triangle == 1);
+  CHECK(hits[1].distance == Approx(1));
+  CHECK(hits[1].triangle == 0);
+  CHECK(std::isinf(hits[2].distance));
+}
