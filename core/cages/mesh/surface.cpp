@@ -41,7 +41,6 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   trees.units.reach = static_cast<float>(8 * trees.units.diagonal);
   std::vector<float> positions;
   positions.reserve(3 * mesh.positions.size());
-  MeshView view;
   for (const Vec3& p : mesh.positions) {
     const Vec3 q = trees.scaled(p);
     for (const double x : {q.x, q.y, q.z}) positions.push_back(static_cast<float>(x));
