@@ -1,19 +1,8 @@
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
-import { type Document, NodeIO } from '@gltf-transform/core';
-import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import draco from 'draco3dgltf';
-import { MeshoptDecoder } from 'meshoptimizer';
-import {
-  decodeFloats,
-  decodePositions,
-  decodeTriangles,
-  hasTriangles,
-  joinPieces,
-  type Piece,
-} from '../../wasm/src/gltf/pieces.js';
 import { output, root } from '../native.js';
-import { readScene, type Scene, type SceneMesh } from '../scene-file.js';
+import { readGlb } from '../read-glb.js';
+import { readScene, type Scene } from '../scene-file.js';
 
 /** What is known of each vertex of a target; see `examples/assets/truth.ts`. */
 export interface Truth {
@@ -80,12 +69,12 @@ export class NoSuchModel extends Error {}
  * @throws {Error} if its truth is not of its target.
  */
 export async function loadFiles({ name, kind, folder }: ModelFiles): Promise<Model> {
-  const [target, cage] = await Promise.all(['target', 'cage'].map((file) => readMesh(`${folder}/${file}.glb`)));
+  const [target, cage] = await Promise.all(['target', 'cage'].map((file) => readGlb(`${folder}/${file}.glb`)));
   const truth = JSON.parse(await readFile(`${folder}/truth.json`, 'utf8')) as Truth;
-  const found = target!.positions.length / 3;
+  const found = target!.mesh.positions.length / 3;
   if (found !== truth.ncz.length)
     throw new Error(`${folder}: the target has ${found} vertices, its truth.json speaks of ${truth.ncz.length}`);
-  return { name, kind, truth, folder, scene: { cage: cage!, target: target! } };
+  return { name, kind, truth, folder, scene: { cage: cage!.mesh, target: target!.mesh } };
 }
 
 /** The models of tests/core/scenes/traps.cpp, which the reference writes. */
@@ -118,50 +107,4 @@ async function loadTraps(): Promise<Model[]> {
       };
     }),
   );
-}
-
-/** Reads a glTF file as the adapters do: all triangles of its scene, a group for each primitive. */
-async function readMesh(path: string): Promise<SceneMesh> {
-  const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
-  await MeshoptDecoder.ready;
-  io.registerDependencies({ 'meshopt.decoder': MeshoptDecoder, 'draco3d.decoder': await draco.createDecoderModule() });
-  const pieces = piecesOf(await io.read(path));
-  const mesh = joinPieces(pieces) as SceneMesh;
-  const sets = pieces.map(({ set }) => set);
-  if (sets.every((set) => set !== undefined)) mesh.uvs = Float32Array.from(sets.flatMap((set) => [...set]));
-  return mesh;
-}
-
-function piecesOf(document: Document): (Piece & { set: Float32Array | undefined })[] {
-  const pieces: (Piece & { set: Float32Array | undefined })[] = [];
-  const scene = document.getRoot().getDefaultScene() ?? document.getRoot().listScenes()[0]!;
-  scene.traverse((node) => {
-    for (const primitive of node.getMesh()?.listPrimitives() ?? []) {
-      const position = primitive.getAttribute('POSITION');
-      if (position === null || !hasTriangles(primitive.getMode())) continue;
-      const name = node.getName();
-      const localPositions = decodePositions(name, position);
-      const localIndices = decodeTriangles(
-        name,
-        primitive.getIndices()?.getArray() ?? null,
-        primitive.getMode(),
-        localPositions.length / 3,
-      );
-      const uv = primitive.getAttribute('TEXCOORD_0');
-      const last = pieces.at(-1);
-      pieces.push({
-        name,
-        aliases: [],
-        matrix: node.getWorldMatrix(),
-        firstVertex: last ? last.firstVertex + last.vertexCount : 0,
-        vertexCount: localPositions.length / 3,
-        firstTriangle: last ? last.firstTriangle + last.triangleCount : 0,
-        triangleCount: localIndices.length / 3,
-        localPositions,
-        localIndices,
-        set: uv === null ? undefined : decodeFloats(uv),
-      });
-    }
-  });
-  return pieces;
 }
