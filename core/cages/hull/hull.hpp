@@ -10,11 +10,30 @@ namespace cagecast::cages {
 /// Lengths are in the space of the model.
 struct HullOptions {
   double closing = 0;        ///< Gaps narrower than twice this are bridged.
-  double offset = 0;         ///< Distance of the hull from the model.
-  std::uint32_t voxels = 0;  ///< Along the longest side of the grid.
+  double offset = 0;         ///< Distance of the hull from the model, at least.
+  std::uint32_t voxels = 0;  ///< Along the longest side of the grid: 8 to 512.
 };
 
-/// A closed surface around a mesh, at a distance, that bridges gaps and mouths: one component, the outermost.
+/// An open border of a mesh that is too wide for `HullOptions::closing` to bridge: the neck of a head without a body,
+/// the bottom of a car.
+struct Opening {
+  std::vector<std::uint32_t> loop;  ///< Vertices of the border, with the mesh on its left.
+  double width = 0;                 ///< The diagonal of the loop's bounding box.
+  std::uint32_t firstTriangle = 0;  ///< The first of the triangles that close it.
+  std::uint32_t triangleCount = 0;
+};
+
+/// A copy of a mesh whose open borders are closed, if they are wider than `width`: each by a fan of triangles about a
+/// new vertex in its middle, which come after the mesh's own. Without them a hull would line the inside of the mesh,
+/// too.
+/// @param[out] openings  If not null: what was closed, the widest first.
+TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<Opening>* openings = nullptr);
+
+/// A closed surface around a mesh, at a distance, that bridges gaps and mouths: one component, the largest, a manifold
+/// with its normals outwards and no triangle without an area. Openings wider than `closing` are closed, as by
+/// `closeOpenings`.
+/// Cost: a head at 140 voxels takes half a second and 30 MB.
+/// @param mesh  At least one triangle; positions finite.
 /// @return false if `progress` cancelled it; it is told shares from 0 to 1.
 bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progress& progress, TriangleMesh& out);
 

@@ -1,0 +1,180 @@
+#include "hull/hull.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "hull/distance_band.hpp"
+#include "hull/grid.hpp"
+#include "hull/iso_surface.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+/// Nodes beyond the hull on each side of the grid: one for the flood, one for the border, one for rounding.
+constexpr double kBorder = 3;
+constexpr std::uint32_t kLeastVoxels = 8;
+constexpr std::uint32_t kMostVoxels = 512;
+
+Grid gridAround(const TriangleMesh& mesh, double pad, std::uint32_t voxels) {
+  Vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
+  for (const Triangle3& t : mesh.triangles)
+    for (const std::uint32_t v : t) {
+      const Vec3& p = mesh.positions[v];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+  const Vec3 size = high - low + 2 * pad * Vec3{1, 1, 1};
+  const double longest = std::max({size.x, size.y, size.z});
+  const std::uint32_t count = std::min(kMostVoxels, std::max(kLeastVoxels, voxels));
+  Grid grid;
+  grid.spacing = longest / (static_cast<double>(count) - 2 * kBorder + 1);
+  const auto nodes = [&](double side) {
+    return static_cast<std::uint32_t>(std::ceil(side / grid.spacing) + 2 * kBorder);
+  };
+  grid.nx = nodes(size.x);
+  grid.ny = nodes(size.y);
+  grid.nz = nodes(size.z);
+  const double border = kBorder * grid.spacing + pad;
+  grid.origin = low - border * Vec3{1, 1, 1};
+  return grid;
+}
+
+/// Marks the nodes that a walk along the axes reaches from `start` through nodes that `open` accepts.
+template <class Open>
+std::size_t flood(const Grid& grid, std::size_t start, std::uint8_t mark, std::vector<std::uint8_t>& marks,
+                  const Open& open) {
+  std::vector<std::size_t> stack = {start};
+  marks[start] = mark;
+  std::size_t reached = 0;
+  const std::size_t row = grid.nx, layer = row * grid.ny;
+  while (!stack.empty()) {
+    const std::size_t i = stack.back();
+    stack.pop_back();
+    ++reached;
+    const std::size_t x = i % row, y = i / row % grid.ny, z = i / layer;
+    const auto visit = [&](std::size_t n) {
+      if (marks[n] == mark || !open(n)) return;
+      marks[n] = mark;
+      stack.push_back(n);
+    };
+    if (x > 0) visit(i - 1);
+    if (x + 1 < row) visit(i + 1);
+    if (y > 0) visit(i - row);
+    if (y + 1 < grid.ny) visit(i + row);
+    if (z > 0) visit(i - layer);
+    if (z + 1 < grid.nz) visit(i + layer);
+  }
+  return reached;
+}
+
+/// Where the distance passes `level` between the nodes outside and the others.
+std::vector<GridPoint> outerBorder(const Grid& grid, const DistanceBand& band, const std::vector<std::uint8_t>& outside,
+                                   double level) {
+  std::vector<GridPoint> points;
+  const std::array<std::size_t, 3> steps = {1, grid.nx, std::size_t{grid.nx} * grid.ny};
+  for (std::uint32_t z = 0; z + 1 < grid.nz; ++z)
+    for (std::uint32_t y = 0; y + 1 < grid.ny; ++y)
+      for (std::uint32_t x = 0; x + 1 < grid.nx; ++x) {
+        const std::size_t i = grid.index(x, y, z);
+        for (unsigned axis = 0; axis < 3; ++axis) {
+          const std::size_t j = i + steps[axis];
+          if (outside[i] == outside[j]) continue;
+          const auto a = static_cast<double>(band.distance[i]), b = static_cast<double>(band.distance[j]);
+          const double share = a == b ? 0.5 : std::min(1.0, std::max(0.0, (level - a) / (b - a)));
+          GridPoint point{grid.position(x, y, z), x, y, z};
+          (axis == 0 ? point.position.x : axis == 1 ? point.position.y : point.position.z) += share * grid.spacing;
+          if (share > 0.5) ++(axis == 0 ? point.x : axis == 1 ? point.y : point.z);
+          points.push_back(point);
+        }
+      }
+  return points;
+}
+
+/// Leaves one body of positive nodes without pockets in it.
+void keepLargest(const Grid& grid, std::vector<float>& values) {
+  constexpr float kTiny = 1e-6f;  // In spacings: the vertices stay next to the node that changes its sign.
+  const auto tiny = kTiny * static_cast<float>(grid.spacing);
+  std::vector<std::uint8_t> reached(grid.size(), 0);
+  flood(grid, 0, 1, reached, [&](std::size_t i) { return values[i] <= 0; });
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    if (reached[i] == 0 && values[i] <= 0) values[i] = tiny;
+  std::vector<std::uint8_t> body(grid.size(), 0);
+  std::size_t largest = 0, seed = 0;
+  const auto positive = [&](std::size_t i) { return values[i] > 0; };
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (body[i] != 0 || !positive(i)) continue;
+    const std::size_t size = flood(grid, i, 1, body, positive);
+    if (size <= largest) continue;
+    largest = size;
+    seed = i;
+  }
+  if (largest == 0) return;
+  flood(grid, seed, 2, body, positive);
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    if (body[i] == 1) values[i] = -tiny;
+}
+
+}  // namespace
+
+TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<Opening>* openings) {
+  std::vector<Opening> wide;
+  for (std::vector<std::uint32_t>& loop : boundaryLoops(mesh)) {
+    if (loop.size() < 3) continue;
+    Vec3 low = mesh.positions[loop[0]], high = low;
+    for (const std::uint32_t v : loop) {
+      const Vec3& p = mesh.positions[v];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    if (length(high - low) > width) wide.push_back({std::move(loop), length(high - low), 0, 0});
+  }
+  std::stable_sort(wide.begin(), wide.end(), [](const Opening& a, const Opening& b) { return a.width > b.width; });
+  TriangleMesh out = mesh;
+  for (Opening& opening : wide) {
+    Vec3 middle{0, 0, 0};
+    for (const std::uint32_t v : opening.loop) middle = middle + mesh.positions[v];
+    const auto centre = static_cast<std::uint32_t>(out.positions.size());
+    const std::size_t n = opening.loop.size();
+    out.positions.push_back(1 / static_cast<double>(n) * middle);
+    opening.firstTriangle = static_cast<std::uint32_t>(out.triangles.size());
+    opening.triangleCount = static_cast<std::uint32_t>(n);
+    for (std::size_t i = 0; i < n; ++i) out.triangles.push_back({centre, opening.loop[(i + 1) % n], opening.loop[i]});
+  }
+  if (openings != nullptr) *openings = std::move(wide);
+  return out;
+}
+
+bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progress& progress, TriangleMesh& out) {
+  const auto part = [&](float from, float to) -> Progress {
+    if (!progress) return {};
+    return
+        [&progress, from, to](float share, const char* stage) { return progress(from + (to - from) * share, stage); };
+  };
+  // Dilated by `outwards`, what remains is then eroded by `inwards`. The difference is the offset.
+  const double outwards = std::max(options.closing, options.offset);
+  const double inwards = outwards - options.offset;
+  if (progress && !progress(0, "hull")) return false;
+  const TriangleMesh closed = closeOpenings(mesh, 2 * options.closing);
+  const Grid grid = gridAround(closed, outwards, options.voxels);
+  // Beyond both levels by the diagonal of a cell, so that the nodes on either side of them have distances.
+  const double beyond = 1.8 * grid.spacing;
+  DistanceBand band;
+  if (!distanceToMesh(closed, grid, outwards + beyond, part(0.0f, 0.6f), band)) return false;
+  std::vector<std::uint8_t> outside(grid.size(), 0);
+  const auto level = static_cast<float>(outwards);
+  flood(grid, 0, 1, outside, [&](std::size_t i) { return band.distance[i] > level; });
+  if (progress && !progress(0.65f, "hull")) return false;
+  const std::vector<GridPoint> border = outerBorder(grid, band, outside, outwards);
+  if (!distanceToPoints(border, grid, inwards + beyond, part(0.65f, 0.9f), band)) return false;
+  const auto depth = static_cast<float>(inwards);
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    band.distance[i] = (outside[i] != 0 ? -band.distance[i] : band.distance[i]) - depth;
+  keepLargest(grid, band.distance);
+  if (progress && !progress(0.95f, "hull")) return false;
+  out = isoSurface(grid, band.distance);
+  return !progress || progress(1, "hull");
+}
+
+}  // namespace cagecast::cages

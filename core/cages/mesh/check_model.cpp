@@ -1,0 +1,113 @@
+#include "mesh/check_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "geometry/triangle.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+/// Farthest a coordinate may be from the origin, in diagonals of the mesh: what `Surface` can take.
+constexpr double kMaxProportion = 1e6;
+
+std::string element(const char* name, const char* field, std::size_t i) {
+  return std::string(name) + "." + field + "[" + std::to_string(i) + "]";
+}
+
+std::string size(std::size_t count, const char* what) { return std::to_string(count) + " " + what; }
+
+/// The sentence about the arrays' sizes, or nothing.
+std::string sizesOf(const MeshView& mesh, const std::string& name) {
+  const std::size_t vertices = mesh.positions.size() / 3, triangles = mesh.indices.size() / 3;
+  if (mesh.positions.empty()) return name + " has no vertices";
+  if (mesh.indices.empty()) return name + " has no triangles";
+  if (mesh.positions.size() % 3 != 0)
+    return name + ".positions has " + size(mesh.positions.size(), "numbers, not three per vertex");
+  if (mesh.indices.size() % 3 != 0)
+    return name + ".indices has " + size(mesh.indices.size(), "numbers, not three per triangle");
+  if (triangles > kMaxModelTriangles)
+    return name + " has " + size(triangles, "triangles, more than ") + std::to_string(kMaxModelTriangles) +
+           "; simplify it first";
+  if (vertices > kMaxModelVertices)
+    return name + " has " + size(vertices, "vertices, more than ") + std::to_string(kMaxModelVertices) +
+           "; simplify it first";
+  if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * vertices)
+    return name + ".uvs has " + size(mesh.uvs.size(), "numbers for ") + size(vertices, "vertices");
+  if (!mesh.groups.empty() && mesh.groups.size() != vertices)
+    return name + ".groups has " + size(mesh.groups.size(), "numbers for ") + size(vertices, "vertices");
+  return {};
+}
+
+/// The sentence about the numbers in the arrays, or nothing.
+std::string valuesOf(const MeshView& mesh, const char* name) {
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    if (!std::isfinite(mesh.positions[i])) return element(name, "positions", i) + " is not a finite number";
+  for (std::size_t i = 0; i < mesh.uvs.size(); ++i)
+    if (!std::isfinite(mesh.uvs[i])) return element(name, "uvs", i) + " is not a finite number";
+  const std::size_t vertices = mesh.positions.size() / 3;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    if (mesh.indices[i] >= vertices)
+      return element(name, "indices", i) + " = " + std::to_string(mesh.indices[i]) + ", but there are " +
+             size(vertices, "vertices");
+  return {};
+}
+
+/// The sentence about its size and place in space, or nothing.
+std::string extentOf(const MeshView& mesh, const std::string& name) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  bool hasArea = false;
+  for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+    const float* corners[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = &mesh.positions[std::size_t{3} * mesh.indices[t + i]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], static_cast<double>(corners[i][k]));
+        high[k] = std::max(high[k], static_cast<double>(corners[i][k]));
+      }
+    }
+    hasArea = hasArea || length(areaNormal(corners[0], corners[1], corners[2])) > 0;
+  }
+  if (!hasArea) return name + " has no triangle with an area";
+  const double diagonal = length(Vec3{high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::max(-low[k], high[k]) > kMaxProportion * diagonal)
+      return name + " is more than a million times its size away from the origin";
+  return {};
+}
+
+}  // namespace
+
+Outcome checkMesh(const MeshView& mesh, const char* name, Problem problem) {
+  std::string message = sizesOf(mesh, name);
+  if (message.empty()) message = valuesOf(mesh, name);
+  if (message.empty()) message = extentOf(mesh, name);
+  if (message.empty()) return {};
+  return {problem, std::move(message)};
+}
+
+Outcome checkModel(const Model& model) {
+  if (Outcome outcome = checkMesh(model.mesh, "model", Problem::badModel); !outcome.ok()) return outcome;
+  const auto fault = [](std::string message) { return Outcome{Problem::badModel, std::move(message)}; };
+  const std::size_t triangles = model.mesh.indices.size() / 3;
+  if (!model.marks.empty() && model.marks.size() != triangles)
+    return fault("model.marks has " + size(model.marks.size(), "numbers for ") + size(triangles, "triangles"));
+  if (!model.parts.empty())
+    for (std::size_t v = 0; v < model.mesh.groups.size(); ++v)
+      if (model.mesh.groups[v] >= model.parts.size())
+        return fault(element("model", "groups", v) + " = " + std::to_string(model.mesh.groups[v]) + ", but there are " +
+                     size(model.parts.size(), "parts"));
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const Joint& joint = model.joints[j];
+    for (const float x : joint.position)
+      if (!std::isfinite(x)) return fault(element("model", "joints", j) + ".position is not finite");
+    if (joint.parent < -1 || joint.parent >= static_cast<std::int64_t>(model.joints.size()))
+      return fault(element("model", "joints", j) + ".parent = " + std::to_string(joint.parent) + ", but there are " +
+                   size(model.joints.size(), "joints"));
+  }
+  return {};
+}
+
+}  // namespace cagecast::cages
