@@ -120,12 +120,13 @@ async function buildPackage() {
   if (shipped) {
     await bundleEntries(bundle);
     await bundleCommand(bundle);
-    cpSync(at('build', preset, 'wasm/cagecast.wasm'), join(fresh, 'cagecast.wasm'));
-    chmodSync(join(fresh, 'cagecast.wasm'), 0o644);
+    for (const name of ['cagecast.wasm', 'cagecast-cages.wasm']) {
+      cpSync(at('build', preset, 'wasm', name), join(fresh, name));
+      chmodSync(join(fresh, name), 0o644);
+    }
     const tsc = at('node_modules/@typescript/native/bin/tsc');
     run(process.execPath, [tsc, '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
-    const nanoflann = at('build', preset, 'core/nanoflann/nanoflann.hpp');
-    writeFileSync(join(fresh, 'THIRD-PARTY-NOTICES.txt'), noticesOf(root, bundled, nanoflann));
+    writeFileSync(join(fresh, 'THIRD-PARTY-NOTICES.txt'), noticesOf(root, bundled, at('build', preset)));
   }
   rmSync(out, { recursive: true, force: true });
   renameSync(fresh, out);
@@ -135,19 +136,36 @@ async function buildPackage() {
 async function bundleEntries(bundle) {
   // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
   const shared = {
-    external: ['#spawn', './index.js', 'three'],
-    plugins: [wasmModules('wasm-file.ts', './index.js')],
+    external: ['#spawn', '#spawn-cages', './index.js', './cages.js', 'three'],
+    plugins: [wasmModules('wasm-file.ts', { index: './index.js' })],
   };
-  const file = { ...shared, define: { ...common.define, CAGECAST_WASM: JSON.stringify('./cagecast.wasm') } };
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager });
-  await bundle('core/read-wasm.ts', 'read-wasm.js', 'neutral', file);
-  await bundle('core/read-wasm-node.ts', 'read-wasm-node.js', 'node', file);
-  for (const entry of ['inspect', 'three', 'gltf', 'worker'])
+  await bundle('core/read-wasm.ts', 'read-wasm.js', 'neutral', reading('cagecast'));
+  await bundle('core/read-wasm-node.ts', 'read-wasm-node.js', 'node', reading('cagecast'));
+  for (const entry of ['inspect', 'three', 'gltf', 'worker', 'cages'])
     await bundle(`${entry}/index.ts`, `${entry}.js`, 'neutral', shared);
   await bundle('worker/spawn.ts', 'spawn.js', 'neutral', shared);
   await bundle('worker/spawn-node.ts', 'spawn-node.js', 'node', shared);
   await bundle('worker/thread.ts', 'worker-thread.js', 'neutral', shared);
   await bundle('worker/thread-node.ts', 'worker-thread-node.js', 'node', shared);
+  await bundleCages(bundle, shared);
+}
+
+/** The entries that make cages have a WebAssembly module of their own; their workers are files that need no other script. */
+async function bundleCages(bundle, shared) {
+  const alone = (read) => ({ ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts', { read })] });
+  await bundle('cages/spawn.ts', 'spawn-cages.js', 'neutral', shared);
+  await bundle('cages/spawn-node.ts', 'spawn-cages-node.js', 'node', shared);
+  await bundle('cages/thread.ts', 'cages-thread.js', 'neutral', alone('read-wasm.ts'));
+  await bundle('cages/thread-node.ts', 'cages-thread-node.js', 'node', alone('read-wasm-node.ts'));
+  await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', alone());
+  await bundle('core/read-wasm.ts', 'read-cages.js', 'neutral', reading('cagecast-cages'));
+  await bundle('core/read-wasm-node.ts', 'read-cages-node.js', 'node', reading('cagecast-cages'));
+}
+
+/** Options for a script that reads a WebAssembly file beside it. */
+function reading(name) {
+  return { define: { ...common.define, CAGECAST_WASM: JSON.stringify(`./${name}.wasm`) } };
 }
 
 async function bundleCommand(bundle) {
@@ -172,19 +190,25 @@ async function bundleCommand(bundle) {
  * Resolves the names that stand for what the C++ build makes.
  * @param wasm   How the package comes by its WebAssembly.
  * @param index  The file that importers of the package's index share; without, it is bundled.
+ * @param read   What reads the module that makes cages; without, a file of its own.
  */
-function wasmModules(wasm, index) {
+function wasmModules(wasm, { index, read } = {}) {
   const files = {
     '#glue': at('build', preset, 'wasm/cagecast.js'),
+    '#cages-glue': at('build', preset, 'wasm/cagecast-cages.js'),
     '#wasm-text': at('build', preset, 'wasm/cagecast.wasm'),
     '#wasm': at('wasm/src/core', wasm),
+    ...(read && { '#read-cages': at('wasm/src/core', read) }),
   };
   return {
     name: 'wasm-modules',
     setup(build) {
       build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
-      build.onResolve({ filter: /^#read-wasm$/ }, ({ path }) => ({ path, external: true }));
-      if (index) build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
+      build.onResolve({ filter: /^#read-(wasm|cages)$/ }, ({ path }) => ({ path, external: true }));
+      if (index) {
+        build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
+        build.onResolve({ filter: /^\.\.\/cages\/index\.js$/ }, () => ({ path: './cages.js', external: true }));
+      }
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
         contents: readFileSync(path).toString('latin1'),
         loader: 'text',

@@ -8,9 +8,9 @@ const rule = `\n${'-'.repeat(80)}\n\n`;
 /**
  * @param {string} root  The repository.
  * @param {Iterable<string>} inputs  Files that were bundled, from the repository on.
- * @param {string} nanoflann  nanoflann.hpp, which is compiled into the WebAssembly module.
+ * @param {string} build  The folder of the build, with what is compiled into the WebAssembly modules.
  */
-export function noticesOf(root, inputs, nanoflann) {
+export function noticesOf(root, inputs, build) {
   const packages = new Set();
   for (const path of inputs) {
     const start = path.lastIndexOf('node_modules/');
@@ -18,11 +18,14 @@ export function noticesOf(root, inputs, nanoflann) {
     const [scope, name] = path.slice(start + 'node_modules/'.length).split('/');
     packages.add(`${path.slice(0, start)}node_modules/${scope.startsWith('@') ? `${scope}/${name}` : scope}`);
   }
-  const header = readFileSync(nanoflann, 'utf8');
+  const header = readFileSync(join(build, 'core/nanoflann/nanoflann.hpp'), 'utf8');
+  const meshoptimizer = readFileSync(join(build, '_deps/meshoptimizer-src/LICENSE.md'), 'utf8');
   const notices = [...packages].sort().map((folder) => noticeOf(join(root, folder)));
   return `Cagecast contains the following third-party software.\n${rule}${[
     ...notices,
-    `nanoflann (in the WebAssembly module)\n\n${header.slice(header.indexOf('/*'), header.indexOf('*/') + 2)}\n`,
+    `nanoflann (in the WebAssembly modules)\n\n${header.slice(header.indexOf('/*'), header.indexOf('*/') + 2)}\n`,
+    `meshoptimizer 0.22 (in cagecast-cages.wasm, https://github.com/zeux/meshoptimizer)\n\n${meshoptimizer.trim()}\n`,
+    `Eigen 3.4 (in cagecast-cages.wasm)\n\nMozilla Public License 2.0, https://www.mozilla.org/MPL/2.0/. Unchanged; the source is at\nhttps://eigen.tuxfamily.org and in Debian's package libeigen3-dev.\n`,
   ].join(rule)}`;
 }
 

@@ -1,5 +1,7 @@
 #include "mesh/part_names.hpp"
 
+#include <algorithm>
+
 namespace cagecast::cages {
 
 namespace {
@@ -33,11 +35,13 @@ std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std
   std::vector<bool> out(parts.size(), false);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::string_view name = parts[i];
-    const std::size_t slash = name.find('/');
     for (const std::string& pattern : patterns) {
       out[i] = out[i] || matches(name, pattern);
-      if (slash == std::string_view::npos) continue;
-      out[i] = out[i] || matches(name.substr(0, slash), pattern) || matches(name.substr(slash + 1), pattern);
+      for (std::size_t begin = 0; begin < name.size() && !out[i];) {
+        const std::size_t end = std::min(name.find('/', begin), name.size());
+        out[i] = matches(name.substr(begin, end - begin), pattern);
+        begin = end + 1;
+      }
     }
   }
   return out;

@@ -12,8 +12,8 @@ namespace cagecast::cages {
 /// Takes time in proportion to the product of the lengths at worst, whatever the pattern.
 bool matches(std::string_view name, std::string_view pattern) noexcept;
 
-/// Whether each part's name matches one of the patterns. A part is called "node/material" or by one of them alone:
-/// each side of a slash is matched on its own, too.
+/// Whether each part's name matches one of the patterns. A part may have several names, "node/mesh/material": what is
+/// between slashes is matched on its own, too.
 std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns);
 
 /// Whether each triangle of a model belongs to one of some parts.

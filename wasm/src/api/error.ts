@@ -8,8 +8,18 @@ import type { CoreCode } from '../generated/codes.js';
  * - `unsupported`: this host cannot run the WebAssembly module.
  * - `aborted`: the worker was terminated before the call ended.
  * - `internal`: a defect of Cagecast; please report it.
+ * - `badModel`, `badTemplate`, `badLandmarks`: `cagecast/cages` cannot use the target, the template or the landmarks.
  */
-export type Code = CoreCode | 'badArgument' | 'notInitialised' | 'unsupported' | 'aborted' | 'internal';
+export type Code =
+  | CoreCode
+  | 'badArgument'
+  | 'notInitialised'
+  | 'unsupported'
+  | 'aborted'
+  | 'internal'
+  | 'badModel'
+  | 'badTemplate'
+  | 'badLandmarks';
 
 /** The only class of errors that Cagecast throws. Its message names the function, the argument, the value and the limit. */
 export class CagecastError extends Error {

@@ -27,7 +27,7 @@ const noGroups = new Uint32Array(0);
  * Checks the types of a mesh's arrays and adds empty ones for those that are missing. The core checks the values.
  * @throws {CagecastError} `badArgument`
  */
-export function checkMesh(fn: string, name: 'cage' | 'target', mesh: unknown): CheckedMesh {
+export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'template', mesh: unknown): CheckedMesh {
   if (typeof mesh !== 'object' || mesh === null) {
     throw new CagecastError('badArgument', `${fn}: ${name} is ${show(mesh)}, not a mesh { positions, indices, … }`);
   }

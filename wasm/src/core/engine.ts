@@ -2,6 +2,7 @@ import createModule from '#glue';
 import { compile } from '#wasm';
 import { CagecastError, type Code } from '../api/error.js';
 import type { SegmentStats } from '../api/result.js';
+import { instantiate, isLackOfMemory, unsupported } from './instantiate.js';
 import { type Answer, type CoreModule, type CoreSegment, nameOf, type Workspace } from './module.js';
 
 let starting: Promise<void> | undefined;
@@ -14,30 +15,9 @@ export interface Core {
   workspace: Workspace;
 }
 
-/** Makes a fresh instance of the compiled module: a few milliseconds. */
-function instantiate(module: WebAssembly.Module): Core {
-  const glue: Partial<CoreModule> = {};
-  let failure: unknown;
-  // The glue registers the functions synchronously; the promise that it returns is for the same object.
-  createModule(
-    Object.assign(glue, {
-      instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
-        let made: WebAssembly.Instance;
-        try {
-          made = new WebAssembly.Instance(module, imports);
-        } catch (cause) {
-          // The glue keeps it to itself.
-          throw (failure = cause);
-        }
-        receive(made);
-        return made.exports;
-      },
-    }),
-  ).then(undefined, () => {});
-  if (failure !== undefined) throw failure;
-  if (glue.Workspace === undefined)
-    throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
-  return { module: glue as CoreModule, workspace: new glue.Workspace() };
+function makeCore(module: WebAssembly.Module): Core {
+  const core = instantiate<CoreModule>(createModule, module, 'Workspace');
+  return { module: core, workspace: new core.Workspace() };
 }
 
 /**
@@ -48,17 +28,14 @@ function instantiate(module: WebAssembly.Module): Core {
 export function init(): Promise<void> {
   starting ??= start().catch((cause: unknown) => {
     starting = undefined;
-    if (cause instanceof CagecastError) throw cause;
-    throw new CagecastError('unsupported', `init: this host cannot run the WebAssembly module (${String(cause)})`, 0, {
-      cause,
-    });
+    throw unsupported(cause);
   });
   return starting;
 }
 
 async function start(): Promise<void> {
   const module = await compile();
-  instance = instantiate(module);
+  instance = makeCore(module);
   compiled = module;
 }
 
@@ -74,14 +51,11 @@ export function useCore<A>(fn: string, use: (core: Core) => A): A {
     throw new CagecastError('notInitialised', `${fn}: Cagecast is not ready; await init() once before the first call`);
   }
   try {
-    instance ??= instantiate(compiled);
+    instance ??= makeCore(compiled);
     return use(instance);
   } catch (cause) {
     dropInstance();
-    // RangeError: an array for JavaScript could not be had. "Aborted", or a number (an exception of C++): C++ could not
-    // allocate where it cannot say so.
-    const memory = cause instanceof RangeError || typeof cause === 'number' || String(cause).includes('Aborted');
-    throw memory
+    throw isLackOfMemory(cause)
       ? new CagecastError('outOfMemory', `${fn}: not enough memory for this target and cage`, 0, { cause })
       : new CagecastError('internal', `${fn}: the WebAssembly module failed (${String(cause)})`, 0, { cause });
   }

@@ -5,6 +5,11 @@ declare module '#glue' {
   export default function createModule(module: object): PromiseLike<unknown>;
 }
 
+/** The glue that Emscripten makes of cages_bindings.cpp. */
+declare module '#cages-glue' {
+  export default function createModule(module: object): PromiseLike<unknown>;
+}
+
 /** The WebAssembly module, one character (0 to 255) for each byte. */
 declare module '#wasm-text' {
   const text: string;

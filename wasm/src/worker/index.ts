@@ -5,7 +5,6 @@
  * @module cagecast/worker
  */
 import { spawn } from '#spawn';
-import { show } from '../api/error.js';
 import {
   CagecastError,
   type Classification,
@@ -20,34 +19,16 @@ import {
   type TransferOptions,
   type TransferResult,
 } from '../index.js';
-import type { Reply, Request, Thread } from './protocol.js';
+import { type CallOptions, WorkerQueue } from './queue.js';
 
 export * from '../index.js';
+export type { CallOptions };
 
-/** Options of every call. */
-export interface CallOptions {
-  /** Cancels the call: its promise rejects with the signal's reason, and running work ends at once. */
-  signal?: AbortSignal | undefined;
-  /** Transfers the arrays of the arguments to the worker instead of copying them; the caller's arrays are empty afterwards. */
-  move?: boolean | undefined;
-}
-
-interface Job {
-  request: Request;
-  move: boolean;
-  settle(): void;
-  resolve(result: unknown): void;
-  reject(error: unknown): void;
-}
-
-let thread: Thread | undefined;
-let lastId = 0;
-/** The first job is running. */
-const jobs: Job[] = [];
+const queue = new WorkerQueue(spawn);
 
 /** Starts the worker before it is needed. Not necessary: every call does it. @throws {CagecastError} `unsupported` */
 export function init(): Promise<void> {
-  return call('init', [], {});
+  return queue.call('init', [], {});
 }
 
 /** As `transfer` of `cagecast`, off the main thread. There is no `reuse`: all arrays are new. */
@@ -96,119 +77,14 @@ export function presetOptions(preset?: Preset, options: CallOptions = {}): Promi
 
 /** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
 export function terminate(): void {
-  stop();
-  for (const job of jobs.splice(0)) {
-    job.settle();
-    job.reject(new CagecastError('aborted', `${job.request.fn}: the worker was terminated`));
-  }
+  queue.terminate();
 }
 
-function withOptions<T>(fn: Request['fn'], args: unknown[], options: CallOptions): Promise<T> {
-  if (typeof options !== 'object' || options === null) return call(fn, [...args, options], {});
-  const { signal, move, ...rest } = options;
-  const wrong = (text: string) => Promise.reject(new CagecastError('badOption', `${fn}: options.${text}`));
-  if (signal !== undefined && typeof signal?.addEventListener !== 'function')
-    return wrong(`signal is ${show(signal)}, not an AbortSignal`);
-  if (move !== undefined && typeof move !== 'boolean') return wrong(`move is ${show(move)}, not true or false`);
+function withOptions<T>(fn: string, args: unknown[], options: CallOptions & { reuse?: unknown }): Promise<T> {
   // The worker would overwrite its own copy of it.
-  if ('reuse' in rest && rest.reuse !== undefined)
+  if (options?.reuse !== undefined)
     return Promise.reject(
       new CagecastError('badOption', `${fn}: options.reuse is not for the worker, whose results are always new arrays`),
     );
-  return call(fn, [...args, rest], { signal, move });
-}
-
-function call<T>(fn: Request['fn'], args: unknown[], { signal, move = false }: CallOptions): Promise<T> {
-  return new Promise<T>((resolve, reject) => {
-    if (signal?.aborted) return reject(signal.reason);
-    const giveUp = () => {
-      const place = jobs.indexOf(job);
-      if (place < 0) return;
-      jobs.splice(place, 1);
-      job.settle();
-      reject(signal?.reason);
-      if (place > 0) return;
-      // A call into WebAssembly cannot be interrupted, but its worker can be ended.
-      stop();
-      next();
-    };
-    const job: Job = {
-      request: { id: ++lastId, fn, args },
-      move,
-      settle: () => signal?.removeEventListener('abort', giveUp),
-      resolve: (result) => resolve(result as T),
-      reject,
-    };
-    signal?.addEventListener('abort', giveUp, { once: true });
-    jobs.push(job);
-    if (jobs.length === 1) next();
-  });
-}
-
-/** Hands the first job to the worker. */
-function next(): void {
-  const job = jobs[0];
-  if (job === undefined) {
-    thread?.setBusy(false);
-    return;
-  }
-  try {
-    thread ??= spawn(onReply, onFailure);
-  } catch (cause) {
-    const message = `${job.request.fn}: this host cannot start the worker (${String(cause)})`;
-    finish(job, new CagecastError('unsupported', message, 0, { cause }));
-    return;
-  }
-  try {
-    thread.setBusy(true);
-    thread.post(job.request, job.move ? buffersOf(job.request.args) : []);
-  } catch (cause) {
-    // An argument cannot be sent, such as a function or an array that was transferred before.
-    finish(
-      job,
-      new CagecastError(
-        'badArgument',
-        `${job.request.fn}: the arguments cannot be sent to the worker (${String(cause)})`,
-        0,
-        { cause },
-      ),
-    );
-  }
-}
-
-function onReply(reply: Reply): void {
-  const job = jobs[0];
-  if (job?.request.id !== reply.id) return;
-  if ('error' in reply) finish(job, new CagecastError(reply.error.code, reply.error.message, reply.error.at));
-  else finish(job, undefined, reply.result);
-}
-
-function onFailure(message: string): void {
-  stop();
-  const job = jobs[0];
-  if (job) finish(job, new CagecastError('unsupported', `${job.request.fn}: the worker failed (${message})`));
-}
-
-function finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
-  jobs.shift();
-  job.settle();
-  if (error) job.reject(error);
-  else job.resolve(result);
-  next();
-}
-
-function stop(): void {
-  thread?.terminate();
-  thread = undefined;
-}
-
-function buffersOf(args: unknown[]): ArrayBuffer[] {
-  const values = args.flatMap((arg) =>
-    ArrayBuffer.isView(arg) ? [arg] : typeof arg === 'object' && arg !== null ? Object.values(arg) : [],
-  );
-  const buffers = values.filter((value) => ArrayBuffer.isView(value)).map((view) => view.buffer);
-  // An empty buffer may have been transferred before. If it is listed, it arrives empty; if it is copied, the call throws.
-  return [...new Set(buffers)].filter(
-    (buffer): buffer is ArrayBuffer => buffer instanceof ArrayBuffer && buffer.byteLength > 0,
-  );
+  return queue.withOptions(fn, args, options);
 }

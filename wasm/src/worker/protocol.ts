@@ -1,16 +1,17 @@
 import type { Code } from '../index.js';
 
-/** A call for the worker: a function of the package by name, and its arguments. */
+/** A call for a worker: a function by name, and its arguments. */
 export interface Request {
   id: number;
-  fn: 'init' | 'transfer' | 'project' | 'classify' | 'splitVertices' | 'cutBorders' | 'presetOptions';
+  fn: string;
   args: unknown[];
 }
 
-/** The answer to a call. */
+/** The answer to a call, or, before it, how far the call is: a share 0..1, and what it does. */
 export type Reply =
   | { id: number; result: unknown }
-  | { id: number; error: { code: Code; message: string; at: number } };
+  | { id: number; error: { code: Code; message: string; at: number } }
+  | { id: number; progress: [share: number, stage: string] };
 
 /** A worker on some host. */
 export interface Thread {

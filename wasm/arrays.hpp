@@ -1,0 +1,69 @@
+#pragma once
+
+#include <emscripten/val.h>
+#include <cagecast/array.hpp>
+#include <cagecast/mesh.hpp>
+
+#include <type_traits>
+
+/// How arrays and meshes cross from JavaScript to C++ and back.
+namespace cagecast::bindings {
+
+using emscripten::val;
+
+/// The element type that a typed array has for T: the number behind an enumeration.
+template <typename T, bool kIsEnum = std::is_enum_v<T>>
+struct ElementOf {
+  using type = T;
+};
+template <typename T>
+struct ElementOf<T, true> {
+  using type = std::underlying_type_t<T>;
+};
+
+/// A typed array that shows C++ memory. It is valid until the next call into C++.
+template <typename T>
+val view(const Array<T>& array) {
+  return val(
+      emscripten::typed_memory_view(array.size(), reinterpret_cast<const typename ElementOf<T>::type*>(array.data())));
+}
+
+/// Copies a typed array into C++ memory; an undefined one is empty.
+/// @return false if there is not enough memory.
+template <typename T>
+bool copyArray(const val& source, Array<T>& out) {
+  if (!out.reset(source.isUndefined() ? 0 : source["length"].as<std::size_t>())) return false;
+  if (!out.empty()) view(out).template call<void>("set", source);
+  return true;
+}
+
+/// Copies an array of records or enumeration values, one by one.
+template <typename T>
+bool copyRecords(const val& source, Array<T>& out) {
+  if (!out.reset(source["length"].as<std::size_t>())) return false;
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = source[i].as<T>();
+  return true;
+}
+
+template <typename T>
+val records(const Array<T>& array) {
+  val out = val::array();
+  for (std::size_t i = 0; i < array.size(); ++i) out.set(i, array[i]);
+  return out;
+}
+
+/// The arrays of a mesh, copied from JavaScript.
+struct Mesh {
+  Array<float> positions;
+  Array<std::uint32_t> indices;
+  Array<float> uvs;
+  Array<std::uint32_t> groups;
+
+  bool copy(const val& mesh) {
+    return copyArray(mesh["positions"], positions) && copyArray(mesh["indices"], indices) &&
+           copyArray(mesh["uvs"], uvs) && copyArray(mesh["groups"], groups);
+  }
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
+};
+
+}  // namespace cagecast::bindings

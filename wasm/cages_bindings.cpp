@@ -1,0 +1,189 @@
+/// The JavaScript interface of the library that makes and fits cages, made with embind: copies arguments in, calls a
+/// function, and copies what it returns out. Nothing is decided here.
+
+#include <emscripten/bind.h>
+#include <emscripten/val.h>
+#include <cagecast/cages.hpp>
+
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+
+namespace {
+
+using namespace cagecast::bindings;
+using namespace cagecast::cages;
+
+/// A typed array of its own.
+template <typename T>
+val copied(const std::vector<T>& values) {
+  return val(emscripten::typed_memory_view(values.size(), values.data())).template call<val>("slice");
+}
+
+template <typename T>
+val listed(const std::vector<T>& values) {
+  val out = val::array();
+  for (std::size_t i = 0; i < values.size(); ++i) out.set(i, values[i]);
+  return out;
+}
+
+template <typename T>
+std::vector<T> listOf(const val& source) {
+  std::vector<T> out(source["length"].as<std::size_t>());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = source[i].as<T>();
+  return out;
+}
+
+/// How a call ended, for JavaScript.
+val ending(const Outcome& outcome) {
+  val out = val::object();
+  out.set("problem", outcome.problem);
+  out.set("message", outcome.message);
+  return out;
+}
+
+const Outcome kOutOfMemory{Problem::badModel, "not enough memory for this target"};
+
+/// A model, copied from JavaScript.
+struct ModelArrays {
+  Mesh mesh;
+  cagecast::Array<std::uint8_t> marks;
+  Model model;
+
+  bool copy(const val& source) {
+    if (!mesh.copy(source["mesh"]) || !copyArray(source["marks"], marks)) return false;
+    model = {mesh.view(), listOf<std::string>(source["parts"]), listOf<Joint>(source["joints"]), marks};
+    return true;
+  }
+};
+
+Progress progressTo(const val& report) {
+  return [&report](float share, const char* stage) { return report(share, std::string(stage)).as<bool>(); };
+}
+
+void setCage(val& out, const Cage& cage) {
+  out.set("positions", copied(cage.positions));
+  out.set("uvs", copied(cage.uvs));
+  out.set("indices", copied(cage.indices));
+  out.set("landmarks", listed(cage.landmarks));
+}
+
+val makeCageCall(const val& target, const MakeOptions& options, const val& report) {
+  ModelArrays arrays;
+  if (!arrays.copy(target)) return ending(kOutOfMemory);
+  Cage cage;
+  const Outcome outcome = makeCage(arrays.model, options, progressTo(report), cage);
+  val out = ending(outcome);
+  if (outcome.ok()) setCage(out, cage);
+  return out;
+}
+
+val fitCageCall(const val& from, const val& target, const val& landmarks, const FitOptions& options,
+                const val& report) {
+  ModelArrays arrays;
+  Mesh mesh;
+  if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return ending(kOutOfMemory);
+  const Template source{mesh.view(), listOf<Landmark>(from["landmarks"])};
+  Cage cage;
+  FitReport fit;
+  const Outcome outcome =
+      fitCage(source, arrays.model, listOf<Landmark>(landmarks), options, progressTo(report), cage, fit);
+  val out = ending(outcome);
+  if (!outcome.ok()) return out;
+  setCage(out, cage);
+  out.set("used", listed(fit.used));
+  out.set("missing", listed(fit.missing));
+  out.set("notes", listed(fit.notes));
+  return out;
+}
+
+val findLandmarksCall(const val& target, const val& report) {
+  ModelArrays arrays;
+  if (!arrays.copy(target)) return ending(kOutOfMemory);
+  FoundLandmarks found;
+  const Outcome outcome = findLandmarks(arrays.model, progressTo(report), found);
+  val out = ending(outcome);
+  if (!outcome.ok()) return out;
+  out.set("landmarks", listed(found.landmarks));
+  out.set("missing", listed(found.missing));
+  out.set("rig", found.rig);
+  out.set("kind", found.kind);
+  return out;
+}
+
+val refineCageCall(const val& cage, const val& target, const RefineOptions& options, const val& report) {
+  ModelArrays arrays;
+  Mesh mesh;
+  if (!arrays.copy(target) || !mesh.copy(cage)) return ending(kOutOfMemory);
+  Cage refined;
+  const Outcome outcome = refineCage(mesh.view(), arrays.model, options, progressTo(report), refined);
+  val out = ending(outcome);
+  if (outcome.ok()) setCage(out, refined);
+  return out;
+}
+
+template <typename Options>
+val patternsOf(const Options& options) {
+  return listed(options.exclude);
+}
+template <typename Options>
+void setPatterns(Options& options, const val& patterns) {
+  options.exclude = listOf<std::string>(patterns);
+}
+
+MakeOptions makeOptions() { return {}; }
+FitOptions fitOptions() { return {}; }
+RefineOptions refineOptions() { return {}; }
+
+}  // namespace
+
+EMSCRIPTEN_BINDINGS(cagecast_cages) {
+  using namespace emscripten;
+
+  enum_<Kind>("Kind")
+      .value("automatic", Kind::automatic)
+      .value("head", Kind::head)
+      .value("body", Kind::body)
+      .value("prop", Kind::prop);
+  // Named as the codes of errors in JavaScript.
+  enum_<Problem>("Problem")
+      .value("none", Problem::none)
+      .value("badModel", Problem::badModel)
+      .value("badTemplate", Problem::badTemplate)
+      .value("badLandmarks", Problem::badLandmarks)
+      .value("badOption", Problem::badOptions)
+      .value("aborted", Problem::cancelled);
+
+  value_array<Position>("Position")
+      .element(emscripten::index<0>())
+      .element(emscripten::index<1>())
+      .element(emscripten::index<2>());
+  value_object<Landmark>("Landmark")
+      .field("name", &Landmark::name)
+      .field("position", &Landmark::position)
+      .field("confidence", &Landmark::confidence);
+  value_object<Joint>("Joint")
+      .field("name", &Joint::name)
+      .field("position", &Joint::position)
+      .field("parent", &Joint::parent);
+  value_object<MakeOptions>("MakeOptions")
+      .field("kind", &MakeOptions::kind)
+      .field("exclude", &patternsOf<MakeOptions>, &setPatterns<MakeOptions>)
+      .field("triangles", &MakeOptions::triangles)
+      .field("closing", &MakeOptions::closing)
+      .field("offset", &MakeOptions::offset)
+      .field("voxels", &MakeOptions::voxels);
+  value_object<FitOptions>("FitOptions")
+      .field("kind", &FitOptions::kind)
+      .field("exclude", &patternsOf<FitOptions>, &setPatterns<FitOptions>);
+  value_object<RefineOptions>("RefineOptions").field("reach", &RefineOptions::reach);
+
+  function("makeOptions", &makeOptions);
+  function("fitOptions", &fitOptions);
+  function("refineOptions", &refineOptions);
+  function("makeCage", &makeCageCall);
+  function("fitCage", &fitCageCall);
+  function("findLandmarks", &findLandmarksCall);
+  function("refineCage", &refineCageCall);
+}

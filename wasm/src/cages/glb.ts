@@ -1,0 +1,58 @@
+import type { Cage } from './types.js';
+
+/** What a GLB's node has in its `extras` if its mesh is a cage, as `cageGlb` writes it: docs/cages.md describes the format. */
+export interface CageExtras {
+  landmarks: Cage['landmarks'];
+  holes: Cage['holes'];
+  kind: Cage['kind'];
+}
+
+/**
+ * Writes a cage as a GLB file: one node named `cage`, with landmarks, holes and kind in its `extras`. So it is a template for fits.
+ * @param cage  `landmarks`, `holes` and `kind` may be missing.
+ */
+export function cageGlb(
+  cage: Pick<Cage, 'positions' | 'uvs' | 'indices'> & Partial<CageExtras>,
+): Uint8Array<ArrayBuffer> {
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  const min = [Infinity, Infinity, Infinity];
+  const max = [-Infinity, -Infinity, -Infinity];
+  positions.forEach((x, i) => {
+    min[i % 3] = Math.min(min[i % 3]!, x);
+    max[i % 3] = Math.max(max[i % 3]!, x);
+  });
+  const arrays = [positions, uvs, indices];
+  let end = 0;
+  const bufferViews = arrays.map(({ byteLength }, a) => {
+    const byteOffset = end;
+    end += byteLength;
+    return { buffer: 0, byteOffset, byteLength, target: a < 2 ? 34962 : 34963 };
+  });
+  const json = {
+    asset: { version: '2.0', generator: `Cagecast ${CAGECAST_VERSION}` },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ name: 'cage', mesh: 0, extras: { landmarks, holes, kind } satisfies CageExtras }],
+    meshes: [{ name: 'cage', primitives: [{ attributes: { POSITION: 0, TEXCOORD_0: 1 }, indices: 2 }] }],
+    accessors: [
+      { bufferView: 0, componentType: 5126, count: positions.length / 3, type: 'VEC3', min, max },
+      { bufferView: 1, componentType: 5126, count: uvs.length / 2, type: 'VEC2' },
+      { bufferView: 2, componentType: 5125, count: indices.length, type: 'SCALAR' },
+    ],
+    bufferViews,
+    buffers: [{ byteLength: end }],
+  };
+  const text = new TextEncoder().encode(JSON.stringify(json));
+  const textLength = Math.ceil(text.length / 4) * 4;
+  const out = new Uint8Array(28 + textLength + end);
+  const view = new DataView(out.buffer);
+  // "glTF", its version, its length; a chunk "JSON", a chunk "BIN\0".
+  [0x46546c67, 2, out.length, textLength, 0x4e4f534a].forEach((word, i) => view.setUint32(4 * i, word, true));
+  out.fill(0x20, 20, 20 + textLength).set(text, 20);
+  view.setUint32(20 + textLength, end, true);
+  view.setUint32(24 + textLength, 0x004e4942, true);
+  bufferViews.forEach(({ byteOffset, byteLength }, a) =>
+    out.set(new Uint8Array(arrays[a]!.buffer, arrays[a]!.byteOffset, byteLength), 28 + textLength + byteOffset),
+  );
+  return out;
+}

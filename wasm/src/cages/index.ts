@@ -1,0 +1,105 @@
+/**
+ * Cages for models that have none: made afresh for one model, fitted from a template, or moved into place.
+ *
+ * Each call takes seconds and runs in a worker, which starts with the first call; calls run in order. The worker loads its
+ * WebAssembly, `cagecast-cages.wasm`, then: until a function is called, nothing of it is loaded.
+ * @module cagecast/cages
+ */
+import { spawn } from '#spawn-cages';
+import type { Mesh } from '../api/mesh.js';
+import { type CallOptions, type OnProgress, WorkerQueue } from '../worker/queue.js';
+import type {
+  Cage,
+  CageModel,
+  Fit,
+  FitOptions,
+  FoundLandmarks,
+  Landmarks,
+  MakeOptions,
+  RefineOptions,
+  Template,
+} from './types.js';
+
+export { CagecastError } from '../index.js';
+export { cageGlb } from './glb.js';
+export type * from './types.js';
+
+/** Options of every call. */
+export interface CageCallOptions extends CallOptions {
+  /** Told several times a second how far the call is: a share 0..1 that never falls, and what it does (`hull`, `unwrap`, …). */
+  onProgress?: OnProgress | undefined;
+}
+
+const queue = new WorkerQueue(spawn);
+
+/**
+ * Makes a cage for a model: a hull around it, with holes over the parts that are not painted, unwrapped into few charts.
+ *
+ * Cost: some seconds.
+ * @throws {CagecastError} `badModel` if no cage can be made for the model, with the reason; `badOption`, `badArgument`,
+ * `outOfMemory`; `unsupported` if the worker or its WebAssembly cannot be loaded.
+ *
+ * @example
+ * import { makeCage } from 'cagecast/cages';
+ *
+ * const cage = await makeCage({ positions, indices, groups, parts: ['skin', 'eye_left', 'eye_right'] });
+ * const result = transfer(cage, { positions, indices, groups });
+ */
+export function makeCage(model: CageModel, options: MakeOptions & CageCallOptions = {}): Promise<Cage> {
+  return queue.withOptions('makeCage', [model], options);
+}
+
+/**
+ * Moves a template cage onto another model, so that one texture fits both. Its triangles, UVs and holes stay.
+ *
+ * Cost: some seconds.
+ * @param template   A cage, and landmarks of the model that it was made for.
+ * @param landmarks  Of the model, by the names of the template's; they override those that are found. Default: none.
+ * @returns the cage, and which landmarks were used and which are missing.
+ * @throws {CagecastError} `badModel`, `badTemplate` or `badLandmarks` if the model, the template or the landmarks cannot be used,
+ * with the reason; else as `makeCage`.
+ */
+export function fitCage(
+  template: Template,
+  model: CageModel,
+  landmarks?: Landmarks,
+  options: FitOptions & CageCallOptions = {},
+): Promise<Fit> {
+  return queue.withOptions('fitCage', [template, model, landmarks], options);
+}
+
+/**
+ * Finds the landmarks of a head or a figure by names of parts, names of joints and shape.
+ * @throws {CagecastError} as `makeCage`.
+ */
+export function findLandmarks(model: CageModel, options: CageCallOptions = {}): Promise<FoundLandmarks> {
+  return queue.withOptions('findLandmarks', [model], options);
+}
+
+/**
+ * Moves and bends a cage that is slightly off its model into place. A cage in place stays as it is.
+ * @param cage  With UVs.
+ * @throws {CagecastError} as `fitCage`.
+ */
+export function refineCage(
+  cage: Mesh | Cage | Template,
+  model: CageModel,
+  options: RefineOptions & CageCallOptions = {},
+): Promise<Cage> {
+  return queue.withOptions('refineCage', [cage, model], options);
+}
+
+/** The patterns of names of parts that are not painted unless the option `exclude` says otherwise. */
+export function defaultExclusions(options: CallOptions = {}): Promise<string[]> {
+  return queue.withOptions('defaultExclusions', [], options);
+}
+
+/** Starts the worker and loads its WebAssembly before it is needed. Not necessary: every call does it. */
+export function init(): Promise<void> {
+  return queue.call('init', [], {});
+}
+
+/** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
+export function terminate(): void {
+  queue.terminate();
+}

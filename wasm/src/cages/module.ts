@@ -1,0 +1,62 @@
+import type { CheckedMesh } from '../api/mesh.js';
+import type { Enum, EnumValue } from '../core/module.js';
+
+/** How a call ended. The other fields of an answer are there if `problem` is `none`. */
+export interface CagesAnswer {
+  problem: EnumValue;
+  message: string;
+}
+export interface CoreLandmark {
+  name: string;
+  position: [number, number, number];
+  confidence: number;
+}
+export interface CageAnswer extends CagesAnswer {
+  positions: Float32Array<ArrayBuffer>;
+  uvs: Float32Array<ArrayBuffer>;
+  indices: Uint32Array<ArrayBuffer>;
+  landmarks: CoreLandmark[];
+}
+export interface FitAnswer extends CageAnswer {
+  used: CoreLandmark[];
+  missing: string[];
+  notes: string[];
+}
+export interface FoundAnswer extends CagesAnswer {
+  landmarks: CoreLandmark[];
+  missing: string[];
+  rig: string;
+  kind: EnumValue;
+}
+
+/** A model, as C++ takes it. */
+export interface CoreModel {
+  mesh: CheckedMesh;
+  /** One name for each part. */
+  parts: string[];
+  joints: { name: string; position: number[]; parent: number }[];
+  marks: Uint8Array;
+}
+
+export type CoreOptions = Record<string, number | EnumValue | string[]>;
+type Report = (share: number, stage: string) => boolean;
+
+/** What wasm/cages_bindings.cpp binds. */
+export interface CagesModule {
+  Kind: Enum;
+  Problem: Enum;
+  /** All options with their defaults. */
+  makeOptions(): CoreOptions;
+  fitOptions(): CoreOptions;
+  refineOptions(): CoreOptions;
+  makeCage(model: CoreModel, options: CoreOptions, report: Report): CageAnswer;
+  fitCage(
+    template: { mesh: CheckedMesh; landmarks: CoreLandmark[] },
+    model: CoreModel,
+    landmarks: CoreLandmark[],
+    options: CoreOptions,
+    report: Report,
+  ): FitAnswer;
+  findLandmarks(model: CoreModel, report: Report): FoundAnswer;
+  refineCage(cage: CheckedMesh, model: CoreModel, options: CoreOptions, report: Report): CageAnswer;
+}

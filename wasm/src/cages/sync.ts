@@ -1,0 +1,218 @@
+/**
+ * The functions of `cagecast/cages`, run at once on the thread that calls them: for a worker of your own. They take seconds.
+ *
+ * Errors are of the class `CagecastError` that is exported here.
+ * @module cagecast/cages/sync
+ */
+import createModule from '#cages-glue';
+import { readWasm } from '#read-cages';
+import { CagecastError, type Code, show } from '../api/error.js';
+import type { Mesh } from '../api/mesh.js';
+import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js';
+import { nameOf } from '../core/module.js';
+import { checkCage, checkLandmarks, checkModel, checkOptions, checkTemplate } from './check.js';
+import { movedHoles } from './holes.js';
+import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions } from './module.js';
+import type {
+  Cage,
+  CageModel,
+  Fit,
+  FitOptions,
+  FoundLandmarks,
+  Kind,
+  Landmarks,
+  MakeOptions,
+  RefineOptions,
+  Template,
+} from './types.js';
+
+export type * from './types.js';
+export { CagecastError };
+
+/** An option of every call. */
+export interface SyncOptions {
+  /**
+   * Told at least every 50 ms how far the call is: a share 0..1 that never falls, and what it does. If it returns `false`, the call
+   * is cancelled: it throws `aborted`.
+   */
+  onProgress?: ((share: number, stage: string) => unknown) | undefined;
+}
+
+let starting: Promise<void> | undefined;
+let compiled: WebAssembly.Module | undefined;
+
+/** Loads the WebAssembly module, `cagecast-cages.wasm`. All calls share it. @throws {CagecastError} `unsupported` */
+export function init(): Promise<void> {
+  starting ??= readWasm()
+    .then((bytes) => WebAssembly.compile(bytes))
+    .then(
+      (module) => {
+        compiled = module;
+      },
+      (cause: unknown) => {
+        starting = undefined;
+        throw unsupported(cause);
+      },
+    );
+  return starting;
+}
+
+/** As `makeCage` of `cagecast/cages`. Needs `init`. */
+export function makeCage(model: CageModel, options: MakeOptions & SyncOptions = {}): Cage {
+  return call(options, {
+    fn: 'makeCage',
+    defaults: 'makeOptions',
+    run: (module, core, report) => module.makeCage(checkModel('makeCage', model), core, report),
+    result: (answer, module, core) => cageOf(answer, {}, kindOf(module, core['kind'])),
+  });
+}
+
+/** As `fitCage` of `cagecast/cages`. Needs `init`. */
+export function fitCage(
+  template: Template,
+  model: CageModel,
+  landmarks?: Landmarks,
+  options: FitOptions & SyncOptions = {},
+): Fit {
+  const from = checkTemplate('fitCage', template);
+  const given = checkLandmarks('fitCage', 'landmarks', landmarks);
+  return call(options, {
+    fn: 'fitCage',
+    defaults: 'fitOptions',
+    run: (module, core, report) => module.fitCage(from, checkModel('fitCage', model), given, core, report),
+    result: (answer) => ({
+      cage: cageOf(answer, template, options.kind),
+      used: landmarksOf(answer.used),
+      confidence: confidenceOf(answer.used),
+      missing: answer.missing,
+      notes: answer.notes,
+    }),
+  });
+}
+
+/** As `findLandmarks` of `cagecast/cages`. Needs `init`. */
+export function findLandmarks(model: CageModel, options: SyncOptions = {}): FoundLandmarks {
+  return call(options, {
+    fn: 'findLandmarks',
+    run: (module, _, report) => module.findLandmarks(checkModel('findLandmarks', model), report),
+    result: (answer, module) => ({
+      landmarks: landmarksOf(answer.landmarks),
+      confidence: confidenceOf(answer.landmarks),
+      missing: answer.missing,
+      rig: answer.rig,
+      kind: kindOf(module, answer.kind),
+    }),
+  });
+}
+
+/** As `refineCage` of `cagecast/cages`. Needs `init`. */
+export function refineCage(
+  cage: Mesh | Cage | Template,
+  model: CageModel,
+  options: RefineOptions & SyncOptions = {},
+): Cage {
+  const mesh = checkCage('refineCage', 'cage', cage);
+  return call(options, {
+    fn: 'refineCage',
+    defaults: 'refineOptions',
+    run: (module, core, report) => module.refineCage(mesh, checkModel('refineCage', model), core, report),
+    result: (answer) => cageOf(answer, cage as Partial<Template>),
+  });
+}
+
+/** The patterns of names of parts that are not painted unless the option `exclude` says otherwise. Needs `init`. */
+export function defaultExclusions(): string[] {
+  return exclusionsOf(freshModule('defaultExclusions'));
+}
+
+const exclusionsOf = (module: CagesModule): string[] => module.makeOptions()['exclude'] as string[];
+
+function freshModule(fn: string): CagesModule {
+  if (compiled === undefined)
+    throw new CagecastError('notInitialised', `${fn}: Cagecast is not ready; await init() once before the first call`);
+  return instantiate<CagesModule>(createModule, compiled, 'makeCage');
+}
+
+interface Call<Answer extends CagesAnswer, Result> {
+  fn: string;
+  /** The function that returns the options of this one. */
+  defaults?: 'makeOptions' | 'fitOptions' | 'refineOptions';
+  run(module: CagesModule, options: CoreOptions, report: Report): Answer;
+  result(answer: Answer, module: CagesModule, options: CoreOptions): Result;
+}
+
+/**
+ * Calls a function in an instance of the module that is not used again: its memory may grow by hundreds of megabytes, and never
+ * shrinks.
+ */
+function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<Answer, Result>): Result {
+  const { fn } = of;
+  if (typeof given !== 'object' || given === null)
+    throw new CagecastError('badOption', `${fn}: options is ${show(given)}, not an object`);
+  const { onProgress, ...rest } = given;
+  const module = freshModule(fn);
+  const options = checkOptions(fn, module, of.defaults ? module[of.defaults]() : {}, rest);
+  const reporter = new Reporter(onProgress);
+  let answer: Answer;
+  try {
+    answer = of.run(module, options, reporter.report);
+  } catch (cause) {
+    if (cause instanceof CagecastError) throw cause;
+    throw isLackOfMemory(cause)
+      ? new CagecastError('outOfMemory', `${fn}: not enough memory for this model`, 0, { cause })
+      : new CagecastError('internal', `${fn}: the WebAssembly module failed (${String(cause)})`, 0, { cause });
+  }
+  if (reporter.failure !== undefined) throw reporter.failure;
+  const code = nameOf({ module: module as never }, 'Problem', answer.problem);
+  if (code !== 'none')
+    throw new CagecastError(code as Code, `${fn}: ${code === 'aborted' ? 'cancelled by onProgress' : answer.message}`);
+  reporter.end();
+  return of.result(answer, module, options);
+}
+
+type Report = (share: number, stage: string) => boolean;
+
+/** Tells a caller how far a call is. */
+class Reporter {
+  /** What the caller's function threw: it must not be thrown through C++. */
+  failure: unknown;
+  readonly #tell: SyncOptions['onProgress'];
+  #most = 0;
+  #stage = '';
+
+  constructor(tell: SyncOptions['onProgress']) {
+    this.#tell = tell;
+  }
+
+  readonly report: Report = (share, stage) => {
+    this.#most = Math.min(1, Math.max(this.#most, share));
+    this.#stage = stage;
+    try {
+      return this.#tell?.(this.#most, stage) !== false;
+    } catch (error) {
+      this.failure = error;
+      return false;
+    }
+  };
+
+  /** The call has succeeded. */
+  end(): void {
+    if (this.#most < 1) this.#tell?.(1, this.#stage);
+  }
+}
+
+const kindOf = (module: CagesModule, kind: unknown): Kind => nameOf({ module: module as never }, 'Kind', kind) as Kind;
+
+const landmarksOf = (landmarks: readonly CoreLandmark[]): Landmarks =>
+  Object.fromEntries(landmarks.map(({ name, position }) => [name, position]));
+const confidenceOf = (landmarks: readonly CoreLandmark[]): Record<string, number> =>
+  Object.fromEntries(landmarks.map(({ name, confidence }) => [name, confidence]));
+
+/** @param before  The cage that was moved, if one was. */
+function cageOf(
+  { positions, uvs, indices, landmarks }: CageAnswer,
+  before: Partial<Template>,
+  kind: Kind = before.kind ?? 'automatic',
+): Cage {
+  return { positions, uvs, indices, landmarks: landmarksOf(landmarks), holes: movedHoles(before, positions), kind };
+}

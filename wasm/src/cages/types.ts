@@ -1,0 +1,118 @@
+import type { Mesh } from '../api/mesh.js';
+
+/** x, y, z in the space of the model. */
+export type Position = readonly [x: number, y: number, z: number];
+
+/** Named spots on a model, such as `nose_tip` or `eye_centre_left`: docs/cages.md lists the names. */
+export type Landmarks = Record<string, Position>;
+
+/** A joint of a skeleton, in the pose in which the mesh is given. */
+export interface Joint {
+  /** As in the file, or, in a VRM, the name of its bone (`leftUpperArm`). */
+  name: string;
+  position: Position;
+  /** Its parent's place in the list; -1, the default, for a root. */
+  parent?: number | undefined;
+}
+
+/**
+ * What a cage is made for: a mesh as for `transfer` (its UVs are not used), and what is known about it. `cageTarget` of
+ * `cagecast/gltf` and `cagecast/three` reads it from a model.
+ */
+export interface CageModel extends Mesh {
+  /**
+   * The name of each part, by its number in `groups`, or several names for it (of its node, mesh and material). They tell what must
+   * not be painted. Default: none.
+   */
+  parts?: readonly (string | readonly string[])[] | undefined;
+  /** The skeleton's joints. Default: none. */
+  joints?: readonly Joint[] | undefined;
+  /** 1 per triangle: 1 must not be painted. Default: none of them. */
+  marks?: Uint8Array | undefined;
+}
+
+/** What a model is: it decides resolution, tightness and seams of a cage. */
+export type Kind = 'automatic' | 'head' | 'body' | 'prop';
+
+/** A cage: a mesh for `transfer`, and spots of the model that it was made for. */
+export interface Cage {
+  /** 3 per vertex, in the space of the model. */
+  positions: Float32Array<ArrayBuffer>;
+  /** 2 per vertex, 0..1. Seams have a vertex for each side. */
+  uvs: Float32Array<ArrayBuffer>;
+  /** 3 per triangle, counter-clockwise seen from outside. */
+  indices: Uint32Array<ArrayBuffer>;
+  /** What a fit needs of a template. May be empty. */
+  landmarks: Landmarks;
+  /** The middle of each hole that has a name. May be empty. */
+  holes: Landmarks;
+  kind: Kind;
+}
+
+/** A cage that is to be fitted to other models. A `Cage` is one. */
+export interface Template extends Mesh {
+  uvs: Float32Array;
+  /** Spots of the model that the cage was made for, by the names that docs/cages.md lists. */
+  landmarks: Landmarks;
+  /** The middle of each hole that has a name. Default: none. */
+  holes?: Landmarks | undefined;
+  /** Default: `automatic`. */
+  kind?: Kind | undefined;
+}
+
+/** What a fit found. */
+export interface Fit {
+  cage: Cage;
+  /** Landmarks of the model that were used, given and found. */
+  used: Landmarks;
+  /** How certain each of `used` is, 0..1; 1 for those that were given, or that a bone tells. */
+  confidence: Record<string, number>;
+  /** Landmarks of the template that were not found: give these for a better fit. */
+  missing: string[];
+  /** What is to be known about the fit: sentences for people. */
+  notes: string[];
+}
+
+/** What was found on a model. */
+export interface FoundLandmarks {
+  landmarks: Landmarks;
+  /** How certain each landmark is, 0..1; 1 for those that a bone tells. */
+  confidence: Record<string, number>;
+  /** Landmarks that were not found, or are too uncertain. */
+  missing: string[];
+  /** `VRM`, `Mixamo`, `Ready Player Me`, `Roblox R15`, `unknown`; empty without a skeleton. */
+  rig: string;
+  /** What the model seems to be. */
+  kind: Kind;
+}
+
+interface Excluding {
+  /** Default: `automatic`. */
+  kind?: Kind | undefined;
+  /**
+   * Patterns for the names of parts that must not be painted: `*` stands for any text, case does not matter. They replace the
+   * default, which `defaultExclusions` returns.
+   */
+  exclude?: readonly string[] | undefined;
+}
+
+/** Options of `makeCage`. Lengths are shares of the diagonal of the model's bounding box; 0, the default, means by kind. */
+export interface MakeOptions extends Excluding {
+  /** Triangles of the cage, about. By kind: heads and props 600, bodies 1500. */
+  triangles?: number | undefined;
+  /** Gaps narrower than twice this are bridged. By kind: heads and props 0.02, bodies 0.008. */
+  closing?: number | undefined;
+  /** Distance of the cage from the model. By kind: heads and props 0.01, bodies 0.004. */
+  offset?: number | undefined;
+  /** Voxels along the longest side of the grid that the hull is made on. By kind: 140. */
+  voxels?: number | undefined;
+}
+
+/** Options of `fitCage`. */
+export interface FitOptions extends Excluding {}
+
+/** Options of `refineCage`. */
+export interface RefineOptions {
+  /** How far off the cage may be, as a share of the model's diagonal. Default: 0.05. */
+  reach?: number | undefined;
+}

@@ -1,0 +1,49 @@
+import { CagecastError } from '../api/error.js';
+
+/**
+ * Makes a fresh instance of a compiled module: a few milliseconds.
+ * @param createModule  What Emscripten's glue exports.
+ * @param ready         The name of something that the module binds.
+ */
+export function instantiate<Module extends object>(
+  createModule: (module: object) => PromiseLike<unknown>,
+  module: WebAssembly.Module,
+  ready: keyof Module,
+): Module {
+  const glue: Partial<Module> = {};
+  let failure: unknown;
+  // The glue registers the functions synchronously; the promise that it returns is for the same object.
+  createModule(
+    Object.assign(glue, {
+      instantiateWasm(imports: WebAssembly.Imports, receive: (instance: WebAssembly.Instance) => void): object {
+        let made: WebAssembly.Instance;
+        try {
+          made = new WebAssembly.Instance(module, imports);
+        } catch (cause) {
+          // The glue keeps it to itself.
+          throw (failure = cause);
+        }
+        receive(made);
+        return made.exports;
+      },
+    }),
+  ).then(undefined, () => {});
+  if (failure !== undefined) throw failure;
+  if (glue[ready] === undefined)
+    throw new CagecastError('internal', 'init: the WebAssembly module did not start at once');
+  return glue as Module;
+}
+
+/** Whether what a call into WebAssembly threw means that memory ran out. */
+export const isLackOfMemory = (cause: unknown): boolean =>
+  // RangeError: an array for JavaScript could not be had. "Aborted", or a number (an exception of C++): C++ could not
+  // allocate where it cannot say so.
+  cause instanceof RangeError || typeof cause === 'number' || String(cause).includes('Aborted');
+
+/** The error of an `init` that failed. */
+export const unsupported = (cause: unknown): CagecastError =>
+  cause instanceof CagecastError
+    ? cause
+    : new CagecastError('unsupported', `init: this host cannot run the WebAssembly module (${String(cause)})`, 0, {
+        cause,
+      });

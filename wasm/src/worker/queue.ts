@@ -1,0 +1,160 @@
+import { show } from '../api/error.js';
+import { CagecastError } from '../index.js';
+import type { Reply, Request, Spawn, Thread } from './protocol.js';
+
+/** Options of every call. */
+export interface CallOptions {
+  /** Cancels the call: its promise rejects with the signal's reason, and running work ends at once. */
+  signal?: AbortSignal | undefined;
+  /** Transfers the arrays of the arguments to the worker instead of copying them; the caller's arrays are empty afterwards. */
+  move?: boolean | undefined;
+}
+
+/** How far a call is: a share 0..1 that never falls, and what it does. */
+export type OnProgress = (share: number, stage: string) => void;
+
+interface Job {
+  request: Request;
+  move: boolean;
+  onProgress: OnProgress | undefined;
+  settle(): void;
+  resolve(result: unknown): void;
+  reject(error: unknown): void;
+}
+
+/** Calls that share one worker, which starts with the first call and carries them out in order. */
+export class WorkerQueue {
+  readonly #spawn: Spawn;
+  #thread: Thread | undefined;
+  #lastId = 0;
+  /** The first job is running. */
+  readonly #jobs: Job[] = [];
+
+  constructor(spawn: Spawn) {
+    this.#spawn = spawn;
+  }
+
+  /** Calls a function with the options of a call among its own. @param args  Its other arguments. */
+  withOptions<T>(fn: string, args: unknown[], options: CallOptions & { onProgress?: OnProgress | undefined }) {
+    if (typeof options !== 'object' || options === null) return this.call<T>(fn, [...args, options], {});
+    const { signal, move, onProgress, ...rest } = options;
+    const wrong = (text: string) => Promise.reject<T>(new CagecastError('badOption', `${fn}: options.${text}`));
+    if (signal !== undefined && typeof signal?.addEventListener !== 'function')
+      return wrong(`signal is ${show(signal)}, not an AbortSignal`);
+    if (move !== undefined && typeof move !== 'boolean') return wrong(`move is ${show(move)}, not true or false`);
+    if (onProgress !== undefined && typeof onProgress !== 'function')
+      return wrong(`onProgress is ${show(onProgress)}, not a function`);
+    return this.call<T>(fn, [...args, rest], { signal, move, onProgress });
+  }
+
+  call<T>(
+    fn: string,
+    args: unknown[],
+    { signal, move = false, onProgress }: CallOptions & { onProgress?: OnProgress | undefined },
+  ): Promise<T> {
+    return new Promise<T>((resolve, reject) => {
+      if (signal?.aborted) return reject(signal.reason);
+      const giveUp = () => {
+        const place = this.#jobs.indexOf(job);
+        if (place < 0) return;
+        this.#jobs.splice(place, 1);
+        job.settle();
+        reject(signal?.reason);
+        if (place > 0) return;
+        // A call into WebAssembly cannot be interrupted, but its worker can be ended.
+        this.#stop();
+        this.#next();
+      };
+      const job: Job = {
+        request: { id: ++this.#lastId, fn, args },
+        move,
+        onProgress,
+        settle: () => signal?.removeEventListener('abort', giveUp),
+        resolve: (result) => resolve(result as T),
+        reject,
+      };
+      signal?.addEventListener('abort', giveUp, { once: true });
+      this.#jobs.push(job);
+      if (this.#jobs.length === 1) this.#next();
+    });
+  }
+
+  /** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */
+  terminate(): void {
+    this.#stop();
+    for (const job of this.#jobs.splice(0)) {
+      job.settle();
+      job.reject(new CagecastError('aborted', `${job.request.fn}: the worker was terminated`));
+    }
+  }
+
+  /** Hands the first job to the worker. */
+  #next(): void {
+    const job = this.#jobs[0];
+    if (job === undefined) {
+      this.#thread?.setBusy(false);
+      return;
+    }
+    const { fn } = job.request;
+    try {
+      this.#thread ??= this.#start();
+    } catch (cause) {
+      const message = `${fn}: this host cannot start the worker (${String(cause)})`;
+      this.#finish(job, new CagecastError('unsupported', message, 0, { cause }));
+      return;
+    }
+    try {
+      this.#thread.setBusy(true);
+      this.#thread.post(job.request, job.move ? buffersOf(job.request.args) : []);
+    } catch (cause) {
+      // An argument cannot be sent, such as a function or an array that was transferred before.
+      const message = `${fn}: the arguments cannot be sent to the worker (${String(cause)})`;
+      this.#finish(job, new CagecastError('badArgument', message, 0, { cause }));
+    }
+  }
+
+  #start(): Thread {
+    return this.#spawn(
+      (reply) => this.#onReply(reply),
+      (message) => {
+        this.#stop();
+        const job = this.#jobs[0];
+        if (job)
+          this.#finish(job, new CagecastError('unsupported', `${job.request.fn}: the worker failed (${message})`));
+      },
+    );
+  }
+
+  #onReply(reply: Reply): void {
+    const job = this.#jobs[0];
+    if (job?.request.id !== reply.id) return;
+    if ('progress' in reply) job.onProgress?.(...reply.progress);
+    else if ('error' in reply)
+      this.#finish(job, new CagecastError(reply.error.code, reply.error.message, reply.error.at));
+    else this.#finish(job, undefined, reply.result);
+  }
+
+  #finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
+    this.#jobs.shift();
+    job.settle();
+    if (error) job.reject(error);
+    else job.resolve(result);
+    this.#next();
+  }
+
+  #stop(): void {
+    this.#thread?.terminate();
+    this.#thread = undefined;
+  }
+}
+
+function buffersOf(args: unknown[]): ArrayBuffer[] {
+  const values = args.flatMap((arg) =>
+    ArrayBuffer.isView(arg) ? [arg] : typeof arg === 'object' && arg !== null ? Object.values(arg) : [],
+  );
+  const buffers = values.filter((value) => ArrayBuffer.isView(value)).map((view) => view.buffer);
+  // An empty buffer may have been transferred before. If it is listed, it arrives empty; if it is copied, the call throws.
+  return [...new Set(buffers)].filter(
+    (buffer): buffer is ArrayBuffer => buffer instanceof ArrayBuffer && buffer.byteLength > 0,
+  );
+}
