@@ -1,0 +1,189 @@
+// Scores fitted cages: a line per figure, and the means.
+//
+//   npx tsx bench/cages/score-fit.ts [--run] [--given auto|5|9|23|all|name,name…] [--cages folder] [head|body|NAME …]
+//     --run     fit first, with build/release/bench/cagecast_cages_tool
+//     --given   true landmarks that the fit is told (default auto: none)
+//     --cages   subfolder of build/cages with NAME.json for each figure (default fitted-GIVEN)
+//     --json    all numbers as JSON, instead of the table
+//
+// Write the figures with scenes.ts before. Columns, lengths as % of the diagonal, areas as % of the skin's:
+//   fit         error of correspondence, median / 95th percentile, on the template's cage (see fit-score.ts)
+//   similarity  the same for the template brought there by a similarity of the landmarks that the fit used
+//   floor       the same for the template carried by the true displacement of the skin
+//   unused      true landmarks that the fit did not use: mean / largest error
+//   found       landmarks that the fit used: mean / largest distance from the true ones
+//   eyes        of the left and the right eye: share of the visible eye inside its hole / area of the hole beside the visible
+//               eye, as a share of it; eyeballs: the same as if there were no lids
+//   out         skin outside of the cage; folded: folded triangles beyond the template's own; angle: 5th percentile of the
+//               triangles' smallest angles; sup/kept: of a transfer with the fitted cage
+
+import { mkdirSync, writeFileSync } from 'node:fs';
+import { parseArgs } from 'node:util';
+import { init } from 'cagecast';
+import { table } from '../table.js';
+import { cagesFolder, templates } from './figures.js';
+import {
+  has,
+  mean,
+  percent,
+  personOf,
+  read,
+  runTool,
+  type StoredCage,
+  type StoredFigure,
+  storedFigures,
+} from './files.js';
+import { type EyeScore, type FitScore, FitScorer, type Spread } from './fit-score.js';
+import { paintScore } from './paint-score.js';
+import { diagonalOf } from './shape.js';
+
+type Landmarks = Record<string, [number, number, number]>;
+
+const five = ['eye_centre_left', 'eye_centre_right', 'nose_tip', 'lip_upper', 'chin'];
+const nine = [...five, 'mouth_corner_left', 'mouth_corner_right', 'ear_lobe_left', 'ear_lobe_right'];
+
+/** Those of the true landmarks that the fit is told. */
+function givenOf(landmarks: Landmarks, given: string): Landmarks {
+  const isGiven = (name: string): boolean => {
+    if (given === 'auto') return false;
+    if (given === 'all') return true;
+    if (given === '23') return !/^joint_|^eye_centre/.test(name);
+    return (given === '5' ? five : given === '9' ? nine : given.split(',')).includes(name);
+  };
+  return Object.fromEntries(Object.entries(landmarks).filter(([name]) => isGiven(name)));
+}
+
+/** What is printed of a figure. */
+interface Line extends FitScore {
+  name: string;
+  kind: string;
+  similarity: Spread;
+  floor: Spread;
+  found: { mean: number; most: number; count: number };
+  suppressed: number;
+  kept: number;
+  outcome: string;
+}
+
+const scorers = new Map<string, FitScorer>();
+function scorerOf(template: string): FitScorer {
+  if (!scorers.has(template)) {
+    const figure = read<StoredFigure>(`${template}.figure`);
+    scorers.set(template, new FitScorer({ ...personOf(figure), cage: read<StoredCage>(`${template}.cage`) }));
+  }
+  return scorers.get(template)!;
+}
+
+const none = { median: NaN, most: NaN };
+
+function lineOf(figure: StoredFigure, folder: string, outcome: string): Line | undefined {
+  if (!has(`${folder}/${figure.name}`)) return undefined;
+  const scorer = scorerOf(figure.template!);
+  const person = personOf(figure);
+  const cage = read<StoredCage>(`${folder}/${figure.name}`);
+  const used = cage.used ?? {};
+  const [bySimilarity, byTruth] = [scorer.bySimilarity(used), scorer.byTruth(person)];
+  const size = diagonalOf(person.target.positions);
+  const errors = Object.entries(used).flatMap(([name, at]) => {
+    const truth = person.landmarks[name];
+    return truth ? [Math.hypot(...at.map((x, k) => x - truth[k]!)) / size] : [];
+  });
+  return {
+    name: figure.name,
+    kind: figure.kind,
+    ...scorer.score(cage.positions, person, Object.keys(used)),
+    similarity: bySimilarity ? scorer.correspondence(bySimilarity, person) : none,
+    floor: byTruth ? scorer.correspondence(byTruth, person) : none,
+    found: { mean: mean(errors), most: Math.max(...errors), count: errors.length },
+    ...paintScore(cage, read(`${figure.name}.model`), figure.truth),
+    outcome,
+  };
+}
+
+const both = ({ median, most }: Spread): string => `${percent(median)} / ${percent(most)}`;
+const errorsOf = ({ mean: middle, most, count }: Line['found']): string =>
+  count > 0 ? `${percent(middle)} / ${percent(most)} (${count})` : '–';
+type Cover = Pick<EyeScore, 'cover' | 'spill'>;
+/** Cover and spill of both eyes apart, or the means over all. */
+function eyesOf(lines: readonly Line[], of: (eye: EyeScore) => Cover, each?: string): string {
+  const list = (values: readonly number[]): string =>
+    (each === undefined ? [mean(values)] : values).map((x) => (Number.isFinite(x) ? x.toFixed(2) : '–')).join(each);
+  const eyes = lines.flatMap((line) => line.eyes.map(of));
+  return `${list(eyes.map(({ cover }) => cover))} / ${list(eyes.map(({ spill }) => spill))}`;
+}
+
+const row = (line: Line): string[] => [
+  line.name,
+  both(line.correspondence),
+  both(line.similarity),
+  both(line.floor),
+  errorsOf(line.unused),
+  errorsOf(line.found),
+  eyesOf([line], (eye) => eye, ' '),
+  eyesOf([line], ({ ball }) => ball, ' '),
+  percent(line.outside),
+  String(line.folded),
+  line.angle.toFixed(1),
+  `${line.suppressed.toFixed(4)} / ${line.kept.toFixed(4)}`,
+  line.outcome,
+];
+const head = 'fit,similarity,floor,unused,found,eyes,eyeballs,out,folded,angle,sup / kept,'.split(',');
+
+function meanOf(lines: readonly Line[]): string[] {
+  const spread = (of: (line: Line) => Spread): string =>
+    both({ median: mean(lines.map((line) => of(line).median)), most: mean(lines.map((line) => of(line).most)) });
+  const errors = (of: (line: Line) => Line['found']): string =>
+    `${percent(mean(lines.map((line) => of(line).mean)))} / ${percent(mean(lines.map((line) => of(line).most)))}`;
+  return [
+    `mean of ${lines.length}`,
+    spread((line) => line.correspondence),
+    spread((line) => line.similarity),
+    spread((line) => line.floor),
+    errors((line) => line.unused),
+    errors((line) => line.found),
+    eyesOf(lines, (eye) => eye),
+    eyesOf(lines, ({ ball }) => ball),
+    percent(mean(lines.map(({ outside }) => outside))),
+    mean(lines.map(({ folded }) => folded)).toFixed(1),
+    mean(lines.map(({ angle }) => angle)).toFixed(1),
+    `${mean(lines.map(({ suppressed }) => suppressed)).toFixed(4)} / ${mean(lines.map(({ kept }) => kept)).toFixed(4)}`,
+    '',
+  ];
+}
+
+const { values: options, positionals } = parseArgs({
+  allowPositionals: true,
+  options: {
+    run: { type: 'boolean' },
+    given: { type: 'string', default: 'auto' },
+    cages: { type: 'string' },
+    json: { type: 'boolean' },
+  },
+});
+await init();
+const folder = options.cages ?? `fitted-${options.given.replace(/,/g, '+')}`;
+mkdirSync(`${cagesFolder}/${folder}`, { recursive: true });
+const figures = storedFigures(positionals).filter(({ template }) => template !== undefined);
+const lines: Line[] = [];
+for (const figure of figures) {
+  const { name, template } = figure;
+  let outcome = '';
+  if (options.run) {
+    const at = (file: string): string => `${cagesFolder}/${file}.json`;
+    const given = `${folder}/${name}.given`;
+    writeFileSync(at(given), JSON.stringify(givenOf(read(`${name}.landmarks`), options.given)));
+    const files = [`${template}.cage`, `${template}.landmarks`, `${name}.model`, `${folder}/${name}`].map(at);
+    outcome = await runTool('fit', ...files, '--landmarks', at(given));
+  }
+  const line = lineOf(figure, folder, outcome);
+  if (line) lines.push(line);
+  else console.error(`${name}: no ${folder}/${name}.json ${outcome}`);
+}
+if (options.json) console.log(JSON.stringify(lines, null, 1));
+else if (lines.length > 0) {
+  const groups = Object.values(templates).flatMap((template) => {
+    const some = lines.filter(({ name }) => read<StoredFigure>(`${name}.figure`).template === template);
+    return some.length > 0 ? [...some.map(row), meanOf(some)] : [];
+  });
+  console.log(table(['', ...head], groups));
+}

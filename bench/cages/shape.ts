@@ -1,0 +1,124 @@
+import { BufferAttribute, BufferGeometry, DoubleSide, Ray, Triangle, Vector3 } from 'three';
+import { MeshBVH } from 'three-mesh-bvh';
+
+/** Positions, 3 per vertex, and triangles, 3 vertices each. */
+export interface Shape {
+  positions: ArrayLike<number>;
+  indices: ArrayLike<number>;
+}
+
+/** A point of a surface: a triangle and the weights of its corners. */
+export interface SurfacePoint {
+  triangle: number;
+  weights: [number, number, number];
+  position: Vector3;
+  distance: number;
+}
+
+export const vertexAt = (positions: ArrayLike<number>, v: number): Vector3 =>
+  new Vector3(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
+
+/** Where a point of one shape is on another with the same triangles. */
+export function pointOn({ positions, indices }: Shape, triangle: number, weights: readonly number[]): Vector3 {
+  const at = new Vector3();
+  for (let k = 0; k < 3; ++k) at.addScaledVector(vertexAt(positions, indices[3 * triangle + k]!), weights[k]!);
+  return at;
+}
+
+/** The length of the diagonal of the bounding box. */
+export function diagonalOf(positions: ArrayLike<number>): number {
+  const [low, high] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
+  for (let v = 0; v < positions.length / 3; ++v) {
+    low.min(vertexAt(positions, v));
+    high.max(vertexAt(positions, v));
+  }
+  return high.distanceTo(low);
+}
+
+/** A third of the area of each triangle goes to each of its corners. */
+export function vertexAreas({ positions, indices }: Shape): Float64Array {
+  const areas = new Float64Array(positions.length / 3);
+  for (let t = 0; t < indices.length; t += 3) {
+    const area = triangleAt({ positions, indices }, t / 3).getArea();
+    for (let k = 0; k < 3; ++k) areas[indices[t + k]!]! += area / 3;
+  }
+  return areas;
+}
+
+export const triangleAt = ({ positions, indices }: Shape, t: number): Triangle => {
+  const [a, b, c] = [0, 1, 2].map((k) => vertexAt(positions, indices[3 * t + k]!));
+  return new Triangle(a, b, c);
+};
+
+/** Searches for closest points and rays. */
+export class Search {
+  private readonly tree: MeshBVH;
+  constructor(readonly shape: Shape) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(Float32Array.from(shape.positions), 3));
+    geometry.setIndex(new BufferAttribute(Uint32Array.from(shape.indices), 1));
+    this.tree = new MeshBVH(geometry, { indirect: true });
+  }
+
+  closest(point: Vector3): SurfacePoint {
+    const { faceIndex, distance } = this.tree.closestPointToPoint(point)!;
+    const triangle = triangleAt(this.shape, faceIndex);
+    const position = triangle.closestPointToPoint(point, new Vector3());
+    const weights = triangle.getBarycoord(position, new Vector3()) ?? new Vector3(1, 0, 0);
+    return { triangle: faceIndex, weights: [weights.x, weights.y, weights.z], position, distance };
+  }
+
+  /** The triangle that a ray first meets; −1 if it meets none. */
+  firstHit(origin: Vector3, direction: Vector3): number {
+    return this.tree.raycastFirst(new Ray(origin, direction), DoubleSide)?.faceIndex ?? -1;
+  }
+}
+
+/** For each vertex the first that has the same position. */
+export function places(positions: ArrayLike<number>): Uint32Array {
+  const first = new Map<string, number>();
+  return Uint32Array.from({ length: positions.length / 3 }, (_, v) => {
+    const key = `${positions[3 * v]} ${positions[3 * v + 1]} ${positions[3 * v + 2]}`;
+    if (!first.has(key)) first.set(key, v);
+    return first.get(key)!;
+  });
+}
+
+/** The triangles at each edge between places; an edge is `low * count + high`. */
+export function edgesOf(
+  { positions, indices }: Shape,
+  at: ArrayLike<number> = places(positions),
+): Map<number, number[]> {
+  const edges = new Map<number, number[]>();
+  for (let c = 0; c < indices.length; ++c) {
+    const t = Math.floor(c / 3);
+    const [v, w] = [at[indices[c]!]!, at[indices[3 * t + ((c + 1) % 3)]!]!];
+    const key = Math.min(v, w) * at.length + Math.max(v, w);
+    if (!edges.has(key)) edges.set(key, []);
+    edges.get(key)!.push(t);
+  }
+  return edges;
+}
+
+/** The open borders, each a walk of vertices. */
+export function bordersOf({ positions, indices }: Shape): number[][] {
+  const at = places(positions);
+  const edges = edgesOf({ positions, indices }, at);
+  const next = new Map<number, number>();
+  for (let c = 0; c < indices.length; ++c) {
+    const t = Math.floor(c / 3);
+    const [v, w] = [at[indices[c]!]!, at[indices[3 * t + ((c + 1) % 3)]!]!];
+    if (edges.get(Math.min(v, w) * at.length + Math.max(v, w))!.length === 1) next.set(v, w);
+  }
+  const loops: number[][] = [];
+  const seen = new Set<number>();
+  for (const start of next.keys()) {
+    const loop: number[] = [];
+    for (let v: number | undefined = start; v !== undefined && !seen.has(v); v = next.get(v)) {
+      seen.add(v);
+      loop.push(v);
+    }
+    if (loop.length > 2) loops.push(loop);
+  }
+  return loops;
+}
