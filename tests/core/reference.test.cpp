@@ -214,7 +214,7 @@ TEST_CASE("difficult models are difficult: an earlier version of the rules fails
 }
 
 TEST_CASE(
-    "panes under far loops need interiorSamples there, a brim nearest to the cage above it the side of what is "
+    "panes under far loops need interior samples there, a brim nearest to the cage above it the side of what is "
     "exposed, small eyes aside or behind glasses the holes over them",
     "[reference]") {
   const auto scoreWithout = [](const scenes::Trap& trap, bool Options::*step) {

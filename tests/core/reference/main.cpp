@@ -22,7 +22,8 @@
 /// u32 triangles, f32 distances, u32 segments, u8 stable (then to a multiple of 4), and per segment u32 points,
 /// u32 culled, f64 exposed area, f64 covered area; then u32 triangleCount, u32 cornerUvCount, u8 cosmeticTriangles (to
 /// a multiple of 4), and if there are any f32 cornerUvs and u8 stableCorners (to a multiple of 4); then, by the
-/// reference, per segment f64 whole area, f64 sunk area. Exit code 1, and a line on stderr, if it cannot be done.
+/// reference, per segment f64 whole area, f64 depth-weighted area. Exit code 1, and a line on stderr, if it cannot be
+/// done.
 
 #include <algorithm>
 #include <bit>
@@ -271,8 +272,8 @@ int main(int argc, char** argv) {
   } else {
     const reference::Result result = reference::transfer(cage.view(), target.view(), plain);
     write(result, result.zones, result.stable, result.cosmeticTriangles, result.cornerUvs, result.stableCorners);
-    for (std::size_t s = 0; s < result.measures.size(); ++s) {
-      const double areas[] = {result.segmentStats[s].area, result.measures[s].depthWeightedArea};
+    for (const SegmentStats& segment : result.segmentStats) {
+      const double areas[] = {segment.area, segment.depthWeightedArea};
       put(out, areas, 2);
     }
   }

@@ -158,15 +158,15 @@ struct State {
 // Threshold
 
 /// A share of a segment's area, and what is found there.
-struct Voter {
+struct Sample {
   std::uint32_t segment;
   double area;
   Finding finding;
   ClosestPoint place;
 };
 
-/// Step 4': whether the triangles of each segment may vote from within: if it is small, and near a hole.
-std::vector<bool> mayVoteFromWithin(const Scene& scene, const Options& options, const State& state) {
+/// Step 4': whether the triangles of each segment have interior samples: if it is small, and near a hole.
+std::vector<bool> haveInteriorSamples(const Scene& scene, const Options& options, const State& state) {
   constexpr std::uint32_t kFewPoints = 32;
   constexpr double kNear = 0.01;
   std::vector<Box> boxes(state.segmentCount);
@@ -186,15 +186,15 @@ std::vector<bool> mayVoteFromWithin(const Scene& scene, const Options& options, 
   return result;
 }
 
-/// Who interiorSamples over the segments: the points, for a third of each of their triangles; with step 4' the big
-/// triangles of some segments from the centroids of their four quarters instead.
-std::vector<Voter> findInteriorSamples(const Scene& scene, const Options& options, const State& state) {
+/// The samples that areas are summed over: the points, for a third of each of their triangles; with step 4' the big
+/// triangles of some segments count by the centroids of their four quarters instead.
+std::vector<Sample> findInteriorSamples(const Scene& scene, const Options& options, const State& state) {
   constexpr double kBigTriangle = 0.06;
-  std::vector<Voter> samples;
+  std::vector<Sample> samples;
   for (std::size_t p = 0; p < state.segments.size(); ++p)
     samples.push_back({state.segments[p], 0, state.findings[p], state.places[p]});
   std::vector<bool> within(state.segmentCount, false);
-  if (options.interiorSamples) within = mayVoteFromWithin(scene, options, state);
+  if (options.interiorSamples) within = haveInteriorSamples(scene, options, state);
   for (std::size_t t = 0; t < scene.corners.size(); ++t) {
     const Triangle& triangle = scene.target.triangles()[t];
     const auto& [a, b, c] = triangle.corners;
@@ -219,40 +219,40 @@ struct Range {
   double is = 0, least = 0, most = 0;
 };
 
-/// For each voter the share of its area that counts when it is covered: less than all of it where it lies deeper than
+/// For each sample the share of its area that counts when it is covered: less than all of it where it lies deeper than
 /// what else the cage covers there. Teeth and tongues are seen past the lips, from below; what is to be painted lies
 /// about as deep as its neighbours, or above them.
-std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& samples) {
+std::vector<Range> depthWeights(const Scene& scene, const std::vector<Sample>& samples) {
   constexpr double kNotDeep = 0.01;  // No depth below this share of the diagonal counts as deep.
   // What is usual about each vertex of the cage: of what is covered in the triangles around it.
   struct Sum {
     double area = 0, depth = 0;
   };
   std::vector<Sum> sums(scene.cageVertices);
-  std::vector<std::vector<const Voter*>> unsure(scene.cageVertices);
-  const auto corners = [&](const Voter& voter) {
-    return scene.cageCorners[static_cast<std::size_t>(voter.place.triangle - scene.cage.triangles().data())];
+  std::vector<std::vector<const Sample*>> unsure(scene.cageVertices);
+  const auto corners = [&](const Sample& sample) {
+    return scene.cageCorners[static_cast<std::size_t>(sample.place.triangle - scene.cage.triangles().data())];
   };
-  for (const Voter& voter : samples) {
-    const bool isCovered = voter.finding.zone == Zone::cosmetic;
-    for (const std::uint32_t v : corners(voter)) {
-      if (isCovered) sums[v].area += voter.area, sums[v].depth += voter.area * voter.place.nearest.distance;
-      if (!single(voter.finding.nearby)) unsure[v].push_back(&voter);
+  for (const Sample& sample : samples) {
+    const bool isCovered = sample.finding.zone == Zone::cosmetic;
+    for (const std::uint32_t v : corners(sample)) {
+      if (isCovered) sums[v].area += sample.area, sums[v].depth += sample.area * sample.place.nearest.distance;
+      if (!single(sample.finding.nearby)) unsure[v].push_back(&sample);
     }
   }
-  const auto weight = [&](const Voter& voter, Sum sum) {
+  const auto weight = [&](const Sample& sample, Sum sum) {
     const double usual = std::max(sum.area > 0 ? sum.depth / sum.area : 0, kNotDeep * scene.diag);
-    const double share = usual / std::max(voter.place.nearest.distance, usual);
+    const double share = usual / std::max(sample.place.nearest.distance, usual);
     return share * share;
   };
   std::vector<Range> weights;
-  for (const Voter& voter : samples) {
+  for (const Sample& sample : samples) {
     Sum is;
-    for (const std::uint32_t v : corners(voter)) is.area += sums[v].area, is.depth += sums[v].depth;
+    for (const std::uint32_t v : corners(sample)) is.area += sums[v].area, is.depth += sums[v].depth;
     // Every unsure neighbour that would pull what is usual down, or up, does so.
     Sum low = is, high = is;
-    for (const std::uint32_t v : corners(voter))
-      for (const Voter* other : unsure[v]) {
+    for (const std::uint32_t v : corners(sample))
+      for (const Sample* other : unsure[v]) {
         const bool isCovered = other->finding.zone == Zone::cosmetic;
         const bool deeper = other->place.nearest.distance * is.area > is.depth;
         Sum& changed = deeper == isCovered ? low : high;
@@ -260,8 +260,8 @@ std::vector<Range> depthWeights(const Scene& scene, const std::vector<Voter>& sa
         changed.area = std::max(0.0, changed.area + sign * other->area);
         changed.depth = std::max(0.0, changed.depth + sign * other->area * other->place.nearest.distance);
       }
-    const double now = weight(voter, is);
-    weights.push_back({now, std::min(now, weight(voter, low)), std::max(now, weight(voter, high))});
+    const double now = weight(sample, is);
+    weights.push_back({now, std::min(now, weight(sample, low)), std::max(now, weight(sample, high))});
   }
   return weights;
 }
@@ -302,24 +302,24 @@ std::vector<std::uint32_t> findTwins(const Scene& scene, const State& state, con
 
 /// The sums that step 5 compares.
 struct Tally {
-  double area = 0, exposed = 0, covered = 0, sunk = 0;
+  double area = 0, exposed = 0, covered = 0, depthWeighted = 0;
   double segments = 0;  // Of which these are the sums.
   void add(const Tally& other) {
-    area += other.area, exposed += other.exposed, covered += other.covered, sunk += other.sunk;
+    area += other.area, exposed += other.exposed, covered += other.covered, depthWeighted += other.depthWeighted;
     segments += other.segments;
   }
 };
 
-/// How many times what is asked of it a segment reaches: it passes from 1 on.
+/// The score of a segment, the ratio of actual to required area: it is kept from 1 on.
 /// @param allCovered  The covered area of all segments.
-double marginOf(const Options& options, const Tally& tally, double allCovered) {
+double scoreOf(const Options& options, const Tally& tally, double allCovered) {
   const auto times = [](double has, double needs) { return needs > 0 ? has / needs : kInfinity; };
   const double coverage = times(tally.covered, options.threshold * tally.exposed);
   if (options.floor == Floor::none) return coverage;
   if (!(tally.covered > 0)) return 0;
   if (options.floor == Floor::area) return std::min(coverage, times(tally.covered, options.minCovered * tally.area));
   // What is meant to be painted is covered almost wherever it is exposed; an eye or a light in its hole is not.
-  const double counted = tally.sunk * (tally.covered / tally.exposed);
+  const double counted = tally.depthWeighted * (tally.covered / tally.exposed);
   // A part that is mostly hidden passes for what it is of the whole, if where it is exposed it is covered beyond doubt.
   const double ofAll = std::min(times(counted, options.minOfAll * allCovered * tally.segments),
                                 times(options.maxUncovered * tally.exposed, tally.exposed - tally.covered));
@@ -328,48 +328,54 @@ double marginOf(const Options& options, const Tally& tally, double allCovered) {
 }
 
 /// Step 5: whether each segment passes, and could have passed, given what its samples might have found.
-void decide(const Scene& scene, const Options& options, const std::vector<Voter>& samples, State& state,
-            std::vector<SegmentStats>& stats, std::vector<SegmentMeasure>& measures) {
-  // Three times: as it is, and with every voter at its worst and at its best.
+void decide(const Scene& scene, const Options& options, const std::vector<Sample>& samples, State& state,
+            std::vector<SegmentStats>& stats) {
+  // Three times: as it is, and with every sample at its worst and at its best.
   std::vector<Tally> is(state.segmentCount), worst(state.segmentCount), best(state.segmentCount);
-  const std::vector<Range> weights = depthWeights(scene, samples);
+  const bool weighsDepth = options.floor == Floor::depth;
+  const std::vector<Range> weights =
+      weighsDepth ? depthWeights(scene, samples) : std::vector<Range>(samples.size(), {1, 1, 1});
   Range all;  // The covered area of all segments.
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) is[s] = worst[s] = best[s] = {stats[s].area, 0, 0, 0, 1};
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Voter& voter = samples[i];
+    const Sample& sample = samples[i];
     const auto count = [&](Tally& tally, Zone zone, double weight) {
-      if (zone != Zone::occluded) tally.exposed += voter.area;
-      if (zone == Zone::cosmetic) tally.covered += voter.area, tally.sunk += voter.area * weight;
+      if (zone != Zone::occluded) tally.exposed += sample.area;
+      if (zone == Zone::cosmetic) tally.covered += sample.area, tally.depthWeighted += sample.area * weight;
     };
-    const auto might = [&](Zone zone) { return (voter.finding.nearby & bit(zone)) != 0; };
-    count(is[voter.segment], voter.finding.zone, weights[i].is);
-    if (voter.finding.zone == Zone::cosmetic) all.is += voter.area;
-    if (voter.finding.nearby == bit(Zone::cosmetic)) all.least += voter.area;
-    if (might(Zone::cosmetic)) all.most += voter.area;
+    const auto might = [&](Zone zone) { return (sample.finding.nearby & bit(zone)) != 0; };
+    count(is[sample.segment], sample.finding.zone, weights[i].is);
+    if (sample.finding.zone == Zone::cosmetic) all.is += sample.area;
+    if (sample.finding.nearby == bit(Zone::cosmetic)) all.least += sample.area;
+    if (might(Zone::cosmetic)) all.most += sample.area;
     const Zone hidden = might(Zone::occluded) ? Zone::occluded : Zone::cosmetic;
-    count(worst[voter.segment], might(Zone::uncovered) ? Zone::uncovered : hidden, weights[i].least);
+    count(worst[sample.segment], might(Zone::uncovered) ? Zone::uncovered : hidden, weights[i].least);
     const Zone bare = might(Zone::occluded) ? Zone::occluded : Zone::uncovered;
-    count(best[voter.segment], might(Zone::cosmetic) ? Zone::cosmetic : bare, weights[i].most);
+    count(best[sample.segment], might(Zone::cosmetic) ? Zone::cosmetic : bare, weights[i].most);
   }
-  measures.resize(state.segmentCount);
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
     stats[s].exposedArea = is[s].exposed;
     stats[s].coveredArea = is[s].covered;
-    measures[s] = {is[s].sunk, marginOf(options, is[s], all.is), s};
+    stats[s].depthWeightedArea = is[s].depthWeighted;
+    stats[s].twinOf = s;
+    stats[s].score = scoreOf(options, is[s], all.is);
   }
 
   // Copies that are in doubt are judged together, so that twins do not fall on either side by accident.
   constexpr double kDoubt = 2;
   std::vector<bool> unsureDoubt(state.segmentCount, false);
+  std::vector<std::uint32_t> twins;
+  if (weighsDepth) {
+    twins = findTwins(scene, state, stats);
+    for (std::uint32_t s = 0; s < state.segmentCount; ++s) stats[s].twinOf = twins[s];
+  }
   if (options.twins) {
-    const std::vector<std::uint32_t> twins = findTwins(scene, state, stats);
-    const auto inDoubt = [](double margin) { return margin >= 1 / kDoubt && margin < kDoubt; };
+    const auto inDoubt = [](double score) { return score >= 1 / kDoubt && score < kDoubt; };
     std::vector<Tally> sums(state.segmentCount), worstSums(state.segmentCount), bestSums(state.segmentCount);
     std::vector<bool> doubted(state.segmentCount), unsureSum(state.segmentCount, false);
     for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-      measures[s].twins = twins[s];
-      const double least = marginOf(options, worst[s], all.most), most = marginOf(options, best[s], all.least);
-      doubted[s] = inDoubt(measures[s].margin);
+      const double least = scoreOf(options, worst[s], all.most), most = scoreOf(options, best[s], all.least);
+      doubted[s] = inDoubt(stats[s].score);
       if (inDoubt(least) != doubted[s] || inDoubt(most) != doubted[s]) unsureSum[twins[s]] = unsureDoubt[s] = true;
       if (!doubted[s]) continue;
       sums[twins[s]].add(is[s]);
@@ -390,11 +396,11 @@ void decide(const Scene& scene, const Options& options, const std::vector<Voter>
   const bool exact = options.floor == Floor::none && (options.threshold == 0 || options.threshold == 1);
   state.passes.resize(state.segmentCount);
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
-    const double margin = marginOf(options, is[s], all.is);
-    const double least = marginOf(options, worst[s], all.most), most = marginOf(options, best[s], all.least);
+    stats[s].score = scoreOf(options, is[s], all.is);
+    const double least = scoreOf(options, worst[s], all.most), most = scoreOf(options, best[s], all.least);
     const double noise = exact || is[s].exposed == 0 ? 0 : kSumNoise;
     Verdict& pass = state.passes[s];
-    pass.is = margin >= 1;
+    pass.is = stats[s].score >= 1;
     pass.might = pass.is || most >= 1 - noise || unsureDoubt[s];
     pass.must = pass.is && least >= 1 + noise && !unsureDoubt[s];
     stats[s].culledBy = pass.is ? CulledBy::none : CulledBy::coverage;
@@ -582,18 +588,18 @@ std::vector<Hole> judgeHoles(const Scene& scene, const State& state) {
 
 /// Step 5": a hole may be meant for small parts: they do not pass if nothing else explains the hole, and it bares much
 /// of them, or if much of them lies hidden under it.
-void failBaredParts(const Scene& scene, const std::vector<Voter>& samples, State& state, Result& result) {
+void cullHoleContents(const Scene& scene, const std::vector<Sample>& samples, State& state, Result& result) {
   constexpr double kBare = 0.15, kMuchOfHole = 0.25, kHidden = 0.25, kSmall = 0.02;
   std::vector<Range> exposed(state.segmentCount), covered(state.segmentCount);
   Range all;  // The covered area of all segments.
-  for (const Voter& voter : samples) {
+  for (const Sample& sample : samples) {
     const auto add = [&](Range& sum, unsigned zones) {
-      if ((bit(voter.finding.zone) & zones) != 0) sum.is += voter.area;
-      if ((voter.finding.nearby & ~zones) == 0) sum.least += voter.area;
-      if ((voter.finding.nearby & zones) != 0) sum.most += voter.area;
+      if ((bit(sample.finding.zone) & zones) != 0) sum.is += sample.area;
+      if ((sample.finding.nearby & ~zones) == 0) sum.least += sample.area;
+      if ((sample.finding.nearby & zones) != 0) sum.most += sample.area;
     };
-    add(exposed[voter.segment], bit(Zone::cosmetic) | bit(Zone::uncovered));
-    add(covered[voter.segment], bit(Zone::cosmetic));
+    add(exposed[sample.segment], bit(Zone::cosmetic) | bit(Zone::uncovered));
+    add(covered[sample.segment], bit(Zone::cosmetic));
     add(all, bit(Zone::cosmetic));
   }
   // What of each segment is uncovered at each hole, and what is hidden.
@@ -832,14 +838,21 @@ Result transfer(const MeshView& cage, const MeshView& target, const Options& opt
     result.segmentStats[state.segments[p]].area += state.areas[p];
   }
   if (filtered) {
-    const std::vector<Voter> samples = findInteriorSamples(scene, options, state);
-    for (const Voter& voter : samples)
-      if (!single(voter.finding.nearby)) result.firmAreas[voter.segment] = 0;
-    decide(scene, options, samples, state, result.segmentStats, result.measures);
-    if (options.holes && options.holeContents) failBaredParts(scene, samples, state, result);
+    const std::vector<Sample> samples = findInteriorSamples(scene, options, state);
+    for (const Sample& sample : samples)
+      if (!single(sample.finding.nearby)) result.firmAreas[sample.segment] = 0;
+    decide(scene, options, samples, state, result.segmentStats);
+    if (options.holes && options.holeContents) cullHoleContents(scene, samples, state, result);
   } else {
     state.passes.assign(state.segmentCount, {true, true, true});
-    for (SegmentStats& stats : result.segmentStats) stats.exposedArea = stats.coveredArea = stats.area;
+    double all = 0;
+    for (const SegmentStats& stats : result.segmentStats) all += stats.area;
+    for (std::uint32_t s = 0; s < state.segmentCount; ++s) {
+      SegmentStats& stats = result.segmentStats[s];
+      stats.exposedArea = stats.coveredArea = stats.depthWeightedArea = stats.area;
+      stats.twinOf = s;
+      stats.score = scoreOf(options, {stats.area, stats.area, stats.area, stats.area, 1}, all);
+    }
   }
   std::vector<Verdict> seen(pointCount), underHole(pointCount);
   if (filtered && options.secondLook) seen = secondLook(scene, options, state);

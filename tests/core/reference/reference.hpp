@@ -20,7 +20,7 @@ struct Options {
   double occlusionReach = 0.03;
   bool pokes = false;  ///< Step 3': a point without a cage hit, up to `pokeThrough` outside, is covered.
   double pokeThrough = 0.0025;
-  bool interiorSamples = false;  ///< Step 4': big triangles of small segments at a hole vote from within.
+  bool interiorSamples = false;  ///< Step 4': big triangles of small segments at a hole have samples inside.
   bool farLoops = false;         ///< Step 4': a loop is near a segment up to where the cage is; else within 0.01.
   Floor floor = Floor::none;     ///< Step 5': what a segment needs besides its coverage, and C > 0.
   double minCovered = 0.2;
@@ -41,14 +41,6 @@ struct Options {
   static Options earlier();   ///< The same with step 4', the floor and the second look as they were first written down.
 };
 
-/// What step 5' asks of a segment, besides what is in its `SegmentStats`.
-struct SegmentMeasure {
-  double depthWeightedArea =
-      0;              ///< D: the covered area, less where it lies deeper under the cage than what else lies there.
-  double margin = 0;  ///< How many times what is asked of it the segment reaches, by itself: it passes from 1 on.
-  std::uint32_t twins = 0;  ///< The first of the segments that it is a copy of.
-};
-
 /// The answer of the reference, with the same fields and meanings as `Projection` and `Zones`.
 struct Result {
   std::vector<float> uvs;                       ///< 2 per target vertex.
@@ -56,9 +48,8 @@ struct Result {
   std::vector<std::uint32_t> triangles;         ///< 1 per target vertex.
   std::vector<float> distances;                 ///< 1 per target vertex.
   std::vector<std::uint32_t> segments;          ///< 1 per target vertex.
-  std::vector<SegmentStats> segmentStats;       ///< 1 per segment; exposed and covered areas are those that voted.
-  std::vector<std::uint8_t> firmAreas;          ///< 1 per segment: 0 where what a voter found hangs on rounding.
-  std::vector<SegmentMeasure> measures;         ///< 1 per segment.
+  std::vector<SegmentStats> segmentStats;       ///< 1 per segment; areas are sums over the samples.
+  std::vector<std::uint8_t> firmAreas;          ///< 1 per segment: 0 where what a sample found depends on rounding.
   std::vector<std::uint8_t> cosmeticTriangles;  ///< 1 per target triangle.
   std::vector<float> cornerUvs;                 ///< 6 per target triangle, with `seams`; else empty.
   /// 1 per target vertex: 0 where the method itself has no firm answer, so that another may be right as well.
