@@ -59,7 +59,8 @@ export async function runTool(...args: string[]): Promise<string> {
   try {
     return (await output(tool, args)).stdout.trim().split('\n').at(-1)!;
   } catch (error) {
-    return (error as Error).message;
+    // Without the command line.
+    return (error as Error).message.replace(/^.* failed \(exit \d+\): /s, '').trim();
   }
 }
 
