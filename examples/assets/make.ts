@@ -1,12 +1,22 @@
 /**
- * Makes the sample models into build/assets: `npm run assets [-- --force] [model …]`.
+ * Makes the sample models into build/assets: `npm run assets [-- --force] [--templates] [model …]`.
  *
  * Nothing is made twice: a model is skipped while the sources it comes from are unchanged, unless --force is given. Models of
- * different sources are made at once, each in a process of its own.
+ * different sources are made at once, each in a process of its own. With --templates, the template cages are then copied to
+ * examples/assets/templates, where the package takes them from.
  */
 import { fork } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import {
+  copyFileSync,
+  existsSync,
+  mkdirSync,
+  readdirSync,
+  readFileSync,
+  renameSync,
+  rmSync,
+  writeFileSync,
+} from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { faultsOf } from './check.ts';
@@ -17,12 +27,14 @@ import type { Model } from './model.ts';
 import { car } from './models/car.ts';
 import { human, humanFused, humanMisaligned } from './models/human.ts';
 import { lizard } from './models/lizard.ts';
-import { truthOf } from './truth.ts';
+import { templateFaults, writeTemplate } from './template.ts';
+import { offCageOf, truthOf } from './truth.ts';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, '../..');
 const out = join(root, 'build/assets');
 const kPaintSize = 1024;
+const checkIn = process.argv.includes('--templates'); // put the templates where they are checked in
 
 /** Each sample's maker, and the file in models/ that it comes from. A sample that borrows paints comes after their owner. */
 const models: Record<string, { make: () => Model; source: string }> = {
@@ -71,6 +83,16 @@ const write = async (model: Model, folder: string, lent: (name: string) => Entry
   writeFileSync(join(folder, 'target.glb'), target);
   writeFileSync(join(folder, 'cage.glb'), cageGlb);
   writeFileSync(join(folder, 'truth.json'), JSON.stringify(truth));
+  if (model.template) {
+    const bytes = await writeTemplate(model.template);
+    const wrong = templateFaults(model.template, bytes);
+    if (wrong.length > 0) throw new Error(`assets: ${wrong.join('\n  ')}`);
+    writeFileSync(join(folder, 'template.glb'), bytes);
+    writeFileSync(
+      join(folder, 'template.json'),
+      JSON.stringify({ offCage: offCageOf(model.parts, model.template.cage) }),
+    );
+  }
   const own = 'of' in model.paints ? [] : model.paints;
   for (const paint of own)
     writeFileSync(
@@ -90,7 +112,7 @@ const write = async (model: Model, folder: string, lent: (name: string) => Entry
   };
 };
 
-const wanted = process.argv.slice(2).filter((a) => a !== '--force');
+const wanted = process.argv.slice(2).filter((a) => !a.startsWith('--'));
 const force = process.argv.includes('--force');
 const unknown = wanted.find((name) => !(name in models));
 if (unknown !== undefined) {
@@ -101,6 +123,7 @@ if (unknown !== undefined) {
 interface Made {
   print: string;
   entry: Entry;
+  template?: string; // what its template.glb is called in the package
 }
 
 const stampOf = (name: string): string => join(out, name, 'made.json');
@@ -119,7 +142,8 @@ const makeHere = async (name: string): Promise<void> => {
     mkdirSync(aside, { recursive: true });
     const model = make();
     const entry = await write(model, aside, (other) => madeOf(other)?.entry.paints ?? []);
-    const made: Made = { print: fingerprint(source), entry };
+    const { template } = model;
+    const made: Made = { print: fingerprint(source), entry, ...(template && { template: template.name }) };
     writeFileSync(join(aside, 'made.json'), JSON.stringify(made));
     rmSync(folder, { recursive: true, force: true });
     renameSync(aside, folder);
@@ -155,3 +179,8 @@ const list = join(out, `.index-${process.pid}.json`);
 const index = Object.keys(models).flatMap((name) => madeOf(name)?.entry ?? []);
 writeFileSync(list, `${JSON.stringify(index, null, 2)}\n`);
 renameSync(list, join(out, 'index.json'));
+
+for (const name of checkIn ? Object.keys(models) : []) {
+  const template = madeOf(name)?.template;
+  if (template) copyFileSync(join(out, name, 'template.glb'), join(here, 'templates', `${template}.glb`));
+}

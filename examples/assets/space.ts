@@ -17,6 +17,8 @@ export interface Space {
    * several triangles share the point, the one whose plane is farthest: its side is the true one.
    */
   nearest(p: Vec3): Nearest;
+  /** Where a ray first hits the mesh, from either side. */
+  hit(from: Vec3, direction: Vec3): Vec3 | undefined;
   /** Whether a ray hits the mesh, from either side. */
   hits(from: Vec3, direction: Vec3): boolean;
 }
@@ -50,6 +52,12 @@ export const spaceOf = (mesh: Mesh): Space => {
         },
       });
       return best;
+    },
+    hit(from, direction) {
+      ray.origin.set(...from);
+      ray.direction.set(...unit(direction));
+      const first = bvh.raycastFirst(ray, DoubleSide);
+      return first ? [first.point.x, first.point.y, first.point.z] : undefined;
     },
     hits(from, direction) {
       ray.origin.set(...from);

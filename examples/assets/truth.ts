@@ -39,10 +39,15 @@ export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) =>
   const whole = join(...parts.map((p) => p.mesh));
   const count = vertexCount(whole);
   const space = spaceOf(whole);
-  const cageSpace = spaceOf(cage);
-  const onBorder = onOpenEdge(weldPositions(cage));
   const lift = 1e-4 * diagonalOf(whole.positions);
-  const truth: Truth = { vertexCount: count, ncz: [], ignore: [], hidden: [], offCage: [], parts: [] };
+  const truth: Truth = {
+    vertexCount: count,
+    ncz: [],
+    ignore: [],
+    hidden: [],
+    offCage: offCageOf(parts, cage),
+    parts: [],
+  };
   for (const part of parts) {
     truth.parts.push({
       name: part.name,
@@ -63,10 +68,18 @@ export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) =>
       truth.ncz.push(ncz ? 1 : 0);
       truth.hidden.push(hidden ? 1 : 0);
       truth.ignore.push((!ncz && (!exposed || inside(p))) || part.ambiguous ? 1 : 0);
-      truth.offCage.push(onBorder(cageSpace.nearest(p).point) ? 1 : 0);
     }
   }
   return truth;
+};
+
+/** For each vertex of the parts 1 if its nearest cage point is on an open border. */
+export const offCageOf = (parts: readonly Part[], cage: Mesh): number[] => {
+  const space = spaceOf(cage);
+  const onBorder = onOpenEdge(weldPositions(cage));
+  return parts.flatMap(({ mesh }) =>
+    Array.from({ length: vertexCount(mesh) }, (_, v) => (onBorder(space.nearest(point(mesh, v)).point) ? 1 : 0)),
+  );
 };
 
 /** The same triangles over vertices that differ in position, so that a cut in the UVs is no border. */

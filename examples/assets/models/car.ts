@@ -1,6 +1,7 @@
 import { makeCage } from '../cage.ts';
 import { type Part, textured } from '../glb.ts';
 import { lit, mixColour, over, type Rgba, rgb, type Shade } from '../image.ts';
+import { bothSides, finderOn, inMiddle } from '../landmarks.ts';
 import {
   clip,
   join,
@@ -35,6 +36,7 @@ import {
   union,
 } from '../sdf.ts';
 import { lathe, spokedRim } from '../shapes.ts';
+import { namedHoles, symmetric, type Template } from '../template.ts';
 import { boxAtlas, pelt } from '../unwrap.ts';
 import { scale, smoothstep, type Vec3 } from '../vec.ts';
 
@@ -447,6 +449,79 @@ const camouflage: Shade = (p) => {
   return mixColour(c, rgb('#a89b6c'), smoothstep(0.6, 0.61, fractal(scale(q, 1.1), 37)));
 };
 
+// ---- template ----
+
+/** The car's cage as a template: corners, roof, bumpers, mirrors and wheels to find again on another car. */
+const templateOf = (unwrapped: Mesh, skin: Mesh): Template => {
+  const cage = symmetric(unwrapped);
+  const { from, furthest } = finderOn(skin);
+  const side = (p: Vec3): Vec3 => from([1, 0, 0], p);
+  const landmarks = {
+    ...inMiddle({
+      bumper_front: from([0, 0, 1], [0, 0.5, 0]),
+      bumper_rear: from([0, 0, -1], [0, 0.5, 0]),
+      bonnet_front: from([0, 1, 0], [0, 0, 1.95]),
+      windscreen_bottom: from([0, 1, 0], [0, 0, 1.03]),
+      windscreen_top: from([0, 1, 0], [0, 0, 0.18]),
+      roof: from([0, 1, 0], [0, 0, -0.3]),
+      rear_window_top: from([0, 1, 0], [0, 0, -0.88]),
+      rear_window_bottom: from([0, 1, 0], [0, 0, -1.62]),
+      boot_rear: from([0, 1, 0], [0, 0, -1.95]),
+    }),
+    ...bothSides({
+      wheel_front_centre: [kWheel.x, kWheel.radius, kAxles[0]],
+      wheel_rear_centre: [kWheel.x, kWheel.radius, kAxles[1]],
+      corner_front: furthest([0.7, 0, 0.7], [0.8, 0.5, 2], 0.25),
+      corner_rear: furthest([0.7, 0, -0.7], [0.8, 0.5, -2], 0.25),
+      roof_corner_front: furthest([0.5, 0.6, 0.6], [0.55, 1.36, 0.1], 0.2),
+      roof_corner_rear: furthest([0.5, 0.6, -0.6], [0.52, 1.34, -0.85], 0.2),
+      sill_front: side([0, 0.33, 0.8]),
+      sill_rear: side([0, 0.33, -0.82]),
+      belt_front: side([0, 0.9, 0.9]),
+      belt_rear: side([0, 0.92, -1.3]),
+      mirror: furthest([1, 0, 0], [0.98, 0.99, 0.71], 0.2),
+    }),
+  };
+  const holes = namedHoles(cage, {
+    window_front: [0, 1.17, 0.6],
+    window_rear: [0, 1.17, -1.3],
+    grille: [0, 0.5, 2.2],
+    underside: [0, 0.3, 0],
+    ...bothSides({
+      window_side_front: [0.75, 1.12, 0.1],
+      window_side_rear: [0.75, 1.13, -0.7],
+      light_front: [0.62, 0.67, 2.1],
+      light_rear: [0.65, 0.72, -2.1],
+    }),
+  });
+  // The arches are no loops of their own: each is the run of the underside's border that follows it.
+  for (const [end, z] of [
+    ['front', kAxles[0]],
+    ['rear', kAxles[1]],
+  ] as const)
+    for (const [name, sign] of [
+      ['left', 1],
+      ['right', -1],
+    ] as const)
+      holes[`wheel_${end}_${name}`] = runOf(holes['underside']!, (v) => {
+        const [x, y, z0] = point(cage, v);
+        return x * sign > 0 && y > kSill && Math.abs(z0 - z) < 0.5;
+      });
+  return { name: 'car', kind: 'prop', cage, landmarks, holes, skin };
+};
+
+/** The longest run of a closed loop whose vertices satisfy a condition. */
+const runOf = (loop: readonly number[], holds: (v: number) => boolean): number[] => {
+  const start = loop.findIndex((v) => !holds(v));
+  const turned = [...loop.slice(start), ...loop.slice(0, start)];
+  const runs: number[][] = [[]];
+  for (const v of turned) {
+    if (holds(v)) runs.at(-1)!.push(v);
+    else runs.push([]);
+  }
+  return runs.reduce((a, b) => (b.length > a.length ? b : a));
+};
+
 /** A small saloon car. */
 export const car = (): Model => {
   const half = clip(surface(shell, bounds, 0.026), (p) => p[0]);
@@ -542,11 +617,13 @@ export const car = (): Model => {
       return Math.min(p[1] - (kSill - 0.05), arch(0.015)(...p), ...openings.map((o) => o.field(...q) - light(o)));
     },
   });
+  const unwrapped = pelt(cage, () => false);
   return {
     name: 'car',
     title: 'Saloon car',
     parts,
-    cage: pelt(cage, () => false),
+    cage: unwrapped,
+    template: templateOf(unwrapped, wrap),
     inside: () => false,
     paints: [
       { name: 'racing', title: 'Racing livery, number 27', shade: racing, far: rgb('#c4161c') },

@@ -1,6 +1,7 @@
 import { makeCage } from '../cage.ts';
 import { type Part, textured } from '../glb.ts';
 import { lit, mixColour, over, type Rgba, rgb, type Shade } from '../image.ts';
+import { bothSides, finderOn, inMiddle, type Landmarks } from '../landmarks.ts';
 import { join, type Mesh, point, reflected, symmetricSurface, withFieldNormals } from '../mesh.ts';
 import type { Model } from '../model.ts';
 import { fractal, noise } from '../noise.ts';
@@ -20,16 +21,17 @@ import {
   union,
 } from '../sdf.ts';
 import { alongLine, eyeball, spike } from '../shapes.ts';
+import { namedHoles, symmetric, type Template } from '../template.ts';
 import { boxAtlas, pelt } from '../unwrap.ts';
 import { add, clamp, frame, length, scale, smoothstep, sub, unit, type Vec3 } from '../vec.ts';
 
 // One unit is the height of the head: the chin is at y = -0.5, the crown at 0.5. The face looks to +z, the left is +x.
 const kBottom = -0.93; // the bust ends at this y
-const kEye: Vec3 = [0.143, 0.0, 0.255];
-const kLook: Vec3 = unit([0.06, 0, 1]);
+export const kEye: Vec3 = [0.143, 0.0, 0.255];
+export const kLook: Vec3 = unit([0.06, 0, 1]);
 const kEyeRadius = 0.066;
-const kNoseTip: Vec3 = [0, -0.2, 0.42];
-const kMouth: Vec3 = [0, -0.305, 0.345];
+export const kNoseTip: Vec3 = [0, -0.2, 0.42];
+export const kMouth: Vec3 = [0, -0.305, 0.345];
 
 // ---- the head without its openings ----
 
@@ -92,14 +94,14 @@ const lowerLip = tube([
 const lips = local(kMouth, 0.16, 0.06, smoothUnion(0.012, upperLip, lowerLip));
 const philtrum = roundCone([0, -0.225, 0.385], [0, -0.27, 0.39], 0.012);
 
-const kEar: Vec3 = [0.325, -0.045, -0.045];
+export const kEar: Vec3 = [0.325, -0.045, -0.045];
 const earAxes = frame(unit([1, 0.08, 0.42]), [0.05, 1, 0.12]); // backwards-in, up, outwards
-const earAt = (u: number, v: number, w: number): Vec3 =>
+export const earAt = (u: number, v: number, w: number): Vec3 =>
   add(kEar, add(add(scale(earAxes[0], u), scale(earAxes[1], v)), scale(earAxes[2], w)));
 const rim = (points: readonly (readonly [number, number, number, number])[]): Sdf =>
   tube(points.map(([u, v, w, r]) => [...earAt(u, v, w), r] as [number, number, number, number]));
 // u runs from the ear's back (+, earAxes[0] points away from the face) to its front.
-const back = earAxes[0][2] < 0 ? 1 : -1;
+export const back = earAxes[0][2] < 0 ? 1 : -1;
 const earPlate = ellipsoid(earAt(back * 0.012, -0.005, -0.004), [0.066, 0.118, 0.022], earAxes);
 const helix = rim([
   [back * -0.038, 0.0, 0.012, 0.012],
@@ -159,7 +161,7 @@ const shut = (ears: Sdf): Sdf => {
 
 /** The space between the lids: two arcs that meet in the corners of the eye, drawn out to the front. */
 const [eyeRight, eyeUp, eyeFront] = frame(kLook);
-const lidOpening = (grow: number): Sdf => {
+export const lidOpening = (grow: number): Sdf => {
   const arc = (height: number, half: number): { centre: number; radius: number } => {
     const centre = (half * half - height * height) / (2 * height);
     return { centre, radius: centre + height };
@@ -181,7 +183,7 @@ const lidOpening = (grow: number): Sdf => {
 };
 const kGap = (grow: number): Sdf => ellipsoid([0, -0.313, 0.35], [0.1 + grow, 0.0125 + grow, 0.12 + grow]);
 /** The gap between the lips, its corners a little raised. */
-const lipGap =
+export const lipGap =
   (grow: number): Sdf =>
   (x, y, z) =>
     kGap(grow)(x, y - 0.55 * x * x, z);
@@ -205,7 +207,7 @@ const cavity = smoothUnion(
 const nostril = smoothUnion(0.01, roundCone([0.026, -0.225, 0.392], [0.02, -0.165, 0.365], 0.0145, 0.012));
 
 const kFold = 0.012; // rounds the middle of the face, where the two halves meet
-const closedSolid: Sdf = mirrored(shut(ear), kFold);
+export const closedSolid: Sdf = mirrored(shut(ear), kFold);
 const opened = (fused: boolean): Sdf => {
   const hollow = smoothUnion(
     0.012,
@@ -220,7 +222,7 @@ const skinSolid: Sdf = mirrored(opened(false), kFold);
 const fusedSolid: Sdf = mirrored(opened(true), kFold);
 
 /** For the cage: ears as mere swellings, lips closed, lids shut. */
-const cagedSolid: Sdf = mirrored(
+export const cagedSolid: Sdf = mirrored(
   smoothUnion(
     0.05,
     shut(ellipsoid(earAt(back * 0.015, 0, 0.0), [0.085, 0.14, 0.045], earAxes)),
@@ -267,7 +269,7 @@ const faceLens = (p: Vec3): Vec3 => [bend(p[0], -1, 0.22), bend(p[1], -0.42, 0.1
 const bend = (x: number, from: number, to: number): number => x + Math.min(x - from, 0) + Math.max(x - to, 0);
 
 /** Enlarges eyes, mouth and ears, so that they keep more of their triangles. */
-const faceFocus = (p: Vec3): Vec3 => {
+export const faceFocus = (p: Vec3): Vec3 => {
   const q = folded(p);
   let out = p;
   for (const [centre, r, by] of [
@@ -553,28 +555,71 @@ const keepBust = (p: Vec3): number => p[1] - kBottom;
 const meshOf = (solid: Sdf, triangles: number): Mesh =>
   symmetricSurface(solid, { bounds, edge: 0.0088, triangles, lens: faceLens, focus: faceFocus, keep: keepBust });
 
-const cageFor = (skin: Mesh): Mesh =>
+const cageFor = (skin: Mesh): Mesh => cageOf(skin, 800, (p) => p[1] - (kBottom - 0.035));
+
+/** A cage that ends where `keep` is negative. */
+const cageOf = (skin: Mesh, triangles: number, keep: (p: Vec3) => number): Mesh =>
   pelt(
     makeCage({
       solid: cagedSolid,
       bounds: { min: [-0.08, kBottom - 0.2, -0.62], max: [0.82, 0.62, 0.58] },
       edge: 0.034,
       distance: 0.04,
-      triangles: 800,
+      triangles,
       focus: (p) =>
         add(faceFocus(p), scale(sub(p, kNoseTip), 0.7 * Math.exp(-((length(sub(p, kNoseTip)) / 0.15) ** 2)))),
       wrap: skin,
       seen: (v) => Math.abs(closedSolid(...point(skin, v))) < 0.006,
-      keep: (p) =>
-        Math.min(
-          p[1] - (kBottom - 0.035),
-          lidOpening(0.006)(...p),
-          lipGap(0.014)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5,
-        ),
+      keep: (p) => Math.min(keep(p), lidOpening(0.006)(...p), lipGap(0.014)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5),
     }),
     (a, b) => a[0] === 0 && b[0] === 0 && (a[2] + b[2]) / 2 < 0 && (a[1] + b[1]) / 2 < 0.4,
     (p) => 1 + 1.3 * Math.exp(-((length(sub(p, [0, -0.13, 0.38])) / 0.33) ** 2)),
   );
+
+/** The cage of the head alone, cut through the neck: a template is fitted to heads, few of which have shoulders. */
+const headCage = (skin: Mesh): Mesh => cageOf(skin, 700, (p) => p[1] + 0.67 + 0.36 * p[2]);
+
+/** Spots of the face and skull, for the template of a head and of a whole figure; lengths in heads. */
+export const headLandmarks = (skin: Mesh): Landmarks => {
+  const { near, from, furthest } = finderOn(skin);
+  const front = (y: number): Vec3 => from([0, 0, 1], [0, y, 0]);
+  const corner = (side: 1 | -1): Vec3 => near(add(kEye, add(scale(eyeRight, side * 0.0635), scale(eyeFront, 0.03))));
+  return {
+    ...inMiddle({
+      nose_tip: furthest([0, 0, 1], kNoseTip, 0.08),
+      nasion: front(0.015),
+      glabella: front(0.1),
+      forehead: front(0.26),
+      crown: from([0, 1, 0], [0, 0, 0.0]),
+      occiput: from([0, 0, -1], [0, 0.08, 0]),
+      nape: from([0, 0, -1], [0, -0.34, 0]),
+      lip_upper: front(-0.288),
+      lip_lower: front(-0.336),
+      chin: front(-0.42),
+      menton: from([0, -1, 0.6], [0, -0.47, 0.25]),
+    }),
+    ...bothSides({
+      eye_centre: kEye,
+      eye_inner: corner(eyeRight[0] > 0 ? -1 : 1),
+      eye_outer: corner(eyeRight[0] > 0 ? 1 : -1),
+      ear_top: furthest([0, 1, 0], kEar, 0.16),
+      ear_lobe: near(earAt(0, -0.145, 0.008)),
+      ear_outer: furthest([1, 0, 0], kEar, 0.16),
+      mouth_corner: near([0.112, -0.306, 0.34]),
+    }),
+  };
+};
+
+/** The head as a template. */
+const templateOf = (skin: Mesh): Template => {
+  const cage = symmetric(headCage(skin));
+  const holes = namedHoles(cage, {
+    ...bothSides({ eye: add(kEye, scale(kLook, kEyeRadius)) }),
+    mouth: kMouth,
+    neck: [0, -0.6, -0.12],
+  });
+  return { name: 'human-head', kind: 'head', cage, landmarks: headLandmarks(skin), holes, skin };
+};
 
 const others = (): Part[] => [
   textured('upper-teeth', boxAtlas(teeth(-0.27, -1, 0.004, 1.12)), toothShade, 64, 0.3, true),
@@ -625,6 +670,7 @@ const makeHuman = (): Model => {
       ...others(),
     ],
     cage: cageFor(skin),
+    template: templateOf(skin),
     inside,
     paints,
   };
@@ -637,6 +683,7 @@ export const humanFused = (): Model => {
   return {
     ...whole,
     name: 'human-fused',
+    template: undefined,
     title: 'Human bust, eyes fused with the skin',
     parts: [
       { ...textured('skin', skin, skinShade(true), 1024, 0.6, isEye), doubleSided: true },
@@ -659,6 +706,7 @@ export const humanMisaligned = (): Model => {
   return {
     ...whole,
     name: 'human-misaligned',
+    template: undefined,
     title: 'Human bust, cage out of place',
     misfit: true,
     cage: { ...whole.cage, positions },

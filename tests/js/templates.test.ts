@@ -1,0 +1,111 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { before, describe, test } from 'node:test';
+import { NodeIO } from '@gltf-transform/core';
+import { init, transfer } from 'cagecast';
+import { readPlain } from './scenes.js';
+
+before(init);
+
+interface Extras {
+  kind: string;
+  landmarks: Record<string, [number, number, number]>;
+  holes: Record<string, number[]>;
+}
+
+/** Each template, the folder of the model that it was made along with, and what it must name. */
+const kTemplates = [
+  {
+    name: 'human-head',
+    model: 'human',
+    kind: 'head',
+    landmarks: [
+      'nose_tip',
+      'crown',
+      'occiput',
+      'chin',
+      'nape',
+      'eye_centre_left',
+      'ear_top_right',
+      'mouth_corner_left',
+    ],
+    holes: ['eye_left', 'eye_right', 'mouth', 'neck'],
+  },
+  {
+    name: 'car',
+    model: 'car',
+    kind: 'prop',
+    landmarks: ['bumper_front', 'roof', 'corner_front_left', 'wheel_rear_centre_right', 'mirror_left'],
+    holes: ['window_front', 'window_side_rear_left', 'light_front_right', 'grille', 'underside', 'wheel_front_left'],
+  },
+];
+
+const load = async (name: string) => {
+  const bytes = readFileSync(`examples/assets/templates/${name}.glb`);
+  const document = await new NodeIO().readBinary(new Uint8Array(bytes));
+  const meshes = document.getRoot().listMeshes();
+  assert.equal(meshes.length, 1);
+  return { bytes, extras: meshes[0]!.getExtras() as unknown as Extras };
+};
+
+describe('the template', () => {
+  for (const { name, model, kind, landmarks, holes } of kTemplates)
+    describe(name, () => {
+      test('is what its sources make, at most 60 kB', async () => {
+        const { bytes } = await load(name);
+        assert.ok(bytes.length <= 60_000, `${bytes.length} bytes`);
+        assert.ok(
+          bytes.equals(readFileSync(`build/assets/${model}/template.glb`)),
+          'examples/assets/templates is out of date: npm run assets -- --templates',
+        );
+      });
+
+      test('names its kind, landmarks and holes', async () => {
+        const { extras } = await load(name);
+        const { positions } = await readPlain(`examples/assets/templates/${name}.glb`);
+        assert.equal(extras.kind, kind);
+        for (const spot of landmarks) assert.equal(extras.landmarks[spot]?.length, 3, spot);
+        for (const [spot, [x, y, z]] of Object.entries(extras.landmarks)) {
+          const [other, sign] = spot.endsWith('_left') ? [spot.replace(/left$/, 'right'), -1] : [spot, 1];
+          assert.deepEqual(extras.landmarks[other], [x === 0 ? 0 : sign * x, y, z], spot);
+          assert.ok(/_(left|right)$/.test(spot) || x === 0, `${spot} is off the plane of symmetry`);
+        }
+        for (const hole of holes) assert.ok(extras.holes[hole]!.length >= 3, hole);
+        for (const [hole, loop] of Object.entries(extras.holes))
+          for (const v of loop) assert.ok(v >= 0 && 3 * v < positions.length, `${hole}: ${v}`);
+      });
+
+      test('has UVs that are their own mirror image', async () => {
+        const { positions, uvs } = await readPlain(`examples/assets/templates/${name}.glb`);
+        const places = new Map<string, number[]>();
+        const keyOf = (x: number, y: number, z: number): string => [x, y, z].map((a) => Math.round(a * 1e5)).join(' ');
+        for (let v = 0; 3 * v < positions.length; v++) {
+          const key = keyOf(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!);
+          places.set(key, [...(places.get(key) ?? []), v]);
+        }
+        for (let v = 0; 3 * v < positions.length; v++) {
+          const key = keyOf(-positions[3 * v]! + 0, positions[3 * v + 1]!, positions[3 * v + 2]!);
+          const [u, w] = [uvs![2 * v]!, uvs![2 * v + 1]!];
+          const twin = places
+            .get(key)
+            ?.some((o) => Math.abs(uvs![2 * o]! + u - 1) < 1e-5 && Math.abs(uvs![2 * o + 1]! - w) < 1e-5);
+          assert.ok(twin, `vertex ${v}`);
+        }
+      });
+
+      test('fits the model that it was made for', async () => {
+        const cage = await readPlain(`examples/assets/templates/${name}.glb`);
+        const target = await readPlain(`build/assets/${model}/${model === 'human-body' ? 'model' : 'target'}.glb`);
+        const truth = JSON.parse(readFileSync(`build/assets/${model}/truth.json`, 'utf8'));
+        const { offCage } = JSON.parse(readFileSync(`build/assets/${model}/template.json`, 'utf8'));
+        const { zones } = transfer(cage, target);
+        const scored = Array.from(zones, (_, v) => v).filter((v) => !truth.ignore[v]);
+        const forbidden = scored.filter((v) => truth.ncz[v]);
+        const skin = scored.filter((v) => !truth.ncz[v] && !offCage[v]);
+        const suppressed = forbidden.filter((v) => zones[v] !== 0).length / forbidden.length;
+        const kept = skin.filter((v) => zones[v] === 0).length / skin.length;
+        assert.ok(suppressed >= 0.999, `suppressed ${suppressed}`);
+        assert.ok(kept >= 0.999, `kept ${kept}`);
+      });
+    });
+});
