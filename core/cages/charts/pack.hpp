@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "charts/flatten.hpp"
+
+namespace cagecast::cages {
+
+/// Scales all charts alike and moves them, not turned, into the unit square, as large as they fit.
+/// @param gutter  Least distance between charts, and half of it to the border; less if there are thousands of charts.
+void packCharts(std::vector<Chart>& charts, double gutter);
+
+}  // namespace cagecast::cages

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/triangle_mesh.hpp"
+
+namespace cagecast::cages {
+
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Half-edge 3t + i runs from corner i of triangle t to the next one.
+constexpr std::size_t nextInTriangle(std::size_t halfEdge) { return halfEdge % 3 == 2 ? halfEdge - 2 : halfEdge + 1; }
+inline std::uint32_t originOf(const TriangleMesh& mesh, std::size_t halfEdge) {
+  return mesh.triangles[halfEdge / 3][halfEdge % 3];
+}
+inline std::uint32_t endOf(const TriangleMesh& mesh, std::size_t halfEdge) {
+  return originOf(mesh, nextInTriangle(halfEdge));
+}
+
+/// The half-edge on the other side of each; `kNone` where the edge is open, is shared by more than two triangles, or
+/// joins triangles that face opposite ways.
+std::vector<std::uint32_t> findTwins(const TriangleMesh& mesh);
+
+/// Part of a mesh with vertices of its own, each of which has one connected fan of triangles.
+struct Piece {
+  TriangleMesh mesh;
+  std::vector<std::uint32_t> vertexOf;    ///< The vertex of the whole mesh for each vertex; `kNone` for made ones.
+  std::vector<std::uint32_t> triangleOf;  ///< The triangle of the whole mesh for each triangle.
+};
+
+/// The whole of a mesh as one piece.
+Piece wholeOf(const TriangleMesh& mesh);
+
+/// Cuts a piece open along edges: vertices are doubled where the surface does not go on round them any more.
+/// @param cut  Per half-edge; an edge is cut if one of its two is marked.
+Piece cutOpen(const Piece& piece, const std::vector<bool>& cut);
+
+/// The connected pieces of each region of a piece, region by region.
+/// @param regions  Per triangle, from 0.
+std::vector<Piece> splitBy(const Piece& piece, std::span<const std::uint32_t> regions);
+
+/// The connected pieces of a piece, in the order of their first triangles.
+std::vector<Piece> componentsOf(const Piece& piece);
+
+/// The boundary of a piece as closed walks of half-edges, the longest first.
+std::vector<std::vector<std::uint32_t>> loopsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> twins);
+
+/// The length of a walk of half-edges.
+double lengthOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk);
+
+/// Disjoint sets of numbers.
+class Unions {
+ public:
+  explicit Unions(std::size_t count);
+  std::uint32_t find(std::uint32_t i);
+  void join(std::uint32_t i, std::uint32_t k);
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace cagecast::cages

@@ -1,0 +1,149 @@
+#include "charts/segment.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <queue>
+#include <utility>
+
+namespace cagecast::cages {
+
+namespace {
+
+/// A border between sides costs as much as facing wrong by 1 (0 right, 1 square to it) on a strip this share of the
+/// size of the mesh wide.
+constexpr double kBorderWidth = 0.06;
+constexpr int kSweeps = 12;
+constexpr double kLeastSide = 0.04;
+constexpr std::size_t kMostSides = 8;
+
+Vec3 centreOf(const TriangleMesh& mesh, std::size_t t) {
+  const Triangle3& c = mesh.triangles[t];
+  return 1.0 / 3 * (mesh.positions[c[0]] + mesh.positions[c[1]] + mesh.positions[c[2]]);
+}
+
+double edgeLength(const TriangleMesh& mesh, std::size_t h) {
+  return length(mesh.positions[endOf(mesh, h)] - mesh.positions[originOf(mesh, h)]);
+}
+
+/// The triangle that is furthest from a triangle, by ways from centre to centre.
+std::vector<double> distancesFrom(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twins,
+                                  std::uint32_t start) {
+  std::vector<double> distance(mesh.triangles.size(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  queue.emplace(distance[start] = 0, start);
+  while (!queue.empty()) {
+    const auto [soFar, t] = queue.top();
+    queue.pop();
+    if (soFar > distance[t]) continue;
+    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h) {
+      if (twins[h] == kNone) continue;
+      const std::uint32_t other = twins[h] / 3;
+      const double after = soFar + length(centreOf(mesh, t) - centreOf(mesh, other));
+      if (after < distance[other]) queue.emplace(distance[other] = after, other);
+    }
+  }
+  return distance;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> regionsOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& labels) {
+  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  Unions sets(mesh.triangles.size());
+  for (std::size_t h = 0; h < twins.size(); ++h)
+    if (twins[h] != kNone && labels[h / 3] == labels[twins[h] / 3])
+      sets.join(static_cast<std::uint32_t>(h / 3), twins[h] / 3);
+  std::vector<std::uint32_t> number(mesh.triangles.size(), kNone), regions(mesh.triangles.size());
+  std::uint32_t count = 0;
+  for (std::uint32_t t = 0; t < regions.size(); ++t) {
+    std::uint32_t& mine = number[sets.find(t)];
+    if (mine == kNone) mine = count++;
+    regions[t] = mine;
+  }
+  return regions;
+}
+
+void joinSmallRegions(const TriangleMesh& mesh, double least, std::size_t most, std::vector<std::uint32_t>& regions) {
+  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  for (;;) {
+    std::map<std::uint32_t, double> areas;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> borders;
+    double whole = 0;
+    for (std::size_t t = 0; t < regions.size(); ++t) {
+      const double area = length(areaNormal(mesh, mesh.triangles[t]));
+      areas[regions[t]] += area;
+      whole += area;
+    }
+    for (std::size_t h = 0; h < twins.size(); ++h)
+      if (twins[h] != kNone && regions[h / 3] != regions[twins[h] / 3])
+        borders[{regions[h / 3], regions[twins[h] / 3]}] += edgeLength(mesh, h);
+    // The smallest region that has a neighbour.
+    std::uint32_t smallest = kNone, neighbour = kNone;
+    for (const auto& [pair, size] : borders)
+      if (smallest == kNone || areas[pair.first] < areas[smallest]) smallest = pair.first;
+    if (smallest == kNone || (areas[smallest] >= least * whole && areas.size() <= most)) return;
+    double longest = -1;
+    for (const auto& [pair, size] : borders)
+      if (pair.first == smallest && size > longest) {
+        longest = size;
+        neighbour = pair.second;
+      }
+    std::replace(regions.begin(), regions.end(), smallest, neighbour);
+  }
+}
+
+std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& options) {
+  const TriangleMesh& mesh = piece.mesh;
+  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const Vec3 side = cross(options.up, options.front);
+  const std::array<Vec3, 3> axes{side, options.up, options.front};
+  std::vector<std::array<double, 6>> price(mesh.triangles.size());
+  std::vector<std::uint32_t> labels(mesh.triangles.size());
+  for (std::size_t t = 0; t < labels.size(); ++t) {
+    const Vec3 n = areaNormal(mesh, mesh.triangles[t]);
+    const double area = length(n);
+    for (std::size_t k = 0; k < 6; ++k) price[t][k] = area - (k % 2 == 0 ? 1 : -1) * dot(n, axes[k / 2]);
+    labels[t] = static_cast<std::uint32_t>(std::min_element(price[t].begin(), price[t].end()) - price[t].begin());
+  }
+  const double border = kBorderWidth * diagonalOf(mesh);
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    bool changed = false;
+    for (std::size_t t = 0; t < labels.size(); ++t) {
+      std::array<double, 6> sum = price[t];
+      for (std::size_t h = 3 * t; h < 3 * t + 3; ++h)
+        if (twins[h] != kNone)
+          for (std::uint32_t k = 0; k < 6; ++k)
+            if (labels[twins[h] / 3] != k) sum[k] += border * edgeLength(mesh, h);
+      const auto best = static_cast<std::uint32_t>(std::min_element(sum.begin(), sum.end()) - sum.begin());
+      changed = changed || best != labels[t];
+      labels[t] = best;
+    }
+    if (!changed) break;
+  }
+  std::vector<std::uint32_t> regions = regionsOf(mesh, labels);
+  joinSmallRegions(mesh, kLeastSide, kMostSides, regions);
+  return regions;
+}
+
+std::vector<std::uint32_t> halvesOf(const TriangleMesh& mesh) {
+  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const auto furthest = [](const std::vector<double>& distances) {
+    return static_cast<std::uint32_t>(std::max_element(distances.begin(), distances.end()) - distances.begin());
+  };
+  const std::uint32_t one = furthest(distancesFrom(mesh, twins, 0));
+  const std::vector<double> fromOne = distancesFrom(mesh, twins, one);
+  // Two triangles at the same place are no distance apart.
+  const std::uint32_t found = furthest(fromOne), other = found != one ? found : (one == 0 ? 1u : 0u);
+  const std::vector<double> fromOther = distancesFrom(mesh, twins, other);
+  std::vector<std::uint32_t> labels(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < labels.size(); ++t)
+    labels[t] = t != one && (t == other || fromOther[t] < fromOne[t]) ? 1 : 0;
+  return regionsOf(mesh, labels);
+}
+
+}  // namespace cagecast::cages

@@ -1,0 +1,214 @@
+#include "charts/unwrap.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace cagecast;
+using namespace cagecast::cages;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979;
+
+/// A grid of quads, closed round in one or both directions, at places given by two shares.
+template <typename Place>
+TriangleMesh gridMesh(std::uint32_t columns, std::uint32_t rows, bool roundRows, const Place& place) {
+  TriangleMesh mesh;
+  const std::uint32_t lines = roundRows ? rows : rows + 1;
+  for (std::uint32_t y = 0; y < lines; ++y)
+    for (std::uint32_t x = 0; x < columns; ++x) mesh.positions.push_back(place(double(x) / columns, double(y) / rows));
+  for (std::uint32_t y = 0; y < rows; ++y)
+    for (std::uint32_t x = 0; x < columns; ++x) {
+      const std::uint32_t right = (x + 1) % columns, above = (y + 1) % lines;
+      const std::uint32_t a = y * columns + x, b = y * columns + right, c = above * columns + right,
+                          d = above * columns + x;
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    }
+  return mesh;
+}
+
+TriangleMesh torus(std::uint32_t columns, std::uint32_t rows) {
+  return gridMesh(columns, rows, true, [](double u, double v) {
+    const double r = 2 + std::cos(2 * kPi * v);
+    return Vec3{r * std::cos(2 * kPi * u), std::sin(2 * kPi * v), -r * std::sin(2 * kPi * u)};
+  });
+}
+
+/// Open at the ends; about y.
+TriangleMesh tube(std::uint32_t columns, std::uint32_t rows, double height) {
+  return gridMesh(columns, rows, false, [=](double u, double v) {
+    return Vec3{std::sin(2 * kPi * u), height * v, std::cos(2 * kPi * u)};
+  });
+}
+
+/// An ellipsoid; open below `floor`, a share of its height, if that is above 0.
+TriangleMesh ball(std::uint32_t columns, std::uint32_t rows, Vec3 size, double floor = 0) {
+  const double first = floor > 0 ? floor : 1.0 / (rows + 2), last = 1 - 1.0 / (rows + 2);
+  TriangleMesh mesh = gridMesh(columns, rows, false, [=](double u, double v) {
+    const double angle = kPi * (first + v * (last - first)), r = std::sin(angle);
+    return Vec3{size.x * r * std::sin(2 * kPi * u), -size.y * std::cos(angle), size.z * r * std::cos(2 * kPi * u)};
+  });
+  const auto cap = [&](std::uint32_t row, double y, bool up) {
+    const auto pole = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back({0, y, 0});
+    for (std::uint32_t x = 0; x < columns; ++x) {
+      const std::uint32_t a = row * columns + x, b = row * columns + (x + 1) % columns;
+      mesh.triangles.push_back(up ? Triangle3{a, b, pole} : Triangle3{b, a, pole});
+    }
+  };
+  cap(rows, size.y, true);
+  if (!(floor > 0)) cap(0, -size.y, false);
+  return mesh;
+}
+
+TriangleMesh box() {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < 8; ++i) mesh.positions.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+double distanceToEdge(const Uv& p, const Uv& a, const Uv& b) {
+  const double x = b[0] - a[0], y = b[1] - a[1], size = x * x + y * y;
+  const double along = size > 0 ? std::clamp(((p[0] - a[0]) * x + (p[1] - a[1]) * y) / size, 0.0, 1.0) : 0;
+  return std::hypot(p[0] - a[0] - along * x, p[1] - a[1] - along * y);
+}
+
+/// The least distance between two charts, by brute force.
+double leastGap(const Layout& layout) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < layout.triangles.size(); ++s)
+    for (std::size_t t = 0; t < layout.triangles.size(); ++t) {
+      if (layout.chartOf[s] == layout.chartOf[t]) continue;
+      for (const std::uint32_t v : layout.triangles[s])
+        for (std::size_t i = 0; i < 3; ++i)
+          least = std::min(least, distanceToEdge(layout.uvs[v], layout.uvs[layout.triangles[t][i]],
+                                                 layout.uvs[layout.triangles[t][(i + 1) % 3]]));
+    }
+  return least;
+}
+
+/// Unwraps, and checks what holds for any mesh.
+LayoutFaults checked(const TriangleMesh& mesh, Kind kind, Layout& layout) {
+  UnwrapOptions options;
+  options.kind = kind;
+  REQUIRE(unwrap(mesh, options, {}, layout));
+  REQUIRE(layout.triangles.size() == mesh.triangles.size());
+  REQUIRE(layout.chartOf.size() == mesh.triangles.size());
+  REQUIRE(layout.uvs.size() == layout.positions.size());
+  bool same = true;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 p = layout.positions[layout.triangles[t][i]], q = mesh.positions[mesh.triangles[t][i]];
+      same = same && layout.vertexOf[layout.triangles[t][i]] == mesh.triangles[t][i] && length(p - q) == 0;
+    }
+  CHECK(same);
+  LayoutFaults faults = layoutFaults(layout.positions, layout.uvs, layout.triangles);
+  CHECK(faults.charts == layout.charts);
+  CHECK(faults.overlaps == 0);
+  CHECK(faults.flips == 0);
+  CHECK(faults.outside == 0);
+  return faults;
+}
+
+}  // namespace
+
+TEST_CASE("faults of a layout are found", "[cages][charts]") {
+  const TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  std::vector<Uv> uvs{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  LayoutFaults faults = layoutFaults(square.positions, uvs, square.triangles);
+  CHECK(faults.charts == 1);
+  CHECK(faults.overlaps + faults.flips + faults.outside == 0);
+  CHECK(faults.coverage == Approx(1));
+  CHECK(faults.angle95 == Approx(1));
+  CHECK(faults.area95 == Approx(1));
+  uvs[3] = {0.9, 0.2};
+  faults = layoutFaults(square.positions, uvs, square.triangles);
+  CHECK(faults.overlaps == 1);
+  CHECK(faults.flips == 1);
+  uvs[3] = {0, 2};
+  faults = layoutFaults(square.positions, uvs, square.triangles);
+  CHECK(faults.outside == 1);
+  CHECK(faults.area95 > 1.2);
+  CHECK(faults.angle95 > 1.2);
+}
+
+TEST_CASE("shapes of any topology are laid out", "[cages][charts]") {
+  Layout layout;
+  for (const Kind kind : {Kind::automatic, Kind::head, Kind::body, Kind::prop}) {
+    CAPTURE(static_cast<int>(kind));
+    CHECK(checked(box(), kind, layout).coverage > 0.3);
+    checked(torus(16, 8), kind, layout);
+    checked(tube(12, 10, 8), kind, layout);
+    checked(ball(16, 12, {1, 1.3, 1.1}), kind, layout);
+    checked(ball(16, 12, {1, 1.3, 1.1}, 0.25), kind, layout);
+    CHECK(leastGap(layout) >= 4.0 / 1024 - 1e-6);
+  }
+}
+
+TEST_CASE("a head is one chart, upright and not mirrored", "[cages][charts]") {
+  Layout layout;
+  const LayoutFaults faults = checked(ball(24, 16, {1, 1.3, 1.1}, 0.25), Kind::head, layout);
+  CHECK(faults.charts == 1);
+  CHECK(faults.angle95 < 2);
+  CHECK(faults.area95 < 2);
+  // The corners of triangles in front: further up is further up in the picture, further left is further left.
+  for (std::size_t t = 0; t < layout.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = layout.triangles[t][i], b = layout.triangles[t][(i + 1) % 3];
+      const Vec3 d = layout.positions[b] - layout.positions[a];
+      if (layout.positions[a].z < 0.9 || layout.positions[b].z < 0.9) continue;
+      if (d.y > 2 * std::abs(d.x)) CHECK(layout.uvs[b][1] < layout.uvs[a][1]);
+      if (d.x > 2 * std::abs(d.y)) CHECK(layout.uvs[b][0] > layout.uvs[a][0]);
+    }
+}
+
+TEST_CASE("a tube is cut open without stretch", "[cages][charts]") {
+  Layout layout;
+  const LayoutFaults faults = checked(tube(16, 12, 6), Kind::head, layout);
+  CHECK(faults.charts == 1);
+  CHECK(faults.angle95 < 1.1);
+  CHECK(faults.area95 < 1.1);
+}
+
+TEST_CASE("bad meshes are laid out", "[cages][charts]") {
+  const std::uint32_t seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(-1, 1);
+  Layout layout;
+  checked({}, Kind::head, layout);
+  for (int round = 0; round < 12; ++round) {
+    const TriangleMesh whole = round % 2 == 0 ? torus(14, 10) : ball(14, 10, {1, 2, 1});
+    TriangleMesh mesh = whole;
+    mesh.triangles.clear();
+    std::uniform_int_distribution<std::size_t> any(0, whole.triangles.size() - 1);
+    for (const Triangle3& t : whole.triangles)
+      if (share(random) < -0.8 + 0.15 * round) mesh.triangles.push_back(t);
+    // Fins, twice the same triangle, and turned ones: edges shared by more than two.
+    for (int i = 0; i < round; ++i) {
+      const Triangle3 t = whole.triangles[any(random)];
+      mesh.triangles.push_back(i % 2 == 0 ? t : Triangle3{t[1], t[0], whole.triangles[any(random)][2]});
+    }
+    std::erase_if(mesh.triangles, [](const Triangle3& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    for (Vec3& p : mesh.positions) p = p + 0.1 * Vec3{share(random), share(random), share(random)};
+    checked(mesh, static_cast<Kind>(round % 4), layout);
+  }
+}
+
+TEST_CASE("an unwrap can be cancelled, and is the same each time", "[cages][charts]") {
+  const TriangleMesh mesh = ball(24, 16, {1, 1.3, 1.1}, 0.25);
+  Layout first, second;
+  checked(mesh, Kind::head, first);
+  checked(mesh, Kind::head, second);
+  CHECK(first.uvs == second.uvs);
+  CHECK(first.triangles == second.triangles);
+  CHECK_FALSE(unwrap(
+      mesh, {}, [](float, const char*) { return false; }, first));
+}
