@@ -26,7 +26,7 @@ export interface Joint {
 export interface GlbModel {
   /** All triangles of its scene, a group for each primitive, skins posed; with UVs if every primitive has a set. */
   mesh: SceneMesh;
-  /** Names of the groups, as the adapters have them: "head", "head/skin". */
+  /** Names of the groups, as the adapters have them for cages: "node/mesh/material", equal ones once. */
   parts: string[];
   joints: Joint[];
 }
@@ -53,9 +53,8 @@ function piecesOf(document: Document): (Piece & { set: Float32Array | undefined 
     for (const primitive of primitives) {
       const position = primitive.getAttribute('POSITION');
       if (position === null || !hasTriangles(primitive.getMode())) continue;
-      const material = primitive.getMaterial()?.getName() ?? '';
-      const own = node.getName() || node.getMesh()!.getName();
-      const name = primitives.length > 1 && material !== '' && material !== own ? `${own}/${material}` : own;
+      const names = [node.getName(), node.getMesh()!.getName(), primitive.getMaterial()?.getName()];
+      const name = [...new Set(names.filter(Boolean))].join('/');
       const stored = decodePositions(name, position);
       const posed = pose(node, primitive, stored);
       const localIndices = decodeTriangles(

@@ -41,10 +41,12 @@ export interface Row {
   paint: string | undefined;
   turn: number;
   rise: number;
+  /** Show only this share of its height, at the top, and as much of its width about the middle. Default: all. */
+  upper?: number;
 }
 
 declare global {
-  /** Appends a picture of the model for each look. */
+  /** Appends a picture of the model for each look. @throws if a file cannot be read or a transfer fails. */
   function drawRow(row: Row, looks: readonly Look[], size: { width: number; height: number }): Promise<void>;
 }
 
@@ -203,7 +205,7 @@ function lightsAndFloor(turn: number, height: number): Object3D[] {
 }
 
 /** A camera that sees an object about the origin, as large as the picture allows. */
-function cameraFor({ turn, rise }: Row, object: Object3D, aspect: number): PerspectiveCamera {
+function cameraFor({ turn, rise, upper = 1 }: Row, object: Object3D, aspect: number): PerspectiveCamera {
   const camera = new PerspectiveCamera(fieldOfView, aspect, 0.1, 50);
   const [a, b] = [(turn * Math.PI) / 180, (rise * Math.PI) / 180];
   camera.position.set(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b)).multiplyScalar(8);
@@ -211,12 +213,16 @@ function cameraFor({ turn, rise }: Row, object: Object3D, aspect: number): Persp
   camera.updateMatrixWorld();
   camera.updateProjectionMatrix();
   const seen = new Box3();
-  object.updateWorldMatrix(true, true);
+  const { min, max } = new Box3().setFromObject(object);
+  const height = upper * (max.y - min.y);
+  const isShown = ({ x, y }: Vector3): boolean =>
+    upper === 1 || (y >= max.y - height && Math.abs(x - (min.x + max.x) / 2) <= height / 2);
   object.traverse((mesh) => {
     if (!(mesh instanceof Mesh)) return;
     const places = mesh.geometry.getAttribute('position');
     for (let v = 0; v < places.count; ++v) {
-      seen.expandByPoint(new Vector3().fromBufferAttribute(places, v).applyMatrix4(mesh.matrixWorld).project(camera));
+      const place = new Vector3().fromBufferAttribute(places, v).applyMatrix4(mesh.matrixWorld);
+      if (isShown(place)) seen.expandByPoint(place.project(camera));
     }
   });
   // The part of the picture that it takes becomes the whole of it.

@@ -28,12 +28,39 @@ const heads: Record<Look, string> = {
   default: 'result',
 };
 
+/** A picture of a sheet: files by their paths on disk. */
+export interface Cell extends Row {
+  look: Look;
+}
+
+/** A sheet of pictures. */
+export interface Sheet {
+  /** What the columns are called, HTML. */
+  heads: readonly string[];
+  /** A row of as many cells each. */
+  rows: readonly { name?: string; cells: readonly Cell[] }[];
+  /** Pixels along the sides of each picture. */
+  cell: { width: number; height: number };
+}
+
 /**
  * Draws models with the package's own three.js adapter in Chromium, a row for each, all looks of a model from the same side.
  * @param models  Those that have a folder; the others are left out.
  * @param path    A JPEG or PNG, by its name.
  */
 export async function drawSheet(models: readonly Model[], looks: readonly Look[], path: string): Promise<void> {
+  const rows = models.flatMap(({ name, folder }) => {
+    if (folder === undefined) return [];
+    const { paint, ...view } = { paint: undefined, ...(views[name] ?? otherView) };
+    const files = { target: `${folder}/target.glb`, cage: `${folder}/cage.glb` };
+    const row: Row = { ...files, paint: paint === undefined ? undefined : `${folder}/${paint}`, ...view };
+    return [{ cells: looks.map((look): Cell => ({ ...row, look })) }];
+  });
+  await drawCells({ heads: looks.map((look) => heads[look]), rows, cell }, path);
+}
+
+/** Draws a sheet. @param path  A JPEG or PNG, by its name. */
+export async function drawCells(sheet: Sheet, path: string): Promise<void> {
   const entryPoints = [`${root}bench/quality/sheet-page.ts`];
   const script = await build({
     entryPoints,
@@ -53,25 +80,32 @@ export async function drawSheet(models: readonly Model[], looks: readonly Look[]
       files.set(url, file);
       return url;
     };
-    const rows = models.flatMap(({ name, folder }): Row[] => {
-      if (folder === undefined) return [];
-      const { paint, ...view } = { paint: undefined, ...(views[name] ?? otherView) };
-      const [target, cage] = [serve(`${folder}/target.glb`), serve(`${folder}/cage.glb`)];
-      return [{ target, cage, paint: paint === undefined ? undefined : serve(`${folder}/${paint}`), ...view }];
-    });
     const page = await browser.newPage({
-      viewport: { width: looks.length * cell.width, height: rows.length * cell.height + 48 },
+      viewport: {
+        width: sheet.heads.length * sheet.cell.width,
+        height: sheet.rows.length * sheet.cell.height + 48,
+      },
     });
     page.setDefaultTimeout(120_000);
     await page.route('**/*', async (route) => {
       const file = files.get(new URL(route.request().url()).pathname);
-      if (file === undefined) await route.fulfill({ contentType: 'text/html', body: pageOf(looks) });
+      if (file === undefined) await route.fulfill({ contentType: 'text/html', body: pageOf(sheet) });
       else await route.fulfill({ contentType: 'application/octet-stream', body: await readFile(file) });
     });
     await page.goto('http://sheet.test/sheet');
     await page.addScriptTag({ content: script.outputFiles[0]!.text });
-    for (const row of rows)
-      await page.evaluate(([model, columns, size]) => drawRow(model, columns, size), [row, looks, cell] as const);
+    for (const { name, cells } of sheet.rows) {
+      for (const { look, ...row } of cells) {
+        const paint = row.paint === undefined ? undefined : serve(row.paint);
+        const served: Row = { ...row, target: serve(row.target), cage: serve(row.cage), paint };
+        await page.evaluate(([model, looks, size]) => drawRow(model, looks, size), [
+          served,
+          [look],
+          sheet.cell,
+        ] as const);
+      }
+      if (name !== undefined) await page.evaluate(nameLastRow, [name, cells.length] as const);
+    }
     await mkdir(dirname(path), { recursive: true });
     await page.screenshot({ path, fullPage: true, ...(path.endsWith('.jpg') && { type: 'jpeg', quality: 82 }) });
   } finally {
@@ -79,10 +113,19 @@ export async function drawSheet(models: readonly Model[], looks: readonly Look[]
   }
 }
 
-const pageOf = (looks: readonly Look[]): string => `<!doctype html><meta charset="utf-8">
+/** Writes a name on the first picture of the last row; runs in the page. */
+function nameLastRow([name, columns]: readonly [string, number]): void {
+  const canvases = document.querySelectorAll('canvas');
+  const context = canvases[canvases.length - columns]!.getContext('2d')!;
+  context.font = '600 16px system-ui, sans-serif';
+  context.fillStyle = '#333';
+  context.fillText(name, 8, 22);
+}
+
+const pageOf = ({ heads: names, cell: { width, height } }: Sheet): string => `<!doctype html><meta charset="utf-8">
 <style>
   body { margin: 0; background: #fff; font: 600 20px/48px system-ui, sans-serif; color: #333 }
-  main { display: grid; grid-template-columns: repeat(${looks.length}, ${cell.width}px); text-align: center }
-  canvas { display: block; width: ${cell.width}px; height: ${cell.height}px }
+  main { display: grid; grid-template-columns: repeat(${names.length}, ${width}px); text-align: center }
+  canvas { display: block; width: ${width}px; height: ${height}px }
 </style>
-<main>${looks.map((look) => `<div>${heads[look]}</div>`).join('')}</main>`;
+<main>${names.map((name) => `<div>${name}</div>`).join('')}</main>`;
