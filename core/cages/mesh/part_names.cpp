@@ -6,18 +6,21 @@ namespace cagecast::cages {
 
 namespace {
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+bool isUpper(char c) { return c >= 'A' && c <= 'Z'; }
+/// Bytes of other alphabets, in UTF-8, count as letters.
+bool isLetter(char c) { return isUpper(c) || (c >= 'a' && c <= 'z') || (static_cast<unsigned char>(c) & 0x80u) != 0; }
+char lower(char c) { return isUpper(c) ? static_cast<char>(c - 'A' + 'a') : c; }
 
 }  // namespace
 
-bool matches(std::string_view name, std::string_view pattern) noexcept {
+bool matches(std::string_view text, std::string_view pattern) noexcept {
   // Only the last star can have to take more: what stands before it has found its first place already.
   std::size_t n = 0, p = 0, star = std::string_view::npos, resume = 0;
-  while (n < name.size()) {
+  while (n < text.size()) {
     if (p < pattern.size() && pattern[p] == '*') {
       star = p++;
       resume = n;
-    } else if (p < pattern.size() && (pattern[p] == '?' || lower(pattern[p]) == lower(name[n]))) {
+    } else if (p < pattern.size() && (pattern[p] == '?' || lower(pattern[p]) == lower(text[n]))) {
       ++n;
       ++p;
     } else if (star != std::string_view::npos) {
@@ -31,19 +34,34 @@ bool matches(std::string_view name, std::string_view pattern) noexcept {
   return p == pattern.size();
 }
 
+std::vector<std::string_view> wordsOf(std::string_view name) {
+  std::vector<std::string_view> words;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i <= name.size(); ++i) {
+    const bool goesOn =
+        i < name.size() && isLetter(name[i]) && !(i > start && isUpper(name[i]) && !isUpper(name[i - 1]));
+    if (goesOn) continue;
+    if (i > start) words.push_back(name.substr(start, i - start));
+    start = i < name.size() && isLetter(name[i]) ? i : i + 1;
+  }
+  return words;
+}
+
+bool matchesName(std::string_view name, std::string_view pattern) {
+  if (matches(name, pattern)) return true;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find('/', begin), name.size());
+    if (matches(name.substr(begin, end - begin), pattern)) return true;
+    begin = end + 1;
+  }
+  const std::vector<std::string_view> words = wordsOf(name);
+  return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return matches(word, pattern); });
+}
+
 std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns) {
   std::vector<bool> out(parts.size(), false);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::string_view name = parts[i];
-    for (const std::string& pattern : patterns) {
-      out[i] = out[i] || matches(name, pattern);
-      for (std::size_t begin = 0; begin < name.size() && !out[i];) {
-        const std::size_t end = std::min(name.find('/', begin), name.size());
-        out[i] = matches(name.substr(begin, end - begin), pattern);
-        begin = end + 1;
-      }
-    }
-  }
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (const std::string& pattern : patterns) out[i] = out[i] || matchesName(parts[i], pattern);
   return out;
 }
 

@@ -8,12 +8,18 @@
 
 namespace cagecast::cages {
 
-/// Whether a name is what a pattern describes: `*` stands for any text, `?` for one character, case does not matter.
+/// Whether a text is what a pattern describes: `*` stands for any text, `?` for one character, case does not matter.
 /// Takes time in proportion to the product of the lengths at worst, whatever the pattern.
-bool matches(std::string_view name, std::string_view pattern) noexcept;
+bool matches(std::string_view text, std::string_view pattern) noexcept;
 
-/// Whether each part's name matches one of the patterns. A part may have several names, "node/mesh/material": what is
-/// between slashes is matched on its own, too.
+/// The words of a name: "Wolf3D_EyeLeft/l-eye" has the words Wolf, D, Eye, Left, l and eye.
+std::vector<std::string_view> wordsOf(std::string_view name);
+
+/// Whether a pattern matches a name, what is between slashes in it ("node/mesh/material"), or one of its words: `eye`
+/// matches "l-eye" and "EyeLeft", but not "eyelid".
+bool matchesName(std::string_view name, std::string_view pattern);
+
+/// Whether each part's name matches one of the patterns, as by `matchesName`.
 std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns);
 
 /// Whether each triangle of a model belongs to one of some parts.

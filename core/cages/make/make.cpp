@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+
+#include "cagecast/cages.hpp"
+#include "charts/unwrap.hpp"
+#include "hull/hull.hpp"
+#include "make/enclose.hpp"
+#include "make/marks.hpp"
+#include "make/neck.hpp"
+#include "make/simplify.hpp"
+#include "mesh/check_model.hpp"
+#include "mesh/kind.hpp"
+#include "mesh/part_names.hpp"
+#include "mesh/surface.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+/// Ends of the stages, as shares of the time.
+constexpr float kHullEnd = 0.35f;
+constexpr float kHolesEnd = 0.45f;
+constexpr float kSimplifyEnd = 0.55f;
+constexpr float kEncloseEnd = 0.75f;
+
+/// How far below the border of a neck the cage ends, in offsets.
+constexpr double kNeckExtension = 2;
+/// How far below the hull a part may lie and still be seen through it, in offsets.
+constexpr double kVisibleDepth = 1.4;
+/// The model stays this share of the offset behind the cage.
+constexpr double kMargin = 0.4;
+/// How far a vertex of the cage may be moved outwards, in offsets.
+constexpr double kFarthestPush = 4;
+/// Points of the hull that the cage is moved past, about.
+constexpr std::size_t kEnclosedPoints = 20000;
+
+/// What options come to for a model, in its space.
+struct Settings {
+  Kind kind = Kind::prop;
+  HullOptions hull;
+  std::uint32_t triangles = 0;
+};
+
+Outcome checkOptions(const MakeOptions& options) {
+  const auto fault = [](const char* message) { return Outcome{Problem::badOptions, message}; };
+  // Written so that NaN fails, too.
+  if (!(options.closing >= 0 && options.closing <= 0.2f)) return fault("options.closing is not within 0..0.2");
+  if (!(options.offset >= 0 && options.offset <= 0.2f)) return fault("options.offset is not within 0..0.2");
+  if (options.voxels != 0 && (options.voxels < 16 || options.voxels > 400))
+    return fault("options.voxels is neither 0 nor within 16..400");
+  if (options.triangles != 0 && (options.triangles < 50 || options.triangles > 20000))
+    return fault("options.triangles is neither 0 nor within 50..20000");
+  return {};
+}
+
+Settings settingsFor(const Model& model, const MakeOptions& options, double diagonal) {
+  Settings settings;
+  settings.kind = options.kind == Kind::automatic ? kindOf(model) : options.kind;
+  const bool isBody = settings.kind == Kind::body;
+  const auto closing = static_cast<double>(options.closing), offset = static_cast<double>(options.offset);
+  settings.hull.closing = diagonal * (closing > 0 ? closing : isBody ? 0.008 : 0.02);
+  settings.hull.offset = diagonal * (offset > 0 ? offset : isBody ? 0.004 : 0.01);
+  settings.hull.voxels = options.voxels != 0 ? options.voxels : isBody ? 240 : 140;
+  settings.triangles = options.triangles != 0 ? options.triangles : isBody ? 1500 : 600;
+  return settings;
+}
+
+/// Whether each triangle of the mesh must not be painted.
+/// @param triangleOf  The triangle of the model for each of the mesh.
+std::vector<bool> marksOf(const Model& model, const MakeOptions& options,
+                          const std::vector<std::uint32_t>& triangleOf) {
+  const std::vector<bool> isExcluded = trianglesOf(model.mesh, matchingParts(model.parts, options.exclude));
+  std::vector<bool> isMarked(triangleOf.size());
+  for (std::size_t t = 0; t < triangleOf.size(); ++t) {
+    const std::uint32_t original = triangleOf[t];
+    isMarked[t] = isExcluded[original] || (!model.marks.empty() && model.marks[original] != 0);
+  }
+  return isMarked;
+}
+
+/// Points below the hull, but in front of the model, which the cage must not fall behind.
+std::vector<OuterPoint> pointsToEnclose(const TriangleMesh& hull, const std::vector<double>& field, double depth) {
+  const std::vector<Vec3> normals = vertexNormals(hull);
+  const std::size_t step = std::max<std::size_t>(1, hull.positions.size() / kEnclosedPoints);
+  std::vector<OuterPoint> points;
+  for (std::size_t v = 0; v < hull.positions.size(); v += step)
+    if (field[v] < 0.5) points.push_back({hull.positions[v] - depth * normals[v], normals[v]});
+  return points;
+}
+
+void store(const Layout& layout, Cage& out) {
+  out = {};
+  for (const Vec3& p : layout.positions)
+    for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
+  for (const Uv& uv : layout.uvs)
+    for (const double x : uv) out.uvs.push_back(static_cast<float>(x));
+  for (const Triangle3& t : layout.triangles) out.indices.insert(out.indices.end(), t.begin(), t.end());
+}
+
+}  // namespace
+
+Outcome makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {
+  if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
+  if (Outcome outcome = checkOptions(options); !outcome.ok()) return outcome;
+  const Outcome cancelled{Problem::cancelled, "cancelled"};
+  const auto part = [&](float from, float to) -> Progress {
+    if (!progress) return {};
+    return
+        [&progress, from, to](float share, const char* stage) { return progress(from + (to - from) * share, stage); };
+  };
+  std::vector<std::uint32_t> triangleOf;
+  TriangleMesh mesh = weldExactly(model.mesh, nullptr, &triangleOf);
+  const Settings settings = settingsFor(model, options, diagonalOf(mesh));
+  const double offset = settings.hull.offset;
+  std::vector<Neck> necks;
+  if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
+  TriangleMesh hull;
+  if (!makeHull(mesh, settings.hull, part(0, kHullEnd), hull)) return cancelled;
+
+  const Surface surface(mesh);
+  MarkedMesh marked{&mesh, &surface, marksOf(model, options, triangleOf)};
+  marked.isMarked.resize(mesh.triangles.size(), false);
+  std::vector<double> field = holeField(marked, kVisibleDepth * offset, settings.kind == Kind::body ? 2 : 1, hull);
+  openNecks(hull, necks, field);
+  const TriangleMesh shell = cutHoles(hull, field);
+  if (shell.empty()) return {Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
+  if (progress && !progress(kHolesEnd, "simplify")) return cancelled;
+
+  TriangleMesh cage = simplify(shell, settings.triangles);
+  const double depth = (1 - kMargin) * offset;
+  if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
+    return cancelled;
+  Layout layout;
+  UnwrapOptions unwrapOptions;
+  unwrapOptions.kind = settings.kind;
+  unwrapOptions.joints = model.joints;
+  if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled;
+  store(layout, out);
+  return {};
+}
+
+}  // namespace cagecast::cages
