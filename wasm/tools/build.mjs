@@ -136,7 +136,7 @@ async function buildPackage() {
 async function bundleEntries(bundle) {
   // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
   const shared = {
-    external: ['#spawn', '#spawn-cages', './index.js', './cages.js', 'three'],
+    external: ['#spawn', '#spawn-cages', './index.js', 'three'],
     plugins: [wasmModules('wasm-file.ts', { index: './index.js' })],
   };
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager });

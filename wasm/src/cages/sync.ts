@@ -11,7 +11,6 @@ import type { Mesh } from '../api/mesh.js';
 import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js';
 import { nameOf } from '../core/module.js';
 import { checkCage, checkLandmarks, checkModel, checkOptions, checkTemplate } from './check.js';
-import { movedHoles } from './holes.js';
 import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions } from './module.js';
 import type {
   Cage,
@@ -214,5 +213,7 @@ function cageOf(
   before: Partial<Template>,
   kind: Kind = before.kind ?? 'automatic',
 ): Cage {
-  return { positions, uvs, indices, landmarks: landmarksOf(landmarks), holes: movedHoles(before, positions), kind };
+  // Vertices keep their numbers when a cage is moved.
+  const holes = before.positions?.length === positions.length ? (before.holes ?? {}) : {};
+  return { positions, uvs, indices, landmarks: landmarksOf(landmarks), holes, kind };
 }

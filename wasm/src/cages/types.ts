@@ -6,6 +6,9 @@ export type Position = readonly [x: number, y: number, z: number];
 /** Named spots on a model, such as `nose_tip` or `eye_centre_left`: docs/cages.md lists the names. */
 export type Landmarks = Record<string, Position>;
 
+/** The vertices along the border of each hole of a cage that has a name. */
+export type Holes = Record<string, readonly number[]>;
+
 /** A joint of a skeleton, in the pose in which the mesh is given. */
 export interface Joint {
   /** As in the file, or, in a VRM, the name of its bone (`leftUpperArm`). */
@@ -44,8 +47,8 @@ export interface Cage {
   indices: Uint32Array<ArrayBuffer>;
   /** What a fit needs of a template. May be empty. */
   landmarks: Landmarks;
-  /** The middle of each hole that has a name. May be empty. */
-  holes: Landmarks;
+  /** May be empty. */
+  holes: Holes;
   kind: Kind;
 }
 
@@ -54,8 +57,8 @@ export interface Template extends Mesh {
   uvs: Float32Array;
   /** Spots of the model that the cage was made for, by the names that docs/cages.md lists. */
   landmarks: Landmarks;
-  /** The middle of each hole that has a name. Default: none. */
-  holes?: Landmarks | undefined;
+  /** Default: none. */
+  holes?: Holes | undefined;
   /** Default: `automatic`. */
   kind?: Kind | undefined;
 }

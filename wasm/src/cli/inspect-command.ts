@@ -42,7 +42,7 @@ export async function inspectCommand(
 ): Promise<{ text: string; verdict: Verdict }> {
   const done = await run(command.target, command.cage, command.rules, progress);
   progress.step('inspecting');
-  const report = makeReport(command, done);
+  const report = inspectionReport(command, done);
   if (command.html !== undefined) {
     progress.step(`writing ${command.html}`);
     writeFiles([{ path: command.html, data: inspectionPage(report, done) }]);
@@ -53,8 +53,9 @@ export async function inspectCommand(
   };
 }
 
-function makeReport(
-  { target: targetFile, cage: cageFile, rules }: InspectCommand,
+/** Inspects the cage of a run. */
+export function inspectionReport(
+  { target: targetFile, cage: cageFile, rules }: Pick<InspectCommand, 'target' | 'cage' | 'rules'>,
   { target, cage, options, result }: Run,
 ): InspectionReport {
   const { mesh, parts } = target;
@@ -90,6 +91,17 @@ const conclusions: Record<Verdict, string> = {
   unfit: 'UNFIT: the cage does not fit.',
 };
 
+/** The verdict and the findings, for people. */
+export function conclusionOf({ verdict, findings }: Inspection): string[] {
+  return [
+    conclusions[verdict],
+    ...findings.flatMap(({ weight, sentence, advice }) => [
+      `${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${sentence}.`,
+      `  → ${advice}`,
+    ]),
+  ];
+}
+
 function segmentTable(listed: (InspectionReport['segments'][number] & { s: number })[]): string {
   return table([
     ['part', 'segment', 'points', 'exposed E', 'covered C', 'F = C/E', 'score', ''],
@@ -107,21 +119,7 @@ function segmentTable(listed: (InspectionReport['segments'][number] & { s: numbe
 }
 
 function describe(report: InspectionReport, html: string | undefined): string {
-  const {
-    verdict,
-    findings,
-    target,
-    cage,
-    counts,
-    coverage,
-    placement,
-    inside,
-    inward,
-    topology,
-    uv,
-    holes,
-    segments,
-  } = report;
+  const { target, cage, counts, coverage, placement, inside, inward, topology, uv, holes, segments } = report;
   const { outside, distances } = placement;
   const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const listed = segments
@@ -168,11 +166,7 @@ function describe(report: InspectionReport, html: string | undefined): string {
     `segments: ${integer(segments.length)}${more(segments.length)}`,
     segmentTable(listed),
     '',
-    conclusions[verdict],
-    ...findings.flatMap(({ weight, sentence, advice }) => [
-      `${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${sentence}.`,
-      `  → ${advice}`,
-    ]),
+    ...conclusionOf(report),
     html === undefined ? '' : `wrote ${html}`,
   ]
     .join('\n')

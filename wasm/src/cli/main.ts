@@ -1,25 +1,15 @@
-import { Command, CommanderError, InvalidArgumentError, Option } from 'commander';
+import { Command, CommanderError, Option } from 'commander';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
+import { addCageCommands } from './cage-flags.js';
 import { inspectCommand } from './inspect-command.js';
 import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
-import { placeOf } from './output.js';
 import { Progress } from './progress.js';
+import { autoCage } from './run.js';
 import { transferCommand } from './transfer-command.js';
-
-/** Exit codes. */
-const unusable = 1;
-const wrongUsage = 2;
-const unfit = 3;
+import { endingIn, refuseOverwriting, unfit, unusable, wrongUsage } from './usage.js';
 
 const progress = new Progress();
-
-function endingIn(ending: string): (text: string) => string {
-  return (text) => {
-    if (!text.toLowerCase().endsWith(ending)) throw new InvalidArgumentError(`Its name must end in ${ending}.`);
-    return text;
-  };
-}
 
 interface CommonFlags extends RuleFlags {
   cage: string;
@@ -29,7 +19,7 @@ const common = (command: Command): Command =>
   addRuleFlags(
     command
       .argument('<TARGET>', 'GLB or glTF that receives the texture')
-      .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it must have UVs')
+      .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one')
       .allowExcessArguments(false),
   );
 
@@ -57,8 +47,10 @@ Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
   cagecast transfer head.glb --cage cage.glb -o head-with-uvs.glb --report report.json
   cagecast inspect head.glb --cage cage.glb
+  cagecast make head.glb -o cage.glb
+  cagecast fit template.glb head.glb -o cage.glb
 
-Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect finds the cage unfit.`,
+Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make or fit finds the cage unfit.`,
   );
 
 common(program.command('transfer'))
@@ -86,6 +78,7 @@ _NCZ is 0 for a vertex that may be painted. Other values say why it must not be 
   3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
 If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
 existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones.
+--cage auto makes a cage for TARGET on the way, as cagecast make does; for a file named auto, write ./auto.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
@@ -103,11 +96,7 @@ Examples:
         command.error('--texture needs -o OUT.glb, the file to add it to', { exitCode: wrongUsage });
       if (borders === 'cut' && output === undefined)
         command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
-      const inputs = [target, cage, texture].filter((path) => path !== undefined).map((path) => placeOf(path));
-      const outputs = [output, report].filter((path) => path !== undefined).map((path) => placeOf(path));
-      const clash = outputs.find((path, i) => inputs.includes(path) || outputs.indexOf(path) !== i);
-      if (clash !== undefined)
-        command.error(`${clash} would overwrite another file of this command`, { exitCode: wrongUsage });
+      refuseOverwriting(command, [target, cage === autoCage ? undefined : cage, texture], [output, report]);
       const text = await transferCommand(
         { target, cage, texture, output, report, borders, rules: rulesOf(flags) },
         progress,
@@ -134,14 +123,14 @@ Examples:
   )
   .action(async (target: string, flags: CommonFlags & { json?: boolean; html?: string }, command: Command) => {
     const { cage, json = false, html } = flags;
-    if (html !== undefined && [target, cage].some((path) => placeOf(path) === placeOf(html))) {
-      command.error(`${placeOf(html)} would overwrite another file of this command`, { exitCode: wrongUsage });
-    }
+    refuseOverwriting(command, [target, cage], [html]);
     const { text, verdict } = await inspectCommand({ target, cage, json, html, rules: rulesOf(flags) }, progress);
     progress.clear();
     console.log(text);
     if (verdict === 'unfit') process.exitCode = unfit;
   });
+
+addCageCommands(program, progress);
 
 // A reader that closes the pipe early, such as `head`, is not an error.
 process.stdout.on('error', (error: NodeJS.ErrnoException) => process.exit(error.code === 'EPIPE' ? 0 : unusable));

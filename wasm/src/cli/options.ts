@@ -103,12 +103,7 @@ export function transferOptions({ preset, single, keep, exclude }: Rules, { part
     for (const pattern of patterns) {
       const matches = matcher(pattern);
       const found = [...parts.keys()].filter((p) => parts[p]!.vertexCount > 0 && parts[p]!.aliases.some(matches));
-      if (found.length === 0) {
-        const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
-        throw new InputError(
-          `--${lock} ${pattern}: no node or material has this name; there are: ${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
-        );
-      }
+      if (found.length === 0) throw noSuchName(`--${lock} ${pattern}`, parts);
       for (const p of found) {
         if (groups[p] !== undefined && groups[p] !== lock)
           throw new InputError(
@@ -122,16 +117,25 @@ export function transferOptions({ preset, single, keep, exclude }: Rules, { part
   return { preset, ...single, locks: { groups } };
 }
 
+/** No part has the name that a flag gives. */
+export function noSuchName(flag: string, parts: readonly { aliases: string[] }[]): InputError {
+  const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
+  return new InputError(
+    `${flag}: no node or material has this name; there are: ${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
+  );
+}
+
 /** How many names a message lists at most. */
 const mostNames = 20;
 
-/** Returns a test whether a name matches a pattern, in which `*` matches any text. */
-function matcher(pattern: string): (name: string) => boolean {
+/** Returns a test whether a name matches a pattern, in which `*` matches any text. @param flags  `i`: case does not matter. */
+export function matcher(pattern: string, flags: 'i' | '' = ''): (name: string) => boolean {
   const expression = new RegExp(
     `^${pattern
       .split('*')
       .map((text) => text.replace(/[.+?^${}()|[\]\\]/g, '\\$&'))
       .join('[^]*')}$`,
+    flags,
   );
   return (name) => expression.test(name);
 }

@@ -1,3 +1,6 @@
+/** Characters of a progress bar. */
+const barLength = 24;
+
 /** Shows the current step in one line of the terminal, and clears it afterwards. Silent if stderr is not a terminal. */
 export class Progress {
   readonly #stream = process.stderr;
@@ -9,6 +12,12 @@ export class Progress {
     this.clear();
     this.#stream.write(`${text} …`.slice(0, (this.#stream.columns || 80) - 1));
     this.#shown = true;
+  }
+
+  /** Shows how far a step is. @param share  0..1 */
+  share(text: string, share: number): void {
+    const done = Math.round(Math.min(1, Math.max(0, share)) * barLength);
+    this.step(`${text} [${'#'.repeat(done)}${'-'.repeat(barLength - done)}] ${Math.floor(100 * share)} %`);
   }
 
   /** Clears the line. */

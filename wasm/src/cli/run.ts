@@ -1,7 +1,10 @@
+import { cageGlb } from '../cages/glb.js';
+import type { Cage } from '../cages/types.js';
 import { type Extracted, extract, partOf, placeOf } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
 import { CagecastError, init, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { makeCageFor } from './make-cage.js';
 import { type Rules, transferOptions } from './options.js';
 import type { Progress } from './progress.js';
 
@@ -16,33 +19,70 @@ export interface Run {
   result: TransferResult;
 }
 
+/** The name of a cage that is made on the way; a file of this name is `./auto`. */
+export const autoCage = 'auto';
+
 /**
- * Reads target and cage and runs the transfer.
+ * Reads target and cage, or makes a cage, and runs the transfer.
  * @throws {InputError} that names the file at fault.
  */
 export async function run(targetPath: string, cagePath: string, rules: Rules, progress: Progress): Promise<Run> {
-  progress.step(`reading ${targetPath}`);
-  const targetFile = await readGltf(targetPath);
-  const target = usable(targetFile, extract(targetFile));
-  const options = optionsFor(targetFile, target, rules);
-  progress.step(`reading ${cagePath}`);
-  const cageFile = await readGltf(cagePath);
-  const cage = usable(cageFile, extract(cageFile));
-  if (cage.mesh.uvs === undefined) {
-    const part = cage.parts.find(
-      ({ mesh, primitive }) =>
-        cageFile.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined,
-    )!;
-    throw new InputError(
-      `${placeOf(part)} ("${part.name}") has no TEXCOORD_0: the texture is drawn in the cage's UVs`,
-    ).in(cagePath);
-  }
-  const vertices = target.mesh.positions.length / 3;
+  const read = await readModel(targetPath, progress);
+  const options = optionsFor(read.file, read.extracted, rules);
+  const cage = cagePath === autoCage ? await madeCage(read, progress) : withUvs(await readModel(cagePath, progress));
+  return transferred(read, cage, options, progress);
+}
+
+/** A file, and all triangles of its scene. */
+export interface ReadModel {
+  file: GltfFile;
+  extracted: Extracted;
+}
+
+/** Reads a model. @throws {InputError} that names the file. */
+export async function readModel(path: string, progress: Progress): Promise<ReadModel> {
+  progress.step(`reading ${path}`);
+  const file = await readGltf(path);
+  return { file, extracted: usable(file, extract(file)) };
+}
+
+/** The same if it has UVs, as a cage must. @throws {InputError} that names the file and the primitive. */
+export function withUvs(model: ReadModel): ReadModel {
+  const { file, extracted } = model;
+  if (extracted.mesh.uvs !== undefined) return model;
+  const part = extracted.parts.find(
+    ({ mesh, primitive }) => file.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined,
+  )!;
+  throw new InputError(
+    `${placeOf(part)} ("${part.name}") has no TEXCOORD_0: the texture is drawn in the cage's UVs`,
+  ).in(file.path);
+}
+
+/** Makes a cage for a target, with default options. */
+async function madeCage(target: ReadModel, progress: Progress): Promise<ReadModel> {
+  const cage = await makeCageFor(target, {}, progress);
+  return readBack(cage, autoCage);
+}
+
+/** A cage as if it was read from a file. */
+export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
+  const file = await readGltf(path, cageGlb(cage));
+  return { file, extracted: extract(file) };
+}
+
+/** Runs the transfer. @throws {InputError} that names the file at fault. */
+export async function transferred(
+  target: ReadModel,
+  cage: ReadModel,
+  options: TransferOptions,
+  progress: Progress,
+): Promise<Run> {
+  const vertices = target.extracted.mesh.positions.length / 3;
   progress.step(`transferring to ${vertices.toLocaleString('en')} vertices`);
   await init();
-  const files = { targetFile, target, cageFile, cage };
+  const files = { targetFile: target.file, target: target.extracted, cageFile: cage.file, cage: cage.extracted };
   try {
-    return { ...files, options, result: transfer(cage.mesh, target.mesh, options) };
+    return { ...files, options, result: transfer(files.cage.mesh, files.target.mesh, options) };
   } catch (error) {
     throw inFile(error, files);
   }

@@ -141,7 +141,7 @@ function matrixOfSkin(
 }
 
 /** The matrix of each node to the scene, including nodes that are in no scene. */
-function placeNodes({ nodes = [] }: GLTF.IGLTF): Matrix[] {
+export function placeNodes({ nodes = [] }: GLTF.IGLTF): Matrix[] {
   const children = new Set(nodes.flatMap((node) => node.children ?? []));
   const places = nodes.map(() => identity);
   // Nodes in a cycle have no root and are never reached.

@@ -1,5 +1,6 @@
 /**
- * Cagecast as a function for glTF-Transform: adds a UV set, the Non-Cosmetic Zones and an overlay to a document.
+ * Cagecast as a function for glTF-Transform: adds a UV set, the Non-Cosmetic Zones and an overlay to a document; and the functions
+ * of `cagecast/cages` for documents.
  * @module cagecast/gltf
  */
 import type { Document, Transform } from '@gltf-transform/core';
@@ -17,6 +18,17 @@ import { type Borders, isCut } from '../parts/borders-option.js';
 import { addTransfer, extractDocument } from './document.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
+
+export {
+  addCage,
+  cageModel,
+  cageTemplate,
+  type FileOptions,
+  findLandmarks,
+  fitCage,
+  makeCage,
+  refineCage,
+} from './document-cages.js';
 
 /** The ranges of a part of a document in the arrays of a result. */
 export interface PartRange {

@@ -26,12 +26,12 @@ const geometryExtensionNames: string[] = geometryExtensions.map((extension) => e
 /**
  * Reads a GLB or glTF file, with external or embedded buffers, quantised, sparse, or compressed by Draco or meshopt.
  * Only geometry is decoded; images and materials stay as they are.
+ * @param bytes  Its content, if it is known already.
  * @throws {InputError} that names the file and what is wrong with it.
  */
-export async function readGltf(path: string): Promise<GltfFile> {
+export async function readGltf(path: string, bytes?: Uint8Array): Promise<GltfFile> {
   try {
-    const bytes = await readBytes(path);
-    const { json, binary } = parse(bytes);
+    const { json, binary } = parse(bytes ?? (await readBytes(path)));
     const buffers = await readBuffers(json, binary, dirname(path));
     checkGeometry(
       json,

@@ -1,5 +1,6 @@
 /**
- * Cagecast for three.js: adds UVs, zones and a painted overlay to the meshes of a loaded model.
+ * Cagecast for three.js: adds UVs, zones and a painted overlay to the meshes of a loaded model; and the functions of
+ * `cagecast/cages` for loaded models.
  * @module cagecast/three
  */
 import { BufferAttribute, type BufferGeometry, type Material, type Mesh, type Object3D, type Texture } from 'three';
@@ -21,6 +22,17 @@ import { type Extracted, extract, isTurned, nameOf, type Part, placeOf } from '.
 import { layOnSurface, makeOverlay, paintMaterial, showTriangles } from './overlay.js';
 import { splitGeometry } from './split.js';
 
+export {
+  cageGeometry,
+  cageModel,
+  cageTemplate,
+  findLandmarks,
+  fitCage,
+  type Loaded,
+  type LoadedGltf,
+  makeCage,
+  refineCage,
+} from './loaded-cages.js';
 export {
   type Borders,
   type CutPart,

@@ -1,0 +1,139 @@
+import { cageGlb } from '../cages/glb.js';
+import type { Cage, Fit, Landmarks } from '../cages/types.js';
+import { templateOf } from '../gltf/cage-file.js';
+import { firstLine, InputError } from '../gltf/input-error.js';
+import { readBytes } from '../gltf/read.js';
+import { counted } from '../inspect/finding.js';
+import type { Verdict } from '../inspect/index.js';
+import { isPosition } from '../parts/template.js';
+import { conclusionOf, inspectionReport } from './inspect-command.js';
+import { inspectionPage } from './inspect-page.js';
+import { fitCageTo, makeCageFor } from './make-cage.js';
+import { matcher, noSuchName, type Rules } from './options.js';
+import { writeFiles } from './output.js';
+import type { Progress } from './progress.js';
+import { type ReadModel, readBack, readModel, transferred, withUvs } from './run.js';
+import { integer } from './table.js';
+
+interface CageOutput {
+  output: string;
+  html?: string | undefined;
+}
+
+/** The arguments of `cagecast make`. */
+export interface MakeCommand extends CageOutput {
+  target: string;
+  /** Patterns of names that replace the default ones; empty for these. */
+  exclude: string[];
+  triangles?: number | undefined;
+}
+
+/** The arguments of `cagecast fit`. */
+export interface FitCommand extends CageOutput {
+  template: string;
+  target: string;
+  templateLandmarks?: string | undefined;
+  landmarks?: string | undefined;
+}
+
+/** What a command prints, and what `inspect` says of the cage. */
+export interface CageVerdict {
+  text: string;
+  verdict: Verdict;
+}
+
+/** The cage is judged as `inspect` does without flags. */
+const rules: Rules = { preset: 'default', single: {}, keep: [], exclude: [] };
+
+/**
+ * Makes a cage for a model and inspects it.
+ * @throws {InputError} that names the file at fault; then no file is written.
+ */
+export async function makeCommand(command: MakeCommand, progress: Progress): Promise<CageVerdict> {
+  const { target, exclude, triangles } = command;
+  const model = await readModel(target, progress);
+  for (const pattern of exclude) {
+    const matches = matcher(pattern, 'i');
+    if (!model.extracted.parts.some(({ aliases }) => aliases.some(matches)))
+      throw noSuchName(`--exclude ${pattern}`, model.extracted.parts).in(target);
+  }
+  const options = { ...(exclude.length > 0 && { exclude }), ...(triangles !== undefined && { triangles }) };
+  const cage = await makeCageFor(model, options, progress);
+  return finish(command, model, cage, [], progress);
+}
+
+/**
+ * Fits a template cage to a model and inspects it.
+ * @throws {InputError} that names the file at fault; then no file is written.
+ */
+export async function fitCommand(command: FitCommand, progress: Progress): Promise<CageVerdict> {
+  const { template: templatePath, target, templateLandmarks, landmarks: landmarksPath } = command;
+  const read = withUvs(await readModel(templatePath, progress));
+  const own = templateOf(read.file, read.extracted);
+  const template = {
+    ...own,
+    ...(templateLandmarks !== undefined && { landmarks: await readLandmarks(templateLandmarks) }),
+  };
+  if (Object.keys(template.landmarks).length === 0)
+    throw new InputError(
+      'has no landmarks in the extras of its nodes and meshes; give those of the model that it was made for: --template-landmarks T.json',
+    ).in(templatePath);
+  const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
+  const model = await readModel(target, progress);
+  const files = { template: templatePath, landmarks: landmarksPath };
+  const fit = await fitCageTo(model, { template, landmarks, files }, progress);
+  return finish(command, model, fit.cage, describeFit(fit, landmarks ?? {}), progress);
+}
+
+/** Reads landmarks: a JSON object, name → [x, y, z]. @throws {InputError} that names the file and the landmark. */
+async function readLandmarks(path: string): Promise<Landmarks> {
+  try {
+    let landmarks: unknown;
+    try {
+      landmarks = JSON.parse(new TextDecoder().decode(await readBytes(path)));
+    } catch (error) {
+      throw error instanceof InputError ? error : new InputError(`is not JSON (${firstLine(error)})`);
+    }
+    if (typeof landmarks !== 'object' || landmarks === null || Array.isArray(landmarks))
+      throw new InputError('is not a JSON object of names and positions');
+    for (const [name, position] of Object.entries(landmarks))
+      if (!isPosition(position)) throw new InputError(`"${name}" is not 3 numbers [x, y, z]`);
+    return landmarks as Landmarks;
+  } catch (error) {
+    throw error instanceof InputError ? error.in(path) : error;
+  }
+}
+
+function describeFit({ used, missing, notes }: Fit, given: Landmarks): string[] {
+  const all = Object.keys(used);
+  const own = all.filter((name) => Object.hasOwn(given, name)).length;
+  return [
+    `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
+    missing.length === 0 ? '' : `not found: ${missing.join(', ')}; give them for a better fit: --landmarks L.json`,
+    ...notes,
+  ].filter(Boolean);
+}
+
+/** Inspects a cage and writes the files. @param lines  What else to print. */
+async function finish(
+  { output, html }: CageOutput,
+  model: ReadModel,
+  cage: Cage,
+  lines: string[],
+  progress: Progress,
+): Promise<CageVerdict> {
+  const done = await transferred(model, await readBack(cage, output), { preset: 'default' }, progress);
+  progress.step('inspecting');
+  const report = inspectionReport({ target: model.file.path, cage: output, rules }, done);
+  writeFiles([
+    { path: output, data: cageGlb(cage) },
+    ...(html === undefined ? [] : [{ path: html, data: inspectionPage(report, done) }]),
+  ]);
+  const text = [
+    `wrote ${output}: ${integer(report.cage.vertices)} vertices, ${integer(report.cage.triangles)} triangles, ${counted(report.uv.charts, 'chart')}, ${counted(report.holes.length, 'hole')}`,
+    ...lines,
+    ...conclusionOf(report),
+    ...(html === undefined ? [] : [`wrote ${html}`]),
+  ].join('\n');
+  return { text, verdict: report.verdict };
+}

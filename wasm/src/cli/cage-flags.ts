@@ -1,0 +1,91 @@
+import { type Command, InvalidArgumentError, Option } from 'commander';
+import { type CageVerdict, type FitCommand, fitCommand, type MakeCommand, makeCommand } from './cage-command.js';
+import type { Progress } from './progress.js';
+import { endingIn, refuseOverwriting, unfit } from './usage.js';
+
+/** The fewest and the most triangles that a cage can be asked to have. */
+const triangleRange = [50, 100_000] as const;
+
+const output = (command: Command): Command =>
+  command
+    .addOption(
+      new Option('-o, --output <CAGE.glb>', 'where to write the cage')
+        .argParser(endingIn('.glb'))
+        .makeOptionMandatory(),
+    )
+    .addOption(
+      new Option('--html <REPORT.html>', 'where to write a page with pictures of the cage').argParser(
+        endingIn('.html'),
+      ),
+    )
+    .allowExcessArguments(false);
+
+function triangles(text: string): number {
+  const value = Number(text);
+  if (!/^\d+$/.test(text) || value < triangleRange[0] || value > triangleRange[1])
+    throw new InvalidArgumentError(`It is not a whole number within ${triangleRange[0]}..${triangleRange[1]}.`);
+  return value;
+}
+
+/** Adds the commands that make and fit cages. */
+export function addCageCommands(program: Command, progress: Progress): void {
+  const print = ({ text, verdict }: CageVerdict) => {
+    progress.clear();
+    console.log(text);
+    if (verdict === 'unfit') process.exitCode = unfit;
+  };
+  output(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
+    .description('make a cage for TARGET: a hull with holes over what is not painted, and UVs; print a verdict')
+    .addOption(
+      new Option(
+        '--exclude <NAME>',
+        'do not paint parts of this node or material (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair',
+      )
+        .default([], 'by name')
+        .argParser((name: string, before: string[]) => [...before, name]),
+    )
+    .addOption(new Option('--triangles <N>', 'triangles of the cage, about (default: by kind)').argParser(triangles))
+    .addHelpText(
+      'after',
+      `
+The cage has a hole over each part that is not painted. Draw the texture for the cage's UVs.
+Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.
+
+Examples:
+  cagecast make head.glb -o cage.glb
+  cagecast make head.glb --exclude 'eye*' --exclude 'mouth*' --triangles 800 -o cage.glb --html report.html`,
+    )
+    .action(async (target: string, flags: Omit<MakeCommand, 'target'>, command: Command) => {
+      refuseOverwriting(command, [target], [flags.output, flags.html]);
+      print(await makeCommand({ ...flags, target }, progress));
+    });
+  output(
+    program
+      .command('fit')
+      .argument('<TEMPLATE>', 'GLB or glTF of a cage with UVs, made for another model')
+      .argument('<TARGET>', 'GLB or glTF of the model that gets the cage'),
+  )
+    .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
+    .option(
+      '--template-landmarks <T.json>',
+      'landmarks of the model that TEMPLATE was made for; default: those in the file (extras.landmarks)',
+    )
+    .option('--landmarks <L.json>', 'landmarks of TARGET; they override those that are found')
+    .addHelpText(
+      'after',
+      `
+Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_tip": [0, 1.52, 0.11], … }
+Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.
+
+Examples:
+  cagecast fit template.glb head.glb -o cage.glb
+  cagecast fit template.glb head.glb --landmarks head.json -o cage.glb --html report.html`,
+    )
+    .action(
+      async (template: string, target: string, flags: Omit<FitCommand, 'template' | 'target'>, command: Command) => {
+        const { templateLandmarks, landmarks, output, html } = flags;
+        refuseOverwriting(command, [template, target, templateLandmarks, landmarks], [output, html]);
+        print(await fitCommand({ ...flags, template, target }, progress));
+      },
+    );
+}

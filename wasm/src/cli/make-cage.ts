@@ -1,0 +1,56 @@
+import { fitCage, init, makeCage } from '../cages/sync.js';
+import type { Cage, Fit, Landmarks, MakeOptions, Template } from '../cages/types.js';
+import { cageModelOf } from '../gltf/cage-file.js';
+import { InputError } from '../gltf/input-error.js';
+import { CagecastError } from '../index.js';
+import type { Progress } from './progress.js';
+import type { ReadModel } from './run.js';
+
+/** Makes a cage for a model. @throws {InputError} that names the file. */
+export function makeCageFor(model: ReadModel, options: MakeOptions, progress: Progress): Promise<Cage> {
+  return calling('making a cage', { model: model.file.path }, progress, (onProgress) =>
+    makeCage(cageModelOf(model.file, model.extracted), { ...options, onProgress }),
+  );
+}
+
+/** A template, landmarks of the model (none if there is no file of them), and the files that they come from. */
+export interface FitSources {
+  template: Template;
+  landmarks: Landmarks | undefined;
+  files: { template: string; landmarks?: string | undefined };
+}
+
+/** Fits a template to a model. @throws {InputError} that names the file at fault. */
+export function fitCageTo(
+  model: ReadModel,
+  { template, landmarks, files }: FitSources,
+  progress: Progress,
+): Promise<Fit> {
+  return calling('fitting the cage', { model: model.file.path, ...files }, progress, (onProgress) =>
+    fitCage(template, cageModelOf(model.file, model.extracted), landmarks, { onProgress }),
+  );
+}
+
+type Told = (share: number, stage: string) => void;
+
+/** Calls a function that takes seconds, and shows how far it is. @param files  By the names that messages begin with. */
+async function calling<Result>(
+  what: string,
+  files: Record<string, string | undefined>,
+  progress: Progress,
+  call: (onProgress: Told) => Result,
+): Promise<Result> {
+  progress.step(what);
+  await init();
+  try {
+    return call((share, stage) => progress.share(`${what}: ${stage}`, share));
+  } catch (error) {
+    if (!(error instanceof CagecastError)) throw error;
+    const text = error.message.replace(/^\w+: /, '');
+    const [head = '', name = ''] = /^(?:the )?(model|template|landmarks)(?:\.| (?=is|has)|: )/.exec(text) ?? [];
+    const file = files[name];
+    throw new InputError(file === undefined ? text : text.slice(head.length), { cause: error }).in(
+      file ?? files['model']!,
+    );
+  }
+}

@@ -1,0 +1,57 @@
+import type { CageModel, Template } from '../cages/types.js';
+import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
+import { readExtras } from '../parts/template.js';
+import { type Extracted, type Part, placeNodes } from './extract.js';
+import { InputError } from './input-error.js';
+import type { GltfFile } from './read.js';
+
+/** What `cagecast/cages` needs of a file: its mesh, the names of its parts, and its joints. */
+export function cageModelOf(file: GltfFile, { mesh, parts }: Extracted): CageModel {
+  const { positions, indices, groups } = mesh;
+  return {
+    positions,
+    indices,
+    groups,
+    parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
+    joints: jointsOf(file, parts),
+  };
+}
+
+/** A file as a template: its mesh, and what the extras of its nodes and meshes say. @throws {InputError} that names the file. */
+export function templateOf({ json, path }: GltfFile, { mesh, parts }: Extracted): Template {
+  const sources = parts.flatMap((part) => [
+    { ...part, extras: json.meshes![part.mesh]!.extras, place: `meshes[${part.mesh}]` },
+    { ...part, extras: json.nodes![part.node]!.extras, place: `nodes[${part.node}]` },
+  ]);
+  const extras = readExtras(sources, (text) => new InputError(text).in(path));
+  return { positions: mesh.positions, indices: mesh.indices, uvs: mesh.uvs!, ...extras };
+}
+
+function jointsOf(file: GltfFile, parts: readonly Part[]) {
+  const { nodes = [], extensions } = file.json;
+  const parents = new Map(nodes.flatMap((node, n) => (node.children ?? []).map((child) => [child, n])));
+  const bones = vrmBones(extensions as VrmExtensions | undefined);
+  const places = placeNodes(file.json);
+  const nameOf = (node: number) => bones.get(node) ?? nodes[node]!.name ?? `nodes[${node}]`;
+  const atNode = (node: number): ReadJoint<number> => ({
+    node,
+    name: nameOf(node),
+    position: places[node]!.slice(12, 15) as [number, number, number],
+  });
+  const joints = parts.flatMap((part) => {
+    const skin = nodes[part.node]!.skin;
+    if (skin === undefined) return [];
+    const { joints: held = [], inverseBindMatrices } = file.json.skins![skin]!;
+    const inverses =
+      inverseBindMatrices === undefined
+        ? undefined
+        : file.geometry.getRoot().listAccessors()[inverseBindMatrices]?.getArray();
+    return held.map((node, j) => {
+      const inverse = inverses?.subarray(16 * j, 16 * j + 16);
+      const position = inverse?.length === 16 ? jointPlace(part.matrix, inverse) : undefined;
+      return position ? { node, name: nameOf(node), position } : atNode(node);
+    });
+  });
+  const others = [...bones.keys()].filter((node) => node >= 0 && node < nodes.length).map(atNode);
+  return listJoints([...joints, ...others], (node) => parents.get(node));
+}

@@ -1,0 +1,164 @@
+import type { Document, Node } from '@gltf-transform/core';
+import {
+  type Cage,
+  type CageCallOptions,
+  type CageModel,
+  type Fit,
+  type FitOptions,
+  type FoundLandmarks,
+  findLandmarks as findOn,
+  fitCage as fitTo,
+  type Landmarks,
+  type MakeOptions,
+  makeCage as makeFor,
+  type RefineOptions,
+  refineCage as refineOn,
+  type Template,
+} from '../cages/index.js';
+import { CagecastError, type Mesh } from '../index.js';
+import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
+import { readExtras } from '../parts/template.js';
+import { type DocumentPart, extractDocument } from './document.js';
+import { InputError } from './input-error.js';
+
+/** What glTF-Transform does not keep of a file. */
+export interface FileOptions {
+  /** The `extensions` of the file's JSON. A VRM's skeleton is in them: without it, bones are known by the names of nodes. */
+  extensions?: VrmExtensions | undefined;
+}
+
+/**
+ * What `cagecast/cages` needs of a document: the triangles of its default scene, a part for each primitive of each node, and the
+ * joints of its skins, in the bind pose.
+ * @throws {CagecastError} `badArgument` that names the primitive.
+ */
+export function cageModel(document: Document, { extensions }: FileOptions = {}): CageModel {
+  const { mesh, parts } = read('cageModel', 'model', () => extractDocument(document));
+  const { positions, indices, groups } = mesh;
+  return {
+    positions,
+    indices,
+    groups,
+    parts: parts.map(({ aliases, name }) => (aliases.length > 0 ? aliases : [name])),
+    joints: jointsOf(document, parts, vrmBones(extensions)),
+  };
+}
+
+/**
+ * A document as a template: its mesh, and the landmarks that the `extras` of its cage's node or mesh have.
+ * @throws {CagecastError} `badArgument`, `missingUvs`
+ */
+export function cageTemplate(document: Document): Template {
+  return read('cageTemplate', 'template', () => {
+    const { mesh, parts } = extractDocument(document);
+    if (mesh.uvs === undefined)
+      throw new CagecastError('missingUvs', 'cageTemplate: template has a primitive without TEXCOORD_0');
+    const sources = parts.flatMap((part) => [
+      { ...part, extras: part.mesh.getExtras(), place: `mesh of "${part.name}"` },
+      { ...part, extras: part.node.getExtras(), place: `"${part.name}"` },
+    ]);
+    const { positions, indices, uvs } = mesh;
+    return { positions, indices, uvs, ...readExtras(sources, (text) => new InputError(text)) };
+  });
+}
+
+/** As `makeCage` of `cagecast/cages`, for the default scene of a document. @throws {CagecastError} */
+export async function makeCage(
+  document: Document,
+  { extensions, ...options }: MakeOptions & CageCallOptions & FileOptions = {},
+): Promise<Cage> {
+  return makeFor(cageModel(document, { extensions }), options);
+}
+
+/** As `fitCage` of `cagecast/cages`, for documents. @throws {CagecastError} */
+export async function fitCage(
+  template: Document | Template,
+  document: Document,
+  landmarks?: Landmarks,
+  { extensions, ...options }: FitOptions & CageCallOptions & FileOptions = {},
+): Promise<Fit> {
+  const from = 'getRoot' in template ? cageTemplate(template) : template;
+  return fitTo(from, cageModel(document, { extensions }), landmarks, options);
+}
+
+/** As `findLandmarks` of `cagecast/cages`, for the default scene of a document. @throws {CagecastError} */
+export async function findLandmarks(
+  document: Document,
+  { extensions, ...options }: CageCallOptions & FileOptions = {},
+): Promise<FoundLandmarks> {
+  return findOn(cageModel(document, { extensions }), options);
+}
+
+/** As `refineCage` of `cagecast/cages`, for documents. @throws {CagecastError} */
+export async function refineCage(
+  cage: Document | Mesh | Cage | Template,
+  document: Document,
+  { extensions, ...options }: RefineOptions & CageCallOptions & FileOptions = {},
+): Promise<Cage> {
+  const from = 'getRoot' in cage ? cageTemplate(cage) : cage;
+  return refineOn(from, cageModel(document, { extensions }), options);
+}
+
+/**
+ * Adds a cage to a document: a node named `cage` in its default scene, with landmarks, holes and kind in its `extras`, so that the
+ * document is a template. `cageGlb` of `cagecast/cages` writes a file at once.
+ *
+ * @example
+ * await new NodeIO().write('cage.glb', addCage(new Document(), await makeCage(document)).document);
+ */
+export function addCage<D extends Document>(
+  document: D,
+  cage: Pick<Cage, 'positions' | 'uvs' | 'indices'> & Partial<Cage>,
+): { document: D; node: Node } {
+  const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
+  const root = document.getRoot();
+  const buffer = root.listBuffers()[0] ?? document.createBuffer();
+  const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'VEC2' | 'SCALAR') =>
+    document
+      .createAccessor()
+      .setType(type)
+      .setArray(array.slice() as Float32Array<ArrayBuffer>)
+      .setBuffer(buffer);
+  const primitive = document
+    .createPrimitive()
+    .setAttribute('POSITION', accessor(positions, 'VEC3'))
+    .setAttribute('TEXCOORD_0', accessor(uvs, 'VEC2'))
+    .setIndices(accessor(indices, 'SCALAR'));
+  const node = document
+    .createNode('cage')
+    .setMesh(document.createMesh('cage').addPrimitive(primitive))
+    .setExtras({ landmarks, holes, kind } as object as Record<string, unknown>);
+  (root.getDefaultScene() ?? root.listScenes()[0] ?? document.createScene()).addChild(node);
+  return { document, node };
+}
+
+function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map<number, string>) {
+  const nodes = document.getRoot().listNodes();
+  const boneOf = new Map([...bones].flatMap(([n, bone]) => (nodes[n] ? [[nodes[n], bone] as const] : [])));
+  const nameOf = (node: Node) => boneOf.get(node) ?? (node.getName() || `nodes[${nodes.indexOf(node)}]`);
+  const atNode = (node: Node): ReadJoint<Node> => ({
+    node,
+    name: nameOf(node),
+    position: node.getWorldTranslation() as [number, number, number],
+  });
+  const joints = parts.flatMap(({ node: holder, matrix }) => {
+    const skin = holder.getSkin();
+    const inverses = skin?.getInverseBindMatrices()?.getArray();
+    return (skin?.listJoints() ?? []).map((node, j) => {
+      const inverse = inverses?.subarray(16 * j, 16 * j + 16);
+      const position = inverse?.length === 16 ? jointPlace(matrix, inverse) : undefined;
+      return position ? { node, name: nameOf(node), position } : atNode(node);
+    });
+  });
+  return listJoints([...joints, ...[...boneOf.keys()].map(atNode)], (node) => node.getParentNode());
+}
+
+function read<T>(fn: string, argument: string, work: () => T): T {
+  try {
+    return work();
+  } catch (error) {
+    throw error instanceof InputError
+      ? new CagecastError('badArgument', `${fn}: ${argument}: ${error.message}`, 0, { cause: error })
+      : error;
+  }
+}
