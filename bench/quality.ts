@@ -3,16 +3,21 @@
 //   npm run quality [-- options]
 //     --only lizard,car   only these models; the results stay as they are
 //     --check             exit 1 where a goal is missed
+//     --cages             only what is about made and fitted cages; the results stay as they are
 //
 // Over the samples, those of the folder that CAGECAST_ASSETS names (folders with target.glb, cage.glb and truth.json), and
-// the models made to be difficult. Tables on the terminal and in bench/results/quality.md, a plot and all numbers beside it;
-// the samples in pictures, docs/pictures/quality.jpg and failures.jpg, and the given models in another, build/bench/quality.jpg.
+// the models made to be difficult. Cages are made for samples and given models, and for the people in the given folder's
+// subfolder `people`, whom templates are fitted to as well. Tables on the terminal and in bench/results/quality.md, a plot and
+// all numbers beside it; the samples in pictures, docs/pictures/quality.jpg and failures.jpg, and the given models in another,
+// build/bench/quality.jpg.
 
 import { cpus } from 'node:os';
 import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
 import { root } from './native.js';
-import { missedGoals } from './quality/goals.js';
+import { cageSections } from './quality/cage-report.js';
+import { measureCages } from './quality/cages.js';
+import { missedCageGoals, missedGoals } from './quality/goals.js';
 import { measure, measureLargeTimes, measureTimes } from './quality/measure.js';
 import { loadModels, type Model, NoSuchModel } from './quality/models.js';
 import { type QualityResults, qualityReport, writeQuality } from './quality/report.js';
@@ -27,16 +32,27 @@ const runs = 31;
 const largeRuns = 7;
 
 async function main(): Promise<void> {
-  const { values: options } = parseArgs({ options: { only: { type: 'string' }, check: { type: 'boolean' } } });
+  const { values: options } = parseArgs({
+    options: { only: { type: 'string' }, check: { type: 'boolean' }, cages: { type: 'boolean' } },
+  });
+  const only = options.only?.split(',');
   await init();
+  if (options.cages) {
+    const cages = await measureCages(only, say);
+    const missed = missedCageGoals(cages);
+    console.log([...cageSections(cages), ...missed.map((line) => `- ${line}`)].join('\n\n'));
+    if (options.check && missed.length > 0) process.exitCode = 1;
+    return;
+  }
   say('reading the models');
-  const models = await loadModels(options.only?.split(','));
+  const models = await loadModels(only);
   const results: QualityResults = {
     date: new Date().toISOString().slice(0, 10),
     machine: { processor: cpus()[0]!.model, cores: cpus().length, node: process.versions.node },
     models: {},
     times: {},
     largeTimes: { naive: 0, 'step 2': 0, 'step 3': 0, paper: 0, default: 0 },
+    cages: { made: {}, fitted: {}, given: {}, failed: [] },
   };
   for (const model of models) {
     say(model.name);
@@ -50,6 +66,7 @@ async function main(): Promise<void> {
   say('times');
   for (const model of models) results.times[model.name] = measureTimes(model, runs);
   results.largeTimes = await measureLargeTimes(models[0]!, largeRuns);
+  results.cages = await measureCages(only, say);
   console.log(qualityReport(results));
   if (options.only === undefined) {
     await writeQuality(results);
@@ -61,7 +78,8 @@ async function main(): Promise<void> {
       await drawSheet(are('asset'), ['cage', 'naive', 'paper', 'default'], `${root}build/bench/quality.jpg`);
   }
   say('done');
-  if (options.check && missedGoals(results.models).length > 0) process.exitCode = 1;
+  const missed = [...missedGoals(results.models), ...missedCageGoals(results.cages)];
+  if (options.check && missed.length > 0) process.exitCode = 1;
 }
 
 await main().catch((error: Error) => {

@@ -1,5 +1,6 @@
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { output, root } from '../native.js';
+import type { Joint } from '../read-glb.js';
 import { cagesFolder, type Figure } from './figures.js';
 import type { Person } from './fit-score.js';
 import type { Shape } from './shape.js';
@@ -9,23 +10,21 @@ export type StoredFigure = Omit<Figure, 'target' | 'cage' | 'landmarks'>;
 
 /** A model as `scenes.ts` wrote it, see bench/native/cages.cpp. */
 export interface StoredModel extends Shape {
-  positions: number[];
-  indices: number[];
-  groups: number[];
+  groups: ArrayLike<number>;
   parts: string[];
+  joints: Joint[];
 }
 
 /** A cage as the tool writes it. `used`, `missing` and `notes` are of a fit. */
 export interface StoredCage extends Shape {
-  positions: number[];
-  indices: number[];
-  uvs: number[];
+  uvs: ArrayLike<number>;
   landmarks: Landmarks;
   used?: Landmarks;
   missing?: string[];
   notes?: string[];
 }
-type Landmarks = Record<string, [number, number, number]>;
+/** Name → position. */
+export type Landmarks = Record<string, readonly [number, number, number]>;
 
 /** Reads a file of build/cages. @throws if it is not there. */
 export const read = <T>(name: string): T => JSON.parse(readFileSync(`${cagesFolder}/${name}.json`, 'utf8')) as T;
@@ -44,7 +43,7 @@ export function storedFigures(only: readonly string[]): StoredFigure[] {
 }
 
 /** What a fit to a figure is scored with. */
-export const personOf = ({ name, truth, source }: StoredFigure): Person => ({
+export const personOf = ({ name, truth, source }: StoredFigure): Person & { target: StoredModel } => ({
   target: read<StoredModel>(`${name}.model`),
   truth,
   landmarks: read(`${name}.landmarks`),
@@ -62,13 +61,4 @@ export async function runTool(...args: string[]): Promise<string> {
     // Without the command line.
     return (error as Error).message.replace(/^.* failed \(exit \d+\): /s, '').trim();
   }
-}
-
-/** A share as a percentage with two digits; "–" for none. */
-export const percent = (share: number): string => (Number.isFinite(share) ? (100 * share).toFixed(2) : '–');
-
-/** Means, of the values that there are. */
-export function mean(values: readonly number[]): number {
-  const some = values.filter(Number.isFinite);
-  return some.reduce((sum, value) => sum + value, 0) / some.length;
 }

@@ -26,7 +26,7 @@ export interface Subject {
 
 /** A template: a subject with a cage. */
 export interface TemplateFigure extends Subject {
-  cage: Shape;
+  cage: Shape & { uvs: ArrayLike<number> };
 }
 
 /** A figure that a template is fitted to. */

@@ -1,7 +1,7 @@
 import { transfer } from 'cagecast';
 import type { FigureTruth } from './figures.js';
 import type { StoredCage, StoredModel } from './files.js';
-import { vertexAreas } from './shape.js';
+import { type Shape, vertexAreas } from './shape.js';
 
 /** What a transfer leaves bare and paints, as shares of area; see `Score`. */
 export interface PaintScore {
@@ -35,19 +35,10 @@ export function paintScore(
 }
 
 /** As the package takes it. */
-export const meshOf = ({
-  positions,
-  indices,
-  uvs,
-  groups,
-}: {
-  positions: number[];
-  indices: number[];
-  uvs?: number[];
-  groups?: number[];
-}) => ({
+export const meshOf = ({ positions, indices, uvs, groups }: Arrays) => ({
   positions: Float32Array.from(positions),
   indices: Uint32Array.from(indices),
   ...(uvs && { uvs: Float32Array.from(uvs) }),
   ...(groups && { groups: Uint32Array.from(groups) }),
 });
+type Arrays = Shape & { uvs?: ArrayLike<number>; groups?: ArrayLike<number> };

@@ -22,46 +22,13 @@ import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
 import { table } from '../table.js';
 import { cagesFolder, templates } from './figures.js';
-import {
-  has,
-  mean,
-  percent,
-  personOf,
-  read,
-  runTool,
-  type StoredCage,
-  type StoredFigure,
-  storedFigures,
-} from './files.js';
-import { type EyeScore, type FitScore, FitScorer, type Spread } from './fit-score.js';
-import { paintScore } from './paint-score.js';
-import { diagonalOf } from './shape.js';
-
-type Landmarks = Record<string, [number, number, number]>;
-
-const five = ['eye_centre_left', 'eye_centre_right', 'nose_tip', 'lip_upper', 'chin'];
-const nine = [...five, 'mouth_corner_left', 'mouth_corner_right', 'ear_lobe_left', 'ear_lobe_right'];
-
-/** Those of the true landmarks that the fit is told. */
-function givenOf(landmarks: Landmarks, given: string): Landmarks {
-  const isGiven = (name: string): boolean => {
-    if (given === 'auto') return false;
-    if (given === 'all') return true;
-    if (given === '23') return !/^joint_|^eye_centre/.test(name);
-    return (given === '5' ? five : given === '9' ? nine : given.split(',')).includes(name);
-  };
-  return Object.fromEntries(Object.entries(landmarks).filter(([name]) => isGiven(name)));
-}
+import { has, personOf, read, runTool, type StoredCage, type StoredFigure, storedFigures } from './files.js';
+import { type EyeScore, FitScorer, type Spread } from './fit-score.js';
+import { type FitMeasures, givenOf, mean, measureFit, percent } from './measure.js';
 
 /** What is printed of a figure. */
-interface Line extends FitScore {
+interface Line extends FitMeasures {
   name: string;
-  kind: string;
-  similarity: Spread;
-  floor: Spread;
-  found: { mean: number; most: number; count: number };
-  suppressed: number;
-  kept: number;
   outcome: string;
 }
 
@@ -74,30 +41,11 @@ function scorerOf(template: string): FitScorer {
   return scorers.get(template)!;
 }
 
-const none = { median: NaN, most: NaN };
-
 function lineOf(figure: StoredFigure, folder: string, outcome: string): Line | undefined {
   if (!has(`${folder}/${figure.name}`)) return undefined;
-  const scorer = scorerOf(figure.template!);
-  const person = personOf(figure);
   const cage = read<StoredCage>(`${folder}/${figure.name}`);
-  const used = cage.used ?? {};
-  const [bySimilarity, byTruth] = [scorer.bySimilarity(used), scorer.byTruth(person)];
-  const size = diagonalOf(person.target.positions);
-  const errors = Object.entries(used).flatMap(([name, at]) => {
-    const truth = person.landmarks[name];
-    return truth ? [Math.hypot(...at.map((x, k) => x - truth[k]!)) / size] : [];
-  });
-  return {
-    name: figure.name,
-    kind: figure.kind,
-    ...scorer.score(cage.positions, person, Object.keys(used)),
-    similarity: bySimilarity ? scorer.correspondence(bySimilarity, person) : none,
-    floor: byTruth ? scorer.correspondence(byTruth, person) : none,
-    found: { mean: mean(errors), most: Math.max(...errors), count: errors.length },
-    ...paintScore(cage, read(`${figure.name}.model`), figure.truth),
-    outcome,
-  };
+  const measures = measureFit(scorerOf(figure.template!), personOf(figure), cage, cage.used ?? {});
+  return { name: figure.name, ...measures, outcome };
 }
 
 const both = ({ median, most }: Spread): string => `${percent(median)} / ${percent(most)}`;
@@ -125,9 +73,10 @@ const row = (line: Line): string[] => [
   String(line.folded),
   line.angle.toFixed(1),
   `${line.suppressed.toFixed(4)} / ${line.kept.toFixed(4)}`,
+  line.verdict,
   line.outcome,
 ];
-const head = 'fit,similarity,floor,unused,found,eyes,eyeballs,out,folded,angle,sup / kept,'.split(',');
+const head = 'fit,similarity,floor,unused,found,eyes,eyeballs,out,folded,angle,sup / kept,verdict,'.split(',');
 
 function meanOf(lines: readonly Line[]): string[] {
   const spread = (of: (line: Line) => Spread): string =>
@@ -147,6 +96,7 @@ function meanOf(lines: readonly Line[]): string[] {
     mean(lines.map(({ folded }) => folded)).toFixed(1),
     mean(lines.map(({ angle }) => angle)).toFixed(1),
     `${mean(lines.map(({ suppressed }) => suppressed)).toFixed(4)} / ${mean(lines.map(({ kept }) => kept)).toFixed(4)}`,
+    '',
     '',
   ];
 }

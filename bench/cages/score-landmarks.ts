@@ -7,7 +7,8 @@
 
 import { table } from '../table.js';
 import { cagesFolder } from './figures.js';
-import { mean, percent, read, runTool, type StoredModel, storedFigures } from './files.js';
+import { read, runTool, type StoredModel, storedFigures } from './files.js';
+import { mean, percent } from './measure.js';
 import { diagonalOf } from './shape.js';
 
 type Landmarks = Record<string, [number, number, number]>;

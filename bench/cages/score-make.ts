@@ -11,20 +11,11 @@
 import { mkdirSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
-import { inspect } from 'cagecast/inspect';
 import { table } from '../table.js';
 import { cagesFolder } from './figures.js';
-import {
-  has,
-  percent,
-  read,
-  runTool,
-  type StoredCage,
-  type StoredFigure,
-  type StoredModel,
-  storedFigures,
-} from './files.js';
-import { meshOf, type PaintScore, paintScore } from './paint-score.js';
+import { has, read, runTool, type StoredCage, type StoredFigure, type StoredModel, storedFigures } from './files.js';
+import { measureCage, percent } from './measure.js';
+import type { PaintScore } from './paint-score.js';
 
 const both = ({ suppressed, kept }: PaintScore): string => `${suppressed.toFixed(4)} / ${kept.toFixed(4)}`;
 
@@ -32,19 +23,19 @@ const both = ({ suppressed, kept }: PaintScore): string => `${suppressed.toFixed
 function rowOf({ name, truth }: StoredFigure, folder: string, outcome: string): string[] | undefined {
   if (!has(`${folder}/${name}`)) return undefined;
   const model = read<StoredModel>(`${name}.model`);
-  const cage = read<StoredCage>(`${folder}/${name}`);
-  const { verdict, findings, uv, inside } = inspect(meshOf(cage), meshOf(model));
-  const hand = has(`${name}.cage`) ? read<StoredCage>(`${name}.cage`) : undefined;
+  const measure = (file: string) => measureCage(read<StoredCage>(file), model, truth);
+  const made = measure(`${folder}/${name}`);
+  const hand = has(`${name}.cage`) ? measure(`${name}.cage`) : undefined;
   return [
     name,
-    both(paintScore(cage, model, truth)),
-    hand ? both(paintScore(hand, model, truth)) : '',
-    String(cage.indices.length / 3),
-    `${uv.charts}${hand ? ` (${inspect(meshOf(hand), meshOf(model)).uv.charts})` : ''}`,
-    percent(uv.overlap.share),
-    percent(uv.used),
-    percent(inside.area),
-    `${verdict}${findings[0] && verdict !== 'good' ? `: ${findings[0].code}` : ''}`,
+    both(made),
+    hand ? both(hand) : '',
+    String(made.triangles),
+    `${made.charts}${hand ? ` (${hand.charts})` : ''}`,
+    percent(made.overlap),
+    percent(made.used),
+    percent(made.inside),
+    `${made.verdict}${made.finding ? `: ${made.finding}` : ''}`,
     outcome,
   ];
 }

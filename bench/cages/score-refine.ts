@@ -12,7 +12,8 @@ import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
 import { table } from '../table.js';
 import { cagesFolder } from './figures.js';
-import { has, mean, percent, read, runTool, type StoredCage, type StoredModel, storedFigures } from './files.js';
+import { has, read, runTool, type StoredCage, type StoredModel, storedFigures } from './files.js';
+import { mean, percent } from './measure.js';
 import { type PaintScore, paintScore } from './paint-score.js';
 import { diagonalOf } from './shape.js';
 
@@ -25,7 +26,7 @@ const { values: options, positionals } = parseArgs({
 type Move = [name: string, place: (x: number, axis: number) => number];
 
 function movesOf({ positions }: StoredCage, diagonal: number): Move[] {
-  const middle = [0, 1, 2].map((k) => mean(positions.filter((_, i) => i % 3 === k)));
+  const middle = [0, 1, 2].map((k) => mean(Array.from(positions).filter((_, i) => i % 3 === k)));
   const steps = options.quick ? [3] : [1, 2, 3];
   const moves = steps.flatMap((step) =>
     [0, 1, 2].flatMap((axis) =>
@@ -55,7 +56,7 @@ for (const { name, truth } of storedFigures(positionals).filter(({ name }) => ha
   const before = paintScore(cage, model, truth);
   const lines: { loss: number; row: string[] }[] = [];
   for (const [what, place] of movesOf(cage, diagonal)) {
-    const moved = { ...cage, positions: cage.positions.map((x, i) => place(x, i % 3)) };
+    const moved = { ...cage, positions: Array.from(cage.positions, (x, i) => place(x, i % 3)) };
     const [from, to] = [`refined/${name}.from`, `refined/${name}`];
     writeFileSync(`${cagesFolder}/${from}.json`, JSON.stringify(moved));
     const outcome = await runTool(

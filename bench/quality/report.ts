@@ -1,7 +1,9 @@
 import { writeFile } from 'node:fs/promises';
 import { resultsFolder } from '../results.js';
 import { table } from '../table.js';
-import { missedGoals } from './goals.js';
+import { cageSections } from './cage-report.js';
+import type { CageQuality } from './cages.js';
+import { missedCageGoals, missedGoals } from './goals.js';
 import { largeTriangles, type Quality, shift, thresholds, type ZoneCounts } from './measure.js';
 import { type MethodName, methodNames } from './methods.js';
 import { thresholdPlot } from './plot.js';
@@ -17,6 +19,7 @@ export interface QualityResults {
   times: Record<string, Record<MethodName, number>>;
   /** Milliseconds on the large model, by method. */
   largeTimes: Record<MethodName, number>;
+  cages: CageQuality;
 }
 
 /** Writes JSON, tables and plot, over those of earlier runs. */
@@ -185,7 +188,7 @@ function floorTable(models: Readonly<Record<string, Quality>>): string {
 /** All tables, in Markdown. */
 export function qualityReport(results: QualityResults): string {
   const { date, machine, models } = results;
-  const missed = missedGoals(models);
+  const missed = [...missedGoals(models), ...missedCageGoals(results.cages)];
   const scoresHead = [...methodNames, worstOfThresholds, worstOfShifts];
   const parts = [
     `# Quality, measured on ${date}`,
@@ -211,6 +214,7 @@ export function qualityReport(results: QualityResults): string {
     '## Where it fails',
     'Eyes fused to the skin, and a misplaced cage, as the poster says. `cagecast inspect` reports such a cage as unfit. [More](../../docs/evaluation.md#where-it-fails).',
     '![A face with eyes fused to the skin, and one under a cage that is rotated and moved, by every method](../../docs/pictures/failures.jpg)',
+    ...cageSections(results.cages),
     '## Why vertices are left out, and the cost',
     `Vertices occluded / uncovered / culled; milliseconds; peak memory beyond cage and target (the poster: “~20 MB”); share of the
 painted area whose texture is smeared, with UVs per vertex, with UVs per corner, and with cut borders.`,
