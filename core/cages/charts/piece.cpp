@@ -111,23 +111,25 @@ std::vector<Piece> componentsOf(const Piece& piece) {
   return pieces;
 }
 
+std::vector<Piece> piecesOf(const Piece& piece, std::span<const std::uint32_t> regions, std::uint32_t region) {
+  // Vertices that are not used are left out in the end.
+  Piece part;
+  part.mesh.positions = piece.mesh.positions;
+  part.vertexOf = piece.vertexOf;
+  for (std::size_t t = 0; t < regions.size(); ++t) {
+    if (regions[t] != region) continue;
+    part.mesh.triangles.push_back(piece.mesh.triangles[t]);
+    part.triangleOf.push_back(piece.triangleOf[t]);
+  }
+  return componentsOf(cutOpen(part, std::vector<bool>(3 * part.mesh.triangles.size())));
+}
+
 std::vector<Piece> splitBy(const Piece& piece, std::span<const std::uint32_t> regions) {
   std::uint32_t count = 0;
   for (const std::uint32_t region : regions) count = std::max(count, region + 1);
   std::vector<Piece> pieces;
-  for (std::uint32_t region = 0; region < count; ++region) {
-    // Vertices that are not used are left out below.
-    Piece part;
-    part.mesh.positions = piece.mesh.positions;
-    part.vertexOf = piece.vertexOf;
-    for (std::size_t t = 0; t < regions.size(); ++t) {
-      if (regions[t] != region) continue;
-      part.mesh.triangles.push_back(piece.mesh.triangles[t]);
-      part.triangleOf.push_back(piece.triangleOf[t]);
-    }
-    part = cutOpen(part, std::vector<bool>(3 * part.mesh.triangles.size()));
-    for (Piece& component : componentsOf(part)) pieces.push_back(std::move(component));
-  }
+  for (std::uint32_t region = 0; region < count; ++region)
+    for (Piece& component : piecesOf(piece, regions, region)) pieces.push_back(std::move(component));
   return pieces;
 }
 

@@ -41,6 +41,9 @@ Piece cutOpen(const Piece& piece, const std::vector<bool>& cut);
 /// @param regions  Per triangle, from 0.
 std::vector<Piece> splitBy(const Piece& piece, std::span<const std::uint32_t> regions);
 
+/// The connected pieces of one region of a piece.
+std::vector<Piece> piecesOf(const Piece& piece, std::span<const std::uint32_t> regions, std::uint32_t region);
+
 /// The connected pieces of a piece, in the order of their first triangles.
 std::vector<Piece> componentsOf(const Piece& piece);
 

@@ -9,6 +9,8 @@
 #include <queue>
 #include <utility>
 
+#include "charts/min_cut.hpp"
+
 namespace cagecast::cages {
 
 namespace {
@@ -127,6 +129,23 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
   }
   std::vector<std::uint32_t> regions = regionsOf(mesh, labels);
   joinSmallRegions(mesh, kLeastSide, kMostSides, regions);
+  return regions;
+}
+
+std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& front) {
+  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const double border = kBorderWidth * diagonalOf(mesh);
+  MinCut cut(mesh.triangles.size(), 1e-6 * border * border);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 n = areaNormal(mesh, mesh.triangles[t]);
+    const double area = length(n), ahead = dot(n, front);
+    cut.addNode(t, area - ahead, area + ahead);
+  }
+  for (std::uint32_t h = 0; h < twins.size(); ++h)
+    if (twins[h] != kNone && twins[h] > h) cut.addEdge(h / 3, twins[h] / 3, border * edgeLength(mesh, h));
+  const std::vector<bool> back = cut.solve();
+  std::vector<std::uint32_t> regions = regionsOf(mesh, {back.begin(), back.end()});
+  joinSmallRegions(mesh, kLeastSide, 2, regions);
   return regions;
 }
 

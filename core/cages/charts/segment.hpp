@@ -12,6 +12,9 @@ namespace cagecast::cages {
 /// @return a label per triangle; regions of one label are connected.
 std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& options);
 
+/// Labels what faces front and what faces back, with a short border between.
+std::vector<std::uint32_t> frontAndBackOf(const TriangleMesh& mesh, const Vec3& front);
+
 /// Labels two connected halves of a connected piece of at least two triangles.
 std::vector<std::uint32_t> halvesOf(const TriangleMesh& mesh);
 

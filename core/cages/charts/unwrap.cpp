@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "charts/flatten.hpp"
+#include "charts/limbs.hpp"
 #include "charts/pack.hpp"
 #include "charts/seams.hpp"
 #include "charts/segment.hpp"
@@ -18,6 +19,8 @@ namespace {
 constexpr double kMostEnergy = 6;
 /// Holes longer than this share of the rim are joined with it by a seam.
 constexpr double kLargestHole = 0.45;
+/// A head, two arms, two legs.
+constexpr std::size_t kMostLimbs = 5;
 /// Seams on a head cost this much more in front than at the back.
 constexpr double kFrontCost = 12;
 
@@ -30,6 +33,7 @@ class Unwrapper {
   /// @return false if cancelled.
   bool layOut(Piece piece);
   bool layOutHead(Piece piece);
+  bool layOutBody(const Piece& piece);
   bool layOutProp(const Piece& piece);
 
   std::vector<Chart>& charts() { return charts_; }
@@ -41,6 +45,8 @@ class Unwrapper {
   std::vector<Chart> charts_;
 
   [[nodiscard]] SeamCost backCost(const TriangleMesh& mesh) const;
+  [[nodiscard]] SeamCost insideCost(const TriangleMesh& body, const TriangleMesh& limb) const;
+  bool layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost);
   bool report() { return !progress_ || progress_(static_cast<float>(0.95 * std::min(1.0, done_ / whole_)), "unwrap"); }
   void accept(Chart chart);
 };
@@ -73,6 +79,17 @@ SeamCost Unwrapper::backCost(const TriangleMesh& mesh) const {
     const Vec3 middle = 0.5 * (of.positions[from] + of.positions[to]) - centre;
     const double aside = std::abs(dot(middle, side)) / size, ahead = std::max(0.0, dot(middle, front)) / size;
     return 1 + 20 * aside + kFrontCost * ahead;
+  };
+}
+
+/// Seams on a limb keep to where it faces the body's middle, down and back.
+SeamCost Unwrapper::insideCost(const TriangleMesh& body, const TriangleMesh& limb) const {
+  const Vec3 side = cross(options_.up, options_.front);
+  const double aside = dot(centreOf(limb) - centreOf(body), side);
+  const Vec3 shown = (aside < 0 ? -1.0 : 1.0) * side + 0.5 * (options_.up + options_.front);
+  const Vec3 outward = 1 / length(shown) * shown;
+  return [outward, normals = vertexNormals(limb)](const TriangleMesh&, std::uint32_t from, std::uint32_t to) {
+    return 0.2 + std::max(0.0, 1 + 0.5 * dot(normals[from] + normals[to], outward));
   };
 }
 
@@ -109,6 +126,44 @@ bool Unwrapper::layOutHead(Piece piece) {
   }
   const SeamCost cost = backCost(mesh);
   return layOut(cutBetween(piece, {&crown, 1}, ends, cost));
+}
+
+bool Unwrapper::layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost) {
+  const auto loops = loopsOf(piece.mesh, findTwins(piece.mesh));
+  const auto start = std::find(piece.vertexOf.begin(), piece.vertexOf.end(), tip);
+  if (loops.empty() || start == piece.vertexOf.end()) return layOut(piece);
+  std::vector<std::uint32_t> rim;
+  for (const std::uint32_t h : loops[0]) rim.push_back(originOf(piece.mesh, h));
+  const auto first = static_cast<std::uint32_t>(start - piece.vertexOf.begin());
+  return layOut(cutBetween(piece, {&first, 1}, rim, cost));
+}
+
+bool Unwrapper::layOutBody(const Piece& body) {
+  const Limbs limbs = limbsOf(body.mesh, kMostLimbs);
+  if (limbs.tips.size() < 2) return layOutProp(body);
+  const Vec3 centre = centreOf(body.mesh), side = cross(options_.up, options_.front);
+  std::uint32_t head = kNone;
+  double highest = 0;
+  for (std::uint32_t i = 0; i < limbs.tips.size(); ++i) {
+    const Vec3 tip = body.mesh.positions[limbs.tips[i]] - centre;
+    const double height = dot(tip, options_.up) - 2 * std::abs(dot(tip, side));
+    if (height > highest) highest = height, head = i + 1;
+  }
+  for (std::uint32_t label = 0; label <= limbs.tips.size(); ++label) {
+    for (Piece& piece : piecesOf(body, limbs.labels, label)) {
+      bool going = true;
+      if (label == 0) {
+        for (Piece& half : splitBy(piece, frontAndBackOf(piece.mesh, options_.front)))
+          going = going && layOut(std::move(half));
+      } else if (label == head) {
+        going = layOutHead(std::move(piece));
+      } else {
+        going = layOutLimb(piece, body.vertexOf[limbs.tips[label - 1]], insideCost(body.mesh, piece.mesh));
+      }
+      if (!going) return false;
+    }
+  }
+  return true;
 }
 
 bool Unwrapper::layOutProp(const Piece& piece) {
@@ -165,8 +220,9 @@ bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progre
   out = {};
   Unwrapper unwrapper(mesh, options, progress);
   for (Piece& piece : componentsOf(wholeOf(mesh))) {
-    const bool going =
-        options.kind == Kind::head ? unwrapper.layOutHead(std::move(piece)) : unwrapper.layOutProp(piece);
+    const bool going = options.kind == Kind::head   ? unwrapper.layOutHead(std::move(piece))
+                       : options.kind == Kind::body ? unwrapper.layOutBody(piece)
+                                                    : unwrapper.layOutProp(piece);
     if (!going) return false;
   }
   std::vector<Chart>& charts = unwrapper.charts();
