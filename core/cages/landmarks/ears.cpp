@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <cmath>
+
+#include "landmarks/head.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+constexpr double kStep = 0.004;
+/// Ears are narrower than this, from front to back; the head behind them is wider.
+constexpr double kWidest = 0.125;
+/// An ear stands out from the head by more than this, and ends where it does by less than a share of its own most. Jaws
+/// and temples curve as much as the lesser limit.
+constexpr double kStandsOut = 0.01, kCurves = 0.017, kEnds = 0.4;
+
+/// How far each place stands out from the head, seen from a side: the height over what a line segment of the width
+/// `kWidest` can reach from inside (a morphological top-hat, along each row).
+std::vector<double> standingOut(const HeightMap& map) {
+  const int half = static_cast<int>(std::lround(0.5 * kWidest / kStep));
+  std::vector<double> out(map.heights.size());
+  for (int row = 0; row < map.grid.rows; ++row) {
+    std::vector<double> least(static_cast<std::size_t>(map.grid.columns));
+    for (int column = 0; column < map.grid.columns; ++column) {
+      double value = map.at(column, row);
+      for (int d = -half; d <= half; ++d)
+        if (map.grid.has(column + d, row)) value = std::min(value, map.at(column + d, row));
+      least[static_cast<std::size_t>(column)] = value;
+    }
+    for (int column = 0; column < map.grid.columns; ++column) {
+      double value = HeightMap::kNone;
+      for (int d = -half; d <= half; ++d)
+        if (map.grid.has(column + d, row)) value = std::max(value, least[static_cast<std::size_t>(column + d)]);
+      const double here = map.at(column, row);
+      out[map.index(column, row)] = std::isinf(here) ? 0 : std::isinf(value) ? 0 : here - value;
+    }
+  }
+  return out;
+}
+
+struct Ear {
+  Vec3 top, lobe, outer;
+  double area = 0;  ///< As seen from the side.
+};
+
+/// @param side  1: the left ear, -1: the right one.
+std::optional<Ear> findEar(const Head& head, double side, double bottom) {
+  const View view{{0, 0, 1}, {0, 1, 0}, {side, 0, 0}};
+  const Grid grid = Grid::over(-0.52, 0.1, bottom, 0.3, kStep);
+  const HeightMap map = look(head.surface, view, grid, 1.0);
+  const std::vector<double> out = standingOut(map);
+  const auto inRegion = [&](int column, int row) {
+    return grid.a(column) < -0.03 && grid.a(column) > -0.45 && std::abs(grid.b(row)) < 0.2;
+  };
+  double most = 0;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column)
+      if (inRegion(column, row)) most = std::max(most, out[map.index(column, row)]);
+  const double limit = std::max(kStandsOut, std::min(kCurves, kEnds * most));
+  // The largest connected area that stands out, in the region where ears can be.
+  std::vector<int> number(out.size(), -1);
+  std::vector<std::vector<std::pair<int, int>>> areas;
+  const auto isEar = [&](int column, int row) {
+    return grid.has(column, row) && out[map.index(column, row)] > limit && grid.a(column) < -0.03 &&
+           grid.a(column) > -0.45;
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      if (!isEar(column, row) || number[map.index(column, row)] >= 0) continue;
+      const int n = static_cast<int>(areas.size());
+      areas.push_back({{column, row}});
+      number[map.index(column, row)] = n;
+      auto& area = areas.back();
+      for (std::size_t i = 0; i < area.size(); ++i)
+        for (int d = 0; d < 4; ++d) {
+          const int c = area[i].first + (d == 0) - (d == 1), r = area[i].second + (d == 2) - (d == 3);
+          if (!isEar(c, r) || number[map.index(c, r)] >= 0) continue;
+          number[map.index(c, r)] = n;
+          area.emplace_back(c, r);
+        }
+    }
+  const std::vector<std::pair<int, int>>* best = nullptr;
+  for (const auto& area : areas) {
+    double y = 0;
+    for (const auto& [column, row] : area) y += grid.b(row);
+    y /= static_cast<double>(area.size());
+    if (y < -0.2 || y > 0.2) continue;
+    if (best == nullptr || area.size() > best->size()) best = &area;
+  }
+  if (best == nullptr) return std::nullopt;
+  Ear ear;
+  ear.area = kStep * kStep * static_cast<double>(best->size());
+  const auto point = [&](const std::pair<int, int>& place) {
+    return view.point(grid.a(place.first), grid.b(place.second), map.at(place.first, place.second));
+  };
+  ear.top = ear.lobe = ear.outer = point(best->front());
+  for (const auto& place : *best) {
+    const Vec3 p = point(place);
+    if (p.y > ear.top.y) ear.top = p;
+    if (p.y < ear.lobe.y) ear.lobe = p;
+    if (side * p.x > side * ear.outer.x) ear.outer = p;
+  }
+  return ear;
+}
+
+}  // namespace
+
+void findEars(Head& head) {
+  const Spot* chin = head.find("chin");
+  const double bottom = chin != nullptr ? std::max(-0.3, chin->position.y) : -0.25;
+  const auto left = findEar(head, 1, bottom), right = findEar(head, -1, bottom);
+  if (!left || !right) return;
+  constexpr double kLeastArea = 0.001, kMostArea = 0.04;
+  if (std::min(left->area, right->area) < kLeastArea || std::max(left->area, right->area) > kMostArea) return;
+  const auto add = [&](const char* name, const Vec3& l, const Vec3& r) {
+    const double off = length(Vec3{-l.x, l.y, l.z} - r);
+    const double trust = off < 0.015 ? 0.75 : off < 0.03 ? 0.55 : 0.3;
+    head.add(std::string(name) + "_left", l, trust);
+    head.add(std::string(name) + "_right", r, trust);
+  };
+  add("ear_top", left->top, right->top);
+  add("ear_lobe", left->lobe, right->lobe);
+  add("ear_outer", left->outer, right->outer);
+}
+
+}  // namespace cagecast::cages

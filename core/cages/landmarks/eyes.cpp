@@ -1,0 +1,276 @@
+#include "landmarks/eyes.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "mesh/surface.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+/// What a component, or the eye parts of one side, looks like.
+struct Shape {
+  std::vector<Vec3> points;  ///< Its vertices, each once.
+  Vec3 low{}, high{};        ///< Of its box.
+  double area = 0;
+  std::size_t triangles = 0;
+
+  [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
+  [[nodiscard]] Vec3 size() const { return high - low; }
+};
+
+Shape shapeOf(const TriangleMesh& mesh) {
+  Shape out;
+  out.points = mesh.positions;
+  out.triangles = mesh.triangles.size();
+  if (mesh.empty()) return out;
+  out.low = out.high = out.points[0];
+  for (const Vec3& p : out.points) {
+    out.low = {std::min(out.low.x, p.x), std::min(out.low.y, p.y), std::min(out.low.z, p.z)};
+    out.high = {std::max(out.high.x, p.x), std::max(out.high.y, p.y), std::max(out.high.z, p.z)};
+  }
+  for (const Triangle3& t : mesh.triangles) out.area += 0.5 * length(areaNormal(mesh, t));
+  return out;
+}
+
+/// Some triangles of a mesh, with the vertices that they use: its cost depends on their number only.
+TriangleMesh compact(const TriangleMesh& mesh, const std::vector<Triangle3>& triangles) {
+  std::unordered_map<std::uint32_t, std::uint32_t> newVertex;
+  TriangleMesh out;
+  for (Triangle3 t : triangles) {
+    for (std::uint32_t& v : t) {
+      const auto [found, isNew] = newVertex.try_emplace(v, static_cast<std::uint32_t>(out.positions.size()));
+      if (isNew) out.positions.push_back(mesh.positions[v]);
+      v = found->second;
+    }
+    out.triangles.push_back(t);
+  }
+  return out;
+}
+
+/// A shape is an eyeball, or the front of one, if it fits a sphere this well; else the middle of its box serves.
+constexpr double kBall = 0.12;
+
+/// The centre of an eyeball: of a sphere if it is one (a front half's box has its middle too far to the front), of the
+/// box if it is flat or bulges.
+Vec3 centreOf(const Shape& shape, double& radius) {
+  const Vec3 size = shape.size();
+  radius = 0.5 * std::max(size.y, std::min(size.x, size.z));
+  const Sphere sphere = fitSphere(shape.points);
+  const bool round = sphere.residual < kBall && sphere.radius < 1.3 * radius && sphere.radius > 0.8 * radius;
+  if (!round) return shape.middle();
+  radius = sphere.radius;
+  return sphere.centre;
+}
+
+/// The heading that horizontal positions spread along most.
+Vec3 mainHeading(const std::vector<Vec3>& points) {
+  Vec3 mean{0, 0, 0};
+  for (const Vec3& p : points) mean = mean + p;
+  mean = 1 / static_cast<double>(points.size()) * mean;
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Vec3& p : points) {
+    const Eigen::Vector2d d(p.x - mean.x, p.z - mean.z);
+    spread += d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(spread);
+  const Eigen::Vector2d main = solver.eigenvectors().col(1);
+  return {main.x(), 0, main.y()};
+}
+
+constexpr Vec3 kUp{0, 1, 0};
+
+/// Which of the two horizontal directions across `left` is away from the head: the head is behind the eyes.
+Vec3 frontOf(const TriangleMesh& mesh, const Vec3& left, const Vec3& eyes, double distance) {
+  const Vec3 across = cross(left, kUp);
+  Vec3 sum{0, 0, 0};
+  double area = 0;
+  for (const Triangle3& t : mesh.triangles) {
+    const Vec3 middle = 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
+    if (length(middle - eyes) > 3 * distance) continue;
+    const double weight = length(areaNormal(mesh, t));
+    sum = sum + weight * (middle - eyes);
+    area += weight;
+  }
+  if (area == 0) return across;
+  return dot(sum, across) > 0 ? -1 * across : across;
+}
+
+/// Completes what is known of two eyes: which is the left one, and where the front is.
+void orient(const Figure& figure, Eyes& eyes) {
+  Vec3 apart = eyes.centres[0] - eyes.centres[1];
+  apart.y = 0;
+  const double distance = length(apart);
+  eyes.left = 1 / distance * apart;
+  eyes.front = frontOf(figure.mesh, eyes.left, eyes.middle(), distance);
+  // Right-handed: left x up = front.
+  if (dot(cross(eyes.left, kUp), eyes.front) < 0) {
+    std::swap(eyes.centres[0], eyes.centres[1]);
+    eyes.left = -1 * eyes.left;
+  }
+}
+
+/// Shares of a component's triangles that are seen from `direction` and from its opposite.
+std::array<double, 2> seen(const Surface& surface, const TriangleMesh& part, const Vec3& direction, double diagonal) {
+  const double clear = 1e-4 * diagonal;
+  std::array<double, 2> out{};
+  for (int side = 0; side < 2; ++side) {
+    const Vec3 toward = side == 0 ? direction : -1 * direction;
+    std::vector<SurfaceRay> rays;
+    for (const Vec3& p : samplePoints(part, 60)) rays.push_back({p + clear * toward, toward});
+    double free = 0;
+    for (const RayHit& hit : surface.trace(rays)) free += std::isinf(hit.distance) ? 1 : 0;
+    out[static_cast<std::size_t>(side)] = free / static_cast<double>(rays.size());
+  }
+  return out;
+}
+
+}  // namespace
+
+Sphere fitSphere(const std::vector<Vec3>& points) {
+  Sphere out;
+  out.residual = std::numeric_limits<double>::infinity();
+  if (points.size() < 6) return out;
+  Vec3 mean{0, 0, 0};
+  for (const Vec3& p : points) mean = mean + p;
+  mean = 1 / static_cast<double>(points.size()) * mean;
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  for (const Vec3& p : points) {
+    const Vec3 d = p - mean;
+    const Eigen::Vector4d row(2 * d.x, 2 * d.y, 2 * d.z, 1);
+    normal += row * row.transpose();
+    right += dot(d, d) * row;
+  }
+  const Eigen::Vector4d solution = normal.ldlt().solve(right);
+  const Vec3 centre{solution.x(), solution.y(), solution.z()};
+  const double squared = solution.w() + dot(centre, centre);
+  if (!(squared > 0)) return out;
+  out.centre = mean + centre;
+  out.radius = std::sqrt(squared);
+  double sum = 0;
+  for (const Vec3& p : points) sum += std::abs(length(p - out.centre) - out.radius);
+  out.residual = sum / static_cast<double>(points.size()) / out.radius;
+  return out;
+}
+
+std::optional<Eyes> findNamedEyes(const Figure& figure) {
+  if (!figure.has(Role::eye)) return std::nullopt;
+  const TriangleMesh all = figure.only(Role::eye);
+  const Vec3 heading = mainHeading(all.positions);
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Vec3& p : all.positions) {
+    low = std::min(low, dot(heading, p));
+    high = std::max(high, dot(heading, p));
+  }
+  // Whole components go to one side: a bulging iris may be a component of its own.
+  std::vector<std::uint32_t> component;
+  const std::uint32_t count = findComponents(all, component);
+  std::vector<double> sums(count), areas(count);
+  for (std::size_t t = 0; t < component.size(); ++t) {
+    const double area = length(areaNormal(all, all.triangles[t]));
+    for (const std::uint32_t v : all.triangles[t])
+      sums[component[t]] += area / 3 * (dot(heading, all.positions[v]) - 0.5 * (low + high));
+    areas[component[t]] += area;
+  }
+  std::vector<bool> isFirst(component.size()), isSecond(component.size());
+  for (std::size_t t = 0; t < component.size(); ++t) {
+    isFirst[t] = sums[component[t]] >= 0;
+    isSecond[t] = !isFirst[t];
+  }
+  const Shape first = shapeOf(subset(all, isFirst)), second = shapeOf(subset(all, isSecond));
+  if (first.triangles == 0 || second.triangles == 0) return std::nullopt;
+  Eyes eyes;
+  double radii[2] = {};
+  eyes.centres = {centreOf(first, radii[0]), centreOf(second, radii[1])};
+  eyes.radius = std::min(radii[0], radii[1]);
+  const Vec3 apart = eyes.centres[0] - eyes.centres[1];
+  // Side by side, alike, and apart: else the parts have these names for another reason.
+  if (!(length(apart) > 1.2 * eyes.radius) || std::abs(apart.y) > 0.5 * length(apart)) return std::nullopt;
+  const bool alike = std::max(radii[0], radii[1]) < 1.3 * eyes.radius;
+  eyes.confidence = alike ? 0.95 : 0.6;
+  eyes.triangles.resize(figure.roles.size());
+  for (std::size_t t = 0; t < figure.roles.size(); ++t) eyes.triangles[t] = figure.roles[t] == Role::eye;
+  orient(figure, eyes);
+  return eyes;
+}
+
+std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane) {
+  constexpr std::size_t kLeastTriangles = 8;
+  constexpr double kSmallest = 0.002, kLargest = 0.15;  // Radii, as shares of the diagonal: of a figure, of a head.
+  constexpr double kAlike = 0.15;                       // Difference of sizes.
+  const double diagonal = diagonalOf(figure.mesh);
+  struct Candidate {
+    Shape shape;
+    TriangleMesh mesh;
+    std::uint32_t component;
+  };
+  std::vector<std::vector<Triangle3>> triangles(figure.componentCount);
+  for (std::size_t t = 0; t < figure.components.size(); ++t)
+    triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
+  std::vector<Candidate> candidates;
+  for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
+    const std::size_t size = triangles[c].size();
+    if (size < kLeastTriangles || 2 * size > figure.components.size()) continue;
+    const TriangleMesh part = compact(figure.mesh, triangles[c]);
+    Shape shape = shapeOf(part);
+    const Vec3 box = shape.size();
+    const double wide = std::hypot(box.x, box.z);
+    const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
+    if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
+    candidates.push_back({std::move(shape), part, c});
+  }
+  const Surface surface(figure.mesh);
+  const Vec3 across = cross(plane.left, kUp);
+  std::optional<Eyes> best;
+  double most = 0;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (std::size_t k = i + 1; k < candidates.size(); ++k) {
+      const Shape &a = candidates[i].shape, &b = candidates[k].shape;
+      const double size = a.size().y;
+      const double off = length(plane.mirrored(a.middle()) - b.middle());
+      if (off > 0.3 * size || std::abs(b.size().y - size) > kAlike * size) continue;
+      if (std::abs(dot(plane.left, a.middle()) - plane.offset) < 0.5 * size) continue;
+      Eyes eyes;
+      double radii[2] = {};
+      eyes.centres = {centreOf(a, radii[0]), centreOf(b, radii[1])};
+      eyes.radius = 0.5 * (radii[0] + radii[1]);
+      const double residual = std::max(fitSphere(a.points).residual, fitSphere(b.points).residual);
+      if (residual > 2 * kBall) continue;
+      const auto one = seen(surface, candidates[i].mesh, across, diagonal);
+      const auto other = seen(surface, candidates[k].mesh, across, diagonal);
+      const double front = std::min(std::max(one[0], one[1]), std::max(other[0], other[1]));
+      const double back = std::max(std::min(one[0], one[1]), std::min(other[0], other[1]));
+      if (front < 0.03 || back > 0.5 * front) continue;
+      const double score = a.area * (1 - residual / (2 * kBall)) * std::min(front, 0.3);
+      if (score <= most) continue;
+      most = score;
+      eyes.confidence = residual < kBall ? 0.85 : 0.6;
+      eyes.triangles.assign(figure.components.size(), false);
+      for (std::size_t t = 0; t < figure.components.size(); ++t)
+        eyes.triangles[t] =
+            figure.components[t] == candidates[i].component || figure.components[t] == candidates[k].component;
+      best = std::move(eyes);
+    }
+  if (!best) return best;
+  // What lies within the eyeballs belongs to them: pupils, corneas.
+  const Eyes eyes = *best;
+  std::vector<bool> inside(figure.componentCount, true);
+  for (std::size_t t = 0; t < figure.components.size(); ++t)
+    for (const std::uint32_t v : figure.mesh.triangles[t]) {
+      const Vec3& p = figure.mesh.positions[v];
+      const double distance = std::min(length(p - eyes.centres[0]), length(p - eyes.centres[1]));
+      if (distance > 1.15 * eyes.radius) inside[figure.components[t]] = false;
+    }
+  for (std::size_t t = 0; t < figure.components.size(); ++t)
+    if (inside[figure.components[t]]) best->triangles[t] = true;
+  orient(figure, *best);
+  return best;
+}
+
+}  // namespace cagecast::cages

@@ -1,0 +1,148 @@
+#include "landmarks/frame.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mesh/surface.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+constexpr std::size_t kSamples = 600;
+constexpr int kHeadings = 24;  ///< Steps of 7.5 degrees: the refinement converges from twice that.
+constexpr int kRefined = 3;    ///< How many of the best headings are refined.
+constexpr int kIterations = 12;
+/// Of the mirrored points, the share closest to the surface that counts: a parting or a broken ear may be one-sided.
+constexpr double kTrusted = 0.8;
+/// A heading off the file's own axes must be this much better: a round head has a mirror plane anywhere.
+constexpr double kAxisPreference = 0.7;
+
+/// Mirrors samples, and finds the points of the surface that are closest to them.
+class Mirror {
+ public:
+  Mirror(const TriangleMesh& mesh, const Surface& surface)
+      : surface_(surface), points_(samplePoints(mesh, kSamples)), diagonal_(diagonalOf(mesh)) {}
+
+  /// Sets the plane's residual, and moves it closer to what mirrors the trusted samples onto the surface.
+  [[nodiscard]] MirrorPlane improved(MirrorPlane& plane) const {
+    std::vector<Vec3> images;
+    for (const Vec3& p : points_) images.push_back(plane.mirrored(p));
+    const std::vector<SurfacePoint> found = surface_.closest(images);
+    std::vector<std::size_t> order(found.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto trusted = static_cast<std::size_t>(kTrusted * static_cast<double>(order.size()));
+    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(trusted), order.end(),
+                     [&](std::size_t a, std::size_t b) { return found[a].distance < found[b].distance; });
+    double sum = 0;
+    Vec3 across{0, 0, 0};
+    for (std::size_t k = 0; k < trusted; ++k) {
+      const Vec3 step = points_[order[k]] - found[order[k]].position;
+      sum += found[order[k]].distance;
+      // The plane's normal is along the steps from images to originals.
+      const double side = dot(step, plane.left) < 0 ? -1 : 1;
+      across = across + side * std::abs(dot(step, plane.left)) * step;
+    }
+    plane.residual = sum / static_cast<double>(trusted) / diagonal_;
+    MirrorPlane next = plane;
+    across.y = 0;
+    if (length(across) > 0) next.left = 1 / length(across) * across;
+    double offset = 0;
+    for (std::size_t k = 0; k < trusted; ++k)
+      offset += dot(next.left, 0.5 * (points_[order[k]] + found[order[k]].position));
+    next.offset = offset / static_cast<double>(trusted);
+    return next;
+  }
+
+ private:
+  const Surface& surface_;
+  std::vector<Vec3> points_;
+  double diagonal_;
+};
+
+/// The plane of a heading through the middle of the box, as seen along it.
+MirrorPlane planeOf(const TriangleMesh& mesh, double angle) {
+  MirrorPlane plane;
+  plane.left = {std::cos(angle), 0, std::sin(angle)};
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Vec3& p : mesh.positions) {
+    low = std::min(low, dot(plane.left, p));
+    high = std::max(high, dot(plane.left, p));
+  }
+  plane.offset = 0.5 * (low + high);
+  return plane;
+}
+
+MirrorPlane refined(const Mirror& mirror, MirrorPlane plane) {
+  MirrorPlane best = plane;
+  best.residual = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kIterations; ++i) {
+    const MirrorPlane next = mirror.improved(plane);
+    if (plane.residual < best.residual) best = plane;
+    plane = next;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<Vec3> samplePoints(const TriangleMesh& mesh, std::size_t count) {
+  double area = 0;
+  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t));
+  std::vector<Vec3> out;
+  double passed = 0;
+  std::size_t next = 0;
+  for (const Triangle3& t : mesh.triangles) {
+    passed += length(areaNormal(mesh, t));
+    for (; next < count && (static_cast<double>(next) + 0.5) * area < passed * static_cast<double>(count); ++next) {
+      // Two low-discrepancy sequences, folded into the triangle.
+      double v = std::fmod(static_cast<double>(next) * 0.754877666, 1.0);
+      double w = std::fmod(static_cast<double>(next) * 0.569840296, 1.0);
+      if (v + w > 1) {
+        v = 1 - v;
+        w = 1 - w;
+      }
+      const Vec3& a = mesh.positions[t[0]];
+      out.push_back(a + v * (mesh.positions[t[1]] - a) + w * (mesh.positions[t[2]] - a));
+    }
+  }
+  return out;
+}
+
+MirrorPlane findMirrorPlane(const TriangleMesh& mesh, const MirrorPlane* hint) {
+  const Surface surface(mesh);
+  const Mirror mirror(mesh, surface);
+  if (hint != nullptr) return refined(mirror, *hint);
+  std::vector<MirrorPlane> planes;
+  for (int i = 0; i < kHeadings; ++i) {
+    planes.push_back(planeOf(mesh, std::numbers::pi * i / kHeadings));
+    (void)mirror.improved(planes.back());
+  }
+  MirrorPlane best = refined(mirror, planes[0]);
+  best.residual *= kAxisPreference;
+  std::sort(planes.begin(), planes.end(),
+            [](const MirrorPlane& a, const MirrorPlane& b) { return a.residual < b.residual; });
+  for (std::size_t i = 0; i < kRefined; ++i) {
+    const MirrorPlane plane = refined(mirror, planes[i]);
+    if (plane.residual < best.residual) best = plane;
+  }
+  (void)mirror.improved(best);
+  return best;
+}
+
+TriangleMesh within(const TriangleMesh& mesh, const Vec3& centre, double radius) {
+  std::vector<bool> near(mesh.positions.size());
+  for (std::size_t v = 0; v < near.size(); ++v) near[v] = length(mesh.positions[v] - centre) <= radius;
+  std::vector<bool> keep(mesh.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const Triangle3& triangle = mesh.triangles[t];
+    keep[t] = near[triangle[0]] || near[triangle[1]] || near[triangle[2]];
+  }
+  return subset(mesh, keep);
+}
+
+}  // namespace cagecast::cages

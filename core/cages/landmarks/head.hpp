@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "landmarks/curve.hpp"
+#include "landmarks/eyes.hpp"
+#include "landmarks/frame.hpp"
+
+namespace cagecast::cages {
+
+/// A landmark in the space of a head.
+struct Spot {
+  std::string name;
+  Vec3 position{};
+  double confidence = 0;
+};
+
+/// A head in its own space, and what has been found on it. All lengths are in units of the frame.
+struct Head {
+  HeadFrame frame;
+  TriangleMesh skin;         ///< Without eyes, teeth and hair, as far as they are known.
+  Surface surface;           ///< Of the skin.
+  std::optional<Eyes> eyes;  ///< In this space.
+  std::vector<Spot> spots = {};
+
+  void add(std::string name, const Vec3& position, double confidence) {
+    spots.push_back({std::move(name), position, confidence});
+  }
+  [[nodiscard]] const Spot* find(std::string_view name) const {
+    for (const Spot& spot : spots)
+      if (spot.name == name) return &spot;
+    return nullptr;
+  }
+};
+
+/// The midline of a face: nose, brow, lips and chin, from the curve of its profile. Needs the eyes' height.
+/// @return false if there is no human face's profile.
+bool findProfile(Head& head);
+
+/// Crown and back of the head. Needs the profile.
+void findSkull(Head& head);
+
+void findMouthCorners(Head& head);
+
+/// Both ears: top, lobe and outermost point.
+void findEars(Head& head);
+
+/// The corners of the eyes, where the eyeballs' visible part ends.
+/// @param all  Skin and eyes.
+/// @param isEye  Per triangle of `all`.
+void findEyeCorners(Head& head, const Surface& all, const std::vector<bool>& isEye);
+
+}  // namespace cagecast::cages

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "landmarks/head.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+constexpr double kStep = 0.003;
+constexpr double kBlur = 0.002;
+/// Half the width of the crease that closed lips make.
+constexpr double kCrease = 0.008;
+
+/// The middle line between the lips, followed outward from the midline; its end is the corner.
+/// @param side  1: the left corner, -1: the right one.
+std::optional<Vec3> follow(const HeightMap& map, double start, double side) {
+  const auto depth = [&](double x, double y, double reach) {
+    const double here = map.near(side * x, y);
+    const double over = map.near(side * x, y + reach), under = map.near(side * x, y - reach);
+    // A hole has no bottom that could be seen.
+    if (std::isinf(here)) return 0.03;
+    return std::isfinite(over) && std::isfinite(under) ? std::min(0.03, 0.5 * (over + under) - here) : 0.0;
+  };
+  constexpr double kClimb = 0.006;   ///< Up or down, at most, for a step outward.
+  constexpr double kLongest = 0.16;  ///< Half a mouth.
+  double y = start, typical = 0;
+  Vec3 end{0, start, 0};
+  int weak = 0;
+  for (double x = 0; x < kLongest; x += kStep) {
+    double best = -1, bestY = y;
+    for (double d = -kClimb; d <= kClimb + 1e-9; d += kStep) {
+      const double value = depth(x, y + d, kCrease) - 0.02 * std::abs(d);
+      if (value > best) {
+        best = value;
+        bestY = y + d;
+      }
+    }
+    if (x < 0.025) typical = std::max(typical, best);
+    const bool creased = best > std::max(0.0008, 0.22 * std::min(typical, 0.01));
+    weak = creased ? 0 : weak + 1;
+    if (weak > 2) break;
+    y = bestY;
+    if (creased) end = {side * x, y, map.near(side * x, y)};
+  }
+  if (std::abs(end.x) < 0.02 || std::abs(end.x) > 0.14 || !std::isfinite(end.z)) return std::nullopt;
+  return end;
+}
+
+/// The corners of a gaping mouth: the ends of what lies behind a surface that bridges it from lip to lip.
+std::array<std::optional<Vec3>, 2> gapEnds(const HeightMap& map, double top, double bottom, double middle) {
+  constexpr double kBehind = 0.012;
+  const Grid& grid = map.grid;
+  // A morphological closing along the columns, by a segment that is longer than the gap.
+  const int half = static_cast<int>(std::ceil(0.5 * (1.15 * (top - bottom) + 0.01) / kStep));
+  const auto extreme = [&](const std::vector<double>& heights, bool greatest) {
+    std::vector<double> out(heights.size());
+    for (int column = 0; column < grid.columns; ++column)
+      for (int row = 0; row < grid.rows; ++row) {
+        double value = heights[map.index(column, row)];
+        for (int d = -half; d <= half; ++d) {
+          if (!grid.has(column, row + d)) continue;
+          const double other = heights[map.index(column, row + d)];
+          value = greatest ? std::max(value, other) : std::min(value, other);
+        }
+        out[map.index(column, row)] = value;
+      }
+    return out;
+  };
+  const std::vector<double> bridged = extreme(extreme(map.heights, true), false);
+  const auto isGap = [&](int column, int row) {
+    return grid.has(column, row) && bridged[map.index(column, row)] - map.at(column, row) > kBehind;
+  };
+  std::vector<bool> seen(map.heights.size());
+  std::vector<std::pair<int, int>> gap = {{grid.columnOf(0), grid.rowOf(middle)}};
+  seen[map.index(gap[0].first, gap[0].second)] = true;
+  std::array<std::pair<int, int>, 2> ends = {gap[0], gap[0]};
+  for (std::size_t i = 0; i < gap.size(); ++i) {
+    if (gap[i].first > ends[0].first) ends[0] = gap[i];
+    if (gap[i].first < ends[1].first) ends[1] = gap[i];
+    for (int d = 0; d < 4; ++d) {
+      const int c = gap[i].first + (d == 0) - (d == 1), r = gap[i].second + (d == 2) - (d == 3);
+      if (!isGap(c, r) || seen[map.index(c, r)]) continue;
+      seen[map.index(c, r)] = true;
+      gap.emplace_back(c, r);
+    }
+  }
+  std::array<std::optional<Vec3>, 2> out;
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+    const double x = grid.a(ends[i].first) + (i == 0 ? kStep : -kStep), y = grid.b(ends[i].second);
+    const double z = map.near(x, y);
+    if (std::isfinite(z) && std::abs(x) > 0.02 && std::abs(x) < 0.14) out[i] = Vec3{x, y, z};
+  }
+  return out;
+}
+
+}  // namespace
+
+void findMouthCorners(Head& head) {
+  const Spot *upper = head.find("lip_upper"), *lower = head.find("lip_lower");
+  if (upper == nullptr || lower == nullptr) return;
+  const double top = upper->position.y, bottom = lower->position.y;
+  const Grid grid = Grid::over(-0.18, 0.18, bottom - 0.06, top + 0.06, kStep);
+  const HeightMap map = look(head.surface, kFrontView, grid, 0.6);
+  const HeightMap smooth = blurred(map, kBlur);
+  // Where the lips part on the midline: the deepest place between them, as wide as what lies behind both.
+  double y = 0.5 * (top + bottom), deepest = 1;
+  for (double b = bottom + kStep; b < top; b += kStep) {
+    const double z = map.near(0, b);
+    if (z < deepest) {
+      deepest = z;
+      y = b;
+    }
+  }
+  const double lipZ = std::min(upper->position.z, lower->position.z);
+  double open = 0;
+  for (double b = bottom; b < top; b += kStep)
+    if (map.near(0, b) < lipZ - 0.02) open += kStep;
+  constexpr double kGaping = 0.025;
+  const bool gaping = open > kGaping;
+  const std::array<std::optional<Vec3>, 2> ends =
+      gaping ? gapEnds(map, top, bottom, y)
+             : std::array<std::optional<Vec3>, 2>{follow(smooth, y, 1), follow(smooth, y, -1)};
+  if (!ends[0] || !ends[1]) return;
+  // Mouths may be crooked, but not by much: what differs has followed a fold of the cheek.
+  const double off = std::hypot(ends[0]->x + ends[1]->x, ends[0]->y - ends[1]->y);
+  const double trust = off < 0.01 ? 0.75 : off < 0.02 ? 0.6 : 0.3;
+  head.add("mouth_corner_left", *ends[0], trust);
+  head.add("mouth_corner_right", *ends[1], trust);
+}
+
+}  // namespace cagecast::cages

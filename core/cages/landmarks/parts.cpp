@@ -1,0 +1,84 @@
+#include "landmarks/parts.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <string>
+
+namespace cagecast::cages {
+
+namespace {
+
+bool contains(const std::string& text, std::initializer_list<std::string_view> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return text.find(word) != std::string::npos; });
+}
+
+std::uint32_t rootOf(std::vector<std::uint32_t>& parents, std::uint32_t v) {
+  while (parents[v] != v) v = parents[v] = parents[parents[v]];
+  return v;
+}
+
+}  // namespace
+
+Role roleOf(std::string_view partName) {
+  std::string name;
+  for (const char c : partName) name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (contains(name, {"lash", "brow", "hair", "beard", "moustache", "mustache", "glasses", "eyewear", "eyeline",
+                      "eye_line", "eyeshadow", "headwear", "helmet"}))
+    return Role::cover;
+  if (contains(name, {"teeth", "tooth", "tongue", "gum"})) return Role::mouth;
+  if (contains(name, {"eyelid", "eye_lid", "eyesocket"})) return Role::surface;
+  if (contains(name, {"eye", "iris", "pupil", "cornea", "sclera"})) return Role::eye;
+  return Role::surface;
+}
+
+bool Figure::has(Role role) const { return std::find(roles.begin(), roles.end(), role) != roles.end(); }
+
+TriangleMesh Figure::only(Role first, Role second) const {
+  std::vector<bool> keep(roles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = roles[t] == first || roles[t] == second;
+  return subset(mesh, keep);
+}
+
+std::uint32_t findComponents(const TriangleMesh& mesh, std::vector<std::uint32_t>& ofTriangle) {
+  std::vector<std::uint32_t> parents(mesh.positions.size());
+  std::iota(parents.begin(), parents.end(), 0u);
+  for (const Triangle3& t : mesh.triangles) {
+    const std::uint32_t a = rootOf(parents, t[0]);
+    parents[rootOf(parents, t[1])] = a;
+    parents[rootOf(parents, t[2])] = a;
+  }
+  constexpr std::uint32_t kNone = UINT32_MAX;
+  std::vector<std::uint32_t> numbers(mesh.positions.size(), kNone);
+  std::uint32_t count = 0;
+  ofTriangle.clear();
+  for (const Triangle3& t : mesh.triangles) {
+    std::uint32_t& number = numbers[rootOf(parents, t[0])];
+    if (number == kNone) number = count++;
+    ofTriangle.push_back(number);
+  }
+  return count;
+}
+
+Figure readFigure(const Model& model) {
+  Figure out;
+  std::vector<std::uint32_t> triangleOf;
+  out.mesh = weldExactly(model.mesh, nullptr, &triangleOf);
+  std::vector<Role> partRoles;
+  for (const std::string& part : model.parts) partRoles.push_back(roleOf(part));
+  for (const std::uint32_t t : triangleOf) {
+    Role role = Role::surface;
+    if (!model.mesh.groups.empty()) {
+      const std::uint32_t part = model.mesh.groups[model.mesh.indices[3 * std::size_t{t}]];
+      if (part < partRoles.size()) role = partRoles[part];
+    }
+    out.roles.push_back(role);
+  }
+  // A file whose only part is called "Eyeball" is a model of an eyeball.
+  if (!out.has(Role::surface)) std::fill(out.roles.begin(), out.roles.end(), Role::surface);
+  out.componentCount = findComponents(out.mesh, out.components);
+  return out;
+}
+
+}  // namespace cagecast::cages

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "cagecast/cages.hpp"
+#include "mesh/triangle_mesh.hpp"
+
+namespace cagecast::cages {
+
+/// What a part of a figure is, as far as landmarks are concerned.
+enum class Role : std::uint8_t {
+  surface,  ///< Skin, clothes, and whatever has no other role.
+  eye,
+  mouth,  ///< Teeth, tongue, gums.
+  cover,  ///< Lies on or over the skin: lashes, brows, hair, glasses, hats.
+};
+
+/// The role of a part by its name, in which case does not matter.
+Role roleOf(std::string_view partName);
+
+/// A model whose equal positions are welded, with the role and the connected component of each triangle.
+struct Figure {
+  TriangleMesh mesh;
+  std::vector<Role> roles;                ///< Per triangle.
+  std::vector<std::uint32_t> components;  ///< Per triangle.
+  std::uint32_t componentCount = 0;
+
+  [[nodiscard]] bool has(Role role) const;
+  /// The triangles with one of some roles.
+  [[nodiscard]] TriangleMesh only(Role first) const { return only(first, first); }
+  [[nodiscard]] TriangleMesh only(Role first, Role second) const;
+};
+
+Figure readFigure(const Model& model);
+
+/// Numbers connected components, in the order of their first triangles.
+std::uint32_t findComponents(const TriangleMesh& mesh, std::vector<std::uint32_t>& ofTriangle);
+
+}  // namespace cagecast::cages

@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <cmath>
+
+#include "landmarks/head.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+// Lengths are shares of the frame's unit, which is about the diagonal of head and neck.
+constexpr double kStep = 0.002;
+constexpr double kFine = 0.003;    ///< Blur that keeps lips apart.
+constexpr double kMedium = 0.006;  ///< For nose and chin.
+constexpr double kFold = 0.012;    ///< Half the width of the folds above and below the lips.
+
+/// The profile as it is being read from the nose downward and upward.
+struct Profile {
+  const Curve& sharp;
+  Curve fine, medium;
+  double tilt = 0;  ///< Of the face's front, upward; radians.
+
+  /// How steeply the curve turns upward, relative to the face: 0 faces front, negative faces downward; radians.
+  [[nodiscard]] double facing(const Curve& curve, double y, double reach) const {
+    return std::atan(-curve.slope(y, reach)) - tilt;
+  }
+  [[nodiscard]] Vec3 point(double y) const { return {0, y, fine.at(y)}; }
+};
+
+/// From the eyes' height down to where the profile falls back: the front extreme is the tip of the nose.
+std::optional<double> noseTip(const Profile& profile) {
+  constexpr double kTop = -0.02, kBottom = -0.25;
+  constexpr double kFall = 0.012;  ///< By so much the profile falls back under a nose.
+  double best = kTop;
+  const auto height = [&](double y) {
+    return std::cos(profile.tilt) * profile.medium.at(y) + std::sin(profile.tilt) * y;
+  };
+  for (double y = kTop; y > kBottom; y -= kStep) {
+    if (!std::isfinite(height(y))) break;
+    if (height(y) > height(best)) best = y;
+    if (height(y) < height(best) - kFall) return best;
+  }
+  return std::nullopt;
+}
+
+/// The hollow between brow and nose; the farthest behind the line from one to the other if there is no hollow.
+double nasion(const Profile& profile, double nose, double& confidence) {
+  constexpr double kHigh = 0.055, kLow = -0.05;
+  const double low = std::max(kLow, nose + 0.03);
+  const auto deepest = profile.fine.greatest(low, kHigh, [&](double y) { return -profile.fine.at(y); });
+  if (deepest && *deepest > low + 2 * kStep && *deepest < kHigh - 2 * kStep) {
+    confidence = 0.85;
+    return *deepest;
+  }
+  const double top = 0.08;
+  const Vec3 a = profile.point(top), b = profile.point(nose);
+  confidence = 0.55;
+  return profile.fine
+      .greatest(low, kHigh,
+                [&](double y) { return b.z + (a.z - b.z) * (y - nose) / (top - nose) - profile.fine.at(y); })
+      .value_or(0);
+}
+
+/// The foremost place between the eyebrows, above the nasion.
+std::optional<double> glabella(const Profile& profile, double nasionY, double& confidence) {
+  constexpr double kReach = 0.12;
+  const auto height = [&](double y) {
+    return std::cos(profile.tilt) * profile.medium.at(y) + std::sin(profile.tilt) * y;
+  };
+  double best = nasionY;
+  for (double y = nasionY; y < nasionY + kReach; y += kStep) {
+    if (height(y) > height(best)) best = y;
+    if (height(y) < height(best) - 0.001) break;
+  }
+  if (best < nasionY + 0.025) return std::nullopt;
+  confidence = best < nasionY + kReach - 0.02 ? 0.65 : 0.4;
+  return best;
+}
+
+/// The first fold of a range, from its top down: of those under the nose and the lower lip, the next may be sharper.
+std::optional<double> firstFold(const Profile& profile, double top, double bottom) {
+  constexpr double kLeast = 0.0025;  ///< How hollow a fold is.
+  const auto hollow = [&](double y) { return profile.fine.hollow(y, kFold); };
+  for (double y = top; y > bottom; y -= kStep)
+    if (hollow(y) > kLeast && hollow(y) >= hollow(y + kStep) && hollow(y) > hollow(y - kStep)) return y;
+  return profile.fine.greatest(bottom, top, hollow);
+}
+
+struct Mouth {
+  double top = 0, bottom = 0;  ///< Of the gap between the lips; nearly equal if it is closed.
+  double depth = 0;            ///< Of the groove.
+};
+
+/// The first sharp crease below the fold under the nose; the fold above the chin may be deeper, but is wider.
+std::optional<Mouth> mouth(const Profile& profile, double subnasale) {
+  constexpr double kNear = 0.01, kFar = 0.13;  ///< Below the fold.
+  constexpr double kCrease = 0.006;            ///< Half its width.
+  constexpr double kLeast = 0.0012;            ///< Its depth.
+  constexpr double kOpen = 0.02;               ///< Deeper ones are gaps.
+  const auto depth = [&](double y) {
+    const double value = profile.sharp.hollow(y, kCrease);
+    return std::isnan(value) || value > kOpen ? kOpen : value;
+  };
+  double deepest = 0;
+  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) deepest = std::max(deepest, depth(y));
+  Mouth out;
+  const double enough = std::max(kLeast, 0.4 * std::min(deepest, 0.01));
+  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) {
+    if (depth(y) > out.depth) out = {y, y, depth(y)};
+    if (out.depth > enough && depth(y) < 0.5 * out.depth) break;
+  }
+  if (out.depth < enough) return std::nullopt;
+  // The gap ends where the profile comes out to the level of the lips again, as seen along the face's own front.
+  const auto height = [&](double y) {
+    const double z = profile.sharp.at(y);
+    return std::isfinite(z) ? std::cos(profile.tilt) * z + std::sin(profile.tilt) * y : -1.0;
+  };
+  const double reach = out.depth < kOpen ? 0.03 : 0.09;
+  double above = -1, below = -1;
+  for (double d = kStep; d <= reach; d += kStep) {
+    if (out.top + d < subnasale) above = std::max(above, height(out.top + d));
+    below = std::max(below, height(out.bottom - d));
+  }
+  const double level = 0.5 * out.depth;
+  const double end = out.bottom - reach;
+  while (out.top < subnasale && height(out.top) < above - level) out.top += kStep;
+  while (out.bottom > end && height(out.bottom) < below - level) out.bottom -= kStep;
+  return out;
+}
+
+/// Lips, and the place below the lower lip where the chin begins.
+double lips(Head& head, const Profile& profile, double subnasale, const Mouth& gap) {
+  const double clear = gap.depth > 0.003 ? 0.85 : 0.6;
+  if (const auto upper = profile.fine.highest(gap.top - 0.002, std::min(gap.top + 0.03, subnasale), profile.tilt))
+    head.add("lip_upper", profile.point(*upper), clear);
+  const double lipTop = gap.bottom;
+  const auto front = profile.fine.highest(lipTop - 0.035, lipTop + 0.002, profile.tilt);
+  const double lip = front.value_or(lipTop);
+  const double foldY = firstFold(profile, lip - 0.012, lip - 0.07).value_or(lip - 0.03);
+  // The lower lip's red ends where it turns under most.
+  const auto edge =
+      profile.fine.greatest(foldY, lip, [&](double y) { return -profile.facing(profile.fine, y, 0.004); });
+  if (edge) head.add("lip_lower", profile.point(*edge), clear - 0.1);
+  return foldY;
+}
+
+/// The front of the chin: where the profile begins to turn under.
+double chin(const Profile& profile, double fold) {
+  constexpr double kTurned = -0.38;  ///< Radians: beyond a chin's front, before its underside.
+  constexpr double kReach = 0.1;
+  for (double y = fold - 0.006; y > fold - kReach; y -= kStep)
+    if (profile.facing(profile.medium, y, 0.008) < kTurned && profile.facing(profile.medium, y - 0.01, 0.008) < kTurned)
+      return y;
+  return profile.medium.highest(fold - 0.05, fold, profile.tilt).value_or(fold - 0.03);
+}
+
+/// On the underside of the chin, as far behind its front as most jaws are deep there.
+std::optional<Vec3> menton(const Head& head, const Vec3& chin, double noseToChin) {
+  constexpr double kDepth = 0.6;  ///< Of the height from nose to chin.
+  const double wanted = kDepth * noseToChin;
+  const Grid grid = Grid::over(-kStep, kStep, chin.z - 0.2, chin.z + 0.02, kStep);
+  const HeightMap map = look(head.surface, kBottomView, grid, -(chin.y - 0.11));
+  const Curve under = Curve::along(map).blurred(kMedium);
+  for (double z = chin.z; z > chin.z - 0.18; z -= kStep) {
+    const double y = -under.at(z);
+    if (!std::isfinite(y) || y > chin.y + 0.01) continue;
+    if (std::hypot(y - chin.y, z - chin.z) >= wanted) return Vec3{0, y, z};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool findProfile(Head& head) {
+  const Grid grid = Grid::over(-2 * kStep, 2 * kStep, -0.5, 0.32, kStep);
+  const Curve sharp = Curve::along(look(head.surface, kFrontView, grid, 0.6));
+  Profile profile{sharp, sharp.blurred(kFine), sharp.blurred(kMedium)};
+  auto nose = noseTip(profile);
+  if (!nose) return false;
+  double nasionTrust = 0;
+  double nasionY = nasion(profile, *nose, nasionTrust);
+  // The front of the face is across the line from nasion to chin. Its own direction finds the nose's tip again.
+  for (int round = 0; round < 2; ++round) {
+    const auto low = profile.medium.highest(*nose - 0.2, *nose - 0.13, profile.tilt);
+    if (!low) break;
+    const Vec3 a = profile.point(nasionY), b = profile.point(*low);
+    constexpr double kMostTilt = 0.45;
+    const double tilt = std::atan2(b.z - a.z, a.y - b.y);
+    if (std::abs(tilt) > kMostTilt) break;
+    profile.tilt = tilt;
+    if (const auto again = noseTip(profile)) nose = again;
+    nasionY = nasion(profile, *nose, nasionTrust);
+  }
+  head.add("nose_tip", profile.point(*nose), 0.9);
+  head.add("nasion", profile.point(nasionY), nasionTrust);
+  double trust = 0;
+  if (const auto brow = glabella(profile, nasionY, trust)) head.add("glabella", profile.point(*brow), trust);
+  const auto subnasale = firstFold(profile, *nose - 0.012, *nose - 0.07);
+  if (!subnasale) return true;
+  const auto gap = mouth(profile, *subnasale);
+  if (!gap) return true;
+  const double fold = lips(head, profile, *subnasale, *gap);
+  const double chinY = chin(profile, fold);
+  const Vec3 at = profile.point(chinY);
+  if (!std::isfinite(at.z)) return true;
+  head.add("chin", at, 0.7);
+  if (const auto bottom = menton(head, at, *nose - chinY)) head.add("menton", *bottom, 0.55);
+  return true;
+}
+
+}  // namespace cagecast::cages

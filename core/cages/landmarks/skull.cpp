@@ -1,0 +1,49 @@
+#include <algorithm>
+#include <cmath>
+
+#include "landmarks/head.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+constexpr double kStep = 0.004;
+/// Blur against partings and coarse triangles: skulls are round.
+constexpr double kRound = 0.015;
+
+}  // namespace
+
+void findSkull(Head& head) {
+  const Spot* brow = head.find("glabella");
+  if (brow == nullptr) brow = head.find("nasion");
+  if (brow == nullptr) return;
+  // The back of the head: the rearmost place of the midline, level with the face or above.
+  constexpr double kLowest = -0.1, kHighest = 0.3;
+  const Grid backGrid = Grid::over(-kStep, kStep, -0.4, kHighest + 0.05, kStep);
+  const Curve back = Curve::along(look(head.surface, kBackView, backGrid, 1.0)).blurred(kRound);
+  const auto rear = back.highest(kLowest, kHighest);
+  if (!rear) return;
+  const Vec3 occiput{0, *rear, -back.at(*rear)};
+  const bool inside = *rear > kLowest + 2 * kStep && *rear < kHighest - 2 * kStep;
+  head.add("occiput", occiput, inside ? 0.65 : 0.3);
+  // The crown: above the middle of the head's length. The highest place itself moves far with little, for skulls are
+  // flat there.
+  const double middle = 0.5 * (brow->position.z + occiput.z);
+  const Grid topGrid = Grid::over(-kStep, kStep, middle - 0.1, middle + 0.1, kStep);
+  const Curve top = Curve::along(look(head.surface, kTopView, topGrid, 1.0)).blurred(kRound);
+  const double height = top.at(middle);
+  if (!std::isfinite(height)) return;
+  const Vec3 crown{0, height, middle};
+  head.add("crown", crown, 0.65);
+  // The forehead is between brow and crown, as a share of the height over the eyes.
+  constexpr double kForehead = 0.61;
+  const Grid frontGrid = Grid::over(-kStep, kStep, 0.05, 0.35, kStep);
+  const Curve front = Curve::along(look(head.surface, kFrontView, frontGrid, 1.0)).blurred(kRound);
+  const double forehead = front.at(kForehead * height);
+  if (std::isfinite(forehead)) head.add("forehead", {0, kForehead * height, forehead}, 0.55);
+  // The nape: the hollow between the back of the head and the back; necks that widen at once have none.
+  const auto hollow = back.greatest(-0.36, -0.08, [&](double y) { return -back.at(y); });
+  if (hollow && *hollow > -0.34 && *hollow < -0.12) head.add("nape", {0, *hollow, -back.at(*hollow)}, 0.4);
+}
+
+}  // namespace cagecast::cages
