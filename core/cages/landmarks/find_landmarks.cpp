@@ -67,7 +67,7 @@ void findFace(const Figure& figure, const Eyes& found, FoundLandmarks& out) {
   plane.left = eyes.left;
   plane.offset = dot(plane.left, frame.origin);
   const TriangleMesh near = within(skin, frame.origin + (-0.15 * frame.unit) * eyes.front, 0.45 * frame.unit);
-  const MirrorPlane better = findMirrorPlane(near, &plane);
+  const MirrorPlane better = refineMirrorPlane(near, plane);
   if (dot(better.left, plane.left) > 0.97 && std::abs(better.offset - plane.offset) < 0.03 * frame.unit) plane = better;
   frame.left = plane.left;
   frame.front = cross(frame.left, frame.up);
@@ -121,7 +121,9 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   Rig rig = recogniseRig(model.joints);
   out.rig = rig.name;
   std::optional<Eyes> eyes = findNamedEyes(figure);
-  if (!eyes) eyes = findLooseEyes(figure, findMirrorPlane(figure.mesh, nullptr));
+  if (!eyes)
+    for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh))
+      if ((eyes = findLooseEyes(figure, plane))) break;
   if (!goOn(0.4f)) return cancelled;
   if (eyes) findFace(figure, *eyes, out);
   const double share = eyes ? length(eyes->centres[0] - eyes->centres[1]) / diagonalOf(figure.mesh) : 0;

@@ -14,9 +14,10 @@ namespace cagecast::cages {
 namespace {
 
 constexpr std::size_t kSamples = 600;
-constexpr int kHeadings = 24;  ///< Steps of 7.5 degrees: the refinement converges from twice that.
-constexpr int kRefined = 3;    ///< How many of the best headings are refined.
-constexpr int kIterations = 12;
+constexpr int kHeadings = 24;           ///< Steps of 7.5 degrees: the refinement converges from twice that.
+constexpr int kRefined = 3;             ///< How many planes are refined.
+constexpr double kSameHeading = 0.985;  ///< Cosine of 10 degrees.
+constexpr int kIterations = 20;
 /// Of the mirrored points, the share closest to the surface that counts: a parting or a broken ear may be one-sided.
 constexpr double kTrusted = 0.8;
 /// A heading off the file's own axes must be this much better: a round head has a mirror plane anywhere.
@@ -113,25 +114,40 @@ std::vector<Vec3> samplePoints(const TriangleMesh& mesh, std::size_t count) {
   return out;
 }
 
-MirrorPlane findMirrorPlane(const TriangleMesh& mesh, const MirrorPlane* hint) {
+MirrorPlane refineMirrorPlane(const TriangleMesh& mesh, const MirrorPlane& guess) {
+  const Surface surface(mesh);
+  return refined(Mirror(mesh, surface), guess);
+}
+
+std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& mesh) {
   const Surface surface(mesh);
   const Mirror mirror(mesh, surface);
-  if (hint != nullptr) return refined(mirror, *hint);
   std::vector<MirrorPlane> planes;
   for (int i = 0; i < kHeadings; ++i) {
     planes.push_back(planeOf(mesh, std::numbers::pi * i / kHeadings));
     (void)mirror.improved(planes.back());
   }
-  MirrorPlane best = refined(mirror, planes[0]);
-  best.residual *= kAxisPreference;
-  std::sort(planes.begin(), planes.end(),
-            [](const MirrorPlane& a, const MirrorPlane& b) { return a.residual < b.residual; });
-  for (std::size_t i = 0; i < kRefined; ++i) {
+  const MirrorPlane axis = planes[0];
+  const auto better = [](const MirrorPlane& a, const MirrorPlane& b) { return a.residual < b.residual; };
+  std::sort(planes.begin(), planes.end(), better);
+  planes.insert(planes.begin(), axis);
+  std::vector<MirrorPlane> out;
+  for (std::size_t i = 0; i < planes.size() && i <= kRefined; ++i) {
     const MirrorPlane plane = refined(mirror, planes[i]);
-    if (plane.residual < best.residual) best = plane;
+    const auto same = std::find_if(out.begin(), out.end(), [&](const MirrorPlane& other) {
+      return std::abs(dot(other.left, plane.left)) > kSameHeading;
+    });
+    if (same == out.end())
+      out.push_back(plane);
+    else if (better(plane, *same))
+      *same = plane;
   }
-  (void)mirror.improved(best);
-  return best;
+  // A round head has a mirror plane anywhere: then the file's own axes count.
+  const auto rank = [&](const MirrorPlane& plane) {
+    return plane.residual * (std::abs(plane.left.x) > kSameHeading ? kAxisPreference : 1);
+  };
+  std::sort(out.begin(), out.end(), [&](const MirrorPlane& a, const MirrorPlane& b) { return rank(a) < rank(b); });
+  return out;
 }
 
 TriangleMesh within(const TriangleMesh& mesh, const Vec3& centre, double radius) {

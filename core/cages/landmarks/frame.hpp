@@ -16,9 +16,12 @@ struct MirrorPlane {
   [[nodiscard]] Vec3 mirrored(const Vec3& p) const { return p - 2 * (dot(left, p) - offset) * left; }
 };
 
-/// Finds the mirror plane of a mesh, whose up is +y, with any heading.
-/// @param hint  Where not null: only planes close to this one are tried.
-MirrorPlane findMirrorPlane(const TriangleMesh& mesh, const MirrorPlane* hint);
+/// The vertical mirror planes that a mesh may have, with any heading, most likely first: a few, for an egg's front is
+/// like its back.
+std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& mesh);
+
+/// The mirror plane close to a guess.
+MirrorPlane refineMirrorPlane(const TriangleMesh& mesh, const MirrorPlane& guess);
 
 /// A head's own space: the origin is in the middle between the eyes; x to its left, y up, z to its front; and a length
 /// of 1 is about the diagonal of the box around head and neck.

@@ -61,8 +61,8 @@ struct Balls {
 Balls plainHead() {
   Balls out;
   out.add("skin", {0, 0, 0}, {0.7f, 1, 0.85f});
-  out.add("l-eye", {0.25f, 0.1f, 0.66f}, {0.13f, 0.13f, 0.13f});
-  out.add("r-eye", {-0.25f, 0.1f, 0.66f}, {0.13f, 0.13f, 0.13f});
+  out.add("l-eye", {0.25f, 0.1f, 0.72f}, {0.13f, 0.13f, 0.13f});
+  out.add("r-eye", {-0.25f, 0.1f, 0.72f}, {0.13f, 0.13f, 0.13f});
   return out;
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("eyes are found by name and by shape, whatever way the head faces", "[
   for (const float side : {1.0f, -1.0f}) {
     const Landmark* eye = find(found, side > 0 ? "eye_centre_left" : "eye_centre_right");
     REQUIRE(eye != nullptr);
-    CHECK(distance(eye->position, {0.25f * side * c + 0.66f * s, 0.1f, 0.66f * c - 0.25f * side * s}) < 0.02);
+    CHECK(distance(eye->position, {0.25f * side * c + 0.72f * s, 0.1f, 0.72f * c - 0.25f * side * s}) < 0.02);
   }
 }
 
