@@ -36,6 +36,32 @@ double leastAlong(Vec3 direction, Vec3 from, std::span<const Vec3> points) {
   return least;
 }
 
+/// Whether no point is ahead of another in a direction.
+bool areBehind(Vec3 direction, Vec3 from, std::span<const Vec3> points) {
+  return leastAlong(-1 * direction, from, points) >= 0;
+}
+
+/// Whether all points of a convex hull are closest to one edge or corner of a triangle that is on no loop, or to one of
+/// the edge's ends that is on none.
+/// @param loops  6, as in `BoundaryLoops::loopOf`.
+/// @param near   How far from the end of an edge that is on a loop points must be.
+bool areClosestOffLoops(const Frame& frame, const std::uint32_t* loops, std::span<const Vec3> hull, double near) {
+  constexpr std::uint32_t kNone = BoundaryLoops::kNone;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t next = (k + 1) % 3;
+    const Vec3 start = frame.corners[k], end = frame.corners[next];
+    const bool isOff = loops[3 + k] == kNone;
+    const bool areBehindBack = isOff && areBehind(frame.back(k), start, hull);
+    if (areBehindBack && areBehind(frame.edges[k], start, hull)) return true;
+    if (loops[k] != kNone || !areBehind(frame.inward(k), start, hull)) continue;
+    const bool areAtStart = areBehindBack || leastAlong(frame.edges[k], start, hull) >= near;
+    const bool areAtEnd = (loops[3 + next] == kNone && areBehind(frame.edges[next], end, hull)) ||
+                          leastAlong(-1 * frame.edges[k], end, hull) >= near;
+    if (areAtStart && areAtEnd) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void BoundaryLoops::Box::grow(Vec3 p) noexcept {
@@ -76,6 +102,7 @@ bool BoundaryLoops::areSurelyOff(const CageTriangle& triangle, std::uint32_t cag
   const Frame frame(triangle);
   const double doubleArea = dot(frame.corners[2] - frame.corners[0], frame.inward(0)) * frame.lengths[0];
   const double near = 2 * kOnLoop * diagonal;
+  if (areClosestOffLoops(frame, loops, hull, near)) return true;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const Vec3 corner = frame.corners[k];
     // A point on the inner side of an edge is not closest to the edge, except perhaps to its ends,
@@ -99,15 +126,14 @@ bool BoundaryLoops::areSurelyOn(const CageTriangle& triangle, std::uint32_t cage
   for (std::uint32_t k = 0; k < 3; ++k) {
     const std::uint32_t next = (k + 1) % 3;
     const Vec3 start = frame.corners[k], end = frame.corners[next];
-    const auto areBehind = [hull](Vec3 direction, Vec3 from) { return leastAlong(-1 * direction, from, hull) >= 0; };
-    const bool areBehindBack = areBehind(frame.back(k), start);
+    const bool areBehindBack = areBehind(frame.back(k), start, hull);
     // Points behind a corner along both of its edges are closest to the corner,
-    if (loops[3 + k] != kNone && areBehindBack && areBehind(frame.edges[k], start)) return true;
+    if (loops[3 + k] != kNone && areBehindBack && areBehind(frame.edges[k], start, hull)) return true;
     // and points beyond an edge are closest to the edge if, at either end, they are not past that end, or are behind
     // the other edge there.
-    if (loops[k] != kNone && areBehind(frame.inward(k), start) &&
+    if (loops[k] != kNone && areBehind(frame.inward(k), start, hull) &&
         (areBehindBack || leastAlong(frame.edges[k], start, hull) >= 0) &&
-        (areBehind(frame.edges[next], end) || areBehind(frame.edges[k], end))) {
+        (areBehind(frame.edges[next], end, hull) || areBehind(frame.edges[k], end, hull))) {
       return true;
     }
   }
