@@ -32,7 +32,7 @@ import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 
 /** What is shown of a model. */
-export type Look = 'cage' | 'naive' | 'removed' | 'paper' | 'default';
+export type Look = 'plain' | 'cage' | 'naive' | 'removed' | 'paper' | 'default';
 
 /** A model, by the addresses of its files. */
 export interface Row {
@@ -43,6 +43,8 @@ export interface Row {
   rise: number;
   /** Show only this share of its height, at the top, and as much of its width about the middle. Default: all. */
   upper?: number;
+  /** Spots of the target that get a dot and their name. Default: none. */
+  marks?: Readonly<Record<string, readonly [number, number, number]>>;
 }
 
 declare global {
@@ -54,6 +56,7 @@ declare global {
 const oversampling = 2;
 const fieldOfView = 24; // degrees
 const margin = 0.04; // of the picture's sides
+const marginForNames = 0.22;
 
 const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 renderer.setClearColor('#ffffff');
@@ -109,7 +112,8 @@ async function draw(
 
   renderer.setSize(oversampling * width, oversampling * height, false);
   cage.applyMatrix4(model.matrixWorld);
-  renderer.render(scene, cameraFor(row, cage, width / height));
+  const camera = cameraFor(row, cage, width / height);
+  renderer.render(scene, camera);
   // Made smaller in one step, with all pixels taken into account.
   const image = await createImageBitmap(renderer.domElement, {
     resizeWidth: width,
@@ -118,12 +122,52 @@ async function draw(
   });
   canvas.width = width;
   canvas.height = height;
-  canvas.getContext('2d')!.drawImage(image, 0, 0);
+  const context = canvas.getContext('2d')!;
+  context.drawImage(image, 0, 0);
+  if (row.marks === undefined) return;
+  const marks = Object.entries(row.marks).map(([name, at]) => {
+    const { x, y } = new Vector3(...at).applyMatrix4(model.matrixWorld).project(camera);
+    return { name, x: ((1 + x) / 2) * width, y: ((1 - y) / 2) * height };
+  });
+  drawMarks(context, marks);
+}
+
+/** Pixels between the lines of names. */
+const lineHeight = 22;
+
+/** Draws a dot for each spot, and a line to its name at the nearer side. */
+function drawMarks(context: CanvasRenderingContext2D, marks: readonly { name: string; x: number; y: number }[]): void {
+  const { width, height } = context.canvas;
+  context.font = '15px ui-monospace, monospace';
+  context.textBaseline = 'middle';
+  const byHeight = [...marks].sort((a, b) => a.y - b.y);
+  for (const isLeft of [true, false]) {
+    const own = byHeight.filter(({ x }) => x < width / 2 === isLeft);
+    // As near to their dots' height as the names above and below let them.
+    let last = -Infinity;
+    const heights = own.map(({ y }) => (last = Math.max(y, last + lineHeight)));
+    const over = Math.max(0, last + lineHeight / 2 - height);
+    own.forEach(({ name, x, y }, i) => {
+      const at = Math.max(lineHeight / 2 + i * lineHeight, heights[i]! - over);
+      const edge = isLeft ? 8 + context.measureText(name).width + 6 : width - 14 - context.measureText(name).width;
+      context.strokeStyle = 'rgb(0 0 0 / 0.35)';
+      context.beginPath();
+      context.moveTo(edge, at);
+      context.lineTo(x, y);
+      context.stroke();
+      context.fillStyle = '#222';
+      context.fillText(name, isLeft ? 8 : edge + 6, at);
+      context.fillStyle = '#d02030';
+      context.beginPath();
+      context.arc(x, y, 4, 0, 2 * Math.PI);
+      context.fill();
+    });
+  }
 }
 
 /** Paints the target as the look says. */
 function dress(target: Object3D, cage: Object3D, paint: Texture, look: Look): void {
-  if (look === 'cage') return;
+  if (look === 'cage' || look === 'plain') return;
   if (look === 'naive') {
     const { update, result } = applyTransfer(target, cage, { texture: paint, preset: 'paper' });
     update({
@@ -205,7 +249,7 @@ function lightsAndFloor(turn: number, height: number): Object3D[] {
 }
 
 /** A camera that sees an object about the origin, as large as the picture allows. */
-function cameraFor({ turn, rise, upper = 1 }: Row, object: Object3D, aspect: number): PerspectiveCamera {
+function cameraFor({ turn, rise, upper = 1, marks }: Row, object: Object3D, aspect: number): PerspectiveCamera {
   const camera = new PerspectiveCamera(fieldOfView, aspect, 0.1, 50);
   const [a, b] = [(turn * Math.PI) / 180, (rise * Math.PI) / 180];
   camera.position.set(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b)).multiplyScalar(8);
@@ -227,7 +271,7 @@ function cameraFor({ turn, rise, upper = 1 }: Row, object: Object3D, aspect: num
   });
   // The part of the picture that it takes becomes the whole of it.
   const [middle, size] = [seen.getCenter(new Vector3()), seen.getSize(new Vector3())];
-  const share = (Math.max(size.x, size.y) / 2) * (1 + 2 * margin);
+  const share = (Math.max(size.x, size.y) / 2) * (1 + 2 * (marks === undefined ? margin : marginForNames));
   camera.setViewOffset(
     aspect,
     1,

@@ -21,6 +21,7 @@ const cell = { width: 400, height: 300 };
 
 /** What the columns are called. */
 const heads: Record<Look, string> = {
+  plain: 'model',
   cage: 'cage',
   naive: 'naive transfer',
   removed: 'removed, in red',

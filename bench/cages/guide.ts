@@ -1,0 +1,106 @@
+// Draws the pictures of docs/cages.md.
+//
+//   CAGECAST_ASSETS=folder npx tsx bench/cages/guide.ts [landmarks|make|fit|refine …] [--png]
+//     --png  into build/cages, as PNG
+//
+// Uses the samples and the package's templates, and for fits the people in the given folder.
+
+import { NodeIO } from '@gltf-transform/core';
+import { init } from 'cagecast';
+import { fitCage, makeCage, refineCage, terminate } from 'cagecast/cages';
+import { cageTemplate } from 'cagecast/gltf';
+import { root } from '../native.js';
+import { type Cell, drawCells, type Sheet } from '../quality/sheet.js';
+import { readGlb } from '../read-glb.js';
+import { writeCageGlb } from './cage-glb.js';
+import { cagesFolder } from './figures.js';
+import { meshOf } from './paint-score.js';
+
+const assets = process.env['CAGECAST_ASSETS'];
+const human = `${root}build/assets/human/target.glb`;
+const headTemplate = `${root}examples/assets/templates/human-head.glb`;
+
+async function modelOf(path: string) {
+  const { mesh, parts, joints } = await readGlb(path);
+  const { positions, indices, groups } = meshOf(mesh);
+  return { positions, indices, ...(groups && { groups }), parts, joints };
+}
+
+const readTemplate = async (path: string) => cageTemplate(await new NodeIO().read(path));
+
+const front = { turn: 16, rise: 6, paint: undefined };
+const wide = { width: 400, height: 400 };
+
+async function makeSheet(): Promise<Sheet> {
+  const cage = await writeCageGlb('guide-make', await makeCage(await modelOf(human)));
+  const cell = (look: Cell['look'], turn: number): Cell => ({ target: human, cage, ...front, turn, look });
+  return {
+    heads: ['model', 'made cage', 'painted', 'from behind'],
+    rows: [{ cells: [cell('plain', 16), cell('cage', 16), cell('default', 16), cell('default', 160)] }],
+    cell: wide,
+  };
+}
+
+async function landmarksSheet(): Promise<Sheet> {
+  const { landmarks } = await readTemplate(headTemplate);
+  const pick = (isShown: (name: string) => boolean) =>
+    Object.fromEntries(Object.entries(landmarks).filter(([name]) => isShown(name)));
+  const isOfSide = (name: string): boolean =>
+    /crown|occiput|nape|menton|ear_.*left|forehead|nasion|glabella/.test(name);
+  const shared = { target: human, cage: headTemplate, paint: undefined, rise: 0, look: 'plain' as const };
+  const cells: Cell[] = [
+    { ...shared, turn: 0, marks: pick((name) => !/^(crown|occiput|nape|ear_)/.test(name)) },
+    { ...shared, turn: 90, marks: pick(isOfSide) },
+  ];
+  return { heads: ['front', 'left side'], rows: [{ cells }], cell: { width: 760, height: 640 } };
+}
+
+async function fitSheet(): Promise<Sheet> {
+  if (assets === undefined) throw new Error('CAGECAST_ASSETS is not set: fits are shown on people');
+  const template = await readTemplate(headTemplate);
+  const rows: { name: string; cells: Cell[] }[] = [
+    {
+      name: 'template',
+      cells: (['plain', 'cage', 'default'] as const).map(
+        (look): Cell => ({ target: human, cage: headTemplate, ...front, look }),
+      ),
+    },
+  ];
+  for (const name of ['dora', 'emil', 'fumi']) {
+    const target = `${assets}/people/${name}/head.glb`;
+    const fit = await fitCage(template, await modelOf(target));
+    const cage = await writeCageGlb(`guide-fit-${name}`, fit.cage);
+    const cells = (['plain', 'cage', 'default'] as const).map((look): Cell => ({ target, cage, ...front, look }));
+    rows.push({ name: '', cells });
+  }
+  return { heads: ['model', 'cage', 'painted'], rows, cell: { width: 400, height: 360 } };
+}
+
+/** How far off the cage is that is refined, as a share of its height. */
+const off = 0.03;
+
+async function refineSheet(): Promise<Sheet> {
+  const { mesh } = await readGlb(`${root}build/assets/human/cage.glb`);
+  const heights = mesh.positions.filter((_, i) => i % 3 === 1);
+  const shift = off * (Math.max(...heights) - Math.min(...heights));
+  const moved = { ...meshOf(mesh), positions: mesh.positions.map((x, i) => (i % 3 === 1 ? x - shift : x)) };
+  const refined = await refineCage({ ...moved, uvs: mesh.uvs! }, await modelOf(human));
+  const before = await writeCageGlb('guide-moved', { ...moved, uvs: mesh.uvs! });
+  const after = await writeCageGlb('guide-refined', refined);
+  const paint = `${root}build/assets/human/paint-skull.png`;
+  const cells = [before, after].flatMap((cage) =>
+    (['cage', 'default'] as const).map((look): Cell => ({ target: human, cage, ...front, paint, look })),
+  );
+  return { heads: ['cage out of place', 'painted', 'refined', 'painted'], rows: [{ cells }], cell: wide };
+}
+
+const sheets = { landmarks: landmarksSheet, make: makeSheet, fit: fitSheet, refine: refineSheet };
+const words = process.argv.slice(2);
+const only = words.filter((word) => word !== '--png');
+await init();
+for (const [name, sheet] of Object.entries(sheets)) {
+  if (only.length > 0 && !only.includes(name)) continue;
+  const path = words.includes('--png') ? `${cagesFolder}/guide-${name}.png` : `${root}docs/pictures/cages-${name}.jpg`;
+  await drawCells(await sheet(), path);
+}
+terminate();
