@@ -33,7 +33,7 @@ void MinCut::addNode(std::uint32_t node, double first, double second) {
   if (first > 0) addArc(node, sink_, first, 0);
 }
 
-void MinCut::addEdge(std::uint32_t a, std::uint32_t b, double cost) { addArc(a, b, cost, cost); }
+void MinCut::addEdge(std::uint32_t a, std::uint32_t b, double cost, double costBack) { addArc(a, b, cost, costBack); }
 
 bool MinCut::findLevels() {
   level_.assign(leaving_.size(), -1);

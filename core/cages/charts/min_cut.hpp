@@ -13,8 +13,9 @@ class MinCut {
 
   /// What it costs if a node is on the first, or on the second side; `kForbidden` fixes it to the other.
   void addNode(std::uint32_t node, double first, double second);
-  /// What it costs if two nodes are on different sides.
-  void addEdge(std::uint32_t a, std::uint32_t b, double cost);
+  /// What it costs if the first node is on the first and the second on the second side, and the other way round.
+  void addEdge(std::uint32_t a, std::uint32_t b, double cost, double costBack);
+  void addEdge(std::uint32_t a, std::uint32_t b, double cost) { addEdge(a, b, cost, cost); }
   /// Whether each node is on the second side.
   [[nodiscard]] std::vector<bool> solve();
 

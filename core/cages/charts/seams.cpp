@@ -50,7 +50,7 @@ Piece cutHandles(const Piece& piece, const SeamCost& cost) {
   for (std::uint32_t h = 0; h < twins.size(); ++h)
     if (twins[h] != kNone && twins[h] > h) {
       const std::uint32_t a = originOf(mesh, h), b = endOf(mesh, h);
-      order.emplace_back(-cost(mesh, a, b) * length(mesh.positions[a] - mesh.positions[b]), h);
+      order.emplace_back(-(cost ? cost(mesh, a, b) : 1) * length(mesh.positions[a] - mesh.positions[b]), h);
     }
   std::sort(order.begin(), order.end());
   // Triangles are joined across the edges where a seam would cost most; the others are the first cut.

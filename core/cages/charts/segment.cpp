@@ -18,7 +18,7 @@ namespace {
 /// A border between sides costs as much as facing wrong by 1 (0 right, 1 square to it) on a strip this share of the
 /// size of the mesh wide.
 constexpr double kBorderWidth = 0.06;
-constexpr int kSweeps = 12;
+constexpr int kSweeps = 4;
 constexpr double kLeastSide = 0.04;
 constexpr std::size_t kMostSides = 8;
 
@@ -50,6 +50,43 @@ std::vector<double> distancesFrom(const TriangleMesh& mesh, const std::vector<st
     }
   }
   return distance;
+}
+
+using Prices = std::vector<std::array<double, 6>>;
+
+/// Gives a label to those triangles where that makes prices and borders cheapest (alpha expansion: Boykov, Veksler,
+/// Zabih 2001).
+/// @return whether a label changed.
+bool expand(const TriangleMesh& mesh, const Prices& price, std::uint32_t label, std::vector<std::uint32_t>& labels) {
+  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  const double border = kBorderWidth * diagonalOf(mesh);
+  // The first side takes the label: it is the smaller one where that is all the same.
+  std::vector<std::array<double, 2>> own(labels.size());
+  for (std::size_t t = 0; t < labels.size(); ++t) own[t] = {price[t][labels[t]], price[t][label]};
+  MinCut cut(labels.size(), 1e-6 * border * border);
+  for (std::uint32_t h = 0; h < twins.size(); ++h) {
+    if (twins[h] == kNone || twins[h] < h) continue;
+    const std::uint32_t a = h / 3, b = twins[h] / 3;
+    const double size = border * edgeLength(mesh, h);
+    const double keepBoth = labels[a] != labels[b] ? size : 0, keepA = labels[a] != label ? size : 0,
+                 keepB = labels[b] != label ? size : 0;
+    // keepBoth if both stay, keepA if only b takes the label, keepB if only a does, 0 if both do.
+    own[a][0] += keepA;
+    own[b][0] += keepBoth - keepA;
+    cut.addEdge(a, b, keepA + keepB - keepBoth, 0);
+  }
+  for (std::uint32_t t = 0; t < labels.size(); ++t) {
+    const double least = std::min(own[t][0], own[t][1]);
+    cut.addNode(t, own[t][1] - least, own[t][0] - least);
+  }
+  const std::vector<bool> stays = cut.solve();
+  bool changed = false;
+  for (std::size_t t = 0; t < labels.size(); ++t) {
+    if (stays[t] || labels[t] == label) continue;
+    labels[t] = label;
+    changed = true;
+  }
+  return changed;
 }
 
 }  // namespace
@@ -104,7 +141,7 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
   const std::vector<std::uint32_t> twins = findTwins(mesh);
   const Vec3 side = cross(options.up, options.front);
   const std::array<Vec3, 3> axes{side, options.up, options.front};
-  std::vector<std::array<double, 6>> price(mesh.triangles.size());
+  Prices price(mesh.triangles.size());
   std::vector<std::uint32_t> labels(mesh.triangles.size());
   for (std::size_t t = 0; t < labels.size(); ++t) {
     const Vec3 n = areaNormal(mesh, mesh.triangles[t]);
@@ -112,19 +149,9 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
     for (std::size_t k = 0; k < 6; ++k) price[t][k] = area - (k % 2 == 0 ? 1 : -1) * dot(n, axes[k / 2]);
     labels[t] = static_cast<std::uint32_t>(std::min_element(price[t].begin(), price[t].end()) - price[t].begin());
   }
-  const double border = kBorderWidth * diagonalOf(mesh);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     bool changed = false;
-    for (std::size_t t = 0; t < labels.size(); ++t) {
-      std::array<double, 6> sum = price[t];
-      for (std::size_t h = 3 * t; h < 3 * t + 3; ++h)
-        if (twins[h] != kNone)
-          for (std::uint32_t k = 0; k < 6; ++k)
-            if (labels[twins[h] / 3] != k) sum[k] += border * edgeLength(mesh, h);
-      const auto best = static_cast<std::uint32_t>(std::min_element(sum.begin(), sum.end()) - sum.begin());
-      changed = changed || best != labels[t];
-      labels[t] = best;
-    }
+    for (std::uint32_t label = 0; label < 6; ++label) changed = expand(mesh, price, label, labels) || changed;
     if (!changed) break;
   }
   std::vector<std::uint32_t> regions = regionsOf(mesh, labels);

@@ -7,9 +7,11 @@
 
 #include "charts/flatten.hpp"
 #include "charts/limbs.hpp"
+#include "charts/merge.hpp"
 #include "charts/pack.hpp"
 #include "charts/seams.hpp"
 #include "charts/segment.hpp"
+#include "charts/slim.hpp"
 
 namespace cagecast::cages {
 
@@ -17,12 +19,30 @@ namespace {
 
 /// Charts with more energy than this are cut in two (4: no stretch; 5: stretched by about a quarter each way).
 constexpr double kMostEnergy = 6;
+/// Sides of props are joined if the chart has no more energy, …
+constexpr double kJoinedEnergy = 4.2;
+/// … fills so much of its box, …
+constexpr double kLeastFill = 0.45;
+/// … and is no longer than this, as a share of the square root of the whole area.
+constexpr double kLongestChart = 1.25;
 /// Holes longer than this share of the rim are joined with it by a seam.
 constexpr double kLargestHole = 0.45;
 /// A head, two arms, two legs.
 constexpr std::size_t kMostLimbs = 5;
 /// Seams on a head cost this much more in front than at the back.
 constexpr double kFrontCost = 12;
+/// The neck is a loop at least this share as long as the longest.
+constexpr double kLeastNeck = 0.5;
+/// Seams that are cut to let a chart lie flat, at most.
+constexpr int kMostSeams = 4;
+
+/// Where the seam of a head may start: the furthest place in this direction.
+struct SeamStart {
+  double up, front;
+  double reluctance;  ///< Factor on what the chart is stretched.
+};
+/// The crown, or somewhat behind or before it; and the throat, for heads with a snout.
+constexpr SeamStart kSeamStarts[] = {{1, 0, 1}, {1, -0.6, 1}, {1, 0.5, 1.15}, {-1, 0, 1.6}};
 
 /// What all steps share.
 class Unwrapper {
@@ -44,7 +64,7 @@ class Unwrapper {
   double whole_, done_ = 0;
   std::vector<Chart> charts_;
 
-  [[nodiscard]] SeamCost backCost(const TriangleMesh& mesh) const;
+  [[nodiscard]] SeamCost middleCost(const TriangleMesh& mesh, double frontCost) const;
   [[nodiscard]] SeamCost insideCost(const TriangleMesh& body, const TriangleMesh& limb) const;
   bool layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost);
   bool report() { return !progress_ || progress_(static_cast<float>(0.95 * std::min(1.0, done_ / whole_)), "unwrap"); }
@@ -67,18 +87,14 @@ void Unwrapper::accept(Chart chart) {
   charts_.push_back(std::move(chart));
 }
 
-SeamCost flatCost() {
-  return [](const TriangleMesh&, std::uint32_t, std::uint32_t) { return 1.0; };
-}
-
-/// Seams keep to the back and to the plane between left and right.
-SeamCost Unwrapper::backCost(const TriangleMesh& mesh) const {
+/// Seams keep to the plane between left and right, and away from the front.
+SeamCost Unwrapper::middleCost(const TriangleMesh& mesh, double frontCost) const {
   const Vec3 centre = centreOf(mesh), side = cross(options_.up, options_.front), front = options_.front;
   const double size = diagonalOf(mesh);
   return [=](const TriangleMesh& of, std::uint32_t from, std::uint32_t to) {
     const Vec3 middle = 0.5 * (of.positions[from] + of.positions[to]) - centre;
     const double aside = std::abs(dot(middle, side)) / size, ahead = std::max(0.0, dot(middle, front)) / size;
-    return 1 + 20 * aside + kFrontCost * ahead;
+    return 1 + 20 * aside + frontCost * ahead;
   };
 }
 
@@ -93,9 +109,42 @@ SeamCost Unwrapper::insideCost(const TriangleMesh& body, const TriangleMesh& lim
   };
 }
 
+/// The vertex around which a chart is stretched most.
+std::uint32_t mostStretched(const Chart& chart) {
+  const TriangleMesh& mesh = chart.piece.mesh;
+  const RestShapes rest = restShapesOf(mesh);
+  std::vector<double> sums(mesh.positions.size()), weights(mesh.positions.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      sums[v] += rest.weights[t] * jacobianOf(rest.gradients[t], mesh.triangles[t], chart.uvs).energy();
+      weights[v] += rest.weights[t];
+    }
+  std::uint32_t worst = 0;
+  for (std::uint32_t v = 1; v < sums.size(); ++v)
+    if (sums[v] * weights[worst] > sums[worst] * weights[v]) worst = v;
+  return worst;
+}
+
+/// Flattens a piece; where it is stretched too much, seams from there to the boundary help (Gu, Gortler, Hoppe 2002).
+Chart flattenWithSeams(Piece piece) {
+  Chart chart = flatten(cutToDisk(std::move(piece), kLargestHole, {}));
+  for (int i = 0; i < kMostSeams && chart.valid && chart.energy > kMostEnergy; ++i) {
+    const std::uint32_t worst = mostStretched(chart);
+    const TriangleMesh& mesh = chart.piece.mesh;
+    std::vector<std::uint32_t> boundary;
+    for (const auto& loop : loopsOf(mesh, findTwins(mesh)))
+      for (const std::uint32_t h : loop)
+        if (originOf(mesh, h) != worst) boundary.push_back(originOf(mesh, h));
+    Chart next = flatten(cutToDisk(cutBetween(chart.piece, {&worst, 1}, boundary, {}), kLargestHole, {}));
+    if (!next.valid || next.energy > chart.energy) break;
+    chart = std::move(next);
+  }
+  return chart;
+}
+
 bool Unwrapper::layOut(Piece piece) {
   if (!report()) return false;
-  Chart chart = flatten(cutToDisk(std::move(piece), kLargestHole, flatCost()));
+  Chart chart = flattenWithSeams(std::move(piece));
   if ((chart.valid && chart.energy < kMostEnergy) || chart.piece.mesh.triangles.size() < 2) {
     accept(std::move(chart));
     return true;
@@ -105,27 +154,62 @@ bool Unwrapper::layOut(Piece piece) {
   return true;
 }
 
-bool Unwrapper::layOutHead(Piece piece) {
-  const TriangleMesh& mesh = piece.mesh;
-  const Vec3 centre = centreOf(mesh), side = cross(options_.up, options_.front);
+/// The border of the neck: of the long loops the lowest.
+std::vector<std::uint32_t> neckOf(const TriangleMesh& mesh, const Vec3& up) {
   const auto loops = loopsOf(mesh, findTwins(mesh));
-  // The crown is the highest place near the middle; the neck is the longest rim, or else the lowest place.
-  std::uint32_t crown = 0, bottom = 0;
-  double highest = -1e300, lowest = 1e300;
+  std::vector<std::uint32_t> neck;
+  double lowest = 0;
+  for (const auto& loop : loops) {
+    if (lengthOf(mesh, loop) < kLeastNeck * lengthOf(mesh, loops[0])) break;
+    std::vector<std::uint32_t> vertices;
+    double height = 0;
+    for (const std::uint32_t h : loop) {
+      vertices.push_back(originOf(mesh, h));
+      height += dot(mesh.positions[vertices.back()], up) / static_cast<double>(loop.size());
+    }
+    if (!neck.empty() && height >= lowest) continue;
+    lowest = height;
+    neck = std::move(vertices);
+  }
+  return neck;
+}
+
+/// The vertex that is furthest in a direction and near the plane between left and right.
+std::uint32_t furthest(const TriangleMesh& mesh, const Vec3& direction, const Vec3& side) {
+  const Vec3 centre = centreOf(mesh);
+  std::uint32_t best = 0;
+  double most = -1e300;
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3 p = mesh.positions[v] - centre;
-    const double aside = 2 * std::abs(dot(p, side));
-    if (dot(p, options_.up) - aside > highest) highest = dot(p, options_.up) - aside, crown = v;
-    if (dot(p, options_.up) + aside < lowest) lowest = dot(p, options_.up) + aside, bottom = v;
+    const double value = dot(p, direction) - 2 * std::abs(dot(p, side));
+    if (value > most) most = value, best = v;
   }
-  std::vector<std::uint32_t> ends;
-  if (loops.empty()) {
-    ends.push_back(bottom);
-  } else {
-    for (const std::uint32_t h : loops[0]) ends.push_back(originOf(mesh, h));
+  return best;
+}
+
+bool Unwrapper::layOutHead(Piece piece) {
+  const Vec3 up = options_.up, side = cross(up, options_.front);
+  std::vector<std::uint32_t> neck = neckOf(piece.mesh, up);
+  if (neck.empty()) neck.push_back(furthest(piece.mesh, -1.0 * up, side));
+  Chart best;
+  double least = 0;
+  for (const SeamStart& start : kSeamStarts) {
+    if (!report()) return false;
+    const Vec3 direction = start.up * up + start.front * options_.front;
+    const std::uint32_t first = furthest(piece.mesh, direction, side);
+    // A seam at the throat keeps to the middle only.
+    const SeamCost cost = middleCost(piece.mesh, start.up > 0 ? kFrontCost : 0);
+    Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), kLargestHole, {}));
+    const double fault = start.reluctance * (chart.energy - 4);
+    if (!chart.valid || (best.valid && fault >= least)) continue;
+    best = std::move(chart);
+    least = fault;
   }
-  const SeamCost cost = backCost(mesh);
-  return layOut(cutBetween(piece, {&crown, 1}, ends, cost));
+  if (best.valid && best.energy < kMostEnergy) {
+    accept(std::move(best));
+    return true;
+  }
+  return layOut(best.valid ? std::move(best.piece) : std::move(piece));
 }
 
 bool Unwrapper::layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost) {
@@ -202,6 +286,17 @@ void standUpright(Chart& chart, const UnwrapOptions& options) {
   for (Uv& uv : chart.uvs) uv = {uv[0] * turn[1] - uv[1] * turn[0], uv[0] * turn[0] + uv[1] * turn[1]};
 }
 
+/// Sides of props are joined where they lie flat together; too many charts of any model where it can be borne.
+void joinCharts(const TriangleMesh& mesh, Kind kind, std::vector<Chart>& charts) {
+  double area = 0;
+  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
+  const double longest = kLongestChart * std::sqrt(area);
+  const bool isProp = kind == Kind::prop || kind == Kind::automatic;
+  if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kLeastFill, longest}, charts);
+  const std::size_t enough = isProp ? 10 : kind == Kind::body ? 8 : 2;
+  if (charts.size() > enough) mergeCharts(mesh, {kMostEnergy, enough, 0, longest}, charts);
+}
+
 /// Gives a chart the area that it has on the model.
 void scaleToArea(Chart& chart) {
   double flat = 0, solid = 0;
@@ -226,6 +321,7 @@ bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progre
     if (!going) return false;
   }
   std::vector<Chart>& charts = unwrapper.charts();
+  joinCharts(mesh, options.kind, charts);
   for (Chart& chart : charts) {
     scaleToArea(chart);
     standUpright(chart, options);

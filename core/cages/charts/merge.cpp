@@ -1,0 +1,114 @@
+#include "charts/merge.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "charts/seams.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+/// Each try takes milliseconds.
+constexpr int kMostTries = 40;
+/// Holes that come about by joining stay holes if they are shorter than this share of the rim.
+constexpr double kLargestHole = 0.45;
+
+struct Seams {
+  std::vector<std::uint32_t> chartOf;  ///< Per triangle of the mesh.
+  std::vector<bool> inside;            ///< Per half-edge: a seam within a chart.
+};
+
+Seams seamsOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& twins, const std::vector<Chart>& charts) {
+  Seams seams{std::vector<std::uint32_t>(mesh.triangles.size(), kNone), std::vector<bool>(twins.size())};
+  std::vector<std::uint32_t> vertexOf(twins.size(), kNone);
+  for (std::uint32_t c = 0; c < charts.size(); ++c) {
+    const Piece& piece = charts[c].piece;
+    for (std::size_t t = 0; t < piece.triangleOf.size(); ++t) {
+      seams.chartOf[piece.triangleOf[t]] = c;
+      for (std::size_t i = 0; i < 3; ++i) vertexOf[3 * piece.triangleOf[t] + i] = piece.mesh.triangles[t][i];
+    }
+  }
+  for (std::size_t h = 0; h < twins.size(); ++h) {
+    const std::uint32_t twin = twins[h];
+    if (twin == kNone || seams.chartOf[h / 3] != seams.chartOf[twin / 3]) continue;
+    seams.inside[h] = vertexOf[h] != vertexOf[nextInTriangle(twin)] || vertexOf[nextInTriangle(h)] != vertexOf[twin];
+  }
+  return seams;
+}
+
+/// Two charts as one piece, without the seam between them.
+std::vector<Piece> joined(const TriangleMesh& mesh, const Seams& seams, std::uint32_t a, std::uint32_t b) {
+  Piece part;
+  part.mesh.positions = mesh.positions;
+  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) part.vertexOf.push_back(v);
+  std::vector<bool> cut;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (seams.chartOf[t] != a && seams.chartOf[t] != b) continue;
+    part.mesh.triangles.push_back(mesh.triangles[t]);
+    part.triangleOf.push_back(t);
+    for (std::size_t i = 0; i < 3; ++i) cut.push_back(seams.inside[3 * t + i]);
+  }
+  return componentsOf(cutOpen(part, cut));
+}
+
+bool fits(const Chart& chart, const MergeOptions& options) {
+  if (!chart.valid || chart.energy > options.mostEnergy) return false;
+  double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, area = 0;
+  for (const Uv& uv : chart.uvs)
+    for (std::size_t k = 0; k < 2; ++k) {
+      low[k] = std::min(low[k], uv[k]);
+      high[k] = std::max(high[k], uv[k]);
+    }
+  for (const Triangle3& t : chart.piece.mesh.triangles)
+    area += doubledArea(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]) / 2;
+  const double width = high[0] - low[0], height = high[1] - low[1];
+  return area >= options.leastFill * width * height && std::max(width, height) <= options.longest;
+}
+
+}  // namespace
+
+void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, std::vector<Chart>& charts) {
+  const std::vector<std::uint32_t> twins = findTwins(mesh);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> failed;  // By first triangles.
+  for (int tries = 0; charts.size() > options.enough;) {
+    const Seams seams = seamsOf(mesh, twins, charts);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> borders;
+    std::vector<double> around(charts.size());
+    for (std::uint32_t h = 0; h < twins.size(); ++h) {
+      const double size = lengthOf(mesh, {&h, 1});
+      const std::uint32_t a = seams.chartOf[h / 3], b = twins[h] != kNone ? seams.chartOf[twins[h] / 3] : kNone;
+      if (a == b) continue;
+      around[a] += size;
+      if (a < b && b != kNone) borders[{a, b}] += size;
+    }
+    std::vector<std::pair<double, std::pair<std::uint32_t, std::uint32_t>>> order;
+    for (const auto& [pair, size] : borders)
+      order.emplace_back(-size / std::max(1e-300, std::min(around[pair.first], around[pair.second])), pair);
+    std::sort(order.begin(), order.end());
+    bool merged = false;
+    for (const auto& [share, pair] : order) {
+      const auto [a, b] = pair;
+      const std::pair key{charts[a].piece.triangleOf[0], charts[b].piece.triangleOf[0]};
+      if (failed.contains(key)) continue;
+      if (++tries > kMostTries) return;
+      std::vector<Piece> pieces = joined(mesh, seams, a, b);
+      if (pieces.size() == 1) {
+        Chart chart = flatten(cutToDisk(std::move(pieces[0]), kLargestHole, {}));
+        if (fits(chart, options)) {
+          charts[a] = std::move(chart);
+          charts.erase(charts.begin() + b);
+          merged = true;
+          break;
+        }
+      }
+      failed.insert(key);
+    }
+    if (!merged) return;
+  }
+}
+
+}  // namespace cagecast::cages
