@@ -76,7 +76,7 @@ export function measureFit(
   };
 }
 
-const five = ['eye_centre_left', 'eye_centre_right', 'nose_tip', 'lip_upper', 'chin'];
+const five = ['eye_centre_left', 'eye_centre_right', 'nose_tip', 'lip_lower', 'chin'];
 const nine = [...five, 'mouth_corner_left', 'mouth_corner_right', 'ear_lobe_left', 'ear_lobe_right'];
 
 /**
