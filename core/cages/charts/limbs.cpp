@@ -20,8 +20,10 @@ constexpr double kLeastPeak = 0.14;
 /// The loop that cuts off a limb may lie this far up the limb, as a share of its length, …
 constexpr double kLoopUp = 0.35;
 /// … and this far down the trunk.
-constexpr double kLoopDown = 0.15;
-/// Loops cost so much more at these limits than where the limb's region ends.
+constexpr double kLoopDown = 0.25;
+/// Best is this height: limbs end in the trunk rather than where they become free of it.
+constexpr double kLoopHeight = -0.08;
+/// Loops cost so much more at the limits than at this height.
 constexpr double kDrift = 4;
 
 /// The mean distance of each vertex to all others, by area.
@@ -126,7 +128,8 @@ std::vector<bool> cutOff(const TriangleMesh& mesh, const std::vector<double>& va
     if (twins[h] == kNone || twins[h] < h) continue;
     const std::uint32_t a = originOf(mesh, h), b = endOf(mesh, h);
     const double height = (heightOf(a) + heightOf(b)) / 2;
-    const double drift = height > 0 ? height / kLoopUp : -height / kLoopDown;
+    const double away = height - kLoopHeight;
+    const double drift = away > 0 ? away / (kLoopUp - kLoopHeight) : -away / (kLoopDown + kLoopHeight);
     cut.addEdge(h / 3, twins[h] / 3, (1 + kDrift * drift) * length(mesh.positions[a] - mesh.positions[b]));
   }
   return cut.solve();

@@ -17,6 +17,9 @@ constexpr int kMostTries = 40;
 /// Holes that come about by joining stay holes if they are shorter than this share of the rim.
 constexpr double kLargestHole = 0.45;
 
+/// Cosine by which a chart faces along an axis, on the mean.
+constexpr double kFacing = 0.55;
+
 struct Seams {
   std::vector<std::uint32_t> chartOf;  ///< Per triangle of the mesh.
   std::vector<bool> inside;            ///< Per half-edge: a seam within a chart.
@@ -53,6 +56,17 @@ std::vector<Piece> joined(const TriangleMesh& mesh, const Seams& seams, std::uin
     for (std::size_t i = 0; i < 3; ++i) cut.push_back(seams.inside[3 * t + i]);
   }
   return componentsOf(cutOpen(part, cut));
+}
+
+/// -1 or 1 if a chart faces mainly along an axis, 0 if it does not.
+int facing(const Chart& chart, const Vec3& axis) {
+  double sum = 0, whole = 0;
+  for (const Triangle3& t : chart.piece.mesh.triangles) {
+    const Vec3 n = areaNormal(chart.piece.mesh, t);
+    sum += dot(n, axis);
+    whole += length(n);
+  }
+  return sum > kFacing * whole ? 1 : sum < -kFacing * whole ? -1 : 0;
 }
 
 bool fits(const Chart& chart, const MergeOptions& options) {
@@ -93,7 +107,7 @@ void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, std::vec
     for (const auto& [share, pair] : order) {
       const auto [a, b] = pair;
       const std::pair key{charts[a].piece.triangleOf[0], charts[b].piece.triangleOf[0]};
-      if (failed.contains(key)) continue;
+      if (failed.contains(key) || facing(charts[a], options.axis) != facing(charts[b], options.axis)) continue;
       if (++tries > kMostTries) return;
       std::vector<Piece> pieces = joined(mesh, seams, a, b);
       if (pieces.size() == 1) {

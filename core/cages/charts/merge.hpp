@@ -12,6 +12,7 @@ struct MergeOptions {
   std::size_t enough = 1;  ///< Stops at so many charts.
   double leastFill = 0;    ///< Of the box of a chart.
   double longest = 0;      ///< Longest side of the box of a chart.
+  Vec3 axis{0, 0, 0};      ///< Charts that face along it are joined with none that do not; 0 if it does not matter.
 };
 
 /// Joins neighbouring charts, those with the longest common border first, where the result lies flat well enough.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <initializer_list>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -177,11 +179,18 @@ void packCharts(std::vector<Chart>& charts, double gutter) {
     for (const Triangle3& t : chart.piece.mesh.triangles)
       area += doubledArea(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]) / 2;
   }
-  std::vector<std::size_t> order(charts.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return frames[a].high[1] - frames[a].low[1] > frames[b].high[1] - frames[b].low[1];
-  });
+  const auto extent = [&](std::size_t i, std::size_t k) { return frames[i].high[k] - frames[i].low[k]; };
+  // Large charts first, by what makes them large: height (which rows of boxes need), area of the box, longest side.
+  std::vector<std::vector<std::size_t>> orders;
+  for (const auto& size : std::initializer_list<std::function<double(std::size_t)>>{
+           [&](std::size_t i) { return extent(i, 1); }, [&](std::size_t i) { return extent(i, 0) * extent(i, 1); },
+           [&](std::size_t i) { return std::max(extent(i, 0), extent(i, 1)); },
+           [&](std::size_t i) { return extent(i, 0); }}) {
+    std::vector<std::size_t> order(charts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return size(x) > size(y); });
+    orders.push_back(std::move(order));
+  }
   // A cell is a gutter wide. Charts take whole cells and leave one free, and half a cell is left at the border.
   gutter = std::min(gutter, 0.2 / std::sqrt(static_cast<double>(charts.size())));
   const auto cells = std::max(std::size_t{1}, static_cast<std::size_t>(1 / gutter) - 1);
@@ -191,10 +200,14 @@ void packCharts(std::vector<Chart>& charts, double gutter) {
     for (std::size_t k = 0; k < 2; ++k)
       scale = std::min(scale, 0.999 * side / std::max(frame.high[k] - frame.low[k], 1e-300));
   std::optional<Places> places;
-  for (;; scale *= kSmaller) {
-    places = charts.size() > kMostMasks ? placeBoxes(frames, order, scale, side)
-                                        : placeMasks(charts, frames, order, {scale, cells});
+  for (;;) {
+    for (const std::vector<std::size_t>& order : orders) {
+      places = charts.size() > kMostMasks ? placeBoxes(frames, order, scale, side)
+                                          : placeMasks(charts, frames, order, {scale, cells});
+      if (places) break;
+    }
     if (places) break;
+    scale *= kSmaller;
   }
   const double cell = 1 / (side + 1);
   for (std::size_t i = 0; i < charts.size(); ++i)

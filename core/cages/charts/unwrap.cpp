@@ -287,14 +287,15 @@ void standUpright(Chart& chart, const UnwrapOptions& options) {
 }
 
 /// Sides of props are joined where they lie flat together; too many charts of any model where it can be borne.
-void joinCharts(const TriangleMesh& mesh, Kind kind, std::vector<Chart>& charts) {
+void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, std::vector<Chart>& charts) {
   double area = 0;
   for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
   const double longest = kLongestChart * std::sqrt(area);
-  const bool isProp = kind == Kind::prop || kind == Kind::automatic;
-  if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kLeastFill, longest}, charts);
-  const std::size_t enough = isProp ? 10 : kind == Kind::body ? 8 : 2;
-  if (charts.size() > enough) mergeCharts(mesh, {kMostEnergy, enough, 0, longest}, charts);
+  const bool isProp = options.kind == Kind::prop || options.kind == Kind::automatic;
+  const Vec3 side = cross(options.up, options.front);
+  if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kLeastFill, longest, side}, charts);
+  const std::size_t enough = isProp ? 10 : options.kind == Kind::body ? 8 : 2;
+  if (charts.size() > enough) mergeCharts(mesh, {kMostEnergy, enough, 0, longest, {0, 0, 0}}, charts);
 }
 
 /// Gives a chart the area that it has on the model.
@@ -321,7 +322,7 @@ bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progre
     if (!going) return false;
   }
   std::vector<Chart>& charts = unwrapper.charts();
-  joinCharts(mesh, options.kind, charts);
+  joinCharts(mesh, options, charts);
   for (Chart& chart : charts) {
     scaleToArea(chart);
     standUpright(chart, options);
