@@ -12,7 +12,9 @@ import {
   withMeshNormals,
 } from './mesh.ts';
 import type { Sdf } from './sdf.ts';
+import { type Slit, slit } from './slit.ts';
 import { onOpenEdge, spaceOf } from './space.ts';
+import { weldPositions } from './truth.ts';
 import { borderLoops, fill, perimeter } from './unwrap.ts';
 import { length, sub, type Vec3 } from './vec.ts';
 
@@ -20,26 +22,29 @@ export interface CagePlan {
   solid: Sdf; // the model's outer skin, symmetric in x, with everything bridged over that the cage shall bridge
   bounds: Bounds; // of the solid and the distance around it
   edge: number; // edge length of the fine surface the cage is made from
+  lens?: (p: Vec3) => Vec3; // as of `surface`; the bounds are then in its space
   distance: number; // from the skin
   keep: (p: Vec3) => number; // negative where the cage has a hole or ends
   triangles: number; // at most this many
   focus?: (p: Vec3) => Vec3; // enlarges the regions that deserve more of them
+  seams?: readonly Slit[]; // of one half: vertices on them get copies
   wrap: Mesh; // the outside of this must lie within
   seen: (vertex: number) => boolean; // which vertices of `wrap` are outside
 }
 
 /** Makes a cage: the offset of the outer skin, holes cut, one half simplified and mirrored, then pushed out where it dips into the skin. */
 export const makeCage = (plan: CagePlan): Mesh => {
-  const skin = surface(plan.solid, plan.bounds, plan.edge);
+  const skin = surface(plan.solid, plan.bounds, plan.edge, plan.lens);
   const space = spaceOf(skin);
   // The solid's own field is only nearly a distance; the distance to its surface is.
   const grown: Sdf = (x, y, z) => {
     const rough = plan.solid(x, y, z);
-    if (Math.abs(rough) > 4 * plan.distance) return rough - plan.distance; // far from the surface it need not be exact
+    // Far from the cage it need not be exact.
+    if (rough > 4 * plan.distance || rough < -plan.distance) return rough - plan.distance;
     const distance = space.nearest([x, y, z]).distance;
     return (rough < 0 ? -distance : distance) - plan.distance;
   };
-  const fine = surface(grown, plan.bounds, plan.edge);
+  const fine = surface(grown, plan.bounds, plan.edge, plan.lens);
   const clipped = largestPart(
     clip(
       clip(fine, (p) => p[0]),
@@ -51,8 +56,30 @@ export const makeCage = (plan: CagePlan): Mesh => {
     clipped,
     borderLoops(clipped).filter((loop) => perimeter(clipped, loop) < kLeastHole * plan.distance),
   );
-  const cage = mirror(simplify(half, Math.floor(plan.triangles / 2), rimKeeper(half), plan.focus));
-  return pushOut(cage, plan);
+  const open = plan.seams ? slit(half, plan.seams) : half;
+  const cage = mirror(simplify(open, Math.floor(plan.triangles / 2), rimKeeper(half), plan.focus));
+  if (!plan.seams) return pushOut(cage, plan);
+  const welded = weldPositions(cage);
+  const pushed = pushOut(welded, plan);
+  const positions = cage.positions.slice();
+  cage.indices.forEach((v, i) => positions.set(point(pushed, welded.indices[i]!), 3 * v));
+  return { positions: evened(positions, cage.indices), indices: cage.indices };
+};
+
+/** Positions that are mirror images again, after each side was moved on its own; the triangles are as `mirror` makes them. */
+const evened = (positions: Float32Array, indices: Uint32Array): Float32Array => {
+  const out = positions.slice();
+  const half = indices.length / 2;
+  for (let i = 0; i < half; i++) {
+    const [left, right] = [3 * indices[i - (i % 3) + [0, 2, 1][i % 3]!]!, 3 * indices[half + i]!];
+    const x = left === right ? 0 : (positions[left]! - positions[right]!) / 2;
+    out.set(
+      [x, (positions[left + 1]! + positions[right + 1]!) / 2, (positions[left + 2]! + positions[right + 2]!) / 2],
+      left,
+    );
+    out.set([-x, out[left + 1]!, out[left + 2]!], right);
+  }
+  return out;
 };
 
 const kLeastHole = 2; // perimeter of a hole that is meant, in distances

@@ -23,7 +23,8 @@ export const finderOn = (skin: Mesh): Finder => {
     near: (p) => space.nearest(p).point,
     from: (direction, p) => {
       const hit = space.hit(add(p, scale(direction, kFar)), scale(direction, -1));
-      if (!hit) throw new Error(`finderOn: from ${direction.join(', ')} nothing is seen at ${p.join(', ')}`);
+      if (!hit || dot(sub(hit, p), direction) < 0)
+        throw new Error(`finderOn: from ${direction.join(', ')} nothing is seen at ${p.join(', ')}`);
       return hit;
     },
     furthest: (direction, p, radius) => {

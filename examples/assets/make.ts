@@ -24,8 +24,10 @@ import { writeGlb } from './glb.ts';
 import { drawTexture } from './image.ts';
 import { triangleCount, withMeshNormals } from './mesh.ts';
 import type { Model } from './model.ts';
+import { animalHead } from './models/animal-head.ts';
 import { car } from './models/car.ts';
 import { human, humanFused, humanMisaligned } from './models/human.ts';
+import { humanBody } from './models/human-body.ts';
 import { lizard } from './models/lizard.ts';
 import { templateFaults, writeTemplate } from './template.ts';
 import { offCageOf, truthOf } from './truth.ts';
@@ -34,15 +36,22 @@ const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, '../..');
 const out = join(root, 'build/assets');
 const kPaintSize = 1024;
+const kRays = 256; // of a vertex, to see what of it is seen
+const kFewRays = 64; // where a model is only to show that a template fits
 const checkIn = process.argv.includes('--templates'); // put the templates where they are checked in
 
-/** Each sample's maker, and the file in models/ that it comes from. A sample that borrows paints comes after their owner. */
-const models: Record<string, { make: () => Model; source: string }> = {
-  lizard: { make: lizard, source: 'lizard.ts' },
-  human: { make: human, source: 'human.ts' },
-  'human-fused': { make: humanFused, source: 'human.ts' },
-  'human-misaligned': { make: humanMisaligned, source: 'human.ts' },
-  car: { make: car, source: 'car.ts' },
+/**
+ * Each model's maker, and the files in models/ that it comes from; those whose first file is the same are made in one process.
+ * A sample that borrows paints comes after their owner. Some models are no samples: they only have a template made of them.
+ */
+const models: Record<string, { make: () => Model; sources: readonly [string, ...string[]]; isSample?: false }> = {
+  lizard: { make: lizard, sources: ['lizard.ts'] },
+  human: { make: human, sources: ['human.ts'] },
+  'human-fused': { make: humanFused, sources: ['human.ts'] },
+  'human-misaligned': { make: humanMisaligned, sources: ['human.ts'] },
+  car: { make: car, sources: ['car.ts'] },
+  'human-body': { make: humanBody, sources: ['human-body.ts', 'body.ts', 'human.ts'], isSample: false },
+  'animal-head': { make: animalHead, sources: ['animal-head.ts'], isSample: false },
 };
 
 /** One entry of build/assets/index.json; paths are relative to build/assets. */
@@ -56,14 +65,15 @@ interface Entry {
 }
 
 /** A number of everything a model's bytes depend on: its sources, and the versions of the libraries they call. */
-const fingerprint = (source: string): string => {
+const fingerprint = (name: string): string => {
   const hash = createHash('sha256');
   const shared = readdirSync(here)
     .filter((f) => f.endsWith('.ts'))
     .sort();
-  for (const file of [...shared, join('models', source)]) hash.update(file).update(readFileSync(join(here, file)));
-  for (const name of ['manifold-3d', 'meshoptimizer', '@gltf-transform/core', 'pngjs', 'three', 'three-mesh-bvh'])
-    hash.update(JSON.parse(readFileSync(join(root, 'node_modules', name, 'package.json'), 'utf8')).version);
+  for (const file of [...shared, ...models[name]!.sources.map((f) => join('models', f))])
+    hash.update(file).update(readFileSync(join(here, file)));
+  for (const library of ['manifold-3d', 'meshoptimizer', '@gltf-transform/core', 'pngjs', 'three', 'three-mesh-bvh'])
+    hash.update(JSON.parse(readFileSync(join(root, 'node_modules', library, 'package.json'), 'utf8')).version);
   return hash.digest('hex');
 };
 
@@ -77,16 +87,19 @@ const write = async (model: Model, folder: string, lent: (name: string) => Entry
     ncz: false,
   };
   const cageGlb = await writeGlb(`${model.title}: cage`, [cage]);
-  const truth = truthOf(model.parts, model.cage, model.inside);
+  const isSample = models[model.name]!.isSample !== false;
+  const truth = truthOf(model.parts, model.cage, model.inside, isSample ? kRays : kFewRays);
   const faults = await faultsOf(model, truth, { target, cage: cageGlb });
   if (faults.length > 0) throw new Error(`assets: ${model.name} is not as it should be:\n  ${faults.join('\n  ')}`);
-  writeFileSync(join(folder, 'target.glb'), target);
-  writeFileSync(join(folder, 'cage.glb'), cageGlb);
+  // Whatever has a target and a cage is taken for a sample.
+  writeFileSync(join(folder, isSample ? 'target.glb' : 'model.glb'), target);
+  if (isSample) writeFileSync(join(folder, 'cage.glb'), cageGlb);
   writeFileSync(join(folder, 'truth.json'), JSON.stringify(truth));
   if (model.template) {
     const bytes = await writeTemplate(model.template);
     const wrong = templateFaults(model.template, bytes);
-    if (wrong.length > 0) throw new Error(`assets: ${wrong.join('\n  ')}`);
+    if (wrong.length > 0)
+      throw new Error(`assets: ${model.template.name} is not as it should be:\n  ${wrong.join('\n  ')}`);
     writeFileSync(join(folder, 'template.glb'), bytes);
     writeFileSync(
       join(folder, 'template.json'),
@@ -134,7 +147,7 @@ const madeOf = (name: string): Made | undefined =>
 
 /** Makes a model aside and moves it into place whole, so that nobody finds half of one. */
 const makeHere = async (name: string): Promise<void> => {
-  const { make, source } = models[name]!;
+  const { make } = models[name]!;
   const started = performance.now();
   const folder = join(out, name);
   const aside = join(out, `.${name}-${process.pid}`);
@@ -143,7 +156,7 @@ const makeHere = async (name: string): Promise<void> => {
     const model = make();
     const entry = await write(model, aside, (other) => madeOf(other)?.entry.paints ?? []);
     const { template } = model;
-    const made: Made = { print: fingerprint(source), entry, ...(template && { template: template.name }) };
+    const made: Made = { print: fingerprint(name), entry, ...(template && { template: template.name }) };
     writeFileSync(join(aside, 'made.json'), JSON.stringify(made));
     rmSync(folder, { recursive: true, force: true });
     renameSync(aside, folder);
@@ -165,18 +178,18 @@ const makeAside = (names: string[]): Promise<boolean> =>
 mkdirSync(out, { recursive: true });
 const stale = Object.keys(models).filter((name) => {
   if (wanted.length > 0 && !wanted.includes(name)) return false;
-  return force || madeOf(name)?.print !== fingerprint(models[name]!.source);
+  return force || madeOf(name)?.print !== fingerprint(name);
 });
-const sources = [...new Set(stale.map((name) => models[name]!.source))];
+const sourceOf = (name: string): string => models[name]!.sources[0];
+const sources = [...new Set(stale.map(sourceOf))];
 if (sources.length > 1) {
-  const went = await Promise.all(
-    sources.map((source) => makeAside(stale.filter((name) => models[name]!.source === source))),
-  );
+  const went = await Promise.all(sources.map((source) => makeAside(stale.filter((name) => sourceOf(name) === source))));
   if (!went.every(Boolean)) process.exit(1);
 } else for (const name of stale) await makeHere(name);
 
 const list = join(out, `.index-${process.pid}.json`);
-const index = Object.keys(models).flatMap((name) => madeOf(name)?.entry ?? []);
+const samples = Object.keys(models).filter((name) => models[name]!.isSample !== false);
+const index = samples.flatMap((name) => madeOf(name)?.entry ?? []);
 writeFileSync(list, `${JSON.stringify(index, null, 2)}\n`);
 renameSync(list, join(out, 'index.json'));
 

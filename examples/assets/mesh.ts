@@ -356,8 +356,10 @@ export const withMeshNormals = (mesh: Mesh): Mesh => {
     for (const v of c) n.forEach((d, k) => (sums[3 * v + k]! += d));
   }
   const normals = new Float32Array(sums.length);
-  for (let v = 0; v < vertexCount(mesh); v++)
-    normals.set(unit([sums[3 * v]!, sums[3 * v + 1]!, sums[3 * v + 2]!]), 3 * v);
+  for (let v = 0; v < vertexCount(mesh); v++) {
+    const n = unit([sums[3 * v]!, sums[3 * v + 1]!, sums[3 * v + 2]!]);
+    normals.set(length(n) > 0 ? n : [0, 1, 0], 3 * v); // all triangles there are flat: any will do
+  }
   return { ...mesh, normals };
 };
 

@@ -1,9 +1,10 @@
 import { Document, NodeIO } from '@gltf-transform/core';
+import { cageFaults } from './check.ts';
 import type { Landmarks } from './landmarks.ts';
-import { components, diagonalOf, type Mesh, point, triangleCount, vertexCount } from './mesh.ts';
+import { diagonalOf, type Mesh, point, vertexCount } from './mesh.ts';
 import { spaceOf } from './space.ts';
 import { weldPositions } from './truth.ts';
-import { borderLoops, uvOverlap } from './unwrap.ts';
+import { borderLoops } from './unwrap.ts';
 import { add, length, mirrorX, scale, sub, type Vec3 } from './vec.ts';
 
 /** A cage to be fitted to other models of its kind, as it ships with the package. */
@@ -17,7 +18,7 @@ export interface Template {
 }
 
 /** Whether a landmark is inside of a model rather than on its skin. */
-const isInner = (name: string): boolean => /^joint_|_centre(_|$)/.test(name);
+const isInner = (name: string): boolean => /^(joint|wrist)_|_centre(_|$)/.test(name);
 
 /**
  * Makes a cage's positions and UVs mirror images to the last bit: u becomes 1 - u where x becomes -x.
@@ -98,28 +99,15 @@ export const namedHoles = (cage: Mesh, middles: Record<string, Vec3>): Record<st
   return holes;
 };
 
-const kTriangles = { head: [300, 900], body: [1200, 1600], prop: [300, 900] } as const;
 const kOffSkin = 1e-3; // of the diagonal
-const kOverlap = 1e-3; // share of the covered UV area: what a grid's rounding can amount to
 const kExact = 1e-6; // in model units and UV: what rounding leaves of a mirror image
 const kBytes = 60_000;
 
 /** What is wrong with a template, one line each; nothing if it is as it should be. */
 export const templateFaults = (template: Template, bytes: Uint8Array): string[] => {
   const { cage, kind, landmarks, holes, skin } = template;
-  const faults: string[] = [];
-  const expect = (holds: boolean, fault: string): void =>
-    void (holds || faults.push(`template ${template.name}: ${fault}`));
-  const triangles = triangleCount(cage);
-  const [fewest, most] = kTriangles[kind];
-  expect(triangles >= fewest && triangles <= most, `${triangles} triangles, not ${fewest} to ${most}`);
-  expect(new Set(components(weldPositions(cage))).size === 1, 'the cage is not in one piece');
-  const overlap = uvOverlap(cage);
-  expect(overlap < kOverlap, `${(100 * overlap).toFixed(2)} % of the UV area is covered twice`);
-  expect(
-    cage.uvs!.every((x) => x >= 0 && x <= 1),
-    'UVs leave 0..1',
-  );
+  const faults = cageFaults(cage, kind);
+  const expect = (holds: boolean, fault: string): void => void (holds || faults.push(fault));
   const all = Array.from({ length: vertexCount(cage) }, (_, v) => v);
   const isMirrored = (v: number): boolean => {
     const p = mirrorX(point(cage, v));

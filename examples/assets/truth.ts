@@ -20,22 +20,24 @@ export interface Truth {
   }[];
 }
 
-const kRays = 256; // over the whole sphere; half of them on a vertex's own side
 const kGolden = Math.PI * (3 - Math.sqrt(5));
 
 /** Directions spread evenly over the sphere. */
-const directions: Vec3[] = Array.from({ length: kRays }, (_, k) => {
-  const z = 1 - (2 * (k + 0.5)) / kRays;
-  const r = Math.sqrt(1 - z * z);
-  return [r * Math.cos(k * kGolden), r * Math.sin(k * kGolden), z];
-});
+const spread = (count: number): Vec3[] =>
+  Array.from({ length: count }, (_, k) => {
+    const z = 1 - (2 * (k + 0.5)) / count;
+    const r = Math.sqrt(1 - z * z);
+    return [r * Math.cos(k * kGolden), r * Math.sin(k * kGolden), z];
+  });
 
 /**
  * Finds the truth about a model from what each part is for and from what of it can be seen.
  * @param inside  Says of a point of an otherwise paintable part that it belongs to the inside of the model (a mouth's lining), where
  *                painting it or not is a matter of taste.
+ * @param rays  Directions that a vertex is looked at from: over the whole sphere, half of them on its own side.
  */
-export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) => boolean): Truth => {
+export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) => boolean, rays: number): Truth => {
+  const directions = spread(rays);
   const whole = join(...parts.map((p) => p.mesh));
   const count = vertexCount(whole);
   const space = spaceOf(whole);
@@ -64,7 +66,7 @@ export const truthOf = (parts: readonly Part[], cage: Mesh, inside: (p: Vec3) =>
       const free = directions.filter((d) => dot(d, n) > 0 && !space.hits(from, d)).length;
       const ncz = typeof part.ncz === 'function' ? part.ncz(p) : part.ncz;
       const hidden = !ncz && free === 0;
-      const exposed = free >= kRays / 8; // a quarter of the half that is on its side
+      const exposed = free >= rays / 8; // a quarter of the half that is on its side
       truth.ncz.push(ncz ? 1 : 0);
       truth.hidden.push(hidden ? 1 : 0);
       truth.ignore.push((!ncz && (!exposed || inside(p))) || part.ambiguous ? 1 : 0);

@@ -1,4 +1,14 @@
-import { boundsOf, corners, faceNormal, type Mesh, openEdges, point, triangleCount, vertexCount } from './mesh.ts';
+import {
+  boundsOf,
+  components,
+  corners,
+  faceNormal,
+  type Mesh,
+  openEdges,
+  point,
+  triangleCount,
+  vertexCount,
+} from './mesh.ts';
 import { add, cross, dot, length, scale, sub, unit, type Vec3 } from './vec.ts';
 
 type Uv = readonly [number, number];
@@ -7,7 +17,7 @@ type Uv = readonly [number, number];
  * Gives each vertex a copy for each group of its triangles that `joined` edges hold together.
  * @param joined  Says of an edge (two vertices) and its two triangles whether they stay together.
  */
-const splitAlong = (
+export const splitAlong = (
   mesh: Mesh,
   joined: (a: number, b: number, left: number, right: number) => boolean,
 ): { mesh: Mesh; source: number[] } => {
@@ -204,13 +214,19 @@ const kRelaxRounds = 60;
  */
 export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, zoom: (p: Vec3) => number = () => 1): Mesh => {
   const { mesh: cut } = splitAlong(mesh, (a, b) => !seam(point(mesh, a), point(mesh, b)));
+  const { filled, flat } = flatten(cut, zoom);
+  const uvs = upright(filled, flat, [1, 0, 0], 0).slice(0, vertexCount(cut));
+  return { ...cut, uvs: pack(uvs, new Int32Array(uvs.length), 1, 0.01) };
+};
+
+/** Lays a disc with holes out flat, in the lengths of the model times `zoom`; its holes are filled. */
+const flatten = (cut: Mesh, zoom: (p: Vec3) => number): { filled: Mesh; flat: Flat } => {
   const loops = borderLoops(cut);
   loops.sort((a, b) => perimeter(cut, b) - perimeter(cut, a));
   if (loops.length === 0) throw new Error('pelt: the mesh is closed; it needs a seam or a hole');
   const [outer, ...holes] = loops as [number[], ...number[][]];
   const filled = fill(cut, holes);
-  const flat = upright(filled, relax(filled, outer, onDisc(filled, outer), zoom)).slice(0, vertexCount(cut));
-  return { ...cut, uvs: pack(flat, new Int32Array(flat.length), 1, 0.01) };
+  return { filled, flat: relax(filled, outer, onDisc(filled, outer), zoom) };
 };
 
 /** Closes holes with fans about their middles, so that they keep their shape and nothing is laid over them. */
@@ -365,19 +381,21 @@ const relax = (mesh: Mesh, outer: number[], start: Flat, zoom: (p: Vec3) => numb
   return flat;
 };
 
-/** Turns a layout so that +x of the model points to the right. */
-const upright = (mesh: Mesh, flat: Flat): Uv[] => {
+/** Turns a layout so that `direction` of the model points along axis 0 (to the right) or 1 (upwards). */
+const upright = (mesh: Mesh, flat: Flat, direction: Vec3, axis: 0 | 1): Uv[] => {
   const count = vertexCount(mesh);
   const mean = flat.map((a) => a.reduce((s, x) => s + x, 0) / count) as [number, number];
   let [c, s] = [0, 0];
   for (let v = 0; v < count; v++) {
-    c += point(mesh, v)[0] * (flat[0][v]! - mean[0]);
-    s += point(mesh, v)[0] * (flat[1][v]! - mean[1]);
+    const along = dot(point(mesh, v), direction);
+    c += along * (flat[0][v]! - mean[0]);
+    s += along * (flat[1][v]! - mean[1]);
   }
   const norm = Math.hypot(c, s) || 1;
   return Array.from({ length: count }, (_, v): Uv => {
     const [x, y] = [flat[0][v]!, flat[1][v]!];
-    return [(c * x + s * y) / norm, (c * y - s * x) / norm];
+    const [ahead, across] = [(c * x + s * y) / norm, (c * y - s * x) / norm];
+    return axis === 0 ? [ahead, across] : [-across, ahead];
   });
 };
 
@@ -391,6 +409,101 @@ const isSimple = (polygon: Uv[]): boolean => {
       if (area(a, b, c) * area(a, b, d) <= 0 && area(c, d, a) * area(c, d, b) <= 0) return false;
     }
   return true;
+};
+
+/** Where a chart of a symmetric mesh goes: those of the middle are stacked in the middle, the left ones at a side. */
+export interface Place {
+  near: Vec3; // the middle of the chart's triangles is about here; left is +x
+  up: Vec3; // this direction of the model points upwards
+}
+
+/**
+ * Lays out the connected pieces of a mesh that `mirror` made of two halves, so that the layout is its own mirror image.
+ * @param places  Of the pieces in the middle and of the left ones, from top to bottom.
+ * @param zoom    How large a place shall be drawn.
+ */
+export const mirroredAtlas = (mesh: Mesh, places: readonly Place[], zoom: (p: Vec3) => number): Mesh => {
+  const piece = components(mesh);
+  const half = mesh.indices.length / 2;
+  const twinOf = new Map<number, number>(); // of the left half's vertices
+  for (let i = 0; i < half; i++) {
+    const turned = i - (i % 3) + [0, 2, 1][i % 3]!;
+    twinOf.set(mesh.indices[turned]!, mesh.indices[half + i]!);
+  }
+  const left = [...new Set(Array.from(mesh.indices.subarray(0, half), (v) => piece[v]!))];
+  const charts = left.map((id) => {
+    const indices = mesh.indices.filter((_, i) => piece[mesh.indices[i - (i % 3)]!] === id);
+    const vertices = [...new Set(indices)].sort((a, b) => a - b);
+    const own = new Map(vertices.map((v, i) => [v, i]));
+    const part: Mesh = {
+      positions: Float32Array.from(vertices.flatMap((v) => point(mesh, v))),
+      indices: indices.map((v) => own.get(v)!),
+    };
+    const centre = scale(
+      vertices.map((v) => point(mesh, v)).reduce((a, b) => add(a, b)),
+      1 / vertices.length,
+    );
+    return { vertices, own, part, centre, whole: [...twinOf].some(([a, b]) => a !== b && own.has(a) && own.has(b)) };
+  });
+  if (charts.length !== places.length)
+    throw new Error(
+      `mirroredAtlas: ${places.length} places for ${charts.length} charts, about ${charts.map(({ centre, vertices }) => `${centre.map((x) => x.toFixed(2))} (${vertices.length})`).join(', ')}`,
+    );
+  const columns: { chart: (typeof charts)[number]; uv: Uv[]; size: Uv }[][] = [[], []];
+  for (const { near, up } of places) {
+    const chart = charts.reduce((a, b) => (length(sub(b.centre, near)) < length(sub(a.centre, near)) ? b : a));
+    const { filled, flat } = flatten(chart.part, zoom);
+    const uv = upright(filled, flat, up, 1).slice(0, chart.vertices.length);
+    if (chart.whole)
+      symmetrise(
+        uv,
+        chart.vertices.map((v) => chart.own.get(twinOf.get(v) ?? -1)),
+      );
+    const low = [0, 1].map((k) => Math.min(...uv.map((p) => p[k]!))) as [number, number];
+    const high = [0, 1].map((k) => Math.max(...uv.map((p) => p[k]!))) as [number, number];
+    columns[chart.whole ? 0 : 1]!.push({
+      chart,
+      uv: uv.map((p) => [p[0] - low[0], high[1] - p[1]]), // v of an image points downwards
+      size: [high[0] - low[0], high[1] - low[1]],
+    });
+  }
+  const [middle, side] = columns.map((c) => Math.max(0, ...c.map(({ size }) => size[0]))) as [number, number];
+  const tall = columns.map((c) => c.reduce((sum, { size }) => sum + size[1], 0));
+  const fits = [
+    (1 - 4 * kGutter) / (middle + 2 * side),
+    ...tall.map((t, i) => (1 - (columns[i]!.length + 1) * kGutter) / t),
+  ];
+  const s = Math.min(...fits);
+  const uvs = new Float32Array(2 * vertexCount(mesh));
+  columns.forEach((column, i) => {
+    let y = kGutter;
+    for (const { chart, uv, size } of column) {
+      const x = i === 0 ? 0.5 - (s * size[0]) / 2 : 0.5 + (s * middle) / 2 + kGutter;
+      uv.forEach(([a, b], n) => {
+        const v = chart.vertices[n]!;
+        uvs.set([x + s * a, y + s * b], 2 * v);
+        const twin = twinOf.get(v);
+        if (!chart.whole && twin !== undefined) uvs.set([1 - (x + s * a), y + s * b], 2 * twin);
+      });
+      y += s * size[1] + kGutter;
+    }
+  });
+  return { ...mesh, uvs };
+};
+
+const kGutter = 0.01; // around each chart, in UV
+
+/** Makes a layout its own mirror image, about the middle of its vertices. */
+const symmetrise = (uv: Uv[], twins: readonly (number | undefined)[]): void => {
+  const middle = uv.reduce((s, p) => s + p[0], 0) / uv.length;
+  twins.forEach((w, v) => {
+    if (w === undefined) return;
+    const [a, b] = [uv[v]!, uv[w]!];
+    const u = v === w ? 0 : (a[0] - b[0]) / 2;
+    const height = (a[1] + b[1]) / 2;
+    uv[v] = [middle + u, height];
+    uv[w] = [middle - u, height];
+  });
 };
 
 /** The open edges of a mesh as closed loops of vertices, in the direction of their triangles. */

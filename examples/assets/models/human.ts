@@ -266,7 +266,7 @@ const tongueSolid: Sdf = mirrored(
 /** Looks closely at the face, less so at the skull, least at the shoulders. */
 const faceLens = (p: Vec3): Vec3 => [bend(p[0], -1, 0.22), bend(p[1], -0.42, 0.13), bend(p[2], 0.12, 1)];
 /** A map with slope 1 within [from, to] and 2 outside. */
-const bend = (x: number, from: number, to: number): number => x + Math.min(x - from, 0) + Math.max(x - to, 0);
+export const bend = (x: number, from: number, to: number): number => x + Math.min(x - from, 0) + Math.max(x - to, 0);
 
 /** Enlarges eyes, mouth and ears, so that they keep more of their triangles. */
 export const faceFocus = (p: Vec3): Vec3 => {
@@ -552,8 +552,9 @@ const harlequin: Shade = (p) => {
 const bounds = { min: [-0.03, -0.76, -0.22] as Vec3, max: [0.5, 0.34, 0.5] as Vec3 }; // in the lens's space
 const keepBust = (p: Vec3): number => p[1] - kBottom;
 
-const meshOf = (solid: Sdf, triangles: number): Mesh =>
-  symmetricSurface(solid, { bounds, edge: 0.0088, triangles, lens: faceLens, focus: faceFocus, keep: keepBust });
+const kEdge = 0.0088; // of the fine meshes, in the lens's space
+const meshOf = (solid: Sdf, triangles: number, edge = kEdge): Mesh =>
+  symmetricSurface(solid, { bounds, edge, triangles, lens: faceLens, focus: faceFocus, keep: keepBust });
 
 const cageFor = (skin: Mesh): Mesh => cageOf(skin, 800, (p) => p[1] - (kBottom - 0.035));
 
@@ -621,7 +622,7 @@ const templateOf = (skin: Mesh): Template => {
   return { name: 'human-head', kind: 'head', cage, landmarks: headLandmarks(skin), holes, skin };
 };
 
-const others = (): Part[] => [
+export const others = (): Part[] => [
   textured('upper-teeth', boxAtlas(teeth(-0.27, -1, 0.004, 1.12)), toothShade, 64, 0.3, true),
   textured('lower-teeth', boxAtlas(teeth(-0.366, 1, 0.016, 0.9)), toothShade, 64, 0.3, true),
   textured(
@@ -654,9 +655,14 @@ let made: Model | undefined;
 /** A human head and shoulders, lips a little apart. */
 export const human = (): Model => (made ??= makeHuman());
 
+/** The skin of the head and shoulders, its mouth and eyes open; `edge` as of the mesh it is made from. */
+export const headSkin = (triangles: number, edge = kEdge): Mesh => meshOf(skinSolid, triangles, edge);
+/** The left eye. */
+export const leftEye = (): Mesh => eyeball(kEye, kEyeRadius, kLook, 10, 18, 0.03);
+
 const makeHuman = (): Model => {
-  const skin = meshOf(skinSolid, 9000);
-  const eye = eyeball(kEye, kEyeRadius, kLook, 10, 18, 0.03);
+  const skin = headSkin(9000);
+  const eye = leftEye();
   return {
     name: 'human',
     title: 'Human bust',
