@@ -34,6 +34,9 @@ const shipped = preset === 'wasm';
 const out = shipped ? at('dist') : at('build', preset, 'package');
 const stamp = at('build', preset, 'package.stamp');
 
+/** Template cages, made by `npm run assets` and checked in: the package is built without the models. */
+const kTemplates = 'examples/assets/templates';
+
 /** Options of esbuild for every file of the package. */
 const common = {
   bundle: true,
@@ -53,7 +56,7 @@ const common = {
 const eager = { banner: { js: '//# allFunctionsCalledOnLoad' } };
 
 const hash = hashOf(
-  ['core', 'wasm', 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'],
+  ['core', 'wasm', kTemplates, 'package.json', 'package-lock.json', 'CMakeLists.txt', 'CMakePresets.json'],
   preset,
 );
 if (existsSync(stamp) && readFileSync(stamp, 'utf8') === hash && existsSync(join(out, 'index.js'))) {
@@ -124,6 +127,7 @@ async function buildPackage() {
       cpSync(at('build', preset, 'wasm', name), join(fresh, name));
       chmodSync(join(fresh, name), 0o644);
     }
+    cpSync(at(kTemplates), join(fresh, 'templates'), { recursive: true });
     const tsc = at('node_modules/@typescript/native/bin/tsc');
     run(process.execPath, [tsc, '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
     writeFileSync(join(fresh, 'THIRD-PARTY-NOTICES.txt'), noticesOf(root, bundled, at('build', preset)));
@@ -136,7 +140,7 @@ async function buildPackage() {
 async function bundleEntries(bundle) {
   // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
   const shared = {
-    external: ['#spawn', '#spawn-cages', './index.js', 'three'],
+    external: ['#spawn', '#spawn-cages', '#read-file', './index.js', 'three'],
     plugins: [wasmModules('wasm-file.ts', { index: './index.js' })],
   };
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager });
@@ -154,6 +158,8 @@ async function bundleEntries(bundle) {
 /** The entries that make cages have a WebAssembly module of their own; their workers are files that need no other script. */
 async function bundleCages(bundle, shared) {
   const alone = (read) => ({ ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts', { read })] });
+  await bundle('core/read-file.ts', 'read-file.js', 'neutral', {});
+  await bundle('core/read-file-node.ts', 'read-file-node.js', 'node', {});
   await bundle('cages/spawn.ts', 'spawn-cages.js', 'neutral', shared);
   await bundle('cages/spawn-node.ts', 'spawn-cages-node.js', 'node', shared);
   await bundle('cages/thread.ts', 'cages-thread.js', 'neutral', alone('read-wasm.ts'));

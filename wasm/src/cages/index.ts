@@ -22,6 +22,8 @@ import type {
 
 export { CagecastError } from '../index.js';
 export { cageGlb } from './glb.js';
+export { type TemplateName, templateNames } from './template-names.js';
+export { loadTemplate } from './templates.js';
 export type * from './types.js';
 
 /** Options of every call. */

@@ -1,4 +1,7 @@
+import { existsSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { cageGlb } from '../cages/glb.js';
+import { templateNames } from '../cages/template-names.js';
 import type { Cage, Fit, Landmarks } from '../cages/types.js';
 import { templateOf } from '../gltf/cage-file.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
@@ -68,7 +71,7 @@ export async function makeCommand(command: MakeCommand, progress: Progress): Pro
  */
 export async function fitCommand(command: FitCommand, progress: Progress): Promise<CageVerdict> {
   const { template: templatePath, target, templateLandmarks, landmarks: landmarksPath } = command;
-  const read = withUvs(await readModel(templatePath, progress));
+  const read = withUvs(await readModel(templateFile(templatePath), progress));
   const own = templateOf(read.file, read.extracted);
   const template = {
     ...own,
@@ -83,6 +86,12 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
   const files = { template: templatePath, landmarks: landmarksPath };
   const fit = await fitCageTo(model, { template, landmarks, files }, progress);
   return finish(command, model, fit.cage, describeFit(fit, landmarks ?? {}), progress);
+}
+
+/** The file of a template: of one that comes with the package if its name is given, and no file is called so. */
+function templateFile(path: string): string {
+  const isName = (templateNames as readonly string[]).includes(path) && !existsSync(path);
+  return isName ? fileURLToPath(new URL(`./templates/${path}.glb`, import.meta.url)) : path;
 }
 
 /** Reads landmarks: a JSON object, name → [x, y, z]. @throws {InputError} that names the file and the landmark. */

@@ -62,7 +62,10 @@ Examples:
   output(
     program
       .command('fit')
-      .argument('<TEMPLATE>', 'GLB or glTF of a cage with UVs, made for another model')
+      .argument(
+        '<TEMPLATE>',
+        'GLB or glTF of a cage with UVs, made for another model; or human-head, human-body, animal-head or car',
+      )
       .argument('<TARGET>', 'GLB or glTF of the model that gets the cage'),
   )
     .description('move a template cage onto TARGET, so that one texture fits both; print a verdict')
@@ -78,7 +81,7 @@ Files of landmarks are JSON, name → [x, y, z] in the model's space: { "nose_ti
 Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.
 
 Examples:
-  cagecast fit template.glb head.glb -o cage.glb
+  cagecast fit human-head head.glb -o cage.glb
   cagecast fit template.glb head.glb --landmarks head.json -o cage.glb --html report.html`,
     )
     .action(
