@@ -1,0 +1,98 @@
+#include "fit/check_landmarks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace cagecast::cages {
+
+namespace {
+
+/// Two landmarks that are closer than this share of the diagonal are on one spot.
+constexpr double kOneSpot = 1e-3;
+/// A landmark that is off by more than this share of the diagonal, after the others are aligned, is a mistake.
+constexpr double kMostOff = 0.15;
+
+std::string text(const char* format, double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::string mirrorName(const std::string& name) {
+  for (const auto& [end, other] : {std::pair<std::string, std::string>{"_left", "_right"}, {"_right", "_left"}})
+    if (name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0)
+      return name.substr(0, name.size() - end.size()) + other;
+  return {};
+}
+
+}  // namespace
+
+Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, double size, Problem problem) {
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    const Landmark& a = landmarks[i];
+    for (const float x : a.position)
+      if (!std::isfinite(x)) return {problem, std::string(name) + ": " + a.name + " is not a finite position"};
+    for (std::size_t j = 0; j < i; ++j) {
+      const Landmark& b = landmarks[j];
+      if (a.name == b.name) return {problem, std::string(name) + ": " + a.name + " is there twice"};
+      // Joints of a rig may coincide.
+      if (isOnSkin(a.name) && isOnSkin(b.name) && length(positionOf(a) - positionOf(b)) < kOneSpot * size)
+        return {problem, std::string(name) + ": " + b.name + " and " + a.name + " are on one spot; each needs its own"};
+    }
+  }
+  return {};
+}
+
+Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                       const std::vector<bool>& given, double diagonal) {
+  std::vector<Vec3> a, b;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (!isOnSkin(from[i].name) && from[i].name.rfind("joint_", 0) == 0) continue;
+    a.push_back(positionOf(from[i]));
+    b.push_back(positionOf(to[i]));
+  }
+  if (a.size() < 3) return {};
+  const auto residual = [](const std::vector<Vec3>& p, const std::vector<Vec3>& q) {
+    const Similarity map = fitSimilarity(p, q);
+    double sum = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) sum += length(map.inverse(q[i]) - p[i]);
+    return sum / static_cast<double>(p.size());
+  };
+  // Left and right swapped: the mirrored names fit much better.
+  std::vector<Vec3> swapped;
+  std::size_t pairs = 0;
+  std::string pairName;
+  for (std::size_t i = 0, k = 0; i < from.size(); ++i) {
+    if (from[i].name.rfind("joint_", 0) == 0) continue;
+    const Landmark* other = findLandmark(to, mirrorName(to[i].name));
+    if (other != nullptr) {
+      ++pairs;
+      if (pairName.empty()) pairName = to[i].name;
+    }
+    swapped.push_back(other != nullptr ? positionOf(*other) : b[k]);
+    ++k;
+  }
+  const double asGiven = residual(a, b);
+  if (pairs > 0 && asGiven > 0.02 * diagonal && residual(a, swapped) < 0.5 * asGiven)
+    return {Problem::badLandmarks,
+            "landmarks: " + pairName + " is on the other side: left and right are the figure's own, not the viewer's"};
+  // One at a time: where the others put it.
+  for (std::size_t skip = 0, i = 0; i < from.size() && a.size() > 3; ++i) {
+    if (from[i].name.rfind("joint_", 0) == 0) continue;
+    const std::size_t at = skip++;
+    if (!given[i]) continue;
+    std::vector<Vec3> p = a, q = b;
+    p.erase(p.begin() + static_cast<std::ptrdiff_t>(at));
+    q.erase(q.begin() + static_cast<std::ptrdiff_t>(at));
+    const Similarity map = fitSimilarity(p, q);
+    const double off = length(map.inverse(b[at]) - a[at]) / diagonal;
+    if (off > kMostOff && residual(p, q) < 0.5 * residual(a, b))
+      return {Problem::badLandmarks,
+              "landmarks: " + from[i].name + " is " + text("%.0f", 100 * off) +
+                  " % of the diagonal away from where the others put it; at most 15 % is expected"};
+  }
+  return {};
+}
+
+}  // namespace cagecast::cages

@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <cmath>
+
+#include "cagecast/cages.hpp"
+#include "fit/bones.hpp"
+#include "fit/check_landmarks.hpp"
+#include "fit/finish.hpp"
+#include "fit/rim.hpp"
+#include "fit/template_cage.hpp"
+#include "fit/tighten.hpp"
+#include "fit/warp.hpp"
+#include "hull/hull.hpp"
+#include "mesh/check_model.hpp"
+#include "mesh/part_names.hpp"
+
+/// The fit: landmarks or bones say where everything belongs, a smooth map carries the cage there, and the hull of the
+/// target draws it onto its surface without letting it slide. All in the space of the template, so that how the target
+/// is turned and scaled makes no difference.
+namespace cagecast::cages {
+
+namespace {
+
+/// Lengths in diagonals of the template's cage.
+struct Settings {
+  double closing;
+  std::uint32_t voxels;
+  TightenOptions tighten;
+};
+constexpr Settings kHead{0.022, 80, {.reach = 0.06, .sliding = 0.5, .stiffest = 30, .softest = 1}};
+constexpr Settings kBody{0.010, 200, {.reach = 0.02, .sliding = 0.5, .stiffest = 30, .softest = 3}};
+/// The hull is at least this far off, in diagonals: templates whose landmarks lie on the cage.
+constexpr double kLeastOffset = 0.003;
+constexpr std::size_t kLeastLandmarks = 4;
+constexpr const char* kFirstFive = "eye_centre_left, eye_centre_right, nose_tip, lip_lower and chin";
+
+/// Shares of the work, for progress.
+constexpr double kLandmarksEnd = 0.3, kHullEnd = 0.6, kTightenEnd = 0.85;
+
+/// What is known of both models.
+struct Pairs {
+  std::vector<Landmark> from, to;  ///< In the same order; `to` in the target's space, then in the template's.
+  std::vector<bool> given;
+};
+
+Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, const std::vector<Landmark>& found,
+                      Pairs& out, FitReport& report) {
+  for (const Landmark& landmark : given)
+    if (findLandmark(from.landmarks, landmark.name) == nullptr)
+      return {Problem::badLandmarks, "landmarks: the template has no " + landmark.name};
+  for (const Landmark& landmark : from.landmarks) {
+    const Landmark* there = findLandmark(given, landmark.name);
+    const bool isGiven = there != nullptr;
+    if (!isGiven) there = findLandmark(found, landmark.name);
+    if (there == nullptr) {
+      report.missing.push_back(landmark.name);
+      continue;
+    }
+    out.from.push_back(landmark);
+    out.to.push_back(*there);
+    out.given.push_back(isGiven);
+    report.used.push_back(*there);
+  }
+  if (out.from.size() >= kLeastLandmarks) return {};
+  return {Problem::badLandmarks, "landmarks: " + std::to_string(out.from.size()) + " are known, at least " +
+                                     std::to_string(kLeastLandmarks) + " are needed; please give " + kFirstFive};
+}
+
+/// The parts that count as the figure: not those that stick out or lie inside. Eyes fill their sockets.
+std::vector<bool> figureTriangles(const Model& model, const std::vector<std::string>& exclude, bool withEyes) {
+  static const std::vector<std::string> kEyes = {"*eye*"}, kNoEyes = {"*lash*", "*brow*", "*lid*", "*glass*"};
+  std::vector<bool> excluded = matchingParts(model.parts, exclude);
+  if (withEyes) {
+    const std::vector<bool> eyes = matchingParts(model.parts, kEyes), others = matchingParts(model.parts, kNoEyes);
+    for (std::size_t i = 0; i < excluded.size(); ++i) excluded[i] = excluded[i] && !(eyes[i] && !others[i]);
+  }
+  std::vector<bool> keep = trianglesOf(model.mesh, excluded);
+  keep.flip();
+  return keep;
+}
+
+class Fit {
+ public:
+  Fit(const Template& from, const Model& model, const FitOptions& options, const Progress& progress)
+      : from_(from), model_(model), options_(options), progress_(progress) {}
+
+  Outcome run(const std::vector<Landmark>& given, Cage& out, FitReport& report);
+
+ private:
+  [[nodiscard]] bool tell(double share, const char* stage) const {
+    return !progress_ || progress_(static_cast<float>(share), stage);
+  }
+  [[nodiscard]] TriangleMesh inTemplateSpace(bool withEyes) const;
+  std::vector<Vec3> start(const TemplateCage& cage, const TriangleMesh& skin);
+
+  const Template& from_;
+  const Model& model_;
+  const FitOptions& options_;
+  const Progress& progress_;
+  Pairs pairs_;
+  Similarity map_;
+  std::vector<Bone> bones_;
+};
+
+TriangleMesh Fit::inTemplateSpace(bool withEyes) const {
+  std::vector<std::uint32_t> triangleOf;
+  TriangleMesh mesh = weldExactly(model_.mesh, nullptr, &triangleOf);
+  const std::vector<bool> keep = figureTriangles(model_, options_.exclude, withEyes);
+  std::vector<bool> keepWelded(mesh.triangles.size());
+  for (std::size_t t = 0; t < keepWelded.size(); ++t) keepWelded[t] = keep[triangleOf[t]];
+  mesh = subset(mesh, keepWelded);
+  for (Vec3& p : mesh.positions) p = map_.inverse(p);
+  return mesh;
+}
+
+/// Where the cage belongs by landmarks and bones alone.
+std::vector<Vec3> Fit::start(const TemplateCage& cage, const TriangleMesh& skin) {
+  std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
+  const Axes axes = axesOf(from_.landmarks);
+  std::vector<Anchor> anchors;
+  for (std::size_t i = 0; i < pairs_.from.size(); ++i) {
+    const bool isJoint = pairs_.from[i].name.rfind("joint_", 0) == 0;
+    const bool isEye = pairs_.from[i].name.rfind("eye_centre", 0) == 0;
+    const bool hasCorners =
+        isEye &&
+        findLandmark(pairs_.to, "eye_inner" + pairs_.from[i].name.substr(std::string("eye_centre").size())) != nullptr;
+    // The centre of an eye is deep inside; its corners say more.
+    if (hasCorners || (isJoint && bones_.empty())) continue;
+    anchors.push_back({positionOf(pairs_.from[i]), positionOf(pairs_.to[i])});
+  }
+  for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
+  if (bones_.empty())
+    for (const Anchor& anchor : rimAnchors(cage, skin, axes)) anchors.push_back(anchor);
+  std::vector<Vec3> a, b;
+  for (const Anchor& anchor : anchors) {
+    const Vec3 bent = bones_.empty() ? anchor.from : bend(anchor.from, bones_);
+    const bool isTwice =
+        std::any_of(a.begin(), a.end(), [&](const Vec3& p) { return length(p - bent) < 1e-3 * cage.diagonal; });
+    if (isTwice) continue;
+    a.push_back(bent);
+    b.push_back(anchor.to);
+  }
+  const Warp warp(a, b, cage.diagonal);
+  for (Vec3& p : positions) p = warp(p);
+  return positions;
+}
+
+Outcome Fit::run(const std::vector<Landmark>& given, Cage& out, FitReport& report) {
+  const Outcome cancelled{Problem::cancelled, "cancelled"};
+  TemplateCage cage = prepareTemplate(from_);
+  FoundLandmarks found;
+  const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
+    return findLandmark(given, landmark.name) != nullptr;
+  });
+  if (!allGiven) {
+    const Progress finding = [&](float share, const char* stage) {
+      return tell(static_cast<double>(share) * kLandmarksEnd, stage);
+    };
+    if (Outcome outcome = findLandmarks(model_, finding, found); !outcome.ok()) return outcome;
+  }
+  if (Outcome outcome = pairLandmarks(from_, given, found.landmarks, pairs_, report); !outcome.ok()) return outcome;
+  if (Outcome outcome = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal); !outcome.ok())
+    return outcome;
+  std::vector<Vec3> a, b;
+  for (std::size_t i = 0; i < pairs_.from.size(); ++i) {
+    a.push_back(positionOf(pairs_.from[i]));
+    b.push_back(positionOf(pairs_.to[i]));
+  }
+  map_ = fitSimilarity(a, b);
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const Vec3 p = map_.inverse(b[i]);
+    pairs_.to[i].position = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  }
+  bones_ = bonesOf(pairs_.from, pairs_.to);
+  const Settings& settings = bones_.empty() ? kHead : kBody;
+  cage.offset = std::max(cage.offset, kLeastOffset * cage.diagonal);
+  const TriangleMesh skin = inTemplateSpace(false);
+  const TriangleMesh figure = inTemplateSpace(true);
+  if (skin.empty())
+    return {Problem::badModel, "model: all of its parts are excluded by name; at least one must be painted"};
+  if (!tell(kLandmarksEnd, "hull")) return cancelled;
+  TriangleMesh hull;
+  const bool done = makeHull(
+      figure, {settings.closing * cage.diagonal, cage.offset, settings.voxels},
+      [&](float share, const char*) {
+        return tell(kLandmarksEnd + static_cast<double>(share) * (kHullEnd - kLandmarksEnd), "hull");
+      },
+      hull);
+  if (!done || hull.empty()) return cancelled;
+  std::vector<Vec3> positions = tighten(cage, start(cage, skin), hull, settings.tighten, [&](double share) {
+    return tell(kHullEnd + share * (kTightenEnd - kHullEnd), "fit");
+  });
+  if (positions.empty()) return cancelled;
+  const bool pushed = pushOut(
+      cage, skin, hull, [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); },
+      positions);
+  if (!pushed) return cancelled;
+  untangle(cage, positions);
+  out.positions.clear();
+  for (const std::uint32_t v : cage.vertexOf) {
+    const Vec3 p = map_(positions[v]);
+    for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
+  }
+  out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
+  out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
+  out.landmarks = report.used;
+  if (!tell(1, "done")) return cancelled;
+  return {};
+}
+
+}  // namespace
+
+Outcome fitCage(const Template& from, const Model& model, const std::vector<Landmark>& landmarks,
+                const FitOptions& options, const Progress& progress, Cage& out, FitReport& report) {
+  out = {};
+  report = {};
+  if (Outcome outcome = checkMesh(from.cage, "template.cage", Problem::badTemplate); !outcome.ok()) return outcome;
+  if (from.cage.uvs.size() / 2 != from.cage.positions.size() / 3)
+    return {Problem::badTemplate, "template.cage: it has no UVs; a cage needs 2 numbers per vertex"};
+  if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
+  if (from.landmarks.size() < kLeastLandmarks)
+    return {Problem::badTemplate, "template: it has " + std::to_string(from.landmarks.size()) +
+                                      " landmarks; at least " + std::to_string(kLeastLandmarks) + " are needed"};
+  const double cageSize = diagonalOf(weldExactly(from.cage)), modelSize = diagonalOf(weldExactly(model.mesh));
+  if (Outcome outcome = checkLandmarkList(from.landmarks, "template.landmarks", cageSize, Problem::badTemplate);
+      !outcome.ok())
+    return outcome;
+  if (Outcome outcome = checkLandmarkList(landmarks, "landmarks", modelSize, Problem::badLandmarks); !outcome.ok())
+    return outcome;
+  return Fit(from, model, options, progress).run(landmarks, out, report);
+}
+
+}  // namespace cagecast::cages

@@ -1,0 +1,136 @@
+#include "fit/rim.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace cagecast::cages {
+
+namespace {
+
+constexpr int kPerSide = 4;          ///< Anchors from front to back on each side of a rim.
+constexpr double kStep = 0.005;      ///< Distance of samples along a rim, in diagonals.
+constexpr double kSmoothing = 0.03;  ///< Ragged rims are smoothed over this share of their length.
+
+struct Rim {
+  std::vector<Vec3> points;
+  Vec3 centre{};
+  Vec3 normal{};  ///< Of its plane; the figure is on this side.
+};
+
+Vec3 perpendicular(const Vec3& v, const Vec3& to) { return v - dot(v, to) * to; }
+
+/// The loop as evenly spaced points around its normal, the ragged ends smoothed away.
+Rim sample(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double step, const Vec3& inward) {
+  Rim rim;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3 a = mesh.positions[loop[i]], edge = mesh.positions[loop[(i + 1) % loop.size()]] - a;
+    const int pieces = 1 + static_cast<int>(length(edge) / step);
+    for (int k = 0; k < pieces; ++k) rim.points.push_back(a + static_cast<double>(k) / pieces * edge);
+  }
+  const auto count = static_cast<double>(rim.points.size());
+  for (const Vec3& p : rim.points) rim.centre = rim.centre + 1 / count * p;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : rim.points) {
+    const Eigen::Vector3d d(p.x - rim.centre.x, p.y - rim.centre.y, p.z - rim.centre.z);
+    spread += d * d.transpose();
+  }
+  const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  rim.normal = {normal.x(), normal.y(), normal.z()};
+  if (dot(rim.normal, inward) < 0) rim.normal = -1.0 * rim.normal;
+  double around = 0;
+  for (std::size_t i = 0; i < rim.points.size(); ++i)
+    around += dot(cross(rim.points[i] - rim.centre, rim.points[(i + 1) % rim.points.size()] - rim.centre), rim.normal);
+  if (around < 0) std::reverse(rim.points.begin(), rim.points.end());
+
+  std::vector<double> along(1, 0.0);
+  for (std::size_t i = 0; i < rim.points.size(); ++i)
+    along.push_back(along.back() + length(rim.points[(i + 1) % rim.points.size()] - rim.points[i]));
+  std::vector<Vec3> smooth = rim.points;
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    double height = 0, total = 0;
+    for (std::size_t j = 0; j < smooth.size(); ++j) {
+      const double apart = std::abs(along[i] - along[j]);
+      const double share = std::min(apart, along.back() - apart) / (kSmoothing * along.back());
+      const double weight = std::exp(-share * share);
+      height += weight * dot(rim.points[j] - rim.points[i], rim.normal);
+      total += weight;
+    }
+    smooth[i] = smooth[i] + height / total * rim.normal;
+  }
+  rim.points = std::move(smooth);
+  return rim;
+}
+
+/// Points at equal shares of the length from front to back on both sides; empty if the mirror plane misses the rim.
+std::vector<Vec3> stations(const Rim& rim, const Axes& axes) {
+  const std::size_t count = rim.points.size();
+  std::size_t front = count, back = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 a = rim.points[i] - axes.middle, b = rim.points[(i + 1) % count] - axes.middle;
+    if ((dot(a, axes.left) <= 0) == (dot(b, axes.left) <= 0)) continue;
+    if (front == count || dot(a, axes.front) > dot(rim.points[front] - axes.middle, axes.front)) front = i;
+    if (back == count || dot(a, axes.front) < dot(rim.points[back] - axes.middle, axes.front)) back = i;
+  }
+  std::vector<Vec3> out;
+  if (front == count || front == back) return out;
+  const auto walk = [&](std::size_t first, std::size_t last) {
+    const std::size_t steps = (last + count - first) % count;
+    std::vector<double> along(1, 0.0);
+    for (std::size_t i = 0; i < steps; ++i)
+      along.push_back(along.back() + length(rim.points[(first + i + 1) % count] - rim.points[(first + i) % count]));
+    for (int k = 0; k < kPerSide; ++k) {
+      const double wanted = along.back() * k / kPerSide;
+      const auto at = std::lower_bound(along.begin(), along.end(), wanted) - along.begin();
+      out.push_back(rim.points[(first + static_cast<std::size_t>(at)) % count]);
+    }
+  };
+  walk(front, back);
+  walk(back, front);
+  return out;
+}
+
+}  // namespace
+
+std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& target, const Axes& axes) {
+  std::vector<Anchor> anchors;
+  const auto loops = boundaryLoops(target);
+  const int rim = rimOf(target, loops, cage.diagonal);
+  if (!axes.known || cage.rim < 0 || rim < 0) return anchors;
+  const double step = kStep * cage.diagonal;
+  const Rim from = sample(cage.mesh, cage.loops[static_cast<std::size_t>(cage.rim)], step, axes.up);
+  const Rim to = sample(target, loops[static_cast<std::size_t>(rim)], step, axes.up);
+  const std::vector<Vec3> a = stations(from, axes), b = stations(to, axes);
+  if (a.size() != b.size()) return anchors;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Vec3 outward = perpendicular(b[i] - to.centre, to.normal);
+    anchors.push_back({a[i], b[i] + cage.offset / std::max(length(outward), cage.offset) * outward});
+  }
+  return anchors;
+}
+
+std::vector<Anchor> eyeAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes) {
+  std::vector<Anchor> anchors;
+  for (const char* side : {"left", "right"}) {
+    const Landmark* corners[4];
+    int found = 0;
+    for (const auto* list : {&from, &to})
+      for (const char* name : {"eye_inner_", "eye_outer_"})
+        if ((corners[found] = findLandmark(*list, std::string(name) + side)) != nullptr) ++found;
+    if (found < 4 || !axes.known) continue;
+    const Vec3 inner = positionOf(*corners[0]), outer = positionOf(*corners[1]);
+    const Vec3 toInner = positionOf(*corners[2]), toOuter = positionOf(*corners[3]);
+    const auto upright = [&](const Vec3& along) {
+      const Vec3 up = axes.up - dot(axes.up, along) / dot(along, along) * along;
+      return 1 / length(up) * up;
+    };
+    const double height = 0.5 * length(outer - inner), toHeight = 0.5 * length(toOuter - toInner);
+    for (const double sign : {-1.0, 1.0})
+      anchors.push_back({0.5 * (inner + outer) + sign * height * upright(outer - inner),
+                         0.5 * (toInner + toOuter) + sign * toHeight * upright(toOuter - toInner)});
+  }
+  return anchors;
+}
+
+}  // namespace cagecast::cages

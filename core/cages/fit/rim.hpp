@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "fit/template_cage.hpp"
+
+namespace cagecast::cages {
+
+/// Pairs of points around the rims where both end, such as necks: front on front, back on back, the sides by length.
+/// Empty if one of the two has no rim.
+/// @param target  The target's skin, in the template's space.
+std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& target, const Axes& axes);
+
+/// Pairs above and below each eye: an eye that is wider is higher, too, by as much.
+std::vector<Anchor> eyeAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes);
+
+}  // namespace cagecast::cages

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/vec3.hpp"
+
+namespace cagecast::cages {
+
+/// A rotation, a scale and a translation.
+struct Similarity {
+  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< Images of the axes, of length `scale`.
+  Vec3 translation{0, 0, 0};
+  double scale = 1;
+
+  [[nodiscard]] Vec3 turned(const Vec3& v) const { return v.x * x + v.y * y + v.z * z; }
+  [[nodiscard]] Vec3 operator()(const Vec3& p) const { return turned(p) + translation; }
+  [[nodiscard]] Vec3 inverse(const Vec3& p) const {
+    const Vec3 d = 1 / (scale * scale) * (p - translation);
+    return {dot(d, x), dot(d, y), dot(d, z)};
+  }
+};
+
+/// The similarity that carries `from` closest to `to` in the mean square (Umeyama 1991); never a mirror image.
+Similarity fitSimilarity(std::span<const Vec3> from, std::span<const Vec3> to);
+
+/// The rotation by the smallest angle that turns one direction into another; both of unit length.
+Similarity shortestRotation(const Vec3& from, const Vec3& to);
+
+/// A smooth map of space that carries points onto others: an affine map and a spline of what that leaves.
+class Warp {
+ public:
+  /// @param from,to  The same number of points, at least one; no two equal ones in `from`.
+  /// @param size  The size of the model.
+  Warp(std::span<const Vec3> from, std::span<const Vec3> to, double size);
+
+  [[nodiscard]] Vec3 operator()(const Vec3& p) const;
+
+ private:
+  std::vector<Vec3> centres_, weights_;
+  Vec3 middle_{}, translation_{};
+  Vec3 x_{}, y_{}, z_{};
+  double size_ = 1;
+};
+
+}  // namespace cagecast::cages

@@ -1,0 +1,236 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "cagecast/cages.hpp"
+#include "fit/finish.hpp"
+#include "fit/template_cage.hpp"
+#include "fit/warp.hpp"
+#include "mesh/surface.hpp"
+
+using namespace cagecast;
+using namespace cagecast::cages;
+
+namespace {
+
+/// How a head differs from another one: shares by which it is wider, and by which its nose is longer.
+struct Shape {
+  double width = 1, nose = 1;
+};
+
+/// The surface of a simple head, open at the neck: a point by longitude (0 is the front) and latitude.
+Vec3 headPoint(const Shape& shape, double longitude, double latitude, double offset) {
+  const double x = std::cos(latitude) * std::sin(longitude), y = std::sin(latitude),
+               z = std::cos(latitude) * std::cos(longitude);
+  const double bump = 0.25 * shape.nose * std::exp(-12 * (x * x + y * y)) * (z > 0 ? 1 : 0);
+  const double r = 1 + offset;
+  return {0.75 * shape.width * r * x, 1.1 * r * y, 0.9 * r * z + bump};
+}
+
+struct HeadMesh {
+  std::vector<float> positions, uvs;
+  std::vector<std::uint32_t> indices;
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs}; }
+};
+
+HeadMesh headMesh(const Shape& shape, std::uint32_t around, std::uint32_t rows, double offset) {
+  HeadMesh mesh;
+  const double low = -0.9, high = 1.5;  // Nearly closed: a fan of slivers at the pole would be folded by rounding.
+  for (std::uint32_t r = 0; r <= rows; ++r)
+    for (std::uint32_t a = 0; a <= around; ++a) {
+      const double u = static_cast<double>(a % around) / around, v = static_cast<double>(r) / rows;
+      const Vec3 p = headPoint(shape, 2 * std::numbers::pi * u + std::numbers::pi, low + v * (high - low), offset);
+      for (const double x : {p.x, p.y, p.z}) mesh.positions.push_back(static_cast<float>(x));
+      mesh.uvs.push_back(static_cast<float>(a) / static_cast<float>(around));
+      mesh.uvs.push_back(static_cast<float>(v));
+    }
+  for (std::uint32_t r = 0; r < rows; ++r)
+    for (std::uint32_t a = 0; a < around; ++a) {
+      const std::uint32_t i = r * (around + 1) + a, j = i + around + 1;
+      mesh.indices.insert(mesh.indices.end(), {i, i + 1, j + 1});
+      mesh.indices.insert(mesh.indices.end(), {i, j + 1, j});
+    }
+  return mesh;
+}
+
+std::vector<Landmark> headLandmarks(const Shape& shape) {
+  struct Spot {
+    const char* name;
+    double longitude, latitude;
+  };
+  static constexpr Spot kSpots[] = {{"nose_tip", 0, 0},
+                                    {"chin", 0, -0.7},
+                                    {"crown", 0, 1.5},
+                                    {"occiput", 3.14159, 0},
+                                    {"ear_top_left", 1.57, 0.1},
+                                    {"ear_top_right", -1.57, 0.1},
+                                    {"mouth_corner_left", 0.3, -0.4},
+                                    {"mouth_corner_right", -0.3, -0.4},
+                                    {"eye_centre_left", 0.5, 0.3},
+                                    {"eye_centre_right", -0.5, 0.3}};
+  std::vector<Landmark> landmarks;
+  for (const Spot& spot : kSpots) {
+    const Vec3 p = headPoint(shape, spot.longitude, spot.latitude, 0);
+    landmarks.push_back({spot.name, {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}});
+  }
+  return landmarks;
+}
+
+constexpr Shape kOwn{}, kOther{1.15, 1.4};
+
+/// A template, a model of another shape, and a call that expects to work.
+struct Heads {
+  HeadMesh cage = headMesh(kOwn, 24, 14, 0.04), own = headMesh(kOwn, 60, 40, 0), other = headMesh(kOther, 60, 40, 0);
+  std::vector<Landmark> landmarks = headLandmarks(kOther);
+  Cage out;
+  FitReport report;
+
+  [[nodiscard]] Template from() const { return {cage.view(), headLandmarks(kOwn)}; }
+  Outcome fit(const HeadMesh& model) { return fitCage(from(), {model.view()}, landmarks, {}, {}, out, report); }
+};
+
+double diagonalOfView(const MeshView& view) { return diagonalOf(weldExactly(view)); }
+
+}  // namespace
+
+TEST_CASE("a cage that is fitted to its own model stays where it is", "[cages][fit]") {
+  Heads heads;
+  heads.landmarks = headLandmarks(kOwn);
+  REQUIRE(heads.fit(heads.own).ok());
+  REQUIRE(heads.out.indices.size() == heads.cage.indices.size());
+  CHECK(heads.out.uvs == heads.cage.uvs);
+  const double diagonal = diagonalOfView(heads.cage.view());
+  double most = 0;
+  for (std::size_t i = 0; i < heads.out.positions.size(); i += 3)
+    most = std::max(most, length(Vec3::from(&heads.out.positions[i]) - Vec3::from(&heads.cage.positions[i])));
+  CHECK(most < 0.03 * diagonal);
+}
+
+TEST_CASE("a fitted cage encloses another head, and its points go where they belong", "[cages][fit]") {
+  Heads heads;
+  const Outcome outcome = heads.fit(heads.other);
+  INFO(outcome.message);
+  REQUIRE(outcome.ok());
+  CHECK(heads.report.missing.empty());
+  CHECK(heads.report.used.size() == heads.landmarks.size());
+  const HeadMesh truth = headMesh(kOther, 24, 14, 0.04);
+  const double diagonal = diagonalOfView(truth.view());
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.positions.size(); i += 3)
+    sum += length(Vec3::from(&heads.out.positions[i]) - Vec3::from(&truth.positions[i]));
+  CHECK(3 * sum / static_cast<double>(truth.positions.size()) < 0.02 * diagonal);
+  const TriangleMesh fitted = weldExactly(heads.out.view());
+  for (const bool folded : foldedTriangles(fitted)) CHECK_FALSE(folded);
+  std::size_t outside = 0;
+  const TriangleMesh skin = weldExactly(heads.other.view());
+  for (const SurfacePoint& point : Surface(fitted).closest(skin.positions)) outside += point.height > 0 ? 1 : 0;
+  CHECK(outside <= skin.positions.size() / 50);
+}
+
+TEST_CASE("a turned and scaled model gets a turned and scaled cage", "[cages][fit]") {
+  const std::uint32_t seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(-1, 1);
+  Heads heads;
+  REQUIRE(heads.fit(heads.other).ok());
+  const Cage upright = heads.out;
+  const Vec3 axis{share(random), share(random), share(random)};
+  Similarity map = shortestRotation({0, 1, 0}, 1 / length(axis) * axis);
+  const double scale = std::pow(10.0, 2 * share(random));
+  map.x = scale * map.x;
+  map.y = scale * map.y;
+  map.z = scale * map.z;
+  map.translation = scale * Vec3{3 * share(random), 3 * share(random), 3 * share(random)};
+  const auto apply = [&](float* at) {
+    const Vec3 p = map(Vec3::from(at));
+    at[0] = static_cast<float>(p.x);
+    at[1] = static_cast<float>(p.y);
+    at[2] = static_cast<float>(p.z);
+  };
+  HeadMesh turned = heads.other;
+  for (std::size_t i = 0; i < turned.positions.size(); i += 3) apply(&turned.positions[i]);
+  for (Landmark& landmark : heads.landmarks) apply(landmark.position.data());
+  REQUIRE(heads.fit(turned).ok());
+  const double diagonal = scale * diagonalOfView(heads.other.view());
+  for (std::size_t i = 0; i < upright.positions.size(); i += 3) {
+    const Vec3 expected = map(Vec3::from(&upright.positions[i]));
+    CHECK(length(Vec3::from(&heads.out.positions[i]) - expected) < 2e-3 * diagonal);
+  }
+}
+
+TEST_CASE("the same call gives the same cage", "[cages][fit]") {
+  Heads heads;
+  REQUIRE(heads.fit(heads.other).ok());
+  const std::vector<float> first = heads.out.positions;
+  REQUIRE(heads.fit(heads.other).ok());
+  CHECK(heads.out.positions == first);
+}
+
+TEST_CASE("a fit can be cancelled", "[cages][fit]") {
+  Heads heads;
+  float last = 0;
+  const Progress upToHalf = [&](float done, const char*) {
+    CHECK(done >= last);
+    last = done;
+    return done < 0.5f;
+  };
+  const Outcome outcome =
+      fitCage(heads.from(), {heads.other.view()}, heads.landmarks, {}, upToHalf, heads.out, heads.report);
+  CHECK(outcome.problem == Problem::cancelled);
+}
+
+TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
+  Heads heads;
+  const auto messageOf = [&] {
+    const Outcome outcome = heads.fit(heads.other);
+    CHECK(outcome.problem == Problem::badLandmarks);
+    return outcome.message;
+  };
+  const std::vector<Landmark> good = heads.landmarks;
+  SECTION("unknown") {
+    heads.landmarks.push_back({"antler", {0, 0, 0}});
+    CHECK(messageOf() == "landmarks: the template has no antler");
+  }
+  SECTION("twice") {
+    heads.landmarks.push_back(good[0]);
+    CHECK(messageOf() == "landmarks: nose_tip is there twice");
+  }
+  SECTION("on one spot") {
+    heads.landmarks[1].position = good[0].position;
+    CHECK(messageOf() == "landmarks: nose_tip and chin are on one spot; each needs its own");
+  }
+  SECTION("not finite") {
+    heads.landmarks[0].position[1] = NAN;
+    CHECK(messageOf() == "landmarks: nose_tip is not a finite position");
+  }
+  SECTION("left and right swapped") {
+    for (Landmark& landmark : heads.landmarks) landmark.position[0] = -landmark.position[0];
+    CHECK(messageOf() ==
+          "landmarks: ear_top_left is on the other side: left and right are the figure's own, not the viewer's");
+  }
+  SECTION("far off") {
+    heads.landmarks[2].position = {0, -1, 0.5f};
+    CHECK(messageOf().rfind("landmarks: crown is ", 0) == 0);
+  }
+}
+
+TEST_CASE("a template that cannot be fitted is refused", "[cages][fit]") {
+  Heads heads;
+  Template from = heads.from();
+  const auto messageOf = [&] {
+    const Outcome outcome = fitCage(from, {heads.other.view()}, {}, {}, {}, heads.out, heads.report);
+    CHECK(outcome.problem == Problem::badTemplate);
+    return outcome.message;
+  };
+  SECTION("no UVs") {
+    from.cage.uvs = {};
+    CHECK(messageOf() == "template.cage: it has no UVs; a cage needs 2 numbers per vertex");
+  }
+  SECTION("too few landmarks") {
+    from.landmarks.resize(3);
+    CHECK(messageOf() == "template: it has 3 landmarks; at least 4 are needed");
+  }
+}
