@@ -25,6 +25,27 @@ struct Surface::Trees {
   [[nodiscard]] Vec3 unscaled(const Vec3& p) const { return 1 / static_cast<double>(units.scale) * p + centre; }
 };
 
+namespace {
+
+/// A triangle is a needle if its height is less than this share of the mesh's diagonal: the search takes floats, in
+/// which it has no certain plane.
+constexpr double kNeedle = 1e-6;
+
+/// Whether each triangle is a needle; none of them, if all are.
+std::vector<bool> needlesIn(const TriangleMesh& mesh, double diagonal) {
+  std::vector<bool> out;
+  for (const Triangle3& t : mesh.triangles) {
+    const Vec3& a = mesh.positions[t[0]];
+    const Vec3 ab = mesh.positions[t[1]] - a, ac = mesh.positions[t[2]] - a;
+    const double longest = std::max({length(ab), length(ac), length(ac - ab)});
+    out.push_back(length(cross(ab, ac)) <= kNeedle * diagonal * longest);
+  }
+  if (std::find(out.begin(), out.end(), false) == out.end()) out.assign(out.size(), false);
+  return out;
+}
+
+}  // namespace
+
 Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   Trees& trees = *trees_;
   Vec3 low = mesh.positions[0], high = low;
@@ -47,7 +68,11 @@ Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   }
   std::vector<std::uint32_t> indices;
   indices.reserve(3 * mesh.triangles.size());
-  for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  const std::vector<bool> isNeedle = needlesIn(mesh, diagonal);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    // A needle becomes a point, which is left out: its neighbours are as near.
+    for (const std::uint32_t v : mesh.triangles[i]) indices.push_back(isNeedle[i] ? mesh.triangles[i][0] : v);
+  }
   const std::vector<float> uvs(2 * mesh.positions.size(), 0.0f);
   Units identity = trees.units;
   identity.scale = 1;  // Positions are scaled already.

@@ -79,3 +79,29 @@ TEST_CASE("a ray meets the first triangle on its way", "[cages][surface]") {
   CHECK(hits[1].triangle == 0);
   CHECK(std::isinf(hits[2].distance));
 }
+
+TEST_CASE("needles around a pole do not lead a search astray", "[cages][surface]") {
+  // Corners at the pole that differ by rounding only.
+  constexpr std::uint32_t kRings = 16, kSectors = 32;
+  TriangleMesh mesh;
+  for (std::uint32_t r = 0; r <= kRings; ++r)
+    for (std::uint32_t s = 0; s < kSectors; ++s) {
+      const double theta = M_PI * r / kRings, phi = 2 * M_PI * s / kSectors;
+      mesh.positions.push_back({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)});
+    }
+  for (std::uint32_t r = 0; r < kRings; ++r)
+    for (std::uint32_t s = 0; s < kSectors; ++s) {
+      const std::uint32_t a = r * kSectors + s, b = r * kSectors + (s + 1) % kSectors;
+      mesh.triangles.push_back({a, b, a + kSectors});
+      mesh.triangles.push_back({b, b + kSectors, a + kSectors});
+    }
+  std::vector<Vec3> points;
+  for (int i = 0; i < 1000; ++i) {
+    const double theta = M_PI - i * 1e-3, phi = 0.7 * i;
+    points.push_back(1.03 * Vec3{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)});
+  }
+  for (const SurfacePoint& point : Surface(mesh).closest(points)) {
+    CHECK(point.distance > 0.0299);
+    CHECK(point.distance < 0.05);
+  }
+}
