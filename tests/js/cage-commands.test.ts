@@ -1,0 +1,132 @@
+import assert from 'node:assert/strict';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from './glb.js';
+import { ball } from './scenes.js';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-cages-'));
+const at = (name: string) => join(folder, name);
+const write = (name: string, data: Uint8Array | string) => {
+  writeFileSync(at(name), data);
+  return at(name);
+};
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const skin = () => ball([0, 0, 0], (_, theta) => 1 + 0.1 * Math.cos(theta), 12, 24);
+const eye = (x: number) => ball([x, -0.85, 0.2], () => 0.18, 8, 16);
+
+/** A head of three nodes, whose eyes are known by the names of a node and of a material. */
+function headFile(): Buffer {
+  const maker = new GlbMaker();
+  maker.json.materials = [{ name: 'EyeWhite' }];
+  maker.node({ name: 'skin', mesh: maker.mesh(skin()) });
+  maker.node({ name: 'Eye.L', mesh: maker.mesh(eye(0.35)) });
+  maker.node({ name: 'ball', mesh: maker.mesh(eye(-0.35), { material: 0 }) });
+  return maker.finish();
+}
+
+before(() => {
+  write('head.glb', headFile());
+  write('plain.glb', glbOf(skin()));
+});
+
+/** The files of the folder, to show that a command has written none. */
+const files = () => readdirSync(folder).sort();
+
+describe('cagecast make', () => {
+  test('writes a cage with holes over the eyes, a report, and the verdict', async () => {
+    const { status, stdout, stderr } = cagecast(
+      'make',
+      at('head.glb'),
+      '-o',
+      at('cage.glb'),
+      '--html',
+      at('page.html'),
+    );
+    assert.equal(stderr, '');
+    assert.equal(status, 0, stdout);
+    assert.match(stdout, /^wrote .*cage\.glb: \d+ vertices, [\d,]+ triangles, \d+ charts?, 2 holes\n/);
+    assert.match(stdout, /^(GOOD|USABLE): the cage fits/m);
+    assert.match(stdout, /^wrote .*page\.html$/m);
+    assert.match(readFileSync(at('page.html'), 'utf8'), /<h2>Holes<\/h2>/);
+    assert.deepEqual(await validate(at('cage.glb')), []);
+    const { json } = unpackGlb(readFileSync(at('cage.glb')));
+    assert.equal(json.nodes![0]!.name, 'cage');
+    assert.deepEqual(Object.keys(json.nodes![0]!.extras!).sort(), ['holes', 'kind', 'landmarks']);
+    const inspected = cagecast('inspect', at('head.glb'), '--cage', at('cage.glb'));
+    assert.equal(inspected.status, 0, inspected.stdout);
+  });
+
+  test('--exclude replaces the list of names, --triangles sets the size', () => {
+    const { status, stdout, stderr } = cagecast(
+      ...['make', at('head.glb'), '--exclude', 'eye.*', '--triangles', '300', '-o', at('one.glb')],
+    );
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /, 1 hole$/m);
+    const triangles = unpackGlb(readFileSync(at('one.glb'))).json.accessors![2]!.count / 3;
+    assert.ok(triangles > 200 && triangles < 400, `${triangles}`);
+  });
+
+  test('exits 3 and still writes the cage if it is unfit', () => {
+    // Everything is to be left out: nothing may be painted.
+    const { status, stdout, stderr } = cagecast('make', at('plain.glb'), '--exclude', 'only', '-o', at('unfit.glb'));
+    if (status === 1) assert.match(stderr, /^cagecast: .*plain\.glb: /);
+    else {
+      assert.equal(status, 3, stdout);
+      assert.ok(existsSync(at('unfit.glb')));
+    }
+  });
+
+  test('errors are one line that names the file, and write nothing', () => {
+    const nan = skin();
+    nan.positions[3] = Number.NaN;
+    write('nan.glb', glbOf(nan));
+    write('empty.glb', new Uint8Array(0));
+    write('text.glb', 'this is no model');
+    write('points.glb', glbOf({ ...skin(), mode: 0 }));
+    const out = at('never.glb');
+    const before = files();
+    for (const [args, status, says] of [
+      [['make'], 2, /missing required argument 'TARGET'|required option/],
+      [['make', at('head.glb')], 2, /required option '-o, --output <CAGE\.glb>' not specified/],
+      [['make', at('head.glb'), '-o', at('cage.obj')], 2, /Its name must end in \.glb/],
+      [['make', at('head.glb'), '-o', out, '--triangles', '7'], 2, /not a whole number within 50\.\.100000/],
+      [['make', at('head.glb'), '-o', out, '--html', at('page.txt')], 2, /Its name must end in \.html/],
+      [['make', at('head.glb'), '-o', at('head.glb')], 2, /head\.glb would overwrite another file of this command/],
+      [['make', at('missing.glb'), '-o', out], 1, /missing\.glb: no such file/],
+      [['make', at('empty.glb'), '-o', out], 1, /empty\.glb: the file is empty/],
+      [['make', at('text.glb'), '-o', out], 1, /text\.glb: is neither a GLB nor a glTF file/],
+      [['make', at('points.glb'), '-o', out], 1, /points\.glb: has no triangles in its scene/],
+      [['make', at('nan.glb'), '-o', out], 1, /nan\.glb: meshes\[0\]\.primitives\[0\]: POSITION of vertex 1 has NaN/],
+      [
+        ['make', at('head.glb'), '--exclude', 'nose*', '-o', out],
+        1,
+        /head\.glb: --exclude nose\*: no node or material has this name; there are: skin, Eye\.L, ball, EyeWhite/,
+      ],
+      [
+        ['make', at('head.glb'), '-o', join(folder, 'no/such.glb')],
+        1,
+        /such\.glb: cannot be written \(its folder does not exist\)/,
+      ],
+    ] satisfies [string[], number, RegExp][]) {
+      const done = cagecast(...args);
+      assert.equal(done.status, status, `${args.join(' ')}: ${done.stderr}`);
+      assert.match(done.stderr, says);
+      assert.match(done.stderr, /^cagecast: [^\n]+\n$/);
+      assert.equal(done.stdout, '');
+    }
+    assert.deepEqual(files(), before);
+  });
+});
+
+describe('cagecast transfer --cage auto', () => {
+  test('makes a cage on the way', () => {
+    const { status, stdout, stderr } = cagecast('transfer', at('head.glb'), '--cage', 'auto', '-o', at('auto.glb'));
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /3 segments \(2 culled\)/);
+    const { meshes } = unpackGlb(readFileSync(at('auto.glb'))).json;
+    assert.ok(meshes!.every(({ primitives }) => primitives[0]!.attributes['TEXCOORD_1'] !== undefined));
+  });
+});

@@ -1,0 +1,209 @@
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { before, describe, test } from 'node:test';
+import { type Code, init, type Mesh } from 'cagecast';
+import {
+  CagecastError,
+  type CageModel,
+  cageGlb,
+  defaultExclusions,
+  findLandmarks,
+  fitCage,
+  makeCage,
+  refineCage,
+  type Template,
+  terminate,
+} from 'cagecast/cages';
+import * as sync from 'cagecast/cages/sync';
+import { inspect } from 'cagecast/inspect';
+import { ball, join3d } from './scenes.js';
+
+/** An egg with two balls in it that stick out in front: a head, as far as making a cage is concerned. */
+function head(detail = 12): CageModel & Mesh {
+  const skin = ball([0, 0, 0], (phi, theta) => 1 + 0.1 * Math.cos(theta) + 0.02 * Math.cos(phi), detail, 2 * detail);
+  const eyes = [-0.35, 0.35].map((x) => ball([x, -0.85, 0.2], () => 0.18, 8, 16));
+  const { positions, indices, groups } = join3d(skin, ...eyes);
+  return { positions, indices, groups, parts: ['skin', ['Eye.L', 'white'], ['Eye.R', 'white']] };
+}
+
+/** A coarse grid: these tests are not about what a good cage is. */
+const options = { kind: 'head', triangles: 300, voxels: 60 } as const;
+
+async function failure(call: () => Promise<unknown>): Promise<CagecastError> {
+  try {
+    await call();
+  } catch (error) {
+    assert.ok(error instanceof CagecastError, String(error));
+    return error;
+  }
+  assert.fail('it did not fail');
+}
+
+describe('makeCage', () => {
+  before(() => Promise.all([init(), sync.init()]));
+
+  test('makes a cage that fits, with holes over the parts that are excluded by name, and tells how far it is', async () => {
+    const model = head();
+    const told: [number, string][] = [];
+    const cage = await makeCage(model, { ...options, onProgress: (...progress) => told.push(progress) });
+    assert.equal(cage.uvs.length / 2, cage.positions.length / 3);
+    assert.ok(cage.uvs.every((x) => x >= 0 && x <= 1));
+    assert.equal(cage.kind, 'head');
+    const { verdict, holes } = inspect(cage, model);
+    assert.notEqual(verdict, 'unfit');
+    assert.equal(holes.length, 2);
+
+    const shares = told.map(([share]) => share);
+    assert.deepEqual(
+      shares,
+      [...shares].sort((a, b) => a - b),
+    );
+    assert.ok(shares[0]! < 0.5 && shares.at(-1) === 1, shares.join());
+    assert.ok(new Set(told.map(([, stage]) => stage)).size > 2);
+    // The arguments are copied.
+    assert.deepEqual(model, head());
+  });
+
+  test('is the same at once, on the thread of the caller', async () => {
+    const there = await makeCage(head(), options);
+    assert.deepEqual(sync.makeCage(head(), options), there);
+    assert.deepEqual(sync.defaultExclusions(), await defaultExclusions());
+  });
+
+  test('takes patterns and marks in the place of the default list', async () => {
+    const model = head();
+    const none = await makeCage(model, { ...options, exclude: [] });
+    assert.equal(inspect(none, model).holes.length, 0);
+    const marks = Uint8Array.from({ length: model.indices.length / 3 }, (_, t) =>
+      Number(model.groups![model.indices[3 * t]!] === 1),
+    );
+    const one = await makeCage({ ...model, marks }, { ...options, exclude: [] });
+    assert.equal(inspect(one, model).holes.length, 1);
+  });
+
+  test('is cancelled within 100 ms of the signal, and the next call starts anew', async () => {
+    for (const late of [0, 300]) {
+      const controller = new AbortController();
+      let aborted = 0;
+      const abort = () => {
+        aborted = performance.now();
+        controller.abort(new Error('never mind'));
+      };
+      const call = makeCage(head(40), {
+        ...options,
+        triangles: 2000,
+        signal: controller.signal,
+        onProgress: () => void setTimeout(abort, aborted === 0 ? late : 1e6).unref(),
+      });
+      await assert.rejects(call, /never mind/);
+      assert.ok(performance.now() - aborted < 100);
+    }
+    assert.ok((await makeCage(head(), options)).indices.length > 0);
+    await assert.rejects(makeCage(head(), { signal: AbortSignal.abort() }), { name: 'AbortError' });
+  });
+
+  test('is cancelled by its own callback where it runs at once', () => {
+    let calls = 0;
+    assert.throws(() => sync.makeCage(head(), { ...options, onProgress: () => ++calls < 3 }), {
+      code: 'aborted',
+      message: 'makeCage: cancelled by onProgress',
+    });
+    assert.equal(calls, 3);
+    const own = new Error('of the callback');
+    assert.throws(
+      () =>
+        sync.makeCage(head(), {
+          ...options,
+          onProgress: () => {
+            throw own;
+          },
+        }),
+      own,
+    );
+  });
+
+  test('says in a sentence what is wrong with its arguments', async () => {
+    const model = head();
+    const bad = (change: object) => ({ ...model, ...change }) as CageModel;
+    const nan = model.positions.slice();
+    nan[4] = Number.NaN;
+    const untyped = makeCage as (...args: unknown[]) => Promise<unknown>;
+    for (const [call, code, says] of [
+      [() => untyped(null), 'badArgument', 'model is null, not a mesh { positions, indices, … }'],
+      [() => untyped(bad({ positions: [1] })), 'badArgument', 'model.positions is of type Array, not a Float32Array'],
+      [() => untyped(bad({ parts: 'skin' })), 'badArgument', 'model.parts is "skin", not an array of names'],
+      [
+        () => untyped(bad({ parts: [['a', 1]] })),
+        'badArgument',
+        'model.parts[0] is 1, not a name, or an array of names',
+      ],
+      [
+        () => untyped(bad({ joints: {} })),
+        'badArgument',
+        'model.joints is of type Object, not an array of joints { name, position, parent }',
+      ],
+      [() => untyped(bad({ joints: [{}] })), 'badArgument', 'model.joints[0].name is undefined, not a name'],
+      [
+        () => untyped(bad({ joints: [{ name: 'hips', position: [0, 1] }] })),
+        'badArgument',
+        'model.joints[0].position is of type Array, not 3 finite numbers',
+      ],
+      [
+        () => untyped(bad({ joints: [{ name: 'hips', position: [0, 1, 2], parent: 0.5 }] })),
+        'badArgument',
+        'model.joints[0].parent is 0.5, not a whole number',
+      ],
+      [() => untyped(bad({ marks: [1] })), 'badArgument', 'model.marks is of type Array, not a Uint8Array'],
+      [() => untyped(model, null), 'badOption', 'options is null, not an object'],
+      [
+        () => untyped(model, { size: 1 }),
+        'badOption',
+        'options.size is unknown; there are: kind, exclude, triangles, closing, offset, voxels',
+      ],
+      [
+        () => untyped(model, { kind: 'hand' }),
+        'badOption',
+        'options.kind = "hand" is unknown; there are: "automatic", "head", "body", "prop"',
+      ],
+      [() => untyped(model, { exclude: 'eye*' }), 'badOption', 'options.exclude is "eye*", not an array of patterns'],
+      [() => untyped(model, { offset: -1 }), 'badOption', 'options.offset is -1, not a number of at least 0'],
+      [() => untyped(model, { triangles: 0.5 }), 'badOption', 'options.triangles is 0.5, not a whole number'],
+      [() => untyped(model, { onProgress: 1 }), 'badOption', 'options.onProgress is 1, not a function'],
+      [() => untyped(model, { signal: 1 }), 'badOption', 'options.signal is 1, not an AbortSignal'],
+      [() => makeCage(bad({ indices: new Uint32Array(0) })), 'badModel', 'model has no triangles'],
+      [() => makeCage(bad({ positions: nan })), 'badModel', 'model.positions[4] is not a finite number'],
+      [
+        () => makeCage(bad({ parts: ['skin'] })),
+        'badModel',
+        /^makeCage: model\.groups\[\d+\] = 1, but there are 1 parts$/,
+      ],
+    ] satisfies [() => Promise<unknown>, Code, string | RegExp][]) {
+      const error = await failure(call);
+      assert.equal(error.code, code, error.message);
+      if (typeof says === 'string') assert.equal(error.message, `makeCage: ${says}`);
+      else assert.match(error.message, says);
+    }
+  });
+
+  test('terminate cancels waiting calls', async () => {
+    const calls = [makeCage(head(), options), makeCage(head(), options)].map((call) => failure(() => call));
+    terminate();
+    for (const error of await Promise.all(calls)) assert.equal(error.code, 'aborted');
+  });
+
+  test('an idle worker does not keep a process alive, and nothing is loaded before the first call', () => {
+    const script = `
+      import { defaultExclusions } from 'cagecast/cages';
+      console.log((await defaultExclusions()).length > 0);`;
+    const run = (text: string) =>
+      execFileSync(process.execPath, ['--input-type=module', '-e', text], { encoding: 'utf8', timeout: 60000 }).trim();
+    assert.equal(run(script), 'true');
+    assert.throws(() => sync.makeCage.call(undefined, null as never), { code: 'badArgument' });
+    assert.equal(
+      run(
+        `import { makeCage } from 'cagecast/cages/sync'; try { makeCage({}); } catch ({ code }) { console.log(code); }`,
+      ),
+      'notInitialised',
+    );
+  });
+});
