@@ -80,15 +80,28 @@ const foldersOf = (folder: string): string[] =>
 
 const readJson = <T>(path: string): T => JSON.parse(readFileSync(path, 'utf8')) as T;
 
+/** Samples that the package's templates were made for, whose landmarks are therefore known. */
+const sampleTemplates: Readonly<Record<string, string>> = { human: 'human-head' };
+
+/** The landmarks that a template has in the extras of its mesh. */
+function landmarksOf(template: string): Figure['landmarks'] {
+  const bytes = readFileSync(`${root}examples/assets/templates/${template}.glb`);
+  const json = JSON.parse(bytes.toString('utf8', 20, 20 + bytes.readUInt32LE(12))) as {
+    meshes: { extras?: { landmarks?: Figure['landmarks'] } }[];
+  };
+  return json.meshes[0]?.extras?.landmarks ?? {};
+}
+
 function readFolder(name: string, folder: string): Figure {
   const landmarks = `${folder}/landmarks.json`;
+  const template = sampleTemplates[name];
   return {
     name,
     kind: kindOf(name),
     target: `${folder}/target.glb`,
     ...(existsSync(`${folder}/cage.glb`) && { cage: `${folder}/cage.glb` }),
     truth: truthOf(readJson(`${folder}/truth.json`)),
-    landmarks: existsSync(landmarks) ? readJson(landmarks) : {},
+    landmarks: template ? landmarksOf(template) : existsSync(landmarks) ? readJson(landmarks) : {},
     named: !/fused|suzanne/.test(name),
   };
 }

@@ -33,6 +33,8 @@ export interface TemplateFigure extends Subject {
 export interface Person extends Subject {
   /** Where its vertices are on the template's target; without it they are the template's, one by one. */
   source?: Source;
+  /** Whether its vertices correspond to the template's. Default: yes. */
+  corresponds?: boolean;
 }
 
 /** Median and 95th percentile of an error, as shares of the diagonal of the template's target. */
@@ -92,10 +94,12 @@ export class FitScorer {
 
   /**
    * The error of correspondence: for each skin vertex the point of the template's cage nearest to the template's vertex, against
-   * the point of the cage nearest to the person's vertex, carried to the template's cage by the same triangle and weights.
+   * the point of the cage nearest to the person's vertex, carried to the template's cage by the same triangle and weights. NaN if
+   * nothing corresponds.
    */
   correspondence(positions: ArrayLike<number>, person: Person): Spread {
     const { cage } = this.template;
+    if (person.corresponds === false) return { median: NaN, most: NaN };
     const fitted = new Search({ positions, indices: cage.indices });
     const errors: number[] = [];
     for (let v = 0; v < person.target.positions.length / 3; ++v) {
@@ -132,7 +136,7 @@ export class FitScorer {
 
   /** The template's cage carried by the true displacement of the nearest points of the target, offsets scaled. */
   byTruth(person: Person): Float64Array | undefined {
-    if (person.source !== undefined) return undefined;
+    if (person.source !== undefined || person.corresponds === false) return undefined;
     const { cage, target } = this.template;
     const search = new Search(target);
     const scale = diagonalOf(person.target.positions) / this.diagonal;

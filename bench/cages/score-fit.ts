@@ -1,9 +1,11 @@
 // Scores fitted cages: a line per figure, and the means.
 //
-//   npx tsx bench/cages/score-fit.ts [--run] [--given auto|5|9|23|all|name,name…] [--cages folder] [head|body|NAME …]
+//   npx tsx bench/cages/score-fit.ts [--run] [--given auto|5|9|23|all|name,name…] [--cages folder] [--template NAME] [head|body|NAME …]
 //     --run     fit first, with build/release/bench/cagecast_cages_tool
 //     --given   true landmarks that the fit is told (default auto: none)
 //     --cages   subfolder of build/cages with NAME.json for each figure (default fitted-GIVEN)
+//     --template  name of another figure whose cage is fitted, to all that have eyes or landmarks; without correspondence, errors
+//               are those of landmarks only
 //     --json    all numbers as JSON, instead of the table
 //
 // Write the figures with scenes.ts before. Columns, lengths as % of the diagonal, areas as % of the skin's:
@@ -21,7 +23,7 @@ import { mkdirSync, writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
 import { init } from 'cagecast';
 import { table } from '../table.js';
-import { cagesFolder, templates } from './figures.js';
+import { cagesFolder } from './figures.js';
 import { has, personOf, read, runTool, type StoredCage, type StoredFigure, storedFigures } from './files.js';
 import { type EyeScore, FitScorer, type Spread } from './fit-score.js';
 import { type FitMeasures, givenOf, mean, measureFit, percent } from './measure.js';
@@ -41,10 +43,11 @@ function scorerOf(template: string): FitScorer {
   return scorers.get(template)!;
 }
 
-function lineOf(figure: StoredFigure, folder: string, outcome: string): Line | undefined {
+function lineOf(figure: StoredFigure, template: string, folder: string, outcome: string): Line | undefined {
   if (!has(`${folder}/${figure.name}`)) return undefined;
   const cage = read<StoredCage>(`${folder}/${figure.name}`);
-  const measures = measureFit(scorerOf(figure.template!), personOf(figure), cage, cage.used ?? {});
+  const person = { ...personOf(figure), corresponds: figure.template === template };
+  const measures = measureFit(scorerOf(template), person, cage, cage.used ?? {});
   return { name: figure.name, ...measures, outcome };
 }
 
@@ -107,16 +110,23 @@ const { values: options, positionals } = parseArgs({
     run: { type: 'boolean' },
     given: { type: 'string', default: 'auto' },
     cages: { type: 'string' },
+    template: { type: 'string' },
     json: { type: 'boolean' },
   },
 });
 await init();
-const folder = options.cages ?? `fitted-${options.given.replace(/,/g, '+')}`;
+const suffix = options.template === undefined ? '' : `-${options.template}`;
+const folder = options.cages ?? `fitted-${options.given.replace(/,/g, '+')}${suffix}`;
 mkdirSync(`${cagesFolder}/${folder}`, { recursive: true });
-const figures = storedFigures(positionals).filter(({ template }) => template !== undefined);
+const figures = storedFigures(positionals).filter((figure) =>
+  options.template === undefined
+    ? figure.template !== undefined
+    : figure.name !== options.template && (figure.truth.eyes.includes(1) || figure.template !== undefined),
+);
 const lines: Line[] = [];
 for (const figure of figures) {
-  const { name, template } = figure;
+  const { name } = figure;
+  const template = options.template ?? figure.template!;
   let outcome = '';
   if (options.run) {
     const at = (file: string): string => `${cagesFolder}/${file}.json`;
@@ -125,14 +135,14 @@ for (const figure of figures) {
     const files = [`${template}.cage`, `${template}.landmarks`, `${name}.model`, `${folder}/${name}`].map(at);
     outcome = await runTool('fit', ...files, '--landmarks', at(given));
   }
-  const line = lineOf(figure, folder, outcome);
+  const line = lineOf(figure, template, folder, outcome);
   if (line) lines.push(line);
   else console.error(`${name}: no ${folder}/${name}.json ${outcome}`);
 }
 if (options.json) console.log(JSON.stringify(lines, null, 1));
 else if (lines.length > 0) {
-  const groups = Object.values(templates).flatMap((template) => {
-    const some = lines.filter(({ name }) => read<StoredFigure>(`${name}.figure`).template === template);
+  const groups = (['head', 'body', 'prop'] as const).flatMap((kind) => {
+    const some = lines.filter(({ name }) => read<StoredFigure>(`${name}.figure`).kind === kind);
     return some.length > 0 ? [...some.map(row), meanOf(some)] : [];
   });
   console.log(table(['', ...head], groups));
