@@ -6,11 +6,10 @@
 namespace cagecast::cages {
 
 void findEyeCorners(Head& head, const Surface& all, const std::vector<bool>& isEye) {
-  if (!head.eyes) return;
   constexpr double kStep = 0.002;
-  const double reach = 1.3 * head.eyes->radius;
+  const double reach = 1.3 * head.eyes.radius;
   for (const int i : {0, 1}) {
-    const Vec3& eye = head.eyes->centres[static_cast<std::size_t>(i)];
+    const Vec3& eye = head.eyes.centres[static_cast<std::size_t>(i)];
     const double side = i == 0 ? 1 : -1;
     const Grid grid = Grid::over(eye.x - reach, eye.x + reach, eye.y - reach, eye.y + reach, kStep);
     const HeightMap map = look(all, kFrontView, grid, 0.6);
@@ -38,7 +37,7 @@ void findEyeCorners(Head& head, const Surface& all, const std::vector<bool>& isE
       if (outer < 0) outer = column;
     }
     // Eyes that stand out freely have no corners.
-    const double disc = std::acos(-1.0) * head.eyes->radius * head.eyes->radius / (kStep * kStep);
+    const double disc = std::acos(-1.0) * head.eyes.radius * head.eyes.radius / (kStep * kStep);
     if (inner < 0 || outer == inner || area > 0.85 * disc) continue;
     const auto corner = [&](int column) {
       const auto k = static_cast<std::size_t>(column);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 #include "mesh/surface.hpp"
 
@@ -35,21 +34,6 @@ Shape shapeOf(const TriangleMesh& mesh) {
     out.high = {std::max(out.high.x, p.x), std::max(out.high.y, p.y), std::max(out.high.z, p.z)};
   }
   for (const Triangle3& t : mesh.triangles) out.area += 0.5 * length(areaNormal(mesh, t));
-  return out;
-}
-
-/// Some triangles of a mesh, with the vertices that they use: its cost depends on their number only.
-TriangleMesh compact(const TriangleMesh& mesh, const std::vector<Triangle3>& triangles) {
-  std::unordered_map<std::uint32_t, std::uint32_t> newVertex;
-  TriangleMesh out;
-  for (Triangle3 t : triangles) {
-    for (std::uint32_t& v : t) {
-      const auto [found, isNew] = newVertex.try_emplace(v, static_cast<std::uint32_t>(out.positions.size()));
-      if (isNew) out.positions.push_back(mesh.positions[v]);
-      v = found->second;
-    }
-    out.triangles.push_back(t);
-  }
   return out;
 }
 
@@ -212,7 +196,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
   };
   std::vector<std::vector<Triangle3>> triangles(figure.componentCount);
   for (std::size_t t = 0; t < figure.components.size(); ++t)
-    triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
+    if (figure.roles[t] == Role::surface) triangles[figure.components[t]].push_back(figure.mesh.triangles[t]);
   std::vector<Candidate> candidates;
   for (std::uint32_t c = 0; c < figure.componentCount; ++c) {
     const std::size_t size = triangles[c].size();

@@ -36,4 +36,8 @@ std::optional<Eyes> findNamedEyes(const Figure& figure);
 /// @param plane  Of the figure, or of its head.
 std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane);
 
+/// The eyes as bulges of the skin beside the root of the nose.
+/// @param plane  Of the figure.
+std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane);
+
 }  // namespace cagecast::cages

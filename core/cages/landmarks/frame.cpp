@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <unordered_map>
 
 #include "mesh/surface.hpp"
 
@@ -147,6 +148,20 @@ std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& mesh) {
     return plane.residual * (std::abs(plane.left.x) > kSameHeading ? kAxisPreference : 1);
   };
   std::sort(out.begin(), out.end(), [&](const MirrorPlane& a, const MirrorPlane& b) { return rank(a) < rank(b); });
+  return out;
+}
+
+TriangleMesh compact(const TriangleMesh& mesh, const std::vector<Triangle3>& triangles) {
+  std::unordered_map<std::uint32_t, std::uint32_t> newVertex;
+  TriangleMesh out;
+  for (Triangle3 t : triangles) {
+    for (std::uint32_t& v : t) {
+      const auto [found, isNew] = newVertex.try_emplace(v, static_cast<std::uint32_t>(out.positions.size()));
+      if (isNew) out.positions.push_back(mesh.positions[v]);
+      v = found->second;
+    }
+    out.triangles.push_back(t);
+  }
   return out;
 }
 

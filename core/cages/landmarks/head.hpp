@@ -20,9 +20,9 @@ struct Spot {
 /// A head in its own space, and what has been found on it. All lengths are in units of the frame.
 struct Head {
   HeadFrame frame;
-  TriangleMesh skin;         ///< Without eyes, teeth and hair, as far as they are known.
-  Surface surface;           ///< Of the skin.
-  std::optional<Eyes> eyes;  ///< In this space.
+  TriangleMesh skin;  ///< Without eyes, teeth and hair, as far as they are known.
+  Surface surface;    ///< Of the skin.
+  Eyes eyes;          ///< In this space.
   std::vector<Spot> spots = {};
 
   void add(std::string name, const Vec3& position, double confidence) {
@@ -34,6 +34,13 @@ struct Head {
     return nullptr;
   }
 };
+
+/// A head around two eyes, in a space of its own, without any landmark yet.
+/// @return Nothing if the eyes are too close or too far apart for the skin around them.
+std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes);
+
+/// Finds all landmarks of a head that can be found.
+void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head);
 
 /// The midline of a face: nose, brow, lips and chin, from the curve of its profile. Needs the eyes' height.
 /// @return false if there is no human face's profile.

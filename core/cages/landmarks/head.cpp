@@ -1,0 +1,121 @@
+#include "landmarks/head.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cagecast::cages {
+
+namespace {
+
+// Shares of a head's own length, which is about the diagonal of the box around head and neck.
+constexpr double kEyeDistance = 0.16;
+constexpr double kEyesToCrown = 0.29;
+constexpr double kEyesToBack = 0.43;
+/// Eyes that are no parts with a name may be teeth or buttons: how far apart they may be, in shares of what the head
+/// suggests.
+constexpr double kNearest = 0.55, kFarthest = 1.7;
+/// How much of a figure around the eyes belongs to the head, in the head's lengths.
+constexpr double kHeadReach = 1.1;
+
+double median3(double a, double b, double c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+
+/// The length of a head, from the distance of its eyes and from where its skin ends above and behind them.
+double headLength(const TriangleMesh& skin, double eyeDistance, const HeadFrame& guess) {
+  const double byEyes = eyeDistance / kEyeDistance;
+  const Surface surface(guess.toLocal(within(skin, guess.origin, kHeadReach * guess.unit)));
+  const HeightMap top = look(surface, kTopView, Grid::over(-0.05, 0.05, -0.35, 0, 0.025), 1.5);
+  const HeightMap back = look(surface, kBackView, Grid::over(-0.05, 0.05, 0, 0.2, 0.025), 1.5);
+  const double high = *std::max_element(top.heights.begin(), top.heights.end());
+  const double rear = *std::max_element(back.heights.begin(), back.heights.end());
+  const double byCrown = std::isfinite(high) ? high * guess.unit / kEyesToCrown : byEyes;
+  const double byBack = std::isfinite(rear) ? rear * guess.unit / kEyesToBack : byEyes;
+  return median3(byEyes, byCrown, byBack);
+}
+
+bool belongsToEye(const Eyes& eyes, std::size_t triangle) {
+  return !eyes.triangles.empty() && eyes.triangles[triangle];
+}
+
+/// Components that only the front sees: teeth and tongues, which are no part of the skin if the mouth is open.
+std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
+  constexpr double kSmall = 0.1;  ///< Share of the figure's triangles.
+  constexpr std::size_t kSamples = 24;
+  std::vector<std::vector<Triangle3>> parts(figure.componentCount);
+  for (std::size_t t = 0; t < figure.components.size(); ++t)
+    parts[figure.components[t]].push_back(figure.mesh.triangles[t]);
+  const Surface surface(figure.mesh);
+  const double clear = 1e-4 * diagonalOf(figure.mesh);
+  const Vec3 up{0, 1, 0};
+  std::vector<bool> out(figure.componentCount);
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    const auto size = static_cast<double>(parts[c].size());
+    if (size > kSmall * static_cast<double>(figure.components.size())) continue;
+    std::vector<SurfaceRay> rays;
+    for (const Vec3& p : samplePoints(compact(figure.mesh, parts[c]), kSamples))
+      for (const Vec3& direction : {eyes.left, -1 * eyes.left, up, -1 * eyes.front})
+        rays.push_back({p + clear * direction, direction});
+    const std::vector<RayHit> hits = surface.trace(rays);
+    out[c] = std::none_of(hits.begin(), hits.end(), [](const RayHit& hit) { return std::isinf(hit.distance); });
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
+  const double eyeDistance = length(eyes.centres[0] - eyes.centres[1]);
+  HeadFrame frame;
+  frame.unit = eyeDistance / kEyeDistance;
+  frame.origin = eyes.middle();
+  const bool loose = figure.componentCount > 1 && figure.componentCount < 1000 && !figure.has(Role::mouth);
+  const std::vector<bool> hidden = loose ? insideMouth(figure, eyes) : std::vector<bool>(figure.componentCount);
+  std::vector<bool> isSkin(figure.roles.size());
+  for (std::size_t t = 0; t < isSkin.size(); ++t)
+    isSkin[t] = figure.roles[t] == Role::surface && !belongsToEye(eyes, t) && !hidden[figure.components[t]];
+  const TriangleMesh skin = subset(figure.mesh, isSkin);
+  // The eyes' own line is the mirror's first guess.
+  MirrorPlane plane;
+  plane.left = eyes.left;
+  plane.offset = dot(plane.left, frame.origin);
+  const TriangleMesh near = within(skin, frame.origin + (-0.15 * frame.unit) * eyes.front, 0.45 * frame.unit);
+  if (near.empty()) return std::nullopt;
+  const MirrorPlane better = refineMirrorPlane(near, plane);
+  if (dot(better.left, plane.left) > 0.97 && std::abs(better.offset - plane.offset) < 0.03 * frame.unit) plane = better;
+  frame.left = plane.left;
+  frame.front = cross(frame.left, frame.up);
+  frame.origin = frame.origin + (plane.offset - dot(plane.left, frame.origin)) * plane.left;
+  frame.unit = headLength(skin, eyeDistance, frame);
+  const double share = eyeDistance / (kEyeDistance * frame.unit);
+  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest)) return std::nullopt;
+
+  TriangleMesh local = frame.toLocal(within(skin, frame.origin, kHeadReach * frame.unit));
+  Surface surface(local);
+  Eyes inside = eyes;
+  for (Vec3& centre : inside.centres) centre = frame.toLocal(centre);
+  inside.radius = eyes.radius / frame.unit;
+  return Head{frame, std::move(local), std::move(surface), std::move(inside)};
+}
+
+void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head) {
+  head.add("eye_centre_left", head.eyes.centres[0], eyes.confidence);
+  head.add("eye_centre_right", head.eyes.centres[1], eyes.confidence);
+  if (!eyes.triangles.empty()) {
+    TriangleMesh face{figure.mesh.positions, {}};
+    std::vector<bool> isEye;
+    for (std::size_t t = 0; t < figure.roles.size(); ++t) {
+      const bool eye = belongsToEye(eyes, t);
+      const Triangle3& triangle = figure.mesh.triangles[t];
+      if (!eye && figure.roles[t] != Role::surface) continue;
+      if (length(figure.mesh.positions[triangle[0]] - head.frame.origin) > 0.5 * head.frame.unit) continue;
+      face.triangles.push_back(triangle);
+      isEye.push_back(eye);
+    }
+    findEyeCorners(head, Surface(head.frame.toLocal(std::move(face))), isEye);
+  }
+  if (!findProfile(head)) return;
+  findMouthCorners(head);
+  findEars(head);
+  findSkull(head);
+}
+
+}  // namespace cagecast::cages
