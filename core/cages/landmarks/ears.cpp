@@ -93,13 +93,25 @@ std::optional<Ear> findEar(const Head& head, double side, double bottom) {
   const auto point = [&](const std::pair<int, int>& place) {
     return view.point(grid.a(place.first), grid.b(place.second), map.at(place.first, place.second));
   };
-  ear.top = ear.lobe = ear.outer = point(best->front());
+  double low = grid.b(grid.rows);
+  ear.outer = ear.top = point(best->front());
   for (const auto& place : *best) {
     const Vec3 p = point(place);
     if (p.y > ear.top.y) ear.top = p;
-    if (p.y < ear.lobe.y) ear.lobe = p;
+    low = std::min(low, p.y);
     if (side * p.x > side * ear.outer.x) ear.outer = p;
   }
+  // The lobe is blunt: the middle of what is close to the lowest row.
+  constexpr double kBlunt = 0.01;
+  Vec3 sum{0, 0, 0};
+  double count = 0;
+  for (const auto& place : *best) {
+    const Vec3 p = point(place);
+    if (p.y > low + kBlunt) continue;
+    sum = sum + p;
+    ++count;
+  }
+  ear.lobe = {sum.x / count, low, sum.z / count};
   return ear;
 }
 

@@ -19,16 +19,38 @@ constexpr int kHeadings = 24;           ///< Steps of 7.5 degrees: the refinemen
 constexpr int kRefined = 3;             ///< How many planes are refined.
 constexpr double kSameHeading = 0.985;  ///< Cosine of 10 degrees.
 constexpr int kIterations = 20;
+constexpr double kSettled = 0.99;  ///< Iterations end when the residual is this share of the last one or more.
 /// Of the mirrored points, the share closest to the surface that counts: a parting or a broken ear may be one-sided.
 constexpr double kTrusted = 0.8;
 /// A heading off the file's own axes must be this much better: a round head has a mirror plane anywhere.
 constexpr double kAxisPreference = 0.7;
 
+/// Sorts points so that neighbours are close together (a Morton curve): searches for them in turn are quicker then.
+void sortByPlace(std::vector<Vec3>& points, double size) {
+  Vec3 low = points[0];
+  for (const Vec3& p : points) low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  constexpr int kBits = 5;
+  std::vector<std::pair<std::uint32_t, std::size_t>> order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 d = (1 << kBits) / size * (points[i] - low);
+    std::uint32_t code = 0;
+    for (int bit = kBits - 1; bit >= 0; --bit)
+      for (const double x : {d.x, d.y, d.z}) code = 2 * code + ((static_cast<std::uint32_t>(x) >> bit) & 1u);
+    order.emplace_back(code, i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Vec3> sorted;
+  for (const auto& [code, i] : order) sorted.push_back(points[i]);
+  points = std::move(sorted);
+}
+
 /// Mirrors samples, and finds the points of the surface that are closest to them.
 class Mirror {
  public:
   Mirror(const TriangleMesh& mesh, const Surface& surface)
-      : surface_(surface), points_(samplePoints(mesh, kSamples)), diagonal_(diagonalOf(mesh)) {}
+      : surface_(surface), points_(samplePoints(mesh, kSamples)), diagonal_(diagonalOf(mesh)) {
+    sortByPlace(points_, diagonal_);
+  }
 
   /// Sets the plane's residual, and moves it closer to what mirrors the trusted samples onto the surface.
   [[nodiscard]] MirrorPlane improved(MirrorPlane& plane) const {
@@ -84,7 +106,9 @@ MirrorPlane refined(const Mirror& mirror, MirrorPlane plane) {
   best.residual = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kIterations; ++i) {
     const MirrorPlane next = mirror.improved(plane);
+    const bool settled = plane.residual > kSettled * best.residual;
     if (plane.residual < best.residual) best = plane;
+    if (settled) break;
     plane = next;
   }
   return best;

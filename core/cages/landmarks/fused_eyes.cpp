@@ -42,63 +42,71 @@ HeadFrame guessFrame(const TriangleMesh& mesh, const MirrorPlane& plane, double 
 
 /// How far the midline stands out from both sides of it: most at the tip of a nose.
 double ridge(const HeightMap& map, double y) {
-  constexpr double kAside = 0.05;
+  constexpr double kAside = 0.035;
   const double sides = 0.5 * (map.near(-kAside, y) + map.near(kAside, y));
   const double value = map.near(0, y) - sides;
   return std::isfinite(value) ? value : 0;
 }
 
-/// How much a surface bulges in the direction in which it bulges least: the lesser principal curvature.
-double bulge(const HeightMap& map, double x, double y) {
-  constexpr double kReach = 0.012;
-  const auto z = [&](int i, int k) { return map.near(x + i * kReach, y + k * kReach); };
-  const double xx = z(1, 0) + z(-1, 0) - 2 * z(0, 0);
-  const double yy = z(0, 1) + z(0, -1) - 2 * z(0, 0);
-  const double xy = 0.25 * (z(1, 1) + z(-1, -1) - z(1, -1) - z(-1, 1));
-  const double mean = 0.5 * (xx + yy), off = std::hypot(0.5 * (xx - yy), xy);
-  const double value = -(mean + off) / (kReach * kReach);
-  return std::isfinite(value) ? value : 0;
+/// Where the centres of balls of some radius would be under a surface: each place of a height map votes for the point
+/// that far below it, along its normal (a Hough transform). Eyeballs and the lids around them agree on a centre.
+struct BallVotes {
+  HeightMap density;  ///< Votes per place: 1 on planes.
+  HeightMap depth;    ///< Mean height of the centres that are voted for.
+};
+
+BallVotes voteForBalls(const HeightMap& map, double radius) {
+  constexpr double kReach = 0.008, kSteepest = 1.5, kBlur = 0.006;
+  const Grid& grid = map.grid;
+  BallVotes votes{map, map};
+  std::fill(votes.density.heights.begin(), votes.density.heights.end(), 0);
+  std::fill(votes.depth.heights.begin(), votes.depth.heights.end(), 0);
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const double x = grid.a(column), y = grid.b(row);
+      const double dx = (map.near(x + kReach, y) - map.near(x - kReach, y)) / (2 * kReach);
+      const double dy = (map.near(x, y + kReach) - map.near(x, y - kReach)) / (2 * kReach);
+      if (!(std::hypot(dx, dy) < kSteepest)) continue;
+      const double size = std::sqrt(1 + dx * dx + dy * dy);
+      const int c = grid.columnOf(x + radius * dx / size), r = grid.rowOf(y + radius * dy / size);
+      if (!grid.has(c, r)) continue;
+      votes.density.heights[map.index(c, r)] += 1;
+      votes.depth.heights[map.index(c, r)] += map.at(column, row) - radius / size;
+    }
+  votes.density = blurred(votes.density, kBlur);
+  votes.depth = blurred(votes.depth, kBlur);
+  for (std::size_t i = 0; i < votes.depth.heights.size(); ++i)
+    votes.depth.heights[i] /= std::max(votes.density.heights[i], 1e-6);
+  return votes;
 }
 
 struct Found {
-  double x = 0, y = 0;  ///< Of the left eye.
-  double strength = 0;  ///< Curvature.
+  double x = 0, y = 0, z = 0;  ///< Of the left eye's centre.
+  double radius = 0;
+  double votes = 0;
 };
 
-/// The pair of places at the nose's root that bulge most.
-Found searchBulges(const HeightMap& map, double noseY, double rootY) {
-  constexpr double kInner = 0.045, kOuter = 0.135, kAbove = 0.03, kBelow = 0.05;
+/// The pair of balls beside the nose's root that most places agree on.
+Found searchBalls(const HeightMap& map, double noseY, double rootY) {
+  constexpr double kInner = 0.045, kOuter = 0.135, kAbove = 0.02, kBelow = 0.03;
   Found best;
-  for (double y = std::max(rootY - kBelow, noseY + 0.03); y <= rootY + kAbove; y += kStep)
-    for (double x = kInner; x <= kOuter; x += kStep) {
-      const double strength = std::min(bulge(map, x, y), bulge(map, -x, y));
-      if (strength > best.strength) best = {x, y, strength};
-    }
+  for (const double radius : {0.03, 0.036, 0.043, 0.052}) {
+    const BallVotes votes = voteForBalls(map, radius);
+    for (double y = std::max(rootY - kBelow, noseY + 0.03); y <= rootY + kAbove; y += kStep)
+      for (double x = kInner; x <= kOuter; x += kStep) {
+        const double count = std::min(votes.density.near(x, y), votes.density.near(-x, y));
+        if (count <= best.votes) continue;
+        best = {x, y, 0.5 * (votes.depth.near(x, y) + votes.depth.near(-x, y)), radius, count};
+      }
+  }
   return best;
-}
-
-/// The middle of the region around a bulge that bulges at least half as much.
-void centre(const HeightMap& map, Found& found) {
-  constexpr double kReach = 0.032;
-  double sum = 0, xs = 0, ys = 0;
-  for (double y = found.y - kReach; y <= found.y + kReach; y += kStep)
-    for (double x = found.x - kReach; x <= found.x + kReach; x += kStep) {
-      const double weight = 0.5 * (bulge(map, x, y) + bulge(map, -x, y)) - 0.4 * found.strength;
-      if (weight <= 0) continue;
-      sum += weight;
-      xs += weight * x;
-      ys += weight * y;
-    }
-  if (sum <= 0) return;
-  found.x = xs / sum;
-  found.y = ys / sum;
 }
 
 }  // namespace
 
 std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane) {
-  constexpr double kLeastNose = 0.02;  ///< How far a nose stands out.
-  constexpr double kLeastBulge = 6;    ///< Eyeballs have a radius of 0.03 to 0.05; cheeks one of 0.2.
+  constexpr double kLeastNose = 0.012;                    ///< How far a nose stands out.
+  constexpr double kLeastVotes = 2.2, kClearVotes = 3.5;  ///< Planes have 1.
   const TriangleMesh skin = figure.only(Role::surface);
   std::optional<Eyes> best;
   double most = kLeastNose;
@@ -108,29 +116,34 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
     if (local.empty()) continue;
     const Surface surface(local);
     const Grid grid = Grid::over(-0.2, 0.2, -0.3, 0.2, kStep);
-    const HeightMap map = blurred(look(surface, kFrontView, grid, 0.7), 0.006);
+    const HeightMap map = blurred(closed(look(surface, kFrontView, grid, 0.7), 0.008), 0.004);
     double noseY = 0;
     for (double y = -0.22; y < 0.03; y += kStep)
       if (ridge(map, y) > ridge(map, noseY)) noseY = y;
-    if (ridge(map, noseY) <= most) continue;
-    // The nose's root: the deepest place of the midline over its tip.
-    double rootY = noseY + 0.04;
-    for (double y = rootY; y < noseY + 0.15; y += kStep)
+    const double standsOut = ridge(map, noseY);
+    if (standsOut <= most) continue;
+    // A ridge may be highest at its root: the tip is where the profile is foremost before it falls back.
+    for (double y = noseY; y > -0.25 && map.near(0, y) > map.near(0, noseY) - 0.012; y -= kStep)
+      if (map.near(0, y) > map.near(0, noseY)) noseY = y;
+    // The nose's root: the hollow over its tip. Eyes are beside it; without it they could be anywhere.
+    constexpr double kRises = 0.0006;  ///< By so much the brow comes out again above it.
+    const double rootEnd = noseY + 0.17;
+    double rootY = noseY + 0.04, y = rootY;
+    for (; y < rootEnd && map.near(0, y) < map.near(0, rootY) + kRises; y += kStep)
       if (map.near(0, y) < map.near(0, rootY)) rootY = y;
-    Found found = searchBulges(map, noseY, rootY);
-    if (found.strength < kLeastBulge) continue;
-    centre(map, found);
-    most = ridge(map, noseY);
+    if (y >= rootEnd) continue;
+    const Found found = searchBalls(map, noseY, rootY);
+    if (found.votes < kLeastVotes) continue;
+    most = standsOut;
     Eyes eyes;
-    constexpr double kEyeRadius = 0.037;
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       const double x = i == 0 ? found.x : -found.x;
-      eyes.centres[i] = frame.toModel({x, found.y, map.near(x, found.y) - kEyeRadius});
+      eyes.centres[i] = frame.toModel({x, found.y, found.z});
     }
     eyes.left = frame.left;
     eyes.front = frame.front;
-    eyes.radius = kEyeRadius * frame.unit;
-    eyes.confidence = found.strength > 2 * kLeastBulge ? 0.6 : 0.5;
+    eyes.radius = found.radius * frame.unit;
+    eyes.confidence = found.votes > kClearVotes ? 0.6 : 0.5;
     best = std::move(eyes);
   }
   return best;

@@ -1,5 +1,7 @@
 #include "landmarks/height_map.hpp"
 
+#include <algorithm>
+
 namespace cagecast::cages {
 
 namespace {
@@ -53,6 +55,29 @@ HeightMap blurred(const HeightMap& map, double sigma) {
   for (std::size_t column = 0; column < columns; ++column)
     blurLine(half.data() + column, out.heights.data() + column, columns, rows, weights);
   return out;
+}
+
+HeightMap closed(const HeightMap& map, double reach) {
+  const int half = static_cast<int>(std::lround(reach / map.grid.step));
+  // The greatest, or least, of each square is that of its rows, then of its columns.
+  const auto extreme = [&](const HeightMap& in, bool greatest) {
+    HeightMap out = in;
+    for (const bool rows : {true, false}) {
+      const HeightMap from = out;
+      for (int row = 0; row < in.grid.rows; ++row)
+        for (int column = 0; column < in.grid.columns; ++column) {
+          double value = from.at(column, row);
+          for (int d = -half; d <= half; ++d) {
+            const int c = rows ? column + d : column, r = rows ? row : row + d;
+            if (!in.grid.has(c, r)) continue;
+            value = greatest ? std::max(value, from.at(c, r)) : std::min(value, from.at(c, r));
+          }
+          out.heights[in.index(column, row)] = value;
+        }
+    }
+    return out;
+  };
+  return extreme(extreme(map, true), false);
 }
 
 }  // namespace cagecast::cages

@@ -64,4 +64,7 @@ HeightMap look(const Surface& surface, const View& view, const Grid& grid, doubl
 /// A Gaussian blur that leaves out points without a height. @param sigma  In the unit of the grid's step.
 HeightMap blurred(const HeightMap& map, double sigma);
 
+/// Fills what is narrower than twice `reach`, along both directions (a morphological closing): slits and creases.
+HeightMap closed(const HeightMap& map, double reach);
+
 }  // namespace cagecast::cages

@@ -119,10 +119,13 @@ void findMouthCorners(Head& head) {
     if (map.near(0, b) < lipZ - 0.02) open += kStep;
   constexpr double kGaping = 0.025;
   const bool gaping = open > kGaping;
-  const std::array<std::optional<Vec3>, 2> ends =
+  std::array<std::optional<Vec3>, 2> ends =
       gaping ? gapEnds(map, top, bottom, y)
              : std::array<std::optional<Vec3>, 2>{follow(smooth, y, 1), follow(smooth, y, -1)};
   if (!ends[0] || !ends[1]) return;
+  // On the skin, not in the crease.
+  const HeightMap skin = closed(map, 0.009);
+  for (std::optional<Vec3>& end : ends) end->z = skin.near(end->x, end->y);
   // Mouths may be crooked, but not by much: what differs has followed a fold of the cheek.
   const double off = std::hypot(ends[0]->x + ends[1]->x, ends[0]->y - ends[1]->y);
   const double trust = off < 0.01 ? 0.75 : off < 0.02 ? 0.6 : 0.3;

@@ -21,10 +21,16 @@ void findSkull(Head& head) {
   constexpr double kLowest = -0.1, kHighest = 0.3;
   const Grid backGrid = Grid::over(-kStep, kStep, -0.4, kHighest + 0.05, kStep);
   const Curve back = Curve::along(look(head.surface, kBackView, backGrid, 1.0)).blurred(kRound);
-  const auto rear = back.highest(kLowest, kHighest);
-  if (!rear) return;
-  const Vec3 occiput{0, *rear, -back.at(*rear)};
-  const bool inside = *rear > kLowest + 2 * kStep && *rear < kHighest - 2 * kStep;
+  const auto rearmost = back.highest(kLowest, kHighest);
+  if (!rearmost) return;
+  // Skulls are flat there: the middle between where they are a little less far back is steadier.
+  constexpr double kFlat = 0.012;
+  double low = *rearmost, high = *rearmost;
+  while (back.at(low) > back.at(*rearmost) - kFlat) low -= kStep;
+  while (back.at(high) > back.at(*rearmost) - kFlat) high += kStep;
+  const double rear = 0.5 * (low + high);
+  const Vec3 occiput{0, rear, -back.at(rear)};
+  const bool inside = low > kLowest - 0.1 && high < kHighest;
   head.add("occiput", occiput, inside ? 0.65 : 0.3);
   // The crown: above the middle of the head's length. The highest place itself moves far with little, for skulls are
   // flat there.
