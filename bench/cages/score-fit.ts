@@ -1,4 +1,4 @@
-// Scores fitted cages: a line per figure, and the means.
+// Scores fitted cages: a line per figure, and the means over those whose parts have names.
 //
 //   npx tsx bench/cages/score-fit.ts [--run] [--given auto|5|9|23|all|name,name…] [--cages folder] [--template NAME] [head|body|NAME …]
 //     --run     fit first, with build/release/bench/cagecast_cages_tool
@@ -87,7 +87,7 @@ function meanOf(lines: readonly Line[]): string[] {
   const errors = (of: (line: Line) => Line['found']): string =>
     `${percent(mean(lines.map((line) => of(line).mean)))} / ${percent(mean(lines.map((line) => of(line).most)))}`;
   return [
-    `mean of ${lines.length}`,
+    `mean of ${lines.length} with part names`,
     spread((line) => line.correspondence),
     spread((line) => line.similarity),
     spread((line) => line.floor),
@@ -143,7 +143,8 @@ if (options.json) console.log(JSON.stringify(lines, null, 1));
 else if (lines.length > 0) {
   const groups = (['head', 'body', 'prop'] as const).flatMap((kind) => {
     const some = lines.filter(({ name }) => read<StoredFigure>(`${name}.figure`).kind === kind);
-    return some.length > 0 ? [...some.map(row), meanOf(some)] : [];
+    const named = some.filter(({ name }) => read<StoredFigure>(`${name}.figure`).named);
+    return some.length > 0 ? [...some.map(row), meanOf(named)] : [];
   });
   console.log(table(['', ...head], groups));
 }
