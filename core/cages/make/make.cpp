@@ -4,6 +4,7 @@
 #include "cagecast/cages.hpp"
 #include "charts/unwrap.hpp"
 #include "hull/hull.hpp"
+#include "make/cut_holes.hpp"
 #include "make/enclose.hpp"
 #include "make/marks.hpp"
 #include "make/neck.hpp"

@@ -21,9 +21,6 @@ constexpr int kRefinedRings = 3;
 constexpr int kGapRings = 3;
 /// Fewer marked vertices next to each other than this are an error of the sampling, not a part.
 constexpr std::size_t kLeastMark = 4;
-/// The border keeps this share of an edge away from its ends, so that no triangle is a sliver.
-constexpr double kFromEnds = 0.15;
-
 /// The neighbours of each vertex: those of v are `list[first[v]]` to `list[first[v + 1] - 1]`.
 struct Neighbours {
   std::vector<std::uint32_t> first, list;
@@ -234,43 +231,6 @@ std::vector<double> holeField(const MarkedMesh& model, double depth, int refinem
   for (int i = 0; i < kSmoothings; ++i) smooth(neighbours, field);
   restoreVanished(neighbours, marks, field);
   return field;
-}
-
-TriangleMesh cutHoles(const TriangleMesh& mesh, const std::vector<double>& field) {
-  TriangleMesh out;
-  constexpr std::uint32_t kNone = UINT32_MAX;
-  std::vector<std::uint32_t> kept(mesh.positions.size(), kNone);
-  std::unordered_map<std::uint64_t, std::uint32_t> cuts;
-  const auto keep = [&](std::uint32_t v) {
-    if (kept[v] == kNone) {
-      kept[v] = static_cast<std::uint32_t>(out.positions.size());
-      out.positions.push_back(mesh.positions[v]);
-    }
-    return kept[v];
-  };
-  const auto cut = [&](std::uint32_t a, std::uint32_t b) {
-    const std::uint64_t key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-    const auto [found, isNew] = cuts.try_emplace(key, static_cast<std::uint32_t>(out.positions.size()));
-    if (isNew) {
-      const std::uint32_t from = std::min(a, b), to = std::max(a, b);
-      const double share =
-          std::clamp((kBorderValue - field[from]) / (field[to] - field[from]), kFromEnds, 1 - kFromEnds);
-      out.positions.push_back(mesh.positions[from] + share * (mesh.positions[to] - mesh.positions[from]));
-    }
-    return found->second;
-  };
-  for (const Triangle3& t : mesh.triangles) {
-    std::array<std::uint32_t, 4> polygon{};
-    std::size_t corners = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
-      const bool isIn = field[a] < kBorderValue;
-      if (isIn) polygon[corners++] = keep(a);
-      if (isIn != (field[b] < kBorderValue)) polygon[corners++] = cut(a, b);
-    }
-    for (std::size_t i = 1; i + 1 < corners; ++i) out.triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
-  }
-  return out;
 }
 
 }  // namespace cagecast::cages

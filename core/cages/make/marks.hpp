@@ -23,7 +23,4 @@ struct MarkedMesh {
 /// @param depth  How far below the hull a part may lie and still be seen through it.
 std::vector<double> holeField(const MarkedMesh& model, double depth, int refinements, TriangleMesh& hull);
 
-/// The part of a mesh in which a field is less than ½. Triangles that the border crosses are cut along it.
-TriangleMesh cutHoles(const TriangleMesh& mesh, const std::vector<double>& field);
-
 }  // namespace cagecast::cages

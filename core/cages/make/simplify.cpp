@@ -4,45 +4,89 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace cagecast::cages {
 
 namespace {
 
-constexpr double kLeastLocks = 5;
-constexpr double kMostLocks = 12;
+/// A loop keeps so many vertices at least and at most,
+constexpr std::size_t kLeastLocks = 5;
+constexpr std::size_t kMostLocks = 12;
+/// and between these as many as it takes to stay this close to it, as a share of its size.
+constexpr double kLoopError = 0.04;
 
-double areaOf(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
-  return area;
+double distanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 chord = b - a;
+  const double square = dot(chord, chord);
+  const double share = square > 0 ? std::clamp(dot(p - a, chord) / square, 0.0, 1.0) : 0;
+  return length(p - (a + share * chord));
 }
 
-/// Locks vertices of a loop at equal distances, about as far apart as the edges of the result will be long.
-void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double edge,
-              std::vector<unsigned char>& locks) {
-  std::vector<double> along(loop.size() + 1, 0);
+/// The place in a loop that is farthest from a point.
+std::size_t farthestFrom(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, const Vec3& point) {
+  std::size_t farthest = 0;
+  double most = -1;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3& next = mesh.positions[loop[(i + 1) % loop.size()]];
-    along[i + 1] = along[i] + length(next - mesh.positions[loop[i]]);
+    const double distance = length(mesh.positions[loop[i]] - point);
+    if (distance <= most) continue;
+    most = distance;
+    farthest = i;
   }
-  const double count = std::clamp(std::round(along.back() / edge), kLeastLocks, kMostLocks);
-  std::size_t i = 0;
-  for (double k = 0; k < count; ++k) {
-    const double at = k / count * along.back();
-    while (i + 1 < loop.size() && along[i + 1] <= at) ++i;
-    locks[loop[i]] = 1;
+  return farthest;
+}
+
+/// Locks the vertices of a loop that keep its shape best: the one farthest from the polygon so far, again and again
+/// (Ramer 1972; Douglas, Peucker 1973).
+void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, std::vector<unsigned char>& locks) {
+  Vec3 middle{0, 0, 0};
+  for (const std::uint32_t v : loop) middle = middle + 1 / static_cast<double>(loop.size()) * mesh.positions[v];
+  const auto at = [&](std::size_t i) -> const Vec3& { return mesh.positions[loop[i % loop.size()]]; };
+  std::vector<std::size_t> chosen = {farthestFrom(mesh, loop, middle)};
+  chosen.push_back(farthestFrom(mesh, loop, at(chosen[0])));
+  const double size = length(at(chosen[0]) - at(chosen[1]));
+  while (chosen.size() < std::min(kMostLocks, loop.size())) {
+    std::sort(chosen.begin(), chosen.end());
+    double most = -1;
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const std::size_t from = chosen[k], to = k + 1 < chosen.size() ? chosen[k + 1] : chosen[0] + loop.size();
+      for (std::size_t i = from + 1; i < to; ++i) {
+        const double distance = distanceToChord(at(i), at(from), at(to));
+        if (distance <= most) continue;
+        most = distance;
+        next = i % loop.size();
+      }
+    }
+    if (chosen.size() >= kLeastLocks && most < kLoopError * size) break;
+    chosen.push_back(next);
   }
+  for (const std::size_t i : chosen) locks[loop[i]] = 1;
+}
+
+/// Removes pairs of triangles with the same corners, which collapses leave behind as flaps on an edge.
+void removeFlaps(std::vector<Triangle3>& triangles) {
+  std::vector<std::pair<Triangle3, std::size_t>> sorted;
+  sorted.reserve(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    Triangle3 corners = triangles[t];
+    std::sort(corners.begin(), corners.end());
+    sorted.emplace_back(corners, t);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<bool> isFlap(triangles.size(), false);
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i].first == sorted[i - 1].first) isFlap[sorted[i].second] = isFlap[sorted[i - 1].second] = true;
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (!isFlap[t]) triangles[kept++] = triangles[t];
+  triangles.resize(kept);
 }
 
 }  // namespace
 
 TriangleMesh simplify(const TriangleMesh& mesh, std::uint32_t triangles) {
   std::vector<unsigned char> locks(mesh.positions.size(), 0);
-  // Of an equilateral triangle of the mean area.
-  const double edge = std::sqrt(4 / std::numbers::sqrt3 * areaOf(mesh) / triangles);
-  for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, edge, locks);
+  for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, locks);
   std::vector<float> positions;
   positions.reserve(3 * mesh.positions.size());
   for (const Vec3& p : mesh.positions)
@@ -58,6 +102,7 @@ TriangleMesh simplify(const TriangleMesh& mesh, std::uint32_t triangles) {
   TriangleMesh out;
   out.positions = mesh.positions;
   for (std::size_t i = 0; i + 2 < count; i += 3) out.triangles.push_back({result[i], result[i + 1], result[i + 2]});
+  removeFlaps(out.triangles);
   return subset(out, std::vector<bool>(out.triangles.size(), true));
 }
 

@@ -1,0 +1,93 @@
+#include "make/cut_holes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+namespace cagecast::cages {
+
+namespace {
+
+constexpr double kBorderValue = 0.5;
+/// The border keeps this share of an edge away from its ends, so that no triangle is a sliver.
+constexpr double kFromEnds = 0.15;
+/// Pieces that the cuts leave are dropped if they have less than this share of the area: gums between two teeth.
+constexpr double kLeastPiece = 0.01;
+
+/// The connected piece of each triangle, numbered from 0, over shared vertices.
+std::vector<std::uint32_t> piecesOf(const TriangleMesh& mesh, std::uint32_t& count) {
+  std::vector<std::uint32_t> parent(mesh.positions.size());
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle3& t : mesh.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  std::vector<std::uint32_t> number(parent.size(), UINT32_MAX), pieces;
+  count = 0;
+  for (const Triangle3& t : mesh.triangles) {
+    std::uint32_t& n = number[root(t[0])];
+    if (n == UINT32_MAX) n = count++;
+    pieces.push_back(n);
+  }
+  return pieces;
+}
+
+TriangleMesh withoutSplinters(const TriangleMesh& mesh) {
+  std::uint32_t count = 0;
+  const std::vector<std::uint32_t> pieces = piecesOf(mesh, count);
+  std::vector<double> areas(count, 0);
+  double total = 0;
+  for (std::size_t t = 0; t < pieces.size(); ++t) {
+    const double area = length(areaNormal(mesh, mesh.triangles[t]));
+    areas[pieces[t]] += area;
+    total += area;
+  }
+  std::vector<bool> isKept(pieces.size());
+  for (std::size_t t = 0; t < pieces.size(); ++t) isKept[t] = areas[pieces[t]] >= kLeastPiece * total;
+  return subset(mesh, isKept);
+}
+
+}  // namespace
+
+TriangleMesh cutHoles(const TriangleMesh& mesh, const std::vector<double>& field) {
+  TriangleMesh out;
+  constexpr std::uint32_t kNone = UINT32_MAX;
+  std::vector<std::uint32_t> kept(mesh.positions.size(), kNone);
+  std::unordered_map<std::uint64_t, std::uint32_t> cuts;
+  const auto keep = [&](std::uint32_t v) {
+    if (kept[v] == kNone) {
+      kept[v] = static_cast<std::uint32_t>(out.positions.size());
+      out.positions.push_back(mesh.positions[v]);
+    }
+    return kept[v];
+  };
+  const auto cut = [&](std::uint32_t a, std::uint32_t b) {
+    const std::uint64_t key = std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+    const auto [found, isNew] = cuts.try_emplace(key, static_cast<std::uint32_t>(out.positions.size()));
+    if (isNew) {
+      const std::uint32_t from = std::min(a, b), to = std::max(a, b);
+      const double share =
+          std::clamp((kBorderValue - field[from]) / (field[to] - field[from]), kFromEnds, 1 - kFromEnds);
+      out.positions.push_back(mesh.positions[from] + share * (mesh.positions[to] - mesh.positions[from]));
+    }
+    return found->second;
+  };
+  for (const Triangle3& t : mesh.triangles) {
+    std::array<std::uint32_t, 4> polygon{};
+    std::size_t corners = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      const bool isIn = field[a] < kBorderValue;
+      if (isIn) polygon[corners++] = keep(a);
+      if (isIn != (field[b] < kBorderValue)) polygon[corners++] = cut(a, b);
+    }
+    for (std::size_t i = 1; i + 1 < corners; ++i) out.triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
+  }
+  return withoutSplinters(out);
+}
+
+}  // namespace cagecast::cages
