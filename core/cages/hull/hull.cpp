@@ -93,7 +93,8 @@ std::vector<GridPoint> outerBorder(const Grid& grid, const DistanceBand& band, c
 }
 
 /// Leaves one body of positive nodes without pockets in it.
-void keepLargest(const Grid& grid, std::vector<float>& values) {
+/// @return its share of all positive nodes.
+double keepLargest(const Grid& grid, std::vector<float>& values) {
   constexpr float kTiny = 1e-6f;  // In spacings: the vertices stay next to the node that changes its sign.
   const auto tiny = kTiny * static_cast<float>(grid.spacing);
   std::vector<std::uint8_t> reached(grid.size(), 0);
@@ -101,19 +102,21 @@ void keepLargest(const Grid& grid, std::vector<float>& values) {
   for (std::size_t i = 0; i < grid.size(); ++i)
     if (reached[i] == 0 && values[i] <= 0) values[i] = tiny;
   std::vector<std::uint8_t> body(grid.size(), 0);
-  std::size_t largest = 0, seed = 0;
+  std::size_t largest = 0, seed = 0, all = 0;
   const auto positive = [&](std::size_t i) { return values[i] > 0; };
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (body[i] != 0 || !positive(i)) continue;
     const std::size_t size = flood(grid, i, 1, body, positive);
+    all += size;
     if (size <= largest) continue;
     largest = size;
     seed = i;
   }
-  if (largest == 0) return;
+  if (largest == 0) return 1;
   flood(grid, seed, 2, body, positive);
   for (std::size_t i = 0; i < grid.size(); ++i)
     if (body[i] == 1) values[i] = -tiny;
+  return static_cast<double>(largest) / static_cast<double>(all);
 }
 
 }  // namespace
@@ -146,11 +149,11 @@ TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<O
   return out;
 }
 
-bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progress& progress, TriangleMesh& out) {
+bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progress& progress, TriangleMesh& out,
+              double* share) {
   const auto part = [&](float from, float to) -> Progress {
     if (!progress) return {};
-    return
-        [&progress, from, to](float share, const char* stage) { return progress(from + (to - from) * share, stage); };
+    return [&progress, from, to](float done, const char* stage) { return progress(from + (to - from) * done, stage); };
   };
   // Dilated by `outwards`, what remains is then eroded by `inwards`. The difference is the offset.
   const double outwards = std::max(options.closing, options.offset);
@@ -171,7 +174,8 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
   const auto depth = static_cast<float>(inwards);
   for (std::size_t i = 0; i < grid.size(); ++i)
     band.distance[i] = (outside[i] != 0 ? -band.distance[i] : band.distance[i]) - depth;
-  keepLargest(grid, band.distance);
+  const double kept = keepLargest(grid, band.distance);
+  if (share != nullptr) *share = kept;
   if (progress && !progress(0.95f, "hull")) return false;
   out = isoSurface(grid, band.distance);
   return !progress || progress(1, "hull");

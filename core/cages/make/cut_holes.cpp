@@ -8,37 +8,15 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr double kBorderValue = 0.5;
+constexpr double kBorderValue = 0.4;
 /// The border keeps this share of an edge away from its ends, so that no triangle is a sliver.
 constexpr double kFromEnds = 0.15;
 /// Pieces that the cuts leave are dropped if they have less than this share of the area: gums between two teeth.
 constexpr double kLeastPiece = 0.01;
 
-/// The connected piece of each triangle, numbered from 0, over shared vertices.
-std::vector<std::uint32_t> piecesOf(const TriangleMesh& mesh, std::uint32_t& count) {
-  std::vector<std::uint32_t> parent(mesh.positions.size());
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const Triangle3& t : mesh.triangles) {
-    parent[root(t[1])] = root(t[0]);
-    parent[root(t[2])] = root(t[0]);
-  }
-  std::vector<std::uint32_t> number(parent.size(), UINT32_MAX), pieces;
-  count = 0;
-  for (const Triangle3& t : mesh.triangles) {
-    std::uint32_t& n = number[root(t[0])];
-    if (n == UINT32_MAX) n = count++;
-    pieces.push_back(n);
-  }
-  return pieces;
-}
-
 TriangleMesh withoutSplinters(const TriangleMesh& mesh) {
   std::uint32_t count = 0;
-  const std::vector<std::uint32_t> pieces = piecesOf(mesh, count);
+  const std::vector<std::uint32_t> pieces = connectedPieces(mesh, count);
   std::vector<double> areas(count, 0);
   double total = 0;
   for (std::size_t t = 0; t < pieces.size(); ++t) {

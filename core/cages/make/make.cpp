@@ -6,7 +6,7 @@
 #include "hull/hull.hpp"
 #include "make/cut_holes.hpp"
 #include "make/enclose.hpp"
-#include "make/marks.hpp"
+#include "make/hole_marker.hpp"
 #include "make/neck.hpp"
 #include "make/simplify.hpp"
 #include "mesh/check_model.hpp"
@@ -19,9 +19,9 @@ namespace cagecast::cages {
 namespace {
 
 /// Ends of the stages, as shares of the time.
-constexpr float kHullEnd = 0.35f;
-constexpr float kHolesEnd = 0.45f;
-constexpr float kSimplifyEnd = 0.55f;
+constexpr float kHullEnd = 0.3f;
+constexpr float kHolesEnd = 0.5f;
+constexpr float kSimplifyEnd = 0.6f;
 constexpr float kEncloseEnd = 0.75f;
 
 /// How far below the border of a neck the cage ends, in offsets.
@@ -32,6 +32,10 @@ constexpr double kVisibleDepth = 1.4;
 constexpr double kMargin = 0.4;
 /// How far a vertex of the cage may be moved outwards, in offsets.
 constexpr double kFarthestPush = 4;
+/// Of the volume of all pieces of the hull, the least that the largest one must have.
+constexpr double kLeastShare = 0.7;
+/// How often the cage is made, with wider holes where it covers too much.
+constexpr int kAttempts = 3;
 /// Points of the hull that the cage is moved past, about.
 constexpr std::size_t kEnclosedPoints = 20000;
 
@@ -104,10 +108,13 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
   if (Outcome outcome = checkOptions(options); !outcome.ok()) return outcome;
   const Outcome cancelled{Problem::cancelled, "cancelled"};
+  float reached = 0;  // A repeated stage does not go back.
   const auto part = [&](float from, float to) -> Progress {
     if (!progress) return {};
-    return
-        [&progress, from, to](float share, const char* stage) { return progress(from + (to - from) * share, stage); };
+    return [&progress, &reached, from, to](float done, const char* stage) {
+      reached = std::max(reached, from + (to - from) * done);
+      return progress(reached, stage);
+    };
   };
   std::vector<std::uint32_t> triangleOf;
   TriangleMesh mesh = weldExactly(model.mesh, nullptr, &triangleOf);
@@ -115,27 +122,40 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   const double offset = settings.hull.offset;
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
+  std::vector<bool> isMarked = marksOf(model, options, triangleOf);
+  const Outcome nothingToPaint{Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
+  if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint;
+  isMarked.resize(mesh.triangles.size(), false);
   TriangleMesh hull;
-  if (!makeHull(mesh, settings.hull, part(0, kHullEnd), hull)) return cancelled;
+  double share = 1;
+  if (!makeHull(mesh, settings.hull, part(0, kHullEnd), hull, &share)) return cancelled;
+  if (share < kLeastShare)
+    return {Problem::badModel,
+            "model is in pieces that lie too far apart for one cage: make one for each, or raise options.closing"};
 
   const Surface surface(mesh);
-  MarkedMesh marked{&mesh, &surface, marksOf(model, options, triangleOf)};
-  marked.isMarked.resize(mesh.triangles.size(), false);
-  std::vector<double> field = holeField(marked, kVisibleDepth * offset, settings.kind == Kind::body ? 2 : 1, hull);
-  openNecks(hull, necks, field);
-  const TriangleMesh shell = cutHoles(hull, field);
-  if (shell.empty()) return {Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
-  if (progress && !progress(kHolesEnd, "simplify")) return cancelled;
-
-  TriangleMesh cage = simplify(shell, settings.triangles);
-  const double depth = (1 - kMargin) * offset;
-  if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
-    return cancelled;
+  const MarkedMesh marked{&mesh, &surface, std::move(isMarked)};
+  HoleMarker marker(marked, kVisibleDepth * offset, hull);
+  if (!marker.mark(settings.kind == Kind::body ? 2 : 1, part(kHullEnd, kHolesEnd))) return cancelled;
+  TriangleMesh cage;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::vector<double> field = marker.field();
+    openNecks(hull, necks, field);
+    const TriangleMesh shell = cutHoles(hull, field);
+    if (shell.empty()) return nothingToPaint;
+    if (progress && !part(kHolesEnd, kSimplifyEnd)(0, "simplify")) return cancelled;
+    cage = simplify(shell, settings.triangles, offset);
+    const double depth = (1 - kMargin) * offset;
+    if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
+      return cancelled;
+    if (!marker.widen(cage)) break;
+  }
   Layout layout;
   UnwrapOptions unwrapOptions;
   unwrapOptions.kind = settings.kind;
   unwrapOptions.joints = model.joints;
   if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled;
+  if (progress && !part(1, 1)(1, "unwrap")) return cancelled;
   store(layout, out);
   return {};
 }

@@ -28,6 +28,10 @@ Neck planeOf(const TriangleMesh& head, const Opening& opening) {
     area = area + cross(head.positions[loop[(i + 1) % n]] - head.positions[loop[0]], p - head.positions[loop[0]]);
   }
   neck.normal = length(area) > 0 ? 1 / length(area) * area : Vec3{0, -1, 0};
+  // Away from most of the head, also where its triangles are turned inside out.
+  std::size_t before = 0;
+  for (const Vec3& p : head.positions) before += dot(p - neck.middle, neck.normal) > 0 ? 1 : 0;
+  if (2 * before > head.positions.size()) neck.normal = -1 * neck.normal;
   neck.height = -INFINITY;
   for (const std::uint32_t v : loop) neck.height = std::max(neck.height, dot(head.positions[v], neck.normal));
   return neck;

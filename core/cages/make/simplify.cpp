@@ -11,7 +11,7 @@ namespace {
 
 /// A loop keeps so many vertices at least and at most,
 constexpr std::size_t kLeastLocks = 5;
-constexpr std::size_t kMostLocks = 12;
+constexpr std::size_t kMostLocks = 24;
 /// and between these as many as it takes to stay this close to it, as a share of its size.
 constexpr double kLoopError = 0.04;
 
@@ -37,7 +37,8 @@ std::size_t farthestFrom(const TriangleMesh& mesh, const std::vector<std::uint32
 
 /// Locks the vertices of a loop that keep its shape best: the one farthest from the polygon so far, again and again
 /// (Ramer 1972; Douglas, Peucker 1973).
-void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, std::vector<unsigned char>& locks) {
+void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double tolerance,
+              std::vector<unsigned char>& locks) {
   Vec3 middle{0, 0, 0};
   for (const std::uint32_t v : loop) middle = middle + 1 / static_cast<double>(loop.size()) * mesh.positions[v];
   const auto at = [&](std::size_t i) -> const Vec3& { return mesh.positions[loop[i % loop.size()]]; };
@@ -57,7 +58,7 @@ void lockLoop(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, 
         next = i % loop.size();
       }
     }
-    if (chosen.size() >= kLeastLocks && most < kLoopError * size) break;
+    if (chosen.size() >= kLeastLocks && most < std::min(tolerance, kLoopError * size)) break;
     chosen.push_back(next);
   }
   for (const std::size_t i : chosen) locks[loop[i]] = 1;
@@ -84,9 +85,9 @@ void removeFlaps(std::vector<Triangle3>& triangles) {
 
 }  // namespace
 
-TriangleMesh simplify(const TriangleMesh& mesh, std::uint32_t triangles) {
+TriangleMesh simplify(const TriangleMesh& mesh, std::uint32_t triangles, double tolerance) {
   std::vector<unsigned char> locks(mesh.positions.size(), 0);
-  for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, locks);
+  for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, tolerance, locks);
   std::vector<float> positions;
   positions.reserve(3 * mesh.positions.size());
   for (const Vec3& p : mesh.positions)

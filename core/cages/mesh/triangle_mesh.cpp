@@ -60,6 +60,29 @@ TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTrian
   return out;
 }
 
+std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32_t& count) {
+  std::vector<std::uint32_t> parent(mesh.positions.size());
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle3& t : mesh.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  constexpr std::uint32_t kNone = UINT32_MAX;
+  std::vector<std::uint32_t> numbers(parent.size(), kNone), pieces;
+  pieces.reserve(mesh.triangles.size());
+  count = 0;
+  for (const Triangle3& t : mesh.triangles) {
+    std::uint32_t& number = numbers[root(t[0])];
+    if (number == kNone) number = count++;
+    pieces.push_back(number);
+  }
+  return pieces;
+}
+
 double diagonalOf(const TriangleMesh& mesh) {
   if (mesh.positions.empty()) return 0;
   Vec3 low = mesh.positions[0], high = low;

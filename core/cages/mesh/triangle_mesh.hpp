@@ -28,6 +28,10 @@ TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* verte
 /// The part of a mesh made of some of its triangles; vertices that none of them uses are dropped.
 TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTriangle);
 
+/// The connected piece, over shared vertices, of each triangle. Pieces are numbered in the order of their first
+/// triangles.
+std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32_t& count);
+
 /// The length of the diagonal of the bounding box.
 double diagonalOf(const TriangleMesh& mesh);
 

@@ -10,42 +10,12 @@
 #include <string>
 
 #include "mesh/surface.hpp"
+#include "shapes.hpp"
 
 using namespace cagecast;
 using namespace cagecast::cages;
 
 namespace {
-
-/// A sphere of rings from pole to pole; `from` > 0 leaves out the rings about the upper pole.
-TriangleMesh sphere(Vec3 centre, double radius, std::uint32_t rings = 24, std::uint32_t from = 0) {
-  TriangleMesh mesh;
-  const std::uint32_t around = 2 * rings;
-  for (std::uint32_t i = from; i <= rings; ++i)
-    for (std::uint32_t j = 0; j < around; ++j) {
-      const double theta = std::numbers::pi * i / rings, phi = 2 * std::numbers::pi * j / around;
-      const double r = i == 0 || i == rings ? 0 : std::sin(theta);
-      mesh.positions.push_back(centre + radius * Vec3{r * std::cos(phi), std::cos(theta), r * std::sin(phi)});
-    }
-  for (std::uint32_t i = 0; i < rings - from; ++i)
-    for (std::uint32_t j = 0; j < around; ++j) {
-      const std::uint32_t a = i * around + j, b = i * around + (j + 1) % around;
-      if (i + from > 0) mesh.triangles.push_back({a, b, b + around});
-      if (i + from + 1 < rings) mesh.triangles.push_back({a, b + around, a + around});
-    }
-  std::vector<float> positions;
-  std::vector<std::uint32_t> indices;
-  for (const Vec3& p : mesh.positions)
-    for (const double x : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(x));
-  for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
-  return weldExactly({positions, indices});
-}
-
-TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
-  const auto first = static_cast<std::uint32_t>(a.positions.size());
-  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
-  for (const Triangle3& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  return a;
-}
 
 double volume(const TriangleMesh& mesh) {
   double sum = 0;

@@ -1,0 +1,241 @@
+#include "make/hole_marker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "make/open_border.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+/// Each averages a vertex with its neighbours: details of about two edges go.
+constexpr int kSmoothings = 6;
+/// What a ray meets at more than so many times the distance to the nearest part is seen through a gap, such as teeth
+/// between lips, and does not count.
+constexpr double kStraightBelow = 1.5;
+/// The hull is refined as far as this from the borders of the marks, in edges.
+constexpr int kRefinedEdges = 3;
+/// Gaps between marks narrower than twice this, in edges, are marked.
+constexpr int kGapEdges = 3;
+/// Fewer marked vertices next to each other than this are an error of the sampling, not a part.
+constexpr std::size_t kLeastMark = 4;
+/// A part of whose visible area more than this is covered needs a wider hole; transfers paint it from a half on.
+constexpr double kMostCovered = 0.35;
+/// By how much its hole is widened, in edges.
+constexpr int kWidening = 2;
+/// Samples along the longest edge of a triangle at most.
+constexpr double kMostSteps = 64;
+/// Points or rays between two calls of the callback: a few milliseconds of work.
+constexpr std::size_t kBatch = 4096;
+
+/// Points all over the marked triangles, about `spacing` apart, with the triangles that they are on.
+void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& samples,
+                  std::vector<std::uint32_t>& triangles) {
+  for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {
+    if (!model.isMarked[t]) continue;
+    const Triangle3& triangle = model.mesh->triangles[t];
+    const Vec3 a = model.mesh->positions[triangle[0]];
+    const Vec3 ab = model.mesh->positions[triangle[1]] - a, ac = model.mesh->positions[triangle[2]] - a;
+    const double longest = std::max({length(ab), length(ac), length(ac - ab)});
+    const double steps = std::clamp(std::ceil(longest / spacing), 1.0, kMostSteps);
+    for (double i = 0; i < steps; ++i)
+      for (double j = 0; i + j < steps; ++j) {
+        samples.push_back(a + (i + 1.0 / 3) / steps * ab + (j + 1.0 / 3) / steps * ac);
+        triangles.push_back(t);
+      }
+  }
+}
+
+/// Marks what lies between marks that are close together: widens all of them, and takes the margin away again.
+void closeGaps(const Neighbours& neighbours, std::vector<bool>& marks) {
+  for (const bool value : {true, false}) {
+    std::vector<std::uint32_t> front;
+    for (std::uint32_t v = 0; v < marks.size(); ++v)
+      if (marks[v] == value) front.push_back(v);
+    const std::vector<bool> reached = within(neighbours, std::move(front), kGapEdges);
+    for (std::size_t v = 0; v < marks.size(); ++v)
+      if (reached[v]) marks[v] = value;
+  }
+}
+
+void smooth(const Neighbours& neighbours, std::vector<double>& field) {
+  std::vector<double> next(field.size());
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    double sum = field[v];
+    for (std::uint32_t i = neighbours.first[v]; i < neighbours.first[v + 1]; ++i) sum += field[neighbours.list[i]];
+    next[v] = sum / (1 + neighbours.first[v + 1] - neighbours.first[v]);
+  }
+  field.swap(next);
+}
+
+/// Sets connected marks to 1 again, of which smoothing has left nothing.
+void restoreVanished(const Neighbours& neighbours, const std::vector<bool>& marks, std::vector<double>& field) {
+  std::vector<bool> seen(marks.size(), false);
+  std::vector<std::uint32_t> mark;
+  for (std::uint32_t start = 0; start < marks.size(); ++start) {
+    if (seen[start] || !marks[start]) continue;
+    mark.assign(1, start);
+    seen[start] = true;
+    bool remains = false;
+    for (std::size_t i = 0; i < mark.size(); ++i) {
+      remains = remains || field[mark[i]] >= 0.5;
+      for (std::uint32_t j = neighbours.first[mark[i]]; j < neighbours.first[mark[i] + 1]; ++j) {
+        const std::uint32_t n = neighbours.list[j];
+        if (seen[n] || !marks[n]) continue;
+        seen[n] = true;
+        mark.push_back(n);
+      }
+    }
+    if (remains || mark.size() < kLeastMark) continue;
+    for (const std::uint32_t v : mark) field[v] = 1;
+  }
+}
+
+}  // namespace
+
+HoleMarker::HoleMarker(const MarkedMesh& model, double depth, TriangleMesh& hull)
+    : model_(model), depth_(depth), hull_(hull), parents_(hull.triangles.size()) {
+  for (std::uint32_t t = 0; t < parents_.size(); ++t) parents_[t] = t;
+}
+
+bool HoleMarker::findSamples(const Progress& progress) {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> triangles;
+  sampleMarked(model_, depth_ / 4, positions, triangles);
+  std::vector<std::uint32_t> pieceOf(model_.isMarked.size(), 0);
+  const std::vector<std::uint32_t> pieces = connectedPieces(subset(*model_.mesh, model_.isMarked), pieces_);
+  for (std::size_t t = 0, k = 0; t < pieceOf.size(); ++t)
+    if (model_.isMarked[t]) pieceOf[t] = pieces[k++];
+  const Surface surface(hull_);
+  for (std::size_t first = 0; first < positions.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, positions.size() - first);
+    if (progress && !progress(static_cast<float>(first) / static_cast<float>(positions.size()), "holes")) return false;
+    const std::vector<SurfacePoint> above = surface.closest({positions.data() + first, count});
+    std::vector<SurfaceRay> rays;
+    std::vector<Sample> candidates;
+    for (std::size_t i = 0; i < count; ++i) {
+      const SurfacePoint& point = above[i];
+      if (point.distance > depth_ || !(point.distance > 0)) continue;
+      const Vec3& position = positions[first + i];
+      candidates.push_back({position, point.position, point.triangle, pieceOf[triangles[first + i]]});
+      rays.push_back({point.position, 1 / point.distance * (position - point.position)});
+    }
+    const std::vector<RayHit> hits = model_.surface->trace(rays);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (std::isfinite(hits[i].distance) && model_.isMarked[hits[i].triangle]) samples_.push_back(candidates[i]);
+  }
+  return true;
+}
+
+bool HoleMarker::markFrom(std::size_t begin, const Progress& progress) {
+  const std::vector<Vec3> normals = vertexNormals(hull_);
+  below_.resize(hull_.positions.size(), false);
+  const std::size_t end = hull_.positions.size();
+  for (std::size_t first = begin; first < end; first += kBatch) {
+    const std::size_t count = std::min(kBatch, end - first);
+    const double share = static_cast<double>(first - begin) / static_cast<double>(end - begin);
+    if (progress && !progress(static_cast<float>(share), "holes")) return false;
+    std::vector<SurfaceRay> rays(count);
+    for (std::size_t i = 0; i < count; ++i) rays[i] = {hull_.positions[first + i], -1 * normals[first + i]};
+    const std::vector<RayHit> hits = model_.surface->trace(rays);
+    const std::vector<SurfacePoint> nearest = model_.surface->closest({hull_.positions.data() + first, count});
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool isBelow = hits[i].distance < kStraightBelow * nearest[i].distance;
+      below_[first + i] = model_.isMarked[isBelow ? hits[i].triangle : nearest[i].triangle];
+    }
+  }
+  return true;
+}
+
+std::vector<std::uint32_t> HoleMarker::verticesAbove() const {
+  // What has become of each triangle of the hull as it was, by a counting sort.
+  std::uint32_t originals = 0;
+  for (const std::uint32_t parent : parents_) originals = std::max(originals, parent + 1);
+  std::vector<std::uint32_t> first(originals + 1, 0), parts(parents_.size());
+  for (const std::uint32_t parent : parents_) ++first[parent + 1];
+  for (std::size_t i = 0; i < originals; ++i) first[i + 1] += first[i];
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (std::uint32_t t = 0; t < parents_.size(); ++t) parts[next[parents_[t]]++] = t;
+  std::vector<std::uint32_t> vertices;
+  vertices.reserve(samples_.size());
+  for (const Sample& sample : samples_) {
+    double least = std::numeric_limits<double>::infinity();
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = first[sample.triangle]; i < first[sample.triangle + 1]; ++i)
+      for (const std::uint32_t v : hull_.triangles[parts[i]]) {
+        const double distance = length(hull_.positions[v] - sample.onHull);
+        if (distance >= least) continue;
+        least = distance;
+        nearest = v;
+      }
+    vertices.push_back(nearest);
+  }
+  return vertices;
+}
+
+void HoleMarker::markSamples() {
+  sampled_.assign(hull_.positions.size(), false);
+  for (const std::uint32_t v : verticesAbove()) sampled_[v] = true;
+}
+
+std::vector<bool> HoleMarker::marks() const {
+  std::vector<bool> marks = below_;
+  for (std::size_t v = 0; v < marks.size(); ++v) marks[v] = marks[v] || sampled_[v];
+  return marks;
+}
+
+bool HoleMarker::mark(int refinements, const Progress& progress) {
+  const auto part = [&](float from, float to) -> Progress {
+    if (!progress) return {};
+    return
+        [&progress, from, to](float share, const char* stage) { return progress(from + (to - from) * share, stage); };
+  };
+  if (!findSamples(part(0, 0.4f)) || !markFrom(0, part(0.4f, 0.8f))) return false;
+  markSamples();
+  for (int level = 0; level < refinements; ++level) {
+    const Neighbours neighbours = neighboursIn(hull_);
+    const std::size_t before = hull_.positions.size();
+    refine(within(neighbours, borderOf(neighbours, marks()), kRefinedEdges), hull_, parents_);
+    if (!markFrom(before, part(0.8f, 0.8f))) return false;
+    markSamples();
+  }
+  return !progress || progress(1, "holes");
+}
+
+std::vector<double> HoleMarker::field() const {
+  const Neighbours neighbours = neighboursIn(hull_);
+  std::vector<bool> marks = this->marks();
+  closeGaps(neighbours, marks);
+  std::vector<double> field(marks.begin(), marks.end());
+  for (int i = 0; i < kSmoothings; ++i) smooth(neighbours, field);
+  restoreVanished(neighbours, marks, field);
+  return field;
+}
+
+bool HoleMarker::widen(const TriangleMesh& cage) {
+  const OpenBorder border(cage);
+  std::vector<Vec3> positions;
+  positions.reserve(samples_.size());
+  for (const Sample& sample : samples_) positions.push_back(sample.position);
+  const std::vector<SurfacePoint> closest = Surface(cage).closest(positions);
+  std::vector<double> all(pieces_, 0), covered(pieces_, 0);
+  std::vector<bool> isCovered(samples_.size());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    isCovered[i] = !border.has(closest[i]);
+    all[samples_[i].piece] += 1;
+    covered[samples_[i].piece] += isCovered[i] ? 1 : 0;
+  }
+  std::vector<std::uint32_t> front;
+  const std::vector<std::uint32_t> vertices = verticesAbove();
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    if (isCovered[i] && covered[samples_[i].piece] > kMostCovered * all[samples_[i].piece])
+      front.push_back(vertices[i]);
+  if (front.empty()) return false;
+  const std::vector<bool> reached = within(neighboursIn(hull_), std::move(front), kWidening);
+  for (std::size_t v = 0; v < reached.size(); ++v) below_[v] = below_[v] || reached[v];
+  return true;
+}
+
+}  // namespace cagecast::cages

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cagecast/cages.hpp"
+#include "make/hull_graph.hpp"
+#include "mesh/surface.hpp"
+#include "mesh/triangle_mesh.hpp"
+
+namespace cagecast::cages {
+
+/// A model, and which of its triangles must not be painted.
+struct MarkedMesh {
+  const TriangleMesh* mesh = nullptr;
+  const Surface* surface = nullptr;  ///< Of `mesh`.
+  std::vector<bool> isMarked;        ///< Per triangle of `mesh`.
+};
+
+/// Finds where a hull around a model is to have holes.
+///
+/// A vertex of the hull is marked if what lies straight below it is, or what is nearest to it; or if something marked
+/// that is seen from just above it is nearest to it: lashes and teeth are too thin for the first two.
+class HoleMarker {
+ public:
+  /// @param depth  How far below the hull a part may lie and still be seen through it.
+  /// @param[in,out] hull  Is refined along the borders of the marks.
+  HoleMarker(const MarkedMesh& model, double depth, TriangleMesh& hull);
+
+  /// Marks the vertices of the hull.
+  /// @param refinements  How often its edges are halved near the borders of the marks.
+  /// @return false if `progress` cancelled it; it is told shares from 0 to 1.
+  bool mark(int refinements, const Progress& progress);
+
+  /// How much the hull is to have a hole at each of its vertices: 0 not at all, 1 wholly, the border is at ½. Smooth;
+  /// marks that smoothing would remove come back.
+  [[nodiscard]] std::vector<double> field() const;
+
+  /// Marks more of the hull where a cage made with `field` still covers too much of a marked part.
+  /// @return whether there is such a part.
+  bool widen(const TriangleMesh& cage);
+
+ private:
+  /// A spot on a marked part that is seen from the hull.
+  struct Sample {
+    Vec3 position{};
+    Vec3 onHull{};               ///< The closest point on the hull as it was,
+    std::uint32_t triangle = 0;  ///< and the triangle that it is in.
+    std::uint32_t piece = 0;     ///< Connected piece of the marked triangles.
+  };
+
+  bool findSamples(const Progress& progress);
+  bool markFrom(std::size_t first, const Progress& progress);
+  void markSamples();
+  [[nodiscard]] std::vector<bool> marks() const;
+  [[nodiscard]] std::vector<std::uint32_t> verticesAbove() const;
+
+  const MarkedMesh& model_;
+  double depth_;
+  TriangleMesh& hull_;
+  std::vector<std::uint32_t> parents_;  ///< The triangle of the hull as it was, for each.
+  std::vector<Sample> samples_;
+  std::uint32_t pieces_ = 0;
+  std::vector<bool> below_;    ///< Per vertex: what is below or nearest is marked.
+  std::vector<bool> sampled_;  ///< Per vertex: a sample is nearest to it.
+};
+
+}  // namespace cagecast::cages

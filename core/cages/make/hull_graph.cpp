@@ -1,0 +1,103 @@
+#include "make/hull_graph.hpp"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+namespace cagecast::cages {
+
+Neighbours neighboursIn(const TriangleMesh& mesh) {
+  Neighbours out;
+  out.first.assign(mesh.positions.size() + 1, 0);
+  for (const Triangle3& t : mesh.triangles)
+    for (const std::uint32_t v : t) ++out.first[v + 1];
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) out.first[v + 1] += out.first[v];
+  out.list.resize(out.first.back());
+  std::vector<std::uint32_t> next(out.first.begin(), out.first.end() - 1);
+  for (const Triangle3& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i) out.list[next[t[i]]++] = t[(i + 1) % 3];
+  return out;
+}
+
+std::vector<std::uint32_t> borderOf(const Neighbours& neighbours, const std::vector<bool>& marks) {
+  std::vector<std::uint32_t> border;
+  for (std::uint32_t v = 0; v < marks.size(); ++v) {
+    bool isBorder = false;
+    for (std::uint32_t i = neighbours.first[v]; i < neighbours.first[v + 1]; ++i)
+      isBorder = isBorder || marks[neighbours.list[i]] != marks[v];
+    if (isBorder) border.push_back(v);
+  }
+  return border;
+}
+
+std::vector<bool> within(const Neighbours& neighbours, std::vector<std::uint32_t> front, int edges) {
+  std::vector<bool> reached(neighbours.first.size() - 1, false);
+  for (const std::uint32_t v : front) reached[v] = true;
+  for (int i = 0; i < edges; ++i) {
+    std::vector<std::uint32_t> next;
+    for (const std::uint32_t v : front)
+      for (std::uint32_t j = neighbours.first[v]; j < neighbours.first[v + 1]; ++j) {
+        const std::uint32_t n = neighbours.list[j];
+        if (reached[n]) continue;
+        reached[n] = true;
+        next.push_back(n);
+      }
+    front.swap(next);
+  }
+  return reached;
+}
+
+void refine(const std::vector<bool>& isChosen, TriangleMesh& mesh, std::vector<std::uint32_t>& parents) {
+  std::unordered_map<std::uint64_t, std::uint32_t> middles;
+  const auto keyOf = [](std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+  };
+  for (const Triangle3& t : mesh.triangles) {
+    if (!isChosen[t[0]] && !isChosen[t[1]] && !isChosen[t[2]]) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      const auto [found, isNew] = middles.try_emplace(keyOf(a, b), static_cast<std::uint32_t>(mesh.positions.size()));
+      if (isNew) mesh.positions.push_back(0.5 * (mesh.positions[a] + mesh.positions[b]));
+    }
+  }
+  std::vector<Triangle3> triangles;
+  std::vector<std::uint32_t> inherited;
+  triangles.reserve(mesh.triangles.size());
+  inherited.reserve(mesh.triangles.size());
+  for (std::size_t old = 0; old < mesh.triangles.size(); ++old) {
+    const Triangle3& t = mesh.triangles[old];
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      triangles.push_back({a, b, c});
+      inherited.push_back(parents[old]);
+    };
+    std::array<std::uint32_t, 3> middle{};
+    unsigned cuts = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto found = middles.find(keyOf(t[i], t[(i + 1) % 3]));
+      middle[i] = found == middles.end() ? UINT32_MAX : found->second;
+      cuts += found == middles.end() ? 0 : 1;
+    }
+    if (cuts == 0) {
+      add(t[0], t[1], t[2]);
+    } else if (cuts == 3) {
+      for (std::size_t i = 0; i < 3; ++i) add(t[i], middle[i], middle[(i + 2) % 3]);
+      add(middle[0], middle[1], middle[2]);
+    } else {
+      // Turned so that the first edge is cut, and the last one is not.
+      std::size_t i = 0;
+      while (middle[i] == UINT32_MAX || middle[(i + 2) % 3] != UINT32_MAX) ++i;
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3], m = middle[i], n = middle[(i + 1) % 3];
+      add(a, m, c);
+      if (cuts == 1) {
+        add(m, b, c);
+      } else {
+        add(m, b, n);
+        add(m, n, c);
+      }
+    }
+  }
+  parents.swap(inherited);
+  mesh.triangles.swap(triangles);
+}
+
+}  // namespace cagecast::cages

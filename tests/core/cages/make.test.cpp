@@ -1,0 +1,195 @@
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cagecast/cages.hpp"
+#include "mesh/kind.hpp"
+#include "mesh/surface.hpp"
+#include "shapes.hpp"
+
+using namespace cagecast;
+using namespace cagecast::cages;
+
+namespace {
+
+/// A ball of a head that looks along +z, open below, with two eyes that stand out a little.
+OwnedModel head() {
+  TriangleMesh skull = sphere({0, 0, 0}, 1, 24, 4);
+  for (Vec3& p : skull.positions) p.y = -p.y;
+  for (Triangle3& t : skull.triangles) std::swap(t[1], t[2]);
+  OwnedModel out;
+  out.add("skin", skull);
+  out.add("l-eye", sphere({0.35, 0.2, 0.8}, 0.2, 12));
+  out.add("r-eye", sphere({-0.35, 0.2, 0.8}, 0.2, 12));
+  return out;
+}
+
+TriangleMesh meshOf(const Cage& cage) { return weldExactly(cage.view()); }
+
+Cage made(const Model& model, MakeOptions options = {}) {
+  options.voxels = 80;  // Quicker than by default.
+  Cage cage;
+  const Outcome outcome = makeCage(model, options, {}, cage);
+  CAPTURE(outcome.message);
+  REQUIRE(outcome.ok());
+  return cage;
+}
+
+Vec3 middleOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop) {
+  Vec3 middle{0, 0, 0};
+  for (const std::uint32_t v : loop) middle = middle + 1.0 / static_cast<double>(loop.size()) * mesh.positions[v];
+  return middle;
+}
+
+bool hasHoleAt(const TriangleMesh& mesh, const Vec3& spot, double within) {
+  const auto loops = boundaryLoops(mesh);
+  return std::any_of(loops.begin(), loops.end(),
+                     [&](const auto& loop) { return length(middleOf(mesh, loop) - spot) < within; });
+}
+
+std::string faultOf(const Model& model, const MakeOptions& options = {}) {
+  Cage cage;
+  return makeCage(model, options, {}, cage).message;
+}
+
+}  // namespace
+
+TEST_CASE("a made cage is around its model, with holes over eyes and at the neck", "[cages][make]") {
+  const OwnedModel model = head();
+  const Cage cage = made(model.model());
+  const TriangleMesh mesh = meshOf(cage);
+  CHECK(cage.indices.size() / 3 > 500);
+  CHECK(cage.indices.size() / 3 <= 620);
+  CHECK(cage.uvs.size() / 2 == cage.positions.size() / 3);
+  CHECK(std::all_of(cage.uvs.begin(), cage.uvs.end(), [](float x) { return x >= 0 && x <= 1; }));
+  CHECK(boundaryLoops(mesh).size() == 3);
+  CHECK(hasHoleAt(mesh, {0.35, 0.2, 1}, 0.2));
+  CHECK(hasHoleAt(mesh, {-0.35, 0.2, 1}, 0.2));
+  CHECK(hasHoleAt(mesh, {0, -1, 0}, 0.3));
+  const Surface surface(mesh);
+  for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, -1}}) {
+    const SurfacePoint point = surface.closest(direction);
+    CHECK(point.height < 0);
+    CHECK(point.distance < 0.12);
+  }
+}
+
+TEST_CASE("patterns decide what is excluded", "[cages][make]") {
+  const OwnedModel model = head();
+  MakeOptions options;
+  options.exclude = {"r-*"};
+  const TriangleMesh mesh = meshOf(made(model.model(), options));
+  CHECK_FALSE(hasHoleAt(mesh, {0.35, 0.2, 1}, 0.2));
+  CHECK(hasHoleAt(mesh, {-0.35, 0.2, 1}, 0.2));
+}
+
+TEST_CASE("a mark, as by a brush, gets its hole", "[cages][make]") {
+  OwnedModel model;
+  model.add("ball", sphere({2, 0, 0}, 1, 32));
+  const TriangleMesh ball = weldExactly({model.positions, model.indices});
+  for (const Triangle3& t : ball.triangles) model.marks.push_back(ball.positions[t[0]].z > 0.93 ? 1 : 0);
+  const TriangleMesh mesh = meshOf(made(model.model()));
+  REQUIRE(boundaryLoops(mesh).size() == 1);
+  CHECK(hasHoleAt(mesh, {2, 0, 1}, 0.1));
+  model.marks.assign(model.marks.size(), 0);
+  CHECK(boundaryLoops(meshOf(made(model.model()))).empty());
+}
+
+TEST_CASE("a cage has about as many triangles as asked for", "[cages][make]") {
+  const OwnedModel model = head();
+  for (const std::uint32_t triangles : {200u, 1000u}) {
+    MakeOptions options;
+    options.triangles = triangles;
+    const std::size_t count = made(model.model(), options).indices.size() / 3;
+    CHECK(count > triangles * 9 / 10);
+    CHECK(count < triangles * 21 / 20);
+  }
+}
+
+TEST_CASE("a cage does not depend on the model's unit, place or winding", "[cages][make]") {
+  OwnedModel model = head();
+  const std::size_t loops = boundaryLoops(meshOf(made(model.model()))).size();
+  for (float& x : model.positions) x = 100 * x + 50;
+  for (std::size_t i = 0; i < model.indices.size(); i += 3) std::swap(model.indices[i], model.indices[i + 1]);
+  const TriangleMesh mesh = meshOf(made(model.model()));
+  CHECK(boundaryLoops(mesh).size() == loops);
+  CHECK(hasHoleAt(mesh, {85, 70, 150}, 20));
+  CHECK(Surface(mesh).closest(Vec3{50, 150, 50}).height < 0);
+}
+
+TEST_CASE("a cage is the same in every run", "[cages][make]") {
+  const OwnedModel model = head();
+  const Cage first = made(model.model()), second = made(model.model());
+  CHECK(first.positions == second.positions);
+  CHECK(first.uvs == second.uvs);
+  CHECK(first.indices == second.indices);
+}
+
+TEST_CASE("making a cage can be cancelled, and tells how far it is", "[cages][make]") {
+  const OwnedModel model = head();
+  Cage cage;
+  float last = 0;
+  bool rising = true;
+  REQUIRE(makeCage(
+              model.model(), {},
+              [&](float share, const char*) {
+                rising = rising && share >= last && share <= 1;
+                last = share;
+                return true;
+              },
+              cage)
+              .ok());
+  CHECK(rising);
+  CHECK(last > 0.9f);
+  for (const float until : {0.0f, 0.2f, 0.4f, 0.55f, 0.7f, 0.9f}) {
+    CAPTURE(until);
+    const Outcome outcome = makeCage(
+        model.model(), {}, [&](float share, const char*) { return share < until; }, cage);
+    CHECK(outcome.problem == Problem::cancelled);
+  }
+}
+
+TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]") {
+  OwnedModel model = head();
+  MakeOptions options;
+  options.exclude = {"*"};
+  CHECK(faultOf(model.model(), options) == "model has nothing to paint: all that is seen of it is excluded");
+  model.add("second head", sphere({4, 0, 0}, 1));
+  CHECK(faultOf(model.model()) ==
+        "model is in pieces that lie too far apart for one cage: make one for each, or raise options.closing");
+  CHECK(faultOf({}) == "model has no vertices");
+  const OwnedModel one = head();
+  options = {};
+  options.closing = -1;
+  CHECK(faultOf(one.model(), options) == "options.closing is not within 0..0.2");
+  options = {};
+  options.offset = NAN;
+  CHECK(faultOf(one.model(), options) == "options.offset is not within 0..0.2");
+  options = {};
+  options.voxels = 1000;
+  CHECK(faultOf(one.model(), options) == "options.voxels is neither 0 nor within 16..400");
+  options = {};
+  options.triangles = 3;
+  CHECK(faultOf(one.model(), options) == "options.triangles is neither 0 nor within 50..20000");
+}
+
+TEST_CASE("the kind of a model is seen from its proportions, parts and joints", "[cages][make]") {
+  CHECK(kindOf(head().model()) == Kind::head);
+  OwnedModel car;
+  TriangleMesh hood = sphere({0, 0, 0}, 1);
+  for (Vec3& p : hood.positions) p = {2 * p.x, p.y, 4 * p.z};
+  car.add("body", hood);
+  car.add("wheels", sphere({0, -1, 3}, 0.3));
+  CHECK(kindOf(car.model()) == Kind::prop);
+  OwnedModel figure;
+  TriangleMesh person = sphere({0, 0, 0}, 1);
+  for (Vec3& p : person.positions) p = {2 * p.x, 4 * p.y, 0.7 * p.z};
+  figure.add("figure", person);
+  CHECK(kindOf(figure.model()) == Kind::body);
+  Model rigged = head().model();
+  const OwnedModel chibi = head();
+  rigged = chibi.model();
+  rigged.joints = {{"LeftUpLeg", {0, 0, 0}, -1}};
+  CHECK(kindOf(rigged) == Kind::head);
+}

@@ -1,0 +1,54 @@
+#include "mesh/part_names.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <string>
+
+using namespace cagecast;
+using namespace cagecast::cages;
+
+TEST_CASE("patterns match whole texts, whatever their case", "[cages][names]") {
+  CHECK(matches("Eye", "eye"));
+  CHECK(matches("eyeball", "eye*"));
+  CHECK_FALSE(matches("eyeball", "eye"));
+  CHECK(matches("anything", "*"));
+  CHECK(matches("", "*"));
+  CHECK_FALSE(matches("", "?"));
+  CHECK(matches("left eye 2", "*eye*"));
+  CHECK(matches("abcbcd", "a*bcd"));
+  CHECK_FALSE(matches("abcbce", "a*bcd"));
+  CHECK(matches("tooth", "t??th"));
+}
+
+TEST_CASE("many stars take no longer than the lengths multiplied", "[cages][names]") {
+  const std::string text(20000, 'a');
+  std::string pattern;
+  for (int i = 0; i < 500; ++i) pattern += "*a";
+  CHECK(matches(text, pattern));
+  CHECK_FALSE(matches(text, pattern + "b"));
+}
+
+TEST_CASE("words begin at capitals and end at signs and digits", "[cages][names]") {
+  using Words = std::vector<std::string_view>;
+  CHECK(wordsOf("Wolf3D_EyeLeft/l-eye") == Words{"Wolf", "D", "Eye", "Left", "l", "eye"});
+  CHECK(wordsOf("HTMLEye") == Words{"HTMLEye"});
+  CHECK(wordsOf("  ").empty());
+}
+
+TEST_CASE("the default exclusions know eyes, teeth and wheels, not skin", "[cages][names]") {
+  const std::vector<std::string> excluded = {"l-eye/l-eye",        "EyeLeft",        "Wolf3D_Teeth",
+                                             "upper-teeth/enamel", "Eyelashes",      "FaceBrow_00",
+                                             "head/tongue.001",    "window.002",     "wheel_backLeft.007/",
+                                             "carTire.016",        "lightFront.002", "steering-wheel",
+                                             "node/mesh/EyeIris",  "Hair_Back"};
+  const std::vector<std::string> painted = {
+      "skin", "eyelid", "body.007/paintRed", "head", "Chair", "Wolf3D_Outfit_Top", "bumpers"};
+  for (const std::string& name : excluded) {
+    CAPTURE(name);
+    CHECK(matchingParts({name}, defaultExclusions())[0]);
+  }
+  for (const std::string& name : painted) {
+    CAPTURE(name);
+    CHECK_FALSE(matchingParts({name}, defaultExclusions())[0]);
+  }
+}
