@@ -1,3 +1,4 @@
+import { area, cholesky, cotangent, type Flat, flatTriangle, isSimple, type Uv } from './flat.ts';
 import {
   boundsOf,
   components,
@@ -9,9 +10,8 @@ import {
   triangleCount,
   vertexCount,
 } from './mesh.ts';
-import { add, cross, dot, length, scale, sub, unit, type Vec3 } from './vec.ts';
-
-type Uv = readonly [number, number];
+import { polish } from './polish.ts';
+import { add, dot, length, scale, sub, unit, type Vec3 } from './vec.ts';
 
 /**
  * Gives each vertex a copy for each group of its triangles that `joined` edges hold together.
@@ -84,9 +84,6 @@ class Occupancy {
     return true;
   }
 }
-
-/** Twice the signed area of a flat triangle. */
-const area = (a: Uv, b: Uv, c: Uv): number => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 
 const kSides: { normal: Vec3; u: Vec3; v: Vec3 }[] = [
   { normal: [0, 0, 1], u: [1, 0, 0], v: [0, 1, 0] },
@@ -198,8 +195,6 @@ const pack = (uv: Uv[], owner: Int32Array, charts: number, margin: number): Floa
   );
 };
 
-type Flat = readonly [Float64Array, Float64Array]; // u and v, each 1 per vertex
-
 const kRelaxRounds = 60;
 
 /**
@@ -211,22 +206,29 @@ const kRelaxRounds = 60;
  * as it lowers the distortion, no triangle turns over and no border crosses itself.
  * @param seam  Says of an edge's two ends whether it is cut. Cut open, the mesh must be a disc with holes.
  * @param zoom  How large a place shall be drawn: regions where much is painted deserve more of the texture.
+ * @param polished  Whether to go on until nothing is gained.
  */
-export const pelt = (mesh: Mesh, seam: (a: Vec3, b: Vec3) => boolean, zoom: (p: Vec3) => number = () => 1): Mesh => {
+export const pelt = (
+  mesh: Mesh,
+  seam: (a: Vec3, b: Vec3) => boolean,
+  zoom: (p: Vec3) => number = () => 1,
+  polished = false,
+): Mesh => {
   const { mesh: cut } = splitAlong(mesh, (a, b) => !seam(point(mesh, a), point(mesh, b)));
-  const { filled, flat } = flatten(cut, zoom);
+  const { filled, flat } = flatten(cut, zoom, polished);
   const uvs = upright(filled, flat, [1, 0, 0], 0).slice(0, vertexCount(cut));
   return { ...cut, uvs: pack(uvs, new Int32Array(uvs.length), 1, 0.01) };
 };
 
 /** Lays a disc with holes out flat, in the lengths of the model times `zoom`; its holes are filled. */
-const flatten = (cut: Mesh, zoom: (p: Vec3) => number): { filled: Mesh; flat: Flat } => {
+const flatten = (cut: Mesh, zoom: (p: Vec3) => number, polished: boolean): { filled: Mesh; flat: Flat } => {
   const loops = borderLoops(cut);
   loops.sort((a, b) => perimeter(cut, b) - perimeter(cut, a));
   if (loops.length === 0) throw new Error('pelt: the mesh is closed; it needs a seam or a hole');
   const [outer, ...holes] = loops as [number[], ...number[][]];
   const filled = fill(cut, holes);
-  return { filled, flat: relax(filled, outer, onDisc(filled, outer), zoom) };
+  const relaxed = relax(filled, outer, onDisc(filled, outer), zoom);
+  return { filled, flat: polished ? polish(filled, outer, relaxed, zoom) : relaxed };
 };
 
 /** Closes holes with fans about their middles, so that they keep their shape and nothing is laid over them. */
@@ -399,18 +401,6 @@ const upright = (mesh: Mesh, flat: Flat, direction: Vec3, axis: 0 | 1): Uv[] => 
   });
 };
 
-/** Whether a closed polygon's sides meet only in their common corners. */
-const isSimple = (polygon: Uv[]): boolean => {
-  const n = polygon.length;
-  for (let i = 0; i < n; i++)
-    for (let j = i + 2; j < n; j++) {
-      if (i === 0 && j === n - 1) continue;
-      const [a, b, c, d] = [polygon[i]!, polygon[i + 1]!, polygon[j]!, polygon[(j + 1) % n]!];
-      if (area(a, b, c) * area(a, b, d) <= 0 && area(c, d, a) * area(c, d, b) <= 0) return false;
-    }
-  return true;
-};
-
 /** Where a chart of a symmetric mesh goes: those of the middle are stacked in the middle, the left ones at a side. */
 export interface Place {
   near: Vec3; // the middle of the chart's triangles is about here; left is +x
@@ -452,7 +442,7 @@ export const mirroredAtlas = (mesh: Mesh, places: readonly Place[], zoom: (p: Ve
   const columns: { chart: (typeof charts)[number]; uv: Uv[]; size: Uv }[][] = [[], []];
   for (const { near, up } of places) {
     const chart = charts.reduce((a, b) => (length(sub(b.centre, near)) < length(sub(a.centre, near)) ? b : a));
-    const { filled, flat } = flatten(chart.part, zoom);
+    const { filled, flat } = flatten(chart.part, zoom, true);
     const uv = upright(filled, flat, up, 1).slice(0, chart.vertices.length);
     if (chart.whole)
       symmetrise(
@@ -527,49 +517,6 @@ export const borderLoops = (mesh: Mesh): number[][] => {
 /** The length of a border loop. */
 export const perimeter = (mesh: Mesh, loop: number[]): number =>
   loop.reduce((s, v, i) => s + length(sub(point(mesh, v), point(mesh, loop[(i + 1) % loop.length]!))), 0);
-
-const flatTriangle = (mesh: Mesh, triangle: number): [Uv, Uv, Uv] => {
-  const [a, b, c] = corners(mesh, triangle).map((v) => point(mesh, v)) as [Vec3, Vec3, Vec3];
-  const [u, w] = [sub(b, a), sub(c, a)];
-  const l = length(u);
-  return [
-    [0, 0],
-    [l, 0],
-    [dot(u, w) / l, length(cross(u, w)) / l],
-  ];
-};
-
-/** Half the cotangent of the angle at `apex`, kept from zero and below: obtuse triangles would make the system indefinite. */
-const cotangent = (apex: Uv, a: Uv, b: Uv): number => {
-  const d = (a[0] - apex[0]) * (b[0] - apex[0]) + (a[1] - apex[1]) * (b[1] - apex[1]);
-  return Math.max(d / Math.abs(area(apex, a, b)), 0.02) / 2;
-};
-
-/** Factors a symmetric positive definite matrix (n × n, dense: cages are small) and returns its solver. */
-const cholesky = (matrix: Float64Array, n: number): ((b: Float64Array) => Float64Array) => {
-  const l = matrix.slice();
-  const first = new Uint32Array(n); // the first entry of each row that is not zero, nor becomes so
-  for (let i = 0; i < n; i++) {
-    while (l[i * n + first[i]!] === 0) first[i]!++;
-    for (let j = first[i]!; j <= i; j++) {
-      let sum = l[i * n + j]!;
-      for (let k = Math.max(first[i]!, first[j]!); k < j; k++) sum -= l[i * n + k]! * l[j * n + k]!;
-      l[i * n + j] = i === j ? Math.sqrt(sum) : sum / l[j * n + j]!;
-    }
-  }
-  return (b) => {
-    const x = b.slice();
-    for (let i = 0; i < n; i++) {
-      for (let k = first[i]!; k < i; k++) x[i]! -= l[i * n + k]! * x[k]!;
-      x[i]! /= l[i * n + i]!;
-    }
-    for (let i = n - 1; i >= 0; i--) {
-      x[i]! /= l[i * n + i]!;
-      for (let k = first[i]!; k < i; k++) x[k]! -= l[i * n + k]! * x[i]!;
-    }
-    return x;
-  };
-};
 
 /** The share of the covered UV area that more than one triangle covers, found on a grid of `size` × `size`. */
 export const uvOverlap = (mesh: Mesh, size = 1024): number => {

@@ -139,6 +139,7 @@ const templateOf = (skin: Mesh): Template => {
       }),
       (a, b) => a[0] === 0 && b[0] === 0 && (a[1] + b[1]) / 2 < -0.17,
       (p) => 1 + 0.8 * Math.exp(-((length(sub(p, [0, 0, 0.3])) / 0.3) ** 2)),
+      true,
     ),
   );
   const { near, from, furthest } = finderOn(skin);

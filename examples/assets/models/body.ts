@@ -231,5 +231,6 @@ const nearHead = (head: Sdf): Sdf => local(onHead([0, -0.2, 0]), 0.26, 0.1, plac
 
 /** The figure's outer skin, lips closed and lids shut; only x >= 0. */
 export const bodyClosed: Sdf = smoothUnion(0.03, figure(hand), nearHead(headClosed));
+const gusset = ellipsoid([0, 0.832, -0.012], [0.055, 0.032, 0.075]); // between the thighs, where a cage would fold
 /** The skin as a cage sees it: fingers in one, ears as mere swellings. */
-export const bodyCaged: Sdf = smoothUnion(0.03, figure(mitten), nearHead(headCaged));
+export const bodyCaged: Sdf = smoothUnion(0.03, smoothUnion(0.03, figure(mitten), gusset), nearHead(headCaged));

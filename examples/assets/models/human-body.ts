@@ -27,6 +27,7 @@ import {
   faceFocus,
   headLandmarks,
   headSkin,
+  isHeadSeam,
   kEye,
   kMouth,
   kNoseTip,
@@ -91,7 +92,7 @@ const fromArm = (p: Vec3): number => {
 const neckSide = (p: Vec3): number => p[1] - (1.425 - 0.35 * (p[2] + 0.03) + 0.6 * Math.max(p[0] - 0.02, 0));
 const armSide = (p: Vec3): number => Math.min(p[0] - (0.178 + 0.05 * (p[1] - 1.3)), 0.11 - fromArm(p), p[1] - 0.7);
 const legSide = (p: Vec3): number =>
-  Math.min(0.785 + (0.5 + 0.25 * clamp(p[2] / 0.06, -1, 1)) * p[0] - p[1], 0.3 - p[0]);
+  Math.min(0.765 + (0.5 + 0.25 * clamp(p[2] / 0.06, -1, 1)) * p[0] - p[1], 0.3 - p[0]);
 const isTrunk = (p: Vec3): boolean => neckSide(p) < 0 && armSide(p) < 0 && legSide(p) < 0;
 
 const kSide = -0.014; // z of the seam between front and back
@@ -171,8 +172,7 @@ const cageOf = (skin: Mesh): Mesh => {
       return Math.min(lidOpening(0.006)(...q), lipGap(0.014)(q[0], q[1], Math.min(q[2], 0.37)) * 0.5);
     },
   });
-  const behind = (v: Vec3): boolean =>
-    v[0] === 0 && neckSide(v) > -1e-3 && v[2] < kHead.centre[2] && v[1] < kHead.centre[1] + 0.4 * kHead.size;
+  const behind = (p: Vec3): boolean => neckSide(p) > -1e-3 && isHeadSeam(inHead(p));
   const { mesh } = splitAlong(cage, (a, b) => !(behind(point(cage, a)) && behind(point(cage, b))));
   const face = onHead([0, -0.13, 0.38]);
   return symmetric(
@@ -185,7 +185,7 @@ const cageOf = (skin: Mesh): Mesh => {
         { near: [0.45, 1.1, 0], up: scale(armAxis, -1) },
         { near: [0.11, 0.4, 0], up: [0, 1, 0] },
       ],
-      (p) => (neckSide(p) > 0 ? 1.5 : 1) + 1.5 * Math.exp(-((length(sub(p, face)) / 0.09) ** 2)),
+      (p) => (neckSide(p) > 0 ? 1.5 : 1) + 1.1 * Math.exp(-((length(sub(p, face)) / 0.09) ** 2)),
     ),
   );
 };

@@ -556,29 +556,43 @@ const kEdge = 0.0088; // of the fine meshes, in the lens's space
 const meshOf = (solid: Sdf, triangles: number, edge = kEdge): Mesh =>
   symmetricSurface(solid, { bounds, edge, triangles, lens: faceLens, focus: faceFocus, keep: keepBust });
 
-const cageFor = (skin: Mesh): Mesh => cageOf(skin, 800, (p) => p[1] - (kBottom - 0.035));
-
 /** A cage that ends where `keep` is negative. */
 const cageOf = (skin: Mesh, triangles: number, keep: (p: Vec3) => number): Mesh =>
+  makeCage({
+    solid: cagedSolid,
+    bounds: { min: [-0.08, kBottom - 0.2, -0.62], max: [0.82, 0.62, 0.58] },
+    edge: 0.034,
+    distance: 0.04,
+    triangles,
+    focus: (p) => add(faceFocus(p), scale(sub(p, kNoseTip), 0.7 * Math.exp(-((length(sub(p, kNoseTip)) / 0.15) ** 2)))),
+    wrap: skin,
+    seen: (v) => Math.abs(closedSolid(...point(skin, v))) < 0.006,
+    keep: (p) => Math.min(keep(p), lidOpening(0.006)(...p), lipGap(0.014)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5),
+  });
+/** Draws the face larger than the rest, in its middle by 1 + `by`. */
+const faceZoom =
+  (by: number) =>
+  (p: Vec3): number =>
+    1 + by * Math.exp(-((length(sub(p, [0, -0.13, 0.38])) / 0.33) ** 2));
+
+const cageFor = (skin: Mesh): Mesh =>
   pelt(
-    makeCage({
-      solid: cagedSolid,
-      bounds: { min: [-0.08, kBottom - 0.2, -0.62], max: [0.82, 0.62, 0.58] },
-      edge: 0.034,
-      distance: 0.04,
-      triangles,
-      focus: (p) =>
-        add(faceFocus(p), scale(sub(p, kNoseTip), 0.7 * Math.exp(-((length(sub(p, kNoseTip)) / 0.15) ** 2)))),
-      wrap: skin,
-      seen: (v) => Math.abs(closedSolid(...point(skin, v))) < 0.006,
-      keep: (p) => Math.min(keep(p), lidOpening(0.006)(...p), lipGap(0.014)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5),
-    }),
+    cageOf(skin, 800, (p) => p[1] - (kBottom - 0.035)),
     (a, b) => a[0] === 0 && b[0] === 0 && (a[2] + b[2]) / 2 < 0 && (a[1] + b[1]) / 2 < 0.4,
-    (p) => 1 + 1.3 * Math.exp(-((length(sub(p, [0, -0.13, 0.38])) / 0.33) ** 2)),
+    faceZoom(1.3),
   );
 
 /** The cage of the head alone, cut through the neck: a template is fitted to heads, few of which have shoulders. */
-const headCage = (skin: Mesh): Mesh => cageOf(skin, 700, (p) => p[1] + 0.67 + 0.36 * p[2]);
+const headCage = (skin: Mesh): Mesh =>
+  pelt(
+    cageOf(skin, 700, (p) => p[1] + 0.67 + 0.36 * p[2]),
+    (a, b) => isHeadSeam(a) && isHeadSeam(b),
+    faceZoom(0.7),
+    true,
+  );
+
+/** Whether a point is on the seam of a head's template, from the neck over the back of the head to before the crown. */
+export const isHeadSeam = (p: Vec3): boolean => p[0] === 0 && p[2] < (p[1] > -0.1 ? 0.09 : -0.1);
 
 /** Spots of the face and skull, for the template of a head and of a whole figure; lengths in heads. */
 export const headLandmarks = (skin: Mesh): Landmarks => {
