@@ -124,7 +124,7 @@ bool noneFlipped(const TriangleMesh& mesh, const std::vector<Uv>& uvs) {
 
 }  // namespace
 
-Chart flatten(Piece piece) {
+Chart flatten(Piece piece, Ticker& ticker) {
   Chart chart;
   chart.piece = std::move(piece);
   TriangleMesh mesh = chart.piece.mesh;
@@ -136,6 +136,7 @@ Chart flatten(Piece piece) {
   Slim slim(mesh, std::move(rest));
   std::vector<Uv> uvs = chart.uvs;
   for (int i = 0; i < kSteps; ++i) {
+    if (!ticker.work(mesh.triangles.size())) return chart;
     const double gain = slim.step(uvs);
     const bool last = gain < kLeastGain || i + 1 == kSteps;
     if (last || i % kStepsBetweenChecks == kStepsBetweenChecks - 1) {

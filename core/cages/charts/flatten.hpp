@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "charts/piece.hpp"
+#include "charts/ticker.hpp"
 #include "charts/unwrap.hpp"
 
 namespace cagecast::cages {
@@ -18,7 +19,8 @@ struct Chart {
 
 /// Lays a piece flat: from a convex map (Tutte) by SLIM, stopping short of overlap.
 /// @param piece  With a boundary and of genus 0. Its longest boundary loop becomes the rim, others stay holes.
-Chart flatten(Piece piece);
+/// @return an invalid chart if `ticker` is cancelled.
+Chart flatten(Piece piece, Ticker& ticker);
 
 /// Pairs of triangles whose insides meet, up to `most`. Exact if the coordinates are 32-bit floats.
 std::uint32_t countOverlaps(const std::vector<Uv>& uvs, const std::vector<Triangle3>& triangles, std::uint32_t most);

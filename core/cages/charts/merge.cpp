@@ -85,7 +85,7 @@ bool fits(const Chart& chart, const MergeOptions& options) {
 
 }  // namespace
 
-void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, std::vector<Chart>& charts) {
+void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& ticker, std::vector<Chart>& charts) {
   const std::vector<std::uint32_t> twins = findTwins(mesh);
   std::set<std::pair<std::uint32_t, std::uint32_t>> failed;  // By first triangles.
   for (int tries = 0; charts.size() > options.enough;) {
@@ -108,10 +108,10 @@ void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, std::vec
       const auto [a, b] = pair;
       const std::pair key{charts[a].piece.triangleOf[0], charts[b].piece.triangleOf[0]};
       if (failed.contains(key) || facing(charts[a], options.axis) != facing(charts[b], options.axis)) continue;
-      if (++tries > kMostTries) return;
+      if (++tries > kMostTries || ticker.cancelled()) return;
       std::vector<Piece> pieces = joined(mesh, seams, a, b);
       if (pieces.size() == 1) {
-        Chart chart = flatten(cutToDisk(std::move(pieces[0]), kLargestHole, {}));
+        Chart chart = flatten(cutToDisk(std::move(pieces[0]), kLargestHole, {}), ticker);
         if (fits(chart, options)) {
           charts[a] = std::move(chart);
           charts.erase(charts.begin() + b);

@@ -18,6 +18,6 @@ struct MergeOptions {
 /// Joins neighbouring charts, those with the longest common border first, where the result lies flat well enough.
 /// Seams within the charts stay.
 /// @param mesh  The whole mesh that the charts are of.
-void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, std::vector<Chart>& charts);
+void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& ticker, std::vector<Chart>& charts);
 
 }  // namespace cagecast::cages

@@ -15,9 +15,13 @@ namespace {
 
 /// More charts than this are packed by their boxes.
 constexpr std::size_t kMostMasks = 40;
-/// The first size tried has charts cover this much; each try is smaller by a factor.
-constexpr double kFirstCoverage = 0.92, kSmaller = 0.975;
+/// The first size tried has charts cover this much; each try is smaller by a factor. Once they fit, sizes between are
+/// tried.
+constexpr double kFirstCoverage = 0.85, kSmaller = 0.94;
+constexpr int kRefinements = 2;
 constexpr std::size_t kWord = 64;
+/// What a try counts, as triangles that are flattened.
+constexpr std::size_t kWorkPerTry = 3000;
 
 /// Cells that a chart touches, row by row.
 struct Mask {
@@ -84,12 +88,18 @@ Mask maskOf(const Chart& chart, const Frame& frame, double scale) {
 /// The square that is being filled: cells that are taken, or next to taken ones.
 class Square {
  public:
-  explicit Square(std::size_t cells) : cells_(cells), taken_(cells + kWord, cells) {}
+  /// Wide enough for masks that stand out on the right by a word.
+  explicit Square(std::size_t cells) : cells_(cells), taken_(cells + 2 * kWord, cells) {}
 
   /// The lowest place for a mask, of these the leftmost.
   [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> place(const Mask& mask) const {
     if (mask.width > cells_ || mask.height > cells_) return std::nullopt;
     std::size_t bestY = cells_ - mask.height + 1, bestX = 0;
+    // Rows that are far apart first: they find out sooner that a place is taken.
+    std::vector<std::size_t> rows;
+    for (std::size_t step = 32; step > 0; step /= 2)
+      for (std::size_t row = 0; row < mask.height; row += step)
+        if (step == 32 || row % (2 * step) != 0) rows.push_back(row);
     std::vector<std::uint64_t> shifted(mask.bits.size());
     for (std::size_t x = 0; x + mask.width <= cells_; ++x) {
       const std::size_t shift = x % kWord;
@@ -98,7 +108,7 @@ class Square {
                          ? mask.bits[i]
                          : mask.bits[i] << shift | (i % mask.words == 0 ? 0 : mask.bits[i - 1] >> (kWord - shift));
       for (std::size_t y = 0; y < bestY; ++y)
-        if (isFree(mask, shifted, x / kWord, y)) {
+        if (isFree(mask.words, rows, shifted.data(), taken_.bits.data() + y * taken_.words + x / kWord)) {
           bestY = y;
           bestX = x;
         }
@@ -118,12 +128,13 @@ class Square {
   }
 
  private:
-  [[nodiscard]] bool isFree(const Mask& mask, const std::vector<std::uint64_t>& shifted, std::size_t word,
-                            std::size_t y) const {
-    const std::size_t words = std::min(mask.words, taken_.words - word);
-    for (std::size_t row = 0; row < mask.height; ++row)
+  /// @param mask  Its bits; `rows` are those to look at.
+  /// @param taken  The word of the square that the mask's first word is laid on.
+  [[nodiscard]] bool isFree(std::size_t words, const std::vector<std::size_t>& rows, const std::uint64_t* mask,
+                            const std::uint64_t* taken) const {
+    for (const std::size_t row : rows)
       for (std::size_t i = 0; i < words; ++i)
-        if ((shifted[row * mask.words + i] & taken_.bits[(y + row) * taken_.words + word + i]) != 0) return false;
+        if ((mask[row * words + i] & taken[row * taken_.words + i]) != 0) return false;
     return true;
   }
 
@@ -170,8 +181,8 @@ std::optional<Places> placeBoxes(const std::vector<Frame>& frames, const std::ve
 
 }  // namespace
 
-void packCharts(std::vector<Chart>& charts, double gutter) {
-  if (charts.empty()) return;
+bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts) {
+  if (charts.empty()) return true;
   std::vector<Frame> frames;
   double area = 0;
   for (const Chart& chart : charts) {
@@ -200,19 +211,33 @@ void packCharts(std::vector<Chart>& charts, double gutter) {
     for (std::size_t k = 0; k < 2; ++k)
       scale = std::min(scale, 0.999 * side / std::max(frame.high[k] - frame.low[k], 1e-300));
   std::optional<Places> places;
-  for (;;) {
+  const auto fits = [&](double size) {
     for (const std::vector<std::size_t>& order : orders) {
-      places = charts.size() > kMostMasks ? placeBoxes(frames, order, scale, side)
-                                          : placeMasks(charts, frames, order, {scale, cells});
-      if (places) break;
+      if (!ticker.work(kWorkPerTry)) return false;
+      auto found = charts.size() > kMostMasks ? placeBoxes(frames, order, size, side)
+                                              : placeMasks(charts, frames, order, {size, cells});
+      if (!found) continue;
+      places = std::move(found);
+      scale = size;
+      return true;
     }
-    if (places) break;
-    scale *= kSmaller;
+    return false;
+  };
+  double tooLarge = scale;
+  for (double size = scale; !fits(size); size *= kSmaller) {
+    if (ticker.cancelled()) return false;
+    tooLarge = size;
   }
+  for (int i = 0; i < kRefinements; ++i) {
+    const double middle = (scale + tooLarge) / 2;
+    if (!fits(middle)) tooLarge = middle;
+  }
+  if (ticker.cancelled()) return false;
   const double cell = 1 / (side + 1);
   for (std::size_t i = 0; i < charts.size(); ++i)
     for (Uv& uv : charts[i].uvs)
       for (std::size_t k = 0; k < 2; ++k) uv[k] = cell * (0.5 + (*places)[i][k] + scale * (uv[k] - frames[i].low[k]));
+  return true;
 }
 
 }  // namespace cagecast::cages

@@ -8,6 +8,7 @@ namespace cagecast::cages {
 
 /// Scales all charts alike and moves them, not turned, into the unit square, as large as they fit.
 /// @param gutter  Least distance between charts, and half of it to the border; less if there are thousands of charts.
-void packCharts(std::vector<Chart>& charts, double gutter);
+/// @return false if cancelled.
+bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts);
 
 }  // namespace cagecast::cages

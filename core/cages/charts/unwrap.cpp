@@ -44,11 +44,14 @@ struct SeamStart {
 /// The crown, or somewhat behind or before it; and the throat, for heads with a snout.
 constexpr SeamStart kSeamStarts[] = {{1, 0, 1}, {1, -0.6, 1}, {1, 0.5, 1.15}, {-1, 0, 1.6}};
 
+/// How far the work is when all pieces are flat, and when they are joined.
+constexpr double kFlatShare = 0.6, kJoinedShare = 0.9;
+
 /// What all steps share.
 class Unwrapper {
  public:
-  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, const Progress& progress)
-      : options_(options), progress_(progress), whole_(static_cast<double>(mesh.triangles.size())) {}
+  Unwrapper(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker)
+      : options_(options), ticker_(ticker), whole_(static_cast<double>(mesh.triangles.size())) {}
 
   /// @return false if cancelled.
   bool layOut(Piece piece);
@@ -60,14 +63,13 @@ class Unwrapper {
 
  private:
   const UnwrapOptions& options_;
-  const Progress& progress_;
+  Ticker& ticker_;
   double whole_, done_ = 0;
   std::vector<Chart> charts_;
 
   [[nodiscard]] SeamCost middleCost(const TriangleMesh& mesh, double frontCost) const;
   [[nodiscard]] SeamCost insideCost(const TriangleMesh& body, const TriangleMesh& limb) const;
   bool layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost& cost);
-  bool report() { return !progress_ || progress_(static_cast<float>(0.95 * std::min(1.0, done_ / whole_)), "unwrap"); }
   void accept(Chart chart);
 };
 
@@ -84,6 +86,7 @@ Vec3 centreOf(const TriangleMesh& mesh) {
 
 void Unwrapper::accept(Chart chart) {
   done_ += static_cast<double>(chart.piece.triangleOf.size());
+  ticker_.reach(kFlatShare * done_ / whole_);
   charts_.push_back(std::move(chart));
 }
 
@@ -126,8 +129,8 @@ std::uint32_t mostStretched(const Chart& chart) {
 }
 
 /// Flattens a piece; where it is stretched too much, seams from there to the boundary help (Gu, Gortler, Hoppe 2002).
-Chart flattenWithSeams(Piece piece) {
-  Chart chart = flatten(cutToDisk(std::move(piece), kLargestHole, {}));
+Chart flattenWithSeams(Piece piece, Ticker& ticker) {
+  Chart chart = flatten(cutToDisk(std::move(piece), kLargestHole, {}), ticker);
   for (int i = 0; i < kMostSeams && chart.valid && chart.energy > kMostEnergy; ++i) {
     const std::uint32_t worst = mostStretched(chart);
     const TriangleMesh& mesh = chart.piece.mesh;
@@ -135,7 +138,7 @@ Chart flattenWithSeams(Piece piece) {
     for (const auto& loop : loopsOf(mesh, findTwins(mesh)))
       for (const std::uint32_t h : loop)
         if (originOf(mesh, h) != worst) boundary.push_back(originOf(mesh, h));
-    Chart next = flatten(cutToDisk(cutBetween(chart.piece, {&worst, 1}, boundary, {}), kLargestHole, {}));
+    Chart next = flatten(cutToDisk(cutBetween(chart.piece, {&worst, 1}, boundary, {}), kLargestHole, {}), ticker);
     if (!next.valid || next.energy > chart.energy) break;
     chart = std::move(next);
   }
@@ -143,14 +146,18 @@ Chart flattenWithSeams(Piece piece) {
 }
 
 bool Unwrapper::layOut(Piece piece) {
-  if (!report()) return false;
-  Chart chart = flattenWithSeams(std::move(piece));
-  if ((chart.valid && chart.energy < kMostEnergy) || chart.piece.mesh.triangles.size() < 2) {
-    accept(std::move(chart));
-    return true;
+  std::vector<Piece> waiting;
+  waiting.push_back(std::move(piece));
+  while (!waiting.empty()) {
+    Chart chart = flattenWithSeams(std::move(waiting.back()), ticker_);
+    waiting.pop_back();
+    if (ticker_.cancelled()) return false;
+    if ((chart.valid && chart.energy < kMostEnergy) || chart.piece.mesh.triangles.size() < 2) {
+      accept(std::move(chart));
+      continue;
+    }
+    for (Piece& half : splitBy(chart.piece, halvesOf(chart.piece.mesh))) waiting.push_back(std::move(half));
   }
-  for (Piece& half : splitBy(chart.piece, halvesOf(chart.piece.mesh)))
-    if (!layOut(std::move(half))) return false;
   return true;
 }
 
@@ -194,12 +201,12 @@ bool Unwrapper::layOutHead(Piece piece) {
   Chart best;
   double least = 0;
   for (const SeamStart& start : kSeamStarts) {
-    if (!report()) return false;
     const Vec3 direction = start.up * up + start.front * options_.front;
     const std::uint32_t first = furthest(piece.mesh, direction, side);
     // A seam at the throat keeps to the middle only.
     const SeamCost cost = middleCost(piece.mesh, start.up > 0 ? kFrontCost : 0);
-    Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), kLargestHole, {}));
+    Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), kLargestHole, {}), ticker_);
+    if (ticker_.cancelled()) return false;
     const double fault = start.reluctance * (chart.energy - 4);
     if (!chart.valid || (best.valid && fault >= least)) continue;
     best = std::move(chart);
@@ -287,15 +294,15 @@ void standUpright(Chart& chart, const UnwrapOptions& options) {
 }
 
 /// Sides of props are joined where they lie flat together; too many charts of any model where it can be borne.
-void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, std::vector<Chart>& charts) {
+void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& ticker, std::vector<Chart>& charts) {
   double area = 0;
   for (const Triangle3& t : mesh.triangles) area += length(areaNormal(mesh, t)) / 2;
   const double longest = kLongestChart * std::sqrt(area);
   const bool isProp = options.kind == Kind::prop || options.kind == Kind::automatic;
   const Vec3 side = cross(options.up, options.front);
-  if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kLeastFill, longest, side}, charts);
+  if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kLeastFill, longest, side}, ticker, charts);
   const std::size_t enough = isProp ? 10 : options.kind == Kind::body ? 8 : 2;
-  if (charts.size() > enough) mergeCharts(mesh, {kMostEnergy, enough, 0, longest, {0, 0, 0}}, charts);
+  if (charts.size() > enough) mergeCharts(mesh, {kMostEnergy, enough, 0, longest, {0, 0, 0}}, ticker, charts);
 }
 
 /// Gives a chart the area that it has on the model.
@@ -314,7 +321,8 @@ void scaleToArea(Chart& chart) {
 
 bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progress& progress, Layout& out) {
   out = {};
-  Unwrapper unwrapper(mesh, options, progress);
+  Ticker ticker(progress);
+  Unwrapper unwrapper(mesh, options, ticker);
   for (Piece& piece : componentsOf(wholeOf(mesh))) {
     const bool going = options.kind == Kind::head   ? unwrapper.layOutHead(std::move(piece))
                        : options.kind == Kind::body ? unwrapper.layOutBody(piece)
@@ -322,12 +330,14 @@ bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progre
     if (!going) return false;
   }
   std::vector<Chart>& charts = unwrapper.charts();
-  joinCharts(mesh, options, charts);
+  joinCharts(mesh, options, ticker, charts);
+  if (ticker.cancelled()) return false;
+  ticker.reach(kJoinedShare);
   for (Chart& chart : charts) {
     scaleToArea(chart);
     standUpright(chart, options);
   }
-  packCharts(charts, options.gutter);
+  if (!packCharts(options.gutter, ticker, charts)) return false;
   out.triangles.resize(mesh.triangles.size());
   out.chartOf.resize(mesh.triangles.size());
   out.charts = static_cast<std::uint32_t>(charts.size());
