@@ -1,0 +1,106 @@
+// Tried and left out: trimming at a fixed distance, which lets the long flanks of a car outvote its front and back;
+// growth in every case, which around a ball, or for a cage that is bent, trades the offset for size.
+#include "refine/align.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace cagecast::cages {
+
+namespace {
+
+constexpr int kMostSteps = 60;
+/// Share of the scale that is left after a step: slow, so that gaps far from the usual one are heard first.
+constexpr double kTightening = 0.8;
+/// A step that moves the cage by less than this, as a share of the diagonal, may be the last one.
+constexpr double kSettled = 2e-5;
+/// Resistance to motions that hardly change the gaps, such as turning a ball, as a share of the weight of all spots.
+constexpr double kResistance = 5e-4;
+
+Vec3 rotated(const Vec3& p, const Vec3& turn) {
+  const double angle = length(turn);
+  if (!(angle > 0)) return p;
+  const Vec3 axis = 1 / angle * turn;
+  return std::cos(angle) * p + std::sin(angle) * cross(axis, p) + (1 - std::cos(angle)) * dot(axis, p) * axis;
+}
+
+/// Iterative closest points, point to plane (Chen and Medioni, 1992), with the usual gap as one more unknown.
+class Alignment {
+ public:
+  Alignment(const TriangleMesh& cage, std::span<const Gap> gaps, double offset, Growth growth)
+      : growth_(growth), offset_(offset) {
+    for (const Gap& gap : gaps) centre_ = centre_ + 1 / static_cast<double>(gaps.size()) * gap.spot;
+    double squares = 0;
+    for (const Gap& gap : gaps) squares += dot(gap.spot - centre_, gap.spot - centre_);
+    radius_ = std::sqrt(squares / static_cast<double>(gaps.size()));
+    if (!(radius_ > 0)) radius_ = diagonalOf(cage);
+  }
+
+  /// @return The length of the step; infinite if no gap says anything.
+  double step(std::span<const Gap> gaps, const RobustScale& scale, TriangleMesh& cage) {
+    Matrix matrix = Matrix::Zero();
+    Vector right = Vector::Zero();
+    double weights = 0;
+    for (const Gap& gap : gaps) {
+      if (!gap.facing) continue;
+      const double residual = gap.size - offset_;
+      const double weight = scale.weight(residual);
+      const Vec3 arm = 1 / radius_ * (gap.spot - centre_);
+      const Vec3 lever = cross(arm, gap.direction);
+      Vector row;
+      row << gap.direction.x, gap.direction.y, gap.direction.z, lever.x, lever.y, lever.z, dot(arm, gap.direction), -1;
+      if (growth_ == Growth::none) row(kGrowth) = 0;
+      matrix += weight * row * row.transpose();
+      right -= weight * residual * row;
+      weights += weight;
+    }
+    if (!(weights > 0)) return INFINITY;
+    for (int i = 0; i <= kGrowth; ++i) {
+      matrix(i, i) += kResistance * weights;
+      right(i) -= kResistance * weights * total_(i);
+    }
+    const Vector x = matrix.ldlt().solve(right);
+    if (!x.allFinite()) return INFINITY;
+    total_ += x;
+    offset_ += x(kOffset);
+    const Vec3 move{x(0), x(1), x(2)};
+    const Vec3 turn = 1 / radius_ * Vec3{x(3), x(4), x(5)};
+    const double factor = 1 + x(kGrowth) / radius_;
+    for (Vec3& p : cage.positions) p = centre_ + move + factor * rotated(p - centre_, turn);
+    centre_ = centre_ + move;
+    return x.head<kOffset>().norm();
+  }
+
+ private:
+  /// Move, turn and growth times the radius, and the offset: all are lengths.
+  static constexpr int kGrowth = 6, kOffset = 7, kUnknowns = 8;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+
+  Growth growth_;
+  double offset_;
+  Vec3 centre_{};
+  double radius_ = 0;  ///< Of gyration: turns and growth are measured in the length that they move a spot by.
+  Vector total_ = Vector::Zero();
+};
+
+}  // namespace
+
+bool alignCage(const Target& target, std::span<const CageSpot> spots, Growth growth, double reach,
+               const Progress& progress, TriangleMesh& cage) {
+  std::vector<Gap> gaps = measureGaps(target, cage, spots);
+  Placement placement = placementOf(target, gaps);
+  Alignment alignment(cage, gaps, placement.offset, growth);
+  RobustScale scale(reach * target.diagonal, target.diagonal);
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (progress && !progress(static_cast<float>(step) / kMostSteps, "align")) return false;
+    scale.tighten(placement.spread, kTightening);
+    const double moved = alignment.step(gaps, scale, cage);
+    if (std::isinf(moved) || (moved < kSettled * target.diagonal && scale.settled())) break;
+    gaps = measureGaps(target, cage, spots);
+    placement = placementOf(target, gaps);
+  }
+  return true;
+}
+
+}  // namespace cagecast::cages
