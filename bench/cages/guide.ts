@@ -1,6 +1,6 @@
 // Draws the pictures of docs/cages.md.
 //
-//   CAGECAST_ASSETS=folder npx tsx bench/cages/guide.ts [landmarks|make|fit|refine …] [--png]
+//   CAGECAST_ASSETS=folder npx tsx bench/cages/guide.ts [landmarks|templates|make|fit|refine …] [--png]
 //     --png  into build/cages, as PNG
 //
 // Uses the samples and the package's templates, and for fits the people in the given folder.
@@ -76,6 +76,23 @@ async function fitSheet(): Promise<Sheet> {
   return { heads: ['model', 'cage', 'painted'], rows, cell: { width: 400, height: 360 } };
 }
 
+function templatesSheet(): Sheet {
+  const cells = [
+    { name: 'human-head', target: human, turn: 24 },
+    { name: 'human-body', target: `${root}build/assets/human-body/model.glb`, turn: 24 },
+    { name: 'animal-head', target: `${root}build/assets/animal-head/model.glb`, turn: 42 },
+    { name: 'car', target: `${root}build/assets/car/target.glb`, turn: 38 },
+  ].map(({ name, ...view }): Cell => {
+    const cage = `${root}examples/assets/templates/${name}.glb`;
+    return { ...view, cage, paint: undefined, rise: 8, look: 'cage' };
+  });
+  return {
+    heads: ['human-head', 'human-body', 'animal-head', 'car'],
+    rows: [{ cells }],
+    cell: { width: 400, height: 440 },
+  };
+}
+
 /** How far off the cage is that is refined, as a share of its height. */
 const off = 0.03;
 
@@ -94,7 +111,13 @@ async function refineSheet(): Promise<Sheet> {
   return { heads: ['cage out of place', 'painted', 'refined', 'painted'], rows: [{ cells }], cell: wide };
 }
 
-const sheets = { landmarks: landmarksSheet, make: makeSheet, fit: fitSheet, refine: refineSheet };
+const sheets = {
+  landmarks: landmarksSheet,
+  templates: templatesSheet,
+  make: makeSheet,
+  fit: fitSheet,
+  refine: refineSheet,
+};
 const words = process.argv.slice(2);
 const only = words.filter((word) => word !== '--png');
 await init();
