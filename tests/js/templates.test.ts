@@ -15,8 +15,27 @@ interface Extras {
   holes: Record<string, number[]>;
 }
 
+/** Spots from where an axis is largest to where it is smallest. */
+type Order = readonly [axis: 0 | 1 | 2, ...spots: string[]];
+const kFaceOrder: Order = [1, 'crown', 'forehead', 'nasion', 'nose_tip', 'lip_upper', 'lip_lower', 'chin'];
+const kEyeOrder: Order = [
+  0,
+  'eye_outer_left',
+  'eye_centre_left',
+  'eye_inner_left',
+  'eye_inner_right',
+  'eye_outer_right',
+];
+
 /** Each template, the folder of the model that it was made along with, and what it must name. */
-const kTemplates = [
+const kTemplates: readonly {
+  name: TemplateName;
+  model: string;
+  kind: string;
+  landmarks: string[];
+  holes: string[];
+  orders: Order[];
+}[] = [
   {
     name: 'human-head',
     model: 'human',
@@ -32,6 +51,7 @@ const kTemplates = [
       'mouth_corner_left',
     ],
     holes: ['eye_left', 'eye_right', 'mouth', 'neck'],
+    orders: [kFaceOrder, kEyeOrder, [2, 'nose_tip', 'lip_upper', 'ear_lobe_left', 'nape', 'occiput']],
   },
   {
     name: 'human-body',
@@ -54,6 +74,24 @@ const kTemplates = [
       ...['joint_ankle_left', 'joint_eye_right', 'joint_jaw'],
     ],
     holes: ['eye_left', 'eye_right', 'mouth'],
+    orders: [
+      kFaceOrder,
+      kEyeOrder,
+      [
+        1,
+        'menton',
+        'collar_back',
+        'joint_shoulder_left',
+        'elbow_left',
+        'hip_left',
+        'knee_left',
+        'ankle_left',
+        'heel_left',
+      ],
+      [0, 'finger_middle_left', 'wrist_left', 'elbow_left', 'shoulder_left', 'hip_left', 'knee_left', 'nose_tip'],
+      [2, 'finger_thumb_left', 'finger_index_left', 'finger_middle_left', 'finger_ring_left', 'finger_pinky_left'],
+      [2, 'toe_big_left', 'collar_front', 'knee_left', 'elbow_left', 'collar_back'],
+    ],
   },
   {
     name: 'animal-head',
@@ -61,6 +99,11 @@ const kTemplates = [
     kind: 'head',
     landmarks: ['nose_tip', 'crown', 'nape', 'chin', 'eye_centre_left', 'ear_top_right', 'mouth_corner_left'],
     holes: ['eye_left', 'eye_right', 'mouth', 'neck'],
+    orders: [
+      kEyeOrder,
+      [2, 'nose_tip', 'chin', 'forehead', 'crown', 'nape'],
+      [1, 'ear_top_left', 'crown', 'nose_tip', 'chin'],
+    ],
   },
   {
     name: 'car',
@@ -68,6 +111,20 @@ const kTemplates = [
     kind: 'prop',
     landmarks: ['bumper_front', 'roof', 'corner_front_left', 'wheel_rear_centre_right', 'mirror_left'],
     holes: ['window_front', 'window_side_rear_left', 'light_front_right', 'grille', 'underside', 'wheel_front_left'],
+    orders: [
+      [
+        2,
+        'bumper_front',
+        'corner_front_left',
+        'wheel_front_centre_left',
+        'mirror_left',
+        'roof',
+        'corner_rear_left',
+        'bumper_rear',
+      ],
+      [1, 'roof', 'windscreen_top', 'windscreen_bottom', 'bonnet_front', 'bumper_front'],
+      [0, 'mirror_left', 'sill_front_left', 'roof_corner_front_left', 'roof', 'mirror_right'],
+    ],
   },
 ];
 
@@ -116,7 +173,7 @@ describe('cagecast fit', () => {
 });
 
 describe('the template', () => {
-  for (const { name, model, kind, landmarks, holes } of kTemplates)
+  for (const { name, model, kind, landmarks, holes, orders } of kTemplates)
     describe(name, () => {
       test('is what its sources make, at most 60 kB', async () => {
         const { bytes } = await load(name);
@@ -137,8 +194,10 @@ describe('the template', () => {
           assert.deepEqual(extras.landmarks[other], [x === 0 ? 0 : sign * x, y, z], spot);
           assert.ok(/_(left|right)$/.test(spot) || x === 0, `${spot} is off the plane of symmetry`);
         }
-        const { bumper_front: front, bumper_rear: rear } = extras.landmarks;
-        if (front && rear) assert.ok(front[2] > 0 && rear[2] < 0);
+        // Rays may go through a hole, or hit a hand before a hip.
+        const isOrdered = (axis: number, ...spots: string[]): boolean =>
+          spots.every((spot, i) => i === 0 || extras.landmarks[spot]![axis]! < extras.landmarks[spots[i - 1]!]![axis]!);
+        for (const [axis, ...spots] of orders) assert.ok(isOrdered(axis, ...spots), spots.join(' > '));
         for (const hole of holes) assert.ok(extras.holes[hole]!.length >= 3, hole);
         for (const [hole, loop] of Object.entries(extras.holes))
           for (const v of loop) assert.ok(v >= 0 && 3 * v < positions.length, `${hole}: ${v}`);

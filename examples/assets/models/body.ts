@@ -20,13 +20,13 @@ export const placed =
 
 /** Joint centres, named as in the landmark list; those of the limbs are the left ones. */
 export const kJoints = {
-  hips: [0, 0.935, -0.012],
-  spine: [0, 1.02, -0.02],
-  chest: [0, 1.16, -0.03],
-  neck: [0, 1.425, -0.03],
-  head: [0, 1.535, 0.0],
-  jaw: [0, 1.55, 0.02],
-  clavicle: [0.022, 1.385, 0.01],
+  hips: [0, 0.925, -0.015],
+  spine: [0, 0.995, -0.02],
+  chest: [0, 1.145, -0.025],
+  neck: [0, 1.415, -0.035],
+  head: [0, 1.575, 0.008],
+  jaw: [0, 1.576, 0.025],
+  clavicle: [0.023, 1.38, 0.0],
   shoulder: [0.17, 1.365, -0.02],
   elbow: [0.366, 1.17, -0.028],
   wrist: [0.538, 0.998, 0.004],

@@ -207,8 +207,8 @@ const spotsOf = (skin: Mesh): Landmarks => {
   return {
     ...Object.fromEntries(Object.entries(face).map(([name, p]) => [name, onHead(p)])),
     ...inMiddle({
-      collar_front: from([0, 0, 1], [0, 1.395, 0]),
-      collar_back: from([0, 0, -1], [0, 1.435, 0]),
+      collar_front: from([0, 0, 1], [0, 1.378, 0]),
+      collar_back: from([0, 0, -1], [0, 1.415, 0]),
       joint_hips: hips,
       joint_spine: spine,
       joint_chest: chest,
@@ -217,7 +217,7 @@ const spotsOf = (skin: Mesh): Landmarks => {
       joint_jaw: jaw,
     }),
     ...bothSides({
-      shoulder: from([0, 1, 0], shoulder),
+      shoulder: from([0, 1, 0], add(shoulder, [0.015, 0, 0])),
       elbow: from([0, 0, -1], kJoints.elbow),
       wrist,
       finger_thumb: tip('thumb'),
@@ -225,10 +225,10 @@ const spotsOf = (skin: Mesh): Landmarks => {
       finger_middle: tip('middle'),
       finger_ring: tip('ring'),
       finger_pinky: tip('pinky'),
-      hip: from([1, 0, 0], [0, 0.88, 0]),
-      knee: from([0, 0, 1], kJoints.knee),
+      hip: near([0.2, 0.868, 0]),
+      knee: from([0, 0, 1], add(kJoints.knee, [0, 0.022, 0])),
       ankle: furthest([1, 0, 0], [0.135, 0.08, -0.034], 0.03),
-      heel: furthest([0, 0, -1], [0.115, 0.03, -0.09], 0.03),
+      heel: furthest([0, 0, -1], [0.115, 0.016, -0.08], 0.02),
       toe_big: toe(0),
       toe_small: toe(4),
       joint_eye: onHead(kEye),
