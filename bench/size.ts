@@ -12,6 +12,7 @@ export interface Size {
 export const sizedFiles = {
   'cagecast.wasm': 'dist/cagecast.wasm',
   'cagecast (WebAssembly inlined)': 'dist/index.js',
+  'cagecast-cages.wasm': 'dist/cagecast-cages.wasm',
 } as const;
 
 export async function measureSizes(): Promise<Record<string, Size>> {

@@ -3,7 +3,7 @@ import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSy
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from './glb.js';
+import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from './glb.js';
 import { ball } from './scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-cages-'));
@@ -128,5 +128,107 @@ describe('cagecast transfer --cage auto', () => {
     assert.match(stdout, /3 segments \(2 culled\)/);
     const { meshes } = unpackGlb(readFileSync(at('auto.glb'))).json;
     assert.ok(meshes!.every(({ primitives }) => primitives[0]!.attributes['TEXCOORD_1'] !== undefined));
+  });
+});
+
+describe('cagecast fit', () => {
+  const target = 'build/assets/human/target.glb';
+
+  test('writes the template moved onto the model, and what it was moved by', async () => {
+    const { status, stdout, stderr } = cagecast(
+      'fit',
+      'human-head',
+      target,
+      '-o',
+      at('fit.glb'),
+      '--html',
+      at('fit.html'),
+    );
+    assert.equal(stderr, '');
+    assert.equal(status, 0, stdout);
+    assert.match(
+      stdout,
+      /^wrote .*fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\n/,
+    );
+    assert.match(stdout, /^(GOOD|USABLE): the cage fits/m);
+    assert.ok(existsSync(at('fit.html')));
+    assert.deepEqual(await validate(at('fit.glb')), []);
+    // What was written is a template itself.
+    const again = cagecast('fit', at('fit.glb'), target, '-o', at('again.glb'));
+    assert.equal(again.status, 0, again.stderr);
+  });
+
+  test('takes landmarks of the template and of the model from files', () => {
+    const { extras } = unpackGlb(readFileSync('examples/assets/templates/human-head.glb')).json.meshes![0]!;
+    const { landmarks } = extras as { landmarks: Record<string, number[]> };
+    write('landmarks.json', JSON.stringify(landmarks));
+    const { nose_tip, chin } = landmarks;
+    write('some.json', JSON.stringify({ nose_tip, chin }));
+    const bare = unpackGlb(readFileSync('examples/assets/templates/human-head.glb'));
+    delete bare.json.meshes![0]!.extras;
+    write('bare.glb', packGlb(bare));
+    const { status, stdout, stderr } = cagecast(
+      ...['fit', at('bare.glb'), target, '-o', at('given.glb')],
+      ...['--template-landmarks', at('landmarks.json'), '--landmarks', at('some.json')],
+    );
+    assert.equal(status, 0, stderr);
+    assert.match(stdout, /^landmarks: \d+ used, 2 of them given$/m);
+  });
+
+  test('errors are one line that names the file, and write nothing', () => {
+    write('no.json', '{');
+    write('list.json', '[1, 2]');
+    write('flat.json', '{ "chin": 3 }');
+    write('empty.json', '{}');
+    const bare = unpackGlb(readFileSync('examples/assets/templates/human-head.glb'));
+    delete bare.json.meshes![0]!.extras;
+    write('bare.glb', packGlb(bare));
+    bare.json.meshes![0]!.extras = { landmarks: { chin: [0] } };
+    write('odd.glb', packGlb(bare));
+    const { uvs: _, ...noUvs } = skin();
+    write('no-uvs.glb', glbOf(noUvs));
+    const out = at('never.glb');
+    const before = files();
+    for (const [args, status, says] of [
+      [['human-head'], 2, /missing required argument 'TARGET'|required option/],
+      [['human-head', target], 2, /required option '-o, --output <CAGE\.glb>' not specified/],
+      [[at('bare.glb'), target, '-o', at('bare.glb')], 2, /would overwrite another file/],
+      [
+        [at('bare.glb'), target, '-o', out],
+        1,
+        /bare\.glb: has no landmarks in the extras of its nodes and meshes; give those .*--template-landmarks T\.json/,
+      ],
+      [[at('odd.glb'), target, '-o', out], 1, /odd\.glb: meshes\[0\]\.extras\.landmarks\.chin is not 3 finite numbers/],
+      [
+        [at('no-uvs.glb'), target, '-o', out],
+        1,
+        /no-uvs\.glb: meshes\[0\]\.primitives\[0\] \("only"\) has no TEXCOORD_0/,
+      ],
+      [['human-head', at('missing.glb'), '-o', out], 1, /missing\.glb: no such file/],
+      [['human-head', target, '--landmarks', at('missing.json'), '-o', out], 1, /missing\.json: no such file/],
+      [['human-head', target, '--landmarks', at('no.json'), '-o', out], 1, /no\.json: is not JSON \(/],
+      [
+        ['human-head', target, '--landmarks', at('list.json'), '-o', out],
+        1,
+        /list\.json: is not a JSON object of names and positions/,
+      ],
+      [
+        ['human-head', target, '--landmarks', at('flat.json'), '-o', out],
+        1,
+        /flat\.json: "chin" is not 3 numbers \[x, y, z\]/,
+      ],
+      [
+        ['human-head', target, '--template-landmarks', at('empty.json'), '-o', out],
+        1,
+        /human-head.*: has no landmarks/,
+      ],
+    ] satisfies [string[], number, RegExp][]) {
+      const done = cagecast('fit', ...args);
+      assert.equal(done.status, status, `${args.join(' ')}: ${done.stderr}`);
+      assert.match(done.stderr, says);
+      assert.match(done.stderr, /^cagecast: [^\n]+\n$/);
+      assert.equal(done.stdout, '');
+    }
+    assert.deepEqual(files(), before);
   });
 });

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
+import { NodeIO } from '@gltf-transform/core';
 import { type Code, init, type Mesh } from 'cagecast';
 import {
   CagecastError,
@@ -9,12 +10,13 @@ import {
   defaultExclusions,
   findLandmarks,
   fitCage,
+  loadTemplate,
   makeCage,
-  refineCage,
   type Template,
   terminate,
 } from 'cagecast/cages';
 import * as sync from 'cagecast/cages/sync';
+import { cageModel } from 'cagecast/gltf';
 import { inspect } from 'cagecast/inspect';
 import { ball, join3d } from './scenes.js';
 
@@ -205,5 +207,88 @@ describe('makeCage', () => {
       ),
       'notInitialised',
     );
+  });
+});
+
+describe('fitCage', () => {
+  let template: Template;
+  let model: CageModel;
+  before(async () => {
+    template = await loadTemplate('human-head');
+    const own = cageModel(await new NodeIO().read('build/assets/human/target.glb'));
+    // Another place and size than the template's.
+    model = { ...own, positions: own.positions.map((x, i) => 2 * x + (i % 3 === 1 ? 5 : 0)) };
+  });
+
+  test('moves a template onto a model; triangles, UVs and holes stay', async () => {
+    const shares: number[] = [];
+    const fit = await fitCage(template, model, undefined, { onProgress: (share) => shares.push(share) });
+    const { cage, used, confidence, missing, notes } = fit;
+    assert.deepEqual(cage.uvs, template.uvs);
+    assert.deepEqual(cage.indices, template.indices);
+    assert.deepEqual([cage.holes, cage.kind], [template.holes, 'head']);
+    assert.notEqual(inspect(cage, model).verdict, 'unfit');
+    assert.deepEqual(
+      shares,
+      [...shares].sort((a, b) => a - b),
+    );
+    assert.equal(shares.at(-1), 1);
+    const names = Object.keys(template.landmarks);
+    assert.ok(Object.keys(used).length > 5);
+    for (const name of [...Object.keys(used), ...missing]) assert.ok(names.includes(name), name);
+    for (const name of Object.keys(used)) assert.ok(confidence[name]! > 0 && confidence[name]! <= 1);
+    assert.ok(Array.isArray(notes));
+    assert.deepEqual(sync.fitCage(template, model), fit);
+  });
+
+  test('uses the landmarks that are given', async () => {
+    const at = template.landmarks['nose_tip']!;
+    const nose = [2 * at[0], 2 * at[1] + 5, 2 * at[2]] as const;
+    const { used, confidence } = await fitCage(template, model, { nose_tip: nose });
+    for (const [k, x] of nose.entries()) assert.ok(Math.abs(used['nose_tip']![k]! - x) < 1e-5);
+    assert.equal(confidence['nose_tip'], 1);
+  });
+
+  test('finds landmarks', async () => {
+    const { landmarks, confidence, kind, rig, missing } = await findLandmarks(model);
+    assert.ok(Object.keys(landmarks).length > 5);
+    assert.deepEqual(Object.keys(confidence), Object.keys(landmarks));
+    assert.equal(kind, 'head');
+    assert.equal(rig, '');
+    assert.ok(Array.isArray(missing));
+  });
+
+  test('says in a sentence what is wrong with its arguments', async () => {
+    const untyped = fitCage as (...args: unknown[]) => Promise<unknown>;
+    const { uvs: _, ...bare } = template;
+    for (const [args, code, says] of [
+      [[null, model], 'badArgument', /^fitCage: template is null, not a mesh/],
+      [[bare, model], 'missingUvs', /^fitCage: template\.uvs is missing/],
+      [
+        [{ ...template, landmarks: [1] }, model],
+        'badArgument',
+        /template\.landmarks is of type Array, not an object of names and positions/,
+      ],
+      [
+        [{ ...template, landmarks: { chin: [0] } }, model],
+        'badArgument',
+        /template\.landmarks\.chin is of type Array, not 3 finite numbers/,
+      ],
+      [[template, model, { chin: 'low' }], 'badArgument', /^fitCage: landmarks\.chin is "low", not 3 finite numbers/],
+      [[template, model, {}, { triangles: 5 }], 'badOption', /options\.triangles is unknown; there are: kind, exclude/],
+      [[{ ...template, indices: new Uint32Array(0) }, model], 'badTemplate', /template/],
+      [[template, { ...model, indices: new Uint32Array(0) }], 'badModel', /model has no triangles/],
+    ] satisfies [unknown[], Code, RegExp][]) {
+      const error = await failure(() => untyped(...args));
+      assert.equal(error.code, code, error.message);
+      assert.match(error.message, says);
+    }
+  });
+});
+
+describe('cageGlb', () => {
+  test('needs only the arrays', async () => {
+    const { positions, uvs, indices } = await loadTemplate('car');
+    assert.equal(new TextDecoder().decode(cageGlb({ positions, uvs, indices }).subarray(0, 4)), 'glTF');
   });
 });

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import {
+  cpSync,
   existsSync,
   mkdirSync,
   mkdtempSync,
@@ -49,10 +50,35 @@ try { cutBorders(mesh(0.1), mesh(0), {}); } catch (error) { refused = error; }
 globalThis.answer = JSON.stringify([triangles.length > 0, triangles.every((t) => t === 0), cosmeticTriangles.every((one) => one === 1), refused instanceof CagecastError]);
 `;
 const cutAnswer = '[true,true,true,true]';
+const cagesProgram = `
+import { CagecastError, loadTemplate, makeCage } from 'cagecast/cages';
+const positions = [], indices = [];
+for (let r = 0; r <= 8; ++r) for (let s = 0; s < 16; ++s) {
+  const [theta, phi, sine] = [(Math.PI * r) / 8, (Math.PI * s) / 8, r % 8 === 0 ? 0 : Math.sin((Math.PI * r) / 8)];
+  positions.push(sine * Math.cos(phi), Math.cos(theta), sine * Math.sin(phi));
+  const [a, b] = [16 * r + s, 16 * r + ((s + 1) % 16)];
+  if (r < 8) indices.push(a, b, a + 16, b, b + 16, a + 16);
+}
+const model = { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
+const shares = [];
+const cage = await makeCage(model, { triangles: 100, voxels: 40, onProgress: (share) => shares.push(share) });
+let code;
+try { await makeCage({ ...model, indices: new Uint32Array(0) }); } catch (error) { code = error instanceof CagecastError && error.code; }
+const template = await loadTemplate('car');
+globalThis.answer = JSON.stringify([cage.indices.length > 100, cage.uvs.length / 2 === cage.positions.length / 3, shares.at(-1), code, template.kind]);
+`;
+const cagesAnswer = '[true,true,1,"badModel","prop"]';
 const workerProgram = program
   .replace("'cagecast'", "'cagecast/worker'")
   .replaceAll(/(transfer|classify|project)\(mesh/g, 'await $1(mesh')
   .replace('classify(await', 'await classify(await');
+
+const syncProgram = `
+import { defaultExclusions, init, makeCage } from 'cagecast/cages/sync';
+await init();
+const model = { positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]), indices: new Uint32Array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]) };
+globalThis.answer = JSON.stringify([defaultExclusions().length > 0, makeCage(model, { triangles: 100, voxels: 40 }).indices.constructor.name]);
+`;
 
 function run(command: string, args: string[], cwd = user): string {
   const { status, stdout, stderr } = spawnSync(command, args, {
@@ -129,13 +155,24 @@ describe('the packed package', () => {
     assert.ok(wasm <= 76 * 1024, `${wasm} bytes`);
   });
 
+  test('what makes cages is loaded only when it is asked for, and has at most 250 KB, gzipped', (context) => {
+    const sizeOf = (name: string) => gzipSync(readFileSync(join(installed, 'dist', name)), { level: 9 }).length;
+    const entry = sizeOf('cages.js');
+    const loaded = sizeOf('cages-thread.js') + sizeOf('cagecast-cages.wasm');
+    context.diagnostic(`entry ${entry} bytes, worker and WebAssembly ${loaded} bytes, gzipped`);
+    assert.ok(entry <= 4 * 1024, `${entry} bytes`);
+    assert.ok(entry + loaded <= 250 * 1024, `${entry + loaded} bytes`);
+    for (const name of ['index', 'slim', 'worker', 'inspect'])
+      assert.doesNotMatch(readFileSync(join(installed, `dist/${name}.js`), 'utf8'), /cages\.js|cages-thread/, name);
+  });
+
   test('asks engines to compile its index as they read it: they look for that at the very beginning', () => {
     for (const name of ['index', 'slim'])
       assert.match(readFileSync(join(installed, `dist/${name}.js`), 'utf8'), /^\/\/# allFunctionsCalledOnLoad\n/);
   });
 
   test('its further entries are small, and none of them is in the main one', (context) => {
-    for (const [name, most] of Object.entries({ inspect: 12, three: 7, gltf: 7 })) {
+    for (const [name, most] of Object.entries({ inspect: 12, three: 9, gltf: 9 })) {
       const text = readFileSync(join(installed, `dist/${name}.js`));
       const size = gzipSync(text, { level: 9 }).length;
       context.diagnostic(`${name} ${size} bytes, gzipped`);
@@ -215,11 +252,13 @@ describe('the packed package', () => {
 
   test('runs in Node', () => assert.equal(run(process.execPath, ['print.js']).trim(), answer));
 
-  test('its other entries run in Node: slim, alone and with borders, and the worker', () => {
+  test('its other entries run in Node: slim, alone and with borders, the worker, and those that make cages', () => {
     for (const [entry, text, expected] of [
       ['slim', slimProgram, answer],
       ['cut', cutProgram, cutAnswer],
       ['worker', workerProgram, answer],
+      ['cages', cagesProgram, cagesAnswer],
+      ['cages-sync', syncProgram, '[true,"Uint32Array"]'],
     ] as const) {
       writeFileSync(join(user, `${entry}.js`), `${text}; console.log(globalThis.answer);`);
       assert.equal(run(process.execPath, [`${entry}.js`]).trim(), expected, entry);
@@ -321,6 +360,7 @@ describe('the packed package', () => {
     );
     assert.ok(existsSync(join(user, 'out.glb')) && existsSync(join(user, 'r.json')));
     assert.match(run(command, ['inspect', 'target.glb', '--cage', 'cage.glb']), /: the cage fits/);
+    assert.match(run(command, ['transfer', 'target.glb', '--cage', 'auto', '--report', 'r.json']), /wrote r\.json/);
     const assets = process.env['CAGECAST_ASSETS'];
     // Compressed files need decoders, which must be aboard.
     if (assets !== undefined)
@@ -360,6 +400,7 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
       slim: slimProgram,
       cut: cutProgram,
       worker: workerProgram,
+      cages: cagesProgram,
     })) {
       const site = join(user, `site-${entry}`);
       mkdirSync(site);
@@ -385,6 +426,21 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
         site,
       );
     }
+    // esbuild leaves alone what `new URL` names: these files are served beside the script.
+    writeFileSync(join(user, 'cages.js'), cagesProgram);
+    run(join(tools, 'esbuild/bin/esbuild'), [
+      'cages.js',
+      '--bundle',
+      '--format=esm',
+      '--outfile=pages/esbuild-cages/main.js',
+      '--log-level=warning',
+    ]);
+    for (const name of ['cages-thread.js', 'cagecast-cages.wasm', 'templates'])
+      cpSync(join(installed, 'dist', name), join(pages, 'esbuild-cages', name), { recursive: true });
+    writeFileSync(
+      join(pages, 'esbuild-cages/index.html'),
+      '<!doctype html><script type="module" src="/esbuild-cages/main.js"></script>',
+    );
     writeFileSync(join(pages, 'plain.html'), '<!doctype html><script type="module" src="/plain.js"></script>');
     writeFileSync(join(pages, 'worker.html'), '<!doctype html><script type="module" src="/start.js"></script>');
     writeFileSync(
@@ -409,6 +465,8 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
         '/vite-slim/index.html',
         '/vite-cut/index.html',
         '/vite-worker/index.html',
+        '/vite-cages/index.html',
+        '/esbuild-cages/index.html',
       ]) {
         const page = await browser.newPage();
         const faults: string[] = [];
@@ -428,7 +486,7 @@ describe('in a browser, under a strict Content-Security-Policy', () => {
           found = await page.evaluate('globalThis.answer');
         }
         assert.deepEqual(faults, [], path);
-        assert.equal(found, path.includes('cut') ? cutAnswer : answer, path);
+        assert.equal(found, path.includes('cut') ? cutAnswer : path.includes('cages') ? cagesAnswer : answer, path);
         await page.close();
       }
     } finally {

@@ -113,12 +113,17 @@ async function readLandmarks(path: string): Promise<Landmarks> {
   }
 }
 
+/** How many missing landmarks are listed at most. */
+const mostNames = 12;
+
 function describeFit({ used, missing, notes }: Fit, given: Landmarks): string[] {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
   return [
     `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
-    missing.length === 0 ? '' : `not found: ${missing.join(', ')}; give them for a better fit: --landmarks L.json`,
+    missing.length === 0
+      ? ''
+      : `not found: ${missing.slice(0, mostNames).join(', ')}${missing.length > mostNames ? `, and ${missing.length - mostNames} more` : ''}; give them for a better fit: --landmarks L.json`,
     ...notes,
   ].filter(Boolean);
 }
