@@ -4,6 +4,7 @@ import { before, describe, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import { type Code, init, type Mesh } from 'cagecast';
 import {
+  type Cage,
   CagecastError,
   type CageModel,
   cageGlb,
@@ -12,6 +13,7 @@ import {
   fitCage,
   loadTemplate,
   makeCage,
+  refineCage,
   type Template,
   terminate,
 } from 'cagecast/cages';
@@ -283,6 +285,23 @@ describe('fitCage', () => {
       assert.equal(error.code, code, error.message);
       assert.match(error.message, says);
     }
+  });
+});
+
+describe('refineCage', () => {
+  test('moves a cage that is off into place; triangles, UVs, holes and landmarks stay, and so does a cage in place', async () => {
+    const model = head();
+    const made = { ...(await makeCage(model, options)), landmarks: {}, holes: { eye: [0, 1, 2] } };
+    const still = await refineCage(made, model);
+    assert.deepEqual(still.positions, made.positions);
+    const off = { ...made, positions: made.positions.map((x, i) => x + (i % 3 === 0 ? 0.06 : 0)) };
+    const back = await refineCage(off, model, { reach: 0.05 });
+    assert.deepEqual([back.uvs, back.indices, back.holes, back.kind], [made.uvs, made.indices, made.holes, 'head']);
+    const distance = (cage: Cage) =>
+      cage.positions.reduce((sum, x, i) => sum + Math.abs(x - made.positions[i]!), 0) / made.positions.length;
+    assert.ok(distance(back) < 0.5 * distance(off), `${distance(back)} of ${distance(off)}`);
+    assert.equal((await failure(() => refineCage({ ...off, uvs: undefined }, model))).code, 'missingUvs');
+    assert.equal((await failure(() => refineCage(off, model, { reach: -1 }))).code, 'badOption');
   });
 });
 
