@@ -18,12 +18,19 @@ constexpr std::size_t kSpots = 3000;
 /// A cage is moved or bent only if that makes its gaps so many times as even. Cages in place reach 1.4 by being moved:
 /// those whose makers left more room in one place than in another.
 constexpr double kWorthwhile = 1.5;
+/// The same if the gaps then differ by less than kCrisp of their usual size, on the mean. Cages with so even gaps were
+/// made at a fixed distance; in place, they reach 1.05.
+constexpr double kWorthwhileIfCrisp = 1.25;
+constexpr double kCrisp = 0.12;
 /// A cage that would move by less than this share of the diagonal stays.
 constexpr double kLeastMove = 0.0015;
 /// More than this share of the cage cannot be meant to lie inside the model.
 constexpr double kMostSunk = 0.1;
 /// At least this share of a cage faces the same way as the model beneath it.
 constexpr double kLeastFacing = 0.7;
+/// A cage whose gaps differ by more than this share of the diagonal, on the mean, is of another model. Those of cages
+/// in place differ by up to 0.008.
+constexpr double kMostUneven = 0.02;
 /// A cage is bent only if more than this share of it is inside the model. A smooth bend can even out any cage with more
 /// room in one place than in another, but such cages may be meant so.
 constexpr double kBendFrom = 0.005;
@@ -108,7 +115,8 @@ class Refinement {
       if (isMoreEven(bent, aligned) && !sinks(bent, aligned) && !isFolded(bent.cage)) aligned = std::move(bent);
     }
     best_ = std::move(aligned);
-    const bool isBetter = isMoreEven(best_, given_) || kWorthwhile * best_.placement.spread < given_.placement.spread;
+    const bool isBetter = isMoreEven(best_, given_, isCrisp(best_) ? kWorthwhileIfCrisp : kWorthwhile) ||
+                          kWorthwhile * best_.placement.spread < given_.placement.spread;
     stays_ = !isBetter || sinks(best_, given_) || moved() < kLeastMove * target_.diagonal;
     if (stays_) best_ = given_;
     return !progress_ || progress_(1, "bend");
@@ -120,12 +128,15 @@ class Refinement {
     if (placement.facing < kLeastFacing)
       return fault("cage does not belong to the model: only " + percent(placement.facing) +
                    " of it faces the same way as the model beneath it");
+    if (placement.unevenness > kMostUneven * target_.diagonal)
+      return fault("cage does not belong to the model: its distances from it differ by " +
+                   percent(placement.unevenness / target_.diagonal) + " of the diagonal on the mean");
     if (placement.sunk > kMostSunk)
       return fault("cage cannot be brought into place: " + percent(placement.sunk) +
                    " of it would still be inside the model");
     if (const double far = moved() / target_.diagonal; far > reach_)
       return fault("cage is off by " + percent(far) + " of the model's diagonal, more than options.reach, " +
-                   percent(reach_) + "; move it closer first");
+                   percent(reach_) + "; move it closer, or raise that");
     return {};
   }
 
@@ -147,8 +158,12 @@ class Refinement {
     return true;
   }
 
-  [[nodiscard]] static bool isMoreEven(const Candidate& a, const Candidate& b) {
-    return kWorthwhile * a.placement.unevenness < b.placement.unevenness;
+  [[nodiscard]] static bool isMoreEven(const Candidate& a, const Candidate& b, double times = kWorthwhile) {
+    return times * a.placement.unevenness < b.placement.unevenness;
+  }
+
+  [[nodiscard]] static bool isCrisp(const Candidate& candidate) {
+    return candidate.placement.unevenness < kCrisp * candidate.placement.offset;
   }
 
   /// Whether one of two candidates is further inside the model.

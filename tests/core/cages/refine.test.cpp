@@ -282,6 +282,9 @@ TEST_CASE("what a refined cage cannot be made of is said", "[cages][refine]") {
   for (std::size_t t = 0; t < broken.indices.size(); t += 3) std::swap(broken.indices[t], broken.indices[t + 1]);
   CHECK(messageOf(broken, head, Problem::badTemplate)
             .starts_with("cage does not belong to the model: only 0.0 % of it faces the same way"));
+  CHECK(messageOf(mapped(cage, [](const Vec3& p) { return (1.35 + 0.3 * std::sin(8 * p.x)) * p; }), head,
+                  Problem::badTemplate)
+            .starts_with("cage does not belong to the model: its distances from it differ by "));
   const Mesh wavy = mapped(cage, [](const Vec3& p) { return (1 + 0.2 * std::sin(25 * p.x) * std::sin(25 * p.y)) * p; });
   CHECK(messageOf(wavy, head, Problem::badTemplate).ends_with(" of it would still be inside the model"));
   CHECK(messageOf(mapped(cage, [](const Vec3& p) { return 0.6 * p; }), head, Problem::badTemplate)
