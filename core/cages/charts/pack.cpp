@@ -19,6 +19,8 @@ constexpr std::size_t kMostMasks = 40;
 /// tried.
 constexpr double kFirstCoverage = 0.85, kSmaller = 0.94;
 constexpr int kRefinements = 2;
+/// A cell is no smaller than this, so that masks stay small.
+constexpr double kLeastGutter = 1.0 / 2048;
 constexpr std::size_t kWord = 64;
 /// What a try counts, as triangles that are flattened.
 constexpr std::size_t kWorkPerTry = 3000;
@@ -203,7 +205,7 @@ bool packCharts(double gutter, Ticker& ticker, std::vector<Chart>& charts) {
     orders.push_back(std::move(order));
   }
   // A cell is a gutter wide. Charts take whole cells and leave one free, and half a cell is left at the border.
-  gutter = std::min(gutter, 0.2 / std::sqrt(static_cast<double>(charts.size())));
+  gutter = std::min(std::max(gutter, kLeastGutter), 0.2 / std::sqrt(static_cast<double>(charts.size())));
   const auto cells = std::max(std::size_t{1}, static_cast<std::size_t>(1 / gutter) - 1);
   const auto side = static_cast<double>(cells);
   double scale = side * std::sqrt(kFirstCoverage / std::max(area, 1e-300));

@@ -19,6 +19,8 @@ namespace {
 
 /// Charts with more energy than this are cut in two (4: no stretch; 5: stretched by about a quarter each way).
 constexpr double kMostEnergy = 6;
+/// Energy that is borne before there are too many charts.
+constexpr double kBorneEnergy = 9;
 /// Sides of props are joined if the chart has no more energy, …
 constexpr double kJoinedEnergy = 4.2;
 /// … fills so much of its box, …
@@ -29,6 +31,10 @@ constexpr double kLongestChart = 1.25;
 constexpr double kLargestHole = 0.45;
 /// A head, two arms, two legs.
 constexpr std::size_t kMostLimbs = 5;
+/// Those of a spider.
+constexpr std::size_t kMostLegs = 8;
+/// Props should not have more charts than this.
+constexpr std::size_t kMostPropCharts = 10;
 /// Seams on a head cost this much more in front than at the back.
 constexpr double kFrontCost = 12;
 /// The neck is a loop at least this share as long as the longest.
@@ -56,7 +62,7 @@ class Unwrapper {
   /// @return false if cancelled.
   bool layOut(Piece piece);
   bool layOutHead(Piece piece);
-  bool layOutBody(const Piece& piece);
+  bool layOutBody(const Piece& piece, std::size_t mostLimbs);
   bool layOutProp(const Piece& piece);
 
   std::vector<Chart>& charts() { return charts_; }
@@ -229,8 +235,8 @@ bool Unwrapper::layOutLimb(const Piece& piece, std::uint32_t tip, const SeamCost
   return layOut(cutBetween(piece, {&first, 1}, rim, cost));
 }
 
-bool Unwrapper::layOutBody(const Piece& body) {
-  const Limbs limbs = limbsOf(body.mesh, kMostLimbs);
+bool Unwrapper::layOutBody(const Piece& body, std::size_t mostLimbs) {
+  const Limbs limbs = limbsOf(body.mesh, mostLimbs);
   if (limbs.tips.size() < 2) return layOutProp(body);
   const Vec3 centre = centreOf(body.mesh), side = cross(options_.up, options_.front);
   std::uint32_t head = kNone;
@@ -301,8 +307,8 @@ void joinCharts(const TriangleMesh& mesh, const UnwrapOptions& options, Ticker& 
   const bool isProp = options.kind == Kind::prop || options.kind == Kind::automatic;
   const Vec3 side = cross(options.up, options.front);
   if (isProp) mergeCharts(mesh, {kJoinedEnergy, 1, kLeastFill, longest, side}, ticker, charts);
-  const std::size_t enough = isProp ? 10 : options.kind == Kind::body ? 8 : 2;
-  if (charts.size() > enough) mergeCharts(mesh, {kMostEnergy, enough, 0, longest, {0, 0, 0}}, ticker, charts);
+  const std::size_t enough = isProp ? kMostPropCharts : options.kind == Kind::body ? 8 : 2;
+  if (charts.size() > enough) mergeCharts(mesh, {kBorneEnergy, enough, 0, 1.5 * longest, {0, 0, 0}}, ticker, charts);
 }
 
 /// Gives a chart the area that it has on the model.
@@ -317,20 +323,32 @@ void scaleToArea(Chart& chart) {
   for (Uv& uv : chart.uvs) uv = {scale * uv[0], scale * uv[1]};
 }
 
+/// Cuts and flattens a mesh as what it is.
+/// @param mostLimbs  If not 0, limbs are cut off first.
+std::vector<Chart> chartsOf(const TriangleMesh& mesh, const UnwrapOptions& options, std::size_t mostLimbs,
+                            Ticker& ticker) {
+  Unwrapper unwrapper(mesh, options, ticker);
+  for (Piece& piece : componentsOf(wholeOf(mesh))) {
+    const bool going = options.kind == Kind::head ? unwrapper.layOutHead(std::move(piece))
+                       : mostLimbs > 0            ? unwrapper.layOutBody(piece, mostLimbs)
+                                                  : unwrapper.layOutProp(piece);
+    if (!going) return {};
+  }
+  joinCharts(mesh, options, ticker, unwrapper.charts());
+  return std::move(unwrapper.charts());
+}
+
 }  // namespace
 
 bool unwrap(const TriangleMesh& mesh, const UnwrapOptions& options, const Progress& progress, Layout& out) {
   out = {};
   Ticker ticker(progress);
-  Unwrapper unwrapper(mesh, options, ticker);
-  for (Piece& piece : componentsOf(wholeOf(mesh))) {
-    const bool going = options.kind == Kind::head   ? unwrapper.layOutHead(std::move(piece))
-                       : options.kind == Kind::body ? unwrapper.layOutBody(piece)
-                                                    : unwrapper.layOutProp(piece);
-    if (!going) return false;
+  std::vector<Chart> charts = chartsOf(mesh, options, options.kind == Kind::body ? kMostLimbs : 0, ticker);
+  if (options.kind != Kind::head && options.kind != Kind::body && charts.size() > kMostPropCharts) {
+    // A spider has more sides than legs.
+    std::vector<Chart> others = chartsOf(mesh, options, kMostLegs, ticker);
+    if (others.size() < charts.size()) charts = std::move(others);
   }
-  std::vector<Chart>& charts = unwrapper.charts();
-  joinCharts(mesh, options, ticker, charts);
   if (ticker.cancelled()) return false;
   ticker.reach(kJoinedShare);
   for (Chart& chart : charts) {

@@ -153,7 +153,6 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   Layout layout;
   UnwrapOptions unwrapOptions;
   unwrapOptions.kind = settings.kind;
-  unwrapOptions.joints = model.joints;
   if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled;
   if (progress && !part(1, 1)(1, "unwrap")) return cancelled;
   store(layout, out);

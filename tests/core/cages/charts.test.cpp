@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "hull/hull.hpp"
+
 using namespace cagecast;
 using namespace cagecast::cages;
 
@@ -72,6 +74,30 @@ TriangleMesh box() {
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;
+}
+
+/// A figure with arms held out, of balls in one hull.
+TriangleMesh figure() {
+  TriangleMesh balls;
+  const auto limb = [&](Vec3 from, Vec3 to, double radius) {
+    const int count = static_cast<int>(2 * length(to - from) / radius) + 1;
+    for (int i = 0; i <= count; ++i) {
+      const TriangleMesh one = ball(10, 6, {radius, radius, radius});
+      const auto first = static_cast<std::uint32_t>(balls.positions.size());
+      for (const Vec3& p : one.positions) balls.positions.push_back(p + from + double(i) / count * (to - from));
+      for (const Triangle3& t : one.triangles) balls.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  };
+  limb({0, 1.55, 0}, {0, 1.6, 0}, 0.12);
+  limb({0, 0.95, 0}, {0, 1.4, 0}, 0.13);
+  for (const double side : {-1.0, 1.0}) {
+    limb({side * 0.1, 1.32, 0}, {side * 0.7, 1.32, 0}, 0.06);
+    limb({side * 0.1, 0.9, 0}, {side * 0.15, 0.08, 0}, 0.08);
+  }
+  const double diagonal = diagonalOf(balls);
+  TriangleMesh hull;
+  REQUIRE(makeHull(balls, {0.01 * diagonal, 0.01 * diagonal, 60}, {}, hull));
+  return hull;
 }
 
 double distanceToEdge(const Uv& p, const Uv& a, const Uv& b) {
@@ -167,6 +193,29 @@ TEST_CASE("a head is one chart, upright and not mirrored", "[cages][charts]") {
       if (d.y > 2 * std::abs(d.x)) CHECK(layout.uvs[b][1] < layout.uvs[a][1]);
       if (d.x > 2 * std::abs(d.y)) CHECK(layout.uvs[b][0] > layout.uvs[a][0]);
     }
+}
+
+TEST_CASE("a body has a chart for each limb", "[cages][charts]") {
+  const TriangleMesh mesh = figure();
+  Layout layout;
+  const LayoutFaults faults = checked(mesh, Kind::body, layout);
+  CHECK(faults.charts <= 8);
+  CHECK(faults.angle95 < 2);
+  // Hands, feet, and the top of the head are on five charts; each has its surroundings on the same.
+  std::vector<std::uint32_t> charts;
+  for (const Vec3& tip : {Vec3{-0.76, 1.32, 0}, {0.76, 1.32, 0}, {-0.15, 0, 0}, {0.15, 0, 0}, {0, 1.72, 0}}) {
+    std::uint32_t chart = 0xffffffffu;
+    bool same = true;
+    for (std::size_t t = 0; t < layout.triangles.size(); ++t) {
+      if (length(layout.positions[layout.triangles[t][0]] - tip) > 0.12) continue;
+      same = same && (chart == 0xffffffffu || chart == layout.chartOf[t]);
+      chart = layout.chartOf[t];
+    }
+    CHECK(same);
+    charts.push_back(chart);
+  }
+  std::sort(charts.begin(), charts.end());
+  CHECK(std::adjacent_find(charts.begin(), charts.end()) == charts.end());
 }
 
 TEST_CASE("a tube is cut open without stretch", "[cages][charts]") {
