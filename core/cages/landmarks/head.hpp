@@ -17,6 +17,13 @@ struct Spot {
   double confidence = 0;
 };
 
+/// Where the lips meet or part on the midline.
+struct MouthLine {
+  double crease = 0;           ///< Height of the crease, or of the upper edge of the gap.
+  double top = 0, bottom = 0;  ///< Heights that the gap ends at; nearly equal if the mouth is closed.
+  double depth = 0;            ///< Of the crease.
+};
+
 /// A head in its own space, and what has been found on it. All lengths are in units of the frame.
 struct Head {
   HeadFrame frame;
@@ -24,6 +31,7 @@ struct Head {
   Surface surface;    ///< Of the skin.
   Eyes eyes;          ///< In this space.
   std::vector<Spot> spots = {};
+  std::optional<MouthLine> mouth = {};
 
   void add(std::string name, const Vec3& position, double confidence) {
     spots.push_back({std::move(name), position, confidence});

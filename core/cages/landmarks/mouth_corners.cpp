@@ -75,20 +75,24 @@ std::array<std::optional<Vec3>, 2> gapEnds(const HeightMap& map, double top, dou
   std::vector<bool> seen(map.heights.size());
   std::vector<std::pair<int, int>> gap = {{grid.columnOf(0), grid.rowOf(middle)}};
   seen[map.index(gap[0].first, gap[0].second)] = true;
-  std::array<std::pair<int, int>, 2> ends = {gap[0], gap[0]};
-  for (std::size_t i = 0; i < gap.size(); ++i) {
-    if (gap[i].first > ends[0].first) ends[0] = gap[i];
-    if (gap[i].first < ends[1].first) ends[1] = gap[i];
+  for (std::size_t i = 0; i < gap.size(); ++i)
     for (int d = 0; d < 4; ++d) {
       const int c = gap[i].first + (d == 0) - (d == 1), r = gap[i].second + (d == 2) - (d == 3);
       if (!isGap(c, r) || seen[map.index(c, r)]) continue;
       seen[map.index(c, r)] = true;
       gap.emplace_back(c, r);
     }
-  }
+  const auto [first, last] = std::minmax_element(gap.begin(), gap.end());
+  const int columns[] = {last->first, first->first};
   std::array<std::optional<Vec3>, 2> out;
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
-    const double x = grid.a(ends[i].first) + (i == 0 ? kStep : -kStep), y = grid.b(ends[i].second);
+    double rows = 0, count = 0;
+    for (const auto& [column, row] : gap) {
+      if (std::abs(column - columns[i]) > 1) continue;
+      rows += row;
+      ++count;
+    }
+    const double x = grid.a(columns[i]) + (i == 0 ? kStep : -kStep), y = grid.b0 + grid.step * rows / count;
     const double z = map.near(x, y);
     if (std::isfinite(z) && std::abs(x) > 0.02 && std::abs(x) < 0.14) out[i] = Vec3{x, y, z};
   }
@@ -98,30 +102,19 @@ std::array<std::optional<Vec3>, 2> gapEnds(const HeightMap& map, double top, dou
 }  // namespace
 
 void findMouthCorners(Head& head) {
-  const Spot *upper = head.find("lip_upper"), *lower = head.find("lip_lower");
-  if (upper == nullptr || lower == nullptr) return;
-  const double top = upper->position.y, bottom = lower->position.y;
-  const Grid grid = Grid::over(-0.18, 0.18, bottom - 0.06, top + 0.06, kStep);
-  const HeightMap map = look(head.surface, kFrontView, grid, 0.6);
-  const HeightMap smooth = blurred(map, kBlur);
-  // Where the lips part on the midline: the deepest place between them, as wide as what lies behind both.
-  double y = 0.5 * (top + bottom), deepest = 1;
-  for (double b = bottom + kStep; b < top; b += kStep) {
-    const double z = map.near(0, b);
-    if (z < deepest) {
-      deepest = z;
-      y = b;
-    }
-  }
-  const double lipZ = std::min(upper->position.z, lower->position.z);
-  double open = 0;
-  for (double b = bottom; b < top; b += kStep)
-    if (map.near(0, b) < lipZ - 0.02) open += kStep;
+  if (!head.mouth) return;
   constexpr double kGaping = 0.025;
-  const bool gaping = open > kGaping;
-  std::array<std::optional<Vec3>, 2> ends =
-      gaping ? gapEnds(map, top, bottom, y)
-             : std::array<std::optional<Vec3>, 2>{follow(smooth, y, 1), follow(smooth, y, -1)};
+  constexpr double kAround = 0.08;
+  const MouthLine& line = *head.mouth;
+  const Grid grid = Grid::over(-0.18, 0.18, line.bottom - kAround, line.top + kAround, kStep);
+  const HeightMap map = look(head.surface, kFrontView, grid, 0.6);
+  std::array<std::optional<Vec3>, 2> ends;
+  if (line.top - line.bottom > kGaping) {
+    ends = gapEnds(map, line.top, line.bottom, 0.5 * (line.top + line.bottom));
+  } else {
+    const HeightMap smooth = blurred(map, kBlur);
+    ends = {follow(smooth, line.crease, 1), follow(smooth, line.crease, -1)};
+  }
   if (!ends[0] || !ends[1]) return;
   // On the skin, not in the crease.
   const HeightMap skin = closed(map, 0.009);

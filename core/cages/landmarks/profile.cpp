@@ -85,13 +85,8 @@ std::optional<double> firstFold(const Profile& profile, double top, double botto
   return profile.fine.greatest(bottom, top, hollow);
 }
 
-struct Mouth {
-  double top = 0, bottom = 0;  ///< Of the gap between the lips; nearly equal if it is closed.
-  double depth = 0;            ///< Of the groove.
-};
-
 /// The first sharp crease below the fold under the nose; the fold above the chin may be deeper, but is wider.
-std::optional<Mouth> mouth(const Profile& profile, double subnasale) {
+std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   constexpr double kNear = 0.01, kFar = 0.13;  ///< Below the fold.
   constexpr double kCrease = 0.006;            ///< Half its width.
   constexpr double kLeast = 0.0012;            ///< Its depth.
@@ -102,10 +97,10 @@ std::optional<Mouth> mouth(const Profile& profile, double subnasale) {
   };
   double deepest = 0;
   for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) deepest = std::max(deepest, depth(y));
-  Mouth out;
+  MouthLine out;
   const double enough = std::max(kLeast, 0.4 * std::min(deepest, 0.01));
   for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) {
-    if (depth(y) > out.depth) out = {y, y, depth(y)};
+    if (depth(y) > out.depth) out = {y, y, y, depth(y)};
     if (out.depth > enough && depth(y) < 0.5 * out.depth) break;
   }
   if (out.depth < enough) return std::nullopt;
@@ -128,7 +123,7 @@ std::optional<Mouth> mouth(const Profile& profile, double subnasale) {
 }
 
 /// Lips, and the place below the lower lip where the chin begins.
-double lips(Head& head, const Profile& profile, double subnasale, const Mouth& gap) {
+double lips(Head& head, const Profile& profile, double subnasale, const MouthLine& gap) {
   const double clear = gap.depth > 0.003 ? 0.85 : 0.6;
   if (const auto upper = profile.fine.highest(gap.top - 0.002, std::min(gap.top + 0.03, subnasale), profile.tilt))
     head.add("lip_upper", profile.point(*upper), clear);
@@ -136,10 +131,14 @@ double lips(Head& head, const Profile& profile, double subnasale, const Mouth& g
   const auto front = profile.fine.highest(lipTop - 0.035, lipTop + 0.002, profile.tilt);
   const double lip = front.value_or(lipTop);
   const double foldY = firstFold(profile, lip - 0.012, lip - 0.07).value_or(lip - 0.03);
-  // The lower lip's red ends where it turns under most.
-  const auto edge =
-      profile.fine.greatest(foldY, lip, [&](double y) { return -profile.facing(profile.fine, y, 0.004); });
-  if (edge) head.add("lip_lower", profile.point(*edge), clear - 0.1);
+  // The lower lip's red ends where it has turned under, or where it turns most.
+  constexpr double kTurned = -0.6;  ///< Radians.
+  const auto turn = [&](double y) { return profile.facing(profile.fine, y, 0.004); };
+  const double from = lip - 0.008;
+  double edge = profile.fine.greatest(foldY, from, [&](double y) { return -turn(y); }).value_or(foldY);
+  for (double y = from; y > edge; y -= kStep)
+    if (turn(y) < kTurned && turn(y - kStep) < kTurned) edge = y;
+  head.add("lip_lower", profile.point(edge), clear - 0.1);
   return foldY;
 }
 
@@ -198,6 +197,7 @@ bool findProfile(Head& head) {
   if (!subnasale) return true;
   const auto gap = mouth(profile, *subnasale);
   if (!gap) return true;
+  head.mouth = gap;
   const double fold = lips(head, profile, *subnasale, *gap);
   const double chinY = chin(profile, fold);
   const Vec3 at = profile.point(chinY);
