@@ -10,9 +10,11 @@ namespace {
 constexpr double kStep = 0.004;
 /// Ears are narrower than this, from front to back; the head behind them is wider.
 constexpr double kWidest = 0.125;
-/// An ear stands out from the head by more than this, and ends where it does by less than a share of its own most. Jaws
-/// and temples curve as much as the lesser limit.
-constexpr double kStandsOut = 0.01, kCurves = 0.017, kEnds = 0.4;
+/// An ear stands out from the head by more than this, and ends where it does by less than a share of its own most, or
+/// by less than jaws and temples may curve.
+constexpr double kStandsOut = 0.01, kCurves = 0.02, kEnds = 0.4;
+/// Higher areas are looked at again with a higher limit, up to a share of the most: they may reach down the jaw.
+constexpr double kHigh = 0.17, kMostEnds = 0.5;
 
 /// How far each place stands out from the head, seen from a side: the height over what a line segment of the width
 /// `kWidest` can reach from inside (a morphological top-hat, along each row).
@@ -38,6 +40,60 @@ std::vector<double> standingOut(const HeightMap& map) {
   return out;
 }
 
+using Place = std::pair<int, int>;  ///< Column, row.
+
+/// Ears are within these limits, seen from the side: behind the eyes, and about as high as the nose.
+bool inRegion(const Grid& grid, const Place& place) {
+  const double z = grid.a(place.first), y = grid.b(place.second);
+  return z > -0.45 && z < -0.03 && std::abs(y) < 0.2;
+}
+
+/// The largest connected area that stands out by more than a limit.
+std::vector<Place> largestArea(const HeightMap& map, const std::vector<double>& out, double limit) {
+  const Grid& grid = map.grid;
+  std::vector<bool> seen(out.size());
+  std::vector<Place> best;
+  const auto isNew = [&](const Place& place) {
+    return grid.has(place.first, place.second) && inRegion(grid, place) &&
+           !seen[map.index(place.first, place.second)] && out[map.index(place.first, place.second)] > limit;
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      if (!isNew({column, row})) continue;
+      std::vector<Place> area = {{column, row}};
+      seen[map.index(column, row)] = true;
+      for (std::size_t i = 0; i < area.size(); ++i)
+        for (int d = 0; d < 4; ++d) {
+          const Place next{area[i].first + (d == 0) - (d == 1), area[i].second + (d == 2) - (d == 3)};
+          if (!isNew(next)) continue;
+          seen[map.index(next.first, next.second)] = true;
+          area.push_back(next);
+        }
+      if (area.size() > best.size()) best = std::move(area);
+    }
+  return best;
+}
+
+/// What is an ear in a side view.
+std::vector<Place> earArea(const HeightMap& map) {
+  const std::vector<double> out = standingOut(map);
+  double most = 0;
+  for (int row = 0; row < map.grid.rows; ++row)
+    for (int column = 0; column < map.grid.columns; ++column)
+      if (inRegion(map.grid, {column, row})) most = std::max(most, out[map.index(column, row)]);
+  double limit = std::max(kStandsOut, std::min(kCurves, kEnds * most));
+  std::vector<Place> area = largestArea(map, out, limit);
+  constexpr double kRaise = 1.1;
+  while (!area.empty() && limit * kRaise < kMostEnds * most) {
+    const auto [low, high] = std::minmax_element(area.begin(), area.end(),
+                                                 [](const Place& a, const Place& b) { return a.second < b.second; });
+    if (map.grid.step * (high->second - low->second) < kHigh) break;
+    limit *= kRaise;
+    area = largestArea(map, out, limit);
+  }
+  return area;
+}
+
 struct Ear {
   Vec3 top, lobe, outer;
   double area = 0;  ///< As seen from the side.
@@ -48,54 +104,16 @@ std::optional<Ear> findEar(const Head& head, double side, double bottom) {
   const View view{{0, 0, 1}, {0, 1, 0}, {side, 0, 0}};
   const Grid grid = Grid::over(-0.52, 0.1, bottom, 0.3, kStep);
   const HeightMap map = look(head.surface, view, grid, 1.0);
-  const std::vector<double> out = standingOut(map);
-  const auto inRegion = [&](int column, int row) {
-    return grid.a(column) < -0.03 && grid.a(column) > -0.45 && std::abs(grid.b(row)) < 0.2;
-  };
-  double most = 0;
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      if (inRegion(column, row)) most = std::max(most, out[map.index(column, row)]);
-  const double limit = std::max(kStandsOut, std::min(kCurves, kEnds * most));
-  // The largest connected area that stands out, in the region where ears can be.
-  std::vector<int> number(out.size(), -1);
-  std::vector<std::vector<std::pair<int, int>>> areas;
-  const auto isEar = [&](int column, int row) {
-    return grid.has(column, row) && out[map.index(column, row)] > limit && grid.a(column) < -0.03 &&
-           grid.a(column) > -0.45;
-  };
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) {
-      if (!isEar(column, row) || number[map.index(column, row)] >= 0) continue;
-      const int n = static_cast<int>(areas.size());
-      areas.push_back({{column, row}});
-      number[map.index(column, row)] = n;
-      auto& area = areas.back();
-      for (std::size_t i = 0; i < area.size(); ++i)
-        for (int d = 0; d < 4; ++d) {
-          const int c = area[i].first + (d == 0) - (d == 1), r = area[i].second + (d == 2) - (d == 3);
-          if (!isEar(c, r) || number[map.index(c, r)] >= 0) continue;
-          number[map.index(c, r)] = n;
-          area.emplace_back(c, r);
-        }
-    }
-  const std::vector<std::pair<int, int>>* best = nullptr;
-  for (const auto& area : areas) {
-    double y = 0;
-    for (const auto& [column, row] : area) y += grid.b(row);
-    y /= static_cast<double>(area.size());
-    if (y < -0.2 || y > 0.2) continue;
-    if (best == nullptr || area.size() > best->size()) best = &area;
-  }
-  if (best == nullptr) return std::nullopt;
+  const std::vector<Place> places = earArea(map);
+  if (places.empty()) return std::nullopt;
   Ear ear;
-  ear.area = kStep * kStep * static_cast<double>(best->size());
-  const auto point = [&](const std::pair<int, int>& place) {
+  ear.area = kStep * kStep * static_cast<double>(places.size());
+  const auto point = [&](const Place& place) {
     return view.point(grid.a(place.first), grid.b(place.second), map.at(place.first, place.second));
   };
   double low = grid.b(grid.rows);
-  ear.outer = ear.top = point(best->front());
-  for (const auto& place : *best) {
+  ear.outer = ear.top = point(places.front());
+  for (const Place& place : places) {
     const Vec3 p = point(place);
     if (p.y > ear.top.y) ear.top = p;
     low = std::min(low, p.y);
@@ -105,7 +123,7 @@ std::optional<Ear> findEar(const Head& head, double side, double bottom) {
   constexpr double kBlunt = 0.01;
   Vec3 sum{0, 0, 0};
   double count = 0;
-  for (const auto& place : *best) {
+  for (const Place& place : places) {
     const Vec3 p = point(place);
     if (p.y > low + kBlunt) continue;
     sum = sum + p;

@@ -209,7 +209,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
     if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
     candidates.push_back({std::move(shape), part, c});
   }
-  const Surface surface(figure.mesh);
+  std::optional<Surface> surface;  // Built when it is needed.
   const Vec3 across = cross(plane.left, kUp);
   std::optional<Eyes> best;
   double most = 0;
@@ -226,8 +226,9 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
       eyes.radius = 0.5 * (radii[0] + radii[1]);
       const double residual = std::max(fitSphere(a.points).residual, fitSphere(b.points).residual);
       if (residual > 2 * kBall) continue;
-      const auto one = seen(surface, candidates[i].mesh, across, diagonal);
-      const auto other = seen(surface, candidates[k].mesh, across, diagonal);
+      if (!surface) surface.emplace(figure.mesh);
+      const auto one = seen(*surface, candidates[i].mesh, across, diagonal);
+      const auto other = seen(*surface, candidates[k].mesh, across, diagonal);
       const double front = std::min(std::max(one[0], one[1]), std::max(other[0], other[1]));
       const double back = std::max(std::min(one[0], one[1]), std::min(other[0], other[1]));
       if (front < 0.03 || back > 0.5 * front) continue;

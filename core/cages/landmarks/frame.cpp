@@ -18,8 +18,11 @@ constexpr std::size_t kSamples = 600;
 constexpr int kHeadings = 24;           ///< Steps of 7.5 degrees: the refinement converges from twice that.
 constexpr int kRefined = 3;             ///< How many planes are refined.
 constexpr double kSameHeading = 0.985;  ///< Cosine of 10 degrees.
-constexpr int kIterations = 20;
-constexpr double kSettled = 0.99;  ///< Iterations end when the residual is this share of the last one or more.
+constexpr int kIterations = 40;
+/// Planes that are so much worse than the best one, and off by more than a share of the diagonal, are none.
+constexpr double kFarOff = 1.6, kRounding = 0.002;
+constexpr double kOverstep = 0.7;
+constexpr double kSettled = 0.998;  ///< Iterations end when the residual is this share of the last one or more.
 /// Of the mirrored points, the share closest to the surface that counts: a parting or a broken ear may be one-sided.
 constexpr double kTrusted = 0.8;
 /// A heading off the file's own axes must be this much better: a round head has a mirror plane anywhere.
@@ -42,6 +45,40 @@ void sortByPlace(std::vector<Vec3>& points, double size) {
   std::vector<Vec3> sorted;
   for (const auto& [code, i] : order) sorted.push_back(points[i]);
   points = std::move(sorted);
+}
+
+/// A mesh with few triangles close to another one: vertices of one cell of a grid are one. Trees are built and searched
+/// in a fraction of the time.
+TriangleMesh coarse(const TriangleMesh& mesh) {
+  constexpr std::size_t kEnough = 12000;
+  constexpr double kCells = 70;  ///< Along the diagonal.
+  if (mesh.triangles.size() <= kEnough) return mesh;
+  const double size = diagonalOf(mesh) / kCells;
+  Vec3 low = mesh.positions[0];
+  for (const Vec3& p : mesh.positions) low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  std::unordered_map<std::uint32_t, std::uint32_t> cells;
+  std::vector<std::uint32_t> newVertex;
+  std::vector<double> counts;
+  TriangleMesh out;
+  for (const Vec3& p : mesh.positions) {
+    const Vec3 d = 1 / size * (p - low);
+    const std::uint32_t cell = (static_cast<std::uint32_t>(d.x) << 20) + (static_cast<std::uint32_t>(d.y) << 10) +
+                               static_cast<std::uint32_t>(d.z);
+    const auto [found, isNew] = cells.try_emplace(cell, static_cast<std::uint32_t>(out.positions.size()));
+    if (isNew) {
+      out.positions.push_back({0, 0, 0});
+      counts.push_back(0);
+    }
+    newVertex.push_back(found->second);
+    out.positions[found->second] = out.positions[found->second] + p;
+    ++counts[found->second];
+  }
+  for (std::size_t v = 0; v < counts.size(); ++v) out.positions[v] = 1 / counts[v] * out.positions[v];
+  for (const Triangle3& t : mesh.triangles) {
+    const Triangle3 triangle = {newVertex[t[0]], newVertex[t[1]], newVertex[t[2]]};
+    if (length(areaNormal(out, triangle)) > 0) out.triangles.push_back(triangle);
+  }
+  return out.empty() ? mesh : out;
 }
 
 /// Mirrors samples, and finds the points of the surface that are closest to them.
@@ -109,7 +146,10 @@ MirrorPlane refined(const Mirror& mirror, MirrorPlane plane) {
     const bool settled = plane.residual > kSettled * best.residual;
     if (plane.residual < best.residual) best = plane;
     if (settled) break;
+    // Closest points on round surfaces pull by less than what is wanted: go further.
+    const Vec3 left = next.left + kOverstep * (next.left - plane.left);
     plane = next;
+    plane.left = 1 / length(left) * left;
   }
   return best;
 }
@@ -139,12 +179,14 @@ std::vector<Vec3> samplePoints(const TriangleMesh& mesh, std::size_t count) {
   return out;
 }
 
-MirrorPlane refineMirrorPlane(const TriangleMesh& mesh, const MirrorPlane& guess) {
+MirrorPlane refineMirrorPlane(const TriangleMesh& fine, const MirrorPlane& guess) {
+  const TriangleMesh mesh = coarse(fine);
   const Surface surface(mesh);
   return refined(Mirror(mesh, surface), guess);
 }
 
-std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& mesh) {
+std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& fine) {
+  const TriangleMesh mesh = coarse(fine);
   const Surface surface(mesh);
   const Mirror mirror(mesh, surface);
   std::vector<MirrorPlane> planes;
@@ -167,6 +209,8 @@ std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& mesh) {
     else if (better(plane, *same))
       *same = plane;
   }
+  const double least = std::min_element(out.begin(), out.end(), better)->residual;
+  std::erase_if(out, [&](const MirrorPlane& plane) { return plane.residual > kFarOff * least + kRounding; });
   // A round head has a mirror plane anywhere: then the file's own axes count.
   const auto rank = [&](const MirrorPlane& plane) {
     return plane.residual * (std::abs(plane.left.x) > kSameHeading ? kAxisPreference : 1);

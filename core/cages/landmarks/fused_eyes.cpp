@@ -105,6 +105,7 @@ Found searchBalls(const HeightMap& map, double noseY, double rootY) {
 }  // namespace
 
 std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane) {
+  constexpr double kTop = 0.05, kBottom = -0.25;
   constexpr double kLeastNose = 0.012;                    ///< How far a nose stands out.
   constexpr double kLeastVotes = 2.2, kClearVotes = 3.5;  ///< Planes have 1.
   const TriangleMesh skin = figure.only(Role::surface);
@@ -117,11 +118,15 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
     const Surface surface(local);
     const Grid grid = Grid::over(-0.2, 0.2, -0.3, 0.2, kStep);
     const HeightMap map = blurred(closed(look(surface, kFrontView, grid, 0.7), 0.008), 0.004);
-    double noseY = 0;
-    for (double y = -0.22; y < 0.03; y += kStep)
-      if (ridge(map, y) > ridge(map, noseY)) noseY = y;
-    const double standsOut = ridge(map, noseY);
+    // From the top down: a chin may stand out more than a nose.
+    double standsOut = 0;
+    for (double y = kTop; y > kBottom; y -= kStep) standsOut = std::max(standsOut, ridge(map, y));
     if (standsOut <= most) continue;
+    most = standsOut;
+    best.reset();
+    double noseY = kTop;
+    while (ridge(map, noseY) < 0.5 * standsOut) noseY -= kStep;
+    while (ridge(map, noseY - kStep) > ridge(map, noseY)) noseY -= kStep;
     // A ridge may be highest at its root: the tip is where the profile is foremost before it falls back.
     for (double y = noseY; y > -0.25 && map.near(0, y) > map.near(0, noseY) - 0.012; y -= kStep)
       if (map.near(0, y) > map.near(0, noseY)) noseY = y;
@@ -134,7 +139,6 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
     if (y >= rootEnd) continue;
     const Found found = searchBalls(map, noseY, rootY);
     if (found.votes < kLeastVotes) continue;
-    most = standsOut;
     Eyes eyes;
     for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
       const double x = i == 0 ? found.x : -found.x;

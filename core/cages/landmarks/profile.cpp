@@ -77,12 +77,13 @@ std::optional<double> glabella(const Profile& profile, double nasionY, double& c
 }
 
 /// The first fold of a range, from its top down: of those under the nose and the lower lip, the next may be sharper.
-std::optional<double> firstFold(const Profile& profile, double top, double bottom) {
+/// Without any, the hollowest place of the upper half.
+double firstFold(const Profile& profile, double top, double bottom) {
   constexpr double kLeast = 0.0025;  ///< How hollow a fold is.
   const auto hollow = [&](double y) { return profile.fine.hollow(y, kFold); };
   for (double y = top; y > bottom; y -= kStep)
     if (hollow(y) > kLeast && hollow(y) >= hollow(y + kStep) && hollow(y) > hollow(y - kStep)) return y;
-  return profile.fine.greatest(bottom, top, hollow);
+  return profile.fine.greatest(0.5 * (top + bottom), top, hollow).value_or(0.5 * (top + bottom));
 }
 
 /// The first sharp crease below the fold under the nose; the fold above the chin may be deeper, but is wider.
@@ -130,7 +131,7 @@ double lips(Head& head, const Profile& profile, double subnasale, const MouthLin
   const double lipTop = gap.bottom;
   const auto front = profile.fine.highest(lipTop - 0.035, lipTop + 0.002, profile.tilt);
   const double lip = front.value_or(lipTop);
-  const double foldY = firstFold(profile, lip - 0.012, lip - 0.07).value_or(lip - 0.03);
+  const double foldY = firstFold(profile, lip - 0.012, lip - 0.06);
   // The lower lip's red ends where it has turned under, or where it turns most.
   constexpr double kTurned = -0.6;  ///< Radians.
   const auto turn = [&](double y) { return profile.facing(profile.fine, y, 0.004); };
@@ -193,12 +194,11 @@ bool findProfile(Head& head) {
   head.add("nasion", profile.point(nasionY), nasionTrust);
   double trust = 0;
   if (const auto brow = glabella(profile, nasionY, trust)) head.add("glabella", profile.point(*brow), trust);
-  const auto subnasale = firstFold(profile, *nose - 0.012, *nose - 0.07);
-  if (!subnasale) return true;
-  const auto gap = mouth(profile, *subnasale);
+  const double subnasale = firstFold(profile, *nose - 0.012, *nose - 0.07);
+  const auto gap = mouth(profile, subnasale);
   if (!gap) return true;
   head.mouth = gap;
-  const double fold = lips(head, profile, *subnasale, *gap);
+  const double fold = lips(head, profile, subnasale, *gap);
   const double chinY = chin(profile, fold);
   const Vec3 at = profile.point(chinY);
   if (!std::isfinite(at.z)) return true;
