@@ -291,12 +291,14 @@ describe('fitCage', () => {
 describe('refineCage', () => {
   test('moves a cage that is off into place; triangles, UVs, holes and landmarks stay, and so does a cage in place', async () => {
     const model = head();
-    const made = { ...(await makeCage(model, options)), landmarks: {}, holes: { eye: [0, 1, 2] } };
+    const landmarks = { nose_tip: [0, -1.1, 0] as [number, number, number] };
+    const made = { ...(await makeCage(model, options)), landmarks, holes: { eye: [0, 1, 2] } };
     const still = await refineCage(made, model);
     assert.deepEqual(still.positions, made.positions);
     const off = { ...made, positions: made.positions.map((x, i) => x + (i % 3 === 0 ? 0.06 : 0)) };
     const back = await refineCage(off, model, { reach: 0.05 });
     assert.deepEqual([back.uvs, back.indices, back.holes, back.kind], [made.uvs, made.indices, made.holes, 'head']);
+    assert.deepEqual(back.landmarks, landmarks);
     const distance = (cage: Cage) =>
       cage.positions.reduce((sum, x, i) => sum + Math.abs(x - made.positions[i]!), 0) / made.positions.length;
     assert.ok(distance(back) < 0.5 * distance(off), `${distance(back)} of ${distance(off)}`);

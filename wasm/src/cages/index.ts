@@ -79,7 +79,8 @@ export function findLandmarks(model: CageModel, options: CageCallOptions = {}): 
 }
 
 /**
- * Moves and bends a cage that is slightly off its model into place. A cage in place stays as it is.
+ * Moves, turns and scales a cage that is slightly off its model into place, and bends it where it is inside the model. A cage in
+ * place stays as it is. Its landmarks and holes stay.
  * @param cage  With UVs.
  * @throws {CagecastError} as `fitCage`.
  */

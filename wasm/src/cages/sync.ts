@@ -115,7 +115,11 @@ export function refineCage(
     fn: 'refineCage',
     defaults: 'refineOptions',
     run: (module, core, report) => module.refineCage(mesh, checkModel('refineCage', model), core, report),
-    result: (answer) => cageOf(answer, cage as Partial<Template>),
+    // Landmarks are spots of the model, which does not move.
+    result: (answer) => ({
+      ...cageOf(answer, cage as Partial<Template>),
+      landmarks: { ...(cage as Partial<Template>).landmarks },
+    }),
   });
 }
 

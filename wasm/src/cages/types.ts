@@ -116,6 +116,6 @@ export interface FitOptions extends Excluding {}
 
 /** Options of `refineCage`. */
 export interface RefineOptions {
-  /** How far off the cage may be, as a share of the model's diagonal. Default: 0.05. */
+  /** How far off the cage may be, as a share of the model's diagonal: up to 0.2. Default: 0.05. */
   reach?: number | undefined;
 }

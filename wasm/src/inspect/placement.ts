@@ -283,7 +283,8 @@ function describe(
   if (cause === 'cageTooSmall')
     return {
       sentence: `The cage is too small: ${out}`,
-      advice: 'Enlarge it along its normals until the target is inside.',
+      advice:
+        'Enlarge it along its normals until the target is inside; if it is scaled, refineCage of cagecast/cages scales it back.',
     };
   if (cause === 'targetPokesOut')
     return { sentence: out, advice: 'Move the cage outwards there, or enlarge it along its normals.' };
@@ -303,6 +304,6 @@ function describe(
   const turns = correction.turn.map((degrees) => `${degrees.toFixed(1)}°`).join(', ');
   return {
     sentence: `The cage is misplaced${how.length > 0 ? `, ${how.join(' and ')}` : ''}: ${out}`,
-    advice: `Move it by about (${moves}) and rotate it by about (${turns}) around x, y and z.`,
+    advice: `Move it by about (${moves}) and rotate it by about (${turns}) around x, y and z, or call refineCage of cagecast/cages.`,
   };
 }
