@@ -14,6 +14,8 @@ constexpr double kEyesToBack = 0.43;
 /// Eyes that are no parts with a name may be teeth or buttons: how far apart they may be, in shares of what the head
 /// suggests.
 constexpr double kNearest = 0.55, kFarthest = 1.7;
+/// Wheels mirror each other, too, but are not in the upper half of a model.
+constexpr double kLowest = 0.38;
 /// How much of a figure around the eyes belongs to the head, in the head's lengths.
 constexpr double kHeadReach = 1.1;
 
@@ -30,6 +32,13 @@ double headLength(const TriangleMesh& skin, double eyeDistance, const HeadFrame&
   const double byCrown = std::isfinite(high) ? high * guess.unit / kEyesToCrown : byEyes;
   const double byBack = std::isfinite(rear) ? rear * guess.unit / kEyesToBack : byEyes;
   return median3(byEyes, byCrown, byBack);
+}
+
+/// How high the eyes are: 0 at the model's lowest place, 1 at its highest.
+double heightShare(const Figure& figure, const Eyes& eyes) {
+  const auto [low, high] = std::minmax_element(figure.mesh.positions.begin(), figure.mesh.positions.end(),
+                                               [](const Vec3& a, const Vec3& b) { return a.y < b.y; });
+  return (eyes.middle().y - low->y) / (high->y - low->y);
 }
 
 bool belongsToEye(const Eyes& eyes, std::size_t triangle) {
@@ -86,7 +95,8 @@ std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
   frame.origin = frame.origin + (plane.offset - dot(plane.left, frame.origin)) * plane.left;
   frame.unit = headLength(skin, eyeDistance, frame);
   const double share = eyeDistance / (kEyeDistance * frame.unit);
-  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest)) return std::nullopt;
+  if (!figure.has(Role::eye) && (share < kNearest || share > kFarthest || heightShare(figure, eyes) < kLowest))
+    return std::nullopt;
 
   TriangleMesh local = frame.toLocal(within(skin, frame.origin, kHeadReach * frame.unit));
   Surface surface(local);
@@ -113,6 +123,13 @@ void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head) {
     findEyeCorners(head, Surface(head.frame.toLocal(std::move(face))), isEye);
   }
   if (!findProfile(head)) return;
+  // A human face's landmarks mean nothing on a muzzle.
+  constexpr double kSnout = 0.2;  ///< Human noses end at 0.1 to 0.14 before the eyes' centres.
+  if (head.find("nose_tip")->position.z > kSnout) {
+    std::erase_if(head.spots,
+                  [](const Spot& spot) { return spot.name != "nose_tip" && !spot.name.starts_with("eye_centre"); });
+    return;
+  }
   findMouthCorners(head);
   findEars(head);
   findSkull(head);

@@ -144,6 +144,16 @@ TEST_CASE("what is not found is said", "[cages][landmarks]") {
   CHECK(found.missing.size() == 25);
 }
 
+TEST_CASE("wheels are no eyes", "[cages][landmarks]") {
+  Balls car;
+  car.add("body", {0, 0, 0}, {0.7f, 0.5f, 2});
+  for (const float side : {-0.5f, 0.5f}) car.add("wheel", {side, -0.45f, 1.5f}, {0.1f, 0.25f, 0.25f});
+  FoundLandmarks found;
+  REQUIRE(findLandmarks(car.model(), nullptr, found).ok());
+  CHECK(found.kind == Kind::prop);
+  CHECK(found.landmarks.empty());
+}
+
 TEST_CASE("landmarks are not looked for on bad models", "[cages][landmarks]") {
   FoundLandmarks found;
   CHECK(findLandmarks({}, nullptr, found).problem == Problem::badModel);
