@@ -30,6 +30,7 @@ import {
   isHeadSeam,
   kEye,
   kMouth,
+  kMouthRim,
   kNoseTip,
   leftEye,
   lidOpening,
@@ -169,7 +170,7 @@ const cageOf = (skin: Mesh): Mesh => {
     },
     keep: (p) => {
       const q = inHead(p);
-      return Math.min(lidOpening(0.006)(...q), lipGap(0.014)(q[0], q[1], Math.min(q[2], 0.37)) * 0.5);
+      return Math.min(lidOpening(0.006)(...q), lipGap(kMouthRim)(q[0], q[1], Math.min(q[2], 0.37)) * 0.5);
     },
   });
   const behind = (p: Vec3): boolean => neckSide(p) > -1e-3 && isHeadSeam(inHead(p));

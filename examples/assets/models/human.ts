@@ -556,8 +556,8 @@ const kEdge = 0.0088; // of the fine meshes, in the lens's space
 const meshOf = (solid: Sdf, triangles: number, edge = kEdge): Mesh =>
   symmetricSurface(solid, { bounds, edge, triangles, lens: faceLens, focus: faceFocus, keep: keepBust });
 
-/** A cage that ends where `keep` is negative. */
-const cageOf = (skin: Mesh, triangles: number, keep: (p: Vec3) => number): Mesh =>
+/** A cage that ends where `keep` is negative, its hole over the mouth larger than the gap between the lips by `grow`. */
+const cageOf = (skin: Mesh, triangles: number, grow: number, keep: (p: Vec3) => number): Mesh =>
   makeCage({
     solid: cagedSolid,
     bounds: { min: [-0.08, kBottom - 0.2, -0.62], max: [0.82, 0.62, 0.58] },
@@ -567,7 +567,7 @@ const cageOf = (skin: Mesh, triangles: number, keep: (p: Vec3) => number): Mesh 
     focus: (p) => add(faceFocus(p), scale(sub(p, kNoseTip), 0.7 * Math.exp(-((length(sub(p, kNoseTip)) / 0.15) ** 2)))),
     wrap: skin,
     seen: (v) => Math.abs(closedSolid(...point(skin, v))) < 0.006,
-    keep: (p) => Math.min(keep(p), lidOpening(0.006)(...p), lipGap(0.014)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5),
+    keep: (p) => Math.min(keep(p), lidOpening(0.006)(...p), lipGap(grow)(p[0], p[1], Math.min(p[2], 0.37)) * 0.5),
   });
 /** Draws the face larger than the rest, in its middle by 1 + `by`. */
 const faceZoom =
@@ -577,15 +577,16 @@ const faceZoom =
 
 const cageFor = (skin: Mesh): Mesh =>
   pelt(
-    cageOf(skin, 800, (p) => p[1] - (kBottom - 0.035)),
+    cageOf(skin, 800, 0.014, (p) => p[1] - (kBottom - 0.035)),
     (a, b) => a[0] === 0 && b[0] === 0 && (a[2] + b[2]) / 2 < 0 && (a[1] + b[1]) / 2 < 0.4,
     faceZoom(1.3),
   );
 
+export const kMouthRim = 0.005; // of a template's hole, beyond the gap: its border must not reach the middle of a lip
 /** The cage of the head alone, cut through the neck: a template is fitted to heads, few of which have shoulders. */
 const headCage = (skin: Mesh): Mesh =>
   pelt(
-    cageOf(skin, 700, (p) => p[1] + 0.67 + 0.36 * p[2]),
+    cageOf(skin, 700, kMouthRim, (p) => p[1] + 0.67 + 0.36 * p[2]),
     (a, b) => isHeadSeam(a) && isHeadSeam(b),
     faceZoom(0.7),
     true,
