@@ -22,6 +22,7 @@ constexpr int kIterations = 40;
 /// Planes that are so much worse than the best one, and off by more than a share of the diagonal, are none.
 constexpr double kFarOff = 1.6, kRounding = 0.002;
 constexpr double kOverstep = 0.7;
+constexpr double kFirstTurn = 0.07, kLastTurn = 0.004;  ///< Radians.
 constexpr double kSettled = 0.998;  ///< Iterations end when the residual is this share of the last one or more.
 /// Of the mirrored points, the share closest to the surface that counts: a parting or a broken ear may be one-sided.
 constexpr double kTrusted = 0.8;
@@ -87,7 +88,10 @@ class Mirror {
   Mirror(const TriangleMesh& mesh, const Surface& surface)
       : surface_(surface), points_(samplePoints(mesh, kSamples)), diagonal_(diagonalOf(mesh)) {
     sortByPlace(points_, diagonal_);
+    for (const Vec3& p : points_) middle_ = middle_ + 1 / static_cast<double>(points_.size()) * p;
   }
+
+  [[nodiscard]] const Vec3& middle() const { return middle_; }
 
   /// Sets the plane's residual, and moves it closer to what mirrors the trusted samples onto the surface.
   [[nodiscard]] MirrorPlane improved(MirrorPlane& plane) const {
@@ -123,6 +127,7 @@ class Mirror {
   const Surface& surface_;
   std::vector<Vec3> points_;
   double diagonal_;
+  Vec3 middle_{0, 0, 0};
 };
 
 /// The plane of a heading through the middle of the box, as seen along it.
@@ -151,6 +156,21 @@ MirrorPlane refined(const Mirror& mirror, MirrorPlane plane) {
     plane = next;
     plane.left = 1 / length(left) * left;
   }
+  // Round surfaces hardly pull at the heading: try it in smaller and smaller steps.
+  for (double step = kFirstTurn; step > kLastTurn; step *= 0.5)
+    for (const double turn : {-step, step}) {
+      MirrorPlane turned = best;
+      turned.left = {std::cos(turn) * best.left.x - std::sin(turn) * best.left.z, 0,
+                     std::sin(turn) * best.left.x + std::cos(turn) * best.left.z};
+      // Turned about the middle of the mesh, not about the origin.
+      turned.offset = best.offset + dot(turned.left - best.left, mirror.middle());
+      for (int round = 0; round < 2; ++round) {
+        const MirrorPlane next = mirror.improved(turned);
+        if (turned.residual < best.residual) best = turned;
+        turned.offset +=
+            next.offset - dot(next.left, mirror.middle()) - (turned.offset - dot(turned.left, mirror.middle()));
+      }
+    }
   return best;
 }
 
