@@ -63,6 +63,7 @@ export function listFigures(): Figure[] {
   return [
     ...foldersOf(samples)
       .filter((name) => name !== 'human-misaligned') // its target is that of `human`
+      .filter((name) => existsSync(`${samples}/${name}/target.glb`)) // models of templates are no samples
       .map((name) => readFolder(name, `${samples}/${name}`)),
     ...(assets === undefined ? [] : foldersOf(assets).map((name) => readFolder(name, `${assets}/${name}`))),
     ...(assets === undefined ? [] : foldersOf(`${assets}/people`)).flatMap((name) =>
