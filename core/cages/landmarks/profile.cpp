@@ -99,7 +99,7 @@ std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   double deepest = 0;
   for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) deepest = std::max(deepest, depth(y));
   MouthLine out;
-  const double enough = std::max(kLeast, 0.4 * std::min(deepest, 0.01));
+  const double enough = std::max(kLeast, 0.4 * deepest);
   for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) {
     if (depth(y) > out.depth) out = {y, y, y, depth(y)};
     if (out.depth > enough && depth(y) < 0.5 * out.depth) break;
