@@ -143,8 +143,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
     openNecks(hull, necks, field);
     const TriangleMesh shell = cutHoles(hull, field);
     if (shell.empty()) return nothingToPaint;
-    if (progress && !part(kHolesEnd, kSimplifyEnd)(0, "simplify")) return cancelled;
-    cage = simplify(shell, settings.triangles, offset);
+    if (!simplify(shell, {settings.triangles, offset}, part(kHolesEnd, kSimplifyEnd), cage)) return cancelled;
     const double depth = (1 - kMargin) * offset;
     if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
       return cancelled;

@@ -15,6 +15,9 @@ constexpr std::size_t kMostLocks = 24;
 /// and between these as many as it takes to stay this close to it, as a share of its size.
 constexpr double kLoopError = 0.04;
 
+/// Indices from which on one call does the rest: a few tens of milliseconds.
+constexpr std::size_t kLastStep = std::size_t{3} * 15000;
+
 double distanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 chord = b - a;
   const double square = dot(chord, chord);
@@ -83,9 +86,14 @@ void removeFlaps(std::vector<Triangle3>& triangles) {
   triangles.resize(kept);
 }
 
+float stageDone(std::size_t indices, std::size_t goal, std::size_t all) {
+  return 1 - static_cast<float>(indices - goal) / static_cast<float>(all);
+}
+
 }  // namespace
 
-TriangleMesh simplify(const TriangleMesh& mesh, std::uint32_t triangles, double tolerance) {
+bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Progress& progress, TriangleMesh& out) {
+  const auto [triangles, tolerance] = options;
   std::vector<unsigned char> locks(mesh.positions.size(), 0);
   for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, tolerance, locks);
   std::vector<float> positions;
@@ -95,16 +103,28 @@ TriangleMesh simplify(const TriangleMesh& mesh, std::uint32_t triangles, double 
   std::vector<unsigned> indices;
   indices.reserve(3 * mesh.triangles.size());
   for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
-  std::vector<unsigned> result(indices.size());
-  constexpr float kAnyError = 1;  // The count decides.
-  const std::size_t count = meshopt_simplifyWithAttributes(
-      result.data(), indices.data(), indices.size(), positions.data(), mesh.positions.size(), 3 * sizeof(float),
-      nullptr, 0, nullptr, 0, locks.data(), std::size_t{3} * triangles, kAnyError, 0, nullptr);
-  TriangleMesh out;
-  out.positions = mesh.positions;
-  for (std::size_t i = 0; i + 2 < count; i += 3) out.triangles.push_back({result[i], result[i + 1], result[i + 2]});
-  removeFlaps(out.triangles);
-  return subset(out, std::vector<bool>(out.triangles.size(), true));
+  const std::size_t goal = std::size_t{3} * triangles;
+  for (std::size_t target = indices.size(); target > goal && indices.size() > goal;) {
+    if (progress && !progress(stageDone(indices.size(), goal, 3 * mesh.triangles.size()), "simplify")) return false;
+    // In steps, to be able to stop in between. The last one is left enough to choose from.
+    target = indices.size() > kLastStep ? std::max(indices.size() / 9 * 3, kLastStep) : goal;
+    std::vector<unsigned> result(indices.size());
+    constexpr float kAnyError = 1;  // The count decides.
+    const std::size_t count = meshopt_simplifyWithAttributes(
+        result.data(), indices.data(), indices.size(), positions.data(), mesh.positions.size(), 3 * sizeof(float),
+        nullptr, 0, nullptr, 0, locks.data(), target, kAnyError, 0, nullptr);
+    result.resize(count);
+    const bool isStuck = count == indices.size() && target != goal;
+    indices.swap(result);
+    if (isStuck) break;
+  }
+  TriangleMesh simple;
+  simple.positions = mesh.positions;
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    simple.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  removeFlaps(simple.triangles);
+  out = subset(simple, std::vector<bool>(simple.triangles.size(), true));
+  return true;
 }
 
 }  // namespace cagecast::cages
