@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "make/open_border.hpp"
-
 namespace cagecast::cages {
 
 namespace {
@@ -23,6 +21,9 @@ constexpr int kGapEdges = 3;
 constexpr std::size_t kLeastMark = 4;
 /// A part of whose visible area more than this is covered needs a wider hole; transfers paint it from a half on.
 constexpr double kMostCovered = 0.35;
+/// Of transfers, in diagonals: where rays start, and how far behind the cage what they meet hides it.
+constexpr double kRayStart = 1e-5;
+constexpr double kOcclusionReach = 0.03;
 /// By how much its hole is widened, in edges.
 constexpr int kWidening = 2;
 /// Samples along the longest edge of a triangle at most.
@@ -215,15 +216,25 @@ std::vector<double> HoleMarker::field() const {
 }
 
 bool HoleMarker::widen(const TriangleMesh& cage) {
-  const OpenBorder border(cage);
+  const Surface surface(cage);
   std::vector<Vec3> positions;
   positions.reserve(samples_.size());
   for (const Sample& sample : samples_) positions.push_back(sample.position);
-  const std::vector<SurfacePoint> closest = Surface(cage).closest(positions);
-  std::vector<double> all(pieces_, 0), covered(pieces_, 0);
-  std::vector<bool> isCovered(samples_.size());
+  const std::vector<SurfacePoint> closest = surface.closest(positions);
+  // As a transfer judges it: by a ray along the cage's normal that meets the cage, and the model not before.
+  std::vector<SurfaceRay> rays;
+  rays.reserve(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    isCovered[i] = !border.has(closest[i]);
+    const Vec3 normal = areaNormal(cage, cage.triangles[closest[i].triangle]);
+    rays.push_back({positions[i], 1 / length(normal) * normal});
+  }
+  const double diagonal = diagonalOf(*model_.mesh);
+  const std::vector<RayHit> onCage = surface.trace(rays), onModel = model_.surface->trace(rays, kRayStart * diagonal);
+  std::vector<double> all(pieces_, 0), covered(pieces_, 0);
+  std::vector<bool> isCovered(samples_.size(), false);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (onModel[i].distance < onCage[i].distance + kOcclusionReach * diagonal) continue;
+    isCovered[i] = std::isfinite(onCage[i].distance);
     all[samples_[i].piece] += 1;
     covered[samples_[i].piece] += isCovered[i] ? 1 : 0;
   }

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <tuple>
+#include <utility>
 
 namespace cagecast::cages {
 
@@ -86,45 +89,92 @@ void removeFlaps(std::vector<Triangle3>& triangles) {
   triangles.resize(kept);
 }
 
-float stageDone(std::size_t indices, std::size_t goal, std::size_t all) {
-  return 1 - static_cast<float>(indices - goal) / static_cast<float>(all);
+/// Collapses can join a surface with itself at an edge, which four triangles then share. Two of them get the edge with
+/// a new vertex in its middle.
+void separateJoinedEdges(TriangleMesh& mesh) {
+  struct Use {
+    std::uint32_t from, to;
+    std::size_t triangle;
+    bool operator<(const Use& other) const {
+      return std::tie(from, to, triangle) < std::tie(other.from, other.to, other.triangle);
+    }
+  };
+  std::vector<Use> uses;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) uses.push_back({mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3], t});
+  std::sort(uses.begin(), uses.end());
+  std::vector<bool> isDone(mesh.triangles.size(), false);
+  const auto split = [&](std::size_t t, std::uint32_t from, std::uint32_t middle) {
+    Triangle3& corners = mesh.triangles[t];
+    std::size_t i = 0;
+    while (corners[i] != from) ++i;
+    const std::uint32_t to = corners[(i + 1) % 3], third = corners[(i + 2) % 3];
+    corners = {from, middle, third};
+    mesh.triangles.push_back({middle, to, third});
+    isDone[t] = true;
+  };
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    const Use use = uses[i];
+    if (use.from != uses[i - 1].from || use.to != uses[i - 1].to || isDone[use.triangle]) continue;
+    const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(0.5 * (mesh.positions[use.from] + mesh.positions[use.to]));
+    split(use.triangle, use.from, middle);
+    // Its partner is the last one that runs the other way.
+    const auto after = std::upper_bound(uses.begin(), uses.end(), Use{use.to, use.from, SIZE_MAX});
+    if (after == uses.begin()) continue;
+    const Use partner = *(after - 1);
+    if (partner.from == use.to && partner.to == use.from && !isDone[partner.triangle])
+      split(partner.triangle, partner.from, middle);
+  }
 }
+
+/// What meshoptimizer takes.
+struct Arrays {
+  std::vector<float> positions;
+  std::vector<unsigned char> locks;
+
+  [[nodiscard]] std::vector<unsigned> simplified(const std::vector<unsigned>& indices, std::size_t target) const {
+    std::vector<unsigned> result(indices.size());
+    constexpr float kAnyError = 1;  // The count decides.
+    result.resize(meshopt_simplifyWithAttributes(result.data(), indices.data(), indices.size(), positions.data(),
+                                                 locks.size(), 3 * sizeof(float), nullptr, 0, nullptr, 0, locks.data(),
+                                                 target, kAnyError, 0, nullptr));
+    return result;
+  }
+};
 
 }  // namespace
 
 bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Progress& progress, TriangleMesh& out) {
   const auto [triangles, tolerance] = options;
-  std::vector<unsigned char> locks(mesh.positions.size(), 0);
-  for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, tolerance, locks);
-  std::vector<float> positions;
-  positions.reserve(3 * mesh.positions.size());
+  Arrays arrays;
+  arrays.locks.assign(mesh.positions.size(), 0);
+  for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, tolerance, arrays.locks);
+  arrays.positions.reserve(3 * mesh.positions.size());
   for (const Vec3& p : mesh.positions)
-    for (const double x : {p.x, p.y, p.z}) positions.push_back(static_cast<float>(x));
+    for (const double x : {p.x, p.y, p.z}) arrays.positions.push_back(static_cast<float>(x));
   std::vector<unsigned> indices;
   indices.reserve(3 * mesh.triangles.size());
   for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
-  const std::size_t goal = std::size_t{3} * triangles;
-  for (std::size_t target = indices.size(); target > goal && indices.size() > goal;) {
-    if (progress && !progress(stageDone(indices.size(), goal, 3 * mesh.triangles.size()), "simplify")) return false;
-    // In steps, to be able to stop in between. The last one is left enough to choose from.
-    target = indices.size() > kLastStep ? std::max(indices.size() / 9 * 3, kLastStep) : goal;
-    std::vector<unsigned> result(indices.size());
-    constexpr float kAnyError = 1;  // The count decides.
-    const std::size_t count = meshopt_simplifyWithAttributes(
-        result.data(), indices.data(), indices.size(), positions.data(), mesh.positions.size(), 3 * sizeof(float),
-        nullptr, 0, nullptr, 0, locks.data(), target, kAnyError, 0, nullptr);
-    result.resize(count);
-    const bool isStuck = count == indices.size() && target != goal;
-    indices.swap(result);
+
+  // In steps, to be able to stop in between. The last one is left enough to choose from.
+  const auto all = static_cast<float>(indices.size());
+  while (indices.size() > kLastStep) {
+    if (progress && !progress(1 - static_cast<float>(indices.size()) / all, "simplify")) return false;
+    std::vector<unsigned> fewer = arrays.simplified(indices, std::max(indices.size() / 9 * 3, kLastStep));
+    const bool isStuck = fewer.size() == indices.size();
+    indices.swap(fewer);
     if (isStuck) break;
   }
+  indices = arrays.simplified(indices, std::size_t{3} * triangles);
   TriangleMesh simple;
   simple.positions = mesh.positions;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
     simple.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
   removeFlaps(simple.triangles);
   out = subset(simple, std::vector<bool>(simple.triangles.size(), true));
-  return true;
+  separateJoinedEdges(out);
+  return !progress || progress(1, "simplify");
 }
 
 }  // namespace cagecast::cages
