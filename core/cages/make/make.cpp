@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cagecast/cages.hpp"
 #include "charts/unwrap.hpp"
 #include "hull/hull.hpp"
+#include "landmarks/eyes.hpp"
+#include "landmarks/frame.hpp"
+#include "landmarks/parts.hpp"
 #include "make/cut_holes.hpp"
 #include "make/enclose.hpp"
 #include "make/hole_marker.hpp"
@@ -83,6 +87,18 @@ std::vector<bool> marksOf(const Model& model, const MakeOptions& options,
   return isMarked;
 }
 
+/// Marks the eyes of a head or a figure by their shape: two loose pieces.
+/// @param[in,out] isMarked  Per triangle of the model without those that have no area.
+void markLooseEyes(const Model& model, std::vector<bool>& isMarked) {
+  const Figure figure = readFigure(model);
+  for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh)) {
+    const std::optional<Eyes> eyes = findLooseEyes(figure, plane);
+    if (!eyes || eyes->triangles.size() != isMarked.size()) continue;
+    isMarked = eyes->triangles;
+    return;
+  }
+}
+
 /// Points below the hull, but in front of the model, which the cage must not fall behind.
 std::vector<OuterPoint> pointsToEnclose(const TriangleMesh& hull, const std::vector<double>& field, double depth) {
   const std::vector<Vec3> normals = vertexNormals(hull);
@@ -123,6 +139,8 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
+  const bool hasFace = settings.kind != Kind::prop && !options.exclude.empty();
+  if (hasFace && std::find(isMarked.begin(), isMarked.end(), true) == isMarked.end()) markLooseEyes(model, isMarked);
   const Outcome nothingToPaint{Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint;
   isMarked.resize(mesh.triangles.size(), false);

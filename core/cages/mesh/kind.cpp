@@ -23,22 +23,26 @@ Box boxOf(const MeshView& mesh) {
   return {low, high};
 }
 
-template <class Names, class NameOf>
-bool anyMatches(const Names& names, const NameOf& nameOf, std::initializer_list<std::string_view> patterns) {
-  return std::any_of(names.begin(), names.end(), [&](const auto& entry) {
+bool hasParts(const Model& model, std::initializer_list<std::string_view> patterns) {
+  return std::any_of(model.parts.begin(), model.parts.end(), [&](const std::string& name) {
     return std::any_of(patterns.begin(), patterns.end(),
-                       [&](std::string_view pattern) { return matchesName(nameOf(entry), pattern); });
+                       [&](std::string_view pattern) { return matchesName(name, pattern); });
   });
 }
 
-bool hasParts(const Model& model, std::initializer_list<std::string_view> patterns) {
-  return anyMatches(
-      model.parts, [](const std::string& name) { return std::string_view(name); }, patterns);
-}
-
-bool hasJoints(const Model& model, std::initializer_list<std::string_view> patterns) {
-  return anyMatches(
-      model.joints, [](const Joint& joint) { return std::string_view(joint.name); }, patterns);
+/// Whether a leg's joint is inside the box: the legs of a rig may belong to a body that is not there.
+bool hasLegs(const Model& model, const Box& box) {
+  const Vec3 margin = 0.05 * (box.high - box.low);
+  const Vec3 low = box.low - margin, high = box.high + margin;
+  return std::any_of(model.joints.begin(), model.joints.end(), [&](const Joint& joint) {
+    const Vec3 p = Vec3::from(joint.position.data());
+    const bool isInside =
+        p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+    if (!isInside) return false;
+    for (const std::string_view pattern : {"*leg*", "*thigh*", "*foot*", "*calf*", "*shin*"})
+      if (matchesName(joint.name, pattern)) return true;
+    return false;
+  });
 }
 
 /// Whether an open border as wide as a neck is at the bottom of a mesh.
@@ -66,8 +70,7 @@ Kind kindOf(const Model& model) {
   const Vec3 size = box.high - box.low;
   // Chibi figures are 2.2 times as tall as deep; heads with a neck 1.8 times.
   const double slender = size.y / std::max(size.z, 1e-9 * size.y);
-  const bool hasLegs = hasJoints(model, {"*leg*", "*thigh*", "*foot*", "*calf*", "*shin*"});
-  if (hasLegs && slender > 1.5) return Kind::body;
+  if (hasLegs(model, box)) return slender > 1.5 ? Kind::body : Kind::prop;  // On all fours, seams are those of props.
   const bool isCompact = slender > 0.6 && slender < 2.2 && size.x < 2.2 * size.y && size.x > 0.3 * size.y;
   const bool hasFace = hasParts(model, {"eye", "eyes", "*eyeball*", "teeth", "*tongue*", "*lash*", "*lashes"});
   const bool isCar = hasParts(model, {"*wheel*", "*tyre*", "*tire*", "window*", "windscreen*", "windshield*"});

@@ -107,12 +107,15 @@ std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
 }
 
 std::vector<std::vector<std::uint32_t>> boundaryLoops(const TriangleMesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  edges.reserve(3 * mesh.triangles.size());
   for (const Triangle3& t : mesh.triangles)
-    for (std::size_t i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
+    for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(t[i], t[(i + 1) % 3]);
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::multimap<std::uint32_t, std::uint32_t> next;
-  for (const auto& [edge, uses] : edges)
-    if (edges.find({edge.second, edge.first}) == edges.end()) next.emplace(edge.first, edge.second);
+  for (const auto& [from, to] : edges)
+    if (!std::binary_search(edges.begin(), edges.end(), std::pair(to, from))) next.emplace(from, to);
   std::vector<std::vector<std::uint32_t>> loops;
   while (!next.empty()) {
     std::vector<std::uint32_t> loop;

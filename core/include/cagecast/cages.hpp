@@ -62,7 +62,7 @@ struct MakeOptions {
   std::uint32_t triangles = 0;                             ///< Of the cage, about: heads and props 600, bodies 1500.
   float closing = 0;         ///< Gaps narrower than twice this are bridged: heads and props 0.02, bodies 0.008.
   float offset = 0;          ///< Distance of the cage from the model: 0.01, bodies 0.004.
-  std::uint32_t voxels = 0;  ///< Along the longest side: 140.
+  std::uint32_t voxels = 0;  ///< Along the longest side: 140, bodies 240.
 };
 
 struct FitOptions {

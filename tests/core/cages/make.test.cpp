@@ -187,9 +187,12 @@ TEST_CASE("the kind of a model is seen from its proportions, parts and joints", 
   for (Vec3& p : person.positions) p = {2 * p.x, 4 * p.y, 0.7 * p.z};
   figure.add("figure", person);
   CHECK(kindOf(figure.model()) == Kind::body);
-  Model rigged = head().model();
-  const OwnedModel chibi = head();
-  rigged = chibi.model();
-  rigged.joints = {{"LeftUpLeg", {0, 0, 0}, -1}};
+  // The legs of a rig count where they are in the model.
+  const OwnedModel bust = head();
+  Model rigged = bust.model();
+  rigged.joints = {{"LeftUpLeg", {0, -5, 0}, -1}};
   CHECK(kindOf(rigged) == Kind::head);
+  rigged = car.model();
+  rigged.joints = {{"front_leg.L", {0, 0, 0}, -1}};
+  CHECK(kindOf(rigged) == Kind::prop);
 }

@@ -107,7 +107,7 @@ export interface MakeOptions extends Excluding {
   closing?: number | undefined;
   /** Distance of the cage from the model. By kind: heads and props 0.01, bodies 0.004. */
   offset?: number | undefined;
-  /** Voxels along the longest side of the grid that the hull is made on. By kind: 140. */
+  /** Voxels along the longest side of the grid that the hull is made on. By kind: heads and props 140, bodies 240. */
   voxels?: number | undefined;
 }
 
