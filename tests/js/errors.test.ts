@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
 import { CagecastError, type Code, classify, init, type Mesh, project, transfer } from 'cagecast';
-import { head, smallest } from './scenes.js';
+import { head, random, smallest } from './scenes.js';
 
 function fails(call: () => unknown, code: Code, message: string | RegExp, at = 0): void {
   assert.throws(call, (error: unknown) => {
@@ -424,5 +424,36 @@ describe('memory', () => {
       WebAssembly.Memory.prototype.grow = grow;
     }
     assert.ok(grown <= 2, `it grew ${grown} times`);
+  });
+
+  test('needles around a pole of the cage, whose distances in floats are arbitrary, are no reason to fail', () => {
+    // Corners at the pole that differ by rounding only, and points below it.
+    const rings = 43;
+    const at = (theta: number, phi: number, radius: number) => [
+      radius * Math.sin(theta) * Math.cos(phi),
+      radius * Math.cos(theta),
+      radius * Math.sin(theta) * Math.sin(phi),
+    ];
+    const grid = (f: (ring: number, sector: number) => number[]) =>
+      Array.from({ length: (rings + 1) * 2 * rings }, (_, i) => f(Math.floor(i / (2 * rings)), i % (2 * rings))).flat();
+    const cage = {
+      positions: new Float32Array(grid((r, s) => at((Math.PI * r) / rings, (Math.PI * s) / rings, 1))),
+      uvs: new Float32Array(grid((r, s) => [s / (2 * rings), r / rings])),
+      indices: new Uint32Array(
+        grid((r, s) => {
+          if (r === rings) return [];
+          const [a, b] = [2 * rings * r + s, 2 * rings * r + ((s + 1) % (2 * rings))];
+          return [a, b, a + 2 * rings, b, b + 2 * rings, a + 2 * rings];
+        }),
+      ),
+    };
+    const chance = random(1);
+    const points = Array.from({ length: 3000 }, () => at(Math.PI - 0.8 * chance() ** 2, 7 * chance(), 0.97));
+    const target = {
+      positions: new Float32Array(points.flat()),
+      indices: Uint32Array.from({ length: 3 * (points.length - 2) }, (_, i) => Math.floor(i / 3) + (i % 3)),
+    };
+    const { distances } = transfer(cage, target, { weldTolerance: 0 });
+    assert.ok(distances.every((distance) => distance < 0.1));
   });
 });

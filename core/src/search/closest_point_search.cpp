@@ -220,6 +220,15 @@ std::uint32_t ClosestPointSearch::candidates(std::uint32_t i, std::uint32_t* fou
     searchLeaf(leaves[j], 1u << i);
     take(0);
   }
+  if (count == 0) {
+    // A needle, whose distance in floats is arbitrary, seemed nearer than its box is: take the nearest of every leaf.
+    for (std::uint32_t leaf = 0; leaf < tree_.leafCount; ++leaf) {
+      nearCount_[i] = 0;
+      limits_[i] = std::numeric_limits<float>::max();
+      searchLeaf(leaf, 1u << i);
+      take(0);
+    }
+  }
   nearCount_[i] = kRoom;
   return count;
 }
