@@ -35,7 +35,7 @@ using nlohmann::json;
   std::exit(2);
 }
 
-[[maybe_unused]] json readJson(const std::string& path) {
+json readJson(const std::string& path) {
   std::ifstream file(path);
   if (!file) stop("cannot read " + path);
   json value = json::parse(file, nullptr, false);
@@ -43,7 +43,7 @@ using nlohmann::json;
   return value;
 }
 
-[[maybe_unused]] void writeJson(const std::string& path, const json& value) {
+void writeJson(const std::string& path, const json& value) {
   std::ofstream file(path);
   file << value << '\n';
   if (!file) stop("cannot write " + path);
@@ -75,19 +75,19 @@ struct StoredModel {
   Model model;
 };
 
-[[maybe_unused]] std::vector<Landmark> landmarksOf(const json& file) {
+std::vector<Landmark> landmarksOf(const json& file) {
   std::vector<Landmark> landmarks;
   for (const auto& [name, position] : file.items()) landmarks.push_back({name, position.get<Position>(), 1});
   return landmarks;
 }
 
-[[maybe_unused]] json asJson(const std::vector<Landmark>& landmarks) {
+json asJson(const std::vector<Landmark>& landmarks) {
   json out = json::object();
   for (const Landmark& landmark : landmarks) out[landmark.name] = landmark.position;
   return out;
 }
 
-[[maybe_unused]] json asJson(const Cage& cage) {
+json asJson(const Cage& cage) {
   return {{"positions", cage.positions},
           {"uvs", cage.uvs},
           {"indices", cage.indices},
@@ -193,17 +193,16 @@ class StageClock {
 };
 
 /// Prints time and outcome; the exit code.
-[[maybe_unused]] int report(double milliseconds, const Outcome& outcome) {
+int report(double milliseconds, const Outcome& outcome) {
   std::printf("%.0f ms, %s\n", milliseconds, outcome.ok() ? "ok" : outcome.message.c_str());
   return outcome.ok() ? 0 : 1;
 }
 
-[[maybe_unused]] const char* nameOf(Kind kind) {
+const char* nameOf(Kind kind) {
   constexpr const char* kNames[] = {"automatic", "head", "body", "prop"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-#ifdef CAGECAST_HAS_MAKECAGE
 int runMake(const Arguments& arguments) {
   const StoredModel stored(readJson(arguments.files[0]));
   MakeOptions options = arguments.make;
@@ -217,9 +216,7 @@ int runMake(const Arguments& arguments) {
   if (outcome.ok()) writeJson(arguments.files[1], asJson(cage));
   return report(time, outcome);
 }
-#endif
 
-#ifdef CAGECAST_HAS_FINDLANDMARKS
 int runLandmarks(const Arguments& arguments) {
   const StoredModel stored(readJson(arguments.files[0]));
   StageClock stages(arguments.stages);
@@ -238,9 +235,7 @@ int runLandmarks(const Arguments& arguments) {
   }
   return report(time, outcome);
 }
-#endif
 
-#ifdef CAGECAST_HAS_FITCAGE
 int runFit(const Arguments& arguments) {
   const StoredModel cageFile(readJson(arguments.files[0]));
   const Template from{cageFile.model.mesh, landmarksOf(readJson(arguments.files[1]))};
@@ -265,9 +260,7 @@ int runFit(const Arguments& arguments) {
   }
   return report(time, outcome);
 }
-#endif
 
-#ifdef CAGECAST_HAS_REFINECAGE
 int runRefine(const Arguments& arguments) {
   const StoredModel cageFile(readJson(arguments.files[0]));
   const StoredModel stored(readJson(arguments.files[1]));
@@ -279,7 +272,6 @@ int runRefine(const Arguments& arguments) {
   if (outcome.ok()) writeJson(arguments.files[2], asJson(cage));
   return report(time, outcome);
 }
-#endif
 
 }  // namespace
 
@@ -290,18 +282,10 @@ int main(int argc, char** argv) {
     int (*run)(const Arguments&);
   };
   const std::vector<Command> commands = {
-#ifdef CAGECAST_HAS_MAKECAGE
       {"make", 2, runMake},
-#endif
-#ifdef CAGECAST_HAS_FINDLANDMARKS
       {"landmarks", 2, runLandmarks},
-#endif
-#ifdef CAGECAST_HAS_FITCAGE
       {"fit", 4, runFit},
-#endif
-#ifdef CAGECAST_HAS_REFINECAGE
       {"refine", 3, runRefine},
-#endif
   };
   const Arguments arguments = parse(argc, argv);
   for (const Command& command : commands) {
@@ -309,5 +293,5 @@ int main(int argc, char** argv) {
     if (command.files != arguments.files.size()) stop("wrong number of files; see bench/native/cages.cpp");
     return command.run(arguments);
   }
-  stop("no command \"" + arguments.command + "\" in this build");
+  stop("no command \"" + arguments.command + "\"; there are: make, landmarks, fit, refine");
 }
