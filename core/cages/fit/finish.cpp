@@ -131,7 +131,8 @@ void untangle(const TemplateCage& cage, std::vector<Vec3>& positions) {
       Vec3 mean{0, 0, 0};
       double total = 0;
       for (const std::uint32_t u : cage.neighbours[v]) {
-        if (onBorder[v] && !onBorder[u]) continue;  // A hole's border keeps its course.
+        if (round < kUntangleRounds / 2 && onBorder[v] && !onBorder[u])
+          continue;  // A border keeps its course at first.
         const Vec3 target = round < kUntangleRounds / 2
                                 ? positions[u] + (cage.mesh.positions[v] - cage.mesh.positions[u])
                                 : positions[u];

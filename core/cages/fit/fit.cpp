@@ -4,12 +4,14 @@
 #include "cagecast/cages.hpp"
 #include "fit/bones.hpp"
 #include "fit/check_landmarks.hpp"
+#include "fit/eye_holes.hpp"
 #include "fit/finish.hpp"
 #include "fit/rim.hpp"
 #include "fit/template_cage.hpp"
 #include "fit/tighten.hpp"
 #include "fit/warp.hpp"
 #include "hull/hull.hpp"
+#include "landmarks/parts.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/part_names.hpp"
 
@@ -27,9 +29,13 @@ struct Settings {
   TightenOptions tighten;
 };
 constexpr Settings kHead{0.022, 80, {.reach = 0.06, .sliding = 0.5, .stiffest = 30, .softest = 1}};
-constexpr Settings kBody{0.010, 200, {.reach = 0.02, .sliding = 0.5, .stiffest = 30, .softest = 3}};
+constexpr Settings kBody{0.010, 200, {.reach = 0.02, .sliding = 0.05, .stiffest = 30, .softest = 1}};
 /// The hull is at least this far off, in diagonals: templates whose landmarks lie on the cage.
 constexpr double kLeastOffset = 0.003;
+/// Anchors that are closer than this share of the diagonal count once.
+constexpr double kOneSpot = 1e-3;
+/// How far the map may stay off landmarks that are not sure (see `Anchor::slack`).
+constexpr double kSlack = 0.1;
 constexpr std::size_t kLeastLandmarks = 4;
 constexpr const char* kFirstFive = "eye_centre_left, eye_centre_right, nose_tip, lip_lower and chin";
 
@@ -65,15 +71,9 @@ Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, 
                                      std::to_string(kLeastLandmarks) + " are needed; please give " + kFirstFive};
 }
 
-/// The parts that count as the figure: not those that stick out or lie inside. Eyes fill their sockets.
-std::vector<bool> figureTriangles(const Model& model, const std::vector<std::string>& exclude, bool withEyes) {
-  static const std::vector<std::string> kEyes = {"*eye*"}, kNoEyes = {"*lash*", "*brow*", "*lid*", "*glass*"};
-  std::vector<bool> excluded = matchingParts(model.parts, exclude);
-  if (withEyes) {
-    const std::vector<bool> eyes = matchingParts(model.parts, kEyes), others = matchingParts(model.parts, kNoEyes);
-    for (std::size_t i = 0; i < excluded.size(); ++i) excluded[i] = excluded[i] && !(eyes[i] && !others[i]);
-  }
-  std::vector<bool> keep = trianglesOf(model.mesh, excluded);
+/// The triangles that count as the figure: not those that stick out or lie inside.
+std::vector<bool> keptTriangles(const Model& model, const std::vector<std::string>& exclude) {
+  std::vector<bool> keep = trianglesOf(model.mesh, matchingParts(model.parts, exclude));
   keep.flip();
   return keep;
 }
@@ -89,8 +89,8 @@ class Fit {
   [[nodiscard]] bool tell(double share, const char* stage) const {
     return !progress_ || progress_(static_cast<float>(share), stage);
   }
-  [[nodiscard]] TriangleMesh inTemplateSpace(bool withEyes) const;
-  std::vector<Vec3> start(const TemplateCage& cage, const TriangleMesh& skin);
+  void readTarget();
+  std::vector<Vec3> start(const TemplateCage& cage);
 
   const Template& from_;
   const Model& model_;
@@ -99,21 +99,32 @@ class Fit {
   Pairs pairs_;
   Similarity map_;
   std::vector<Bone> bones_;
+  TriangleMesh skin_;  ///< The target without excluded parts, in the template's space.
+  EyedFigure figure_;  ///< The same with eyes, which fill their sockets.
 };
 
-TriangleMesh Fit::inTemplateSpace(bool withEyes) const {
+void Fit::readTarget() {
   std::vector<std::uint32_t> triangleOf;
   TriangleMesh mesh = weldExactly(model_.mesh, nullptr, &triangleOf);
-  const std::vector<bool> keep = figureTriangles(model_, options_.exclude, withEyes);
-  std::vector<bool> keepWelded(mesh.triangles.size());
-  for (std::size_t t = 0; t < keepWelded.size(); ++t) keepWelded[t] = keep[triangleOf[t]];
-  mesh = subset(mesh, keepWelded);
   for (Vec3& p : mesh.positions) p = map_.inverse(p);
-  return mesh;
+  const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
+  const Figure parts = readFigure(model_);
+  std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size());
+  figure_ = {};
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const bool isEye = parts.roles[t] == Role::eye;
+    isSkin[t] = kept[triangleOf[t]];
+    isFigure[t] = isSkin[t] || isEye;
+    if (!isFigure[t]) continue;
+    figure_.isEye.push_back(isEye);
+    figure_.components.push_back(parts.components[t]);
+  }
+  skin_ = subset(mesh, isSkin);
+  figure_.mesh = subset(mesh, isFigure);
 }
 
 /// Where the cage belongs by landmarks and bones alone.
-std::vector<Vec3> Fit::start(const TemplateCage& cage, const TriangleMesh& skin) {
+std::vector<Vec3> Fit::start(const TemplateCage& cage) {
   std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
   const Axes axes = axesOf(from_.landmarks);
   std::vector<Anchor> anchors;
@@ -125,21 +136,21 @@ std::vector<Vec3> Fit::start(const TemplateCage& cage, const TriangleMesh& skin)
         findLandmark(pairs_.to, "eye_inner" + pairs_.from[i].name.substr(std::string("eye_centre").size())) != nullptr;
     // The centre of an eye is deep inside; its corners say more.
     if (hasCorners || (isJoint && bones_.empty())) continue;
-    anchors.push_back({positionOf(pairs_.from[i]), positionOf(pairs_.to[i])});
+    anchors.push_back({positionOf(pairs_.from[i]), positionOf(pairs_.to[i]),
+                       kSlack * (1 - static_cast<double>(pairs_.to[i].confidence))});
   }
   for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
   if (bones_.empty())
-    for (const Anchor& anchor : rimAnchors(cage, skin, axes)) anchors.push_back(anchor);
-  std::vector<Vec3> a, b;
-  for (const Anchor& anchor : anchors) {
-    const Vec3 bent = bones_.empty() ? anchor.from : bend(anchor.from, bones_);
-    const bool isTwice =
-        std::any_of(a.begin(), a.end(), [&](const Vec3& p) { return length(p - bent) < 1e-3 * cage.diagonal; });
-    if (isTwice) continue;
-    a.push_back(bent);
-    b.push_back(anchor.to);
+    for (const Anchor& anchor : rimAnchors(cage, skin_, axes)) anchors.push_back(anchor);
+  std::vector<Anchor> apart;
+  for (Anchor anchor : anchors) {
+    if (!bones_.empty()) anchor.from = bend(anchor.from, bones_);
+    const bool isTwice = std::any_of(apart.begin(), apart.end(), [&](const Anchor& other) {
+      return length(other.from - anchor.from) < kOneSpot * cage.diagonal;
+    });
+    if (!isTwice) apart.push_back(anchor);
   }
-  const Warp warp(a, b, cage.diagonal);
+  const Warp warp(apart, cage.diagonal);
   for (Vec3& p : positions) p = warp(p);
   return positions;
 }
@@ -173,25 +184,25 @@ Outcome Fit::run(const std::vector<Landmark>& given, Cage& out, FitReport& repor
   bones_ = bonesOf(pairs_.from, pairs_.to);
   const Settings& settings = bones_.empty() ? kHead : kBody;
   cage.offset = std::max(cage.offset, kLeastOffset * cage.diagonal);
-  const TriangleMesh skin = inTemplateSpace(false);
-  const TriangleMesh figure = inTemplateSpace(true);
-  if (skin.empty())
+  readTarget();
+  if (skin_.empty())
     return {Problem::badModel, "model: all of its parts are excluded by name; at least one must be painted"};
   if (!tell(kLandmarksEnd, "hull")) return cancelled;
   TriangleMesh hull;
   const bool done = makeHull(
-      figure, {settings.closing * cage.diagonal, cage.offset, settings.voxels},
+      figure_.mesh, {settings.closing * cage.diagonal, cage.offset, settings.voxels},
       [&](float share, const char*) {
         return tell(kLandmarksEnd + static_cast<double>(share) * (kHullEnd - kLandmarksEnd), "hull");
       },
       hull);
   if (!done || hull.empty()) return cancelled;
-  std::vector<Vec3> positions = tighten(cage, start(cage, skin), hull, settings.tighten, [&](double share) {
+  std::vector<Vec3> positions = tighten(cage, start(cage), hull, settings.tighten, [&](double share) {
     return tell(kHullEnd + share * (kTightenEnd - kHullEnd), "fit");
   });
   if (positions.empty()) return cancelled;
+  fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
   const bool pushed = pushOut(
-      cage, skin, hull, [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); },
+      cage, skin_, hull, [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); },
       positions);
   if (!pushed) return cancelled;
   untangle(cage, positions);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "fit/template_cage.hpp"
+#include "fit/warp.hpp"
 
 namespace cagecast::cages {
 

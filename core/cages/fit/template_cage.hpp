@@ -10,11 +10,6 @@
 
 namespace cagecast::cages {
 
-/// A pair of points: one of the template, and where it belongs on the target, in the template's space.
-struct Anchor {
-  Vec3 from, to;
-};
-
 /// The mirror plane and the directions of a head or figure, by its landmarks.
 struct Axes {
   Vec3 left{1, 0, 0}, up{0, 1, 0}, front{0, 0, 1};

@@ -22,22 +22,34 @@ struct Similarity {
 };
 
 /// The similarity that carries `from` closest to `to` in the mean square (Umeyama 1991); never a mirror image.
-Similarity fitSimilarity(std::span<const Vec3> from, std::span<const Vec3> to);
+/// @param weights  One per point, or none.
+Similarity fitSimilarity(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> weights = {});
 
 /// The rotation by the smallest angle that turns one direction into another; both of unit length.
 Similarity shortestRotation(const Vec3& from, const Vec3& to);
 
-/// A smooth map of space that carries points onto others: an affine map and a spline of what that leaves.
+/// A pair of points that a map should carry onto each other, and how far it may stay off.
+struct Anchor {
+  Vec3 from, to;
+  double slack = 0;  ///< 0 is reached exactly.
+};
+
+/// A smooth map of space that carries points onto others. At each place it is a similarity of the points around
+/// (moving least squares: Schaefer, McPhail, Warren 2006), so that what is narrower is lower, too; what that leaves is
+/// interpolated by an affine map and a spline.
 class Warp {
  public:
-  /// @param from,to  The same number of points, at least one; no two equal ones in `from`.
+  /// @param anchors  At least one; no two equal ones in `from`.
   /// @param size  The size of the model.
-  Warp(std::span<const Vec3> from, std::span<const Vec3> to, double size);
+  Warp(std::span<const Anchor> anchors, double size);
 
   [[nodiscard]] Vec3 operator()(const Vec3& p) const;
 
  private:
-  std::vector<Vec3> centres_, weights_;
+  [[nodiscard]] Vec3 locally(const Vec3& p) const;
+
+  std::vector<Vec3> from_, to_;
+  std::vector<Vec3> centres_, weights_;  ///< Of the spline.
   Vec3 middle_{}, translation_{};
   Vec3 x_{}, y_{}, z_{};
   double size_ = 1;
