@@ -9,6 +9,7 @@ Curve Curve::along(const HeightMap& map) {
   std::vector<double> heights;
   for (int row = 0; row < map.grid.rows; ++row) {
     std::vector<double> across;
+    across.reserve(static_cast<std::size_t>(map.grid.columns));
     for (int column = 0; column < map.grid.columns; ++column) across.push_back(map.at(column, row));
     const auto middle = across.begin() + map.grid.columns / 2;
     std::nth_element(across.begin(), middle, across.end());

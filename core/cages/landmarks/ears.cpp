@@ -31,8 +31,8 @@ std::vector<double> standingOut(const HeightMap& map) {
     }
     for (int column = 0; column < map.grid.columns; ++column) {
       double value = HeightMap::kNone;
-      for (int d = -half; d <= half; ++d)
-        if (map.grid.has(column + d, row)) value = std::max(value, least[static_cast<std::size_t>(column + d)]);
+      for (int other = column - half; other <= column + half; ++other)
+        if (map.grid.has(other, row)) value = std::max(value, least[static_cast<std::size_t>(other)]);
       const double here = map.at(column, row);
       out[map.index(column, row)] = std::isinf(here) ? 0 : std::isinf(value) ? 0 : here - value;
     }

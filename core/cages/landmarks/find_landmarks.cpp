@@ -47,7 +47,7 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   out = {};
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
   const auto goOn = [&](float share) { return !progress || progress(share, "landmarks"); };
-  const Outcome cancelled{Problem::cancelled, "Cancelled."};
+  Outcome cancelled{Problem::cancelled, "Cancelled."};
   if (!goOn(0)) return cancelled;
   const Figure figure = readFigure(model);
   Rig rig = recogniseRig(model.joints);

@@ -44,6 +44,7 @@ void sortByPlace(std::vector<Vec3>& points, double size) {
   }
   std::sort(order.begin(), order.end());
   std::vector<Vec3> sorted;
+  sorted.reserve(points.size());
   for (const auto& [code, i] : order) sorted.push_back(points[i]);
   points = std::move(sorted);
 }

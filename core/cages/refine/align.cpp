@@ -86,12 +86,12 @@ class Alignment {
 
 }  // namespace
 
-bool alignCage(const Target& target, std::span<const CageSpot> spots, Growth growth, double reach,
+bool alignCage(const Target& target, std::span<const CageSpot> spots, const AlignLimits& limits,
                const Progress& progress, TriangleMesh& cage) {
   std::vector<Gap> gaps = measureGaps(target, cage, spots);
   Placement placement = placementOf(target, gaps);
-  Alignment alignment(cage, gaps, placement.offset, growth);
-  RobustScale scale(reach * target.diagonal, target.diagonal);
+  Alignment alignment(cage, gaps, placement.offset, limits.growth);
+  RobustScale scale(limits.reach * target.diagonal, target.diagonal);
   for (int step = 0; step < kMostSteps; ++step) {
     if (progress && !progress(static_cast<float>(step) / kMostSteps, "align")) return false;
     scale.tighten(placement.spread, kTightening);

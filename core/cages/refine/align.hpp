@@ -7,10 +7,15 @@ namespace cagecast::cages {
 
 enum class Growth : std::uint8_t { free, none };
 
+/// How far a cage may be moved.
+struct AlignLimits {
+  Growth growth;  ///< Whether it may be enlarged or shrunk.
+  double reach;   ///< How far off it may be, as a share of the diagonal.
+};
+
 /// Moves, turns and, if it may, enlarges or shrinks a cage so that its gaps become as even as possible.
-/// @param reach  How far off the cage may be, as a share of the diagonal.
 /// @return false if `progress` cancelled it; it is told shares from 0 to 1.
-bool alignCage(const Target& target, std::span<const CageSpot> spots, Growth growth, double reach,
+bool alignCage(const Target& target, std::span<const CageSpot> spots, const AlignLimits& limits,
                const Progress& progress, TriangleMesh& cage);
 
 }  // namespace cagecast::cages

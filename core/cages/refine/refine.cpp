@@ -146,7 +146,7 @@ class Refinement {
  private:
   bool align(Growth growth, float from, Candidate& out) {
     out.cage = given_.cage;
-    if (!alignCage(target_, spots_, growth, reach_, part(from, from + 0.3f), out.cage)) return false;
+    if (!alignCage(target_, spots_, {growth, reach_}, part(from, from + 0.3f), out.cage)) return false;
     out.placement = placementOf(target_, measureGaps(target_, out.cage, spots_));
     return true;
   }
