@@ -97,14 +97,14 @@ std::uint32_t countOverlaps(const std::vector<Uv>& uvs, const std::vector<Triang
     const double share = (value - all.low[k]) / std::max(all.high[k] - all.low[k], 1e-300);
     return std::clamp(static_cast<int>(share * cells), 0, cells - 1);
   };
-  std::vector<std::vector<std::uint32_t>> grid(static_cast<std::size_t>(cells * cells));
+  std::vector<std::vector<std::uint32_t>> grid(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
   std::vector<std::uint32_t> testedWith(corners.size(), kNone);
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     const Box& box = boxes[i];
     for (int y = cellOf(box.low[1], 1); y <= cellOf(box.high[1], 1); ++y)
       for (int x = cellOf(box.low[0], 0); x <= cellOf(box.high[0], 0); ++x) {
-        auto& cell = grid[static_cast<std::size_t>(y * cells + x)];
+        auto& cell = grid[static_cast<std::size_t>(y) * static_cast<std::size_t>(cells) + static_cast<std::size_t>(x)];
         for (const std::uint32_t k : cell) {
           if (testedWith[k] == i) continue;
           testedWith[k] = i;

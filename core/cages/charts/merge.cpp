@@ -100,6 +100,7 @@ void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& 
       if (a < b && b != kNone) borders[{a, b}] += size;
     }
     std::vector<std::pair<double, std::pair<std::uint32_t, std::uint32_t>>> order;
+    order.reserve(borders.size());
     for (const auto& [pair, size] : borders)
       order.emplace_back(-size / std::max(1e-300, std::min(around[pair.first], around[pair.second])), pair);
     std::sort(order.begin(), order.end());

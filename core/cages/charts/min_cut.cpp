@@ -1,6 +1,7 @@
 #include "charts/min_cut.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cagecast::cages {
 
@@ -19,7 +20,7 @@ MinCut::MinCut(std::size_t nodes, double unit)
 
 void MinCut::addArc(std::uint32_t from, std::uint32_t to, double there, double back) {
   const auto whole = [&](double cost) {
-    return cost / unit_ < static_cast<double>(kMost) ? static_cast<std::int64_t>(cost / unit_ + 0.5) : kMost;
+    return cost / unit_ < static_cast<double>(kMost) ? static_cast<std::int64_t>(std::llround(cost / unit_)) : kMost;
   };
   leaving_[from].push_back(static_cast<std::uint32_t>(arcs_.size()));
   arcs_.push_back({to, whole(there)});

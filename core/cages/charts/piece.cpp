@@ -155,9 +155,11 @@ std::vector<std::vector<std::uint32_t>> loopsOf(const TriangleMesh& mesh, std::s
     loops.push_back(std::move(loop));
   }
   std::vector<std::pair<double, std::size_t>> order;
+  order.reserve(loops.size());
   for (std::size_t i = 0; i < loops.size(); ++i) order.emplace_back(-lengthOf(mesh, loops[i]), i);
   std::sort(order.begin(), order.end());
   std::vector<std::vector<std::uint32_t>> sorted;
+  sorted.reserve(loops.size());
   for (const auto& [length, i] : order) sorted.push_back(std::move(loops[i]));
   return sorted;
 }

@@ -82,6 +82,7 @@ struct Slim::Solver {
 Slim::Solver::Solver(const TriangleMesh& mesh) {
   const auto size = static_cast<Eigen::Index>(2 * mesh.positions.size());
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(size) + 36 * mesh.triangles.size());
   for (int i = 0; i < static_cast<int>(size); ++i) entries.emplace_back(i, i, 0.0);
   for (const Triangle3& t : mesh.triangles)
     for (const std::uint32_t row : t)

@@ -123,7 +123,7 @@ void store(const Layout& layout, Cage& out) {
 Outcome makeCage(const Model& model, const MakeOptions& options, const Progress& progress, Cage& out) {
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
   if (Outcome outcome = checkOptions(options); !outcome.ok()) return outcome;
-  const Outcome cancelled{Problem::cancelled, "cancelled"};
+  Outcome cancelled{Problem::cancelled, "cancelled"};
   float reached = 0;  // A repeated stage does not go back.
   const auto part = [&](float from, float to) -> Progress {
     if (!progress) return {};
@@ -141,7 +141,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   std::vector<bool> isMarked = marksOf(model, options, triangleOf);
   const bool hasFace = settings.kind != Kind::prop && !options.exclude.empty();
   if (hasFace && std::find(isMarked.begin(), isMarked.end(), true) == isMarked.end()) markLooseEyes(model, isMarked);
-  const Outcome nothingToPaint{Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
+  Outcome nothingToPaint{Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint;
   isMarked.resize(mesh.triangles.size(), false);
   TriangleMesh hull;
