@@ -79,22 +79,18 @@ val makeCageCall(const val& target, const MakeOptions& options, const val& repor
   return out;
 }
 
-val fitCageCall(const val& from, const val& target, const val& landmarks, const FitOptions& options,
-                const val& report) {
+val fitCageCall(const val& from, const val& target, const val& landmarks, FitOptions options, const val& report) {
   ModelArrays arrays;
   Mesh mesh;
   if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return ending(kOutOfMemory);
   const Template source{mesh.view(), listOf<Landmark>(from["landmarks"])};
-  Cage cage;
-  FitReport fit;
-  const Outcome outcome =
-      fitCage(source, arrays.model, listOf<Landmark>(landmarks), options, progressTo(report), cage, fit);
+  options.landmarks = listOf<Landmark>(landmarks);
+  FittedCage cage;
+  const Outcome outcome = fitCage(source, arrays.model, options, progressTo(report), cage);
   val out = ending(outcome);
   if (!outcome.ok()) return out;
   setCage(out, cage);
-  out.set("used", listed(fit.used));
-  out.set("missing", listed(fit.missing));
-  out.set("notes", listed(fit.notes));
+  out.set("missing", listed(cage.missing));
   return out;
 }
 

@@ -15,13 +15,12 @@ export interface StoredModel extends Shape {
   joints: Joint[];
 }
 
-/** A cage as the tool writes it. `used`, `missing` and `notes` are of a fit. */
+/** A cage as the tool writes it. `used` and `missing` are of a fit. */
 export interface StoredCage extends Shape {
   uvs: ArrayLike<number>;
   landmarks: Landmarks;
   used?: Landmarks;
   missing?: string[];
-  notes?: string[];
 }
 /** Name → position. */
 export type Landmarks = Record<string, readonly [number, number, number]>;

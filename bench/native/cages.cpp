@@ -245,17 +245,15 @@ int runFit(const Arguments& arguments) {
   options.kind = arguments.kind;
   if (!arguments.exclude.empty()) options.exclude = arguments.exclude;
   StageClock stages(arguments.stages);
-  Cage cage;
-  FitReport fitted;
+  options.landmarks = landmarksOf(given);
+  FittedCage cage;
   const auto began = Clock::now();
-  const Outcome outcome = fitCage(from, stored.model, landmarksOf(given), options, stages.progress(), cage, fitted);
+  const Outcome outcome = fitCage(from, stored.model, options, stages.progress(), cage);
   const double time = millisecondsSince(began);
-  for (const std::string& note : fitted.notes) std::printf("%s\n", note.c_str());
   if (outcome.ok()) {
     json out = asJson(cage);
-    out["used"] = asJson(fitted.used);
-    out["missing"] = fitted.missing;
-    out["notes"] = fitted.notes;
+    out["used"] = asJson(cage.landmarks);
+    out["missing"] = cage.missing;
     writeJson(arguments.files[3], out);
   }
   return report(time, outcome);

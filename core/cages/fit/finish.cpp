@@ -46,6 +46,7 @@ bool pushOut(const TemplateCage& cage, const TriangleMesh& skin, const TriangleM
   const std::vector<SkinPoint> points = visiblePoints(skin, hull, cage.offset);
   const std::vector<bool> onBorder = borderVertices(cage);
   std::vector<Vec3> places;
+  places.reserve(points.size());
   for (const SkinPoint& point : points) places.push_back(point.position);
   std::vector<double> pushed(positions.size());
   for (int round = 0; round < kPushes; ++round) {

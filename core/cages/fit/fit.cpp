@@ -49,7 +49,7 @@ struct Pairs {
 };
 
 Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, const std::vector<Landmark>& found,
-                      Pairs& out, FitReport& report) {
+                      Pairs& out, FittedCage& cage) {
   for (const Landmark& landmark : given)
     if (findLandmark(from.landmarks, landmark.name) == nullptr)
       return {Problem::badLandmarks, "landmarks: the template has no " + landmark.name};
@@ -58,13 +58,13 @@ Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, 
     const bool isGiven = there != nullptr;
     if (!isGiven) there = findLandmark(found, landmark.name);
     if (there == nullptr) {
-      report.missing.push_back(landmark.name);
+      cage.missing.push_back(landmark.name);
       continue;
     }
     out.from.push_back(landmark);
     out.to.push_back(*there);
     out.given.push_back(isGiven);
-    report.used.push_back(*there);
+    cage.landmarks.push_back(*there);
   }
   if (out.from.size() >= kLeastLandmarks) return {};
   return {Problem::badLandmarks, "landmarks: " + std::to_string(out.from.size()) + " are known, at least " +
@@ -83,7 +83,7 @@ class Fit {
   Fit(const Template& from, const Model& model, const FitOptions& options, const Progress& progress)
       : from_(from), model_(model), options_(options), progress_(progress) {}
 
-  Outcome run(const std::vector<Landmark>& given, Cage& out, FitReport& report);
+  Outcome run(FittedCage& out);
 
  private:
   [[nodiscard]] bool tell(double share, const char* stage) const {
@@ -155,8 +155,9 @@ std::vector<Vec3> Fit::start(const TemplateCage& cage) {
   return positions;
 }
 
-Outcome Fit::run(const std::vector<Landmark>& given, Cage& out, FitReport& report) {
-  const Outcome cancelled{Problem::cancelled, "cancelled"};
+Outcome Fit::run(FittedCage& out) {
+  const std::vector<Landmark>& given = options_.landmarks;
+  Outcome cancelled{Problem::cancelled, "cancelled"};
   TemplateCage cage = prepareTemplate(from_);
   FoundLandmarks found;
   const bool allGiven = std::all_of(from_.landmarks.begin(), from_.landmarks.end(), [&](const Landmark& landmark) {
@@ -168,7 +169,7 @@ Outcome Fit::run(const std::vector<Landmark>& given, Cage& out, FitReport& repor
     };
     if (Outcome outcome = findLandmarks(model_, finding, found); !outcome.ok()) return outcome;
   }
-  if (Outcome outcome = pairLandmarks(from_, given, found.landmarks, pairs_, report); !outcome.ok()) return outcome;
+  if (Outcome outcome = pairLandmarks(from_, given, found.landmarks, pairs_, out); !outcome.ok()) return outcome;
   if (Outcome outcome = checkAgreement(pairs_.from, pairs_.to, pairs_.given, cage.diagonal); !outcome.ok())
     return outcome;
   std::vector<Vec3> a, b;
@@ -213,17 +214,15 @@ Outcome Fit::run(const std::vector<Landmark>& given, Cage& out, FitReport& repor
   }
   out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
   out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
-  out.landmarks = report.used;
   if (!tell(1, "done")) return cancelled;
   return {};
 }
 
 }  // namespace
 
-Outcome fitCage(const Template& from, const Model& model, const std::vector<Landmark>& landmarks,
-                const FitOptions& options, const Progress& progress, Cage& out, FitReport& report) {
+Outcome fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
+                FittedCage& out) {
   out = {};
-  report = {};
   if (Outcome outcome = checkMesh(from.cage, "template.cage", Problem::badTemplate); !outcome.ok()) return outcome;
   if (from.cage.uvs.size() / 2 != from.cage.positions.size() / 3)
     return {Problem::badTemplate, "template.cage: it has no UVs; a cage needs 2 numbers per vertex"};
@@ -235,9 +234,10 @@ Outcome fitCage(const Template& from, const Model& model, const std::vector<Land
   if (Outcome outcome = checkLandmarkList(from.landmarks, "template.landmarks", cageSize, Problem::badTemplate);
       !outcome.ok())
     return outcome;
-  if (Outcome outcome = checkLandmarkList(landmarks, "landmarks", modelSize, Problem::badLandmarks); !outcome.ok())
+  if (Outcome outcome = checkLandmarkList(options.landmarks, "landmarks", modelSize, Problem::badLandmarks);
+      !outcome.ok())
     return outcome;
-  return Fit(from, model, options, progress).run(landmarks, out, report);
+  return Fit(from, model, options, progress).run(out);
 }
 
 }  // namespace cagecast::cages

@@ -68,6 +68,7 @@ struct MakeOptions {
 struct FitOptions {
   Kind kind = Kind::automatic;
   std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
+  std::vector<Landmark> landmarks = {};                    ///< Of the model; these override found ones.
 };
 
 struct RefineOptions {
@@ -114,17 +115,14 @@ struct Template {
   std::vector<Landmark> landmarks;  ///< Of the model that it was made for.
 };
 
-/// What a fit used and could not find.
-struct FitReport {
-  std::vector<Landmark> used;        ///< On the target.
-  std::vector<std::string> missing;  ///< Of the template's landmarks: ask for these.
-  std::vector<std::string> notes;    ///< Sentences for people.
+/// A fitted cage; its landmarks are those that the fit used.
+struct FittedCage : Cage {
+  std::vector<std::string> missing;  ///< Landmarks of the template that are not known on the model: ask for these.
 };
 
 /// Moves a template cage onto another model; triangles, UVs and holes stay.
-/// @param landmarks  Of the model; those that are given override found ones. May be empty.
-Outcome fitCage(const Template& from, const Model& model, const std::vector<Landmark>& landmarks,
-                const FitOptions& options, const Progress& progress, Cage& out, FitReport& report);
+Outcome fitCage(const Template& from, const Model& model, const FitOptions& options, const Progress& progress,
+                FittedCage& out);
 
 /// Moves, turns and scales a cage that is slightly off its model into place, and bends it where it is inside the model.
 /// In place means that its distance from the model is as even as it can be; holes and part names are not looked at.

@@ -18,9 +18,7 @@ export interface CageAnswer extends CagesAnswer {
   landmarks: CoreLandmark[];
 }
 export interface FitAnswer extends CageAnswer {
-  used: CoreLandmark[];
   missing: string[];
-  notes: string[];
 }
 export interface FoundAnswer extends CagesAnswer {
   landmarks: CoreLandmark[];

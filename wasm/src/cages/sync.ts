@@ -81,10 +81,9 @@ export function fitCage(
     run: (module, core, report) => module.fitCage(from, checkModel('fitCage', model), given, core, report),
     result: (answer) => ({
       cage: cageOf(answer, template, options.kind),
-      used: landmarksOf(answer.used),
-      confidence: confidenceOf(answer.used),
+      used: landmarksOf(answer.landmarks),
+      confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
-      notes: answer.notes,
     }),
   });
 }

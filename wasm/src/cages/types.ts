@@ -72,8 +72,6 @@ export interface Fit {
   confidence: Record<string, number>;
   /** Landmarks of the template that were not found: give these for a better fit. */
   missing: string[];
-  /** What is to be known about the fit: sentences for people. */
-  notes: string[];
 }
 
 /** What was found on a model. */

@@ -116,7 +116,7 @@ async function readLandmarks(path: string): Promise<Landmarks> {
 /** How many missing landmarks are listed at most. */
 const mostNames = 12;
 
-function describeFit({ used, missing, notes }: Fit, given: Landmarks): string[] {
+function describeFit({ used, missing }: Fit, given: Landmarks): string[] {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
   return [
@@ -124,7 +124,6 @@ function describeFit({ used, missing, notes }: Fit, given: Landmarks): string[] 
     missing.length === 0
       ? ''
       : `not found: ${missing.slice(0, mostNames).join(', ')}${missing.length > mostNames ? `, and ${missing.length - mostNames} more` : ''}; give them for a better fit: --landmarks L.json`,
-    ...notes,
   ].filter(Boolean);
 }
 
