@@ -100,9 +100,11 @@ std::optional<Opening> openingOf(const EyedFigure& figure, const Surface& surfac
   const double radius = 0.5 * box.size();
   const auto seenAt = [&](const std::vector<Vec3>& places) {
     std::vector<SurfaceRay> rays;
+    rays.reserve(places.size());
     for (const Vec3& p : places) rays.push_back({p + 2 * radius * opening.axis, -1.0 * opening.axis});
     const std::vector<RayHit> hits = surface.trace(rays);
     std::vector<bool> seen;
+    seen.reserve(hits.size());
     for (const RayHit& hit : hits) seen.push_back(!std::isinf(hit.distance) && isEye[hit.triangle]);
     return seen;
   };
