@@ -15,7 +15,8 @@ import {
   transfer,
 } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
-import { addTransfer, extractDocument } from './document.js';
+import { extractDocument } from './document.js';
+import { addTransfer } from './document-write.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
