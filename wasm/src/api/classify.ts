@@ -6,6 +6,7 @@ import { count } from './mesh.js';
 import { type ClassifyOptions, checkOptions } from './options.js';
 import type { Classification, HoleShare, Projection, SegmentStats } from './result.js';
 import { checkReuse, handOver, type Reuse } from './reuse.js';
+import { type ArrayKind, plainArray, showArray } from './typed-arrays.js';
 
 /**
  * Decides which segments are culled, and so the zone of every vertex, in microseconds.
@@ -13,9 +14,11 @@ import { checkReuse, handOver, type Reuse } from './reuse.js';
  * @throws {CagecastError} `badArgument` if `projection` is not what `project` returned; `badOption`.
  */
 export function classify(projection: Projection, options?: ClassifyOptions & Reuse<Classification>): Classification {
-  const whole = checkProjection(projection);
+  if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
   const { core, locks } = checkOptions('classify', options, projection.preset);
   const arrays = checkReuse('classify', options?.reuse);
+  // Last: getters of the options may have written to it.
+  const whole = checkProjection(projection);
   const result = callCore('classify', ({ workspace }) => workspace.classify(whole, core, locks), arrays);
   return handOver(result, options?.reuse);
 }
@@ -29,11 +32,16 @@ const wrong = (text: string, at = 0) =>
  * @returns the projection in the form that the core takes.
  */
 function checkProjection(projection: Projection): CoreProjection {
-  if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
-  const { zones, segments, segmentStats, recovery, holeShares, indices } = projection;
-  if (!(zones instanceof Uint8Array)) throw wrong(`.zones is ${show(zones)}, not a Uint8Array`);
-  for (const [name, array] of Object.entries({ segments, recovery, indices }))
-    if (!(array instanceof Uint32Array)) throw wrong(`.${name} is ${show(array)}, not a Uint32Array`);
+  const arrayOf = <Kind extends ArrayKind>(name: keyof Projection, kind: Kind) => {
+    const array = plainArray(projection[name], kind);
+    if (!array) throw wrong(`.${name} is ${showArray(projection[name], kind)}, not a ${kind}`);
+    return array;
+  };
+  const zones = arrayOf('zones', 'Uint8Array');
+  const segments = arrayOf('segments', 'Uint32Array');
+  const recovery = arrayOf('recovery', 'Uint32Array');
+  const indices = arrayOf('indices', 'Uint32Array');
+  const { segmentStats, holeShares } = projection;
   for (const [name, array] of Object.entries({ segmentStats, holeShares }))
     if (!Array.isArray(array)) throw wrong(`.${name} is ${show(array)}, not an array`);
   if (zones.length !== segments.length) throw wrong(` has ${zones.length} zones but ${segments.length} segments`);
@@ -45,24 +53,24 @@ function checkProjection(projection: Projection): CoreProjection {
     throughHole: module.throughHole,
     maxTriangles: module.maxTriangles,
   }));
-  const stats = segmentStats.map((segment, s) => ({
+  const stats = Array.from(segmentStats, (segment, s) => ({
     ...checkSegment(segment, s, segmentStats.length),
     culledBy: none,
   }));
-  const holes = checkShares(holeShares, segmentStats.length, maxTriangles);
+  const { shares, holes } = checkShares(holeShares, segmentStats.length, maxTriangles);
 
   const outOfRange = (name: string, array: Uint32Array, limit: number, what: string) => {
     for (let i = 0; i < array.length; ++i)
       if (array[i]! >= limit) throw wrong(`.${name}[${i}] = ${array[i]} is out of range (${what})`, i);
   };
-  outOfRange('segments', segments, segmentStats.length, `${segmentStats.length} segments`);
+  outOfRange('segments', segments, stats.length, `${stats.length} segments`);
   outOfRange('recovery', recovery, throughHole + holes, `${holes} holes`);
   outOfRange('indices', indices, zones.length, count(zones.length, 'vertex'));
   for (let v = 0; v < zones.length; ++v) {
     if (zones[v]! > Zone.Uncovered)
       throw wrong(`.zones[${v}] = ${zones[v]} is not a zone that project() gives (0..${Zone.Uncovered})`, v);
   }
-  return { zones, segments, segmentStats: stats, recovery, holeShares, indices };
+  return { zones, segments, segmentStats: stats, recovery, holeShares: shares, indices };
 }
 
 const isBelow = (value: unknown, limit: number) =>
@@ -74,16 +82,21 @@ function checkSegment(segment: SegmentStats, s: number, segments: number): Segme
   if (!numbers.every(Number.isFinite) || !isBelow(twinOf, segments))
     throw wrong(`.segmentStats[${s}] is not { points, area, exposedArea, coveredArea, … }`, s);
   // Fields that `classify` computes may be missing.
-  return { ...segment, coverage: 0, score: Number.POSITIVE_INFINITY, culled: false, culledBy: 'none' };
+  const computed = { coverage: 0, score: Number.POSITIVE_INFINITY, culled: false, culledBy: 'none' as const };
+  return { points, area, exposedArea, coveredArea, depthWeightedArea, group, twinOf, ...computed };
 }
 
 /**
  * @param mostHoles  A limit no cage exceeds: the core allocates memory for as many holes as the largest number says.
- * @returns the number of holes.
+ * @returns the number of holes, and plain copies of the shares.
  */
-function checkShares(holeShares: readonly HoleShare[], segments: number, mostHoles: number): number {
+function checkShares(
+  holeShares: readonly HoleShare[],
+  segments: number,
+  mostHoles: number,
+): { shares: HoleShare[]; holes: number } {
   let holes = 0;
-  holeShares.forEach((share, i) => {
+  const shares = Array.from(holeShares, (share, i) => {
     const { hole, segment, exposedArea, uncoveredArea, hiddenArea } = share ?? {};
     const isOrdered = isBelow(hole, mostHoles) && hole >= holes - 1;
     if (!isOrdered || !isBelow(segment, segments) || ![exposedArea, uncoveredArea, hiddenArea].every(Number.isFinite)) {
@@ -93,6 +106,7 @@ function checkShares(holeShares: readonly HoleShare[], segments: number, mostHol
       );
     }
     holes = hole + 1;
+    return { hole, segment, exposedArea, uncoveredArea, hiddenArea };
   });
-  return holes;
+  return { shares, holes };
 }

@@ -5,6 +5,7 @@ import { CagecastError, show } from './error.js';
 import { type CheckedMesh, checkMesh, count, type Mesh } from './mesh.js';
 import { checkOptions, type TransferOptions } from './options.js';
 import type { TransferResult } from './result.js';
+import { plainArray, showArray } from './typed-arrays.js';
 
 /**
  * A target whose triangles are cut along the borders of the paint. The target's vertices keep their numbers, and new ones follow.
@@ -64,9 +65,12 @@ function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision 
   const wrong = (text: string) =>
     new CagecastError('badArgument', `cutBorders: result${text}; pass what transfer() returned`);
   if (typeof result !== 'object' || result === null) throw wrong(` is ${show(result)}`);
-  const { zones, segments, segmentStats } = result as Partial<TransferResult>;
-  if (!(zones instanceof Uint8Array)) throw wrong(`.zones is ${show(zones)}, not a Uint8Array`);
-  if (!(segments instanceof Uint32Array)) throw wrong(`.segments is ${show(segments)}, not a Uint32Array`);
+  const given = result as Partial<TransferResult>;
+  const zones = plainArray(given.zones, 'Uint8Array');
+  if (!zones) throw wrong(`.zones is ${showArray(given.zones, 'Uint8Array')}, not a Uint8Array`);
+  const segments = plainArray(given.segments, 'Uint32Array');
+  if (!segments) throw wrong(`.segments is ${showArray(given.segments, 'Uint32Array')}, not a Uint32Array`);
+  const { segmentStats } = given;
   if (!Array.isArray(segmentStats)) throw wrong(`.segmentStats is ${show(segmentStats)}, not an array`);
   const mismatch = (text: string, at: number) => new CagecastError('resultMismatch', `cutBorders: result.${text}`, at);
   for (const [name, { length }] of Object.entries({ zones, segments })) {
@@ -76,16 +80,16 @@ function checkResult(result: unknown, { positions }: CheckedMesh): CoreDecision 
         length,
       );
   }
+  const culled = Array.from(segmentStats, (segment) => segment?.culled === true);
+  // Last: getters of the segments may have written to the arrays.
   const unknown = zones.findIndex((zone) => zone > Zone.Culled);
   if (unknown >= 0) throw mismatch(`zones[${unknown}] = ${zones[unknown]} is not a zone (0..${Zone.Culled})`, unknown);
-  const stray = segments.findIndex((segment) => segment >= segmentStats.length);
+  const stray = segments.findIndex((segment) => segment >= culled.length);
   if (stray >= 0)
-    throw mismatch(`segments[${stray}] = ${segments[stray]} is out of range (${segmentStats.length} segments)`, stray);
-  const culledBy = useCore('cutBorders', ({ module }) =>
-    segmentStats.map((segment) => {
-      const { none, coverage } = module['CulledBy']!;
-      return segment?.culled === true ? coverage! : none!;
-    }),
-  );
+    throw mismatch(`segments[${stray}] = ${segments[stray]} is out of range (${culled.length} segments)`, stray);
+  const culledBy = useCore('cutBorders', ({ module }) => {
+    const { none, coverage } = module['CulledBy']!;
+    return culled.map((is) => (is ? coverage! : none!));
+  });
   return { zones, segments, culledBy };
 }

@@ -1,4 +1,5 @@
 import { CagecastError, show } from './error.js';
+import { type ArrayKind, plainArray, showArray } from './typed-arrays.js';
 
 /** A triangle mesh. Its arrays are copied and never changed. */
 export interface Mesh {
@@ -31,16 +32,24 @@ export function checkMesh(fn: string, name: 'cage' | 'target' | 'model' | 'templ
   if (typeof mesh !== 'object' || mesh === null) {
     throw new CagecastError('badArgument', `${fn}: ${name} is ${show(mesh)}, not a mesh { positions, indices, … }`);
   }
-  const { positions, indices, uvs, groups } = mesh as Partial<Mesh>;
-  const wrong = (field: string, value: unknown, type: string) =>
-    new CagecastError('badArgument', `${fn}: ${name}.${field} is ${show(value)}, not a ${type}`);
-  if (!(positions instanceof Float32Array)) throw wrong('positions', positions, 'Float32Array');
-  if (!(indices instanceof Uint32Array || indices instanceof Uint16Array || indices instanceof Uint8Array)) {
-    throw wrong('indices', indices, 'Uint32Array, Uint16Array or Uint8Array');
-  }
-  if (uvs !== undefined && uvs !== null && !(uvs instanceof Float32Array)) throw wrong('uvs', uvs, 'Float32Array');
-  if (groups !== undefined && groups !== null && !(groups instanceof Uint32Array))
-    throw wrong('groups', groups, 'Uint32Array');
+  const given = mesh as Partial<Mesh>;
+  const arrayOf = <Kind extends ArrayKind>(field: keyof Mesh, type: string, ...kinds: Kind[]) => {
+    const value: unknown = given[field];
+    const array = plainArray(value, ...kinds);
+    if (array) return array;
+    if ((field === 'uvs' || field === 'groups') && (value === undefined || value === null)) return undefined;
+    throw new CagecastError('badArgument', `${fn}: ${name}.${field} is ${showArray(value, ...kinds)}, not a ${type}`);
+  };
+  const positions = arrayOf('positions', 'Float32Array', 'Float32Array')!;
+  const indices = arrayOf(
+    'indices',
+    'Uint32Array, Uint16Array or Uint8Array',
+    'Uint32Array',
+    'Uint16Array',
+    'Uint8Array',
+  )!;
+  const uvs = arrayOf('uvs', 'Float32Array', 'Float32Array');
+  const groups = arrayOf('groups', 'Uint32Array', 'Uint32Array');
   // With vertices, an empty array of groups is a mistake of the caller, which the core would take for "no groups".
   if (groups?.length === 0 && positions.length > 0) {
     throw new CagecastError(

@@ -1,5 +1,6 @@
 import type { Reusable } from '../core/engine.js';
 import { CagecastError, show } from './error.js';
+import { type ArrayKind, plainArray, realBuffer, showArray } from './typed-arrays.js';
 
 /** An option of functions that return arrays. */
 export interface Reuse<Result> {
@@ -13,16 +14,16 @@ export interface Reuse<Result> {
 
 /** The arrays of all results. */
 const types = {
-  uvs: Float32Array,
-  cornerUvs: Float32Array,
-  zones: Uint8Array,
-  triangles: Uint32Array,
-  distances: Float32Array,
-  segments: Uint32Array,
-  cosmeticTriangles: Uint8Array,
-  recovery: Uint32Array,
-  indices: Uint32Array,
-} as const;
+  uvs: 'Float32Array',
+  cornerUvs: 'Float32Array',
+  zones: 'Uint8Array',
+  triangles: 'Uint32Array',
+  distances: 'Float32Array',
+  segments: 'Uint32Array',
+  cosmeticTriangles: 'Uint8Array',
+  recovery: 'Uint32Array',
+  indices: 'Uint32Array',
+} as const satisfies Record<string, ArrayKind>;
 const names = Object.keys(types) as (keyof typeof types)[];
 
 /** Which of them a function returns. */
@@ -45,17 +46,19 @@ export function checkReuse(fn: keyof typeof namesOf, reuse: unknown): Reusable {
     new CagecastError('badOption', `${fn}: options.reuse${text}; pass an earlier result of ${fn}()`, 0, { cause });
   if (typeof reuse !== 'object' || reuse === null) throw wrong(` is ${show(reuse)}`);
   const buffers: ArrayBufferLike[] = [];
-  const own: readonly string[] = namesOf[fn];
+  const returned: readonly string[] = namesOf[fn];
   for (const name of names) {
     const array = (reuse as Record<string, unknown>)[name];
-    if (!own.includes(name)) {
+    if (!returned.includes(name)) {
       if (array !== undefined) throw wrong(`.${name} is ${show(array)}, which this function does not return`);
       continue;
     }
-    if (!(array instanceof types[name])) throw wrong(`.${name} is ${show(array)}, not a ${types[name].name}`);
-    if (buffers.includes(array.buffer)) throw wrong(`.${name} shares its memory with another of its arrays`);
-    buffers.push(array.buffer);
-    arrays[name] = array;
+    if (!plainArray(array, types[name]))
+      throw wrong(`.${name} is ${showArray(array, types[name])}, not a ${types[name]}`);
+    const own = array as Float32Array | Uint32Array | Uint8Array;
+    if (buffers.includes(realBuffer(own))) throw wrong(`.${name} shares its memory with another of its arrays`);
+    buffers.push(realBuffer(own));
+    arrays[name] = own;
   }
   try {
     // A frozen object throws here, before anything is written.

@@ -1,6 +1,7 @@
 import { callCore } from '../core/engine.js';
-import { CagecastError, show } from './error.js';
+import { CagecastError } from './error.js';
 import { checkMesh, type Mesh } from './mesh.js';
+import { plainArray, showArray } from './typed-arrays.js';
 
 /** A mesh whose vertices are split wherever the UVs of their corners differ. The caller owns every array. */
 export interface SplitVertices {
@@ -28,14 +29,18 @@ export interface SplitVertices {
  */
 export function splitVertices(target: Mesh, cornerUvs: Float32Array): SplitVertices {
   const mesh = checkMesh('splitVertices', 'target', target);
-  if (!(cornerUvs instanceof Float32Array))
-    throw new CagecastError('badArgument', `splitVertices: cornerUvs is ${show(cornerUvs)}, not a Float32Array`);
-  if (cornerUvs.length !== 2 * mesh.indices.length) {
+  const uvs = plainArray(cornerUvs, 'Float32Array');
+  if (!uvs)
+    throw new CagecastError(
+      'badArgument',
+      `splitVertices: cornerUvs is ${showArray(cornerUvs, 'Float32Array')}, not a Float32Array`,
+    );
+  if (uvs.length !== 2 * mesh.indices.length) {
     throw new CagecastError(
       'cornerUvCountMismatch',
-      `splitVertices: cornerUvs has ${cornerUvs.length} numbers, not 2 for each of ${mesh.indices.length} corners`,
-      cornerUvs.length,
+      `splitVertices: cornerUvs has ${uvs.length} numbers, not 2 for each of ${mesh.indices.length} corners`,
+      uvs.length,
     );
   }
-  return callCore('splitVertices', ({ workspace }) => workspace.splitVertices(mesh, cornerUvs));
+  return callCore('splitVertices', ({ workspace }) => workspace.splitVertices(mesh, uvs));
 }

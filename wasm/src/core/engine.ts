@@ -2,6 +2,7 @@ import createModule from '#glue';
 import { compile } from '#wasm';
 import { CagecastError, type Code } from '../api/error.js';
 import type { SegmentStats } from '../api/result.js';
+import { overwrite, realLength } from '../api/typed-arrays.js';
 import { instantiate, isLackOfMemory, unsupported } from './instantiate.js';
 import { type Answer, type CoreModule, type CoreSegment, nameOf, type Workspace } from './module.js';
 
@@ -111,7 +112,7 @@ function copyViews(views: object, reusable: Reusable): object {
     entries.map(({ name, value, isReused, own }) => {
       if (!isReused) return [name, own];
       const array = reusable[name]!;
-      array.set(value);
+      overwrite(array, value);
       return [name, array];
     }),
   );
@@ -119,7 +120,7 @@ function copyViews(views: object, reusable: Reusable): object {
 
 /** Whether there is room in an array for just what a view shows. An empty one may be what is left of one that was moved away. */
 const fits = (array: Reusable[string] | undefined, { length }: Uint8Array): boolean =>
-  length > 0 && array?.length === length;
+  array !== undefined && length > 0 && realLength(array) === length;
 
 /** Frees the instance's memory, which can grow but never shrink. The next call makes a new instance. */
 export function dropInstance(): void {
