@@ -382,7 +382,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
               byteOffset: 0,
               byteLength: 60,
               byteStride: 12,
-              count: 5,
+              count: view.byteLength / 12,
               mode: 'ATTRIBUTES',
             },
           };

@@ -4,8 +4,8 @@ import { cageGlb } from '../cages/glb.js';
 import { templateNames } from '../cages/template-names.js';
 import type { Cage, Fit, Landmarks } from '../cages/types.js';
 import { templateOf } from '../gltf/cage-file.js';
+import { type ReadOptions, readBytes } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
-import { readBytes } from '../gltf/read.js';
 import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { isPosition } from '../parts/template.js';
@@ -21,6 +21,7 @@ import { integer } from './table.js';
 interface CageOutput {
   output: string;
   html?: string | undefined;
+  reading: ReadOptions;
 }
 
 /** The arguments of `cagecast make`. */
@@ -53,8 +54,8 @@ const rules: Rules = { preset: 'default', single: {}, keep: [], exclude: [] };
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 export async function makeCommand(command: MakeCommand, progress: Progress): Promise<CageVerdict> {
-  const { target, exclude, triangles } = command;
-  const model = await readModel(target, progress);
+  const { target, exclude, triangles, reading } = command;
+  const model = await readModel(target, reading, progress);
   for (const pattern of exclude) {
     const matches = matcher(pattern, 'i');
     if (!model.extracted.parts.some(({ aliases }) => aliases.some(matches)))
@@ -70,8 +71,8 @@ export async function makeCommand(command: MakeCommand, progress: Progress): Pro
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 export async function fitCommand(command: FitCommand, progress: Progress): Promise<CageVerdict> {
-  const { template: templatePath, target, templateLandmarks, landmarks: landmarksPath } = command;
-  const read = withUvs(await readModel(templateFile(templatePath), progress));
+  const { template: templatePath, target, templateLandmarks, landmarks: landmarksPath, reading } = command;
+  const read = withUvs(await readModel(templateFile(templatePath), reading, progress));
   const own = templateOf(read.file, read.extracted);
   const template = {
     ...own,
@@ -82,7 +83,7 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
       'has no landmarks in the extras of its nodes and meshes; give those of the model that it was made for: --template-landmarks T.json',
     ).in(templatePath);
   const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
-  const model = await readModel(target, progress);
+  const model = await readModel(target, reading, progress);
   const files = { template: templatePath, landmarks: landmarksPath };
   const fit = await fitCageTo(model, { template, landmarks, files }, progress);
   return finish(command, model, fit.cage, describeFit(fit, landmarks ?? {}), progress);

@@ -1,13 +1,15 @@
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { type CageVerdict, type FitCommand, fitCommand, type MakeCommand, makeCommand } from './cage-command.js';
+import { print } from './print.js';
 import type { Progress } from './progress.js';
+import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import { endingIn, refuseOverwriting, unfit } from './usage.js';
 
 /** The fewest and the most triangles that a cage can be asked to have. */
 const triangleRange = [50, 100_000] as const;
 
 const output = (command: Command): Command =>
-  command
+  addReadFlags(command)
     .addOption(
       new Option('-o, --output <CAGE.glb>', 'where to write the cage')
         .argParser(endingIn('.glb'))
@@ -29,9 +31,9 @@ function triangles(text: string): number {
 
 /** Adds the commands that make and fit cages. */
 export function addCageCommands(program: Command, progress: Progress): void {
-  const print = ({ text, verdict }: CageVerdict) => {
+  const show = ({ text, verdict }: CageVerdict) => {
     progress.clear();
-    console.log(text);
+    print(text);
     if (verdict === 'unfit') process.exitCode = unfit;
   };
   output(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
@@ -55,9 +57,9 @@ Examples:
   cagecast make head.glb -o cage.glb
   cagecast make head.glb --exclude 'eye*' --exclude 'mouth*' --triangles 800 -o cage.glb --html report.html`,
     )
-    .action(async (target: string, flags: Omit<MakeCommand, 'target'>, command: Command) => {
+    .action(async (target: string, flags: Omit<MakeCommand, 'target' | 'reading'> & ReadFlags, command: Command) => {
       refuseOverwriting(command, [target], [flags.output, flags.html]);
-      print(await makeCommand({ ...flags, target }, progress));
+      show(await makeCommand({ ...flags, target, reading: readingOf(flags) }, progress));
     });
   output(
     program
@@ -85,10 +87,15 @@ Examples:
   cagecast fit template.glb head.glb --landmarks head.json -o cage.glb --html report.html`,
     )
     .action(
-      async (template: string, target: string, flags: Omit<FitCommand, 'template' | 'target'>, command: Command) => {
+      async (
+        template: string,
+        target: string,
+        flags: Omit<FitCommand, 'template' | 'target' | 'reading'> & ReadFlags,
+        command: Command,
+      ) => {
         const { templateLandmarks, landmarks, output, html } = flags;
         refuseOverwriting(command, [template, target, templateLandmarks, landmarks], [output, html]);
-        print(await fitCommand({ ...flags, template, target }, progress));
+        show(await fitCommand({ ...flags, template, target, reading: readingOf(flags) }, progress));
       },
     );
 }

@@ -3,20 +3,18 @@ import { counted } from '../inspect/finding.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import { type Inspection, inspect, unfitFrom, usableFrom, type Verdict } from '../inspect/index.js';
 import { inspectionPage } from './inspect-page.js';
-import { type EffectiveOptions, effectiveOptions, type Rules } from './options.js';
+import { type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
+import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
-import { type Run, run } from './run.js';
+import { type Run, run, type Sources } from './run.js';
 import { cut, fateText, integer, percent, scoreText, short, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
 /** The arguments of `cagecast inspect`. */
-export interface InspectCommand {
-  target: string;
-  cage: string;
+export interface InspectCommand extends Sources {
   json: boolean;
   html?: string | undefined;
-  rules: Rules;
 }
 
 /** The JSON output of `inspect`: the inspection, and its inputs. */
@@ -40,7 +38,7 @@ export async function inspectCommand(
   command: InspectCommand,
   progress: Progress,
 ): Promise<{ text: string; verdict: Verdict }> {
-  const done = await run(command.target, command.cage, command.rules, progress);
+  const done = await run(command, progress);
   progress.step('inspecting');
   const report = inspectionReport(command, done);
   if (command.html !== undefined) {
@@ -96,8 +94,8 @@ export function conclusionOf({ verdict, findings }: Inspection): string[] {
   return [
     conclusions[verdict],
     ...findings.flatMap(({ weight, sentence, advice }) => [
-      `${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${sentence}.`,
-      `  → ${advice}`,
+      `${weight >= unfitFrom ? '✗' : weight >= usableFrom ? '!' : '·'} ${oneLine(sentence)}.`,
+      `  → ${oneLine(advice)}`,
     ]),
   ];
 }

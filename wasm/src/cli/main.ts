@@ -4,23 +4,27 @@ import { CagecastError } from '../index.js';
 import { addCageCommands } from './cage-flags.js';
 import { inspectCommand } from './inspect-command.js';
 import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
+import { oneLine, print } from './print.js';
 import { Progress } from './progress.js';
+import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import { autoCage } from './run.js';
 import { transferCommand } from './transfer-command.js';
 import { endingIn, refuseOverwriting, unfit, unusable, wrongUsage } from './usage.js';
 
 const progress = new Progress();
 
-interface CommonFlags extends RuleFlags {
+interface CommonFlags extends RuleFlags, ReadFlags {
   cage: string;
 }
 
 const common = (command: Command): Command =>
-  addRuleFlags(
-    command
-      .argument('<TARGET>', 'GLB or glTF that receives the texture')
-      .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one')
-      .allowExcessArguments(false),
+  addReadFlags(
+    addRuleFlags(
+      command
+        .argument('<TARGET>', 'GLB or glTF that receives the texture')
+        .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one')
+        .allowExcessArguments(false),
+    ),
   );
 
 const program = new Command('cagecast')
@@ -34,10 +38,12 @@ const program = new Command('cagecast')
   .configureOutput({
     outputError: (text, write) =>
       write(
-        `cagecast: ${text
-          .replace(/^error: /, '')
-          .replace(/\s*\n\s*/g, ' ')
-          .trim()}\n`,
+        `cagecast: ${oneLine(
+          text
+            .replace(/^error: /, '')
+            .replace(/\s*\n\s*/g, ' ')
+            .trim(),
+        )}\n`,
       ),
   })
   .addHelpText(
@@ -98,11 +104,11 @@ Examples:
         command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
       refuseOverwriting(command, [target, cage === autoCage ? undefined : cage, texture], [output, report]);
       const text = await transferCommand(
-        { target, cage, texture, output, report, borders, rules: rulesOf(flags) },
+        { target, cage, texture, output, report, borders, rules: rulesOf(flags), reading: readingOf(flags) },
         progress,
       );
       progress.clear();
-      console.log(text);
+      print(text);
     },
   );
 
@@ -124,9 +130,12 @@ Examples:
   .action(async (target: string, flags: CommonFlags & { json?: boolean; html?: string }, command: Command) => {
     const { cage, json = false, html } = flags;
     refuseOverwriting(command, [target, cage], [html]);
-    const { text, verdict } = await inspectCommand({ target, cage, json, html, rules: rulesOf(flags) }, progress);
+    const { text, verdict } = await inspectCommand(
+      { target, cage, json, html, rules: rulesOf(flags), reading: readingOf(flags) },
+      progress,
+    );
     progress.clear();
-    console.log(text);
+    print(text);
     if (verdict === 'unfit') process.exitCode = unfit;
   });
 
@@ -144,9 +153,8 @@ try {
     process.exitCode = error.exitCode === 0 && error.code !== 'commander.help' ? 0 : wrongUsage;
   } else {
     const known = error instanceof InputError || error instanceof CagecastError;
-    process.stderr.write(
-      `cagecast: ${known ? firstLine(error) : `failed unexpectedly (${firstLine(error)}); please report it`}\n`,
-    );
+    const text = known ? (error as Error).message : `failed unexpectedly (${firstLine(error)}); please report it`;
+    process.stderr.write(`cagecast: ${oneLine(text)}\n`);
     process.exitCode = unusable;
   }
 }

@@ -3,6 +3,7 @@ import { optionFlags } from '../generated/options.js';
 import type { Extracted } from '../gltf/extract.js';
 import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
+import { cut } from './table.js';
 
 type Single = Partial<Omit<PresetOptions, 'steps'>>;
 
@@ -107,7 +108,7 @@ export function transferOptions({ preset, single, keep, exclude }: Rules, { part
       for (const p of found) {
         if (groups[p] !== undefined && groups[p] !== lock)
           throw new InputError(
-            `--${groups[p]} ${saidBy.get(p)} and --${lock} ${pattern} both match "${parts[p]!.name}"`,
+            `--${groups[p]} ${saidBy.get(p)} and --${lock} ${pattern} both match ${quoted(parts[p]!.name)}`,
           );
         groups[p] = lock;
         saidBy.set(p, pattern);
@@ -121,21 +122,41 @@ export function transferOptions({ preset, single, keep, exclude }: Rules, { part
 export function noSuchName(flag: string, parts: readonly { aliases: string[] }[]): InputError {
   const names = [...new Set(parts.flatMap(({ aliases }) => aliases))];
   return new InputError(
-    `${flag}: no node or material has this name; there are: ${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
+    `${flag}: no node or material has this name; there are: ${names
+      .slice(0, mostNames)
+      .map((name) => cut(name, mostCharacters))
+      .join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`,
   );
 }
 
 /** How many names a message lists at most. */
 const mostNames = 20;
+/** How many characters of a name a message shows at most. */
+const mostCharacters = 60;
 
-/** Returns a test whether a name matches a pattern, in which `*` matches any text. @param flags  `i`: case does not matter. */
+/** A name in a message. */
+export const quoted = (name: string): string => `"${cut(name, mostCharacters)}"`;
+
+/**
+ * Returns a test whether a name matches a pattern, in which `*` matches any text. Takes time in proportion to name and pattern at
+ * most, times each other: a regular expression would try all ways to share a name among the stars.
+ * @param flags  `i`: case does not matter.
+ */
 export function matcher(pattern: string, flags: 'i' | '' = ''): (name: string) => boolean {
-  const expression = new RegExp(
-    `^${pattern
-      .split('*')
-      .map((text) => text.replace(/[.+?^${}()|[\]\\]/g, '\\$&'))
-      .join('[^]*')}$`,
-    flags,
-  );
-  return (name) => expression.test(name);
+  const fold = (text: string) => (flags === 'i' ? text.toLowerCase() : text);
+  const [first = '', ...pieces] = fold(pattern).split('*');
+  const last = pieces.pop();
+  return (name) => {
+    const text = fold(name);
+    if (last === undefined) return text === first;
+    if (text.length < first.length + last.length || !text.startsWith(first) || !text.endsWith(last)) return false;
+    // Each piece where it first occurs: if a name matches at all, it matches so.
+    let at = first.length;
+    for (const piece of pieces) {
+      const found = text.indexOf(piece, at);
+      if (found < 0) return false;
+      at = found + piece.length;
+    }
+    return at <= text.length - last.length;
+  };
 }

@@ -1,5 +1,6 @@
 import { chmodSync, lstatSync, readlinkSync, realpathSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
+import { reasons } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 
 /**
@@ -42,25 +43,32 @@ export function placeOf(path: string, links = 40): string {
     const place = resolve(path);
     const folder = dirname(place);
     if (links === 0 || folder === place) return place;
-    if (lstatSync(place, { throwIfNoEntry: false })?.isSymbolicLink())
-      return placeOf(resolve(realpathSync(folder), readlinkSync(place)), links - 1);
+    if (isLink(place)) return placeOf(resolve(realpathSync(folder), readlinkSync(place)), links - 1);
     return join(placeOf(folder, links), basename(place));
+  }
+}
+
+/** Whether a path is a link; not if it cannot be looked up, which whatever opens it reports. */
+function isLink(path: string): boolean {
+  try {
+    return lstatSync(path).isSymbolicLink();
+  } catch {
+    return false;
   }
 }
 
 /** Whether a path is a pipe or a device: it must be written to, not replaced. */
 function isStream(path: string): boolean {
-  const found = statSync(path, { throwIfNoEntry: false });
+  const found = attempt(path, () => statSync(path, { throwIfNoEntry: false }));
   return found !== undefined && !found.isFile() && !found.isDirectory();
 }
 
-function attempt(path: string, write: () => void): void {
+function attempt<Result>(path: string, write: () => Result): Result {
   try {
-    write();
+    return write();
   } catch (error) {
     const { code } = error as NodeJS.ErrnoException;
-    const reason =
-      code === 'ENOENT' ? 'its folder does not exist' : code === 'EISDIR' ? 'is a folder' : firstLine(error);
-    throw new InputError(`cannot be written (${reason})`, { cause: error }).in(path);
+    const reason = { ...reasons, ENOENT: 'its folder does not exist', EISDIR: 'is a folder' }[code ?? ''];
+    throw new InputError(`cannot be written (${reason ?? firstLine(error)})`, { cause: error }).in(path);
   }
 }

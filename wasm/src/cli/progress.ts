@@ -1,3 +1,5 @@
+import { oneLine } from './print.js';
+
 /** Characters of a progress bar. */
 const barLength = 24;
 
@@ -10,7 +12,7 @@ export class Progress {
   step(text: string): void {
     if (!this.#stream.isTTY) return;
     this.clear();
-    this.#stream.write(`${text} …`.slice(0, (this.#stream.columns || 80) - 1));
+    this.#stream.write(`${oneLine(text)} …`.slice(0, (this.#stream.columns || 80) - 1));
     this.#shown = true;
   }
 

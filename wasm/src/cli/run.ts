@@ -1,11 +1,12 @@
 import { cageGlb } from '../cages/glb.js';
 import type { Cage } from '../cages/types.js';
 import { type Extracted, extract, partOf, placeOf } from '../gltf/extract.js';
+import type { ReadOptions } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
 import { CagecastError, init, type TransferOptions, type TransferResult, transfer } from '../index.js';
 import { makeCageFor } from './make-cage.js';
-import { type Rules, transferOptions } from './options.js';
+import { quoted, type Rules, transferOptions } from './options.js';
 import type { Progress } from './progress.js';
 
 /** Two files, read and transferred. */
@@ -19,6 +20,14 @@ export interface Run {
   result: TransferResult;
 }
 
+/** The files of a transfer, and how they are read. */
+export interface Sources {
+  target: string;
+  cage: string;
+  rules: Rules;
+  reading: ReadOptions;
+}
+
 /** The name of a cage that is made on the way; a file of this name is `./auto`. */
 export const autoCage = 'auto';
 
@@ -26,10 +35,11 @@ export const autoCage = 'auto';
  * Reads target and cage, or makes a cage, and runs the transfer.
  * @throws {InputError} that names the file at fault.
  */
-export async function run(targetPath: string, cagePath: string, rules: Rules, progress: Progress): Promise<Run> {
-  const read = await readModel(targetPath, progress);
+export async function run({ target, cage: cagePath, rules, reading }: Sources, progress: Progress): Promise<Run> {
+  const read = await readModel(target, reading, progress);
   const options = optionsFor(read.file, read.extracted, rules);
-  const cage = cagePath === autoCage ? await madeCage(read, progress) : withUvs(await readModel(cagePath, progress));
+  const cage =
+    cagePath === autoCage ? await madeCage(read, progress) : withUvs(await readModel(cagePath, reading, progress));
   return transferred(read, cage, options, progress);
 }
 
@@ -40,9 +50,9 @@ export interface ReadModel {
 }
 
 /** Reads a model. @throws {InputError} that names the file. */
-export async function readModel(path: string, progress: Progress): Promise<ReadModel> {
+export async function readModel(path: string, reading: ReadOptions, progress: Progress): Promise<ReadModel> {
   progress.step(`reading ${path}`);
-  const file = await readGltf(path);
+  const file = await readGltf(path, reading);
   return { file, extracted: usable(file, extract(file)) };
 }
 
@@ -54,7 +64,7 @@ export function withUvs(model: ReadModel): ReadModel {
     ({ mesh, primitive }) => file.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined,
   )!;
   throw new InputError(
-    `${placeOf(part)} ("${part.name}") has no TEXCOORD_0: the texture is drawn in the cage's UVs`,
+    `${placeOf(part)} (${quoted(part.name)}) has no TEXCOORD_0: the texture is drawn in the cage's UVs`,
   ).in(file.path);
 }
 
@@ -66,7 +76,7 @@ async function madeCage(target: ReadModel, progress: Progress): Promise<ReadMode
 
 /** A cage as if it was read from a file. */
 export async function readBack(cage: Cage, path: string): Promise<ReadModel> {
-  const file = await readGltf(path, cageGlb(cage));
+  const file = await readGltf(path, undefined, cageGlb(cage));
   return { file, extracted: extract(file) };
 }
 
@@ -118,6 +128,6 @@ export function inFile(
   const { parts } = isCage ? cage : target;
   const perVertex = { nonFinitePosition: 3, tooLarge: 3, nonFiniteUv: 2 }[code as string];
   const part = perVertex === undefined ? undefined : partOf(parts, Math.floor(at / perVertex));
-  const where = part ? ` (${placeOf(part)}, "${part.name}")` : '';
+  const where = part ? ` (${placeOf(part)}, ${quoted(part.name)})` : '';
   return new InputError(`${text}${where}`).in((isCage ? cageFile : targetFile).path);
 }

@@ -1,5 +1,7 @@
 import type { SegmentStats } from '../index.js';
 
+import { oneLine } from './print.js';
+
 export { percent } from '../inspect/finding.js';
 
 /** Lays out rows in columns; all but the first are right-aligned. */
@@ -27,8 +29,9 @@ export function short(n: number): string {
   return Number(n.toPrecision(4)).toString();
 }
 
-/** A text cut to a length. */
-export function cut(text: string, length: number): string {
+/** A text in one line, cut to a length. */
+export function cut(name: string, length: number): string {
+  const text = oneLine(name);
   return text.length > length ? `${text.slice(0, length - 1)}…` : text;
 }
 

@@ -1,28 +1,26 @@
 import { basename } from 'node:path';
 import { placeOf } from '../gltf/extract.js';
+import { readBytes } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
+import type { ReadLimits } from '../gltf/limits.js';
 import { diagonal, type Paint, paintOf, zoneAttribute } from '../gltf/overlay.js';
-import { readBytes } from '../gltf/read.js';
 import { type Added, writeTransfer } from '../gltf/write.js';
 import { type CutTarget, cutBorders } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
-import { type EffectiveOptions, effectiveOptions, type Rules } from './options.js';
+import { type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
-import { inFile, type Run, run } from './run.js';
+import { inFile, type Run, run, type Sources } from './run.js';
 import { integer, percent, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
 /** The arguments of `cagecast transfer`. */
-export interface TransferCommand {
-  target: string;
-  cage: string;
+export interface TransferCommand extends Sources {
   texture?: string | undefined;
   output?: string | undefined;
   report?: string | undefined;
   /** Whether the paint ends at existing triangle edges, or triangles are cut where it ends. */
   borders: 'triangle' | 'cut';
-  rules: Rules;
 }
 
 /**
@@ -31,8 +29,8 @@ export interface TransferCommand {
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 export async function transferCommand(command: TransferCommand, progress: Progress): Promise<string> {
-  const paint = command.texture === undefined ? undefined : await readPaint(command.texture);
-  const done = await run(command.target, command.cage, command.rules, progress);
+  const paint = command.texture === undefined ? undefined : await readPaint(command.texture, command.reading.limits);
+  const done = await run(command, progress);
   let added: Added[] | undefined;
   let cut: CutTarget | undefined;
   const files: { path: string; data: Uint8Array | string }[] = [];
@@ -63,9 +61,9 @@ function cutTarget(done: Run, progress: Progress): CutTarget {
   }
 }
 
-async function readPaint(path: string): Promise<Paint> {
+async function readPaint(path: string, limits: ReadLimits): Promise<Paint> {
   try {
-    return paintOf(await readBytes(path), basename(path));
+    return paintOf(await readBytes(path, limits), basename(path));
   } catch (error) {
     throw error instanceof InputError ? error.in(path) : error;
   }

@@ -4,8 +4,12 @@ import { InputError } from './input-error.js';
 
 const componentBytes: Record<number, number> = { 5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4 };
 const typeComponents: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT2: 4, MAT3: 9, MAT4: 16 };
-/** The maximum count of an accessor, because a few bytes of JSON could otherwise request all memory. */
+/** The maximum count of an accessor: larger ones do not fit into an array. */
 const maxCount = 2 ** 28;
+
+/** The bytes of one element of an accessor; NaN if its type is unknown. */
+export const bytesOf = ({ componentType, type }: GLTF.IAccessor): number =>
+  (componentBytes[componentType] ?? NaN) * (typeComponents[type] ?? NaN);
 
 /** The JSON of extensions that compress a buffer view; both have the same shape. */
 export const meshoptExtensions = ['EXT_meshopt_compression', 'KHR_meshopt_compression'];
@@ -93,7 +97,7 @@ function checkViews({ bufferViews = [] }: GLTF.IGLTF, bytes: (number | undefined
       view.byteLength,
       compressed !== undefined,
     );
-    if (compressed)
+    if (compressed) {
       range(
         `${name} (compressed)`,
         index(`${name}.buffer`, compressed.buffer, bytes.length, 'buffers'),
@@ -101,6 +105,10 @@ function checkViews({ bufferViews = [] }: GLTF.IGLTF, bytes: (number | undefined
         compressed.byteLength,
         false,
       );
+      const decoded = whole(`${name}.count`, compressed.count) * whole(`${name}.byteStride`, compressed.byteStride);
+      if (decoded !== view.byteLength)
+        throw new InputError(`${name} (compressed) holds ${decoded} bytes, not the ${view.byteLength} of its view`);
+    }
   });
 
   function range(name: string, buffer: number, offset: number, length: number, mayLack: boolean): void {

@@ -1,9 +1,10 @@
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
 import { meshoptExtensions, meshoptView } from './check.js';
+import { type ReadOptions, readUri } from './files.js';
 import { imageType } from './image.js';
 import { InputError } from './input-error.js';
-import { type GltfFile, readUri } from './read.js';
+import type { GltfFile } from './read.js';
 
 const arrayBuffer = 34962;
 const elementArrayBuffer = 34963;
@@ -52,7 +53,7 @@ export class GlbWriter {
   static async from(file: GltfFile): Promise<GlbWriter> {
     const writer = new GlbWriter(file.json);
     writer.#mergeBuffers(file.buffers);
-    await writer.#embedImages(dirname(file.path));
+    await writer.#embedImages(dirname(file.path), file.reading);
     return writer;
   }
 
@@ -83,10 +84,10 @@ export class GlbWriter {
     json.buffers = [first, ...fallbacks];
   }
 
-  async #embedImages(folder: string): Promise<void> {
+  async #embedImages(folder: string, reading: ReadOptions): Promise<void> {
     for (const [i, image] of (this.json.images ?? []).entries()) {
       if (image.uri === undefined) continue;
-      const bytes = await readUri(`images[${i}]`, image.uri, folder);
+      const bytes = await readUri(`images[${i}]`, image.uri, folder, reading);
       const mimeType = image.mimeType ?? imageType(bytes) ?? /^data:([^;,]+)/.exec(image.uri)?.[1];
       if (mimeType === undefined) throw new InputError(`images[${i}] is not an image that a GLB can contain`);
       delete image.uri;

@@ -20,6 +20,7 @@ import { addTransfer } from './document-write.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
+export { type CheckOptions, checkGltf } from './check-file.js';
 export {
   addCage,
   cageModel,
@@ -30,6 +31,7 @@ export {
   makeCage,
   refineCage,
 } from './document-cages.js';
+export type { ReadLimits } from './limits.js';
 
 /** The ranges of a part of a document in the arrays of a result. */
 export interface PartRange {

@@ -1,3 +1,4 @@
+import { checkGltf } from 'cagecast/gltf';
 import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { type ExtractedMesh, extractMesh } from './extract-mesh';
@@ -40,6 +41,8 @@ export async function loadModel(
       );
     });
     const head = readGltfHead(bytes);
+    const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions)))];
+    checkCost(bytes, used);
     for (const uri of head.uris) urls.set(uri, URL.createObjectURL(findCompanion(uri, companions)));
 
     const manager = new LoadingManager().setURLModifier((url) => urls.get(decodeURIComponent(url)) ?? url);
@@ -48,12 +51,11 @@ export async function loadModel(
     try {
       const gltf = await loader.parseAsync(bytes, '');
       const scene = await sceneOf(gltf);
-      const files = [file, ...new Set(head.uris.map((uri) => findCompanion(uri, companions)))];
       const mesh = await extractMesh(scene, (mesh) => nameOf(mesh, gltf));
       const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());
       return {
         name: file.name,
-        files,
+        files: [file, ...used],
         scene,
         animations: gltf.animations,
         mesh,
@@ -112,6 +114,15 @@ function nameOf(mesh: Mesh, { parser }: GLTF): string | undefined {
   return name !== undefined && material !== undefined && material !== name && primitives.length > 1
     ? `${name}/${material}`
     : name;
+}
+
+/** Refuses a file that the loader, which trusts it, would take all memory for. @throws Error without the file's name. */
+function checkCost(bytes: ArrayBuffer, companions: readonly File[]): void {
+  try {
+    checkGltf(new Uint8Array(bytes), { otherBytes: companions.reduce((sum, { size }) => sum + size, 0) });
+  } catch (error) {
+    throw new Error((error as Error).message.replace(/^checkGltf: /, ''), { cause: error });
+  }
 }
 
 function findCompanion(uri: string, companions: readonly File[]): File {

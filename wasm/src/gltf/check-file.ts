@@ -1,0 +1,43 @@
+import { show } from '../api/error.js';
+import { CagecastError } from '../index.js';
+import { checkGeometry } from './check.js';
+import { InputError } from './input-error.js';
+import { checkLimits, defaultLimits, type ReadLimits } from './limits.js';
+import { parseGltf } from './parse.js';
+
+/** Options of `checkGltf`. */
+export interface CheckOptions {
+  /** Limits other than the default ones. */
+  limits?: Partial<ReadLimits> | undefined;
+  /** Bytes of the files that this one refers to. Default: 0 */
+  otherBytes?: number | undefined;
+}
+
+/**
+ * Checks a GLB or glTF file before anything else reads it: its references, the ranges of its data, and what decoding and showing it
+ * would cost. Loaders such as GLTFLoader and glTF-Transform trust a file, and a kilobyte can demand all memory. Takes about as long
+ * as parsing its JSON. It decodes nothing: values of vertices and indices are not checked.
+ * @param bytes  The whole file.
+ * @throws {CagecastError} `badArgument` that names the element, the value and the limit.
+ */
+export function checkGltf(bytes: Uint8Array, { limits, otherBytes = 0 }: CheckOptions = {}): void {
+  const wrong = (text: string, cause?: unknown) =>
+    new CagecastError('badArgument', `checkGltf: ${text}`, 0, cause === undefined ? {} : { cause });
+  if (!(bytes instanceof Uint8Array)) throw wrong(`bytes is ${show(bytes)}, not a Uint8Array`);
+  for (const [name, value] of Object.entries(limits ?? {}))
+    if (!(name in defaultLimits) || !(typeof value === 'number' && value >= 0))
+      throw wrong(
+        `limits.${name} = ${show(value)} is not a number ≥ 0 of one of ${Object.keys(defaultLimits).join(', ')}`,
+      );
+  const all = { ...defaultLimits, ...limits };
+  try {
+    const { json, binary } = parseGltf(bytes, all);
+    const sizes = (json.buffers ?? []).map(({ uri, byteLength }, b) =>
+      uri === undefined ? (b === 0 ? binary?.byteLength : undefined) : byteLength,
+    );
+    checkGeometry(json, sizes);
+    checkLimits(json, bytes.byteLength + otherBytes, all);
+  } catch (error) {
+    throw error instanceof InputError ? wrong(error.message, error) : error;
+  }
+}

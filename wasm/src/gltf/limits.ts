@@ -1,0 +1,132 @@
+import type { GLTF } from '@gltf-transform/core';
+import { bytesOf, dracoOf, meshoptView } from './check.js';
+import { InputError } from './input-error.js';
+import { hasTriangles } from './pieces.js';
+
+/** What reading a glTF file may cost. A few bytes can otherwise demand all memory and hours. */
+export interface ReadLimits {
+  /** Bytes of the file, of its buffers together, and of each image beside it. Default: 2^30 */
+  bytes: number;
+  /** Levels of its JSON, and of nodes below each other. Default: 1000 */
+  nesting: number;
+  /** How often the scene shows the same positions: nodes that share a mesh, primitives that share an accessor. Default: 1000 */
+  instances: number;
+  /** Elements of attributes and indices that are not in the file: those without bytes are zero. Default: 1,000,000 */
+  implied: number;
+  /** How many times larger than its files the data may become when it is decoded, from 32 MiB on. Default: 100 */
+  expansion: number;
+}
+
+/** The limits that hold if no others are given. */
+export const defaultLimits: Readonly<ReadLimits> = {
+  bytes: 2 ** 30,
+  nesting: 1000,
+  instances: 1000,
+  implied: 1_000_000,
+  expansion: 100,
+};
+
+/** Data of up to this many bytes may be decoded from any file. */
+const freeBytes = 2 ** 25;
+
+/** The error of a file that exceeds a limit. @param what  What exceeds it, with the number. */
+export function exceeds(what: string, limit: keyof ReadLimits, { [limit]: value }: ReadLimits): InputError {
+  return new InputError(`${what}; the limit "${limit}" is ${value.toLocaleString('en')}`);
+}
+
+/** Checks how deep JSON is nested, before it is parsed. @throws {InputError} */
+export function checkNesting(text: Uint8Array, limits: ReadLimits): void {
+  const [quote, backslash, openList, closeList, openObject, closeObject] = [0x22, 0x5c, 0x5b, 0x5d, 0x7b, 0x7d];
+  let depth = 0;
+  let inString = false;
+  for (let at = 0; at < text.length; ++at) {
+    const byte = text[at];
+    if (inString) {
+      if (byte === backslash) ++at;
+      else if (byte === quote) inString = false;
+    } else if (byte === quote) inString = true;
+    else if (byte === openList || byte === openObject) {
+      if (++depth > limits.nesting)
+        throw exceeds(`its JSON is nested more than ${limits.nesting} deep`, 'nesting', limits);
+    } else if (byte === closeList || byte === closeObject) --depth;
+  }
+}
+
+/**
+ * Checks what decoding and showing a glTF costs. Its references must have been checked.
+ * @param fileBytes  Of all its files together.
+ * @throws {InputError} that names the element, the value and the limit.
+ */
+export function checkLimits(json: GLTF.IGLTF, fileBytes: number, limits: ReadLimits): void {
+  checkNodeDepth(json, limits);
+  const shown = checkInstances(json, limits);
+  checkImplied(json, limits);
+  const decoded = shown + decodedBytes(json);
+  if (decoded > Math.max(freeBytes, limits.expansion * fileBytes)) {
+    throw exceeds(
+      `decodes to ${decoded.toLocaleString('en')} bytes, ${Math.round(decoded / fileBytes).toLocaleString('en')} times its size`,
+      'expansion',
+      limits,
+    );
+  }
+}
+
+function checkNodeDepth({ nodes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
+  const children = new Set(nodes.flatMap(({ children = [] }) => children));
+  let level = nodes.flatMap((_, node) => (children.has(node) ? [] : [node]));
+  for (let depth = 1; level.length > 0; ++depth) {
+    if (depth > limits.nesting) throw exceeds(`nodes[${level[0]}] is on level ${depth}`, 'nesting', limits);
+    level = level.flatMap((node) => nodes[node]!.children ?? []);
+  }
+}
+
+/** @returns the bytes of all positions and corners, counted as often as the scene shows them. */
+function checkInstances({ accessors = [], meshes = [], nodes = [] }: GLTF.IGLTF, limits: ReadLimits): number {
+  const nodesOf = new Map<number, number>();
+  for (const { mesh } of nodes) if (mesh !== undefined) nodesOf.set(mesh, (nodesOf.get(mesh) ?? 0) + 1);
+  const uses = new Map<number, number>();
+  let bytes = 0;
+  for (const [mesh, count] of nodesOf) {
+    for (const { attributes, indices, mode = 4 } of meshes[mesh]!.primitives) {
+      const positions = attributes['POSITION'];
+      if (positions === undefined || !hasTriangles(mode)) continue;
+      const all = (uses.get(positions) ?? 0) + count;
+      if (all > limits.instances)
+        throw exceeds(`the positions of meshes[${mesh}] are in ${all} places of the scene`, 'instances', limits);
+      uses.set(positions, all);
+      const vertices = accessors[positions]!.count;
+      bytes += count * (12 * vertices + 4 * (indices === undefined ? vertices : accessors[indices]!.count));
+    }
+  }
+  return bytes;
+}
+
+function checkImplied({ accessors = [], meshes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
+  const used = new Map<number, string>();
+  meshes.forEach(({ primitives }, m) =>
+    primitives.forEach((primitive, p) => {
+      if (dracoOf(primitive)) return; // its accessors have no bytes: they are in the compressed data
+      const place = `meshes[${m}].primitives[${p}]`;
+      for (const [semantic, accessor] of Object.entries(primitive.attributes))
+        used.set(accessor, `${place}.attributes.${semantic}`);
+      if (primitive.indices !== undefined) used.set(primitive.indices, `${place}.indices`);
+    }),
+  );
+  let implied = 0;
+  for (const [number, place] of used) {
+    const { bufferView, count } = accessors[number]!;
+    if (bufferView === undefined) implied += count;
+    if (implied > limits.implied)
+      throw exceeds(
+        `accessors[${number}] (${place}) has ${count.toLocaleString('en')} elements that are not in the file`,
+        'implied',
+        limits,
+      );
+  }
+}
+
+/** The bytes of all accessors and of all compressed views, decoded. */
+function decodedBytes({ accessors = [], bufferViews = [] }: GLTF.IGLTF): number {
+  const views = bufferViews.map((view) => meshoptView(view)).map((view) => (view ? view.count * view.byteStride : 0));
+  return [...views, ...accessors.map((accessor) => accessor.count * bytesOf(accessor))].reduce((sum, n) => sum + n, 0);
+}
