@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { readScene, type Scene } from '../../bench/scene-file.js';
-import { nativeCommand, packages } from './native.js';
+import { nativeCommand, packages } from '../support/native.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-golden-'));
 

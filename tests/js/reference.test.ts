@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import type { Mesh, Preset, TransferResult } from 'cagecast';
-import { nativeCommand, packages } from './native.js';
+import { nativeCommand, packages } from '../support/native.js';
 import { head, modelFolders, readPlain, type Scene, soup } from './scenes.js';
 
 let native: string;
