@@ -21,7 +21,7 @@ const [head, cage, paint] = await Promise.all([
 ]);
 paint.flipY = false; // textures of glTF begin at the top
 paint.colorSpace = SRGBColorSpace;
-const { overlays } = applyTransfer(head.scene, cage.scene, { texture: paint });
+const { parts } = applyTransfer(head.scene, cage.scene, { texture: paint });
 
 const scene = new Scene().add(head.scene, new AmbientLight(0xffffff, 1.5), new DirectionalLight(0xffffff, 2));
 const camera = new PerspectiveCamera(35, innerWidth / innerHeight, 0.01, 100);
@@ -33,4 +33,4 @@ renderer.setAnimationLoop((time) => {
   head.scene.rotation.y = Math.sin(time / 2000) / 2;
   renderer.render(scene, camera);
 });
-document.title = `${overlays.length} painted`;
+document.title = `${parts.length} painted`;

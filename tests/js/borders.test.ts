@@ -29,7 +29,6 @@ import {
   DataUtils,
   Float16BufferAttribute,
   MeshStandardMaterial,
-  Texture,
   Mesh as ThreeMesh,
   Triangle,
   Vector3,
@@ -546,7 +545,7 @@ describe('with borders: cut', () => {
       );
       const [base, theirOverlay] = await primitivesOf(commanded(at('rich.glb'), at('cage.glb')));
       const { overlays, parts, cutTriangles } = await applyTransfer(was!, cageScene!, {
-        texture: new Texture(),
+        material: new MeshStandardMaterial(),
         borders: 'cut',
       });
       const { geometry } = parts[0]!;
@@ -622,7 +621,7 @@ describe('with borders: cut', () => {
     const plain = { ...target, groups: undefined };
     const projection = project(cage, plain);
     const { result, overlays, update } = await applyTransfer(mesh, plainGeometry(cage), {
-      texture: new Texture(),
+      material: new MeshStandardMaterial(),
       borders: 'cut',
     });
     const cut = cutBorders(cage, plain, result);
@@ -658,7 +657,7 @@ describe('with borders: cut', () => {
     const shownAfter = async (locks: TransferOptions['locks'], now: Classification) => {
       const mesh = new ThreeMesh(plainGeometry(plain), new MeshStandardMaterial());
       const { overlays, update } = await applyTransfer(mesh, plainGeometry(cage), {
-        texture: new Texture(),
+        material: new MeshStandardMaterial(),
         borders: 'cut',
         locks,
       });

@@ -3,6 +3,7 @@ import { before, describe, test } from 'node:test';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import { applyTransfer, extract } from 'cagecast/three';
 import {
+  BatchedMesh,
   Bone,
   BoxGeometry,
   BufferAttribute,
@@ -276,27 +277,42 @@ describe('applyTransfer', () => {
     assert.deepEqual([overlays.length, target.children.length], [0, 0]);
   });
 
-  test('with a texture it lays the cosmetic triangles over each mesh, sharing its vertices', () => {
+  test('with a texture the material shows it on the cosmetic triangles; the texture stays as it is', () => {
     const target = meshOf(scene.target);
+    const { geometry, material } = target;
     const texture = new Texture();
-    const { result, overlays, update, dispose } = applyTransfer(target, meshOf(scene.cage), { texture, channel: 2 });
-    const [overlay] = overlays as [ThreeMesh<BufferGeometry, MeshStandardMaterial>];
-    assert.equal(overlay.parent, target);
-    assert.equal(texture.channel, 2);
-    assert.equal(overlay.material.map, texture);
-    assert.equal(overlay.material.roughness, 0.3);
-    assert.equal(overlay.geometry.getAttribute('position'), target.geometry.getAttribute('position'));
-    assert.equal(overlay.geometry.getAttribute('uv2'), target.geometry.getAttribute('uv2'));
-    const corners = [...target.geometry.index!.array].filter(
-      (_, i) => result.cosmeticTriangles[Math.floor(i / 3)] === 1,
+    const before = { ...texture };
+    const { version } = material;
+    const { result, overlays, update, setTexture, setOpacity, dispose, splitVertices } = applyTransfer(
+      target,
+      meshOf(scene.cage),
+      {
+        texture,
+      },
     );
-    assert.deepEqual([...overlay.geometry.index!.array], corners);
+    assert.deepEqual([overlays.length, target.children.length, target.material], [0, 0, material]);
+    assert.deepEqual({ ...texture }, before);
+    assert.ok(material.version > version);
+
+    /** Asserts that a triangle is painted if and only if it is cosmetic: by the rule of the shader. */
+    const assertPainted = (cosmetic: Uint8Array) => {
+      const [paint, uv] = [geometry.getAttribute('_cagecast_paint'), geometry.getAttribute('uv1')];
+      const corners = geometry.index!.array;
+      cosmetic.forEach((one, t) => {
+        const vertices = [...corners.subarray(3 * t, 3 * t + 3)];
+        assert.equal(vertices.every((v) => paint.getZ(v) === 0) ? 1 : 0, one, `triangle ${t}`);
+        for (const v of vertices)
+          assert.deepEqual([paint.getX(v), paint.getY(v), paint.getW(v)], [uv.getX(v), uv.getY(v), 1]);
+      });
+    };
+    assertPainted(result.cosmeticTriangles);
+    assert.ok(splitVertices > 0);
 
     // Another threshold.
     const decided = classify(project(scene.cage, { ...scene.target, groups: undefined }), { threshold: 1 });
     update(decided);
-    assert.deepEqual([...attribute(target.geometry, '_ncz')].slice(0, decided.zones.length), [...decided.zones]);
-    assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
+    assertPainted(decided.cosmeticTriangles);
+    assert.deepEqual([...attribute(geometry, '_ncz')].slice(0, decided.zones.length), [...decided.zones]);
     const { zones, cosmeticTriangles } = decided;
     assert.throws(
       // @ts-expect-error that is half a decision
@@ -306,6 +322,93 @@ describe('applyTransfer', () => {
         error.code === 'badArgument' &&
         /classification\.segmentStats is not an array/.test(error.message),
     );
+    // What no segment passes has no paint, and its material is as it was.
+    const none = Uint8Array.from(zones, () => Zone.Culled);
+    update({ ...decided, zones: none, cosmeticTriangles: new Uint8Array(cosmeticTriangles.length) });
+    assert.ok(!Object.hasOwn(material, 'onBeforeCompile'));
+    update(result);
+    assert.ok(Object.hasOwn(material, 'onBeforeCompile'));
+    setTexture(undefined);
+    assert.ok(!Object.hasOwn(material, 'onBeforeCompile'));
+    setTexture(new Texture());
+    setOpacity(0.5);
+    assert.throws(() => setOpacity(2), /setOpacity: 2 is not a number from 0 to 1/);
+    assert.throws(() => setTexture('paint.png' as unknown as Texture), /setTexture: paint\.png is not a Texture/);
+    dispose();
+    assert.ok(!Object.hasOwn(material, 'onBeforeCompile') && !Object.hasOwn(material, 'customProgramCacheKey'));
+    assert.ok(!geometry.hasAttribute('_cagecast_paint') && geometry.hasAttribute('uv1'));
+  });
+
+  test('a material that two models show is painted for the first and copied for the second', () => {
+    const [one, two] = [meshOf(scene.target), meshOf(scene.target)];
+    two.material = one.material;
+    const [first, second] = [one, two].map((mesh) =>
+      applyTransfer(mesh, meshOf(scene.cage), { texture: new Texture() }),
+    );
+    const { material } = one;
+    assert.notEqual(two.material, material);
+    second!.dispose();
+    assert.equal(two.material, material);
+    assert.ok(Object.hasOwn(material, 'onBeforeCompile'));
+    // Applied to the same mesh again, the later paint is the one that stays.
+    const again = applyTransfer(one, meshOf(scene.cage), { texture: new Texture() });
+    assert.equal(one.material, material);
+    first!.dispose();
+    assert.ok(Object.hasOwn(material, 'onBeforeCompile') && one.geometry.hasAttribute('_cagecast_paint'));
+    again.dispose();
+    assert.ok(!Object.hasOwn(material, 'onBeforeCompile'));
+  });
+
+  test('a soft border: distances from the border of the paint, 0 on it, growing by no more than the edges', () => {
+    const target = meshOf(ball([0, 0, 0], () => 1, 24, 36));
+    const around = ball([0, 0, 0], () => 1.1, 24, 36);
+    const open = around.indices.filter((_, i) => around.positions[3 * around.indices[i - (i % 3)]! + 1]! < 0.5);
+    const applied = applyTransfer(target, meshOf({ ...around, indices: open }), {
+      texture: new Texture(),
+      feather: 0.1,
+    });
+    const { geometry } = target;
+    const paint = geometry.getAttribute('_cagecast_paint');
+    const corners = geometry.index!.array;
+    const bare = new Set([...corners].filter((_, i) => applied.result.cosmeticTriangles[Math.floor(i / 3)] === 0));
+    const place = (v: number) => new Vector3().fromBufferAttribute(geometry.getAttribute('position'), v);
+    geometry.computeBoundingBox();
+    const size = geometry.boundingBox!.getSize(new Vector3()).length();
+    let [atBorder, inside] = [0, 0];
+    for (let i = 0; i < corners.length; i += 3) {
+      if (applied.result.cosmeticTriangles[i / 3] === 0) continue;
+      const [a, b] = [corners[i]!, corners[i + 1]!];
+      if (bare.has(a)) {
+        ++atBorder;
+        assert.equal(paint.getW(a), 1);
+      }
+      if (paint.getW(a) > 1.05) ++inside;
+      const [d, e] = [paint.getW(a), paint.getW(b)];
+      if (Math.min(d, e) < 1.1) assert.ok(Math.abs(d - e) * size <= place(a).distanceTo(place(b)) + 1e-5);
+    }
+    assert.ok(atBorder > 10 && inside > 10, `${atBorder}, ${inside}`);
+  });
+
+  test('with a material it lays the cosmetic triangles over each mesh, sharing its vertices', () => {
+    const target = meshOf(scene.target);
+    const material = new MeshStandardMaterial();
+    const { result, overlays, update, dispose, channel } = applyTransfer(target, meshOf(scene.cage), {
+      material,
+      channel: 2,
+    });
+    const [overlay] = overlays as [ThreeMesh<BufferGeometry, MeshStandardMaterial>];
+    assert.equal(overlay.parent, target);
+    assert.equal(channel, 2);
+    assert.equal(overlay.material, material);
+    assert.equal(overlay.geometry.getAttribute('position'), target.geometry.getAttribute('position'));
+    assert.equal(overlay.geometry.getAttribute('uv2'), target.geometry.getAttribute('uv2'));
+    const corners = [...target.geometry.index!.array].filter(
+      (_, i) => result.cosmeticTriangles[Math.floor(i / 3)] === 1,
+    );
+    assert.deepEqual([...overlay.geometry.index!.array], corners);
+    const decided = classify(project(scene.cage, { ...scene.target, groups: undefined }), { threshold: 1 });
+    update(decided);
+    assert.equal(overlay.geometry.index!.count, 3 * decided.cosmeticTriangles.filter((one) => one === 1).length);
     // The renderer frees what a geometry has when it goes.
     let freed: unknown[] = [target.geometry.getAttribute('position')];
     overlay.geometry.addEventListener('dispose', () => (freed = Object.values(overlay.geometry.attributes)));
@@ -320,8 +423,9 @@ describe('applyTransfer', () => {
     target.geometry.setAttribute('uv1', own);
     for (let i = 0; i < 2; ++i) {
       const texture = new Texture();
-      applyTransfer(target, meshOf(scene.cage), { texture, seams: 'vertex' }).dispose();
-      assert.equal(texture.channel, 2);
+      const applied = applyTransfer(target, meshOf(scene.cage), { texture, seams: 'vertex' });
+      applied.dispose();
+      assert.deepEqual([applied.channel, texture.channel], [2, 0]);
       assert.equal(target.geometry.getAttribute('uv1'), own);
       assert.equal(target.geometry.hasAttribute('uv3'), false);
     }
@@ -332,12 +436,21 @@ describe('applyTransfer', () => {
     assert.throws(() => applyTransfer(other, meshOf(scene.cage)), /has uv1, uv2 and uv3 of its own/);
   });
 
-  test('instances are an error', () => {
+  test('an instanced mesh is where its first instance is; batches are an error', () => {
     const { geometry, material } = meshOf(scene.target);
-    assert.throws(() => extract(new Group().add(new InstancedMesh(geometry, material, 2))), /many places at once/);
+    const instanced = new InstancedMesh(geometry, material, 2);
+    instanced.setMatrixAt(0, new Matrix4().makeTranslation(-3, 0, 0));
+    instanced.setMatrixAt(1, new Matrix4().makeTranslation(100, 0, 0));
+    instanced.position.x = 3;
+    const { parts, mesh } = extract(new Group().add(instanced));
+    assert.equal(parts.length, 1);
+    assert.deepEqual(mesh.positions, scene.target.positions);
+    const { result } = applyTransfer(instanced, meshOf(scene.cage), { texture: new Texture() });
+    assert.deepEqual(result.zones, transfer(scene.cage, { ...scene.target, groups: undefined }).zones);
+    assert.throws(() => extract(new Group().add(new BatchedMesh(2, 99, 99, material))), /no triangle has a place/);
     assert.throws(
       () => extract(new ThreeMesh(new InstancedBufferGeometry().copy(geometry as InstancedBufferGeometry), material)),
-      /many places at once/,
+      /no triangle has a place/,
     );
     const few = geometry.clone().setAttribute('heat', new BufferAttribute(new Float32Array(5), 1));
     assert.throws(() => extract(few), /"geometry" has 5 heat for \d+ vertices/);
@@ -397,7 +510,7 @@ describe('applyTransfer', () => {
     target.updateMorphTargets();
     const {
       overlays: [overlay],
-    } = applyTransfer(target, meshOf(scene.cage), { texture: new Texture() });
+    } = applyTransfer(target, meshOf(scene.cage), { material: new MeshStandardMaterial() });
     const vertex = overlay!.geometry.index!.getX(0);
     for (const weight of [0, 1]) {
       target.morphTargetInfluences![0] = weight;
@@ -462,7 +575,7 @@ describe('applyTransfer', () => {
     target.bind(new Skeleton([bone, still]));
     bone.quaternion.copy(new Quaternion().setFromAxisAngle(new Vector3(1, 0, 0), 1));
     root.updateMatrixWorld(true);
-    const { result, overlays } = applyTransfer(root, meshOf(scene.cage), { texture: new Texture() });
+    const { result, overlays } = applyTransfer(root, meshOf(scene.cage), { material: new MeshStandardMaterial() });
     assert.deepEqual(result.uvs, transfer(scene.cage, { ...scene.target, groups: undefined }).uvs);
     const [overlay] = overlays as [SkinnedMesh];
     assert.equal(overlay.skeleton, target.skeleton);

@@ -3,7 +3,7 @@ import { test } from 'node:test';
 import { promisify } from 'node:util';
 import { inRepository } from '../support/site';
 
-for (const project of ['web', 'web/service-worker', 'tests/browser']) {
+for (const project of ['web', 'web/service-worker', 'tests/browser', 'tests/three']) {
   test(`${project}: type check`, async () => {
     await promisify(execFile)(inRepository('node_modules/.bin/tsc'), ['-p', inRepository(project)]).catch(
       ({ stdout }) => {

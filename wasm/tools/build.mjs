@@ -214,6 +214,7 @@ function wasmModules(wasm, { index, read } = {}) {
       if (index) {
         build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
         build.onResolve({ filter: /^\.\.\/cages\/index\.js$/ }, () => ({ path: './cages.js', external: true }));
+        build.onResolve({ filter: /^\.\.\/worker\/index\.js$/ }, () => ({ path: './worker.js', external: true }));
       }
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
         contents: readFileSync(path).toString('latin1'),

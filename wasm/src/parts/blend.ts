@@ -11,7 +11,7 @@ export const noBlends: Blends = { sources: new Uint32Array(0), weights: new Floa
 export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
 
 /** How a new vertex gets an attribute: as the mean of its sources, as a normalised mean direction, or from its heaviest source. */
-type Rule = 'mean' | 'direction' | 'heaviest';
+export type Rule = 'mean' | 'direction' | 'heaviest';
 
 /** Integers that are not normalised are identifiers, so they are not averaged. */
 export function ruleOf(semantic: string, values: AttributeArray, normalized: boolean): Rule {
@@ -42,15 +42,27 @@ export function heaviestOf({ sources, weights }: Blends, n: number): number {
 
 /** The values of a part's vertices, `size` numbers each, and of its new ones after them. */
 export function blend<A extends AttributeArray>(values: A, size: number, blends: Blends, rule: Rule = 'mean'): A {
-  const { sources, weights } = blends;
   const out = extended(values, size, blends);
+  blendInto(out, values.length / size, size, blends, rule);
+  return out;
+}
+
+/** Writes the values of new vertices into an array, from vertex `first` on; before it are those of the vertices they blend. */
+export function blendInto(
+  values: AttributeArray,
+  first: number,
+  size: number,
+  blends: Blends,
+  rule: Rule = 'mean',
+): void {
+  const { sources, weights } = blends;
   const isFloat = values instanceof Float32Array;
   const mean = new Float64Array(size);
   for (let i = 0; i < sources.length; i += 3) {
     const [a, b, c] = [size * sources[i]!, size * sources[i + 1]!, size * sources[i + 2]!];
     for (let k = 0; k < size; ++k)
       mean[k] = weights[i]! * values[a + k]! + weights[i + 1]! * values[b + k]! + weights[i + 2]! * values[c + k]!;
-    const to = values.length + (size * i) / 3;
+    const to = size * (first + i / 3);
     const heaviest = rule === 'mean' ? 0 : size * heaviestOf(blends, i / 3);
     const length = rule === 'direction' ? Math.hypot(mean[0]!, mean[1]!, mean[2]!) : 0;
     for (let k = 0; k < size; ++k) {
@@ -58,10 +70,9 @@ export function blend<A extends AttributeArray>(values: A, size: number, blends:
       // A tangent's fourth number is a sign.
       if (rule === 'heaviest' || (rule === 'direction' && (k > 2 || length === 0))) value = values[heaviest + k]!;
       else if (rule === 'direction') value *= one(values) / length;
-      out[to + k] = isFloat ? value : Math.round(value);
+      values[to + k] = isFloat ? value : Math.round(value);
     }
   }
-  return out;
 }
 
 /**

@@ -61,6 +61,11 @@ export function cutPart(part: Omit<PartGeometry, 'localIndices'>, cut: CutTarget
   };
 }
 
+/** What is needed of a cut part once its vertices are split. */
+export interface CutPieces extends Pick<CutPart, 'blends' | 'origins'> {
+  result: Pick<CutPart['result'], 'zones' | 'cosmeticTriangles'>;
+}
+
 type Decision = Pick<Classification, 'zones' | 'cosmeticTriangles'>;
 
 /**
@@ -71,8 +76,8 @@ type Decision = Pick<Classification, 'zones' | 'cosmeticTriangles'>;
  * @param isOther  1 per vertex of the whole target: whether its segment has another verdict.
  */
 export function decideAgain(
-  { result, blends, origins }: CutPart,
-  { firstVertex, vertexCount }: PartGeometry,
+  { result, blends, origins }: CutPieces,
+  { firstVertex, vertexCount }: Pick<PartGeometry, 'firstVertex' | 'vertexCount'>,
   indices: ArrayLike<number>,
   isOther: ArrayLike<number>,
   now: Decision,

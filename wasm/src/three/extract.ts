@@ -1,6 +1,7 @@
 import {
   type BufferAttribute,
   type BufferGeometry,
+  type InstancedMesh,
   type InterleavedBufferAttribute,
   Matrix4,
   type Object3D,
@@ -40,7 +41,8 @@ const identity = new Matrix4();
  *
  * Vertices keep their order and number. Positions are in the scene's space: world matrices are applied in double precision and
  * rounded once, and the winding of mirrored meshes is reversed. Skinned meshes are placed by their skeleton, in the bind pose;
- * morph targets are not applied. Each mesh, or each of its material groups, is a group.
+ * morph targets are not applied. An instanced mesh is taken once, where its first instance is. Each mesh, or each of its material
+ * groups, is a group.
  * @param argument  The name of the argument, for messages.
  * @throws {CagecastError} that names the part and the element.
  */
@@ -71,13 +73,12 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   }
   const parts: Part[] = [];
   const add = (name: string, mesh: ThreeMesh | undefined, geometry: BufferGeometry, matrix: Matrix4) => {
-    if ((mesh && ('isInstancedMesh' in mesh || 'isBatchedMesh' in mesh)) || 'isInstancedBufferGeometry' in geometry) {
+    if ((mesh && 'isBatchedMesh' in mesh) || 'isInstancedBufferGeometry' in geometry)
       throw wrong(
         argument,
         name,
-        'is instanced, so its geometry is in many places at once; make each instance a mesh of its own first',
+        'is a batch or an instanced geometry, of which no triangle has a place; make each instance a mesh of its own first',
       );
-    }
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
     const corners = geometry.index ? geometry.index.count : vertexCount;
@@ -110,16 +111,22 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   object.traverse((child) => {
     if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
     const name = child.name || child.parent?.name || `mesh ${parts.length}`;
-    add(name, child, child.geometry, placeOf(child));
+    if (!isInstanced(child) || child.count > 0) add(name, child, child.geometry, placeOf(child));
   });
   return parts;
 }
 
 /**
- * Returns the matrix from a mesh to the scene: its world matrix, or, for a skinned mesh, the one by which its skeleton places it in
- * the bind pose. World matrices must be up to date. Cost: linear in the vertices for a skinned mesh.
+ * Returns the matrix from a mesh to the scene: its world matrix; for a skinned mesh, the one by which its skeleton places it in
+ * the bind pose; for an instanced mesh, that of the first instance. World matrices must be up to date. Cost: linear in the vertices
+ * for a skinned mesh.
  */
 export function placeOf(mesh: ThreeMesh): Matrix4 {
+  if (isInstanced(mesh)) {
+    const first = new Matrix4();
+    mesh.getMatrixAt(0, first);
+    return first.premultiply(mesh.matrixWorld);
+  }
   if (!isSkinned(mesh)) return mesh.matrixWorld;
   const { skeleton, bindMatrix, geometry } = mesh;
   const [position, held, weights] = ['position', 'skinIndex', 'skinWeight'].map(
@@ -161,6 +168,7 @@ const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry
   (object as BufferGeometry | undefined)?.isBufferGeometry === true;
 const isObject = (object: Object3D): boolean => object?.isObject3D === true;
 export const isSkinned = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).isSkinnedMesh === true;
+export const isInstanced = (mesh: ThreeMesh): mesh is InstancedMesh => (mesh as InstancedMesh).isInstancedMesh === true;
 const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
 /** Describes a value of the wrong type, for messages. */
@@ -178,7 +186,9 @@ function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, ou
   const moves = !matrix.equals(identity);
   for (let v = 0; v < vertexCount; ++v) {
     // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
-    const [x, y, z] = [Math.fround(position.getX(v)), Math.fround(position.getY(v)), Math.fround(position.getZ(v))];
+    const x = Math.fround(position.getX(v));
+    const y = Math.fround(position.getY(v));
+    const z = Math.fround(position.getZ(v));
     const to = 3 * (firstVertex + v);
     out[to] = moves ? m[0]! * x + m[4]! * y + m[8]! * z + m[12]! : x;
     out[to + 1] = moves ? m[1]! * x + m[5]! * y + m[9]! * z + m[13]! : y;

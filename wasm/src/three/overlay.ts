@@ -1,86 +1,127 @@
 import {
   BufferAttribute,
   BufferGeometry,
+  InstancedMesh,
   LessEqualDepth,
   type Material,
   Mesh,
   MeshStandardMaterial,
   SkinnedMesh,
-  type Texture,
 } from 'three';
-import { isSkinned, overlayMark, type Part } from './extract.js';
+import { isInstanced, isSkinned, overlayMark, type Part } from './extract.js';
 
-/**
- * Makes a mesh of the triangles of a part that may be painted. It shares the vertices, skin and morphs of the part's mesh
- * and is a child of it, so that it moves, bends and morphs with it.
- */
-export function makeOverlay(part: Part, base: Mesh, uvName: string, material: Material): Mesh {
-  const { geometry: source } = part;
+/** What an overlay has of its base at any time, not only when it was made. */
+const kFollowed = [
+  ...['layers', 'renderOrder', 'frustumCulled', 'receiveShadow', 'morphTargetInfluences', 'morphTargetDictionary'],
+  ...['skeleton', 'bindMode', 'bindMatrix', 'bindMatrixInverse', 'instanceMatrix', 'instanceColor', 'count'],
+  'morphTexture',
+];
+
+/** Makes a class of meshes whose properties are those of the mesh that holds them. Their copies are such meshes too. */
+function following<C extends typeof Mesh | typeof SkinnedMesh | typeof InstancedMesh>(Base: C): C {
+  type Fields = Record<string, unknown> & { parent: (Mesh & Record<string, unknown>) | null; ownFields?: Fields };
+  // A field that three's constructors set before the mesh has a parent.
+  const fieldsOf = (mesh: Fields): Record<string, unknown> => {
+    if (!mesh.ownFields) Object.defineProperty(mesh, 'ownFields', { value: {} });
+    return mesh.ownFields!;
+  };
+  const Follower = class extends (Base as typeof Mesh) {
+    /** Rays hit the base. */
+    override raycast(): void {}
+  };
+  for (const name of kFollowed) {
+    Object.defineProperty(Follower.prototype, name, {
+      get(this: Fields) {
+        return this.parent ? this.parent[name] : fieldsOf(this)[name];
+      },
+      set(this: Fields, value: unknown) {
+        if (!this.parent) fieldsOf(this)[name] = value;
+      },
+    });
+  }
+  Object.defineProperty(Follower.prototype, 'geometry', {
+    get(this: Fields) {
+      const own = fieldsOf(this);
+      const geometry = own['geometry'] as BufferGeometry;
+      const base = this.parent?.geometry;
+      // Copies share the geometry, so it is not changed, but made anew.
+      if (base && geometry.userData['source'] !== base.uuid) own['geometry'] = shareVertices(base, geometry.index!);
+      return own['geometry'];
+    },
+    set(this: Fields, value: unknown) {
+      fieldsOf(this)['geometry'] = value;
+    },
+  });
+  return Follower as unknown as C;
+}
+
+const Overlay = /* @__PURE__ */ following(Mesh);
+const SkinnedOverlay = /* @__PURE__ */ following(SkinnedMesh);
+const InstancedOverlay = /* @__PURE__ */ following(InstancedMesh);
+
+/** A geometry with other triangles that shares the vertices and morph targets of a base. */
+function shareVertices(base: BufferGeometry, index: BufferAttribute): BufferGeometry {
   const geometry = new BufferGeometry();
-  for (const [name, attribute] of Object.entries(source.attributes)) {
+  for (const [name, attribute] of Object.entries(base.attributes)) {
     // Its colours would tint the texture.
     if (name !== 'color') geometry.setAttribute(name, attribute);
   }
-  geometry.setAttribute(uvName, source.getAttribute(uvName));
-  geometry.morphAttributes = source.morphAttributes;
-  geometry.morphTargetsRelative = source.morphTargetsRelative;
-  geometry.boundingBox = source.boundingBox;
-  geometry.boundingSphere = source.boundingSphere;
+  geometry.morphAttributes = base.morphAttributes;
+  geometry.morphTargetsRelative = base.morphTargetsRelative;
+  geometry.boundingBox = base.boundingBox;
+  geometry.boundingSphere = base.boundingSphere;
+  geometry.setIndex(index);
+  geometry.userData['source'] = base.uuid;
+  return geometry;
+}
 
-  let overlay: Mesh;
-  if (isSkinned(base)) {
-    const skinned = new SkinnedMesh(geometry, material);
-    skinned.bindMode = base.bindMode;
-    skinned.bind(base.skeleton, base.bindMatrix);
-    overlay = skinned;
-  } else {
-    overlay = new Mesh(geometry, material);
-  }
-  if (base.morphTargetInfluences) {
-    // The same array, not a copy: it follows every change.
-    overlay.morphTargetInfluences = base.morphTargetInfluences;
-    overlay.morphTargetDictionary = base.morphTargetDictionary;
-  }
+/**
+ * Makes a mesh of the triangles of a part that may be painted, none at first. It shares the vertices, skin and morphs of the part's
+ * mesh, whose child it becomes, and is placed, shown and hidden as that is.
+ */
+export function makeOverlay(part: Part, base: Mesh, material: Material): Mesh {
+  const geometry = shareVertices(base.geometry, new BufferAttribute(new Uint32Array(0), 1));
+  const overlay = isInstanced(base)
+    ? new InstancedOverlay(geometry, material, 0)
+    : isSkinned(base)
+      ? new SkinnedOverlay(geometry, material)
+      : new Overlay(geometry, material);
   overlay.name = `${part.name} (cosmetic)`;
   overlay.userData[overlayMark] = true;
-  overlay.frustumCulled = base.frustumCulled;
-  overlay.renderOrder = base.renderOrder + 1;
-  overlay.receiveShadow = base.receiveShadow;
-  overlay.layers.mask = base.layers.mask;
-  // Rays already hit the mesh below.
-  overlay.raycast = () => {};
   return overlay;
 }
 
-/** Makes an overlay draw the triangles of its part for which `cosmetic` is 1. */
-export function showTriangles({ geometry }: Mesh, { geometry: { index } }: Part, cosmetic: Uint8Array): void {
+/** Makes an overlay draw the triangles of its base for which `cosmetic` is 1; one without any leaves its base. */
+export function showTriangles(overlay: Mesh, base: Mesh, cosmetic: Uint8Array): void {
+  const { index } = base.geometry;
   const corners = new Uint32Array(3 * cosmetic.reduce((sum, one) => sum + one, 0));
   let filled = 0;
   for (let i = 0; i < 3 * cosmetic.length; ++i)
     if (cosmetic[Math.floor(i / 3)] === 1) corners[filled++] = index ? index.getX(i) : i;
-  geometry.setIndex(new BufferAttribute(corners, 1));
+  overlay.geometry = shareVertices(base.geometry, new BufferAttribute(corners, 1));
+  if (filled === 0) overlay.removeFromParent();
+  else if (overlay.parent !== base) base.add(overlay);
 }
 
-/** A material that shows a texture, with the gloss and relief of the material below it. */
-export function paintMaterial(base: Material | undefined, texture: Texture): MeshStandardMaterial {
-  const material = new MeshStandardMaterial({ roughness: 0.8 });
-  if ((base as MeshStandardMaterial | undefined)?.isMeshStandardMaterial) {
-    const { roughness, roughnessMap, normalMap, normalMapType, normalScale, bumpMap, bumpScale } =
-      base as MeshStandardMaterial;
-    material.setValues({ roughness, roughnessMap, normalMap, normalMapType, bumpMap, bumpScale });
-    material.normalScale.copy(normalScale);
-  }
-  if (base) material.side = base.side;
-  material.map = texture;
-  return material;
+/** Frees what an overlay has of its own, and takes it away. */
+export function removeOverlay(overlay: Mesh): void {
+  const { geometry } = overlay;
+  overlay.removeFromParent();
+  // Disposing a geometry frees the buffers of all its attributes, but these belong to the model.
+  for (const name of Object.keys(geometry.attributes)) geometry.deleteAttribute(name);
+  geometry.morphAttributes = {};
+  geometry.dispose();
 }
 
-/** Makes a material draw on top of a surface with the same vertices. */
-export function layOnSurface(material: Material): void {
+/** A material for paint on top of one that cannot be painted. */
+export function overlayMaterial(base: Material): MeshStandardMaterial {
+  const { side, opacity } = base;
+  const material = new MeshStandardMaterial({ roughness: 0.8, side, opacity });
   material.transparent = true;
   material.depthWrite = false;
   material.depthFunc = LessEqualDepth;
   material.polygonOffset = true;
   material.polygonOffsetFactor = -1;
   material.polygonOffsetUnits = -1;
+  return material;
 }

@@ -8,13 +8,16 @@ export async function answer(
 ): Promise<{ reply: Reply; move: ArrayBuffer[] }> {
   try {
     const result = await call(fn, args);
-    const arrays = Object.values(result ?? {}).filter((value): value is ArrayBufferView<ArrayBuffer> =>
-      ArrayBuffer.isView(value),
-    );
-    return { reply: { id, result }, move: arrays.map((array) => array.buffer) };
+    return { reply: { id, result }, move: [...new Set(buffersIn(result))] };
   } catch (error) {
     const { code, message, at } =
       error instanceof CagecastError ? error : { code: 'internal' as const, message: String(error), at: 0 };
     return { reply: { id, error: { code, message, at } }, move: [] };
   }
+}
+
+/** The buffers of all arrays in plain data. */
+function buffersIn(data: unknown): ArrayBuffer[] {
+  if (ArrayBuffer.isView(data)) return [data.buffer as ArrayBuffer];
+  return typeof data === 'object' && data !== null ? Object.values(data).flatMap(buffersIn) : [];
 }

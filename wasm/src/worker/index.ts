@@ -19,6 +19,7 @@ import {
   type TransferOptions,
   type TransferResult,
 } from '../index.js';
+import type { Prepared, PrepareInput } from '../parts/prepare.js';
 import { type CallOptions, WorkerQueue } from './queue.js';
 
 export * from '../index.js';
@@ -73,6 +74,11 @@ export function cutBorders(
 /** As `presetOptions` of `cagecast`, off the main thread. */
 export function presetOptions(preset?: Preset, options: CallOptions = {}): Promise<PresetOptions> {
   return withOptions('presetOptions', [preset], options);
+}
+
+/** What `applyTransferAsync` of `cagecast/three` does in the worker; not meant for others. */
+export function prepareParts(input: PrepareInput, options: CallOptions = {}): Promise<Prepared> {
+  return queue.call('prepareParts', [input], options);
 }
 
 /** Ends the worker and frees its memory. Pending calls reject with code `aborted`; the next call starts a new worker. */

@@ -1,0 +1,193 @@
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { build } from 'esbuild';
+import type { Browser, Page } from 'playwright-core';
+import { launchChromium } from '../support/chromium.js';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-three-'));
+const types: Record<string, string> = { js: 'text/javascript', wasm: 'application/wasm', html: 'text/html' };
+const server = createServer((request, response) => {
+  const name = new URL(request.url ?? '/', 'http://localhost').pathname.slice(1) || 'index.html';
+  try {
+    const from = /^(target|cage)\.glb$/.test(name)
+      ? 'build/assets/lizard'
+      : /^(worker-thread|index|spawn|cages-thread)\.js$|\.wasm$/.test(name)
+        ? 'dist'
+        : folder;
+    const bytes = readFileSync(join(from, name));
+    response.writeHead(200, {
+      'content-type': types[name.split('.').at(-1)!] ?? 'application/octet-stream',
+      // Isolated pages may read the clock exactly.
+      'cross-origin-opener-policy': 'same-origin',
+      'cross-origin-embedder-policy': 'require-corp',
+    });
+    response.end(bytes);
+  } catch {
+    response.writeHead(404).end();
+  }
+});
+let browser: Browser;
+let page: Page;
+const complaints: string[] = [];
+
+before(async () => {
+  await build({
+    entryPoints: ['tests/three/page.ts'],
+    bundle: true,
+    format: 'esm',
+    outdir: folder,
+    logLevel: 'warning',
+    define: { 'import.meta.url': 'location.href' },
+  });
+  writeFileSync(join(folder, 'index.html'), '<!doctype html><script type="module" src="page.js"></script>');
+  await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
+  browser = await launchChromium({ drawing: true });
+  page = await browser.newPage();
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type()) && !/404|GPU stall/.test(message.text()))
+      complaints.push(message.text());
+  });
+  await page.goto(`http://127.0.0.1:${(server.address() as { port: number }).port}/`);
+  await page.waitForFunction(() => 'run' in globalThis || undefined, undefined, { timeout: 60000 });
+});
+after(async () => {
+  await browser?.close();
+  server.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+async function run<T>(name: string): Promise<T> {
+  const seen = await page.evaluate(
+    (name) => (globalThis as unknown as { run(name: string): Promise<unknown> }).run(name),
+    name,
+  );
+  assert.equal((seen as { error?: string }).error, undefined);
+  assert.deepEqual(complaints.splice(0), []);
+  return seen as T;
+}
+
+describe('paint of cagecast/three, drawn by Chromium', () => {
+  test('takes on the shading of the material below, and its opacity, without a draw call', async (context) => {
+    const seen = await run<Record<string, { apart: number; calls: number }>>('shading');
+    context.diagnostic(JSON.stringify(seen));
+    for (const [kind, { apart, calls }] of Object.entries(seen)) {
+      assert.ok(apart <= 2, `${kind}: ${apart} of 255`);
+      assert.equal(calls, 0, kind);
+    }
+  });
+
+  test('one texture paints two models with different UV sets, and stays as it was', async () => {
+    const { alone, both, rebuilt, untouched } = await run<{
+      alone: number[];
+      both: number[][];
+      rebuilt: number[][];
+      untouched: boolean;
+    }>('sharedTexture');
+    assert.ok(
+      alone.every((count) => count > 100),
+      alone.join(),
+    );
+    assert.deepEqual(both, [alone, alone]);
+    assert.deepEqual(rebuilt, both);
+    assert.ok(untouched);
+  });
+
+  test('clones are painted and morph as their model, and rays hit them once', async () => {
+    const { still, before, moved, hits } = await run<{ still: number; before: number; moved: number; hits: number }>(
+      'clones',
+    );
+    assert.equal(still, before);
+    assert.ok(moved > 1.3 * still, `${moved} of ${still}`);
+    assert.equal(hits, 1);
+  });
+
+  test('updateMorphTargets and VRMUtils.combineMorphs leave no base bare', async () => {
+    const { still, seen } = await run<{ still: number[]; seen: { red: number; base: number }[] }>('morphs');
+    seen.forEach(({ red, base }, m) => {
+      assert.ok(red > 1.3 * still[m]!, `${red} of ${still[m]}`);
+      assert.equal(base, 0);
+    });
+  });
+
+  test('visibility, layers, first person and render order are those of the base', async () => {
+    assert.deepEqual(await run('following'), {
+      at: true,
+      hidden: 0,
+      layers: [0, true],
+      firstPerson: [false, false, true],
+      headless: [false, false, true],
+      order: [0, 1],
+    });
+  });
+
+  test('parts without paint cost nothing', async () => {
+    const { before, after, red } = await run<{ before: number; after: number; red: number }>('emptyParts');
+    assert.equal(after, before);
+    assert.ok(red > 100);
+  });
+
+  test('thirty painted parts need no draw call more', async (context) => {
+    const { calls, best, red } = await run<{ calls: number[]; best: number[]; red: number }>('manyParts');
+    context.diagnostic(`a frame of 30 parts: ${best.map((ms) => ms.toFixed(3)).join(' ms, painted ')} ms`);
+    assert.deepEqual(calls, [30, 30]);
+    assert.ok(red > 100);
+  });
+
+  test('a shader that asks for paint gets it; one that does not is overlaid', async () => {
+    const { calls, red, blue, clone } = await run<{ calls: number[]; red: number[]; blue: number[]; clone: number }>(
+      'ownShaders',
+    );
+    assert.deepEqual(calls, [0, 1]);
+    for (const count of [...red, clone]) assert.ok(count > 100, `${count}`);
+    for (const count of blue) assert.ok(count < 10, `${count}`);
+  });
+
+  test('instances share their paint', async () => {
+    const { calls, left, right } = await run<{ calls: number; left: number; right: number }>('instances');
+    assert.equal(calls, 1);
+    assert.ok(left > 100 && right > 100, `${left}, ${right}`);
+  });
+
+  test('in the background: the same result in short tasks; cancelled, nothing is changed', async (context) => {
+    const { sync, background, split, same, shares, refused, untouched } = await run<{
+      sync: { longest: number; total: number };
+      background: { longest: number; total: number };
+      split: number[];
+      same: boolean;
+      shares: number[];
+      refused: string;
+      untouched: boolean;
+    }>('background');
+    context.diagnostic(`at once ${JSON.stringify(sync)}, in the background ${JSON.stringify(background)}`);
+    assert.ok(split[0]! > 0 && split[0] === split[1], split.join());
+    assert.ok(same);
+    assert.ok(background.longest < sync.longest, `${background.longest} of ${sync.longest} ms`);
+    assert.deepEqual(
+      shares,
+      shares.toSorted((a, b) => a - b),
+    );
+    assert.equal(shares.at(-1), 1);
+    assert.equal(refused, 'enough');
+    assert.ok(untouched);
+  });
+
+  test('a saved transfer needs no cage, and gives the same pixels', async (context) => {
+    const { bytes, times, vertices, apart, painted } = await run<{
+      bytes: number;
+      times: number[];
+      vertices: number;
+      apart: number;
+      painted: number;
+    }>('saved');
+    context.diagnostic(
+      `${bytes} bytes for ${vertices} vertices, applied in ${times.map((ms) => ms.toFixed(2)).join(', ')} ms`,
+    );
+    assert.equal(apart, 0);
+    assert.ok(painted > 50, `${painted}`);
+  });
+});

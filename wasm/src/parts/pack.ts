@@ -1,0 +1,78 @@
+import { CagecastError } from '../index.js';
+
+/** The first bytes of packed data: "CGCT", and the version of the format. */
+const kMagic = 0x54434743;
+const kVersion = 1;
+
+const kTypes = { Uint8Array, Int8Array, Uint16Array, Int16Array, Uint32Array, Float32Array, Float64Array };
+type Packable = InstanceType<(typeof kTypes)[keyof typeof kTypes]>;
+
+/** How an array is named in the text: its type, its first byte behind the text, and its length. */
+interface ArrayNote {
+  $array: [type: keyof typeof kTypes, at: number, length: number];
+}
+
+/**
+ * Packs plain data with typed arrays in it into bytes: magic, version, length of a text and a checksum, 4 bytes each; then JSON, in
+ * which each array is a note; then the arrays, aligned to 8 bytes.
+ */
+export function pack(data: unknown): Uint8Array<ArrayBuffer> {
+  const arrays: { array: Packable; at: number }[] = [];
+  let end = 0;
+  const text = JSON.stringify(data, (_, value: unknown) => {
+    if (value === Infinity) return { $infinity: true };
+    if (!ArrayBuffer.isView(value)) return value;
+    const array = value as Packable;
+    arrays.push({ array, at: end });
+    const note: ArrayNote = { $array: [array.constructor.name as keyof typeof kTypes, end, array.length] };
+    end += align(array.byteLength);
+    return note;
+  });
+  const bytes = new TextEncoder().encode(text);
+  const start = align(16 + bytes.length);
+  const out = new Uint8Array(start + end);
+  out.set(bytes, 16);
+  for (const { array, at } of arrays)
+    out.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), start + at);
+  new Uint32Array(out.buffer, 0, 4).set([kMagic, kVersion, bytes.length, checksum(out.subarray(16))]);
+  return out;
+}
+
+/** What `pack` packed. Arrays are views of one copy of the bytes. @throws {CagecastError} `badArgument` if it did not, or not all. */
+export function unpack(bytes: Uint8Array): unknown {
+  const own = bytes.slice();
+  const [magic, version, length, sum] = own.length >= 16 ? new Uint32Array(own.buffer, 0, 4) : [];
+  if (magic !== kMagic) throw refused(`is nothing that serialize wrote (${own.length} bytes)`);
+  if (version !== kVersion) throw refused(`has version ${version} of the format; this one reads version ${kVersion}`);
+  if (16 + length! > own.length || checksum(own.subarray(16)) !== sum) throw refused('is damaged or not whole');
+  const start = align(16 + length!);
+  const text = new TextDecoder().decode(own.subarray(16, 16 + length!));
+  return JSON.parse(text, (_, value: (Partial<ArrayNote> & { $infinity?: true }) | null) => {
+    if (value?.$infinity) return Infinity;
+    if (!value?.$array) return value;
+    const [type, at, count] = value.$array;
+    return new kTypes[type](own.buffer, start + at, count);
+  });
+}
+
+const align = (length: number): number => Math.ceil(length / 8) * 8;
+const refused = (what: string): CagecastError => new CagecastError('badArgument', `deserialize: bytes ${what}`);
+
+const checksum = (bytes: Uint8Array): number => hash(bytes)[0]!;
+
+/** A hash of bytes, 2 × 32 bits; not for secrets. @param seed  An earlier hash, to be continued. */
+export function hash(bytes: Uint8Array, seed: readonly [number, number] = [0x9e3779b9, 0x85ebca77]): [number, number] {
+  const count = bytes.length >> 2;
+  const words =
+    bytes.byteOffset % 4 === 0
+      ? new Uint32Array(bytes.buffer, bytes.byteOffset, count)
+      : new Uint32Array(bytes.slice(0, 4 * count).buffer);
+  let [a, b] = seed;
+  for (let i = 0; i < count; ++i) {
+    a = Math.imul(a ^ words[i]!, 0x01000193);
+    b = (b + Math.imul(a ^ (a >>> 15), 0x85ebca6b)) | 0;
+  }
+  for (let i = 4 * count; i < bytes.length; ++i) a = Math.imul(a ^ bytes[i]!, 0x01000193);
+  a = Math.imul(a ^ (a >>> 16) ^ bytes.length, 0xc2b2ae35);
+  return [(a ^ (a >>> 13)) >>> 0, (Math.imul(b ^ (b >>> 15), 0x2c1b3c6d) ^ a) >>> 0];
+}

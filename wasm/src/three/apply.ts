@@ -1,0 +1,245 @@
+import { BufferAttribute, type BufferGeometry, type Material, type Mesh, type Texture } from 'three';
+import { CagecastError, type Classification } from '../index.js';
+import type { PartRange, Prepared } from '../parts/prepare.js';
+import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
+import { type Applied, type ApplyOptions, checkLengths } from './options.js';
+import { removeOverlay } from './overlay.js';
+import { paintAttribute } from './paint.js';
+import { canBePainted, type Painting, paintOn, unpaint } from './painted-materials.js';
+import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
+import { type Remade, remake, replace } from './split.js';
+
+/** The channels that earlier transfers added to geometries, to be overwritten by the next one. */
+const givenChannels = new WeakMap<BufferGeometry, 1 | 2 | 3>();
+
+/** The paintings that geometries were made for. */
+const paintings = new WeakMap<BufferGeometry, Painting>();
+
+export const rangesOf = ({ parts }: Extracted): PartRange[] =>
+  parts.map(({ firstVertex, vertexCount, firstTriangle, triangleCount, matrix }) => ({
+    firstVertex,
+    vertexCount,
+    firstTriangle,
+    triangleCount,
+    turned: isTurned(matrix),
+  }));
+
+function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
+  const free = ([1, 2, 3] as const).find((channel) =>
+    parts.every(({ geometry }) => givenChannels.get(geometry) === channel || !geometry.hasAttribute(`uv${channel}`)),
+  );
+  if (free === undefined)
+    throw new CagecastError(
+      'badArgument',
+      'cagecast/three: target has uv1, uv2 and uv3 of its own; choose the one to overwrite with options.channel',
+    );
+  return free;
+}
+
+/**
+ * Gives every part a geometry of its own: meshes that share one get copies, within the target and where a mesh elsewhere shows what
+ * an earlier transfer made of it.
+ */
+function ownGeometries(parts: readonly Part[]): void {
+  const taken = new Set<BufferGeometry>();
+  const meshes = new Set(parts.map(({ mesh }) => mesh));
+  for (const part of parts) {
+    const { mesh, geometry } = part;
+    const others = [...(paintings.get(geometry)?.meshes ?? [])];
+    const isShownElsewhere = others.some((other) => other.geometry === geometry && !meshes.has(other));
+    if (mesh && (taken.has(geometry) || isShownElsewhere)) {
+      mesh.geometry = part.geometry = geometry.clone();
+      const channel = givenChannels.get(geometry);
+      if (channel) givenChannels.set(part.geometry, channel);
+    }
+    taken.add(part.geometry);
+  }
+}
+
+/**
+ * Applies what was prepared to the geometries and materials of a target. Nothing is changed before the last step; yields after each
+ * attribute that was extended, for callers that share the thread.
+ */
+export function* apply(
+  { mesh: arrays, parts }: Extracted,
+  prepared: Prepared,
+  options: ApplyOptions,
+): Generator<void, Applied> {
+  const channel = options.channel ?? freeChannel(parts);
+  const geometries = parts.map(({ geometry }) => geometry);
+  const remades: (Remade | undefined)[] = [];
+  for (const [p, part] of parts.entries())
+    remades.push(yield* remake(part.geometry, prepared.parts[p]!, part.firstTriangle));
+  parts.forEach((part, p) => {
+    if ((part.mesh?.geometry ?? part.geometry) !== geometries[p])
+      throw new CagecastError('badArgument', `cagecast/three: the geometry of "${part.name}" was changed meanwhile`);
+  });
+
+  ownGeometries(parts);
+  const painting: Painting = {
+    texture: options.texture,
+    opacity: options.opacity ?? 1,
+    feather: options.feather ?? 0,
+    meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
+  };
+  parts.forEach(({ geometry }, p) => {
+    if (remades[p]) replace(geometry, remades[p]!);
+    const { split } = prepared.parts[p]!;
+    geometry.setAttribute(`uv${channel}`, new BufferAttribute(split.uvs, 2));
+    geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
+    givenChannels.set(geometry, channel);
+    paintings.set(geometry, painting);
+  });
+  const ranges = rangesOf({ mesh: arrays, parts });
+  const shown = parts.map(
+    (part, p): ShownPart => ({
+      ...prepared.parts[p]!,
+      part,
+      range: ranges[p]!,
+      cosmetic: new Uint8Array(0),
+      overlay: undefined,
+    }),
+  );
+  return new Shown(arrays, prepared, shown, { painting, material: options.material, channel });
+}
+
+interface Display {
+  painting: Painting;
+  material: Material | undefined;
+  channel: 1 | 2 | 3;
+}
+
+/** Its methods are fields, so that they may be taken out of it. */
+class Shown implements Applied {
+  readonly result;
+  readonly splitVertices;
+  readonly cutTriangles;
+  readonly channel;
+  readonly parts;
+  readonly #target: Extracted['mesh'];
+  readonly #shown: ShownPart[];
+  readonly #painting: Painting;
+  readonly #material: Material | undefined;
+  /** The verdicts of the result, as `result` may not be. */
+  readonly #culled: boolean[];
+  readonly #copies = new Map<Material, Material>();
+  /** Materials that were added by hand. */
+  readonly #added = new Set<Material>();
+  #painted = new Set<Material>();
+  #isDisposed = false;
+  #hasPaint = false;
+
+  constructor(target: Extracted['mesh'], prepared: Prepared, shown: ShownPart[], display: Display) {
+    this.result = prepared.result;
+    this.splitVertices = prepared.parts.reduce((sum, { split }) => sum + split.copies, 0);
+    this.cutTriangles = prepared.cutTriangles ?? 0;
+    this.channel = display.channel;
+    this.parts = shown.map(({ part }) => part);
+    this.#target = target;
+    this.#shown = shown;
+    this.#painting = display.painting;
+    this.#material = display.material;
+    this.#culled = this.result.segmentStats.map(({ culled }) => culled);
+    this.#decide(this.result);
+  }
+
+  get overlays(): Mesh[] {
+    return this.#shown.flatMap(({ overlay }) => overlay ?? []);
+  }
+
+  readonly setTexture = (texture: Texture | undefined): void => {
+    if (texture && !texture.isTexture)
+      throw new CagecastError('badArgument', `cagecast/three: setTexture: ${nameOf(texture)} is not a Texture`);
+    this.#painting.texture = texture;
+    this.#show();
+  };
+
+  readonly setOpacity = (opacity: number): void => {
+    if (!(opacity >= 0 && opacity <= 1))
+      throw new CagecastError('badArgument', `cagecast/three: setOpacity: ${opacity} is not a number from 0 to 1`);
+    this.#painting.opacity = opacity;
+  };
+
+  readonly paint = (material: Material): boolean => {
+    if (!canBePainted(material)) return false;
+    this.#added.add(material);
+    this.#show();
+    return true;
+  };
+
+  readonly update = (classification: Classification): void => {
+    checkLengths('classification', classification, {
+      zones: this.result.zones.length,
+      cosmeticTriangles: this.result.cosmeticTriangles.length,
+      segmentStats: this.#culled.length,
+    });
+    this.#decide(classification);
+  };
+
+  #decide(now: Classification): void {
+    const { segments } = this.result;
+    const hasChanged = this.#culled.map((culled, s) => Number(now.segmentStats[s]!.culled !== culled));
+    const isOther = new Uint8Array(segments.length);
+    if (hasChanged.includes(1)) for (let v = 0; v < segments.length; ++v) isOther[v] = hasChanged[segments[v]!]!;
+    for (const one of this.#shown) writeZones(one, now, isOther, this.#target.indices);
+    this.#hasPaint = false;
+    this.#show();
+  }
+
+  #show(): void {
+    if (this.#isDisposed) return;
+    const { texture, feather } = this.#painting;
+    if (this.#material) {
+      for (const one of this.#shown) showMaterial(one, this.#material);
+      return;
+    }
+    if (texture && !this.#hasPaint) {
+      writePaint(this.#shown, feather, feather > 0 ? diagonal(this.#target.positions) : 1);
+      this.#hasPaint = true;
+    }
+    const painted = new Set(this.#shown.flatMap((one) => showPaint(one, this.#painting, this.#copies)));
+    if (texture) for (const material of this.#added) painted.add(paintOn(material, this.#painting));
+    for (const material of this.#painted) if (!painted.has(material)) unpaint(material, this.#painting);
+    this.#painted = painted;
+  }
+
+  readonly dispose = (): void => {
+    if (this.#isDisposed) return;
+    this.#isDisposed = true;
+    for (const material of this.#painted) unpaint(material, this.#painting);
+    for (const [material, copy] of this.#copies) {
+      for (const { part } of this.#shown) showInstead(part.mesh, copy, material);
+      copy.dispose();
+    }
+    for (const one of this.#shown) {
+      const { overlay, part } = one;
+      const geometry = part.mesh?.geometry ?? part.geometry;
+      if (paintings.get(part.geometry) === this.#painting) {
+        paintings.delete(part.geometry);
+        geometry.deleteAttribute(paintAttribute);
+      }
+      if (!overlay) continue;
+      removeOverlay(overlay);
+      if (overlay.material !== this.#material) (overlay.material as Material).dispose();
+    }
+  };
+}
+
+function showInstead(mesh: Mesh | undefined, was: Material, now: Material): void {
+  if (mesh)
+    mesh.material = Array.isArray(mesh.material)
+      ? mesh.material.map((m) => (m === was ? now : m))
+      : mesh.material === was
+        ? now
+        : mesh.material;
+}
+
+/** The diagonal of the points' box. */
+function diagonal(positions: Float32Array): number {
+  const [low, high] = [new Float64Array(3).fill(Infinity), new Float64Array(3).fill(-Infinity)];
+  for (let i = 0; i < positions.length; ++i) {
+    low[i % 3] = Math.min(low[i % 3]!, positions[i]!);
+    high[i % 3] = Math.max(high[i % 3]!, positions[i]!);
+  }
+  return Math.hypot(...high.map((value, k) => value - low[k]!)) || 1;
+}

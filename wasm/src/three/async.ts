@@ -1,0 +1,34 @@
+import type { CallOptions } from '../worker/index.js';
+
+/** Options of a call that does not block. */
+export interface Calling extends Pick<CallOptions, 'signal'> {
+  /** How far the call is: a share 0..1 that never falls, and what it does. */
+  onProgress?: ((share: number, stage: string) => void) | undefined;
+}
+
+/** Milliseconds of a task: a frame has 16, of which the page needs some. */
+const kTask = 8;
+
+/** Runs a generator to its end, in short tasks. @throws the reason of the signal, between two tasks. */
+export async function share<T>(steps: Generator<unknown, T>, signal: AbortSignal | undefined): Promise<T> {
+  // Timers would wait at least 4 ms each.
+  const { port1, port2 } = new MessageChannel();
+  const pause = () =>
+    new Promise<void>((resolve) => {
+      port1.onmessage = () => resolve();
+      port2.postMessage(undefined);
+    });
+  try {
+    await pause();
+    for (let began = performance.now(); ; ) {
+      signal?.throwIfAborted();
+      const step = steps.next();
+      if (step.done) return step.value;
+      if (performance.now() - began < kTask) continue;
+      await pause();
+      began = performance.now();
+    }
+  } finally {
+    port1.close();
+  }
+}

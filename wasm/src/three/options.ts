@@ -1,0 +1,112 @@
+import type { Material, Mesh, Texture } from 'three';
+import { CagecastError, type Classification, type TransferOptions, type TransferResult } from '../index.js';
+import type { Borders } from '../parts/borders-option.js';
+import { nameOf, type Part } from './extract.js';
+import type { Saved } from './saved.js';
+
+/** Options of `applyTransfer`: those of `transfer`, and what to display. */
+export interface ApplyOptions extends TransferOptions {
+  /** A result of `transfer`, also from `cagecast/worker`, for the arrays that `extract` returned for `cage` and `target`. */
+  result?: TransferResult | undefined;
+  /** What `deserialize` returned: instead of a transfer. Needs neither a cage nor `init`. */
+  saved?: Saved | undefined;
+  /**
+   * The paint, in the cage's UV space, mixed into the colour of the cosmetic triangles before they are lit. It is read, never
+   * changed: its offset, repeat and rotation apply, its `channel` does not. Set its `flipY` to false, as for all textures of glTF.
+   */
+  texture?: Texture | undefined;
+  /** How much of the paint shows, 0 to 1. Default: 1. */
+  opacity?: number | undefined;
+  /**
+   * The width of a soft border, inside the painted zone, as a share of the target's diagonal. Default: 0. The edge of a mesh is no
+   * border, nor is a seam of UVs. Cost: some milliseconds per 10,000 vertices.
+   */
+  feather?: number | undefined;
+  /**
+   * A material to show on the cosmetic triangles instead of paint, as an overlay: a second mesh for each part. It finds the UVs in
+   * the channel that `Applied` names.
+   */
+  material?: Material | undefined;
+  /**
+   * The channel of the new UVs, 1 to 3: the attribute `uv1`, `uv2` or `uv3`, which is overwritten. Default: the lowest that no
+   * geometry uses already.
+   */
+  channel?: 1 | 2 | 3 | undefined;
+  /**
+   * Where the paint ends: at existing triangle edges (`triangle`, the default), or exactly at holes and seams, where triangles are
+   * then cut (`cut`): smooth borders, but more triangles.
+   */
+  borders?: Borders | undefined;
+}
+
+/** What was added to a scene. */
+export interface Applied {
+  /** The result for the original vertices of the target. */
+  result: TransferResult;
+  /**
+   * The number of vertices added because triangles at the same vertex need different UVs, or because not all of them are painted.
+   * Without a texture it is 0 with `seams: 'vertex'`.
+   */
+  splitVertices: number;
+  /** The number of triangles added by cutting borders. */
+  cutTriangles: number;
+  /** The channel of the new UVs. */
+  channel: 1 | 2 | 3;
+  parts: Part[];
+  /**
+   * With a texture: one for each part with a material that cannot be painted. With a material: one for each part. They are children
+   * of the meshes below, and follow them; those without triangles are in no scene.
+   */
+  overlays: Mesh[];
+  /** Shows another texture, or none. In the next frame, at no cost. */
+  setTexture(texture: Texture | undefined): void;
+  /** Changes how much of the paint shows, 0 to 1. In the next frame, at no cost. */
+  setOpacity(opacity: number): void;
+  /**
+   * Paints one more material, such as one that a mesh is given later. Materials that the meshes have at a call of `update` or
+   * `setTexture` are painted then.
+   * @returns whether it can be painted.
+   */
+  paint(material: Material): boolean;
+  /**
+   * Shows another classification, in microseconds. If borders were cut, segments whose verdict has changed are painted by whole
+   * triangles. The classification is not kept, so the next `classify` may overwrite it (`reuse`); it must not overwrite `result`.
+   * @throws {CagecastError} `badArgument` if the classification is of another target, or a geometry has changed since.
+   */
+  update(classification: Classification): void;
+  /** Removes the paint and the overlays, and makes the materials what they were. The UVs and zones stay. */
+  dispose(): void;
+}
+
+/** @throws {CagecastError} `badOption` that names the option and its value. */
+export function checkOptions(options: ApplyOptions): void {
+  const check = (fits: boolean | undefined, name: string, value: unknown, what: string) => {
+    if (!fits) throw new CagecastError('badOption', `cagecast/three: options${name} is ${nameOf(value)}, not ${what}`);
+  };
+  check(typeof options === 'object' && options !== null, '', options, 'an object');
+  const { texture, material, channel = 1, opacity = 1, feather = 0, saved } = options;
+  check(!texture || texture.isTexture, '.texture', texture, 'a Texture');
+  check(!material || material.isMaterial, '.material', material, 'a Material');
+  check([1, 2, 3].includes(channel), '.channel', channel, '1, 2 or 3');
+  check(opacity >= 0 && opacity <= 1, '.opacity', opacity, 'a number from 0 to 1');
+  check(feather >= 0 && feather <= 1, '.feather', feather, 'a number from 0 to 1');
+  check(!saved || typeof saved.key === 'string', '.saved', saved, 'what deserialize returned');
+}
+
+/** The options of `transfer` among those of `applyTransfer`. */
+export function transferOptions(options: ApplyOptions): TransferOptions {
+  const { result, saved, texture, opacity, feather, material, channel, borders, ...rest } = options;
+  return rest;
+}
+
+/** Checks by the lengths of its arrays that an argument belongs to this target. @throws {CagecastError} `badArgument` */
+export function checkLengths(name: string, given: object | null, lengths: Record<string, number>, hint = ''): void {
+  for (const [field, length] of Object.entries(lengths)) {
+    const found = (given as Record<string, ArrayLike<unknown> | undefined> | null)?.[field]?.length;
+    if (found !== length)
+      throw new CagecastError(
+        'badArgument',
+        `cagecast/three: ${name}.${field} ${found === undefined ? 'is not an array' : `has ${found} entries`}, the target needs ${length}${hint}`,
+      );
+  }
+}

@@ -1,0 +1,179 @@
+import { BufferAttribute, type BufferGeometry, type Material, type Mesh } from 'three';
+import type { Mesh as Arrays, Classification } from '../index.js';
+import { CagecastError } from '../index.js';
+import { borderDistances } from '../parts/border-distance.js';
+import { decideAgain } from '../parts/cut-part.js';
+import type { PartRange, PreparedPart } from '../parts/prepare.js';
+import { paintedVertices, separatePaint, withCopies } from '../parts/separate-paint.js';
+import type { Part } from './extract.js';
+import { makeOverlay, overlayMaterial, showTriangles } from './overlay.js';
+import { paintAttribute } from './paint.js';
+import { canBePainted, type Painting, paintOn } from './painted-materials.js';
+import { atOnce, remake, replace } from './split.js';
+
+/** The attribute with the `Zone` of each vertex. GLTFLoader gives `_NCZ` the same name. */
+export const zoneAttribute = '_ncz';
+
+/** A part of the target, and what is shown on it. */
+export interface ShownPart extends PreparedPart {
+  part: Part;
+  range: PartRange;
+  /** 1 per triangle: whether it may be painted now. */
+  cosmetic: Uint8Array;
+  overlay: Mesh | undefined;
+}
+
+/** The geometry of a part as it is now: three-vrm, for example, replaces those whose morph targets it combines. */
+export function geometryOf({ part, split }: ShownPart): BufferGeometry {
+  const geometry = part.mesh?.geometry ?? part.geometry;
+  const [found, count] = [geometry.getAttribute('position').count, split.sources.length];
+  if (found !== count)
+    throw new CagecastError(
+      'badArgument',
+      `cagecast/three: the geometry of "${part.name}" has ${found} vertices, it had ${count}; apply the transfer again`,
+    );
+  return geometry;
+}
+
+/** Writes the zones of a classification, and decides which triangles may be painted. */
+export function writeZones(
+  shown: ShownPart,
+  now: Pick<Classification, 'zones' | 'cosmeticTriangles'>,
+  isOther: Uint8Array,
+  indices: Arrays['indices'],
+): void {
+  const { range, pieces, split } = shown;
+  const { firstVertex, vertexCount, firstTriangle, triangleCount } = range;
+  const { zones, cosmeticTriangles } = pieces
+    ? decideAgain(pieces, range, indices, isOther, now)
+    : {
+        zones: now.zones.subarray(firstVertex, firstVertex + vertexCount),
+        cosmeticTriangles: now.cosmeticTriangles.slice(firstTriangle, firstTriangle + triangleCount),
+      };
+  const attribute = geometryOf(shown).getAttribute(zoneAttribute) as BufferAttribute;
+  split.sources.forEach((source, v) => (attribute.array[v] = zones[source]!));
+  attribute.needsUpdate = true;
+  shown.cosmetic = cosmeticTriangles;
+}
+
+/** Writes what the paint's shader reads. @param reach  The width of the soft border, as a share of `diagonal`. */
+export function writePaint(parts: readonly ShownPart[], reach: number, diagonal: number): void {
+  for (const shown of parts) splitAtPaint(shown);
+  const distances = reach > 0 ? distancesOf(parts, reach * diagonal) : undefined;
+  parts.forEach((shown, p) => {
+    const { split, cosmetic } = shown;
+    const geometry = geometryOf(shown);
+    const count = split.sources.length;
+    const isPainted = paintedVertices(split.indices, cosmetic, count);
+    const known = geometry.getAttribute(paintAttribute) as BufferAttribute | undefined;
+    const attribute = known?.count === count ? known : new BufferAttribute(new Float32Array(4 * count), 4);
+    const values = attribute.array;
+    for (let v = 0; v < count; ++v) {
+      values[4 * v] = split.uvs[2 * v]!;
+      values[4 * v + 1] = split.uvs[2 * v + 1]!;
+      values[4 * v + 2] = 1 - isPainted[v]!;
+      values[4 * v + 3] = 1 + (distances ? distances[p]![v]! / diagonal : 0);
+    }
+    attribute.needsUpdate = true;
+    if (attribute !== known) geometry.setAttribute(paintAttribute, attribute);
+  });
+}
+
+/** Splits vertices of a part where another classification needs it. */
+function splitAtPaint(shown: ShownPart): void {
+  const { split, cosmetic } = shown;
+  const count = split.sources.length;
+  const copies = separatePaint(split.indices, cosmetic, count);
+  if (!copies) return;
+  const geometry = geometryOf(shown);
+  const known = {
+    uvs: split.uvs,
+    sources: Uint32Array.from({ length: count }, (_, v) => v),
+    indices: split.indices,
+    copies: 0,
+  };
+  const remade = atOnce(remake(geometry, { pieces: undefined, split: withCopies(known, copies) }, 0));
+  if (remade) replace(geometry, remade);
+  shown.split = withCopies(split, copies);
+}
+
+function distancesOf(parts: readonly ShownPart[], reach: number): Float32Array[] {
+  const firsts: number[] = [];
+  let vertices = 0;
+  let corners = 0;
+  for (const { split } of parts) {
+    firsts.push(vertices);
+    vertices += split.sources.length;
+    corners += split.indices.length;
+  }
+  const positions = new Float32Array(3 * vertices);
+  const indices = new Uint32Array(corners);
+  const cosmetic = new Uint8Array(corners / 3);
+  let corner = 0;
+  parts.forEach((shown, p) => {
+    const position = geometryOf(shown).getAttribute('position');
+    const m = shown.part.matrix.elements;
+    for (let v = 0; v < position.count; ++v) {
+      const [x, y, z] = [position.getX(v), position.getY(v), position.getZ(v)];
+      for (let k = 0; k < 3; ++k)
+        positions[3 * (firsts[p]! + v) + k] = m[k]! * x + m[4 + k]! * y + m[8 + k]! * z + m[12 + k]!;
+    }
+    cosmetic.set(shown.cosmetic, corner / 3);
+    for (const vertex of shown.split.indices) indices[corner++] = firsts[p]! + vertex;
+  });
+  const all = borderDistances(positions, indices, cosmetic, reach);
+  return parts.map(({ split }, p) => all.subarray(firsts[p]!, firsts[p]! + split.sources.length));
+}
+
+/** Shows the given material on the painted triangles of a part. */
+export function showMaterial(shown: ShownPart, material: Material): void {
+  const { mesh } = shown.part;
+  if (!mesh) return;
+  shown.overlay ??= makeOverlay(shown.part, mesh, material);
+  showTriangles(shown.overlay, mesh, shown.cosmetic);
+}
+
+/**
+ * Paints the materials of a part, and lays an overlay over those that cannot be painted.
+ * @param copies     Copies that were made of materials, by the material; more may be added.
+ * @returns the materials that are painted, which are none if no triangle is.
+ */
+export function showPaint(shown: ShownPart, painting: Painting, copies: Map<Material, Material>): Material[] {
+  const { mesh } = shown.part;
+  if (!mesh) return [];
+  const hasPaint = painting.texture !== undefined && shown.cosmetic.includes(1);
+  const materials = [mesh.material].flat();
+  const isBlind = materials.map((material) => !canBePainted(material));
+  const needsOverlay = hasPaint && isBlind.includes(true);
+  if (needsOverlay && !shown.overlay)
+    shown.overlay = makeOverlay(
+      shown.part,
+      mesh,
+      paintOn(overlayMaterial(materials[isBlind.indexOf(true)]!), painting, true),
+    );
+  if (shown.overlay)
+    showTriangles(shown.overlay, mesh, needsOverlay ? blindTriangles(shown, isBlind) : new Uint8Array(0));
+  if (!hasPaint) return [];
+  const painted = materials.map((material, m) => {
+    if (isBlind[m]) return material;
+    const one = paintOn(copies.get(material) ?? material, painting);
+    if (one !== material) copies.set(material, one);
+    return one;
+  });
+  if (Array.isArray(mesh.material))
+    mesh.material = painted.every((one, m) => one === materials[m]) ? mesh.material : painted;
+  else mesh.material = painted[0]!;
+  return painted.filter((_, m) => !isBlind[m]);
+}
+
+/** Which of the painted triangles have a material that cannot be painted. */
+function blindTriangles({ part: { mesh }, cosmetic }: ShownPart, isBlind: readonly boolean[]): Uint8Array {
+  if (!Array.isArray(mesh!.material)) return cosmetic;
+  const out = new Uint8Array(cosmetic.length);
+  for (const { start, count, materialIndex = 0 } of mesh!.geometry.groups) {
+    if (!isBlind[materialIndex]) continue;
+    const [from, to] = [start / 3, Math.min((start + count) / 3, cosmetic.length)];
+    for (let t = from; t < to; ++t) out[t] = cosmetic[t]!;
+  }
+  return out;
+}
