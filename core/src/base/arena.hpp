@@ -47,7 +47,7 @@ class Arena {
   /// Gives back, at the end of a scope of the program, everything allocated in it.
   class Scope {
    public:
-    explicit Scope(Arena& arena) noexcept : arena_(arena), mark_(arena.mark()) {}
+    [[nodiscard]] explicit Scope(Arena& arena) noexcept : arena_(arena), mark_(arena.mark()) {}
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
     ~Scope() { arena_.rewind(mark_); }

@@ -15,7 +15,7 @@ namespace {
 /// How often a triangle is divided around a point inside, at most,
 constexpr int kMaxDivisions = 2048;
 /// and how deep these divisions are nested.
-constexpr int kMaxDepth = 128;
+constexpr int kMaxNesting = 128;
 /// Areas below this, as shares of the triangle's, count as none.
 constexpr double kFlat = 1e-12;
 
@@ -197,7 +197,7 @@ class TriangleCutter {
     divideAround(first, 3, missed);
   }
 
-  [[nodiscard]] bool mayDivideAround() const noexcept { return divisions_ > 0 && depth_ < kMaxDepth; }
+  [[nodiscard]] bool mayDivideAround() const noexcept { return divisions_ > 0 && depth_ < kMaxNesting; }
 
   /// Divides a polygon along the lines between its corners and a point inside.
   void divideAround(std::size_t first, std::size_t count, TrianglePoint centre) noexcept {

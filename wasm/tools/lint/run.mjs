@@ -51,7 +51,7 @@ const kSteps = {
   },
   biome: (root) =>
     problemsOf(root, process.execPath, biome, 'check', '--error-on-warnings', '--colors=off', '--max-diagnostics=100'),
-  tidy: (root, files) => checkTidy(root, files),
+  tidy: (root) => checkTidy(root),
 };
 
 const { values, positionals } = parseArgs({ allowPositionals: true, options: { root: { type: 'string' } } });

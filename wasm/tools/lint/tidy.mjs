@@ -1,30 +1,33 @@
-// Runs clang-tidy (.clang-tidy) over the core, one process for each core of the machine. A file that passed is not looked at
-// again until it, a header that it includes, or the settings change: build/lint/tidy.json remembers.
+// Runs clang-tidy (.clang-tidy) over the core, one process for each core of the machine. Where files can be compiled as one
+// (CMake's unity build) they are looked at as one, as most of the time goes into headers. What passed is not looked at again
+// until it, a header that it includes, or the settings change: build/lint/tidy.json remembers.
 import { execFile, execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
-import { dirname, join, normalize } from 'node:path';
+import { dirname, isAbsolute, join, normalize, relative } from 'node:path';
 
 const kIncludeFolders = ['core/src', 'core/include', 'core/cages', 'core'];
 const kInclude = /^\s*#\s*include\s+["<]([^">]+)[">]/gm;
 
-/** The file and all headers of the project that it includes, directly or not. */
-function withHeaders(root, file, found = new Set()) {
+/** The file and all others of the project that it includes, directly or not. */
+function withIncluded(root, file, found = new Set()) {
   if (found.has(file)) return found;
   found.add(file);
   for (const [, text] of readFileSync(join(root, file), 'utf8').matchAll(kInclude)) {
-    const header = [dirname(file), ...kIncludeFolders]
-      .map((folder) => normalize(join(folder, text)))
-      .find((path) => existsSync(join(root, path)));
-    if (header) withHeaders(root, header, found);
+    const included = isAbsolute(text) // In a unity build.
+      ? relative(root, text)
+      : [dirname(file), ...kIncludeFolders]
+          .map((folder) => normalize(join(folder, text)))
+          .find((path) => existsSync(join(root, path)));
+    if (included) withIncluded(root, included, found);
   }
   return found;
 }
 
-function fingerprint(root, file, settings) {
-  const sum = createHash('sha256').update(settings);
-  for (const path of withHeaders(root, file)) sum.update(path).update(readFileSync(join(root, path)));
+function fingerprint(root, file, rules) {
+  const sum = createHash('sha256').update(rules);
+  for (const path of withIncluded(root, file)) sum.update(path).update(readFileSync(join(root, path)));
   return sum.digest('hex');
 }
 
@@ -39,20 +42,26 @@ function tidy(root, build, file) {
 
 /**
  * @param {string} root  The repository.
- * @param {string[]} files  Paths from there.
  * @return {Promise<string[]>}  What clang-tidy says, each finding once.
  */
-export async function checkTidy(root, files) {
-  const build = join(root, 'build/release');
-  execFileSync('cmake', ['--preset', 'release', '-Wno-dev', '--log-level=WARNING'], { cwd: root, stdio: 'ignore' });
+export async function checkTidy(root) {
+  const build = join(root, 'build/lint');
+  const settings = [
+    '-Wno-dev',
+    '--log-level=WARNING',
+    '-DCAGECAST_TESTS=OFF',
+    '-DCAGECAST_BENCH=OFF',
+    '-DCMAKE_UNITY_BUILD=ON',
+  ];
+  execFileSync('cmake', ['--preset', 'release', '-B', build, ...settings], { cwd: root, stdio: 'ignore' });
   const commands = JSON.parse(readFileSync(join(build, 'compile_commands.json'), 'utf8'));
-  const compiled = new Set(commands.map((command) => command.file));
   const memory = join(root, 'build/lint/tidy.json');
   const passed = existsSync(memory) ? JSON.parse(readFileSync(memory, 'utf8')) : {};
-  const settings = readFileSync(join(root, '.clang-tidy'), 'utf8') + execFileSync('clang-tidy', ['--version']);
-  const waiting = files
-    .filter((file) => /^core\/.*\.cpp$/.test(file) && compiled.has(join(root, file)))
-    .map((file) => ({ file, mark: fingerprint(root, file, settings) }))
+  const rules = readFileSync(join(root, '.clang-tidy'), 'utf8') + execFileSync('clang-tidy', ['--version']);
+  const waiting = commands
+    .map((command) => relative(root, command.file))
+    .filter((file) => /^(core|build\/lint\/core)\//.test(file))
+    .map((file) => ({ file, mark: fingerprint(root, file, rules) }))
     .filter(({ file, mark }) => passed[file] !== mark);
   const findings = new Set();
   const work = async () => {
