@@ -9,11 +9,11 @@
 namespace cagecast {
 namespace {
 
-/// Farthest a coordinate may be from the origin, in diagonals of the target: fourth powers of it still fit a float with
-/// room to spare, and at this distance a float no longer resolves the target anyway.
+/// Farthest a coordinate may be from the origin, in diagonals of the target. Its fourth power fits a float. A target
+/// this far away is a single point to a float.
 constexpr float kMaxProportion = 1e8f;
-/// Rays may begin between floats, and then round with the distance from the origin of coordinates; where that is so
-/// many times the scene, it is what the kernels must allow for.
+/// A ray may begin at a point that no float represents; it is rounded by a share of its distance from the origin of
+/// coordinates. This share of that distance counts as the scene's size, if it is larger.
 constexpr float kRestReach = 0.5f;
 struct Box {
   float low[4];  ///< x, y, z; the fourth is of no use.

@@ -167,6 +167,37 @@ std::uint32_t weldTriangles(std::span<const std::uint32_t> indices, const std::u
   return kept;
 }
 
+/// Sorts the vertices along a Hilbert curve: equal positions come together, and points are numbered along the curve.
+/// @param sites  Filled with the position and group of each vertex.
+/// @param unsorted, spare  Working memory for all vertices and kFew more.
+/// @return The sorted vertices, in either memory, followed by kFew that belong to no vertex.
+Placed* sortAlongCurve(const MeshView& target, const Units& units, Site* sites, Placed* unsorted, Placed* spare) {
+  const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
+  const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
+  float side = 0;
+  for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
+  const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
+  const HilbertCurve curve(levels);
+  const Digits digits(3 * levels);
+  std::uint32_t counts[Digits::kMostValues];
+  std::fill(counts, counts + digits.allValues(), 0u);
+  const float* position = target.positions.data();
+  const std::uint32_t* groupOf = target.groups.empty() ? nullptr : target.groups.data();
+  const f32x4 scale = simd::splat(units.scale);
+  const f32x4 low = simd::load3(units.low);
+  for (std::uint32_t v = 0; v < vertexCount; ++v, position += 3) {
+    const f32x4 p = simd::load3(position) * scale + simd::splat(0);
+    sites[v] = Site::of(p, groupOf == nullptr ? 0 : groupOf[v]);
+    const simd::u32x4 cell = simd::rounded((p - low) * simd::splat(cells));
+    const std::uint32_t key = curve.key(simd::lane<0>(cell), simd::lane<1>(cell), simd::lane<2>(cell));
+    digits.count(key, counts);
+    unsorted[v] = Placed{key} << 32 | v;
+  }
+  Placed* placed = digits.sort(unsorted, spare, vertexCount, counts);
+  std::fill_n(placed + vertexCount, kFew, Placed{kNoKey} << 32);
+  return placed;
+}
+
 }  // namespace
 
 void Points::split(Vec3 p, float* position, float* rest) noexcept {
@@ -190,46 +221,25 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
   auto* doubleAreas = arena.allocate<double>(allTriangles);
   const bool tolerant = tolerance > 0;
   auto* groups = arena.allocate<std::uint32_t>(tolerant ? vertexCount : 0);
-  const Arena::Mark mark = arena.mark();
-  auto* sites = arena.allocate<Site>(vertexCount);
-  auto* unsorted = arena.allocate<Placed>(vertexCount + kFew);
-  auto* spare = arena.allocate<Placed>(vertexCount + kFew);
-  auto* firstVertex = arena.allocate<std::uint32_t>(vertexCount);
-  if (arena.failed()) return false;
 
-  // Sort the vertices along the curve: equal positions come together, and points are born in curve order.
-  const int levels = vertexCount < (1u << 13) ? 6 : vertexCount < (1u << 18) ? 8 : 10;
-  float side = 0;
-  for (int k = 0; k < 3; ++k) side = std::max(side, units.high[k] - units.low[k]);
-  const float cells = side > 0 ? static_cast<float>((1 << levels) - 1) / side : 0.0f;
-  const HilbertCurve curve(levels);
-  const Digits digits(3 * levels);
-  std::uint32_t counts[Digits::kMostValues];
-  std::fill(counts, counts + digits.allValues(), 0u);
-  const float* position = target.positions.data();
-  const std::uint32_t* groupOf = target.groups.empty() ? nullptr : target.groups.data();
-  const f32x4 scale = simd::splat(units.scale);
-  const f32x4 low = simd::load3(units.low);
-  for (std::uint32_t v = 0; v < vertexCount; ++v, position += 3) {
-    const f32x4 p = simd::load3(position) * scale + simd::splat(0);
-    sites[v] = Site::of(p, groupOf == nullptr ? 0 : groupOf[v]);
-    const simd::u32x4 cell = simd::rounded((p - low) * simd::splat(cells));
-    const std::uint32_t key = curve.key(simd::lane<0>(cell), simd::lane<1>(cell), simd::lane<2>(cell));
-    digits.count(key, counts);
-    unsorted[v] = Placed{key} << 32 | v;
+  std::uint32_t pointCount = 0;
+  {
+    const Arena::Scope scope(arena);
+    auto* sites = arena.allocate<Site>(vertexCount);
+    auto* unsorted = arena.allocate<Placed>(vertexCount + kFew);
+    auto* spare = arena.allocate<Placed>(vertexCount + kFew);
+    auto* firstVertex = arena.allocate<std::uint32_t>(vertexCount);
+    if (arena.failed()) return false;
+    Placed* placed = sortAlongCurve(target, units, sites, unsorted, spare);
+    pointCount = weldEqual(placed, vertexCount, sites, {firstVertex, places, ofVertex});
+    for (std::uint32_t i = 0; i < pointCount; ++i) {
+      const Site& site = sites[firstVertex[i]];
+      simd::store(positions + Points::kStride * i, simd::of(site.x, site.y, site.z, 0));
+      if (tolerant) groups[i] = site.group;
+    }
   }
-  Placed* placed = digits.sort(unsorted, spare, vertexCount, counts);
-  std::fill_n(placed + vertexCount, kFew, Placed{kNoKey} << 32);
-
-  std::uint32_t pointCount = weldEqual(placed, vertexCount, sites, {firstVertex, places, ofVertex});
-  for (std::uint32_t i = 0; i < pointCount; ++i) {
-    const Site& site = sites[firstVertex[i]];
-    simd::store(positions + Points::kStride * i, simd::of(site.x, site.y, site.z, 0));
-    if (tolerant) groups[i] = site.group;
-  }
-  arena.rewind(mark);
-
   if (tolerant) {
+    const Arena::Scope scope(arena);
     const std::uint32_t all = pointCount;
     auto* merged = arena.allocate<std::uint32_t>(all);
     if (arena.failed()) return false;
@@ -241,7 +251,6 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
       if (merged[i] == next) places[next++] = places[i];
     }
     for (std::uint32_t v = 0; v < vertexCount; ++v) ofVertex[v] = merged[ofVertex[v]];
-    arena.rewind(mark);
   }
 
   const std::uint32_t kept = weldTriangles(target.indices, ofVertex, positions, triangles, doubleAreas);

@@ -155,12 +155,13 @@ bool buildTargetTree(const Points& target, const Units& units, Arena& arena, Ray
   const std::uint32_t count = target.triangleCount;
   constexpr std::uint32_t kBeyond = 4;  // Triangles that may be read after the last one.
   auto* corners = arena.allocate<std::uint32_t>(std::size_t{3} * (count + kBeyond));
-  const Arena::Mark mark = arena.mark();
-  auto* starts = arena.allocate<std::uint32_t>(target.count);
-  if (arena.failed()) return false;
-  sortByFirstPoint(target, starts, corners);
+  {
+    const Arena::Scope scope(arena);
+    auto* starts = arena.allocate<std::uint32_t>(target.count);
+    if (arena.failed()) return false;
+    sortByFirstPoint(target, starts, corners);
+  }
   std::fill_n(corners + std::size_t{3} * count, 3 * kBeyond, 0u);
-  arena.rewind(mark);
 
   const CurveCuts cuts(corners, target.places);
   const std::uint32_t nodeCount = cuts.count(0, count);
