@@ -43,6 +43,11 @@ constexpr int kAttempts = 3;
 /// Points of the hull that the cage is moved past, about.
 constexpr std::size_t kEnclosedPoints = 20000;
 
+/// Limits of options. Lengths are shares of the diagonal.
+constexpr auto kMostLength = static_cast<double>(0.2f);
+constexpr double kLeastVoxels = 16, kMostVoxels = 400;
+constexpr double kLeastTriangles = 50, kMostTriangles = 20000;
+
 /// What options come to for a model, in its space.
 struct Settings {
   Kind kind = Kind::prop;
@@ -51,14 +56,13 @@ struct Settings {
 };
 
 Outcome checkOptions(const MakeOptions& options) {
-  const auto fault = [](const char* message) { return Outcome{Problem::badOptions, message}; };
-  // Written so that NaN fails, too.
-  if (!(options.closing >= 0 && options.closing <= 0.2f)) return fault("options.closing is not within 0..0.2");
-  if (!(options.offset >= 0 && options.offset <= 0.2f)) return fault("options.offset is not within 0..0.2");
-  if (options.voxels != 0 && (options.voxels < 16 || options.voxels > 400))
-    return fault("options.voxels is neither 0 nor within 16..400");
-  if (options.triangles != 0 && (options.triangles < 50 || options.triangles > 20000))
-    return fault("options.triangles is neither 0 nor within 50..20000");
+  const auto orByKind = [](double least, std::uint32_t value) { return value == 0 ? 0 : least; };
+  for (Outcome outcome :
+       {checkOption("closing", static_cast<double>(options.closing), 0, kMostLength),
+        checkOption("offset", static_cast<double>(options.offset), 0, kMostLength),
+        checkOption("voxels", options.voxels, orByKind(kLeastVoxels, options.voxels), kMostVoxels),
+        checkOption("triangles", options.triangles, orByKind(kLeastTriangles, options.triangles), kMostTriangles)})
+    if (!outcome.ok()) return outcome;
   return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "geometry/triangle.hpp"
@@ -108,6 +109,13 @@ Outcome checkModel(const Model& model) {
                    size(model.joints.size(), "joints"));
   }
   return {};
+}
+
+Outcome checkOption(const char* name, double value, double least, double most) {
+  if (value >= least && value <= most) return {};
+  char message[160];
+  std::snprintf(message, sizeof message, "options.%s = %g is not within %g..%g", name, value, least, most);
+  return {Problem::badOptions, message};
 }
 
 }  // namespace cagecast::cages

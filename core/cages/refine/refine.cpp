@@ -37,7 +37,7 @@ constexpr double kBendFrom = 0.005;
 /// Vertices of the cage this close together, as a share of the diagonal, move as one: seams, and poles of balls.
 constexpr double kWeld = 1e-6;
 /// Most that `reach` can be: beyond, cage and model hardly touch.
-constexpr float kMostReach = 0.2f;
+constexpr auto kLeastReach = static_cast<double>(0.001f), kMostReach = static_cast<double>(0.2f);
 
 std::string percent(double share) {
   const long tenths = std::lround(1000 * share);
@@ -210,9 +210,8 @@ Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions
                    Cage& out) {
   if (Outcome outcome = checkMesh(cage, "cage", Problem::badTemplate); !outcome.ok()) return outcome;
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  if (!(options.reach > 0 && options.reach <= kMostReach))
-    return {Problem::badOptions,
-            "options.reach = " + std::to_string(options.reach) + " is not greater than 0 and at most 0.2"};
+  if (Outcome outcome = checkOption("reach", static_cast<double>(options.reach), kLeastReach, kMostReach); !outcome.ok())
+    return outcome;
   TriangleMesh target = weldExactly(model.mesh);
   target = subset(target, std::vector<bool>(target.triangles.size(), true));  // Its size is that of what is used.
   std::vector<std::uint32_t> vertexOf;

@@ -72,7 +72,7 @@ struct FitOptions {
 };
 
 struct RefineOptions {
-  float reach = 0.05f;  ///< How far off the cage may be, as a share of the diagonal: up to 0.2.
+  float reach = 0.05f;  ///< How far off the cage may be, as a share of the diagonal: 0.001 to 0.2.
 };
 
 /// Reports how far a call is, as a share 0..1, and what it does ("hull", "unwrap"). Called at least every 50 ms of

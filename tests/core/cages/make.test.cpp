@@ -162,16 +162,16 @@ TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]")
   const OwnedModel one = head();
   options = {};
   options.closing = -1;
-  CHECK(faultOf(one.model(), options) == "options.closing is not within 0..0.2");
+  CHECK(faultOf(one.model(), options) == "options.closing = -1 is not within 0..0.2");
   options = {};
   options.offset = NAN;
-  CHECK(faultOf(one.model(), options) == "options.offset is not within 0..0.2");
+  CHECK(faultOf(one.model(), options) == "options.offset = nan is not within 0..0.2");
   options = {};
   options.voxels = 1000;
-  CHECK(faultOf(one.model(), options) == "options.voxels is neither 0 nor within 16..400");
+  CHECK(faultOf(one.model(), options) == "options.voxels = 1000 is not within 16..400");
   options = {};
   options.triangles = 3;
-  CHECK(faultOf(one.model(), options) == "options.triangles is neither 0 nor within 50..20000");
+  CHECK(faultOf(one.model(), options) == "options.triangles = 3 is not within 50..20000");
 }
 
 TEST_CASE("the kind of a model is seen from its proportions, parts and joints", "[cages][make]") {
