@@ -92,7 +92,7 @@ describe('cagecast make', () => {
       [['make'], 2, /missing required argument 'TARGET'|required option/],
       [['make', at('head.glb')], 2, /required option '-o, --output <CAGE\.glb>' not specified/],
       [['make', at('head.glb'), '-o', at('cage.obj')], 2, /Its name must end in \.glb/],
-      [['make', at('head.glb'), '-o', out, '--triangles', '7'], 2, /not a whole number within 50\.\.100000/],
+      [['make', at('head.glb'), '-o', out, '--triangles', '7'], 2, /not a whole number within 50\.\.20000/],
       [['make', at('head.glb'), '-o', out, '--html', at('page.txt')], 2, /Its name must end in \.html/],
       [['make', at('head.glb'), '-o', at('head.glb')], 2, /head\.glb would overwrite another file of this command/],
       [['make', at('missing.glb'), '-o', out], 1, /missing\.glb: no such file/],

@@ -91,8 +91,10 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
 
 /** The file of a template: of one that comes with the package if its name is given, and no file is called so. */
 function templateFile(path: string): string {
-  const isName = (templateNames as readonly string[]).includes(path) && !existsSync(path);
-  return isName ? fileURLToPath(new URL(`./templates/${path}.glb`, import.meta.url)) : path;
+  if (existsSync(path) || /[./\\]/.test(path)) return path;
+  if (!(templateNames as readonly string[]).includes(path))
+    throw new InputError(`no such file, and no template of the package: there are ${templateNames.join(', ')}`).in(path);
+  return fileURLToPath(new URL(`./templates/${path}.glb`, import.meta.url));
 }
 
 /** Reads landmarks: a JSON object, name → [x, y, z]. @throws {InputError} that names the file and the landmark. */

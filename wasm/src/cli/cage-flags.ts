@@ -6,7 +6,7 @@ import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import { endingIn, refuseOverwriting, unfit } from './usage.js';
 
 /** The fewest and the most triangles that a cage can be asked to have. */
-const triangleRange = [50, 100_000] as const;
+const triangleRange = [50, 20_000] as const;
 
 const output = (command: Command): Command =>
   addReadFlags(command)
