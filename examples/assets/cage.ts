@@ -16,7 +16,7 @@ import { type Slit, slit } from './slit.ts';
 import { onOpenEdge, spaceOf } from './space.ts';
 import { weldPositions } from './truth.ts';
 import { borderLoops, fill, perimeter } from './unwrap.ts';
-import { length, sub, type Vec3 } from './vec.ts';
+import { add, length, scale, sub, type Vec3 } from './vec.ts';
 
 export interface CagePlan {
   solid: Sdf; // the model's outer skin, symmetric in x, with everything bridged over that the cage shall bridge
@@ -31,6 +31,26 @@ export interface CagePlan {
   wrap: Mesh; // the outside of this must lie within
   seen: (vertex: number) => boolean; // which vertices of `wrap` are outside
 }
+
+/**
+ * Moves a point away from spots nearby, and from their mirror images: a `focus` of a plan.
+ * @param spots  The middle of each on the left, its radius, and how many times it gets larger at its middle, less one.
+ * @param from   What the point was moved to before.
+ */
+export const enlarged = (
+  p: Vec3,
+  spots: readonly (readonly [middle: Vec3, radius: number, by: number])[],
+  from: Vec3 = p,
+): Vec3 => {
+  const side = p[0] < 0 ? -1 : 1;
+  let out = from;
+  for (const [[x, y, z], radius, by] of spots) {
+    const away = sub(p, [x * side, y, z]);
+    const d = length(away) / radius;
+    out = add(out, scale(away, by * Math.exp(-d * d)));
+  }
+  return out;
+};
 
 /** Makes a cage: the offset of the outer skin, holes cut, one half simplified and mirrored, then pushed out where it dips into the skin. */
 export const makeCage = (plan: CagePlan): Mesh => {

@@ -1,5 +1,5 @@
-import { corners, type Mesh, point } from './mesh.ts';
-import { cross, dot, length, sub, type Vec3 } from './vec.ts';
+import { corners, type Mesh, point, triangleCount } from './mesh.ts';
+import { add, cross, dot, length, scale, sub, type Vec3 } from './vec.ts';
 
 export type Uv = readonly [number, number];
 
@@ -20,7 +20,7 @@ export const isSimple = (polygon: Uv[]): boolean => {
   return true;
 };
 
-export const flatTriangle = (mesh: Mesh, triangle: number): [Uv, Uv, Uv] => {
+const flatTriangle = (mesh: Mesh, triangle: number): [Uv, Uv, Uv] => {
   const [a, b, c] = corners(mesh, triangle).map((v) => point(mesh, v)) as [Vec3, Vec3, Vec3];
   const [u, w] = [sub(b, a), sub(c, a)];
   const l = length(u);
@@ -29,6 +29,26 @@ export const flatTriangle = (mesh: Mesh, triangle: number): [Uv, Uv, Uv] => {
     [l, 0],
     [dot(u, w) / l, length(cross(u, w)) / l],
   ];
+};
+
+/** What a layout of a mesh shall be like. */
+export interface Rest {
+  triangles: [number, number, number][]; // vertices
+  shapes: [Uv, Uv, Uv][]; // each triangle laid flat, and enlarged
+  areas: number[];
+}
+
+/** @param zoom  How much each place of the model is enlarged. */
+export const restOf = (mesh: Mesh, zoom: (p: Vec3) => number): Rest => {
+  const triangles = Array.from({ length: triangleCount(mesh) }, (_, t) => corners(mesh, t));
+  const shapes = triangles.map((t, i) => {
+    const centre = scale(
+      t.map((v) => point(mesh, v)).reduce((a, b) => add(a, b)),
+      1 / 3,
+    );
+    return flatTriangle(mesh, i).map(([x, y]) => [x * zoom(centre), y * zoom(centre)]) as unknown as [Uv, Uv, Uv];
+  });
+  return { triangles, shapes, areas: shapes.map((p) => area(...p) / 2) };
 };
 
 /** Half the cotangent of the angle at `apex`, kept from zero and below: obtuse triangles would make the system indefinite. */

@@ -1,6 +1,6 @@
-import { area, cholesky, cotangent, type Flat, flatTriangle, isSimple, type Uv } from './flat.ts';
-import { corners, type Mesh, point, triangleCount, vertexCount } from './mesh.ts';
-import { add, scale, type Vec3 } from './vec.ts';
+import { cholesky, cotangent, type Flat, isSimple, restOf, type Uv } from './flat.ts';
+import { type Mesh, vertexCount } from './mesh.ts';
+import type { Vec3 } from './vec.ts';
 
 const kRounds = 300;
 const kMemory = 8; // steps that the curvature is learnt from
@@ -15,15 +15,7 @@ const kShortest = 1e-6; // share of a step
  */
 export const polish = (mesh: Mesh, outer: readonly number[], start: Flat, zoom: (p: Vec3) => number): Flat => {
   const count = vertexCount(mesh);
-  const triangles = Array.from({ length: triangleCount(mesh) }, (_, t) => corners(mesh, t));
-  const rest = triangles.map((t, i) => {
-    const centre = scale(
-      t.map((v) => point(mesh, v)).reduce((a, b) => add(a, b)),
-      1 / 3,
-    );
-    return flatTriangle(mesh, i).map(([x, y]) => [x * zoom(centre), y * zoom(centre)]) as unknown as [Uv, Uv, Uv];
-  });
-  const areas = rest.map((p) => area(...p) / 2);
+  const { triangles, shapes: rest, areas } = restOf(mesh, zoom);
 
   /** The distortion of a layout (u of every vertex, then v), and where it falls. */
   const measure = (x: Float64Array, slope?: Float64Array): number => {

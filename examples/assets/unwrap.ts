@@ -1,4 +1,4 @@
-import { area, cholesky, cotangent, type Flat, flatTriangle, isSimple, type Uv } from './flat.ts';
+import { area, cholesky, cotangent, type Flat, isSimple, restOf, type Uv } from './flat.ts';
 import {
   boundsOf,
   components,
@@ -290,15 +290,7 @@ const onDisc = (mesh: Mesh, outer: number[]): Flat => {
 
 const relax = (mesh: Mesh, outer: number[], start: Flat, zoom: (p: Vec3) => number): Flat => {
   const count = vertexCount(mesh);
-  const triangles = Array.from({ length: triangleCount(mesh) }, (_, t) => corners(mesh, t));
-  const rest = triangles.map((t, i) => {
-    const centre = scale(
-      t.map((v) => point(mesh, v)).reduce((a, b) => add(a, b)),
-      1 / 3,
-    );
-    return flatTriangle(mesh, i).map(([x, y]) => [x * zoom(centre), y * zoom(centre)]) as unknown as [Uv, Uv, Uv];
-  });
-  const areas = rest.map((p) => area(...p) / 2);
+  const { triangles, shapes: rest, areas } = restOf(mesh, zoom);
   const cotangents = rest.map((p) => p.map((a, k) => cotangent(p[(k + 2) % 3]!, a, p[(k + 1) % 3]!)));
   const at = (flat: Flat, v: number): Uv => [flat[0][v]!, flat[1][v]!];
   const layout = (flat: Flat, t: number): [Uv, Uv, Uv] => triangles[t]!.map((v) => at(flat, v)) as [Uv, Uv, Uv];

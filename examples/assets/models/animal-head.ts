@@ -1,4 +1,4 @@
-import { makeCage } from '../cage.ts';
+import { enlarged, makeCage } from '../cage.ts';
 import type { Part } from '../glb.ts';
 import { rgb } from '../image.ts';
 import { bothSides, finderOn, inMiddle } from '../landmarks.ts';
@@ -108,20 +108,12 @@ const tongueSolid: Sdf = mirrored(ellipsoid([0, -0.118, 0.235], [0.046, 0.018, 0
 const onNeck = (p: Vec3): number => kNeckEnd - dot(sub(p, kNeckFrom), neckAxis);
 
 /** Enlarges eyes, nose and ears, so that they keep more of their triangles. */
-const focus = (p: Vec3): Vec3 => {
-  let out = p;
-  const side = p[0] < 0 ? -1 : 1;
-  for (const [c, r, by] of [
+const focus = (p: Vec3): Vec3 =>
+  enlarged(p, [
     [kEye, 0.1, 1.2],
     [kNoseTip, 0.13, 0.8],
     [earAt(0, 0.12, 0), 0.16, 0.3],
-  ] as const) {
-    const centre: Vec3 = [c[0] * side, c[1], c[2]];
-    const d = length(sub(p, centre)) / r;
-    out = add(out, scale(sub(p, centre), by * Math.exp(-d * d)));
-  }
-  return out;
-};
+  ]);
 
 const templateOf = (skin: Mesh): Template => {
   const cage = symmetric(

@@ -458,7 +458,7 @@ const templateOf = (unwrapped: Mesh, skin: Mesh): Template => {
   const side = (p: Vec3): Vec3 => from([1, 0, 0], p);
   const landmarks = {
     ...inMiddle({
-      bumper_front: from([0, 0, 1], [0, 0.37, 0]), // below the grille,
+      bumper_front: from([0, 0, 1], [0, 0.37, 0]), // below the grille
       bumper_rear: from([0, 0, -1], [0, 0.5, 0]),
       bonnet_front: from([0, 1, 0], [0, 0, 1.95]),
       windscreen_bottom: from([0, 1, 0], [0, 0, 1.03]),

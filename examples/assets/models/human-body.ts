@@ -1,4 +1,4 @@
-import { makeCage } from '../cage.ts';
+import { enlarged, makeCage } from '../cage.ts';
 import type { Part } from '../glb.ts';
 import { rgb } from '../image.ts';
 import { bothSides, finderOn, inMiddle, type Landmarks } from '../landmarks.ts';
@@ -137,20 +137,21 @@ const faceLens = (p: Vec3): Vec3 => [bend(p[0], -1, 0.1), bend(p[1], 1.48, 2), b
 
 /** Enlarges the face, the hands and the feet, so that they keep more of their triangles. */
 const focus = (p: Vec3): Vec3 => {
-  let out = add(p, scale(sub(onHead(faceFocus(inHead(p))), p), Math.exp(-((length(sub(p, kHead.centre)) / 0.2) ** 4))));
-  const side = p[0] < 0 ? -1 : 1;
-  for (const [c, r, by] of [
-    [kHead.centre, 0.2, 1.3],
-    [handAt(0.09, 0.005, 0), 0.11, 0.9],
-    [handAt(0.09, 0.06, 0.02), 0.045, 1.2],
-    [onHead(kNoseTip), 0.035, 0.8],
-    [[0.13, 0.02, 0.06], 0.13, 0.5],
-  ] as const) {
-    const centre: Vec3 = [c[0] * side, c[1], c[2]];
-    const d = length(sub(p, centre)) / r;
-    out = add(out, scale(sub(p, centre), by * Math.exp(-d * d)));
-  }
-  return out;
+  const inHeadFocus = scale(
+    sub(onHead(faceFocus(inHead(p))), p),
+    Math.exp(-((length(sub(p, kHead.centre)) / 0.2) ** 4)),
+  );
+  return enlarged(
+    p,
+    [
+      [kHead.centre, 0.2, 1.3],
+      [handAt(0.09, 0.005, 0), 0.11, 0.9],
+      [handAt(0.09, 0.06, 0.02), 0.045, 1.2],
+      [onHead(kNoseTip), 0.035, 0.8],
+      [[0.13, 0.02, 0.06], 0.13, 0.5],
+    ],
+    add(p, inHeadFocus),
+  );
 };
 
 const cageOf = (skin: Mesh): Mesh => {
