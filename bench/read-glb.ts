@@ -3,14 +3,7 @@ import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
 import { identity, type Matrix, multiply } from '../wasm/src/gltf/matrix.js';
-import {
-  decodeFloats,
-  decodePositions,
-  decodeTriangles,
-  hasTriangles,
-  joinPieces,
-  type Piece,
-} from '../wasm/src/gltf/pieces.js';
+import * as gltf from '../wasm/src/gltf/pieces.js';
 import type { SceneMesh } from './scene-file.js';
 
 /** A joint of a skeleton in the scene's space, in the pose of the file. */
@@ -39,25 +32,25 @@ export async function readGlb(path: string): Promise<GlbModel> {
   const file = await io.readAsJSON(path);
   const document = await io.readJSON(file);
   const pieces = piecesOf(document);
-  const mesh = joinPieces(pieces) as SceneMesh;
+  const mesh = gltf.joinPieces(pieces) as SceneMesh;
   const sets = pieces.map(({ set }) => set);
   if (sets.every((set) => set !== undefined)) mesh.uvs = Float32Array.from(sets.flatMap((set) => [...set]));
   return { mesh, parts: pieces.map(({ name }) => name), joints: jointsOf(document, bonesOf(file.json)) };
 }
 
-function piecesOf(document: Document): (Piece & { set: Float32Array | undefined })[] {
-  const pieces: (Piece & { set: Float32Array | undefined })[] = [];
+function piecesOf(document: Document): (gltf.Piece & { set: Float32Array | undefined })[] {
+  const pieces: (gltf.Piece & { set: Float32Array | undefined })[] = [];
   const scene = document.getRoot().getDefaultScene() ?? document.getRoot().listScenes()[0]!;
   scene.traverse((node) => {
     const primitives = node.getMesh()?.listPrimitives() ?? [];
     for (const primitive of primitives) {
       const position = primitive.getAttribute('POSITION');
-      if (position === null || !hasTriangles(primitive.getMode())) continue;
+      if (position === null || !gltf.hasTriangles(primitive.getMode())) continue;
       const names = [node.getName(), node.getMesh()!.getName(), primitive.getMaterial()?.getName()];
       const name = [...new Set(names.filter(Boolean))].join('/');
-      const stored = decodePositions(name, position);
+      const stored = gltf.decodePositions(name, position);
       const posed = pose(node, primitive, stored);
-      const localIndices = decodeTriangles(
+      const localIndices = gltf.decodeTriangles(
         name,
         primitive.getIndices()?.getArray() ?? null,
         primitive.getMode(),
@@ -75,7 +68,7 @@ function piecesOf(document: Document): (Piece & { set: Float32Array | undefined 
         triangleCount: localIndices.length / 3,
         localPositions: posed ?? stored,
         localIndices,
-        set: uv === null ? undefined : decodeFloats(uv),
+        set: uv === null ? undefined : gltf.decodeFloats(uv),
       });
     }
   });

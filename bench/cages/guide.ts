@@ -32,7 +32,7 @@ const front = { turn: 16, rise: 6, paint: undefined };
 const wide = { width: 400, height: 400 };
 
 async function makeSheet(): Promise<Sheet> {
-  const cage = await writeCageGlb('guide-make', await makeCage(await modelOf(human)));
+  const cage = writeCageGlb('guide-make', await makeCage(await modelOf(human)));
   const cell = (look: Cell['look'], turn: number): Cell => ({ target: human, cage, ...front, turn, look });
   return {
     heads: ['model', 'made cage', 'painted', 'from behind'],
@@ -69,7 +69,7 @@ async function fitSheet(): Promise<Sheet> {
   for (const name of ['dora', 'emil', 'fumi']) {
     const target = `${assets}/people/${name}/head.glb`;
     const fit = await fitCage(template, await modelOf(target));
-    const cage = await writeCageGlb(`guide-fit-${name}`, fit.cage);
+    const cage = writeCageGlb(`guide-fit-${name}`, fit.cage);
     const cells = (['plain', 'cage', 'default'] as const).map((look): Cell => ({ target, cage, ...front, look }));
     rows.push({ name: '', cells });
   }
@@ -102,8 +102,8 @@ async function refineSheet(): Promise<Sheet> {
   const shift = off * (Math.max(...heights) - Math.min(...heights));
   const moved = { ...meshOf(mesh), positions: mesh.positions.map((x, i) => (i % 3 === 1 ? x - shift : x)) };
   const refined = await refineCage({ ...moved, uvs: mesh.uvs! }, await modelOf(human));
-  const before = await writeCageGlb('guide-moved', { ...moved, uvs: mesh.uvs! });
-  const after = await writeCageGlb('guide-refined', refined);
+  const before = writeCageGlb('guide-moved', { ...moved, uvs: mesh.uvs! });
+  const after = writeCageGlb('guide-refined', refined);
   const paint = `${root}build/assets/human/paint-skull.png`;
   const cells = [before, after].flatMap((cage) =>
     (['cage', 'default'] as const).map((look): Cell => ({ target: human, cage, ...front, paint, look })),

@@ -32,7 +32,7 @@ const hasBodies = figures.some(({ kind }) => kind === 'body');
 const shown = hasBodies ? [...views, { ...face, head: 'cage', look: 'cage' as const }, face] : views;
 const rows = [];
 for (const { name } of figures) {
-  const cage = await writeCageGlb(`${folder}-${name}`, read<StoredCage>(`${folder}/${name}`));
+  const cage = writeCageGlb(`${folder}-${name}`, read<StoredCage>(`${folder}/${name}`));
   const cells = shown.map(
     ({ head: _, ...view }): Cell => ({ target: targets.get(name)!, cage, paint: undefined, ...view }),
   );

@@ -40,15 +40,18 @@ function rowOf({ name, truth }: StoredFigure, folder: string, outcome: string): 
   ];
 }
 
+const args = process.argv.slice(2);
+const end = args.includes('--') ? args.indexOf('--') : args.length;
+const own = args.slice(end + 1);
 const { values: options, positionals } = parseArgs({
+  args: args.slice(0, end),
   allowPositionals: true,
   options: { run: { type: 'boolean' }, cages: { type: 'string', default: 'made' } },
 });
-const own = process.argv.includes('--') ? process.argv.slice(process.argv.indexOf('--') + 1) : [];
 await init();
 mkdirSync(`${cagesFolder}/${options.cages}`, { recursive: true });
 const rows: string[][] = [];
-for (const figure of storedFigures(positionals.filter((word) => !own.includes(word)))) {
+for (const figure of storedFigures(positionals)) {
   const { name } = figure;
   const [model, cage] = [`${name}.model`, `${options.cages}/${name}`].map((file) => `${cagesFolder}/${file}.json`);
   const outcome = options.run ? await runTool('make', model!, cage!, ...own) : '';
