@@ -223,6 +223,17 @@ describe('with a loaded model', () => {
   const bytes = maker.finish();
   const options = { kind: 'head', triangles: 300, voxels: 60 } as const;
 
+  test('what is no document is said', async () => {
+    assert.throws(() => gltf.cageModel({} as never), {
+      code: 'badArgument',
+      message: 'cageModel: model is of type Object, not a document of glTF-Transform',
+    });
+    await assert.rejects(gltf.fitCage(null as never, await read(bytes)), {
+      code: 'badArgument',
+      message: 'fitCage: template is null, not a mesh { positions, indices, … }',
+    });
+  });
+
   test('makeCage gives the same for glTF-Transform and three.js', async () => {
     const [ofDocument, loaded] = [await gltf.makeCage(await read(bytes), options), await load(bytes)];
     const ofScene = await three.makeCage(loaded.scene, options);

@@ -1,20 +1,6 @@
 import type { Document, Node } from '@gltf-transform/core';
-import {
-  type Cage,
-  type CageCallOptions,
-  type CageModel,
-  type Fit,
-  type FitOptions,
-  type FoundLandmarks,
-  findLandmarks as findOn,
-  fitCage as fitTo,
-  type Landmarks,
-  type MakeOptions,
-  makeCage as makeFor,
-  type RefineOptions,
-  refineCage as refineOn,
-  type Template,
-} from '../cages/index.js';
+import { show } from '../api/error.js';
+import * as cages from '../cages/index.js';
 import { CagecastError, type Mesh } from '../index.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { readExtras } from '../parts/template.js';
@@ -32,8 +18,8 @@ export interface FileOptions {
  * joints of its skins, in the bind pose.
  * @throws {CagecastError} `badArgument` that names the primitive.
  */
-export function cageModel(document: Document, { extensions }: FileOptions = {}): CageModel {
-  const { mesh, parts } = read('cageModel', 'model', () => extractDocument(document));
+export function cageModel(document: Document, { extensions }: FileOptions = {}): cages.CageModel {
+  const { mesh, parts } = read('cageModel', 'model', document, () => extractDocument(document));
   const { positions, indices, groups } = mesh;
   return {
     positions,
@@ -48,8 +34,8 @@ export function cageModel(document: Document, { extensions }: FileOptions = {}):
  * A document as a template: its mesh, and the landmarks that the `extras` of its cage's node or mesh have.
  * @throws {CagecastError} `badArgument`, `missingUvs`
  */
-export function cageTemplate(document: Document): Template {
-  return read('cageTemplate', 'template', () => {
+export function cageTemplate(document: Document): cages.Template {
+  return read('cageTemplate', 'template', document, () => {
     const { mesh, parts } = extractDocument(document);
     if (mesh.uvs === undefined)
       throw new CagecastError('missingUvs', 'cageTemplate: template has a primitive without TEXCOORD_0');
@@ -65,38 +51,38 @@ export function cageTemplate(document: Document): Template {
 /** As `makeCage` of `cagecast/cages`, for the default scene of a document. @throws {CagecastError} */
 export async function makeCage(
   document: Document,
-  { extensions, ...options }: MakeOptions & CageCallOptions & FileOptions = {},
-): Promise<Cage> {
-  return makeFor(cageModel(document, { extensions }), options);
+  { extensions, ...options }: cages.MakeOptions & cages.CageCallOptions & FileOptions = {},
+): Promise<cages.Cage> {
+  return cages.makeCage(cageModel(document, { extensions }), options);
 }
 
 /** As `fitCage` of `cagecast/cages`, for documents. @throws {CagecastError} */
 export async function fitCage(
-  template: Document | Template,
+  template: Document | cages.Template,
   document: Document,
-  landmarks?: Landmarks,
-  { extensions, ...options }: FitOptions & CageCallOptions & FileOptions = {},
-): Promise<Fit> {
-  const from = 'getRoot' in template ? cageTemplate(template) : template;
-  return fitTo(from, cageModel(document, { extensions }), landmarks, options);
+  landmarks?: cages.Landmarks,
+  { extensions, ...options }: cages.FitOptions & cages.CageCallOptions & FileOptions = {},
+): Promise<cages.Fit> {
+  const from = isDocument(template) ? cageTemplate(template) : template;
+  return cages.fitCage(from, cageModel(document, { extensions }), landmarks, options);
 }
 
 /** As `findLandmarks` of `cagecast/cages`, for the default scene of a document. @throws {CagecastError} */
 export async function findLandmarks(
   document: Document,
-  { extensions, ...options }: CageCallOptions & FileOptions = {},
-): Promise<FoundLandmarks> {
-  return findOn(cageModel(document, { extensions }), options);
+  { extensions, ...options }: cages.CageCallOptions & FileOptions = {},
+): Promise<cages.FoundLandmarks> {
+  return cages.findLandmarks(cageModel(document, { extensions }), options);
 }
 
 /** As `refineCage` of `cagecast/cages`, for documents. @throws {CagecastError} */
 export async function refineCage(
-  cage: Document | Mesh | Cage | Template,
+  cage: Document | Mesh | cages.Cage | cages.Template,
   document: Document,
-  { extensions, ...options }: RefineOptions & CageCallOptions & FileOptions = {},
-): Promise<Cage> {
-  const from = 'getRoot' in cage ? cageTemplate(cage) : cage;
-  return refineOn(from, cageModel(document, { extensions }), options);
+  { extensions, ...options }: cages.RefineOptions & cages.CageCallOptions & FileOptions = {},
+): Promise<cages.Cage> {
+  const from = isDocument(cage) ? cageTemplate(cage) : cage;
+  return cages.refineCage(from, cageModel(document, { extensions }), options);
 }
 
 /**
@@ -108,7 +94,7 @@ export async function refineCage(
  */
 export function addCage<D extends Document>(
   document: D,
-  cage: Pick<Cage, 'positions' | 'uvs' | 'indices'> & Partial<Cage>,
+  cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
 ): { document: D; node: Node } {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
   const root = document.getRoot();
@@ -153,7 +139,12 @@ function jointsOf(document: Document, parts: readonly DocumentPart[], bones: Map
   return listJoints([...joints, ...[...boneOf.keys()].map(atNode)], (node) => node.getParentNode());
 }
 
-function read<T>(fn: string, argument: string, work: () => T): T {
+const isDocument = (value: unknown): value is Document =>
+  typeof (value as Document | null | undefined)?.getRoot === 'function';
+
+function read<T>(fn: string, argument: string, document: unknown, work: () => T): T {
+  if (!isDocument(document))
+    throw new CagecastError('badArgument', `${fn}: ${argument} is ${show(document)}, not a document of glTF-Transform`);
   try {
     return work();
   } catch (error) {

@@ -1,20 +1,5 @@
 import { BufferAttribute, BufferGeometry, Matrix4, type Object3D, type Skeleton, Vector3 } from 'three';
-import {
-  type Cage,
-  type CageCallOptions,
-  type CageModel,
-  type Fit,
-  type FitOptions,
-  type FoundLandmarks,
-  findLandmarks as findOn,
-  fitCage as fitTo,
-  type Landmarks,
-  type MakeOptions,
-  makeCage as makeFor,
-  type RefineOptions,
-  refineCage as refineOn,
-  type Template,
-} from '../cages/index.js';
+import * as cages from '../cages/index.js';
 import { CagecastError, type Mesh } from '../index.js';
 import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
 import { readExtras } from '../parts/template.js';
@@ -42,7 +27,7 @@ const objectOf = (model: Loaded): Object3D | BufferGeometry => (isLoadedGltf(mod
  * in the bind pose.
  * @throws {CagecastError} `badArgument` that names the mesh.
  */
-export function cageModel(model: Loaded): CageModel {
+export function cageModel(model: Loaded): cages.CageModel {
   const object = objectOf(model);
   const { mesh, parts } = extract(object, 'target');
   const { positions, indices, groups } = mesh;
@@ -60,7 +45,7 @@ export function cageModel(model: Loaded): CageModel {
  * A loaded cage as a template: its mesh, and the landmarks in its `userData`, where GLTFLoader puts the `extras` of a node or mesh.
  * @throws {CagecastError} `badArgument`, `missingUvs`
  */
-export function cageTemplate(model: Loaded): Template {
+export function cageTemplate(model: Loaded): cages.Template {
   const { mesh, parts } = extract(objectOf(model), 'cage');
   if (mesh.uvs === undefined)
     throw new CagecastError('missingUvs', 'cageTemplate: the cage has a mesh without the attribute uv');
@@ -83,39 +68,44 @@ export function cageTemplate(model: Loaded): Template {
 }
 
 /** As `makeCage` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
-export async function makeCage(model: Loaded, options: MakeOptions & CageCallOptions = {}): Promise<Cage> {
-  return makeFor(cageModel(model), options);
+export async function makeCage(
+  model: Loaded,
+  options: cages.MakeOptions & cages.CageCallOptions = {},
+): Promise<cages.Cage> {
+  return cages.makeCage(cageModel(model), options);
 }
 
 /** As `fitCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
 export async function fitCage(
-  template: Loaded | Template,
+  template: Loaded | cages.Template,
   model: Loaded,
-  landmarks?: Landmarks,
-  options: FitOptions & CageCallOptions = {},
-): Promise<Fit> {
-  return fitTo(isTemplate(template) ? template : cageTemplate(template), cageModel(model), landmarks, options);
+  landmarks?: cages.Landmarks,
+  options: cages.FitOptions & cages.CageCallOptions = {},
+): Promise<cages.Fit> {
+  return cages.fitCage(isTemplate(template) ? template : cageTemplate(template), cageModel(model), landmarks, options);
 }
 
 /** As `findLandmarks` of `cagecast/cages`, for a loaded model. @throws {CagecastError} */
-export async function findLandmarks(model: Loaded, options: CageCallOptions = {}): Promise<FoundLandmarks> {
-  return findOn(cageModel(model), options);
+export async function findLandmarks(model: Loaded, options: cages.CageCallOptions = {}): Promise<cages.FoundLandmarks> {
+  return cages.findLandmarks(cageModel(model), options);
 }
 
 /** As `refineCage` of `cagecast/cages`, for a loaded cage and model. @throws {CagecastError} */
 export async function refineCage(
-  cage: Loaded | Mesh | Cage | Template,
+  cage: Loaded | Mesh | cages.Cage | cages.Template,
   model: Loaded,
-  options: RefineOptions & CageCallOptions = {},
-): Promise<Cage> {
-  return refineOn(isTemplate(cage) ? cage : cageTemplate(cage), cageModel(model), options);
+  options: cages.RefineOptions & cages.CageCallOptions = {},
+): Promise<cages.Cage> {
+  return cages.refineCage(isTemplate(cage) ? cage : cageTemplate(cage), cageModel(model), options);
 }
 
 /**
  * The geometry of a cage, to be shown, or for `applyTransfer`. Landmarks, holes and kind are in its `userData`, which GLTFExporter
  * does not write: `cageGlb` of `cagecast/cages` writes a file with them.
  */
-export function cageGeometry(cage: Pick<Cage, 'positions' | 'uvs' | 'indices'> & Partial<Cage>): BufferGeometry {
+export function cageGeometry(
+  cage: Pick<cages.Cage, 'positions' | 'uvs' | 'indices'> & Partial<cages.Cage>,
+): BufferGeometry {
   const { positions, uvs, indices, landmarks = {}, holes = {}, kind = 'automatic' } = cage;
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(positions, 3));
