@@ -107,6 +107,18 @@ describe('makeCage', () => {
     await assert.rejects(makeCage(head(), { signal: AbortSignal.abort() }), { name: 'AbortError' });
   });
 
+  test('rejects with what onProgress throws, and the next call starts anew', async () => {
+    const own = new Error('of the callback');
+    const call = makeCage(head(), {
+      ...options,
+      onProgress: () => {
+        throw own;
+      },
+    });
+    await assert.rejects(call, own);
+    assert.ok((await makeCage(head(), options)).indices.length > 0);
+  });
+
   test('is cancelled by its own callback where it runs at once', () => {
     let calls = 0;
     assert.throws(() => sync.makeCage(head(), { ...options, onProgress: () => ++calls < 3 }), {

@@ -28,7 +28,10 @@ export type * from './types.js';
 
 /** Options of every call. */
 export interface CageCallOptions extends CallOptions {
-  /** Told several times a second how far the call is: a share 0..1 that never falls, and what it does (`hull`, `unwrap`, …). */
+  /**
+   * Told several times a second how far the call is: a share 0..1 that never falls, and what it does (`hull`, `unwrap`, …). If it
+   * throws, the call is cancelled, and its promise rejects with what was thrown.
+   */
   onProgress?: OnProgress | undefined;
 }
 

@@ -54,17 +54,7 @@ export class WorkerQueue {
   ): Promise<T> {
     return new Promise<T>((resolve, reject) => {
       if (signal?.aborted) return reject(signal.reason);
-      const giveUp = () => {
-        const place = this.#jobs.indexOf(job);
-        if (place < 0) return;
-        this.#jobs.splice(place, 1);
-        job.settle();
-        reject(signal?.reason);
-        if (place > 0) return;
-        // A call into WebAssembly cannot be interrupted, but its worker can be ended.
-        this.#stop();
-        this.#next();
-      };
+      const giveUp = () => this.#giveUp(job, signal?.reason);
       const job: Job = {
         request: { id: ++this.#lastId, fn, args },
         move,
@@ -114,24 +104,48 @@ export class WorkerQueue {
   }
 
   #start(): Thread {
-    return this.#spawn(
+    const thread = this.#spawn(
       (reply) => this.#onReply(reply),
       (message) => {
+        if (this.#thread !== thread) return; // It was ended, and another one works now.
         this.#stop();
         const job = this.#jobs[0];
         if (job)
           this.#finish(job, new CagecastError('unsupported', `${job.request.fn}: the worker failed (${message})`));
       },
     );
+    return thread;
   }
 
   #onReply(reply: Reply): void {
     const job = this.#jobs[0];
     if (job?.request.id !== reply.id) return;
-    if ('progress' in reply) job.onProgress?.(...reply.progress);
+    if ('progress' in reply) this.#tell(job, reply.progress);
     else if ('error' in reply)
       this.#finish(job, new CagecastError(reply.error.code, reply.error.message, reply.error.at));
     else this.#finish(job, undefined, reply.result);
+  }
+
+  /** Tells a caller how far its call is. What the caller's function throws ends the call. */
+  #tell(job: Job, progress: [share: number, stage: string]): void {
+    try {
+      job.onProgress?.(...progress);
+    } catch (error) {
+      this.#giveUp(job, error);
+    }
+  }
+
+  /** Ends a call that is still waiting or running. */
+  #giveUp(job: Job, reason: unknown): void {
+    const place = this.#jobs.indexOf(job);
+    if (place < 0) return;
+    this.#jobs.splice(place, 1);
+    job.settle();
+    job.reject(reason);
+    if (place > 0) return;
+    // A call into WebAssembly cannot be interrupted, but its worker can be ended.
+    this.#stop();
+    this.#next();
   }
 
   #finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
