@@ -67,6 +67,7 @@ void setCage(val& out, const Cage& cage) {
   out.set("uvs", copied(cage.uvs));
   out.set("indices", copied(cage.indices));
   out.set("landmarks", listed(cage.landmarks));
+  out.set("kind", cage.kind);
 }
 
 val makeCageCall(const val& target, const MakeOptions& options, const val& report) {
@@ -83,7 +84,7 @@ val fitCageCall(const val& from, const val& target, const val& landmarks, FitOpt
   ModelArrays arrays;
   Mesh mesh;
   if (!arrays.copy(target) || !mesh.copy(from["mesh"])) return ending(kOutOfMemory);
-  const Template source{mesh.view(), listOf<Landmark>(from["landmarks"])};
+  const Template source{mesh.view(), listOf<Landmark>(from["landmarks"]), from["kind"].as<Kind>()};
   options.landmarks = listOf<Landmark>(landmarks);
   FittedCage cage;
   const Outcome outcome = fitCage(source, arrays.model, options, progressTo(report), cage);
@@ -116,6 +117,13 @@ val refineCageCall(const val& cage, const val& target, const RefineOptions& opti
   const Outcome outcome = refineCage(mesh.view(), arrays.model, options, progressTo(report), refined);
   val out = ending(outcome);
   if (outcome.ok()) setCage(out, refined);
+  return out;
+}
+
+val matchingPartsCall(const val& parts, const val& patterns) {
+  val out = val::array();
+  const std::vector<bool> isMatch = matchingParts(listOf<std::string>(parts), listOf<std::string>(patterns));
+  for (std::size_t p = 0; p < isMatch.size(); ++p) out.set(p, static_cast<bool>(isMatch[p]));
   return out;
 }
 
@@ -170,9 +178,7 @@ EMSCRIPTEN_BINDINGS(cagecast_cages) {
       .field("closing", &MakeOptions::closing)
       .field("offset", &MakeOptions::offset)
       .field("voxels", &MakeOptions::voxels);
-  value_object<FitOptions>("FitOptions")
-      .field("kind", &FitOptions::kind)
-      .field("exclude", &patternsOf<FitOptions>, &setPatterns<FitOptions>);
+  value_object<FitOptions>("FitOptions").field("exclude", &patternsOf<FitOptions>, &setPatterns<FitOptions>);
   value_object<RefineOptions>("RefineOptions").field("reach", &RefineOptions::reach);
 
   function("makeOptions", &makeOptions);
@@ -182,4 +188,5 @@ EMSCRIPTEN_BINDINGS(cagecast_cages) {
   function("fitCage", &fitCageCall);
   function("findLandmarks", &findLandmarksCall);
   function("refineCage", &refineCageCall);
+  function("matchingParts", &matchingPartsCall);
 }

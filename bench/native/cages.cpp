@@ -5,7 +5,7 @@
 ///     cagecast_cages_tool fit TEMPLATE_CAGE.json TEMPLATE_LANDMARKS.json MODEL.json OUT.json [--landmarks L.json] …
 ///     cagecast_cages_tool refine CAGE.json MODEL.json OUT.json [--reach share]
 ///
-/// Options: --kind head|body|prop, --exclude PATTERN (once per pattern; replaces the default list), --triangles n,
+/// Options: --kind head|body|prop (make), --exclude PATTERN (once per pattern; replaces the default list), --triangles n,
 /// --voxels n, --closing share, --offset share, --stages (the time of each stage on stderr).
 /// MODEL.json: { positions, indices, groups, parts: [names], joints: [{ name, position, parent }], marks }; all but
 /// the first two are optional. Landmarks: { name: [x, y, z] }. Cages: { positions, indices, uvs, landmarks }.
@@ -99,7 +99,6 @@ struct Arguments {
   std::vector<std::string> files;
   std::string landmarks;  ///< A file, or empty.
   std::vector<std::string> exclude;
-  Kind kind = Kind::automatic;
   MakeOptions make = {.exclude = {}};  ///< Patterns are in `exclude` above.
   RefineOptions refine;
   bool stages = false;
@@ -129,7 +128,7 @@ Arguments parse(int argc, char** argv) {
     else if (argument == "--exclude")
       arguments.exclude.push_back(value());
     else if (argument == "--kind")
-      arguments.kind = kindOf(value());
+      make.kind = kindOf(value());
     else if (argument == "--triangles")
       make.triangles = static_cast<std::uint32_t>(number());
     else if (argument == "--voxels")
@@ -206,7 +205,6 @@ const char* nameOf(Kind kind) {
 int runMake(const Arguments& arguments) {
   const StoredModel stored(readJson(arguments.files[0]));
   MakeOptions options = arguments.make;
-  options.kind = arguments.kind;
   options.exclude = arguments.exclude.empty() ? defaultExclusions() : arguments.exclude;
   StageClock stages(arguments.stages);
   Cage cage;
@@ -242,7 +240,6 @@ int runFit(const Arguments& arguments) {
   const StoredModel stored(readJson(arguments.files[2]));
   const json given = arguments.landmarks.empty() ? json::object() : readJson(arguments.landmarks);
   FitOptions options;
-  options.kind = arguments.kind;
   if (!arguments.exclude.empty()) options.exclude = arguments.exclude;
   StageClock stages(arguments.stages);
   options.landmarks = landmarksOf(given);

@@ -65,6 +65,10 @@ describe('cagecast make', () => {
     );
     assert.equal(status, 0, stderr);
     assert.match(stdout, /, 1 hole$/m);
+    // A word of a name is enough: Eye.L, EyeWhite.
+    const words = cagecast(...['make', at('head.glb'), '--exclude', 'eye', '--triangles', '300', '-o', at('two.glb')]);
+    assert.equal(words.status, 0, words.stderr);
+    assert.match(words.stdout, /, 2 holes$/m);
     const triangles = unpackGlb(readFileSync(at('one.glb'))).json.accessors![2]!.count / 3;
     assert.ok(triangles > 200 && triangles < 400, `${triangles}`);
   });
@@ -191,6 +195,7 @@ describe('cagecast fit', () => {
     const before = files();
     for (const [args, status, says] of [
       [['human-head'], 2, /missing required argument 'TARGET'|required option/],
+      [['human', target, '-o', out], 1, /human: no such file, and no template of the package: there are human-head, /],
       [['human-head', target], 2, /required option '-o, --output <CAGE\.glb>' not specified/],
       [[at('bare.glb'), target, '-o', at('bare.glb')], 2, /would overwrite another file/],
       [

@@ -53,6 +53,7 @@ describe('makeCage', () => {
     assert.equal(cage.uvs.length / 2, cage.positions.length / 3);
     assert.ok(cage.uvs.every((x) => x >= 0 && x <= 1));
     assert.equal(cage.kind, 'head');
+    assert.equal((await makeCage(model, { ...options, kind: 'automatic' })).kind, 'head');
     const { verdict, holes } = inspect(cage, model);
     assert.notEqual(verdict, 'unfit');
     assert.equal(holes.length, 2);
@@ -72,6 +73,13 @@ describe('makeCage', () => {
     const there = await makeCage(head(), options);
     assert.deepEqual(sync.makeCage(head(), options), there);
     assert.deepEqual(sync.defaultExclusions(), await defaultExclusions());
+  });
+
+  test('tells which parts patterns match', () => {
+    assert.deepEqual(sync.matchingParts(['skin', ['Eye.L', 'white'], 'eyelid'], ['eye', 'sk*']), [true, true, false]);
+    assert.throws(() => sync.matchingParts(['skin'], 'eye' as never), {
+      message: 'matchingParts: patterns is "eye", not an array of patterns',
+    });
   });
 
   test('takes patterns and marks in the place of the default list', async () => {
@@ -288,8 +296,13 @@ describe('fitCage', () => {
         'badArgument',
         /template\.landmarks\.chin is of type Array, not 3 finite numbers/,
       ],
+      [
+        [{ ...template, kind: 'hand' }, model],
+        'badArgument',
+        /template\.kind is "hand", not one of "automatic", "head", "body", "prop"/,
+      ],
       [[template, model, { chin: 'low' }], 'badArgument', /^fitCage: landmarks\.chin is "low", not 3 finite numbers/],
-      [[template, model, {}, { triangles: 5 }], 'badOption', /options\.triangles is unknown; there are: kind, exclude/],
+      [[template, model, {}, { triangles: 5 }], 'badOption', /options\.triangles is unknown; there are: exclude$/],
       [[{ ...template, indices: new Uint32Array(0) }, model], 'badTemplate', /template/],
       [[template, { ...model, indices: new Uint32Array(0) }], 'badModel', /model has no triangles/],
     ] satisfies [unknown[], Code, RegExp][]) {

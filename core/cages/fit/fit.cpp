@@ -214,6 +214,7 @@ Outcome Fit::run(FittedCage& out) {
   }
   out.uvs.assign(from_.cage.uvs.begin(), from_.cage.uvs.end());
   out.indices.assign(from_.cage.indices.begin(), from_.cage.indices.end());
+  out.kind = from_.kind;
   if (!tell(1, "done")) return cancelled;
   return {};
 }

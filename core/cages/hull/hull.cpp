@@ -7,6 +7,7 @@
 #include "hull/distance_band.hpp"
 #include "hull/grid.hpp"
 #include "hull/iso_surface.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -17,19 +18,25 @@ constexpr double kBorder = 3;
 constexpr std::uint32_t kLeastVoxels = 8;
 constexpr std::uint32_t kMostVoxels = 512;
 
+double longestOf(const Vec3& size) { return std::max({size.x, size.y, size.z}); }
+
+/// Spaces between the nodes along the longest side, without the border.
+double spacesFor(std::uint32_t voxels) {
+  return static_cast<double>(std::clamp(voxels, kLeastVoxels, kMostVoxels)) - 2 * kBorder + 1;
+}
+
+/// The least that a mesh can be dilated by: any point is within 0.87 spaces of a node, so that the body has neither gaps
+/// that the flood gets in through, nor is empty.
+double leastDilation(const TriangleMesh& mesh, std::uint32_t voxels) {
+  constexpr double kSpaces = 0.9;
+  return kSpaces * longestOf(boundsOf(mesh).size()) / (spacesFor(voxels) - 2 * kSpaces);  // The grid has room for it.
+}
+
 Grid gridAround(const TriangleMesh& mesh, double pad, std::uint32_t voxels) {
-  Vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
-  for (const Triangle3& t : mesh.triangles)
-    for (const std::uint32_t v : t) {
-      const Vec3& p = mesh.positions[v];
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-  const Vec3 size = high - low + 2 * pad * Vec3{1, 1, 1};
-  const double longest = std::max({size.x, size.y, size.z});
-  const std::uint32_t count = std::min(kMostVoxels, std::max(kLeastVoxels, voxels));
+  const Bounds bounds = boundsOf(mesh);
+  const Vec3 size = bounds.size() + 2 * pad * Vec3{1, 1, 1};
   Grid grid;
-  grid.spacing = longest / (static_cast<double>(count) - 2 * kBorder + 1);
+  grid.spacing = longestOf(size) / spacesFor(voxels);
   const auto nodes = [&](double side) {
     return static_cast<std::uint32_t>(std::ceil(side / grid.spacing) + 2 * kBorder);
   };
@@ -37,7 +44,7 @@ Grid gridAround(const TriangleMesh& mesh, double pad, std::uint32_t voxels) {
   grid.ny = nodes(size.y);
   grid.nz = nodes(size.z);
   const double border = kBorder * grid.spacing + pad;
-  grid.origin = low - border * Vec3{1, 1, 1};
+  grid.origin = bounds.low - border * Vec3{1, 1, 1};
   return grid;
 }
 
@@ -125,13 +132,8 @@ TriangleMesh closeOpenings(const TriangleMesh& mesh, double width, std::vector<O
   std::vector<Opening> wide;
   for (std::vector<std::uint32_t>& loop : boundaryLoops(mesh)) {
     if (loop.size() < 3) continue;
-    Vec3 low = mesh.positions[loop[0]], high = low;
-    for (const std::uint32_t v : loop) {
-      const Vec3& p = mesh.positions[v];
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    if (length(high - low) > width) wide.push_back({std::move(loop), length(high - low), 0, 0});
+    const double across = boundsOf(mesh, loop).diagonal();
+    if (across > width) wide.push_back({std::move(loop), across, 0, 0});
   }
   std::stable_sort(wide.begin(), wide.end(), [](const Opening& a, const Opening& b) { return a.width > b.width; });
   TriangleMesh out = mesh;
@@ -156,10 +158,10 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
     return [&progress, from, to](float done, const char* stage) { return progress(from + (to - from) * done, stage); };
   };
   // Dilated by `outwards`, what remains is then eroded by `inwards`. The difference is the offset.
-  const double outwards = std::max(options.closing, options.offset);
-  const double inwards = outwards - options.offset;
   if (progress && !progress(0, "hull")) return false;
   const TriangleMesh closed = closeOpenings(mesh, 2 * options.closing);
+  const double outwards = std::max({options.closing, options.offset, leastDilation(closed, options.voxels)});
+  const double inwards = outwards - options.offset;
   const Grid grid = gridAround(closed, outwards, options.voxels);
   // Beyond both levels by the diagonal of a cell, so that the nodes on either side of them have distances.
   const double beyond = 1.8 * grid.spacing;

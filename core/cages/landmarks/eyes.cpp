@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/bounds.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -15,12 +16,9 @@ namespace {
 /// What a component, or the eye parts of one side, looks like.
 struct Shape {
   std::vector<Vec3> points;  ///< Its vertices, each once.
-  Vec3 low{}, high{};        ///< Of its box.
+  Bounds bounds;
   double area = 0;
   std::size_t triangles = 0;
-
-  [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
-  [[nodiscard]] Vec3 size() const { return high - low; }
 };
 
 Shape shapeOf(const TriangleMesh& mesh) {
@@ -28,11 +26,7 @@ Shape shapeOf(const TriangleMesh& mesh) {
   out.points = mesh.positions;
   out.triangles = mesh.triangles.size();
   if (mesh.empty()) return out;
-  out.low = out.high = out.points[0];
-  for (const Vec3& p : out.points) {
-    out.low = {std::min(out.low.x, p.x), std::min(out.low.y, p.y), std::min(out.low.z, p.z)};
-    out.high = {std::max(out.high.x, p.x), std::max(out.high.y, p.y), std::max(out.high.z, p.z)};
-  }
+  out.bounds = boundsOf(mesh);
   for (const Triangle3& t : mesh.triangles) out.area += 0.5 * length(areaNormal(mesh, t));
   return out;
 }
@@ -43,11 +37,11 @@ constexpr double kBall = 0.12;
 /// The centre of an eyeball: of a sphere if it is one (a front half's box has its middle too far to the front), of the
 /// box if it is flat or bulges.
 Vec3 centreOf(const Shape& shape, double& radius) {
-  const Vec3 size = shape.size();
+  const Vec3 size = shape.bounds.size();
   radius = 0.5 * std::max(size.y, std::min(size.x, size.z));
   const Sphere sphere = fitSphere(shape.points);
   const bool round = sphere.residual < kBall && sphere.radius < 1.3 * radius && sphere.radius > 0.8 * radius;
-  if (!round) return shape.middle();
+  if (!round) return shape.bounds.middle();
   radius = sphere.radius;
   return sphere.centre;
 }
@@ -203,7 +197,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
     if (size < kLeastTriangles || 2 * size > figure.components.size()) continue;
     const TriangleMesh part = compact(figure.mesh, triangles[c]);
     Shape shape = shapeOf(part);
-    const Vec3 box = shape.size();
+    const Vec3 box = shape.bounds.size();
     const double wide = std::hypot(box.x, box.z);
     const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
     if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
@@ -216,10 +210,10 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
   for (std::size_t i = 0; i < candidates.size(); ++i)
     for (std::size_t k = i + 1; k < candidates.size(); ++k) {
       const Shape &a = candidates[i].shape, &b = candidates[k].shape;
-      const double size = a.size().y;
-      const double off = length(plane.mirrored(a.middle()) - b.middle());
-      if (off > 0.3 * size || std::abs(b.size().y - size) > kAlike * size) continue;
-      if (std::abs(dot(plane.left, a.middle()) - plane.offset) < 0.5 * size) continue;
+      const double size = a.bounds.size().y;
+      const double off = length(plane.mirrored(a.bounds.middle()) - b.bounds.middle());
+      if (off > 0.3 * size || std::abs(b.bounds.size().y - size) > kAlike * size) continue;
+      if (std::abs(dot(plane.left, a.bounds.middle()) - plane.offset) < 0.5 * size) continue;
       Eyes eyes;
       double radii[2] = {};
       eyes.centres = {centreOf(a, radii[0]), centreOf(b, radii[1])};

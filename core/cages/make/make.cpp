@@ -43,8 +43,8 @@ constexpr int kAttempts = 3;
 /// Points of the hull that the cage is moved past, about.
 constexpr std::size_t kEnclosedPoints = 20000;
 
-/// Limits of options. Lengths are shares of the diagonal.
-constexpr auto kMostLength = static_cast<double>(0.2f);
+/// Limits of options, unless they are 0. Lengths are shares of the diagonal.
+constexpr auto kLeastLength = static_cast<double>(0.0005f), kMostLength = static_cast<double>(0.2f);
 constexpr double kLeastVoxels = 16, kMostVoxels = 400;
 constexpr double kLeastTriangles = 50, kMostTriangles = 20000;
 
@@ -56,13 +56,18 @@ struct Settings {
 };
 
 Outcome checkOptions(const MakeOptions& options) {
-  const auto orByKind = [](double least, std::uint32_t value) { return value == 0 ? 0 : least; };
-  for (Outcome outcome :
-       {checkOption("closing", static_cast<double>(options.closing), 0, kMostLength),
-        checkOption("offset", static_cast<double>(options.offset), 0, kMostLength),
-        checkOption("voxels", options.voxels, orByKind(kLeastVoxels, options.voxels), kMostVoxels),
-        checkOption("triangles", options.triangles, orByKind(kLeastTriangles, options.triangles), kMostTriangles)})
-    if (!outcome.ok()) return outcome;
+  struct Range {
+    const char* name;
+    double value, least, most;
+  };
+  for (const auto& [name, value, least, most] :
+       {Range{"closing", static_cast<double>(options.closing), kLeastLength, kMostLength},
+        Range{"offset", static_cast<double>(options.offset), kLeastLength, kMostLength},
+        Range{"voxels", static_cast<double>(options.voxels), kLeastVoxels, kMostVoxels},
+        Range{"triangles", static_cast<double>(options.triangles), kLeastTriangles, kMostTriangles}}) {
+    if (value == 0) continue;  // By kind.
+    if (Outcome outcome = checkOption(name, value, least, most); !outcome.ok()) return outcome;
+  }
   return {};
 }
 
@@ -113,8 +118,9 @@ std::vector<OuterPoint> pointsToEnclose(const TriangleMesh& hull, const std::vec
   return points;
 }
 
-void store(const Layout& layout, Cage& out) {
+void store(const Layout& layout, Kind kind, Cage& out) {
   out = {};
+  out.kind = kind;
   for (const Vec3& p : layout.positions)
     for (const double x : {p.x, p.y, p.z}) out.positions.push_back(static_cast<float>(x));
   for (const Uv& uv : layout.uvs)
@@ -176,7 +182,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   unwrapOptions.kind = settings.kind;
   if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled;
   if (progress && !part(1, 1)(1, "unwrap")) return cancelled;
-  store(layout, out);
+  store(layout, settings.kind, out);
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "geometry/triangle.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -58,24 +59,15 @@ std::string valuesOf(const MeshView& mesh, const char* name) {
 
 /// The sentence about its size and place in space, or nothing.
 std::string extentOf(const MeshView& mesh, const std::string& name) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  const auto corner = [&](std::size_t i) { return &mesh.positions[std::size_t{3} * mesh.indices[i]]; };
   bool hasArea = false;
-  for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
-    const float* corners[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = &mesh.positions[std::size_t{3} * mesh.indices[t + i]];
-      for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], static_cast<double>(corners[i][k]));
-        high[k] = std::max(high[k], static_cast<double>(corners[i][k]));
-      }
-    }
-    hasArea = hasArea || length(areaNormal(corners[0], corners[1], corners[2])) > 0;
-  }
+  for (std::size_t i = 0; i < mesh.indices.size() && !hasArea; i += 3)
+    hasArea = length(cagecast::areaNormal(corner(i), corner(i + 1), corner(i + 2))) > 0;
   if (!hasArea) return name + " has no triangle with an area";
-  const double diagonal = length(Vec3{high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-  for (std::size_t k = 0; k < 3; ++k)
-    if (std::max(-low[k], high[k]) > kMaxProportion * diagonal)
-      return name + " is more than a million times its size away from the origin";
+  const auto [low, high] = boundsOf(mesh);
+  const double farthest = std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z});
+  if (farthest > kMaxProportion * length(high - low))
+    return name + " is more than a million times its size away from the origin";
   return {};
 }
 

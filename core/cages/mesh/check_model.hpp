@@ -22,7 +22,7 @@ Outcome checkModel(const Model& model);
 Outcome checkMesh(const MeshView& mesh, const char* name, Problem problem);
 
 /// Checks that an option is within its range; NaN is not.
-/// @return Problem::badOptions with "options.closing = 0.5 is not within 0..0.2".
+/// @return Problem::badOptions with "options.closing = 0.5 is not within 0.0005..0.2".
 Outcome checkOption(const char* name, double value, double least, double most);
 
 }  // namespace cagecast::cages

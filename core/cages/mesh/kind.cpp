@@ -2,26 +2,12 @@
 
 #include <algorithm>
 
+#include "mesh/bounds.hpp"
 #include "mesh/part_names.hpp"
-#include "mesh/triangle_mesh.hpp"
 
 namespace cagecast::cages {
 
 namespace {
-
-struct Box {
-  Vec3 low, high;
-};
-
-Box boxOf(const MeshView& mesh) {
-  Vec3 low = Vec3::from(&mesh.positions[std::size_t{3} * mesh.indices[0]]), high = low;
-  for (const std::uint32_t v : mesh.indices) {
-    const Vec3 p = Vec3::from(&mesh.positions[std::size_t{3} * v]);
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return {low, high};
-}
 
 bool hasParts(const Model& model, std::initializer_list<std::string_view> patterns) {
   return std::any_of(model.parts.begin(), model.parts.end(), [&](const std::string& name) {
@@ -31,8 +17,8 @@ bool hasParts(const Model& model, std::initializer_list<std::string_view> patter
 }
 
 /// Whether a leg's joint is inside the box: the legs of a rig may belong to a body that is not there.
-bool hasLegs(const Model& model, const Box& box) {
-  const Vec3 margin = 0.05 * (box.high - box.low);
+bool hasLegs(const Model& model, const Bounds& box) {
+  const Vec3 margin = 0.05 * box.size();
   const Vec3 low = box.low - margin, high = box.high + margin;
   return std::any_of(model.joints.begin(), model.joints.end(), [&](const Joint& joint) {
     const Vec3 p = Vec3::from(joint.position.data());
@@ -46,19 +32,14 @@ bool hasLegs(const Model& model, const Box& box) {
 }
 
 /// Whether an open border as wide as a neck is at the bottom of a mesh.
-bool isOpenBelow(const MeshView& mesh, const Box& box) {
+bool isOpenBelow(const MeshView& mesh, const Bounds& box) {
   const TriangleMesh welded = weldExactly(mesh);
-  const Vec3 size = box.high - box.low;
+  const Vec3 size = box.size();
   const double across = std::min(size.x, size.z);
   for (const auto& loop : boundaryLoops(welded)) {
-    Vec3 low = box.high, high = box.low;
-    for (const std::uint32_t v : loop) {
-      const Vec3& p = welded.positions[v];
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    const bool isWide = high.x - low.x > 0.3 * across && high.z - low.z > 0.3 * across;
-    if (isWide && high.y < box.low.y + 0.35 * size.y) return true;
+    const Bounds border = boundsOf(welded, loop);
+    const bool isWide = border.size().x > 0.3 * across && border.size().z > 0.3 * across;
+    if (isWide && border.high.y < box.low.y + 0.35 * size.y) return true;
   }
   return false;
 }
@@ -66,8 +47,8 @@ bool isOpenBelow(const MeshView& mesh, const Box& box) {
 }  // namespace
 
 Kind kindOf(const Model& model) {
-  const Box box = boxOf(model.mesh);
-  const Vec3 size = box.high - box.low;
+  const Bounds box = boundsOf(model.mesh);
+  const Vec3 size = box.size();
   // Chibi figures are 2.2 times as tall as deep; heads with a neck 1.8 times.
   const double slender = size.y / std::max(size.z, 1e-9 * size.y);
   if (hasLegs(model, box)) return slender > 1.5 ? Kind::body : Kind::prop;  // On all fours, seams are those of props.

@@ -15,12 +15,8 @@ bool matches(std::string_view text, std::string_view pattern) noexcept;
 /// The words of a name: "Wolf3D_EyeLeft/l-eye" has the words Wolf, D, Eye, Left, l and eye.
 std::vector<std::string_view> wordsOf(std::string_view name);
 
-/// Whether a pattern matches a name, what is between slashes in it ("node/mesh/material"), or one of its words: `eye`
-/// matches "l-eye" and "EyeLeft", but not "eyelid".
+/// Whether a pattern matches a name, as `matchingParts` says.
 bool matchesName(std::string_view name, std::string_view pattern);
-
-/// Whether each part's name matches one of the patterns, as by `matchesName`.
-std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns);
 
 /// Whether each triangle of a model belongs to one of some parts.
 /// @param isMatch  Per part. Triangles of groups beyond it, and of models without groups, do not.

@@ -8,6 +8,7 @@
 #include "base/tolerances.hpp"
 #include "geometry/closest_point.hpp"
 #include "input/cage.hpp"
+#include "mesh/bounds.hpp"
 #include "search/cage_tree.hpp"
 #include "search/closest_point_search.hpp"
 #include "search/ray_search.hpp"
@@ -48,13 +49,9 @@ std::vector<bool> needlesIn(const TriangleMesh& mesh, double diagonal) {
 
 Surface::Surface(const TriangleMesh& mesh) : trees_(std::make_unique<Trees>()) {
   Trees& trees = *trees_;
-  Vec3 low = mesh.positions[0], high = low;
-  for (const Vec3& p : mesh.positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  trees.centre = 0.5 * (low + high);
-  const double diagonal = length(high - low);
+  const Bounds bounds = boundsOf(mesh);
+  trees.centre = bounds.middle();
+  const double diagonal = bounds.diagonal();
   int exponent = 0;
   std::frexp(diagonal, &exponent);
   trees.units.scale = static_cast<float>(std::ldexp(1.0, 1 - exponent));

@@ -5,7 +5,29 @@
 #include <map>
 #include <unordered_map>
 
+#include "mesh/bounds.hpp"
+
 namespace cagecast::cages {
+
+namespace {
+
+/// Drops vertices that no triangle uses; the others keep their order.
+void dropUnused(TriangleMesh& mesh) {
+  std::vector<std::uint32_t> newVertex(mesh.positions.size(), 0);
+  for (const Triangle3& t : mesh.triangles)
+    for (const std::uint32_t v : t) newVertex[v] = 1;
+  std::uint32_t count = 0;
+  for (std::size_t v = 0; v < newVertex.size(); ++v) {
+    if (newVertex[v] == 0) continue;
+    mesh.positions[count] = mesh.positions[v];
+    newVertex[v] = count++;
+  }
+  mesh.positions.resize(count);
+  for (Triangle3& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = newVertex[v];
+}
+
+}  // namespace
 
 TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* vertexOf,
                          std::vector<std::uint32_t>* triangleOf) {
@@ -37,7 +59,10 @@ TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* verte
     out.triangles.push_back(triangle);
     if (triangleOf != nullptr) triangleOf->push_back(static_cast<std::uint32_t>(t));
   }
-  if (vertexOf != nullptr) *vertexOf = std::move(newVertex);
+  if (vertexOf == nullptr)
+    dropUnused(out);
+  else
+    *vertexOf = std::move(newVertex);
   return out;
 }
 
@@ -83,15 +108,7 @@ std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32
   return pieces;
 }
 
-double diagonalOf(const TriangleMesh& mesh) {
-  if (mesh.positions.empty()) return 0;
-  Vec3 low = mesh.positions[0], high = low;
-  for (const Vec3& p : mesh.positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return length(high - low);
-}
+double diagonalOf(const TriangleMesh& mesh) { return boundsOf(mesh).diagonal(); }
 
 std::vector<Vec3> vertexNormals(const TriangleMesh& mesh) {
   std::vector<Vec3> normals(mesh.positions.size(), Vec3{0, 0, 0});

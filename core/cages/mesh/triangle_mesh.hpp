@@ -19,7 +19,8 @@ struct TriangleMesh {
   [[nodiscard]] bool empty() const noexcept { return triangles.empty(); }
 };
 
-/// A copy of a mesh in which equal positions are one vertex and degenerate triangles are left out.
+/// A copy of a mesh in which equal positions are one vertex and degenerate triangles are left out. So are vertices that
+/// no triangle uses, unless `vertexOf` is asked for.
 /// @param[out] vertexOf  If not null: the vertex of the copy for each vertex of `mesh`.
 /// @param[out] triangleOf  If not null: the triangle of `mesh` for each triangle of the copy.
 TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* vertexOf = nullptr,
@@ -32,7 +33,7 @@ TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTrian
 /// triangles.
 std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32_t& count);
 
-/// The length of the diagonal of the bounding box.
+/// The length of the diagonal of the bounding box of the triangles.
 double diagonalOf(const TriangleMesh& mesh);
 
 /// Twice the area times the unit normal.

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geometry/hilbert.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
@@ -33,21 +34,14 @@ double medianOf(std::vector<double> values) {
 
 /// Triangles in the order of a Hilbert curve through their centres.
 std::vector<std::uint32_t> orderOf(const TriangleMesh& mesh) {
-  Vec3 low = mesh.positions[mesh.triangles[0][0]], high = low;
-  for (const Triangle3& t : mesh.triangles) {
-    for (const std::uint32_t v : t) {
-      const Vec3& p = mesh.positions[v];
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-  }
+  const Bounds bounds = boundsOf(mesh);
   constexpr int kLevels = 8;
-  const double size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  const double size = std::max({bounds.size().x, bounds.size().y, bounds.size().z});
   const double cells = size > 0 ? ((1 << kLevels) - 1) / size : 0;
   const HilbertCurve curve(kLevels);
   std::vector<std::uint32_t> keys;
   for (const Triangle3& t : mesh.triangles) {
-    const Vec3 p = 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) - low;
+    const Vec3 p = 1.0 / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) - bounds.low;
     const auto cell = [&](double x) { return static_cast<std::uint32_t>(cells * x); };
     keys.push_back(curve.key(cell(p.x), cell(p.y), cell(p.z)));
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cagecast/cages.hpp"
+#include "mesh/bounds.hpp"
 #include "mesh/check_model.hpp"
 #include "refine/align.hpp"
 #include "refine/bend.hpp"
@@ -36,7 +37,7 @@ constexpr double kMostUneven = 0.02;
 constexpr double kBendFrom = 0.005;
 /// Vertices of the cage this close together, as a share of the diagonal, move as one: seams, and poles of balls.
 constexpr double kWeld = 1e-6;
-/// Most that `reach` can be: beyond, cage and model hardly touch.
+/// Limits of `reach`: below, no cage would move; beyond, cage and model hardly touch.
 constexpr auto kLeastReach = static_cast<double>(0.001f), kMostReach = static_cast<double>(0.2f);
 
 std::string percent(double share) {
@@ -46,23 +47,8 @@ std::string percent(double share) {
 
 Outcome fault(std::string message) { return {Problem::badTemplate, std::move(message)}; }
 
-struct Box {
-  Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-
-  explicit Box(const TriangleMesh& mesh) {
-    for (const Triangle3& t : mesh.triangles) {
-      for (const std::uint32_t v : t) {
-        const Vec3& p = mesh.positions[v];
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
-    }
-  }
-  [[nodiscard]] double diagonal() const { return length(high - low); }
-};
-
 /// Whether a cage is anywhere near its model, so that closest points mean something.
-Outcome checkNearness(const Box& cage, const Box& model, double reach) {
+Outcome checkNearness(const Bounds& cage, const Bounds& model, double reach) {
   const auto apart = [](double lowA, double highA, double lowB, double highB) {
     return std::max({0.0, lowA - highB, lowB - highA});
   };
@@ -212,13 +198,12 @@ Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
   if (Outcome outcome = checkOption("reach", static_cast<double>(options.reach), kLeastReach, kMostReach); !outcome.ok())
     return outcome;
-  TriangleMesh target = weldExactly(model.mesh);
-  target = subset(target, std::vector<bool>(target.triangles.size(), true));  // Its size is that of what is used.
+  const TriangleMesh target = weldExactly(model.mesh);
   std::vector<std::uint32_t> vertexOf;
   const TriangleMesh welded = weldNearly(cage, kWeld * diagonalOf(target), vertexOf);
   if (welded.empty()) return fault("cage has no triangle that is large enough beside the model");
   const double reach = static_cast<double>(options.reach);
-  if (Outcome outcome = checkNearness(Box(welded), Box(target), reach); !outcome.ok()) return outcome;
+  if (Outcome outcome = checkNearness(boundsOf(welded), boundsOf(target), reach); !outcome.ok()) return outcome;
   if (progress && !progress(0, "align")) return {Problem::cancelled, "cancelled"};
   Refinement refinement(welded, target, reach, progress);
   if (!refinement.run()) return {Problem::cancelled, "cancelled"};

@@ -21,7 +21,7 @@ using Position = std::array<float, 3>;  ///< x, y, z in the space of the model.
 struct Landmark {
   std::string name;
   Position position{};
-  float confidence = 1;  ///< 0..1; 1 for those that a person or a bone gave.
+  float confidence = 1;  ///< 0..1: 1 if a person or a bone gave it; those found at less than 0.5 are left out.
 };
 
 /// A joint of the model's skeleton, in the pose in which the mesh is given.
@@ -39,34 +39,39 @@ struct Model {
   std::span<const std::uint8_t> marks = {};  ///< 1 per triangle or none: 1 must not be painted, as by a brush.
 };
 
+/// What a model is, which decides resolution, tightness and seams.
+enum class Kind : std::uint8_t { automatic, head, body, prop };
+
 /// A cage, with what is known about it.
 struct Cage {
   std::vector<float> positions;        ///< 3 per vertex, in the space of the model.
   std::vector<float> uvs;              ///< 2 per vertex, 0..1. Seams have a vertex for each side.
   std::vector<std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise seen from outside.
   std::vector<Landmark> landmarks;     ///< Spots of the model that it was made for.
+  Kind kind = Kind::automatic;         ///< What it was made for; `automatic` if that is not known.
 
   [[nodiscard]] MeshView view() const noexcept { return {positions, indices, uvs}; }
 };
 
-/// What a model is, which decides resolution, tightness and seams.
-enum class Kind : std::uint8_t { automatic, head, body, prop };
-
-/// Name patterns of parts that are not painted: `*` stands for any text, case does not matter.
+/// Name patterns of parts that are not painted, as `matchingParts` takes them.
 const std::vector<std::string>& defaultExclusions();
 
-/// Lengths are shares of the diagonal of the model's bounding box. 0 means: by kind.
+/// Whether each part's name matches one of the patterns: `*` stands for any text, `?` for one character, case does not
+/// matter. A pattern describes the whole name, what is between slashes in it ("node/mesh/material"), or one of its
+/// words: `eye` matches "l-eye" and "EyeLeft", but not "eyelid".
+std::vector<bool> matchingParts(const std::vector<std::string>& parts, const std::vector<std::string>& patterns);
+
+/// Lengths are shares of the diagonal of the model's bounding box, 0.0005 to 0.2. 0 means: by kind.
 struct MakeOptions {
   Kind kind = Kind::automatic;
   std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
   std::uint32_t triangles = 0;                             ///< Of the cage, about: heads and props 600, bodies 1500.
-  float closing = 0;         ///< Gaps narrower than twice this are bridged: heads and props 0.02, bodies 0.008.
+  float closing = 0;         ///< Gaps narrower than twice this, or two voxels, are bridged: 0.02, bodies 0.008.
   float offset = 0;          ///< Distance of the cage from the model: 0.01, bodies 0.004.
   std::uint32_t voxels = 0;  ///< Along the longest side: 140, bodies 240.
 };
 
 struct FitOptions {
-  Kind kind = Kind::automatic;
   std::vector<std::string> exclude = defaultExclusions();  ///< Patterns for `Model::parts`.
   std::vector<Landmark> landmarks = {};                    ///< Of the model; these override found ones.
 };
@@ -113,6 +118,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
 struct Template {
   MeshView cage;                    ///< With UVs.
   std::vector<Landmark> landmarks;  ///< Of the model that it was made for.
+  Kind kind = Kind::automatic;      ///< The fitted cage gets it, too. The fit itself asks only for landmarks.
 };
 
 /// A fitted cage; its landmarks are those that the fit used.

@@ -10,6 +10,7 @@
 #include "fit/template_cage.hpp"
 #include "fit/warp.hpp"
 #include "mesh/surface.hpp"
+#include "shapes.hpp"
 
 using namespace cagecast;
 using namespace cagecast::cages;
@@ -189,6 +190,36 @@ TEST_CASE("a fit can be cancelled", "[cages][fit]") {
   };
   const Outcome outcome = fitCage(heads.from(), {heads.other.view()}, heads.options(), upToHalf, heads.out);
   CHECK(outcome.problem == Problem::cancelled);
+}
+
+TEST_CASE("a model that is not manifold gets a fitted cage, too", "[cages][fit]") {
+  Heads heads;
+  addFins(heads.other.positions, heads.other.indices);
+  heads.other.uvs.clear();
+  const Outcome outcome = heads.fit(heads.other);
+  INFO(outcome.message);
+  REQUIRE(outcome.ok());
+  const TriangleMesh fitted = weldExactly(heads.out.view());
+  for (const bool folded : foldedTriangles(fitted)) CHECK_FALSE(folded);
+  CHECK(Surface(fitted).closest(headPoint(kOther, 0, 1.2, 0)).height < 0);
+}
+
+TEST_CASE("vertices that no triangle uses make no difference to a fit", "[cages][fit]") {
+  Heads heads;
+  REQUIRE(heads.fit(heads.other).ok());
+  const std::vector<float> before = heads.out.positions;
+  heads.other.uvs.clear();
+  for (const float x : {500.0f, 0.0f, 0.0f}) heads.other.positions.push_back(x);
+  REQUIRE(heads.fit(heads.other).ok());
+  CHECK(heads.out.positions == before);
+}
+
+TEST_CASE("a fitted cage has the kind of its template", "[cages][fit]") {
+  Heads heads;
+  Template from = heads.from();
+  from.kind = Kind::head;
+  REQUIRE(fitCage(from, {heads.other.view()}, heads.options(), {}, heads.out).ok());
+  CHECK(heads.out.kind == Kind::head);
 }
 
 TEST_CASE("landmarks that contradict are named", "[cages][fit]") {

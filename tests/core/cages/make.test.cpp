@@ -150,6 +150,48 @@ TEST_CASE("making a cage can be cancelled, and tells how far it is", "[cages][ma
   }
 }
 
+TEST_CASE("vertices that no triangle uses make no difference", "[cages][make]") {
+  OwnedModel model = head();
+  const Cage cage = made(model.model());
+  for (const float x : {500.0f, 0.0f, 0.0f}) model.positions.push_back(x);
+  model.groups.push_back(0);
+  CHECK(made(model.model()).positions == cage.positions);
+}
+
+TEST_CASE("lengths that the grid is too coarse for count as the least that it can show", "[cages][make]") {
+  const OwnedModel model = head();
+  MakeOptions options;
+  options.closing = options.offset = 0.0005f;
+  for (const std::uint32_t voxels : {16u, 80u}) {
+    CAPTURE(voxels);
+    options.voxels = voxels;
+    Cage cage;
+    const Outcome outcome = makeCage(model.model(), options, {}, cage);
+    CAPTURE(outcome.message);
+    REQUIRE(outcome.ok());
+    CHECK(length(Vec3::from(&cage.positions[0])) < 1.6);
+    CHECK(diagonalOf(meshOf(cage)) > 3);
+  }
+}
+
+TEST_CASE("a model that is not manifold gets its cage", "[cages][make]") {
+  OwnedModel model = head();
+  addFins(model.positions, model.indices);
+  model.groups.resize(model.positions.size() / 3, 0);
+  const TriangleMesh mesh = meshOf(made(model.model()));
+  CHECK(boundaryLoops(mesh).size() == 3);
+  CHECK(hasHoleAt(mesh, {0.35, 0.2, 1}, 0.2));
+  CHECK(Surface(mesh).closest(Vec3{0, 1, 0}).height < 0);
+}
+
+TEST_CASE("a made cage knows the kind of its model", "[cages][make]") {
+  const OwnedModel model = head();
+  CHECK(made(model.model()).kind == Kind::head);
+  MakeOptions options;
+  options.kind = Kind::prop;
+  CHECK(made(model.model(), options).kind == Kind::prop);
+}
+
 TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]") {
   OwnedModel model = head();
   MakeOptions options;
@@ -162,10 +204,10 @@ TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]")
   const OwnedModel one = head();
   options = {};
   options.closing = -1;
-  CHECK(faultOf(one.model(), options) == "options.closing = -1 is not within 0..0.2");
+  CHECK(faultOf(one.model(), options) == "options.closing = -1 is not within 0.0005..0.2");
   options = {};
   options.offset = NAN;
-  CHECK(faultOf(one.model(), options) == "options.offset = nan is not within 0..0.2");
+  CHECK(faultOf(one.model(), options) == "options.offset = nan is not within 0.0005..0.2");
   options = {};
   options.voxels = 1000;
   CHECK(faultOf(one.model(), options) == "options.voxels = 1000 is not within 16..400");

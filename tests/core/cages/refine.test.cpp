@@ -8,6 +8,7 @@
 #include "cagecast/cages.hpp"
 #include "cagecast/transfer.hpp"
 #include "geometry/vec3.hpp"
+#include "shapes.hpp"
 
 using namespace cagecast;
 using namespace cagecast::cages;
@@ -255,6 +256,17 @@ TEST_CASE("a cage that was bent is bent back", "[cages][refine]") {
   for (std::size_t row = 0; row <= 20; ++row)
     for (std::size_t k = 0; k < 3; ++k)
       CHECK(refined.positions[3 * 41 * row + k] == refined.positions[3 * (41 * row + 40) + k]);
+}
+
+TEST_CASE("a cage is brought onto a model that is not manifold, too", "[cages][refine]") {
+  Mesh head = makeHead();
+  addFins(head.positions, head.indices);
+  head.uvs.clear();
+  head.groups.resize(head.positions.size() / 3, 0);
+  const Mesh cage = makeHeadCage();
+  Cage refined;
+  REQUIRE(refine(moved(cage, {0.02 * kDiagonal, 0, 0}), head, refined).ok());
+  CHECK(difference(refined.positions, cage.positions) < 0.003);
 }
 
 TEST_CASE("what a refined cage cannot be made of is said", "[cages][refine]") {

@@ -42,6 +42,18 @@ inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
   return a;
 }
 
+/// Makes a mesh non-manifold: fins on some edges, each a third triangle there, and some triangles a second time.
+inline void addFins(std::vector<float>& positions, std::vector<std::uint32_t>& indices) {
+  const std::size_t count = indices.size();
+  constexpr std::size_t kStep = 300;  // A fin for every hundredth triangle.
+  for (std::size_t i = 0; i + 2 < count; i += kStep) {
+    const std::uint32_t a = indices[i], b = indices[i + 1], c = indices[i + 2];
+    const auto top = static_cast<std::uint32_t>(positions.size() / 3);
+    for (std::size_t k = 0; k < 3; ++k) positions.push_back(1.01f * positions[std::size_t{3} * c + k]);
+    indices.insert(indices.end(), {a, b, top, a, b, c});
+  }
+}
+
 /// A model with the arrays that it refers to.
 struct OwnedModel {
   std::vector<float> positions;

@@ -1,7 +1,7 @@
 import { CagecastError, show } from '../api/error.js';
 import { checkMesh } from '../api/mesh.js';
-import { namesOf } from '../core/module.js';
-import type { CagesModule, CoreLandmark, CoreModel, CoreOptions } from './module.js';
+import { type EnumValue, namesOf } from '../core/module.js';
+import type { CagesModule, CoreLandmark, CoreModel, CoreOptions, CoreTemplate } from './module.js';
 import type { CageModel, Landmarks, Template } from './types.js';
 
 const wrong = (fn: string, text: string) => new CagecastError('badArgument', `${fn}: ${text}`);
@@ -18,18 +18,12 @@ export function checkModel(fn: string, model: unknown): CoreModel {
   const { parts = [], joints = [], marks = new Uint8Array(0) } = model as CageModel;
   const bad = (field: string, value: unknown, type: string) =>
     wrong(fn, `model.${field} is ${show(value)}, not ${type}`);
-  if (!Array.isArray(parts)) throw bad('parts', parts, 'an array of names');
   if (!Array.isArray(joints)) throw bad('joints', joints, 'an array of joints { name, position, parent }');
   if (!(marks instanceof Uint8Array)) throw bad('marks', marks, 'a Uint8Array');
   return {
     mesh,
     marks,
-    parts: parts.map((part: unknown, p) => {
-      const names = Array.isArray(part) ? part : [part];
-      for (const name of names)
-        if (typeof name !== 'string') throw bad(`parts[${p}]`, name, 'a name, or an array of names');
-      return names.join('/');
-    }),
+    parts: checkParts(fn, 'model.parts', parts),
     joints: joints.map((joint, j) => {
       if (typeof joint?.name !== 'string') throw bad(`joints[${j}].name`, joint?.name, 'a name');
       if (!isPosition(joint.position)) throw bad(`joints[${j}].position`, joint.position, '3 finite numbers');
@@ -38,6 +32,25 @@ export function checkModel(fn: string, model: unknown): CoreModel {
       return { name: joint.name, position: joint.position, parent };
     }),
   };
+}
+
+/** Checks the names of parts. @returns one name for each. @throws {CagecastError} `badArgument` */
+export function checkParts(fn: string, argument: string, parts: unknown): string[] {
+  if (!Array.isArray(parts)) throw wrong(fn, `${argument} is ${show(parts)}, not an array of names`);
+  return parts.map((part: unknown, p) => {
+    const names = Array.isArray(part) ? part : [part];
+    for (const name of names)
+      if (typeof name !== 'string')
+        throw wrong(fn, `${argument}[${p}] is ${show(name)}, not a name, or an array of names`);
+    return names.join('/');
+  });
+}
+
+/** Checks patterns of names. @param bad  Makes the error. */
+export function checkPatterns(patterns: unknown, bad: (type: string) => CagecastError): string[] {
+  if (!Array.isArray(patterns) || !patterns.every((pattern) => typeof pattern === 'string'))
+    throw bad('an array of patterns');
+  return patterns;
 }
 
 /** Checks the types of a cage. @throws {CagecastError} `badArgument`, `missingUvs` */
@@ -49,9 +62,21 @@ export function checkCage(fn: string, name: 'cage' | 'template', cage: unknown) 
 }
 
 /** Checks the types of a template. @throws {CagecastError} `badArgument`, `missingUvs` */
-export function checkTemplate(fn: string, template: unknown) {
+export function checkTemplate(fn: string, module: CagesModule, template: unknown): CoreTemplate {
   const mesh = checkCage(fn, 'template', template);
-  return { mesh, landmarks: checkLandmarks(fn, 'template.landmarks', (template as Template).landmarks) };
+  const { landmarks, kind = 'automatic' } = template as Template;
+  return {
+    mesh,
+    landmarks: checkLandmarks(fn, 'template.landmarks', landmarks),
+    kind: kindOf(module, kind, (kinds) => wrong(fn, `template.kind is ${show(kind)}, not one of ${kinds}`)),
+  };
+}
+
+/** The value in C++ of a kind. @param bad  Makes the error from the names that there are. */
+function kindOf(module: CagesModule, kind: unknown, bad: (kinds: string) => CagecastError): EnumValue {
+  const kinds = namesOf({ module: module as never }, 'Kind');
+  if (!kinds.includes(kind as string)) throw bad(kinds.map(show).join(', '));
+  return module.Kind[kind as string]!;
 }
 
 /** Checks the types of landmarks. @throws {CagecastError} `badArgument` */
@@ -82,14 +107,9 @@ export function checkOptions(
     if (value === undefined) continue;
     if (!(name in defaults)) throw bad(`.${name} is unknown; there are: ${Object.keys(defaults).join(', ')}`);
     if (name === 'kind') {
-      const kinds = namesOf({ module: module as never }, 'Kind');
-      if (!kinds.includes(value as string))
-        throw bad(`.kind = ${show(value)} is unknown; there are: ${kinds.map(show).join(', ')}`);
-      merged[name] = module.Kind[value as string]!;
+      merged[name] = kindOf(module, value, (kinds) => bad(`.kind = ${show(value)} is unknown; there are: ${kinds}`));
     } else if (name === 'exclude') {
-      if (!Array.isArray(value) || !value.every((pattern) => typeof pattern === 'string'))
-        throw bad(`.exclude is ${show(value)}, not an array of patterns`);
-      merged[name] = value;
+      merged[name] = checkPatterns(value, (type) => bad(`.exclude is ${show(value)}, not ${type}`));
     } else {
       if (typeof value !== 'number' || !(value >= 0) || !Number.isFinite(value))
         throw bad(`.${name} is ${show(value)}, not a number of at least 0`);

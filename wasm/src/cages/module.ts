@@ -16,6 +16,7 @@ export interface CageAnswer extends CagesAnswer {
   uvs: Float32Array<ArrayBuffer>;
   indices: Uint32Array<ArrayBuffer>;
   landmarks: CoreLandmark[];
+  kind: EnumValue;
 }
 export interface FitAnswer extends CageAnswer {
   missing: string[];
@@ -36,6 +37,13 @@ export interface CoreModel {
   marks: Uint8Array;
 }
 
+/** A template, as C++ takes it. */
+export interface CoreTemplate {
+  mesh: CheckedMesh;
+  landmarks: CoreLandmark[];
+  kind: EnumValue;
+}
+
 export type CoreOptions = Record<string, number | EnumValue | string[]>;
 type Report = (share: number, stage: string) => boolean;
 
@@ -49,12 +57,13 @@ export interface CagesModule {
   refineOptions(): CoreOptions;
   makeCage(model: CoreModel, options: CoreOptions, report: Report): CageAnswer;
   fitCage(
-    template: { mesh: CheckedMesh; landmarks: CoreLandmark[] },
+    template: CoreTemplate,
     model: CoreModel,
     landmarks: CoreLandmark[],
     options: CoreOptions,
     report: Report,
   ): FitAnswer;
   findLandmarks(model: CoreModel, report: Report): FoundAnswer;
+  matchingParts(parts: string[], patterns: string[]): boolean[];
   refineCage(cage: CheckedMesh, model: CoreModel, options: CoreOptions, report: Report): CageAnswer;
 }

@@ -10,7 +10,15 @@ import { CagecastError, type Code, show } from '../api/error.js';
 import type { Mesh } from '../api/mesh.js';
 import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js';
 import { nameOf } from '../core/module.js';
-import { checkCage, checkLandmarks, checkModel, checkOptions, checkTemplate } from './check.js';
+import {
+  checkCage,
+  checkLandmarks,
+  checkModel,
+  checkOptions,
+  checkParts,
+  checkPatterns,
+  checkTemplate,
+} from './check.js';
 import type { CageAnswer, CagesAnswer, CagesModule, CoreLandmark, CoreOptions } from './module.js';
 import type {
   Cage,
@@ -18,6 +26,7 @@ import type {
   Fit,
   FitOptions,
   FoundLandmarks,
+  Holes,
   Kind,
   Landmarks,
   MakeOptions,
@@ -62,7 +71,7 @@ export function makeCage(model: CageModel, options: MakeOptions & SyncOptions = 
     fn: 'makeCage',
     defaults: 'makeOptions',
     run: (module, core, report) => module.makeCage(checkModel('makeCage', model), core, report),
-    result: (answer, module, core) => cageOf(answer, {}, kindOf(module, core['kind'])),
+    result: (answer, module) => cageOf(module, answer),
   });
 }
 
@@ -73,14 +82,19 @@ export function fitCage(
   landmarks?: Landmarks,
   options: FitOptions & SyncOptions = {},
 ): Fit {
-  const from = checkTemplate('fitCage', template);
-  const given = checkLandmarks('fitCage', 'landmarks', landmarks);
   return call(options, {
     fn: 'fitCage',
     defaults: 'fitOptions',
-    run: (module, core, report) => module.fitCage(from, checkModel('fitCage', model), given, core, report),
-    result: (answer) => ({
-      cage: cageOf(answer, template, options.kind),
+    run: (module, core, report) =>
+      module.fitCage(
+        checkTemplate('fitCage', module, template),
+        checkModel('fitCage', model),
+        checkLandmarks('fitCage', 'landmarks', landmarks),
+        core,
+        report,
+      ),
+    result: (answer, module) => ({
+      cage: cageOf(module, answer, template.holes),
       used: landmarksOf(answer.landmarks),
       confidence: confidenceOf(answer.landmarks),
       missing: answer.missing,
@@ -109,22 +123,32 @@ export function refineCage(
   model: CageModel,
   options: RefineOptions & SyncOptions = {},
 ): Cage {
-  const mesh = checkCage('refineCage', 'cage', cage);
+  const { landmarks, holes, kind = 'automatic' } = (cage ?? {}) as Partial<Template>;
   return call(options, {
     fn: 'refineCage',
     defaults: 'refineOptions',
-    run: (module, core, report) => module.refineCage(mesh, checkModel('refineCage', model), core, report),
+    run: (module, core, report) =>
+      module.refineCage(checkCage('refineCage', 'cage', cage), checkModel('refineCage', model), core, report),
     // Landmarks are spots of the model, which does not move.
-    result: (answer) => ({
-      ...cageOf(answer, cage as Partial<Template>),
-      landmarks: { ...(cage as Partial<Template>).landmarks },
-    }),
+    result: (answer, module) => ({ ...cageOf(module, answer, holes), landmarks: { ...landmarks }, kind }),
   });
 }
 
 /** The patterns of names of parts that are not painted unless the option `exclude` says otherwise. Needs `init`. */
 export function defaultExclusions(): string[] {
   return exclusionsOf(freshModule('defaultExclusions'));
+}
+
+/**
+ * Whether each part's name matches one of some patterns, as the option `exclude` takes them. Needs `init`.
+ * @param parts  As those of a `CageModel`.
+ * @throws {CagecastError} `badArgument`
+ */
+export function matchingParts(parts: readonly (string | readonly string[])[], patterns: readonly string[]): boolean[] {
+  const fn = 'matchingParts';
+  const names = checkParts(fn, 'parts', parts);
+  const bad = (type: string) => new CagecastError('badArgument', `${fn}: patterns is ${show(patterns)}, not ${type}`);
+  return freshModule(fn).matchingParts(names, checkPatterns(patterns, bad));
 }
 
 const exclusionsOf = (module: CagesModule): string[] => module.makeOptions()['exclude'] as string[];
@@ -140,7 +164,7 @@ interface Call<Answer extends CagesAnswer, Result> {
   /** The function that returns the options of this one. */
   defaults?: 'makeOptions' | 'fitOptions' | 'refineOptions';
   run(module: CagesModule, options: CoreOptions, report: Report): Answer;
-  result(answer: Answer, module: CagesModule, options: CoreOptions): Result;
+  result(answer: Answer, module: CagesModule): Result;
 }
 
 /**
@@ -169,7 +193,7 @@ function call<Answer extends CagesAnswer, Result>(given: SyncOptions, of: Call<A
   if (code !== 'none')
     throw new CagecastError(code as Code, `${fn}: ${code === 'aborted' ? 'cancelled by onProgress' : answer.message}`);
   reporter.end();
-  return of.result(answer, module, options);
+  return of.result(answer, module);
 }
 
 type Report = (share: number, stage: string) => boolean;
@@ -210,13 +234,8 @@ const landmarksOf = (landmarks: readonly CoreLandmark[]): Landmarks =>
 const confidenceOf = (landmarks: readonly CoreLandmark[]): Record<string, number> =>
   Object.fromEntries(landmarks.map(({ name, confidence }) => [name, confidence]));
 
-/** @param before  The cage that was moved, if one was. */
-function cageOf(
-  { positions, uvs, indices, landmarks }: CageAnswer,
-  before: Partial<Template>,
-  kind: Kind = before.kind ?? 'automatic',
-): Cage {
-  // Vertices keep their numbers when a cage is moved.
-  const holes = before.positions?.length === positions.length ? (before.holes ?? {}) : {};
-  return { positions, uvs, indices, landmarks: landmarksOf(landmarks), holes, kind };
+/** @param holes  Of the cage that was moved, if one was: vertices keep their numbers. */
+function cageOf(module: CagesModule, answer: CageAnswer, holes: Holes = {}): Cage {
+  const { positions, uvs, indices, landmarks, kind } = answer;
+  return { positions, uvs, indices, landmarks: landmarksOf(landmarks), holes, kind: kindOf(module, kind) };
 }

@@ -19,7 +19,7 @@ export interface Joint {
 }
 
 /**
- * What a cage is made for: a mesh as for `transfer` (its UVs are not used), and what is known about it. `cageTarget` of
+ * What a cage is made for: a mesh as for `transfer` (its UVs are not used), and what is known about it. `cageModel` of
  * `cagecast/gltf` and `cagecast/three` reads it from a model.
  */
 export interface CageModel extends Mesh {
@@ -49,6 +49,7 @@ export interface Cage {
   landmarks: Landmarks;
   /** May be empty. */
   holes: Holes;
+  /** What it was made for; `automatic` if that is not known. */
   kind: Kind;
 }
 
@@ -59,7 +60,7 @@ export interface Template extends Mesh {
   landmarks: Landmarks;
   /** Default: none. */
   holes?: Holes | undefined;
-  /** Default: `automatic`. */
+  /** The fitted cage gets it, too. Default: `automatic`. */
   kind?: Kind | undefined;
 }
 
@@ -77,7 +78,7 @@ export interface Fit {
 /** What was found on a model. */
 export interface FoundLandmarks {
   landmarks: Landmarks;
-  /** How certain each landmark is, 0..1; 1 for those that a bone tells. */
+  /** How certain each landmark is, 0.5..1; 1 for those that a bone tells. */
   confidence: Record<string, number>;
   /** Landmarks that were not found, or are too uncertain. */
   missing: string[];
@@ -88,8 +89,6 @@ export interface FoundLandmarks {
 }
 
 interface Excluding {
-  /** Default: `automatic`. */
-  kind?: Kind | undefined;
   /**
    * Patterns for the names of parts that must not be painted: `*` stands for any text, case does not matter. They replace the
    * default, which `defaultExclusions` returns.
@@ -97,15 +96,20 @@ interface Excluding {
   exclude?: readonly string[] | undefined;
 }
 
-/** Options of `makeCage`. Lengths are shares of the diagonal of the model's bounding box; 0, the default, means by kind. */
+/**
+ * Options of `makeCage`. Lengths are shares of the diagonal of the model's bounding box, 0.0005 to 0.2. 0, the default of all
+ * numbers, means by kind.
+ */
 export interface MakeOptions extends Excluding {
-  /** Triangles of the cage, about. By kind: heads and props 600, bodies 1500. */
+  /** Default: `automatic`. */
+  kind?: Kind | undefined;
+  /** Triangles of the cage, about: 50 to 20,000. By kind: heads and props 600, bodies 1500. */
   triangles?: number | undefined;
-  /** Gaps narrower than twice this are bridged. By kind: heads and props 0.02, bodies 0.008. */
+  /** Gaps narrower than twice this, or two voxels, are bridged. By kind: heads and props 0.02, bodies 0.008. */
   closing?: number | undefined;
   /** Distance of the cage from the model. By kind: heads and props 0.01, bodies 0.004. */
   offset?: number | undefined;
-  /** Voxels along the longest side of the grid that the hull is made on. By kind: heads and props 140, bodies 240. */
+  /** Voxels along the longest side of the grid that the hull is made on: 16 to 400. By kind: heads and props 140, bodies 240. */
   voxels?: number | undefined;
 }
 
@@ -114,6 +118,6 @@ export interface FitOptions extends Excluding {}
 
 /** Options of `refineCage`. */
 export interface RefineOptions {
-  /** How far off the cage may be, as a share of the model's diagonal: up to 0.2. Default: 0.05. */
+  /** How far off the cage may be, as a share of the model's diagonal: 0.001 to 0.2. Default: 0.05. */
   reach?: number | undefined;
 }

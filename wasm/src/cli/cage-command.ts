@@ -11,8 +11,8 @@ import type { Verdict } from '../inspect/index.js';
 import { isPosition } from '../parts/template.js';
 import { conclusionOf, inspectionReport } from './inspect-command.js';
 import { inspectionPage } from './inspect-page.js';
-import { fitCageTo, makeCageFor } from './make-cage.js';
-import { matcher, noSuchName, type Rules } from './options.js';
+import { checkExclusions, fitCageTo, makeCageFor } from './make-cage.js';
+import type { Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { type ReadModel, readBack, readModel, transferred, withUvs } from './run.js';
@@ -56,11 +56,7 @@ const rules: Rules = { preset: 'default', single: {}, keep: [], exclude: [] };
 export async function makeCommand(command: MakeCommand, progress: Progress): Promise<CageVerdict> {
   const { target, exclude, triangles, reading } = command;
   const model = await readModel(target, reading, progress);
-  for (const pattern of exclude) {
-    const matches = matcher(pattern, 'i');
-    if (!model.extracted.parts.some(({ aliases }) => aliases.some(matches)))
-      throw noSuchName(`--exclude ${pattern}`, model.extracted.parts).in(target);
-  }
+  await checkExclusions(exclude, model);
   const options = { ...(exclude.length > 0 && { exclude }), ...(triangles !== undefined && { triangles }) };
   const cage = await makeCageFor(model, options, progress);
   return finish(command, model, cage, [], progress);

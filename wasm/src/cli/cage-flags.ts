@@ -41,7 +41,7 @@ export function addCageCommands(program: Command, progress: Progress): void {
     .addOption(
       new Option(
         '--exclude <NAME>',
-        'do not paint parts of this node or material (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair',
+        'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair',
       )
         .default([], 'by name')
         .argParser((name: string, before: string[]) => [...before, name]),

@@ -1,8 +1,9 @@
-import { fitCage, init, makeCage } from '../cages/sync.js';
+import { fitCage, init, makeCage, matchingParts } from '../cages/sync.js';
 import type { Cage, Fit, Landmarks, MakeOptions, Template } from '../cages/types.js';
 import { cageModelOf } from '../gltf/cage-file.js';
 import { InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
+import { noSuchName } from './options.js';
 import type { Progress } from './progress.js';
 import type { ReadModel } from './run.js';
 
@@ -11,6 +12,15 @@ export function makeCageFor(model: ReadModel, options: MakeOptions, progress: Pr
   return calling('making a cage', { model: model.file.path }, progress, (onProgress) =>
     makeCage(cageModelOf(model.file, model.extracted), { ...options, onProgress }),
   );
+}
+
+/** Checks that each pattern matches a part of a model. @throws {InputError} that names the file and the pattern. */
+export async function checkExclusions(patterns: readonly string[], { file, extracted }: ReadModel): Promise<void> {
+  await init();
+  const { parts = [] } = cageModelOf(file, extracted);
+  for (const pattern of patterns)
+    if (!matchingParts(parts, [pattern]).includes(true))
+      throw noSuchName(`--exclude ${pattern}`, extracted.parts).in(file.path);
 }
 
 /** A template, landmarks of the model (none if there is no file of them), and the files that they come from. */

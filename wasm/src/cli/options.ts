@@ -140,14 +140,11 @@ export const quoted = (name: string): string => `"${cut(name, mostCharacters)}"`
 /**
  * Returns a test whether a name matches a pattern, in which `*` matches any text. Takes time in proportion to name and pattern at
  * most, times each other: a regular expression would try all ways to share a name among the stars.
- * @param flags  `i`: case does not matter.
  */
-export function matcher(pattern: string, flags: 'i' | '' = ''): (name: string) => boolean {
-  const fold = (text: string) => (flags === 'i' ? text.toLowerCase() : text);
-  const [first = '', ...pieces] = fold(pattern).split('*');
+function matcher(pattern: string): (name: string) => boolean {
+  const [first = '', ...pieces] = pattern.split('*');
   const last = pieces.pop();
-  return (name) => {
-    const text = fold(name);
+  return (text) => {
     if (last === undefined) return text === first;
     if (text.length < first.length + last.length || !text.startsWith(first) || !text.endsWith(last)) return false;
     // Each piece where it first occurs: if a name matches at all, it matches so.
