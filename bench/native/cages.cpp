@@ -5,8 +5,8 @@
 ///     cagecast_cages_tool fit TEMPLATE_CAGE.json TEMPLATE_LANDMARKS.json MODEL.json OUT.json [--landmarks L.json] …
 ///     cagecast_cages_tool refine CAGE.json MODEL.json OUT.json [--reach share]
 ///
-/// Options: --kind head|body|prop (make), --exclude PATTERN (once per pattern; replaces the default list), --triangles n,
-/// --voxels n, --closing share, --offset share, --stages (the time of each stage on stderr).
+/// Options: --kind head|body|prop, --triangles n, --voxels n, --closing share, --offset share (make); --exclude PATTERN
+/// (make, fit; once per pattern; replaces the default list); --stages (the time of each stage on stderr).
 /// MODEL.json: { positions, indices, groups, parts: [names], joints: [{ name, position, parent }], marks }; all but
 /// the first two are optional. Landmarks: { name: [x, y, z] }. Cages: { positions, indices, uvs, landmarks }.
 /// The last line on stdout is "TIME ms, OUTCOME". Exit code 1 if the function reports a problem, 2 for wrong usage.

@@ -152,8 +152,9 @@ describe('cagecast fit', () => {
     assert.equal(status, 0, stdout);
     assert.match(
       stdout,
-      /^wrote .*fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\n/,
+      /^wrote .*fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\nfound, but not certain \(of 1\): forehead \(0\.\d\d\), /,
     );
+    assert.match(stdout, /^give these for a better fit: --landmarks L\.json$/m);
     assert.match(stdout, /^(GOOD|USABLE): the cage fits/m);
     assert.ok(existsSync(at('fit.html')));
     assert.deepEqual(await validate(at('fit.glb')), []);

@@ -277,7 +277,25 @@ describe('fitCage', () => {
     assert.deepEqual(Object.keys(confidence), Object.keys(landmarks));
     assert.equal(kind, 'head');
     assert.equal(rig, '');
-    assert.ok(Array.isArray(missing));
+    assert.ok(missing.includes('nape'));
+    for (const name of missing) assert.ok(!(name in landmarks), name);
+  });
+
+  test('is less certain of the crown of a head that is taller than others, and asks for it', async () => {
+    const { landmarks, confidence } = await findLandmarks(model);
+    const [low, top] = [landmarks['glabella']![1], landmarks['crown']![1]];
+    const stretched = (by: number) => ({
+      ...model,
+      positions: model.positions.map((x, i) => (i % 3 === 1 && x > low ? x + by * (x - low) : x)),
+    });
+    assert.ok(top > low && confidence['crown']! < confidence['nose_tip']!);
+    const tall = await findLandmarks(stretched(0.3));
+    assert.ok((tall.confidence['crown'] ?? 0) < confidence['crown']!);
+    const hat = await findLandmarks(stretched(0.8));
+    for (const name of ['crown', 'forehead']) {
+      assert.ok(!(name in hat.landmarks), name);
+      assert.ok(hat.missing.includes(name), name);
+    }
   });
 
   test('says in a sentence what is wrong with its arguments', async () => {

@@ -25,8 +25,8 @@ double spacesFor(std::uint32_t voxels) {
   return static_cast<double>(std::clamp(voxels, kLeastVoxels, kMostVoxels)) - 2 * kBorder + 1;
 }
 
-/// The least that a mesh can be dilated by: any point is within 0.87 spaces of a node, so that the body has neither gaps
-/// that the flood gets in through, nor is empty.
+/// The least that a mesh can be dilated by: any point is within 0.87 spaces of a node, so that the body has neither
+/// gaps that the flood gets in through, nor is empty.
 double leastDilation(const TriangleMesh& mesh, std::uint32_t voxels) {
   constexpr double kSpaces = 0.9;
   return kSpaces * longestOf(boundsOf(mesh).size()) / (spacesFor(voxels) - 2 * kSpaces);  // The grid has room for it.

@@ -182,6 +182,7 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
   constexpr std::size_t kLeastTriangles = 8;
   constexpr double kSmallest = 0.002, kLargest = 0.15;  // Radii, as shares of the diagonal: of a figure, of a head.
   constexpr double kAlike = 0.15;                       // Difference of sizes.
+  constexpr std::size_t kMostCandidates = 500;          // The largest: a coat of mail has thousands of rings.
   const double diagonal = diagonalOf(figure.mesh);
   struct Candidate {
     Shape shape;
@@ -202,6 +203,11 @@ std::optional<Eyes> findLooseEyes(const Figure& figure, const MirrorPlane& plane
     const bool round = box.y > 0.5 * wide && box.y < 2 * wide;
     if (!round || box.y < 2 * kSmallest * diagonal || box.y > 2 * kLargest * diagonal) continue;
     candidates.push_back({std::move(shape), part, c});
+  }
+  if (candidates.size() > kMostCandidates) {
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.shape.area > b.shape.area; });
+    candidates.resize(kMostCandidates);
   }
   std::optional<Surface> surface;  // Built when it is needed.
   const Vec3 across = cross(plane.left, kUp);

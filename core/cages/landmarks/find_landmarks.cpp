@@ -18,20 +18,28 @@ constexpr const char* kPaired[] = {"eye_centre", "eye_inner", "eye_outer",   "ea
 /// Less sure ones are left out, and asked for.
 constexpr double kSure = 0.5;
 
-/// A figure's head: around the first eyes, named, loose or fused with the skin, that are as far apart as eyes are.
-std::optional<Head> findHead(const Figure& figure) {
-  const auto headOf = [&](const std::optional<Eyes>& eyes) {
-    std::optional<Head> head = eyes ? makeHead(figure, *eyes) : std::nullopt;
+/// Finds a figure's head: around the first eyes, named, loose or fused with the skin, that are as far apart as eyes
+/// are.
+/// @param goOn  Told shares from 0 to 1 on the way.
+/// @return false if `goOn` cancelled it.
+bool findHead(const Figure& figure, const auto& goOn, std::optional<Head>& head) {
+  const auto makeHeadOf = [&](const std::optional<Eyes>& eyes) {
+    if (eyes) head = makeHead(figure, *eyes);
     if (head) findHeadLandmarks(figure, *eyes, *head);
-    return head;
+    return head.has_value();
   };
-  if (std::optional<Head> head = headOf(findNamedEyes(figure))) return head;
+  if (makeHeadOf(findNamedEyes(figure))) return true;
+  if (!goOn(0.1f)) return false;
   const std::vector<MirrorPlane> planes = findMirrorPlanes(figure.mesh);
-  for (const MirrorPlane& plane : planes)
-    if (std::optional<Head> head = headOf(findLooseEyes(figure, plane))) return head;
-  for (const MirrorPlane& plane : planes)
-    if (std::optional<Head> head = headOf(findFusedEyes(figure, plane))) return head;
-  return std::nullopt;
+  float share = 0.2f;
+  const float step = 0.8f / static_cast<float>(2 * planes.size());
+  for (const auto find : {findLooseEyes, findFusedEyes})
+    for (const MirrorPlane& plane : planes) {
+      if (!goOn(share)) return false;
+      if (makeHeadOf(find(figure, plane))) return true;
+      share += step;
+    }
+  return true;
 }
 
 std::vector<std::string> faceLandmarks() {
@@ -47,13 +55,16 @@ Outcome findLandmarks(const Model& model, const Progress& progress, FoundLandmar
   out = {};
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
   const auto goOn = [&](float share) { return !progress || progress(share, "landmarks"); };
-  Outcome cancelled{Problem::cancelled, "Cancelled."};
+  Outcome cancelled{Problem::cancelled, "cancelled"};
   if (!goOn(0)) return cancelled;
   const Figure figure = readFigure(model);
   Rig rig = recogniseRig(model.joints);
   out.rig = rig.name;
-  const std::optional<Head> head = findHead(figure);
-  if (!goOn(0.9f)) return cancelled;
+  std::optional<Head> head;
+  if (!findHead(
+          figure, [&](float share) { return goOn(0.9f * share); }, head) ||
+      !goOn(0.9f))
+    return cancelled;
   if (head)
     for (const Spot& spot : head->spots)
       if (spot.confidence >= kSure)

@@ -2,8 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "landmarks/eyes.hpp"
-#include "landmarks/height_map.hpp"
+#include "landmarks/head.hpp"
 
 namespace cagecast::cages {
 
@@ -11,8 +10,8 @@ namespace {
 
 // Lengths are shares of the frame's unit, which is about the diagonal of head and neck.
 constexpr double kStep = 0.004;
-/// From the tip of the nose to the back of the head; from the eyes to the crown, and to the back.
-constexpr double kHeadDepth = 0.54, kEyesToCrown = 0.29, kEyesToBack = 0.43;
+/// From the tip of the nose to the back of the head.
+constexpr double kHeadDepth = 0.54;
 
 /// A frame for a head whose eyes are not known, from the depth of what is at the top of the figure.
 HeadFrame guessFrame(const TriangleMesh& mesh, const MirrorPlane& plane, double side) {

@@ -9,8 +9,6 @@ namespace {
 
 // Shares of a head's own length, which is about the diagonal of the box around head and neck.
 constexpr double kEyeDistance = 0.16;
-constexpr double kEyesToCrown = 0.29;
-constexpr double kEyesToBack = 0.43;
 /// Eyes that are no parts with a name may be teeth or buttons: how far apart they may be, in shares of what the head
 /// suggests.
 constexpr double kNearest = 0.55, kFarthest = 1.7;

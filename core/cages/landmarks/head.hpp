@@ -10,6 +10,9 @@
 
 namespace cagecast::cages {
 
+/// From the eyes up to the crown, and to the back of the head: of most heads, in units of the frame.
+inline constexpr double kEyesToCrown = 0.29, kEyesToBack = 0.43;
+
 /// A landmark in the space of a head.
 struct Spot {
   std::string name;
@@ -54,7 +57,7 @@ void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head);
 /// @return false if there is no human face's profile.
 bool findProfile(Head& head);
 
-/// Crown and back of the head. Needs the profile.
+/// Crown, forehead and back of the head. Needs the profile.
 void findSkull(Head& head);
 
 void findMouthCorners(Head& head);

@@ -196,7 +196,8 @@ Outcome refineCage(const MeshView& cage, const Model& model, const RefineOptions
                    Cage& out) {
   if (Outcome outcome = checkMesh(cage, "cage", Problem::badTemplate); !outcome.ok()) return outcome;
   if (Outcome outcome = checkModel(model); !outcome.ok()) return outcome;
-  if (Outcome outcome = checkOption("reach", static_cast<double>(options.reach), kLeastReach, kMostReach); !outcome.ok())
+  if (Outcome outcome = checkOption("reach", static_cast<double>(options.reach), kLeastReach, kMostReach);
+      !outcome.ok())
     return outcome;
   const TriangleMesh target = weldExactly(model.mesh);
   std::vector<std::uint32_t> vertexOf;

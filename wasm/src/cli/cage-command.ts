@@ -89,7 +89,9 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
 function templateFile(path: string): string {
   if (existsSync(path) || /[./\\]/.test(path)) return path;
   if (!(templateNames as readonly string[]).includes(path))
-    throw new InputError(`no such file, and no template of the package: there are ${templateNames.join(', ')}`).in(path);
+    throw new InputError(`no such file, and no template of the package: there are ${templateNames.join(', ')}`).in(
+      path,
+    );
   return fileURLToPath(new URL(`./templates/${path}.glb`, import.meta.url));
 }
 
@@ -112,17 +114,26 @@ async function readLandmarks(path: string): Promise<Landmarks> {
   }
 }
 
-/** How many missing landmarks are listed at most. */
+/** How many landmarks are listed at most. */
 const mostNames = 12;
 
-function describeFit({ used, missing }: Fit, given: Landmarks): string[] {
+/** Landmarks less certain than this are listed. */
+const certain = 0.7;
+
+function describeFit({ used, confidence, missing }: Fit, given: Landmarks): string[] {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
+  const listed = (names: string[]) =>
+    `${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`;
+  const doubtful = all
+    .filter((name) => confidence[name]! < certain)
+    .sort((a, b) => confidence[a]! - confidence[b]!)
+    .map((name) => `${name} (${confidence[name]!.toFixed(2)})`);
   return [
     `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
-    missing.length === 0
-      ? ''
-      : `not found: ${missing.slice(0, mostNames).join(', ')}${missing.length > mostNames ? `, and ${missing.length - mostNames} more` : ''}; give them for a better fit: --landmarks L.json`,
+    doubtful.length > 0 ? `found, but not certain (of 1): ${listed(doubtful)}` : '',
+    missing.length > 0 ? `not found: ${listed(missing)}` : '',
+    doubtful.length + missing.length > 0 ? 'give these for a better fit: --landmarks L.json' : '',
   ].filter(Boolean);
 }
 
