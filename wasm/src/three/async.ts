@@ -9,26 +9,26 @@ export interface Calling extends Pick<CallOptions, 'signal'> {
 /** Milliseconds of a task: a frame has 16, of which the page needs some. */
 const kTask = 8;
 
+/** Ends the task. Timers would wait at least 4 ms. */
+export function nextTask(): Promise<void> {
+  const { port1, port2 } = new MessageChannel();
+  return new Promise((resolve) => {
+    port1.onmessage = () => {
+      port1.close();
+      resolve();
+    };
+    port2.postMessage(undefined);
+  });
+}
+
 /** Runs a generator to its end, in short tasks. @throws the reason of the signal, between two tasks. */
 export async function share<T>(steps: Generator<unknown, T>, signal: AbortSignal | undefined): Promise<T> {
-  // Timers would wait at least 4 ms each.
-  const { port1, port2 } = new MessageChannel();
-  const pause = () =>
-    new Promise<void>((resolve) => {
-      port1.onmessage = () => resolve();
-      port2.postMessage(undefined);
-    });
-  try {
-    await pause();
-    for (let began = performance.now(); ; ) {
-      signal?.throwIfAborted();
+  for (;;) {
+    await nextTask();
+    signal?.throwIfAborted();
+    for (const began = performance.now(); performance.now() - began < kTask; ) {
       const step = steps.next();
       if (step.done) return step.value;
-      if (performance.now() - began < kTask) continue;
-      await pause();
-      began = performance.now();
     }
-  } finally {
-    port1.close();
   }
 }

@@ -148,12 +148,14 @@ export function placeOf(mesh: ThreeMesh): Matrix4 {
   return new Matrix4().fromArray(matrix);
 }
 
-/** The numbers of an attribute, decoded. */
+/** The numbers of an attribute, decoded, to be read only: its own array if that has nothing else. */
 function valuesOf(attribute: Attribute): Float32Array {
-  const { count, itemSize } = attribute;
+  const { count, itemSize, array } = attribute;
+  if (array instanceof Float32Array && !('isInterleavedBufferAttribute' in attribute)) return array;
   const values = new Float32Array(count * itemSize);
+  // Half floats are decoded by these, not by `getComponent`.
   const get = (['getX', 'getY', 'getZ', 'getW'] as const).slice(0, itemSize);
-  for (let i = 0; i < count; ++i) get.forEach((axis, k) => (values[i * itemSize + k] = attribute[axis](i)));
+  for (let k = 0; k < get.length; ++k) for (let i = 0; i < count; ++i) values[i * itemSize + k] = attribute[get[k]!](i);
   return values;
 }
 
@@ -181,14 +183,14 @@ const wrong = (argument: string, name: string, text: string, at = 0): CagecastEr
 export const isTurned = (matrix: Matrix4): boolean => matrix.determinant() < 0;
 
 function placePositions({ geometry, matrix, firstVertex, vertexCount }: Part, out: Float32Array): void {
-  const position = geometry.getAttribute('position') as Attribute;
+  // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
+  const values = valuesOf(geometry.getAttribute('position') as Attribute);
   const m = matrix.elements;
   const moves = !matrix.equals(identity);
   for (let v = 0; v < vertexCount; ++v) {
-    // A quantised position is a float before the matrix is applied, as every other reader of the file stores it.
-    const x = Math.fround(position.getX(v));
-    const y = Math.fround(position.getY(v));
-    const z = Math.fround(position.getZ(v));
+    const x = values[3 * v]!;
+    const y = values[3 * v + 1]!;
+    const z = values[3 * v + 2]!;
     const to = 3 * (firstVertex + v);
     out[to] = moves ? m[0]! * x + m[4]! * y + m[8]! * z + m[12]! : x;
     out[to + 1] = moves ? m[1]! * x + m[5]! * y + m[9]! * z + m[13]! : y;

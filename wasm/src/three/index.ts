@@ -11,7 +11,7 @@ import { type PartRange, type Prepared, type PrepareInput, prepare } from '../pa
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
 import { apply, rangesOf } from './apply.js';
-import { type Calling, share } from './async.js';
+import { type Calling, nextTask, share } from './async.js';
 import { cutGeometry } from './cut.js';
 import { type Extracted, extract, type Part, placeOf } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths, checkOptions, transferOptions } from './options.js';
@@ -108,6 +108,8 @@ export async function applyTransferAsync(
 ): Promise<Applied> {
   signal?.throwIfAborted();
   const call = read('applyTransferAsync', target, cage, options);
+  await nextTask();
+  signal?.throwIfAborted();
   onProgress?.(0.05, 'transfer');
   const prepared = call.saved ?? (await prepareParts(call.input, { signal }));
   onProgress?.(0.7, 'geometry');
