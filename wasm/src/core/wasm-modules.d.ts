@@ -26,6 +26,16 @@ declare module 'draco3dgltf/draco_decoder_gltf.wasm' {
   export default bytes;
 }
 
+/** Google's Draco encoder. */
+declare module 'draco3dgltf/draco_encoder_gltf_nodejs.js' {
+  export default function createEncoderModule(module: { wasmBinary: Uint8Array }): Promise<unknown>;
+}
+
+declare module 'draco3dgltf/draco_encoder.wasm' {
+  const bytes: Uint8Array;
+  export default bytes;
+}
+
 /** The package's version, from package.json. */
 declare const CAGECAST_VERSION: string;
 

@@ -5,14 +5,15 @@ import type {
   Material,
   Node,
   Primitive,
+  PrimitiveTarget,
   Property,
   Texture,
   TypedArray,
 } from '@gltf-transform/core';
 import type { CutTarget, TransferResult } from '../index.js';
-import { type Blends, blend, blendSkin, ruleOf } from '../parts/blend.js';
+import { type AttributeArray, type Blends, blend, blendSkin, noBlends, ruleOf } from '../parts/blend.js';
 import { cutPart } from '../parts/cut-part.js';
-import { gather, type SplitPart, splitPart } from '../parts/split-part.js';
+import { gather, splitPart } from '../parts/split-part.js';
 import type { DocumentPart, ExtractedDocument } from './document.js';
 import { isTurned } from './matrix.js';
 import {
@@ -23,11 +24,25 @@ import {
   isOverlaid,
   overlayMark,
   overlayOffset,
-  overlayPositions,
   type Paint,
   zoneAttribute,
 } from './overlay.js';
-import { cutPiece } from './pieces.js';
+import {
+  type GroupMember,
+  movedPositions,
+  type SharedVertices,
+  shareVertices,
+  sparseElements,
+  storedUvs,
+} from './primitive-group.js';
+
+/** A part, and what it becomes. */
+interface Member extends GroupMember {
+  part: DocumentPart;
+  primitive: Primitive;
+  /** 1 per triangle. */
+  cosmetic: Uint8Array;
+}
 
 /**
  * Adds the result of a transfer to a document, as the command does to a file: every primitive gets a new UV set and `_NCZ` and, with
@@ -41,78 +56,95 @@ export function addTransfer(
   paint?: Paint,
   cut?: CutTarget,
 ): void {
-  const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
-  const attribute = (array: Float32Array, type: 'SCALAR' | 'VEC2' | 'VEC3') =>
-    // A copy with a buffer of its own: for a view, the whole shared buffer would be written, once per view.
-    document.createAccessor().setType(type).setArray(new Float32Array(array)).setBuffer(buffer);
-  const texture =
-    paint &&
-    document
-      .createTexture(paint.name)
-      .setMimeType(paint.mimeType)
-      .setImage(paint.bytes as Uint8Array<ArrayBuffer>);
-  const materials = new Map<string, Material>();
-  const offset = overlayOffset * diagonal(mesh.positions);
+  const painter = paint && new Painter(document, paint, overlayOffset * diagonal(mesh.positions));
   const primitiveOf = separatePrimitives(document, parts);
-
-  parts.forEach((part, p) => {
-    const primitive = primitiveOf[p]!;
+  const members = parts.map((part, p): Member => {
     const whole = { ...part, turned: isTurned(part.matrix) };
-    const cutOne = cut && cutPart(whole, cut, mesh.positions.length / 3);
-    const { geometry, result: own } = cutOne ?? { geometry: whole, result };
+    const {
+      geometry,
+      result: own,
+      blends,
+    } = cut ? cutPart(whole, cut, mesh.positions.length / 3) : { geometry: whole, result, blends: noBlends };
     const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
-    const blends = cutOne && cutOne.blends.sources.length > 0 ? cutOne.blends : undefined;
-    const split = splitPart(geometry, own);
-    const indices = (corners: Uint32Array) =>
-      document
-        .createAccessor()
-        .setType('SCALAR')
-        .setArray(split.sources.length < 65536 ? Uint16Array.from(corners) : Uint32Array.from(corners))
-        .setBuffer(buffer);
-    if (split.copies > 0 || blends)
-      remakePrimitive(primitive, split, indices(split.indices), blends && blender(primitive, blends));
-    const uvs = attribute(split.uvs, 'VEC2');
-    const zones = own.zones.subarray(firstVertex, firstVertex + vertexCount);
-    primitive.setAttribute(
-      freeUvSet((semantic) => primitive.getAttribute(semantic) !== null),
-      uvs,
-    );
-    primitive.setAttribute(
-      zoneAttribute,
-      attribute(
-        Float32Array.from(split.sources, (v) => zones[v]!),
-        'SCALAR',
-      ),
-    );
-    const corners = cosmeticCorners(
-      split.indices,
-      own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
-    );
-    if (!texture || corners.length === 0) return;
-
-    const piece = cutOne ? cutPiece(part, geometry, blend(part.localPositions, 3, cutOne.blends)) : part;
-    const overlay = document
-      .createPrimitive()
-      .setAttribute('POSITION', attribute(gather(overlayPositions(piece, offset), 3, split.sources), 'VEC3'))
-      .setAttribute('TEXCOORD_0', uvs)
-      .setIndices(indices(corners))
-      .setMaterial(materialOn(document, texture, primitive.getMaterial(), materials))
-      .setExtras({ ...overlayMark });
-    for (const semantic of primitive.listSemantics())
-      if (isOverlaid(semantic)) overlay.setAttribute(semantic, primitive.getAttribute(semantic));
-    for (const morph of primitive.listTargets()) {
-      const own = document.createPrimitiveTarget(morph.getName());
-      for (const semantic of morph.listSemantics()) {
-        if (isMorphed(semantic, overlay.getAttribute('NORMAL') !== null))
-          own.setAttribute(semantic, morph.getAttribute(semantic));
-      }
-      // An empty morph target is not allowed.
-      if (own.listSemantics().length === 0)
-        own.setAttribute('POSITION', attribute(new Float32Array(3 * split.sources.length), 'VEC3'));
-      overlay.addTarget(own);
-    }
-    part.node.getMesh()!.addPrimitive(overlay);
+    return {
+      part,
+      primitive: primitiveOf[p]!,
+      split: splitPart(geometry, own),
+      zones: own.zones.subarray(firstVertex, firstVertex + vertexCount),
+      blends,
+      cosmetic: own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
+    };
   });
+  for (const group of groupsOf(members)) addToGroup(document, group, painter);
+}
+
+/** The parts by the attributes that their primitives share. */
+function groupsOf(members: readonly Member[]): Member[][] {
+  const numbers = new Map<object, number>();
+  const numberOf = (property: object) => {
+    if (!numbers.has(property)) numbers.set(property, numbers.size);
+    return numbers.get(property)!;
+  };
+  const keyOf = (of: Primitive | PrimitiveTarget) =>
+    of.listSemantics().map((semantic) => `${semantic} ${numberOf(of.getAttribute(semantic)!)}`);
+  const groups = new Map<string, Member[]>();
+  for (const member of members) {
+    const { primitive, part } = member;
+    const key = JSON.stringify([numberOf(part.node), keyOf(primitive), primitive.listTargets().map(keyOf)]);
+    groups.set(key, [...(groups.get(key) ?? []), member]);
+  }
+  return [...groups.values()];
+}
+
+/** Adds UVs, zones and overlays to primitives that share their attributes. */
+function addToGroup(document: Document, members: readonly Member[], painter: Painter | undefined): void {
+  const { part, primitive: first } = members[0]!;
+  const buffer = document.getRoot().listBuffers()[0] ?? document.createBuffer();
+  const attribute = (array: AttributeArray, type: 'SCALAR' | 'VEC2' | 'VEC3', normalized = false) =>
+    // A copy with a buffer of its own: for a view, the whole shared buffer would be written, once per view.
+    document
+      .createAccessor()
+      .setType(type)
+      .setArray(array.slice() as TypedArray)
+      .setNormalized(normalized)
+      .setBuffer(buffer);
+  const shared = shareVertices(part.vertexCount, members);
+  const { sources, blends } = shared;
+  const indices = (corners: Uint32Array) =>
+    attribute(sources.length < 65536 ? Uint16Array.from(corners) : corners, 'SCALAR');
+  if (shared.isNew) {
+    const before = members.flatMap(({ primitive }) => primitive.getIndices() ?? []);
+    remakePrimitives(
+      members.map(({ primitive }) => primitive),
+      sources,
+      blends.sources.length > 0 ? blender(first, blends) : undefined,
+    );
+    members.forEach(({ primitive }, m) => primitive.setIndices(indices(shared.indices[m]!)).setMode(4)); // strips and fans have become lists
+    for (const accessor of new Set(before)) if (isUnused(accessor)) accessor.dispose();
+  }
+  const stored = storedUvs(shared.uvs);
+  const uvs = attribute(stored, 'VEC2', stored instanceof Uint16Array);
+  const zones = attribute(shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
+  const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
+  let positions: Accessor | undefined;
+  members.forEach(({ primitive, part: { node }, cosmetic }, m) => {
+    const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
+    if (painter && corners.length > 0) {
+      if (positions === undefined) {
+        const moved = painter.positions(part, shared, first.getAttribute('POSITION')!);
+        positions = attribute(moved.array, 'VEC3', moved.normalized);
+      }
+      const own = { POSITION: positions, TEXCOORD_0: uvs };
+      node.getMesh()!.addPrimitive(painter.overlay(primitive, indices(corners), own));
+    }
+    primitive.setAttribute(uvSet, uvs).setAttribute(zoneAttribute, zones);
+  });
+}
+
+/** Whether to store only elements that are not 0: if it saves bytes. glTF-Transform warns where most are not 0. */
+function isSparse(values: AttributeArray, size: number): boolean {
+  const listed = sparseElements(values, size);
+  return listed !== undefined && 2 * listed.length <= values.length / size;
 }
 
 /** The values of an accessor, with those of new vertices after them. @param semantic  None of a morph target's. */
@@ -137,37 +169,35 @@ function blender(primitive: Primitive, blends: Blends): Extend {
 }
 
 /**
- * Adds new vertices, those that `extend` makes and copies, to all attributes and morph targets of a primitive. Accessors that
+ * Adds new vertices, those that `extend` makes and copies, to all attributes and morph targets that primitives share. Accessors that
  * nothing else uses are disposed.
  */
-function remakePrimitive(
-  primitive: Primitive,
-  { sources }: SplitPart,
-  indices: Accessor,
+function remakePrimitives(
+  primitives: readonly Primitive[],
+  sources: Uint32Array,
   extend: Extend = (accessor) => accessor.getArray()!,
 ): void {
   const made = new Map<Accessor, Accessor>();
   const remake = (accessor: Accessor, semantic?: string): Accessor => {
     const known = made.get(accessor);
     if (known) return known;
-    const own = accessor
-      .clone()
-      .setSparse(false)
-      .setArray(gather(extend(accessor, semantic), accessor.getElementSize(), sources));
+    const values = gather(extend(accessor, semantic), accessor.getElementSize(), sources);
+    const own = accessor.clone().setArray(values);
+    if (own.getSparse()) own.setSparse(isSparse(values, own.getElementSize()));
     made.set(accessor, own);
     return own;
   };
-  const before = primitive.getIndices();
-  primitive.setIndices(indices).setMode(4); // strips and fans have become lists
-  for (const semantic of primitive.listSemantics())
-    primitive.setAttribute(semantic, remake(primitive.getAttribute(semantic)!, semantic));
-  for (const target of primitive.listTargets()) {
-    const own = target.clone();
-    for (const semantic of own.listSemantics()) own.setAttribute(semantic, remake(own.getAttribute(semantic)!));
-    primitive.removeTarget(target).addTarget(own);
-    if (isUnused(target)) target.dispose();
+  for (const primitive of primitives) {
+    for (const semantic of primitive.listSemantics())
+      primitive.setAttribute(semantic, remake(primitive.getAttribute(semantic)!, semantic));
+    for (const target of primitive.listTargets()) {
+      const own = target.clone();
+      for (const semantic of own.listSemantics()) own.setAttribute(semantic, remake(own.getAttribute(semantic)!));
+      primitive.removeTarget(target).addTarget(own);
+      if (isUnused(target)) target.dispose();
+    }
   }
-  for (const accessor of [...made.keys(), ...(before ? [before] : [])]) if (isUnused(accessor)) accessor.dispose();
+  for (const accessor of made.keys()) if (isUnused(accessor)) accessor.dispose();
 }
 
 const isUnused = (property: Property): boolean =>
@@ -206,26 +236,87 @@ function separatePrimitives(document: Document, parts: readonly DocumentPart[]):
   return parts.map(({ node, primitive }) => ownOf.get(node)!.get(primitive)!);
 }
 
-/** A material that shows the texture, with the roughness and sidedness of the base's material. */
-function materialOn(
-  document: Document,
-  texture: Texture,
-  base: Material | null,
-  made: Map<string, Material>,
-): Material {
-  const roughness = base?.getRoughnessFactor() ?? 1;
-  const doubleSided = base?.getDoubleSided() ?? false;
-  const key = `${roughness} ${doubleSided}`;
-  let material = made.get(key);
-  if (!material) {
-    material = document
+/** Makes the overlays that show a texture. */
+class Painter {
+  readonly #document: Document;
+  readonly #paint: Paint;
+  #texture: Texture | undefined;
+  readonly #offset: number;
+  readonly #materials = new Map<string, Material>();
+
+  /** @param offset  The distance of overlays from the surface, in units of the scene. */
+  constructor(document: Document, paint: Paint, offset: number) {
+    this.#document = document;
+    this.#paint = paint;
+    this.#offset = offset;
+  }
+
+  /** The positions of the overlays of primitives that share vertices, in the form of those beneath them. */
+  positions(part: DocumentPart, shared: SharedVertices, base: Accessor) {
+    return movedPositions(part, shared, this.#offset, {
+      componentType: base.getComponentType(),
+      normalized: base.getNormalized(),
+    });
+  }
+
+  /** A primitive of some triangles of `base`, with the same skin and morph targets. */
+  overlay(base: Primitive, indices: Accessor, own: { POSITION: Accessor; TEXCOORD_0: Accessor }): Primitive {
+    const overlay = this.#document
+      .createPrimitive()
+      .setIndices(indices)
+      .setMaterial(this.#material(base.getMaterial()))
+      .setExtras({ ...overlayMark });
+    for (const [semantic, accessor] of Object.entries(own)) overlay.setAttribute(semantic, accessor);
+    for (const semantic of base.listSemantics())
+      if (isOverlaid(semantic)) overlay.setAttribute(semantic, base.getAttribute(semantic));
+    for (const morph of base.listTargets()) {
+      const target = this.#document.createPrimitiveTarget(morph.getName());
+      for (const semantic of morph.listSemantics()) {
+        if (isMorphed(semantic, overlay.getAttribute('NORMAL') !== null))
+          target.setAttribute(semantic, morph.getAttribute(semantic));
+      }
+      // An empty morph target is not allowed.
+      if (target.listSemantics().length === 0) target.setAttribute('POSITION', this.#still(own.POSITION));
+      overlay.addTarget(target);
+    }
+    return overlay;
+  }
+
+  /** Deltas that move nothing. */
+  #still(positions: Accessor): Accessor {
+    return this.#document
+      .createAccessor()
+      .setType('VEC3')
+      .setArray(new Float32Array(3 * positions.getCount()))
+      .setSparse(true)
+      .setBuffer(positions.getBuffer());
+  }
+
+  /** The texture, which the document only gets if something shows it. */
+  #shown(): Texture {
+    const { name, mimeType, bytes } = this.#paint;
+    this.#texture ??= this.#document
+      .createTexture(name)
+      .setMimeType(mimeType)
+      .setImage(bytes as Uint8Array<ArrayBuffer>);
+    return this.#texture;
+  }
+
+  /** A material that shows the texture, with the roughness and sidedness of the base's material. */
+  #material(base: Material | null): Material {
+    const roughness = base?.getRoughnessFactor() ?? 1;
+    const doubleSided = base?.getDoubleSided() ?? false;
+    const key = `${roughness} ${doubleSided}`;
+    const known = this.#materials.get(key);
+    if (known) return known;
+    const material = this.#document
       .createMaterial('Cagecast overlay')
       .setAlphaMode('BLEND')
       .setDoubleSided(doubleSided)
       .setMetallicFactor(0)
       .setRoughnessFactor(roughness)
-      .setBaseColorTexture(texture);
-    made.set(key, material);
+      .setBaseColorTexture(this.#shown());
+    this.#materials.set(key, material);
+    return material;
   }
-  return material;
 }

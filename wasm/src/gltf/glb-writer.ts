@@ -1,16 +1,26 @@
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
-import { meshoptExtensions, meshoptView } from './check.js';
+import { MeshoptEncoder } from 'meshoptimizer/encoder';
+import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
 import { type ReadOptions, readUri } from './files.js';
 import { imageType } from './image.js';
 import { InputError } from './input-error.js';
+import { sparseElements } from './primitive-group.js';
 import type { GltfFile } from './read.js';
+import { drop, eachAccessor, eachView, numbersOf } from './references.js';
 
 const arrayBuffer = 34962;
 const elementArrayBuffer = 34963;
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
-type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
+export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
+
+/** What an accessor that was added holds. */
+export interface Stored {
+  values: AttributeArray;
+  size: number;
+  accessor: GLTF.IAccessor;
+}
 
 function componentTypeOf(values: AttributeArray): GLTF.AccessorComponentType {
   if (values instanceof Int8Array) return 5120;
@@ -30,20 +40,37 @@ function align(values: AttributeArray, size: number): { aligned: AttributeArray;
   return { aligned, byteStride: stride * values.BYTES_PER_ELEMENT };
 }
 
+const bytesOf = (values: AttributeArray) => new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+
+/** The next multiple of four. */
+const whole = (length: number): number => Math.ceil(length / 4) * 4;
+
 /**
- * Writes a GLB that has everything of a glTF file, with additions.
+ * Writes a GLB that has everything of a glTF file, with additions, and without what they replace.
  *
- * It works on the file's JSON and bytes, not on a decoded document. So all contents stay unchanged, byte for byte, even those that
- * no library knows (extensions for avatars, extras, compressed data).
+ * It works on the file's JSON and bytes, not on a decoded document. So all other contents stay unchanged, byte for byte, even those
+ * that no library knows (extensions for avatars, extras, compressed data). If the file is compressed by meshopt, additions are, too.
  */
 export class GlbWriter {
   /** The JSON of the file to be written; add to it freely. */
   readonly json: GLTF.IGLTF;
-  readonly #chunks: Uint8Array[] = [];
-  #length = 0;
+  readonly #before: { accessors: Set<number>; views: Set<number>; accessorCount: number; viewCount: number };
+  /** What the buffers of the file hold, one after another. */
+  #bytes = new Uint8Array(0);
+  readonly #added = new Map<GLTF.IBufferView, Uint8Array>();
+  readonly #stored = new Map<GLTF.IAccessor, Stored>();
+  /** The name of the extension that compresses views. */
+  readonly #meshopt: string | undefined;
 
   private constructor(json: GLTF.IGLTF) {
     this.json = structuredClone(json);
+    this.#before = {
+      accessors: numbersOf(eachAccessor, json),
+      views: numbersOf(eachView, json),
+      accessorCount: json.accessors?.length ?? 0,
+      viewCount: json.bufferViews?.length ?? 0,
+    };
+    this.#meshopt = meshoptExtensions.find((name) => json.bufferViews?.some((view) => view.extensions?.[name]));
   }
 
   /**
@@ -54,14 +81,22 @@ export class GlbWriter {
     const writer = new GlbWriter(file.json);
     writer.#mergeBuffers(file.buffers);
     await writer.#embedImages(dirname(file.path), file.reading);
+    if (writer.#meshopt !== undefined) await MeshoptEncoder.ready;
     return writer;
   }
 
   #mergeBuffers(buffers: (Uint8Array | undefined)[]): void {
     const { json } = this;
-    const offsets = buffers.map((bytes, b) =>
-      bytes ? this.#append(bytes.subarray(0, json.buffers![b]!.byteLength)) : 0,
-    );
+    const chunks: Uint8Array[] = [];
+    let length = 0;
+    const offsets = buffers.map((bytes, b) => {
+      if (!bytes) return 0;
+      const offset = whole(length);
+      chunks.push(new Uint8Array(offset - length), bytes.subarray(0, json.buffers![b]!.byteLength));
+      length = offset + json.buffers![b]!.byteLength;
+      return offset;
+    });
+    this.#bytes = Buffer.concat(chunks);
     // Buffers without bytes are fallbacks for compressed views; they are kept after the joined buffer.
     const kept = buffers.flatMap((bytes, b) => (bytes ? [] : [b]));
     const numbers = buffers.map((bytes, b) => (bytes ? 0 : 1 + kept.indexOf(b)));
@@ -92,105 +127,236 @@ export class GlbWriter {
       if (mimeType === undefined) throw new InputError(`images[${i}] is not an image that a GLB can contain`);
       delete image.uri;
       image.mimeType = mimeType;
-      image.bufferView = this.#addView(bytes);
+      image.bufferView = this.addView(bytes);
     }
   }
 
-  #append(bytes: Uint8Array): number {
-    const padding = (4 - (this.#length % 4)) % 4;
-    if (padding > 0) this.#chunks.push(new Uint8Array(padding));
-    const offset = this.#length + padding;
-    this.#chunks.push(bytes);
-    this.#length = offset + bytes.byteLength;
-    return offset;
+  /** Adds bytes. @returns the number of their view. */
+  addView(bytes: Uint8Array, view: Partial<GLTF.IBufferView> = {}): number {
+    const added = { buffer: 0, byteLength: bytes.byteLength, ...view };
+    this.#added.set(added, bytes);
+    return (this.json.bufferViews ??= []).push(added) - 1;
   }
 
-  #addView(bytes: Uint8Array, target?: number, byteStride?: number): number {
-    const byteOffset = this.#append(bytes);
-    const view = {
-      buffer: 0,
+  /** Adds bytes of accessors, compressed if the file is. */
+  #addData(values: AttributeArray, target: number, byteStride?: number): number {
+    const bytes = bytesOf(values);
+    const view = { target, ...(byteStride !== undefined && { byteStride }) };
+    const name = this.#meshopt;
+    if (name === undefined || bytes.byteLength === 0) return this.addView(bytes, view);
+    const isIndices = target === elementArrayBuffer;
+    const stride = isIndices ? values.BYTES_PER_ELEMENT : byteStride!;
+    const count = bytes.byteLength / stride;
+    const mode = isIndices ? 'TRIANGLES' : 'ATTRIBUTES';
+    const packed = MeshoptEncoder.encodeGltfBuffer(bytes, count, stride, mode, 0);
+    const { buffer, byteOffset } = this.#standIn(bytes.byteLength);
+    const compressed = { buffer: 0, byteLength: packed.byteLength, byteStride: stride, count, mode };
+    return this.addView(packed, {
+      buffer,
       byteOffset,
       byteLength: bytes.byteLength,
-      ...(byteStride !== undefined && { byteStride }),
-      ...(target !== undefined && { target }),
-    };
-    return (this.json.bufferViews ??= []).push(view as GLTF.IBufferView) - 1;
+      ...view,
+      extensions: { [name]: compressed },
+    });
   }
 
-  /** Adds a vertex attribute of `size` numbers per vertex. @returns the number of its accessor. */
-  addAttribute(values: AttributeArray, size: number, more: Partial<GLTF.IAccessor> = {}): number {
+  /** Room in the buffer that stands for uncompressed views, which has no bytes. */
+  #standIn(length: number): { buffer: number; byteOffset: number } {
+    const buffers = this.json.buffers!;
+    if (buffers.length === 1)
+      buffers.push({ byteLength: 0, extensions: { [this.#meshopt!]: { fallback: true } } } as GLTF.IBuffer);
+    const byteOffset = whole(buffers[1]!.byteLength);
+    buffers[1]!.byteLength = byteOffset + length;
+    return { buffer: 1, byteOffset };
+  }
+
+  /**
+   * Adds a vertex attribute of `size` numbers per vertex.
+   * @param maySparse  Whether only elements that are not 0 may be stored, where that takes fewer bytes.
+   * @returns the number of its accessor.
+   */
+  addAttribute(values: AttributeArray, size: number, more: Partial<GLTF.IAccessor> = {}, maySparse = false): number {
     const count = values.length / size;
+    const accessor = {
+      componentType: componentTypeOf(values),
+      count,
+      type: types[size as keyof typeof types],
+      ...more,
+    };
+    const listed = maySparse && this.#meshopt === undefined ? sparseElements(values, size) : undefined;
+    if (listed) return this.#addAccessor({ ...accessor, ...this.#sparse(values, size, listed) }, values, size);
     const { aligned, byteStride } = align(values, size);
-    return this.#addAccessor(
-      aligned,
-      arrayBuffer,
-      { componentType: componentTypeOf(values), count, type: types[size as keyof typeof types], ...more },
-      byteStride,
-    );
+    const stride = byteStride ?? (this.#meshopt === undefined ? undefined : size * values.BYTES_PER_ELEMENT);
+    return this.#addAccessor({ ...accessor, bufferView: this.#addData(aligned, arrayBuffer, stride) }, values, size);
+  }
+
+  /** Stores some elements of an accessor; the others are 0. */
+  #sparse(values: AttributeArray, size: number, listed: Uint32Array): { sparse?: GLTF.IAccessorSparse } {
+    if (listed.length === 0) return {};
+    const indices = values.length / size <= 65536 ? Uint16Array.from(listed) : listed;
+    const own = new (values.constructor as new (length: number) => AttributeArray)(size * listed.length);
+    listed.forEach((element, i) => own.set(values.subarray(size * element, size * (element + 1)), size * i));
+    const sparse = {
+      count: listed.length,
+      indices: { bufferView: this.addView(bytesOf(indices)), componentType: componentTypeOf(indices) },
+      values: { bufferView: this.addView(bytesOf(own)) },
+    };
+    return { sparse: sparse as unknown as GLTF.IAccessorSparse };
   }
 
   /** Adds the indices of triangles, as small as they can be. @returns the number of their accessor. */
   addIndices(indices: Uint32Array, vertexCount: number): number {
     // The largest value of a type is reserved.
-    const small = vertexCount < 65536;
-    return this.#addAccessor(small ? Uint16Array.from(indices) : indices, elementArrayBuffer, {
-      componentType: small ? 5123 : 5125,
-      count: indices.length,
-      type: 'SCALAR',
-    });
+    const values = vertexCount < 65536 ? Uint16Array.from(indices) : indices;
+    const accessor = { componentType: componentTypeOf(values), count: indices.length, type: 'SCALAR' as const };
+    return this.#addAccessor({ ...accessor, bufferView: this.#addData(values, elementArrayBuffer) }, values, 1);
   }
 
-  #addAccessor(
-    values: AttributeArray,
-    target: number,
-    accessor: Omit<GLTF.IAccessor, 'bufferView'>,
-    byteStride?: number,
-  ): number {
-    const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
-    return (
-      (this.json.accessors ??= []).push({
-        bufferView: this.#addView(bytes, target, byteStride),
-        ...accessor,
-      } as GLTF.IAccessor) - 1
-    );
+  #addAccessor(accessor: Omit<GLTF.IAccessor, 'max' | 'min'>, values: AttributeArray, size: number): number {
+    const added = accessor as GLTF.IAccessor;
+    this.#stored.set(added, { values, size, accessor: added });
+    return this.addAccessor(added);
   }
 
-  /** Adds a texture of a PNG or JPEG file's bytes. @returns the number of the texture. */
+  /** Adds an accessor without bytes. @returns its number. */
+  addAccessor(accessor: GLTF.IAccessor): number {
+    return (this.json.accessors ??= []).push(accessor) - 1;
+  }
+
+  /** What an accessor holds, if it was added. */
+  stored(accessor: number): Stored | undefined {
+    return this.#stored.get(this.json.accessors![accessor]!);
+  }
+
+  /** Adds a texture of an image file's bytes. @returns the number of the texture. */
   addTexture(image: Uint8Array, mimeType: string, name: string): number {
     const { json } = this;
-    const source = (json.images ??= []).push({ bufferView: this.#addView(image), mimeType, name }) - 1;
+    const source = (json.images ??= []).push({ bufferView: this.addView(image), mimeType, name }) - 1;
     return (json.textures ??= []).push({ source, name }) - 1;
+  }
+
+  /** Drops accessors and views that nothing refers to any more; those to which nothing did before stay. */
+  #dropUnused(): GLTF.IBufferView[] {
+    const { json } = this;
+    const before = this.#before;
+    const accessors = numbersOf(eachAccessor, json);
+    const isOld = (used: Set<number>, count: number) => (n: number) => n < count && !used.has(n);
+    const wasUnused = isOld(before.accessors, before.accessorCount);
+    drop(
+      json.accessors ?? [],
+      (a) => !accessors.has(a) && !wasUnused(a),
+      (visit) => eachAccessor(json, visit),
+    );
+    const views = numbersOf(eachView, json);
+    const viewWasUnused = isOld(before.views, before.viewCount);
+    const all = [...(json.bufferViews ?? [])];
+    drop(
+      json.bufferViews ?? [],
+      (v) => !views.has(v) && !viewWasUnused(v),
+      (visit) => eachView(json, visit),
+    );
+    const kept = new Set(json.bufferViews);
+    return all.filter((view) => !kept.has(view));
   }
 
   /** The bytes of the GLB. */
   finish(): Uint8Array {
     const { json } = this;
-    const padding = (4 - (this.#length % 4)) % 4;
-    const binLength = this.#length + padding;
-    if (this.#length > 0) json.buffers![0]!.byteLength = this.#length;
+    const dropped = this.#dropUnused();
+    const chunks = this.#cutOut(dropped.filter((view) => !this.#added.has(view)));
+    let length = chunks.reduce((sum, { byteLength }) => sum + byteLength, 0);
+    for (const view of json.bufferViews ?? []) {
+      const bytes = this.#added.get(view);
+      if (bytes === undefined) continue;
+      const byteOffset = whole(length);
+      chunks.push(new Uint8Array(byteOffset - length), bytes);
+      length = byteOffset + bytes.byteLength;
+      (meshoptView(view) ?? view).byteOffset = byteOffset;
+    }
+    chunks.push(new Uint8Array(whole(length) - length));
+    if (length > 0) json.buffers![0]!.byteLength = length;
     else json.buffers!.shift();
-    if (json.buffers!.length === 0) delete json.buffers;
-    const text = new TextEncoder().encode(JSON.stringify(json));
-    const textPadding = (4 - (text.byteLength % 4)) % 4;
-    const textLength = text.byteLength + textPadding;
+    for (const name of ['accessors', 'bufferViews', 'buffers'] as const)
+      if (json[name]?.length === 0) delete json[name];
+    return packGlb(json, chunks);
+  }
 
-    const total = 12 + 8 + textLength + (binLength > 0 ? 8 + binLength : 0);
-    const out = new Uint8Array(total);
-    const view = new DataView(out.buffer);
-    const words = [0x46546c67, 2, total, textLength, 0x4e4f534a]; // "glTF", its version, "JSON"
-    words.forEach((word, i) => view.setUint32(4 * i, word, true));
-    out.set(text, 20);
-    out.fill(0x20, 20 + text.byteLength, 20 + textLength);
-    if (binLength > 0) {
-      let at = 20 + textLength;
-      view.setUint32(at, binLength, true);
-      view.setUint32(at + 4, 0x004e4942, true); // "BIN\0"
-      at += 8;
-      for (const chunk of this.#chunks) {
-        out.set(chunk, at);
-        at += chunk.byteLength;
+  /** The bytes of the file without those of some views; moves the others to where their bytes are then. */
+  #cutOut(views: readonly GLTF.IBufferView[]): Uint8Array[] {
+    const rangeOf = (view: GLTF.IBufferView | MeshoptView): [number, number] => {
+      const { byteOffset = 0, byteLength } = view;
+      return view.buffer === 0 ? [byteOffset, byteOffset + byteLength] : [0, 0];
+    };
+    const rangesOf = (list: readonly GLTF.IBufferView[]) => list.map((view) => rangeOf(meshoptView(view) ?? view));
+    const kept = (this.json.bufferViews ?? []).filter((view) => !this.#added.has(view));
+    const removed = subtract(rangesOf(views), rangesOf(kept)).map(([first, end]) => [whole(first), end - (end % 4)]);
+    const chunks: Uint8Array[] = [];
+    let from = 0;
+    for (const [first, end] of removed) {
+      if (end! <= first!) continue;
+      chunks.push(this.#bytes.subarray(from, first));
+      from = end!;
+    }
+    chunks.push(this.#bytes.subarray(from));
+    for (const view of kept) {
+      for (const one of [view, meshoptView(view)]) {
+        if (one?.byteOffset === undefined || one.buffer !== 0) continue;
+        const gone = removed.reduce(
+          (sum, [first, end]) => sum + (end! <= one.byteOffset! ? Math.max(0, end! - first!) : 0),
+          0,
+        );
+        one.byteOffset -= gone;
       }
     }
-    return out;
+    return chunks;
   }
+}
+
+/** What is in some ranges but not in others, in order. */
+function subtract(ranges: readonly [number, number][], others: readonly [number, number][]): [number, number][] {
+  const marks = [
+    ...ranges.flatMap(([first, end]) => [
+      { at: first, by: 1, of: 0 },
+      { at: end, by: -1, of: 0 },
+    ]),
+    ...others.flatMap(([first, end]) => [
+      { at: first, by: 1, of: 1 },
+      { at: end, by: -1, of: 1 },
+    ]),
+  ].sort((a, b) => a.at - b.at);
+  const depth = [0, 0];
+  const found: [number, number][] = [];
+  for (const [i, { at, by, of }] of marks.entries()) {
+    depth[of]! += by;
+    const end = marks[i + 1]?.at ?? at;
+    if (end === at || depth[0] === 0 || depth[1]! > 0) continue;
+    const last = found.at(-1);
+    if (last?.[1] === at) last[1] = end;
+    else found.push([at, end]);
+  }
+  return found;
+}
+
+/** A GLB of a JSON chunk and a binary one, whose bytes are a multiple of four. */
+function packGlb(json: GLTF.IGLTF, chunks: readonly Uint8Array[]): Uint8Array {
+  const binLength = chunks.reduce((sum, { byteLength }) => sum + byteLength, 0);
+  const text = new TextEncoder().encode(JSON.stringify(json));
+  const textLength = whole(text.byteLength);
+  const total = 12 + 8 + textLength + (binLength > 0 ? 8 + binLength : 0);
+  const out = new Uint8Array(total);
+  const view = new DataView(out.buffer);
+  const words = [0x46546c67, 2, total, textLength, 0x4e4f534a]; // "glTF", its version, "JSON"
+  words.forEach((word, i) => view.setUint32(4 * i, word, true));
+  out.set(text, 20);
+  out.fill(0x20, 20 + text.byteLength, 20 + textLength);
+  if (binLength === 0) return out;
+  let at = 20 + textLength;
+  view.setUint32(at, binLength, true);
+  view.setUint32(at + 4, 0x004e4942, true); // "BIN\0"
+  at += 8;
+  for (const chunk of chunks) {
+    out.set(chunk, at);
+    at += chunk.byteLength;
+  }
+  return out;
 }

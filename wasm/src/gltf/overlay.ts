@@ -4,7 +4,7 @@ import { InputError } from './input-error.js';
 import { determinant } from './matrix.js';
 import type { Piece } from './pieces.js';
 
-/** The attribute with the `Zone` of each vertex, as a float: 0 may be painted, other values are Non-Cosmetic Zones. */
+/** The attribute with the `Zone` of each vertex, a byte: 0 may be painted, other values are Non-Cosmetic Zones. */
 export const zoneAttribute = '_NCZ';
 
 /**
@@ -65,18 +65,50 @@ export const isOverlaid = (semantic: string): boolean =>
 export const isMorphed = (semantic: string, hasNormals: boolean): boolean =>
   semantic === 'POSITION' || (semantic === 'NORMAL' && hasNormals);
 
+/** A length in the units of a piece. @param offset  It in units of the scene. */
+export const localOffset = ({ matrix }: Pick<Piece, 'matrix'>, offset: number): number =>
+  offset / Math.cbrt(Math.abs(determinant(matrix)) || 1);
+
+type Shape = Pick<Piece, 'matrix' | 'localPositions' | 'localIndices'>;
+
 /** The positions of an overlay: those of the piece, moved along their normals by `offset` units of the scene. */
-export function overlayPositions(piece: Piece, offset: number): Float32Array {
-  const step = offset / Math.cbrt(Math.abs(determinant(piece.matrix)) || 1);
+export function overlayPositions(piece: Shape, offset: number): Float32Array {
+  const step = localOffset(piece, offset);
   const normals = weldedNormals(piece);
   return piece.localPositions.map((value, i) => value + step * normals[i]!);
+}
+
+const integers = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array };
+
+/** How many steps of integers the offset must be at least. */
+const leastSteps = 2;
+
+/**
+ * The positions of an overlay as integers of the type that those beneath it have, which takes fewer bytes; as they are if the type
+ * is not of integers, or too coarse for the offset. At the ends of the type's range they stay on the surface.
+ * @param step  The offset, in units of the piece.
+ */
+export function inFormOf(
+  { componentType, normalized = false }: { componentType: number; normalized?: boolean },
+  positions: Float32Array,
+  step: number,
+): Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array {
+  const type = integers[componentType as keyof typeof integers];
+  if (type === undefined) return positions;
+  const isSigned = type === Int8Array || type === Int16Array;
+  const most = 2 ** (8 * type.BYTES_PER_ELEMENT - (isSigned ? 1 : 0)) - 1;
+  const scale = normalized ? most : 1;
+  if (step * scale < leastSteps) return positions;
+  return (type as typeof Int16Array).from(positions, (x) =>
+    Math.max(isSigned ? -most : 0, Math.min(most, Math.round(scale * x))),
+  );
 }
 
 /**
  * Unit normals, area-weighted, 3 numbers per vertex, the same for all vertices in one place: an overlay that is moved
  * along them does not open at seams. Zero where triangles cancel out.
  */
-function weldedNormals({ localPositions: p, localIndices }: Piece): Float64Array {
+function weldedNormals({ localPositions: p, localIndices }: Shape): Float64Array {
   const place = firstInPlace(p);
   const sums = new Float64Array(p.length);
   for (let t = 0; t < localIndices.length; t += 3) {

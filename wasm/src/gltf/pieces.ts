@@ -1,6 +1,5 @@
 import type { Accessor } from '@gltf-transform/core';
 import type { Mesh } from '../api/mesh.js';
-import type { PartGeometry } from '../parts/split-part.js';
 import { InputError } from './input-error.js';
 import { identity, isTurned, type Matrix } from './matrix.js';
 
@@ -49,13 +48,6 @@ export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Ar
   });
   return { positions, indices, groups };
 }
-
-/** A piece as it was cut. @param localPositions  Of all its vertices, new ones included. */
-export const cutPiece = (piece: Piece, { localIndices }: PartGeometry, localPositions: Float32Array): Piece => ({
-  ...piece,
-  localPositions,
-  localIndices: Uint32Array.from(localIndices),
-});
 
 /**
  * The positions of an accessor.

@@ -1,10 +1,11 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { CutTarget } from '../api/cut-borders.js';
 import type { TransferResult } from '../api/result.js';
-import { type Blends, blend, blendSkin, noBlends, ruleOf } from '../parts/blend.js';
+import { blend, blendSkin, noBlends, ruleOf } from '../parts/blend.js';
 import { cutPart } from '../parts/cut-part.js';
-import { gather, type SplitPart, splitPart } from '../parts/split-part.js';
+import { gather, splitPart } from '../parts/split-part.js';
 import { dracoOf } from './check.js';
+import { dracoExtension, packDraco } from './draco-write.js';
 import type { Extracted, Part } from './extract.js';
 import { GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
@@ -16,11 +17,10 @@ import {
   isOverlaid,
   overlayMark,
   overlayOffset,
-  overlayPositions,
   type Paint,
   zoneAttribute,
 } from './overlay.js';
-import { cutPiece, decodeFloats, type Piece } from './pieces.js';
+import { type GroupMember, movedPositions, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
 import type { GltfFile } from './read.js';
 
 /** What was added to a primitive. */
@@ -38,9 +38,9 @@ export interface Added {
 /**
  * Writes the target with the result of a transfer: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
  * primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
- * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices, and the
- * primitive is no longer compressed by Draco. New vertices of a cut target are added in the same way, as blends of their sources.
- * If several nodes share a mesh, each gets a copy.
+ * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices. New vertices
+ * of a cut target are added in the same way, as blends of their sources. What is replaced is dropped from the file, and its
+ * replacement has the same form: sparse, quantised, or compressed by meshopt or Draco. If several nodes share a mesh, each gets a copy.
  * @param cut  The cut target that `cutBorders` made from `result`, if any.
  * @returns the bytes of a GLB, and what was added to each part.
  * @throws {InputError} if an image beside the target cannot be read.
@@ -55,68 +55,110 @@ export async function writeTransfer(
   const writer = await GlbWriter.from(file);
   const { json } = writer;
   const meshOfNode = separateMeshes(json, parts);
-  const painter = paint && new Painter(writer, file, paint, overlayOffset * diagonal(mesh.positions));
+  const painter = paint && new Painter(writer, paint, overlayOffset * diagonal(mesh.positions));
 
-  const added = parts.map((part) => {
+  const members = parts.map((part): Member => {
     const primitives = json.meshes![meshOfNode.get(part.node)!]!.primitives;
-    const primitive = primitives[part.primitive]!;
     const whole = { ...part, turned: isTurned(part.matrix) };
     const {
       geometry,
       result: own,
       blends,
     } = cut ? cutPart(whole, cut, mesh.positions.length / 3) : { geometry: whole, result, blends: noBlends };
-    const split = splitPart(geometry, own);
-    if (split.copies > 0 || blends.sources.length > 0) rewritePrimitive(writer, file, primitive, split, blends);
-    const zones = own.zones.subarray(geometry.firstVertex, geometry.firstVertex + geometry.vertexCount);
-    const uvSet = freeUvSet((semantic) => primitive.attributes[semantic] !== undefined);
-    const uvAccessor = writer.addAttribute(split.uvs, 2);
-    primitive.attributes[uvSet] = uvAccessor;
-    primitive.attributes[zoneAttribute] = writer.addAttribute(
-      Float32Array.from(split.sources, (v) => zones[v]!),
-      1,
-    );
-    const cosmetic = own.cosmeticTriangles.subarray(
-      geometry.firstTriangle,
-      geometry.firstTriangle + geometry.triangleCount,
-    );
-    const overlay = painter?.overlay(
-      cut ? cutPiece(part, geometry, blend(part.localPositions, 3, blends)) : part,
-      split,
-      primitive,
-      cosmetic,
-      uvAccessor,
-    );
-    if (overlay) primitives.push(overlay);
+    const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
     return {
-      uvSet,
-      overlayTriangles: overlay ? cosmetic.reduce((sum, one) => sum + one, 0) : 0,
-      splitVertices: split.copies,
-      cutTriangles: geometry.triangleCount - part.triangleCount,
+      primitives,
+      primitive: primitives[part.primitive]!,
+      part,
+      split: splitPart(geometry, own),
+      zones: own.zones.subarray(firstVertex, firstVertex + vertexCount),
+      blends,
+      cosmetic: own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
+      added: { uvSet: '', overlayTriangles: 0, splitVertices: 0, cutTriangles: triangleCount - part.triangleCount },
     };
   });
-  dropDraco(json);
-  return { glb: writer.finish(), added };
+  for (const group of groupsOf(members)) addToGroup(writer, file, group, painter);
+  await packDraco(writer, file);
+  return { glb: writer.finish(), added: members.map(({ added }) => added) };
 }
 
-/** Adds new vertices, blends and copies, to all attributes and morph targets of a primitive, uncompressed. */
-function rewritePrimitive(
+/** A part, and what it becomes. */
+interface Member extends GroupMember {
+  /** Those of its mesh. */
+  primitives: GLTF.IMeshPrimitive[];
+  primitive: GLTF.IMeshPrimitive;
+  part: Part;
+  /** 1 per triangle. */
+  cosmetic: Uint8Array;
+  added: Added;
+}
+
+/** The parts by the attributes that their primitives share. */
+function groupsOf(members: readonly Member[]): Member[][] {
+  const groups = new Map<GLTF.IMeshPrimitive[], Map<string, Member[]>>();
+  for (const member of members) {
+    const { attributes, targets } = member.primitive;
+    const ofMesh = groups.get(member.primitives) ?? new Map<string, Member[]>();
+    groups.set(member.primitives, ofMesh);
+    const key = dracoOf(member.primitive) ? String(ofMesh.size) : JSON.stringify([attributes, targets]);
+    ofMesh.set(key, [...(ofMesh.get(key) ?? []), member]);
+  }
+  return [...groups.values()].flatMap((ofMesh) => [...ofMesh.values()]);
+}
+
+/** Adds UVs, zones and overlays to primitives that share their attributes. */
+function addToGroup(writer: GlbWriter, file: GltfFile, members: readonly Member[], painter: Painter | undefined): void {
+  const { primitive: first, part } = members[0]!;
+  const shared = shareVertices(part.vertexCount, members);
+  if (shared.isNew)
+    rewriteAttributes(
+      writer,
+      file,
+      members.map(({ primitive }) => primitive),
+      shared,
+    );
+  const uvSet = freeUvSet((semantic) => first.attributes[semantic] !== undefined);
+  const uvs = storedUvs(shared.uvs);
+  const attributes = {
+    [uvSet]: writer.addAttribute(uvs, 2, uvs instanceof Uint16Array ? { normalized: true } : {}),
+    [zoneAttribute]: writer.addAttribute(shared.zones, 1, {}, true),
+  };
+  const positions = painter?.positions(part, shared, first);
+  let copies = shared.sources.length - part.vertexCount - shared.blends.sources.length / 3;
+  members.forEach((member, m) => {
+    const { primitive, primitives, cosmetic, added } = member;
+    Object.assign(primitive.attributes, attributes);
+    const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
+    if (positions !== undefined && corners.length > 0) {
+      primitives.push(painter!.overlay(primitive, corners, { POSITION: positions, TEXCOORD_0: attributes[uvSet]! }));
+      added.overlayTriangles = corners.length / 3;
+    }
+    added.uvSet = uvSet;
+    added.splitVertices = copies;
+    copies = 0; // counted once
+    if (!shared.isNew) return;
+    primitive.indices = writer.addIndices(shared.indices[m]!, shared.sources.length);
+    delete primitive.mode; // strips and fans have become lists
+  });
+}
+
+/** Adds new vertices, blends and copies, to all attributes and morph targets that primitives share. */
+function rewriteAttributes(
   writer: GlbWriter,
   file: GltfFile,
-  primitive: GLTF.IMeshPrimitive,
-  { sources, indices }: SplitPart,
-  blends: Blends,
+  primitives: readonly GLTF.IMeshPrimitive[],
+  { sources, blends }: SharedVertices,
 ): void {
+  const { attributes, targets } = primitives[0]!;
   const decodedOf = (accessor: number) => file.geometry.getRoot().listAccessors()[accessor]!;
   const skin = blendSkin(
-    (semantic) =>
-      primitive.attributes[semantic] === undefined ? undefined : decodedOf(primitive.attributes[semantic]).getArray()!,
+    (semantic) => (attributes[semantic] === undefined ? undefined : decodedOf(attributes[semantic]).getArray()!),
     blends,
   );
   const made = new Map<string, number>();
   const rewrite = (accessor: number, semantic: string, isDelta: boolean): number => {
     const decoded = decodedOf(accessor);
-    const { normalized, min, name, extras } = file.json.accessors![accessor]!;
+    const { normalized, min, name, extras, sparse, bufferView } = file.json.accessors![accessor]!;
     const size = decoded.getElementSize();
     const array = decoded.getArray()!;
     const rule = isDelta ? 'mean' : ruleOf(semantic, array, normalized ?? false);
@@ -133,20 +175,23 @@ function rewritePrimitive(
       ...(name !== undefined && { name }),
       ...(extras && { extras }),
     };
-    const number = writer.addAttribute(values, size, more);
+    const wasSparse = sparse !== undefined || (bufferView === undefined && !primitives.some(dracoOf));
+    const number = writer.addAttribute(values, size, more, wasSparse);
     made.set(key, number);
     return number;
   };
-  const rewriteAll = (attributes: Record<string, number>, isDelta: boolean) => {
-    for (const [semantic, accessor] of Object.entries(attributes))
-      attributes[semantic] = rewrite(accessor, semantic, isDelta);
-  };
-  rewriteAll(primitive.attributes, false);
-  primitive.targets?.forEach((deltas) => rewriteAll(deltas, true));
-  primitive.indices = writer.addIndices(indices, sources.length);
-  delete primitive.mode; // strips and fans have become lists
-  delete primitive.extensions?.[draco];
-  if (primitive.extensions && Object.keys(primitive.extensions).length === 0) delete primitive.extensions;
+  const rewriteAll = (of: Record<string, number>, isDelta: boolean) =>
+    Object.fromEntries(
+      Object.entries(of).map(([semantic, accessor]) => [semantic, rewrite(accessor, semantic, isDelta)]),
+    );
+  const [ownAttributes, ownTargets] = [
+    rewriteAll(attributes, false),
+    targets?.map((deltas) => rewriteAll(deltas, true)),
+  ];
+  for (const primitive of primitives) {
+    primitive.attributes = { ...ownAttributes };
+    if (ownTargets) primitive.targets = ownTargets.map((deltas) => ({ ...deltas }));
+  }
 }
 
 /** The least and the greatest value of each component. */
@@ -158,18 +203,6 @@ function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max
     max[i % size] = Math.max(max[i % size]!, values[i]!);
   }
   return { min, max };
-}
-
-const draco = 'KHR_draco_mesh_compression';
-
-/** Removes the Draco extension from the file's lists if no primitive uses it any more. */
-function dropDraco(json: GLTF.IGLTF): void {
-  if (json.meshes?.some(({ primitives }) => primitives.some(dracoOf))) return;
-  for (const list of ['extensionsUsed', 'extensionsRequired'] as const) {
-    const left = json[list]?.filter((name) => name !== draco);
-    if (left?.length === 0) delete json[list];
-    else if (left) json[list] = left;
-  }
 }
 
 /**
@@ -216,40 +249,47 @@ function separateMeshes(json: GLTF.IGLTF, parts: Part[]): Map<number, number> {
 /** Makes the overlays that show a texture. */
 class Painter {
   readonly #writer: GlbWriter;
-  readonly #file: GltfFile;
-  readonly #texture: number;
+  readonly #paint: Paint;
+  #texture: number | undefined;
   readonly #offset: number;
   readonly #materials = new Map<string, number>();
 
   /** @param offset  The distance of overlays from the surface, in units of the scene. */
-  constructor(writer: GlbWriter, file: GltfFile, paint: Paint, offset: number) {
+  constructor(writer: GlbWriter, paint: Paint, offset: number) {
     this.#writer = writer;
-    this.#file = file;
-    this.#texture = writer.addTexture(paint.bytes, paint.mimeType, paint.name);
+    this.#paint = paint;
     this.#offset = offset;
   }
 
-  /** A primitive of the cosmetic triangles of `base`, with the same skin and morph targets; `undefined` if there are none. */
+  /**
+   * The positions of the overlays of primitives that share vertices, moved a little off the surface along their normals. In the form
+   * of the positions beneath them, unless that is too coarse.
+   * @returns the number of their accessor.
+   */
+  positions(part: Part, shared: SharedVertices, base: GLTF.IMeshPrimitive): number {
+    const accessor = this.#writer.json.accessors![base.attributes['POSITION']!]!;
+    const { array, normalized } = movedPositions(part, shared, this.#offset, accessor);
+    return this.#writer.addAttribute(array, 3, { ...(normalized && { normalized }), ...boundsOf(array, 3) });
+  }
+
+  /** A primitive of some triangles of `base`, with the same skin and morph targets. */
   overlay(
-    piece: Piece,
-    { sources, indices }: SplitPart,
     base: GLTF.IMeshPrimitive,
-    cosmetic: Uint8Array,
-    uvAccessor: number,
-  ): GLTF.IMeshPrimitive | undefined {
-    const corners = cosmeticCorners(indices, cosmetic);
-    if (corners.length === 0) return undefined;
-    const attributes: Record<string, number> = { POSITION: this.#positions(piece, sources), TEXCOORD_0: uvAccessor };
-    for (const [semantic, accessor] of Object.entries(base.attributes)) {
-      if (isOverlaid(semantic)) attributes[semantic] = this.#shared(base, semantic, accessor);
-    }
+    corners: Uint32Array,
+    own: { POSITION: number; TEXCOORD_0: number },
+  ): GLTF.IMeshPrimitive {
+    const attributes: Record<string, number> = { ...own };
+    for (const [semantic, accessor] of Object.entries(base.attributes))
+      if (isOverlaid(semantic)) attributes[semantic] = accessor;
+    const { count } = this.#writer.json.accessors![own.POSITION]!;
     return {
       attributes,
-      indices: this.#writer.addIndices(corners, sources.length),
+      indices: this.#writer.addIndices(corners, count),
       material: this.#material(base),
       ...(base.targets && {
-        targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, sources.length)),
+        targets: base.targets.map((deltas) => this.#morph(deltas, 'NORMAL' in attributes, count)),
       }),
+      ...(dracoOf(base) && { extensions: { [dracoExtension]: dracoOf(base) } }),
       extras: overlayMark,
     };
   }
@@ -257,26 +297,16 @@ class Painter {
   /** What a morph target of the base is to the overlay. One without anything in it is not allowed: it moves nothing then. */
   #morph(deltas: Record<string, number>, hasNormals: boolean, count: number): Record<string, number> {
     const own = Object.entries(deltas).filter(([semantic]) => isMorphed(semantic, hasNormals));
-    return own.length > 0
-      ? Object.fromEntries(own)
-      : { POSITION: this.#writer.addAttribute(new Float32Array(3 * count), 3, { min: [0, 0, 0], max: [0, 0, 0] }) };
+    if (own.length > 0) return Object.fromEntries(own);
+    const still = { min: [0, 0, 0], max: [0, 0, 0] };
+    return { POSITION: this.#writer.addAttribute(new Float32Array(3 * count), 3, still, true) };
   }
 
-  /** The base's own accessor, or, where it has no bytes because they are in a Draco stream, a decoded copy. */
-  #shared(base: GLTF.IMeshPrimitive, semantic: string, accessor: number): number {
-    if (dracoOf(base)?.attributes[semantic] === undefined) return accessor;
-    const decoded = this.#file.geometry.getRoot().listAccessors()[accessor]!;
-    const size = decoded.getElementSize() as 1 | 2 | 3 | 4;
-    const array = decoded.getArray();
-    return semantic.startsWith('JOINTS') && (array instanceof Uint8Array || array instanceof Uint16Array)
-      ? this.#writer.addAttribute(array, size)
-      : this.#writer.addAttribute(decodeFloats(decoded), size);
-  }
-
-  /** The piece's positions, moved a little off the surface along their normals. */
-  #positions(piece: Piece, sources: Uint32Array): number {
-    const positions = gather(overlayPositions(piece, this.#offset), 3, sources);
-    return this.#writer.addAttribute(positions, 3, boundsOf(positions, 3));
+  /** The texture, which is only written if something shows it. */
+  #shown(): number {
+    const { bytes, mimeType, name } = this.#paint;
+    this.#texture ??= this.#writer.addTexture(bytes, mimeType, name);
+    return this.#texture;
   }
 
   /** A material that shows the texture, with the roughness and sidedness of the base's material. */
@@ -293,7 +323,7 @@ class Painter {
           name: 'Cagecast overlay',
           alphaMode: 'BLEND',
           doubleSided,
-          pbrMetallicRoughness: { baseColorTexture: { index: this.#texture }, metallicFactor: 0, roughnessFactor },
+          pbrMetallicRoughness: { baseColorTexture: { index: this.#shown() }, metallicFactor: 0, roughnessFactor },
         }) - 1;
       this.#materials.set(key, number);
     }

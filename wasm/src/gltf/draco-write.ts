@@ -1,0 +1,67 @@
+import { type Accessor, Document, type GLTF, Logger, NodeIO, type TypedArray } from '@gltf-transform/core';
+import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
+import wasmBinary from 'draco3dgltf/draco_encoder.wasm';
+import createEncoderModule from 'draco3dgltf/draco_encoder_gltf_nodejs.js';
+import { dracoOf } from './check.js';
+import type { GlbWriter } from './glb-writer.js';
+import type { GltfFile } from './read.js';
+
+export const dracoExtension = 'KHR_draco_mesh_compression';
+
+/**
+ * Compresses those primitives again that were compressed by Draco and have been added to. Positions get 14 bits, normals 10; UVs and
+ * zones keep theirs. Vertices and triangles may change their order, except in primitives with morph targets.
+ */
+export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void> {
+  const primitives = (writer.json.meshes ?? [])
+    .flatMap((mesh) => mesh.primitives)
+    .filter((primitive) => dracoOf(primitive) && Object.values(primitive.attributes).some((a) => writer.stored(a)));
+  if (primitives.length === 0) return;
+  const io = new NodeIO()
+    .setLogger(new Logger(Logger.Verbosity.SILENT))
+    .registerExtensions([KHRDracoMeshCompression])
+    .registerDependencies({ 'draco3d.encoder': await createEncoderModule({ wasmBinary }) });
+  for (const primitive of primitives) {
+    const { json, resources } = await io.writeJSON(documentOf(writer, file, primitive));
+    const packed = json.meshes![0]!.primitives[0]!;
+    const { bufferView, attributes } = dracoOf(packed)!;
+    const { buffer, byteOffset = 0, byteLength } = json.bufferViews![bufferView]!;
+    const bytes = resources[json.buffers![buffer]!.uri!]!.slice(byteOffset, byteOffset + byteLength);
+    primitive.extensions = {
+      ...primitive.extensions,
+      [dracoExtension]: { bufferView: writer.addView(bytes), attributes },
+    };
+    for (const [semantic, accessor] of Object.entries(packed.attributes)) {
+      const { name, extras } = writer.json.accessors![primitive.attributes[semantic]!]!;
+      const own = { ...json.accessors![accessor]!, ...(name !== undefined && { name }), ...(extras && { extras }) };
+      primitive.attributes[semantic] = writer.addAccessor(withoutView(own));
+    }
+    primitive.indices = writer.addAccessor(withoutView(json.accessors![packed.indices!]!));
+  }
+}
+
+/** In a compressed primitive, the stream has the bytes. */
+function withoutView({ bufferView: _, byteOffset: __, ...accessor }: GLTF.IAccessor): GLTF.IAccessor {
+  return accessor;
+}
+
+/** A document of one primitive. */
+function documentOf(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive): Document {
+  const document = new Document();
+  document.createExtension(KHRDracoMeshCompression).setRequired(true);
+  const buffer = document.createBuffer();
+  const accessorOf = (accessor: number): Accessor => {
+    const { type, normalized = false } = writer.json.accessors![accessor]!;
+    const values = writer.stored(accessor)?.values ?? file.geometry.getRoot().listAccessors()[accessor]!.getArray()!;
+    const own = values.slice() as TypedArray;
+    return document.createAccessor().setType(type).setNormalized(normalized).setArray(own).setBuffer(buffer);
+  };
+  const made = document.createPrimitive();
+  for (const [semantic, accessor] of Object.entries(primitive.attributes))
+    made.setAttribute(semantic, accessorOf(accessor));
+  made.setIndices(accessorOf(primitive.indices!));
+  // With a morph target, vertices stay in their order.
+  if (primitive.targets) made.addTarget(document.createPrimitiveTarget());
+  document.createMesh().addPrimitive(made);
+  return document;
+}

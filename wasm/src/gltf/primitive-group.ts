@@ -1,0 +1,129 @@
+import { type Blends, blend } from '../parts/blend.js';
+import { gather, type SplitPart } from '../parts/split-part.js';
+import { inFormOf, localOffset, overlayPositions } from './overlay.js';
+import type { Piece } from './pieces.js';
+
+/** A primitive whose vertices were cut and split, as if they were its own. */
+export interface GroupMember {
+  split: SplitPart;
+  /** 1 per vertex before it was split: its `Zone`. */
+  zones: Uint8Array;
+  /** The vertices that cutting added. */
+  blends: Blends;
+}
+
+/** Vertices that primitives share. Existing ones keep their numbers; those of cuts follow, then copies. */
+export interface SharedVertices {
+  blends: Blends;
+  /** 1 per vertex: what it copies, counted with those of cuts. */
+  sources: Uint32Array;
+  /** 2 per vertex. */
+  uvs: Float32Array;
+  /** 1 per vertex. */
+  zones: Uint8Array;
+  /** For each primitive, 3 per triangle. */
+  indices: Uint32Array[];
+  /** Whether anything differs from the vertices before. */
+  isNew: boolean;
+}
+
+/**
+ * Joins what was made of primitives with the same attributes, so that they go on sharing them: a vertex is only copied where the
+ * primitives need different UVs or zones.
+ * @param vertexCount  Of the attributes, before.
+ */
+export function shareVertices(vertexCount: number, members: readonly GroupMember[]): SharedVertices {
+  const [only, ...others] = members;
+  if (only && others.length === 0) {
+    const { sources, uvs, indices, copies } = only.split;
+    const zones = Uint8Array.from(sources, (v) => only.zones[v]!);
+    const isNew = copies > 0 || only.blends.sources.length > 0;
+    return { blends: only.blends, sources, uvs, zones, indices: [indices], isNew };
+  }
+  const blends: Blends = {
+    sources: Uint32Array.from(members.flatMap((member) => [...member.blends.sources])),
+    weights: Float32Array.from(members.flatMap((member) => [...member.blends.weights])),
+  };
+  const before = vertexCount + blends.sources.length / 3;
+  const sources = Array.from({ length: before }, (_, v) => v);
+  const [uvs, zones]: [number[], number[]] = [new Array(2 * before).fill(0), new Array(before).fill(0)];
+  const isTaken = new Uint8Array(before);
+  const copies = new Map<string, number>();
+  let firstBlend = vertexCount;
+  const indices = members.map(({ split, zones: own, blends: { sources: added } }) => {
+    const place = new Int32Array(split.sources.length).fill(-1);
+    const shift = firstBlend - vertexCount;
+    firstBlend += added.length / 3;
+    return split.indices.map((n) => {
+      if (place[n]! >= 0) return place[n]!;
+      const local = split.sources[n]!;
+      const source = local < vertexCount ? local : local + shift;
+      const [u, v, zone] = [split.uvs[2 * n]!, split.uvs[2 * n + 1]!, own[local]!];
+      let to = source;
+      if (isTaken[source] === 1 && !(uvs[2 * source] === u && uvs[2 * source + 1] === v && zones[source] === zone)) {
+        const key = `${source} ${u} ${v} ${zone}`;
+        to = copies.get(key) ?? sources.push(source) - 1;
+        copies.set(key, to);
+      }
+      isTaken[source] = 1;
+      [uvs[2 * to], uvs[2 * to + 1], zones[to]] = [u, v, zone];
+      place[n] = to;
+      return to;
+    });
+  });
+  return {
+    blends,
+    sources: Uint32Array.from(sources),
+    uvs: Float32Array.from(uvs),
+    zones: Uint8Array.from(zones),
+    indices,
+    isNew: sources.length > vertexCount,
+  };
+}
+
+/**
+ * The positions of the overlays of primitives that share vertices, a little off the surface, in the form of those beneath them if
+ * that is fine enough.
+ * @param offset  The distance from the surface, in units of the scene.
+ */
+export function movedPositions(
+  { matrix, localPositions }: Pick<Piece, 'matrix' | 'localPositions'>,
+  { sources, blends, indices }: SharedVertices,
+  offset: number,
+  form: { componentType: number; normalized?: boolean },
+) {
+  const shape = {
+    matrix,
+    localPositions: gather(blend(localPositions, 3, blends), 3, sources),
+    localIndices: Uint32Array.from(indices.flatMap((corners) => [...corners])),
+  };
+  const array = inFormOf(form, overlayPositions(shape, offset), localOffset(shape, offset));
+  return { array, normalized: form.normalized === true && !(array instanceof Float32Array) };
+}
+
+/**
+ * UVs as files hold them: as 16-bit numbers where all are within 0..1, a 16th of a pixel of a texture of 8192 × 8192 off at most;
+ * else as they are.
+ */
+export function storedUvs(uvs: Float32Array): Float32Array | Uint16Array {
+  return uvs.every((x) => x >= 0 && x <= 1) ? Uint16Array.from(uvs, (x) => Math.round(65535 * x)) : uvs;
+}
+
+/** The elements that are not 0, if it takes fewer bytes to list them than to store all; else `undefined`. */
+export function sparseElements(values: ArrayLike<number> & { BYTES_PER_ELEMENT: number }, size: number) {
+  const count = values.length / size;
+  const bytes = size * values.BYTES_PER_ELEMENT;
+  const found: number[] = [];
+  for (let i = 0; i < count; ++i) {
+    for (let k = 0; k < size; ++k) {
+      if (values[size * i + k] === 0) continue;
+      found.push(i);
+      break;
+    }
+  }
+  const entry = bytes + (count < 65536 ? 2 : 4);
+  return found.length * entry + sparseJson < count * Math.ceil(bytes / 4) * 4 ? Uint32Array.from(found) : undefined;
+}
+
+/** The length of the JSON by which a sparse accessor differs from another, about. */
+const sparseJson = 200;

@@ -1,0 +1,74 @@
+import type { GLTF } from '@gltf-transform/core';
+import { instancing } from './instancing.js';
+
+/** Where the number of an accessor or of a view stands: a key of an object. */
+type Visit = (owner: Record<string, number>, key: string) => void;
+
+/** Visits all references to accessors that this package knows. */
+export function eachAccessor({ meshes, skins, animations, nodes }: GLTF.IGLTF, visit: Visit): void {
+  const all = (owner: unknown) => {
+    const map = (owner ?? {}) as Record<string, number>;
+    for (const key of Object.keys(map)) visit(map, key);
+  };
+  const one = (owner: unknown, key: string) => {
+    const map = owner as Record<string, number>;
+    if (map[key] !== undefined) visit(map, key);
+  };
+  for (const { primitives } of meshes ?? []) {
+    for (const primitive of primitives) {
+      all(primitive.attributes);
+      one(primitive, 'indices');
+      primitive.targets?.forEach(all);
+    }
+  }
+  skins?.forEach((skin) => one(skin, 'inverseBindMatrices'));
+  for (const { samplers } of animations ?? []) {
+    for (const sampler of samplers ?? []) {
+      one(sampler, 'input');
+      one(sampler, 'output');
+    }
+  }
+  for (const { extensions } of nodes ?? [])
+    all((extensions?.[instancing] as { attributes?: unknown } | undefined)?.attributes);
+}
+
+/** Visits all references to views, those of unknown extensions included: all keys that are called so, except in extras. */
+export function eachView(json: GLTF.IGLTF, visit: Visit): void {
+  const stack: unknown[] = [json];
+  for (let value = stack.pop(); value !== undefined; value = stack.pop()) {
+    if (typeof value !== 'object' || value === null) continue;
+    for (const [key, child] of Object.entries(value)) {
+      if (key === 'bufferView' && typeof child === 'number') visit(value as Record<string, number>, key);
+      else if (key !== 'extras' && typeof child === 'object' && child !== null) stack.push(child);
+    }
+  }
+}
+
+/** The numbers that are visited. */
+export function numbersOf(each: (json: GLTF.IGLTF, visit: Visit) => void, json: GLTF.IGLTF): Set<number> {
+  const found = new Set<number>();
+  each(json, (owner, key) => found.add(owner[key]!));
+  return found;
+}
+
+/**
+ * Drops elements of a list: the last ones move to where they were, so that as few numbers as possible change.
+ * @param isDropped  By the element's number.
+ */
+export function drop<Element>(
+  list: Element[],
+  isDropped: (element: number) => boolean,
+  each: (visit: Visit) => void,
+): void {
+  const places = list.map((_, element) => element);
+  const kept = places.filter((element) => !isDropped(element));
+  if (kept.length === list.length) return;
+  const before = [...list];
+  for (let to = 0; to < kept.length; ++to) {
+    if (kept[to] === to) continue;
+    kept.splice(to, 0, kept.pop()!);
+  }
+  list.splice(0, list.length, ...kept.map((element) => before[element]!));
+  kept.forEach((element, to) => (places[element] = to));
+  each((owner, key) => (owner[key] = places[owner[key]!]!));
+}
