@@ -4,7 +4,7 @@ import type { PartRange, Prepared } from '../parts/prepare.js';
 import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
 import { removeOverlay } from './overlay.js';
-import { paintAttribute } from './paint.js';
+import { Place, paintAttribute } from './paint.js';
 import { canBePainted, type Painting, paintOn, unpaint } from './painted-materials.js';
 import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
 import { type Remade, remake, replace } from './split.js';
@@ -80,6 +80,7 @@ export function* apply(
     texture: options.texture,
     opacity: options.opacity ?? 1,
     feather: options.feather ?? 0,
+    place: new Place(),
     meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
   };
   parts.forEach(({ geometry }, p) => {

@@ -15,6 +15,7 @@ export interface Paint {
   opacity: number;
   /** The width of the soft border, in the unit of the attribute's distances. */
   feather: number;
+  place: Place;
 }
 
 const kVertex = `attribute vec4 ${paintAttribute};
@@ -61,17 +62,29 @@ const asks = (fragmentShader: string): boolean => fragmentShader.includes('CAGEC
 export const takesPaint = (fragmentShader: string): boolean =>
   asks(fragmentShader) || (kColorKnown.test(fragmentShader) && fragmentShader.includes('diffuseColor'));
 
+/** The uniforms of a painted material: plain objects as three's own, since engines read all uniforms slower if some are not. */
+export interface PaintUniforms {
+  cagecastMap: { value: Texture | null };
+  cagecastPlace: { value: Matrix3 };
+}
+
+export const paintUniforms = (): PaintUniforms => ({
+  cagecastMap: { value: null },
+  cagecastPlace: { value: kNoPaint },
+});
+
+/** Brings the uniforms of a material up to date. Runs for each mesh in each frame. */
+export function refreshUniforms({ cagecastMap, cagecastPlace }: PaintUniforms, paint: Paint | undefined): void {
+  cagecastMap.value = paint?.texture ?? null;
+  cagecastPlace.value = paint ? paint.place.of(paint) : kNoPaint;
+}
+
 /**
  * Adds paint to a shader of three.js, before its includes are resolved.
- * @param paintOf  The paint at the time of a frame.
- * @param alone    Whether the paint is all that the material shows, with the opacity of the material; else it is mixed into its colour.
+ * @param alone  Whether the paint is all that the material shows, with the opacity of the material; else it is mixed into its colour.
  */
-export function addPaint(shader: Shader, paintOf: () => Paint | undefined, alone: boolean): void {
-  const place = new Matrix3();
-  Object.assign(shader.uniforms, {
-    cagecastMap: new LiveUniform(() => paintOf()?.texture ?? null),
-    cagecastPlace: new LiveUniform(() => writePlace(place, paintOf())),
-  });
+export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean): void {
+  Object.assign(shader.uniforms, uniforms);
   shader.vertexShader =
     kVertex + shader.vertexShader.replace(kMain, (main) => `${main}\n  vCagecastPaint = ${paintAttribute};\n`);
   if (!asks(shader.fragmentShader)) {
@@ -85,34 +98,44 @@ export function addPaint(shader: Shader, paintOf: () => Paint | undefined, alone
   shader.fragmentShader = kFragment + shader.fragmentShader;
 }
 
-/** The names of the uniforms that `addPaint` adds. */
-export const paintUniforms = ['cagecastMap', 'cagecastPlace'] as const;
-
 /**
- * A uniform that is asked for its value whenever it is uploaded, so that nothing has to be told of a change. It is a class, because
- * objects with accessors of their own would make engines slow at reading all uniforms.
+ * How a texture is placed, and how much of it shows, as a matrix. Materials ask for it in each frame, so it is made again only if
+ * something has changed.
  */
-class LiveUniform<T> {
-  readonly #read: () => T;
-  constructor(read: () => T) {
-    this.#read = read;
-  }
-  get value(): T {
-    return this.#read();
+export class Place {
+  readonly #matrix = new Matrix3();
+  #made: readonly unknown[] = [];
+
+  of(paint: Paint): Matrix3 {
+    const { texture } = paint;
+    if (!texture) return kNoPaint;
+    const { offset, repeat, center, rotation, matrixAutoUpdate } = texture;
+    const { opacity, feather } = paint;
+    const m = this.#made;
+    // A matrix that the caller sets may change at any time.
+    const isSame =
+      matrixAutoUpdate &&
+      m[0] === texture &&
+      m[1] === opacity &&
+      m[2] === feather &&
+      m[3] === rotation &&
+      m[4] === offset.x &&
+      m[5] === offset.y &&
+      m[6] === repeat.x &&
+      m[7] === repeat.y &&
+      m[8] === center.x &&
+      m[9] === center.y;
+    if (isSame) return this.#matrix;
+    this.#made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
+    if (matrixAutoUpdate) texture.updateMatrix();
+    const { elements } = this.#matrix.copy(texture.matrix);
+    elements[2] = opacity;
+    elements[5] = feather;
+    // The GPU decodes all but videos.
+    elements[8] =
+      (texture as { isVideoTexture?: true }).isVideoTexture === true && texture.colorSpace === 'srgb' ? 1 : 0;
+    return this.#matrix;
   }
 }
 
-/** Writes how a texture is placed, and how much of it shows. Runs for each material in each frame, so it makes nothing new. */
-function writePlace(place: Matrix3, paint: Paint | undefined): Matrix3 {
-  const out = place.elements;
-  const texture = paint?.texture;
-  if (!texture) return place.set(0, 0, 0, 0, 0, 0, 0, 0, 0);
-  if (texture.matrixAutoUpdate) texture.updateMatrix();
-  const from = texture.matrix.elements;
-  for (let i = 0; i < 9; ++i) out[i] = from[i]!;
-  out[2] = paint.opacity;
-  out[5] = paint.feather;
-  // The GPU decodes all but videos.
-  out[8] = (texture as { isVideoTexture?: true }).isVideoTexture === true && texture.colorSpace === 'srgb' ? 1 : 0;
-  return place;
-}
+const kNoPaint = /* @__PURE__ */ new Matrix3().set(0, 0, 0, 0, 0, 0, 0, 0, 0);

@@ -1,5 +1,5 @@
 import type { Material, ShaderMaterial, Mesh as ThreeMesh } from 'three';
-import { addPaint, type Paint, paintUniforms, takesPaint } from './paint.js';
+import { addPaint, type Paint, type PaintUniforms, paintUniforms, refreshUniforms, takesPaint } from './paint.js';
 
 /** What is painted, and the meshes that show it. */
 export interface Painting extends Paint {
@@ -11,8 +11,12 @@ interface Patch {
   painting: Painting | undefined;
   /** How often it was patched. Part of the program's key, as a program of an earlier time lacks the uniforms. */
   times: number;
-  own: Partial<Pick<Material, 'onBeforeCompile' | 'customProgramCacheKey'>>;
+  uniforms: PaintUniforms;
+  /** The hooks that the material has of its own. */
+  own: Partial<Pick<Material, (typeof kHooks)[number]>>;
 }
+
+const kHooks = ['onBeforeCompile', 'customProgramCacheKey', 'onBeforeRender'] as const;
 
 const patches = new WeakMap<Material, Patch>();
 
@@ -51,17 +55,16 @@ const uses = (meshes: ReadonlySet<ThreeMesh>, material: Material): ThreeMesh[] =
   [...meshes].filter((mesh) => [mesh.material].flat().includes(material));
 
 function patch(material: Material, painting: Painting, alone: boolean): void {
-  const record: Patch = patches.get(material) ?? { painting: undefined, times: 0, own: {} };
+  const record: Patch = patches.get(material) ?? { painting: undefined, times: 0, uniforms: paintUniforms(), own: {} };
   patches.set(material, record);
   const isPatched = record.painting !== undefined;
   record.painting = painting;
   if (isPatched) return;
 
-  const { onBeforeCompile, customProgramCacheKey } = material;
-  record.own = {
-    ...(Object.hasOwn(material, 'onBeforeCompile') && { onBeforeCompile }),
-    ...(Object.hasOwn(material, 'customProgramCacheKey') && { customProgramCacheKey }),
-  };
+  const { onBeforeCompile, customProgramCacheKey, onBeforeRender } = material;
+  record.own = Object.fromEntries(
+    kHooks.flatMap((name) => (Object.hasOwn(material, name) ? [[name, material[name]]] : [])),
+  );
   const times = ++record.times;
   // By default the key is the text of `onBeforeCompile`, which must be that of the material's own.
   const before = Object.create(material, { onBeforeCompile: { value: onBeforeCompile } }) as Material;
@@ -69,7 +72,11 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     `${customProgramCacheKey.call(before)}|cagecast ${times}${alone ? ' alone' : ''}`;
   material.onBeforeCompile = (shader, renderer) => {
     onBeforeCompile.call(material, shader, renderer);
-    addPaint(shader, () => record.painting, alone);
+    addPaint(shader, record.uniforms, alone);
+  };
+  material.onBeforeRender = (...args) => {
+    onBeforeRender.apply(material, args);
+    refreshUniforms(record.uniforms, record.painting);
   };
   material.needsUpdate = true;
 }
@@ -80,10 +87,10 @@ export function unpaint(material: Material, painting: Painting): void {
   if (record?.painting !== painting) return;
   record.painting = undefined;
   const { uniforms } = material as Partial<ShaderMaterial>;
-  for (const name of ['onBeforeCompile', 'customProgramCacheKey'] as const) {
+  for (const name of kHooks) {
     if (record.own[name]) Object.assign(material, { [name]: record.own[name] });
     else delete (material as Partial<Material>)[name];
   }
-  if (uniforms) for (const name of paintUniforms) delete uniforms[name];
+  if (uniforms) for (const name of Object.keys(record.uniforms)) delete uniforms[name];
   material.needsUpdate = true;
 }
