@@ -281,6 +281,58 @@ const scenes: Record<string, () => unknown> = {
     };
   },
 
+  /** What is changed after a model was painted shows in the next frame, and what is taken away leaves no trace. */
+  changes() {
+    const model = modelOf(white());
+    const { material } = model.children[0] as Mesh;
+    const bare = draw(model).pixels;
+    const look = () => {
+      const { pixels } = draw(model);
+      return [countOf(pixels, 0), countOf(pixels, 1), difference(pixels, bare)];
+    };
+    const texture = halves(0xff0000, 0x00ff00);
+    const applied = applyTransfer(model, cage(), { texture });
+    const seen: Record<string, number[]> = { painted: look() };
+    texture.offset.x = 0.25;
+    seen['moved'] = look();
+    applied.setOpacity(0);
+    seen['transparent'] = look();
+    applied.setOpacity(1);
+    applied.setTexture(flat(0x00ff00));
+    seen['green'] = look();
+    applied.setTexture(undefined);
+    seen['none'] = look();
+    applied.setTexture(flat(0xff0000));
+    seen['again'] = look();
+    const copy = (material as MeshStandardMaterial).clone();
+    (model.children[0] as Mesh).material = copy;
+    seen['copy'] = look();
+    applied.paint(copy);
+    seen['copy painted'] = look();
+    applied.dispose();
+    seen['disposed'] = look();
+    const second = applyTransfer(model, cage(), { texture: flat(0x00ff00) });
+    seen['second'] = look();
+    second.dispose();
+    return seen;
+  },
+
+  /** A soft border: the paint fades towards it, and is whole far from it. */
+  feather() {
+    const around = ball(1.1);
+    // Without its upper half.
+    const { array } = around.getAttribute('position');
+    around.setIndex([...around.index!.array].filter((_, i, all) => array[3 * all[i - (i % 3)]! + 1]! < 0.3));
+    const columns = [0, 0.25].map((feather) => {
+      const model = modelOf(new MeshBasicMaterial({ color: 0x0000ff }));
+      applyTransfer(model, new Mesh(around), { texture: flat(0xff0000), feather });
+      const { pixels } = draw(model);
+      // From below upwards, through the middle.
+      return Array.from({ length: 64 }, (_, y) => pixels[4 * (64 * y + 32)]!);
+    });
+    return columns;
+  },
+
   /** Instances share their paint. */
   instances() {
     const mesh = new InstancedMesh(ball(0.4), white(), 2);
@@ -384,7 +436,8 @@ const asyncScenes: Record<string, () => Promise<unknown>> = {
   /** A model that is applied from bytes. */
   async saved() {
     const load = async () => (await new GLTFLoader().loadAsync('target.glb')).scene;
-    const [first, again, other] = [await load(), await load(), await load()];
+    const [first, again, ...others] = await Promise.all(Array.from({ length: 8 }, load));
+    if (!first || !again) return undefined;
     const around = (await new GLTFLoader().loadAsync('cage.glb')).scene;
     const look = (model: Object3D) => {
       model.position.set(0, -0.5, 2.5);
@@ -395,7 +448,7 @@ const asyncScenes: Record<string, () => Promise<unknown>> = {
     const bytes = serialize(applyTransfer(first, around, { texture: halves(0xff0000, 0x0000ff) }));
     const times: number[] = [];
     let applied: Applied | undefined;
-    for (const model of [other, again]) {
+    for (const model of [...others, again]) {
       const began = performance.now();
       applied = applyTransfer(model, undefined, { saved: deserialize(bytes), texture: halves(0xff0000, 0x0000ff) });
       times.push(performance.now() - began);

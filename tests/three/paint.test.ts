@@ -147,6 +147,41 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     for (const count of blue) assert.ok(count < 10, `${count}`);
   });
 
+  test('changes show in the next frame; what is taken away leaves no trace', async () => {
+    const seen = await run<Record<string, [red: number, green: number, apart: number]>>('changes');
+    const sides = Object.fromEntries(
+      Object.entries(seen).map(([name, [red, green, apart]]) => [
+        name,
+        `${red > 100 ? 'red' : ''}${green > 100 ? 'green' : ''}${apart === 0 ? 'bare' : ''}`,
+      ]),
+    );
+    assert.deepEqual(sides, {
+      painted: 'redgreen',
+      moved: 'redgreen',
+      transparent: 'bare',
+      green: 'green',
+      none: 'bare',
+      again: 'red',
+      copy: 'bare',
+      'copy painted': 'red',
+      disposed: 'bare',
+      second: 'green',
+    });
+    assert.notDeepEqual(seen['moved'], seen['painted']);
+  });
+
+  test('a soft border fades inside the painted zone', async () => {
+    const [hard, soft] = (await run<number[][]>('feather')) as [number[], number[]];
+    const [first, last] = [hard.indexOf(255), hard.lastIndexOf(255)];
+    assert.equal(soft[first + 2], 255);
+    // From the lower end of the model to the border.
+    const rest = soft.slice(first + 2, last + 1);
+    rest.slice(1).forEach((value, i) => assert.ok(value <= rest[i]! + 1, rest.join()));
+    assert.ok(rest.filter((value) => value > 0 && value < 255).length >= 4, rest.join());
+    assert.ok(rest.at(-1)! < 60, rest.join());
+    soft.forEach((value, y) => assert.ok(value <= hard[y]!, `${y}: ${value} of ${hard[y]}`));
+  });
+
   test('instances share their paint', async () => {
     const { calls, left, right } = await run<{ calls: number; left: number; right: number }>('instances');
     assert.equal(calls, 1);
