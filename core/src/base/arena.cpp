@@ -2,33 +2,83 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <new>
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
-#define CAGECAST_POISONS
+#define CAGECAST_SANITIZED
 #endif
 #elif defined(__SANITIZE_ADDRESS__)
-#define CAGECAST_POISONS
+#define CAGECAST_SANITIZED
 #endif
-#ifdef CAGECAST_POISONS
+#ifdef CAGECAST_SANITIZED
 #include <sanitizer/asan_interface.h>
 #endif
 
 namespace cagecast {
+
+#ifdef CAGECAST_SANITIZED
+
 namespace {
 
-#ifdef CAGECAST_POISONS
-/// Bytes between two arrays.
-constexpr std::size_t kGap = 32;
-void poison(const std::byte* begin, std::size_t size) { __asan_poison_memory_region(begin, size); }
-void unpoison(const std::byte* begin, std::size_t size) { __asan_unpoison_memory_region(begin, size); }
-#else
-constexpr std::size_t kGap = 0;
-void poison(const std::byte*, std::size_t) {}
-void unpoison(const std::byte*, std::size_t) {}
-#endif
+/// Before each array.
+struct alignas(16) Header {
+  std::byte* previous;
+  std::size_t size;
+};
+
+Header* headerOf(std::byte* array) {
+  __asan_unpoison_memory_region(array - sizeof(Header), sizeof(Header));
+  return std::launder(reinterpret_cast<Header*>(array - sizeof(Header)));
+}
+void hide(const Header* header) { __asan_poison_memory_region(header, sizeof(Header)); }
 
 }  // namespace
+
+void Arena::restart() noexcept {
+  rewind({0, 0});
+  failed_ = false;
+  peak_ = 0;
+}
+
+void Arena::release() noexcept { rewind({0, 0}); }
+
+void Arena::rewind(Mark mark) noexcept {
+  for (; current_ > mark.block; --current_) {
+    Header* const header = headerOf(newest_);
+    newest_ = header->previous;
+    std::free(header);
+  }
+  used_ = mark.used;
+}
+
+void* Arena::allocateBytes(std::size_t count, std::size_t size) noexcept {
+  if (failed_) return nullptr;
+  const bool isTooMuch = count > (SIZE_MAX - sizeof(Header)) / size || count * size > limit_ - std::min(limit_, used_);
+  void* const data = isTooMuch ? nullptr : std::malloc(sizeof(Header) + count * size);
+  if (data == nullptr) {
+    failed_ = true;
+    return nullptr;
+  }
+  hide(new (data) Header{newest_, count * size});
+  newest_ = static_cast<std::byte*>(data) + sizeof(Header);
+  ++current_;
+  used_ += count * size;
+  peak_ = std::max(peak_, used_);
+  return newest_;
+}
+
+void Arena::shrinkTo(const std::byte* end) noexcept {
+  if (failed_) return;
+  Header* const header = headerOf(newest_);
+  const std::size_t given = static_cast<std::size_t>(newest_ + header->size - end);
+  __asan_poison_memory_region(end, given);
+  header->size -= given;
+  used_ -= given;
+  hide(header);
+}
+
+#else
 
 void Arena::restart() noexcept {
   rewind({0, 0});
@@ -42,26 +92,19 @@ void Arena::restart() noexcept {
 }
 
 void Arena::release() noexcept {
-  for (std::size_t i = 0; i < blockCount_; ++i) {
-    unpoison(blocks_[i].data, blocks_[i].size);
-    std::free(blocks_[i].data);
-  }
+  for (std::size_t i = 0; i < blockCount_; ++i) std::free(blocks_[i].data);
   blockCount_ = current_ = used_ = 0;
 }
 
 void Arena::rewind(Mark mark) noexcept {
-  for (std::size_t i = mark.block; i < blockCount_ && i <= current_; ++i) {
-    const std::size_t kept = i == mark.block ? mark.used : 0;
-    poison(blocks_[i].data + kept, blocks_[i].size - kept);
-  }
   current_ = mark.block;
   used_ = mark.used;
 }
 
 void* Arena::allocateBytes(std::size_t count, std::size_t size) noexcept {
   if (failed_) return nullptr;
-  const bool isTooMuch = count > (SIZE_MAX - kAlign - kGap) / size;
-  const std::size_t bytes = (count * size + kAlign - 1) / kAlign * kAlign + kGap;
+  const bool isTooMuch = count > (SIZE_MAX - kAlign) / size;
+  const std::size_t bytes = (count * size + kAlign - 1) / kAlign * kAlign;
   while (!isTooMuch && current_ < blockCount_ && blocks_[current_].size - used_ < bytes) {
     ++current_;
     used_ = 0;
@@ -71,7 +114,6 @@ void* Arena::allocateBytes(std::size_t count, std::size_t size) noexcept {
     return nullptr;
   }
   std::byte* const array = blocks_[current_].data + used_;
-  unpoison(array, count * size);
   used_ += bytes;
   peak_ = std::max(peak_, bytesBefore(current_) + used_);
   return array;
@@ -80,8 +122,7 @@ void* Arena::allocateBytes(std::size_t count, std::size_t size) noexcept {
 void Arena::shrinkTo(const std::byte* end) noexcept {
   if (failed_) return;
   std::byte* const block = blocks_[current_].data;
-  poison(end, static_cast<std::size_t>(block + used_ - end));
-  used_ = (static_cast<std::size_t>(end - block) + kAlign - 1) / kAlign * kAlign + kGap;
+  used_ = (static_cast<std::size_t>(end - block) + kAlign - 1) / kAlign * kAlign;
 }
 
 bool Arena::addBlock(std::size_t size) noexcept {
@@ -89,7 +130,6 @@ bool Arena::addBlock(std::size_t size) noexcept {
   if (blockCount_ == kMaxBlocks || size > limit_ - std::min(limit_, bytesBefore(blockCount_))) return false;
   auto* data = static_cast<std::byte*>(std::malloc(size));
   if (data == nullptr) return false;
-  poison(data, size);
   blocks_[blockCount_++] = {data, size};
   return true;
 }
@@ -99,5 +139,7 @@ std::size_t Arena::bytesBefore(std::size_t block) const noexcept {
   for (std::size_t i = 0; i < block; ++i) bytes += blocks_[i].size;
   return bytes;
 }
+
+#endif
 
 }  // namespace cagecast

@@ -12,8 +12,8 @@ namespace cagecast {
 /// step allocates all its arrays, checks `failed()` once and returns; the steps after it do the same, so only the end
 /// of a call has to report it.
 ///
-/// With AddressSanitizer, memory that is not allocated is poisoned, with a gap after every array: reading past an
-/// array, or an array that was given back, ends the program.
+/// With AddressSanitizer, every array is an allocation of its own: reading past an array, or an array that was given
+/// back, ends the program.
 class Arena {
  public:
   /// @param limit  Most bytes to take from the system.
@@ -87,8 +87,9 @@ class Arena {
 
   Block blocks_[kMaxBlocks] = {};
   std::size_t blockCount_ = 0;
-  std::size_t current_ = 0;  ///< The block in use.
-  std::size_t used_ = 0;     ///< Bytes used of it.
+  std::size_t current_ = 0;      ///< The block in use. With AddressSanitizer, the number of arrays.
+  std::size_t used_ = 0;         ///< Bytes used of it. With AddressSanitizer, of all arrays.
+  std::byte* newest_ = nullptr;  ///< With AddressSanitizer, the array allocated last.
   std::size_t peak_ = 0;
   std::size_t limit_;
   bool failed_ = false;
