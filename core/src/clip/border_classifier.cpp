@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "clip/tie.hpp"
+
 namespace cagecast {
 namespace {
 
@@ -140,14 +142,22 @@ bool BorderClassifier::separates(const BorderSample& a, const BorderSample& b) c
   return std::sqrt(du * du + dv * dv) > kSmear * explained + kSmearSlack;
 }
 
+/// Whether all points of a part whose nearest cage triangle is a certain one are surely in a region.
+bool BorderClassifier::isSurelyIn(std::uint32_t region, std::uint32_t cageTriangle, Hull hull) const noexcept {
+  if (charts_ != nullptr) return charts_->charts[cageTriangle] == region;
+  const CageTriangle& t = cage_.cage.triangles[cageTriangle];
+  return region == 0 ? cage_.loops.areSurelyOff(t, cageTriangle, hull, diagonal_)
+                     : cage_.loops.areSurelyOn(t, cageTriangle, hull);
+}
+
 bool BorderClassifier::isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept {
   if (nearby.count == 0) return false;
   const std::uint32_t* begin = &listed_[nearby.first];
-  return std::all_of(begin, begin + nearby.count, [&](std::uint32_t cageTriangle) {
-    if (charts_ != nullptr) return charts_->charts[cageTriangle] == region;
-    const CageTriangle& t = cage_.cage.triangles[cageTriangle];
-    return region == 0 ? cage_.loops.areSurelyOff(t, cageTriangle, hull, diagonal_)
-                       : cage_.loops.areSurelyOn(t, cageTriangle, hull);
+  const std::span<const std::uint32_t> all(begin, nearby.count);
+  return std::all_of(all.begin(), all.end(), [&](std::uint32_t cageTriangle) {
+    return isSurelyIn(region, cageTriangle, hull) || std::any_of(all.begin(), all.end(), [&](std::uint32_t other) {
+             return other != cageTriangle && losesTie(cage_.cage, cageTriangle, other, hull, diagonal_);
+           });
   });
 }
 

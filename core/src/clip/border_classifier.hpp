@@ -85,6 +85,7 @@ class BorderClassifier {
   [[nodiscard]] bool separates(const BorderSample& a, const BorderSample& b) const noexcept;
 
  private:
+  [[nodiscard]] bool isSurelyIn(std::uint32_t region, std::uint32_t cageTriangle, Hull hull) const noexcept;
   std::uint32_t findWithin(Vec3 p, double more, double distance) noexcept;
   const Candidate& nearestOf(const std::uint32_t* cageTriangles, std::uint32_t count, Vec3 p) noexcept;
   [[nodiscard]] BorderSample classify(const Candidate& nearest) const noexcept;
