@@ -203,7 +203,20 @@ TEST_CASE("coordinates too far from the origin are an error; meshes may be huge 
     CHECK(status.at == 30);
     CHECK_THAT(call.text(status), Contains("cage.positions[30]"));
   }
-  for (const float factor : {1e-36f, 1e-30f, 1e-10f, 1e10f, 1e30f, 1e38f}) {
+  for (const bool isCage : {true, false}) {
+    // Distances between such positions would be infinite.
+    Case call;
+    for (scenes::Mesh* mesh : {&call.cage, &call.target})
+      for (float& x : mesh->positions) x *= 1e37f;
+    scenes::Mesh& mesh = isCage ? call.cage : call.target;
+    mesh.positions[4] = -5e37f;
+    const Status status = call.run();
+    CHECK(status.code == Code::tooLarge);
+    CHECK(status.argument == (isCage ? Argument::cage : Argument::target));
+    CHECK(status.at == 4);
+    CHECK_THAT(call.text(status), Contains("positions[4]") && Contains("4.2e37"));
+  }
+  for (const float factor : {1e-36f, 1e-30f, 1e-10f, 1e10f, 1e30f, 1e37f}) {
     Case call;
     for (scenes::Mesh* mesh : {&call.cage, &call.target})
       for (float& x : mesh->positions) x *= factor;
@@ -211,6 +224,7 @@ TEST_CASE("coordinates too far from the origin are an error; meshes may be huge 
     INFO("factor " << factor);
     REQUIRE(transfer(call.cage.view(), call.target.view(), TransferOptions::paper(), testWorkspace(), result).ok());
     for (const Zone zone : result.zones.zones) CHECK(zone == Zone::cosmetic);
+    for (const float distance : result.projection.distances) CHECK(std::isfinite(distance));
   }
 }
 

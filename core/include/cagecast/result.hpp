@@ -40,7 +40,9 @@ struct Timings {
   double total = 0;       ///< The whole call.
 };
 
-/// The properties of one segment: a connected component of the welded target. Areas are in squared units of the input.
+/// The properties of one segment: a connected component of the welded target. Areas are in squared units of the input,
+/// and exact to diagonal² · triangles · 2^-49 of the target: what is left of slivers that are 1e12 times longer than
+/// wide is rounding.
 struct SegmentStats {
   std::uint32_t points = 0;  ///< Number of welded points.
   std::uint32_t group = 0;   ///< The group of its first vertex; 0 if the target has no groups.

@@ -11,10 +11,8 @@ namespace cagecast {
 /// triangles stays within 63 bits.
 class AreaUnit {
  public:
-  /// @param diagonal  Of the target, scaled: less than 2, or up to 14 for inputs beyond 1e38.
-  AreaUnit(std::uint32_t triangleCount, double diagonal)
-      : perArea_(
-            std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)) - (diagonal < 2 ? 0 : kHugeBits))) {}
+  explicit AreaUnit(std::uint32_t triangleCount)
+      : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)))) {}
   /// What a triangle gives to each of its corners.
   [[nodiscard]] std::int64_t third(double doubleArea) const {
     return static_cast<std::int64_t>(doubleArea / 6 * perArea_);
@@ -29,7 +27,6 @@ class AreaUnit {
 
  private:
   static constexpr int kCutBits = 10;
-  static constexpr int kHugeBits = 6;  // (14 / 2)² is less than 2⁶.
   double perArea_;
   double size_ = 1 / perArea_;  ///< Exact: a power of two.
 };

@@ -7,7 +7,7 @@ namespace cagecast {
 /// and no square leaves the range of a float.
 struct Units {
   float scale = 1;  ///< Multiplies input coordinates.
-  /// Of the target's bounding box, scaled: 1..2; 0 if the target is a single point, up to 14 for inputs beyond 1e38.
+  /// Of the target's bounding box, scaled: 1..2; 0 if the target is a single point.
   double diagonal = 0;
   float low[3] = {};  ///< The target's bounding box, scaled.
   float high[3] = {};

@@ -12,6 +12,8 @@ namespace {
 /// Farthest a coordinate may be from the origin, in diagonals of the target. Its fourth power fits a float. A target
 /// this far away is a single point to a float.
 constexpr float kMaxProportion = 1e8f;
+/// Greatest coordinate: distances between any two positions still fit a float.
+constexpr float kMaxCoordinate = 0x1p125f;
 /// A ray may begin at a point that no float represents; it is rounded by a share of its distance from the origin of
 /// coordinates. This share of that distance counts as the scene's size, if it is larger.
 constexpr float kRestReach = 0.5f;
@@ -119,10 +121,10 @@ Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
   return {};
 }
 
-/// The place of the first coordinate that is out of proportion; there must be one.
-std::size_t firstTooLarge(std::span<const float> positions, double scale) {
+/// The place of the first coordinate that is farther from the origin than a limit; there must be one.
+std::size_t firstTooLarge(std::span<const float> positions, double limit) {
   std::size_t i = 0;
-  while (std::abs(static_cast<double>(positions[i]) * scale) <= static_cast<double>(kMaxProportion)) ++i;
+  while (std::abs(static_cast<double>(positions[i])) <= limit) ++i;
   return i;
 }
 
@@ -138,13 +140,14 @@ Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) n
   int exponent = 0;
   if (size > 0) std::frexp(size, &exponent);
   const double scale = std::ldexp(1.0, std::clamp(1 - exponent, -126, 127));
+  const double limit = std::min(static_cast<double>(kMaxProportion) / scale, static_cast<double>(kMaxCoordinate));
   float reach = 0;
   for (int k = 0; k < 3; ++k) {
     const auto scaled = [scale](float x) { return static_cast<float>(static_cast<double>(x) * scale); };
     for (const bool ofCage : {true, false}) {
       const Box& box = ofCage ? cageBox : targetBox;
-      if (std::max(-scaled(box.low[k]), scaled(box.high[k])) <= kMaxProportion) continue;
-      const std::size_t at = firstTooLarge((ofCage ? cage : target).positions, scale);
+      if (static_cast<double>(std::max(-box.low[k], box.high[k])) <= limit) continue;
+      const std::size_t at = firstTooLarge((ofCage ? cage : target).positions, limit);
       return {Code::tooLarge, ofCage ? Argument::cage : Argument::target, static_cast<std::uint32_t>(at)};
     }
     units.low[k] = scaled(targetBox.low[k]);

@@ -28,7 +28,7 @@ void sumAreas(const Scene& scene, const InteriorSamples& samples, PointData& dat
   if (arena.failed()) return;
   std::fill(sums, sums + stats.size(), Sums{});
   std::fill(all, all + points.count, 0);
-  const AreaUnit unit(points.triangleCount, scene.units.diagonal);
+  const AreaUnit unit(points.triangleCount);
   for (std::uint32_t t = 0; t < points.triangleCount; ++t) {
     const std::uint32_t* corner = points.triangles + std::size_t{3} * t;
     const std::int64_t third = unit.third(points.doubleAreas[t]);

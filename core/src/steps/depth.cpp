@@ -77,7 +77,7 @@ void weightByDepth(const Scene& scene, const PointData& data, const InteriorSamp
 
   // Depths are summed as shares of a bound on all of them, so that 63 bits are enough.
   const double deepest = 2.0 * static_cast<double>(scene.units.reach);
-  const AreaUnit unit(data.points.triangleCount, scene.units.diagonal);
+  const AreaUnit unit(data.points.triangleCount);
   std::fill(ofTriangles, ofTriangles + cageCount, Covered{});
   eachCovered(data, samples, unit, [&](std::uint32_t, std::uint32_t t, double depth, std::int64_t area) {
     ofTriangles[t].add({area, static_cast<std::int64_t>(static_cast<double>(area) * (depth / deepest))});

@@ -114,7 +114,7 @@ void assignHoles(const Scene& scene, PointData& data, const Array<SegmentStats>&
   const std::uint32_t count = sumShares(scene, data, {atLoops, total}, {ends, loopCount}, {found, pointCount});
   if (arena.failed() || !shares.reset(count)) return arena.fail();
 
-  const AreaUnit unit(data.points.triangleCount, scene.units.diagonal);
+  const AreaUnit unit(data.points.triangleCount);
   const double toInput = scene.units.areaToInput();
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto& [loop, segment, exposed, uncovered, hidden] = found[i];

@@ -25,8 +25,8 @@ export type CoreCode =
   /** Every triangle of the cage has zero area. */
   | 'noUsableCageTriangle'
   /**
-   * More vertices or triangles than the limit (`at` says how many), or a coordinate too far from the origin for the
-   * size of the target (`at` is its position in `positions`).
+   * More vertices or triangles than the limit (`at` says how many), or a coordinate too far from the origin, for the
+   * size of the target or for distances to fit a float (`at` is its position in `positions`).
    */
   | 'tooLarge'
   /** The value of `option` is out of its range, or a lock names a segment or a group that does not exist (`at`). */

@@ -105,7 +105,7 @@ void findFacing(const Scene& scene, const PointData& data, std::span<const bool>
   out.isTurned = arena.allocate<bool>(segmentCount);
   const Arena::Scope scope(arena);
   auto* agreement = arena.allocate<std::int64_t>(segmentCount);  // Area with normals as the cage's, less that against.
-  NormalSums sums(AreaUnit(points.triangleCount, scene.units.diagonal), data, out.normals, arena);
+  NormalSums sums(AreaUnit(points.triangleCount), data, out.normals, arena);
   if (arena.failed()) return;
   std::fill(out.normals, out.normals + points.count, Vec3{0, 0, 0});
   std::fill(out.isTwoSided, out.isTwoSided + points.count, false);
