@@ -1,4 +1,5 @@
 import { checkGltf } from 'cagecast/gltf';
+import type { LoadedGltf } from 'cagecast/three';
 import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { type ExtractedMesh, extractMesh } from './extract-mesh';
@@ -13,6 +14,8 @@ export interface Model {
   /** The file, then those it refers to. */
   files: readonly File[];
   scene: Object3D;
+  /** The scene with what tells the bones of a VRM. */
+  loaded: LoadedGltf;
   animations: readonly AnimationClip[];
   mesh: ExtractedMesh;
   /** A message about images that cannot be shown; the model is usable all the same. */
@@ -51,12 +54,14 @@ export async function loadModel(
     try {
       const gltf = await loader.parseAsync(bytes, '');
       const scene = await sceneOf(gltf);
+      const { associations, json } = gltf.parser;
       const mesh = await extractMesh(scene, (mesh) => nameOf(mesh, gltf));
       const damage = await damageOf(gltf, async (uri) => (await fetch(manager.resolveURL(uri))).arrayBuffer());
       return {
         name: file.name,
         files: [file, ...used],
         scene,
+        loaded: { scene, userData: gltf.userData, parser: { associations, json: { extensions: json.extensions } } },
         animations: gltf.animations,
         mesh,
         ...(damage && { damage: `${file.name}: ${damage}` }),

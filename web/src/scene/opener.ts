@@ -147,7 +147,7 @@ export class Opener {
         ? 'Choose your own files, or drop them anywhere on the page. They stay on this device.'
         : target
           ? 'The cage is yours, but the target is still the sample’s. Add the target that your cage was made for.'
-          : 'The target is yours, but the cage is still the sample’s. Add the cage that was made for your target.';
+          : 'The target is yours, but the cage is still the sample’s. Add the cage that was made for your target, or make one.';
   }
 
   /** Sets the base paint, as an undo step. */

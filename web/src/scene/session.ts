@@ -211,12 +211,12 @@ export class Session extends Emitter<SessionEvents> {
   }
 
   /**
-   * Announces a feature's work on the current scene.
+   * Announces a feature's work on the current scene. Called again with the same function, it tells how far the work is.
    * @param giveUp Called if the work is cancelled or superseded.
    * @returns A function to call when the work is done.
    */
   work(stage: string, share: number, giveUp: GiveUp): () => void {
-    this.#endWork('superseded');
+    if (this.#giveUpWork !== giveUp) this.#endWork('superseded');
     this.#giveUpWork = giveUp;
     this.#tell(stage, share);
     return () => {
