@@ -12,6 +12,8 @@ namespace {
 constexpr double kOneSpot = 1e-3;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, is a mistake.
 constexpr double kMostOff = 0.15;
+/// Two that are off by more than this share of the diagonal together may have been exchanged.
+constexpr double kClearlyOff = 0.05;
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -23,6 +25,45 @@ std::string mirrorName(const std::string& name) {
   for (const auto& [end, other] : {std::pair<std::string, std::string>{"_left", "_right"}, {"_right", "_left"}})
     if (name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0)
       return name.substr(0, name.size() - end.size()) + other;
+  return {};
+}
+
+Outcome otherSide(const std::string& name) {
+  return {Problem::badLandmarks,
+          "landmarks: " + name + " is on the other side: left and right are the figure's own, not the viewer's"};
+}
+
+/// The first given landmark that has changed places with its mirror image, seen from the others; empty if there is
+/// none. Without other pairs nothing says which side is which, and a figure with joints may have crossed its arms.
+std::string exchangedPair(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                          const std::vector<bool>& given, double diagonal) {
+  std::vector<std::size_t> mirror(from.size());
+  std::size_t sides = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (from[i].name.rfind("joint_", 0) == 0) return {};
+    const std::string name = mirrorName(from[i].name);
+    mirror[i] = i;
+    for (std::size_t j = 0; j < from.size(); ++j)
+      if (from[j].name == name) mirror[i] = j;
+    if (mirror[i] != i) ++sides;
+  }
+  if (sides < 4) return {};
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::size_t j = mirror[i];
+    if (j == i || !given[i]) continue;
+    std::vector<Vec3> a, b;
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      if (k == i || k == j) continue;
+      a.push_back(positionOf(from[k]));
+      b.push_back(positionOf(to[k]));
+    }
+    if (a.size() < 3) continue;
+    const Similarity map = fitSimilarity(a, b);
+    const Vec3 one = map.inverse(positionOf(to[i])), other = map.inverse(positionOf(to[j]));
+    const double straight = length(one - positionOf(from[i])) + length(other - positionOf(from[j]));
+    const double crossed = length(one - positionOf(from[j])) + length(other - positionOf(from[i]));
+    if (straight > kClearlyOff * diagonal && crossed < 0.5 * straight) return from[i].name;
+  }
   return {};
 }
 
@@ -74,9 +115,8 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
     ++k;
   }
   const double asGiven = residual(a, b);
-  if (pairs > 0 && asGiven > 0.02 * diagonal && residual(a, swapped) < 0.5 * asGiven)
-    return {Problem::badLandmarks,
-            "landmarks: " + pairName + " is on the other side: left and right are the figure's own, not the viewer's"};
+  if (pairs > 0 && asGiven > 0.02 * diagonal && residual(a, swapped) < 0.5 * asGiven) return otherSide(pairName);
+  if (const std::string name = exchangedPair(from, to, given, diagonal); !name.empty()) return otherSide(name);
   // One at a time: where the others put it.
   for (std::size_t skip = 0, i = 0; i < from.size() && a.size() > 3; ++i) {
     if (from[i].name.rfind("joint_", 0) == 0) continue;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cagecast/cages.hpp"
@@ -37,7 +38,10 @@ constexpr double kOneSpot = 1e-3;
 /// How far the map may stay off landmarks that are not sure (see `Anchor::slack`).
 constexpr double kSlack = 0.1;
 constexpr std::size_t kLeastLandmarks = 4;
-constexpr const char* kFirstFive = "eye_centre_left, eye_centre_right, nose_tip, lip_lower and chin";
+/// Of a face, these do to begin with.
+constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip", "lip_lower", "chin"};
+/// How many landmarks a message lists at most.
+constexpr std::size_t kMostNames = 12;
 
 /// Shares of the work, for progress.
 constexpr double kLandmarksEnd = 0.3, kHullEnd = 0.6, kTightenEnd = 0.85;
@@ -48,11 +52,28 @@ struct Pairs {
   std::vector<bool> given;
 };
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNames); ++i) text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > kMostNames ? text + " and " + std::to_string(names.size() - kMostNames) + " more" : text;
+}
+
+/// Which landmarks to give first.
+std::vector<std::string> firstOf(const std::vector<std::string>& missing) {
+  std::vector<std::string> first;
+  for (const char* name : kFirstFive)
+    if (std::find(missing.begin(), missing.end(), name) != missing.end()) first.emplace_back(name);
+  return first.empty() ? missing : first;
+}
+
 Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, const std::vector<Landmark>& found,
                       Pairs& out, FittedCage& cage) {
-  for (const Landmark& landmark : given)
-    if (findLandmark(from.landmarks, landmark.name) == nullptr)
-      return {Problem::badLandmarks, "landmarks: the template has no " + landmark.name};
+  for (const Landmark& landmark : given) {
+    if (findLandmark(from.landmarks, landmark.name) != nullptr) continue;
+    std::vector<std::string> names;
+    for (const Landmark& known : from.landmarks) names.push_back(known.name);
+    return {Problem::badLandmarks, "landmarks: the template has no " + landmark.name + "; it has " + listed(names)};
+  }
   for (const Landmark& landmark : from.landmarks) {
     const Landmark* there = findLandmark(given, landmark.name);
     const bool isGiven = there != nullptr;
@@ -68,7 +89,8 @@ Outcome pairLandmarks(const Template& from, const std::vector<Landmark>& given, 
   }
   if (out.from.size() >= kLeastLandmarks) return {};
   return {Problem::badLandmarks, "landmarks: " + std::to_string(out.from.size()) + " are known, at least " +
-                                     std::to_string(kLeastLandmarks) + " are needed; please give " + kFirstFive};
+                                     std::to_string(kLeastLandmarks) + " are needed; please give some of " +
+                                     listed(firstOf(cage.missing))};
 }
 
 /// The triangles that count as the figure: not those that stick out or lie inside.

@@ -232,7 +232,9 @@ TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
   const std::vector<Landmark> good = heads.landmarks;
   SECTION("unknown") {
     heads.landmarks.push_back({"antler", {0, 0, 0}});
-    CHECK(messageOf() == "landmarks: the template has no antler");
+    CHECK(messageOf() ==
+          "landmarks: the template has no antler; it has nose_tip, chin, crown, occiput, ear_top_left, ear_top_right, "
+          "mouth_corner_left, mouth_corner_right, eye_centre_left, eye_centre_right");
   }
   SECTION("twice") {
     heads.landmarks.push_back(good[0]);
@@ -251,10 +253,30 @@ TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
     CHECK(messageOf() ==
           "landmarks: ear_top_left is on the other side: left and right are the figure's own, not the viewer's");
   }
+  SECTION("one pair swapped") {
+    std::swap(heads.landmarks[8].position, heads.landmarks[9].position);
+    CHECK(messageOf() ==
+          "landmarks: eye_centre_left is on the other side: left and right are the figure's own, not the viewer's");
+  }
+  SECTION("too few") {
+    heads.landmarks.resize(1);
+    CHECK(messageOf().find("at least 4 are needed; please give some of ") != std::string::npos);
+  }
   SECTION("far off") {
     heads.landmarks[2].position = {0, -1, 0.5f};
     CHECK(messageOf().rfind("landmarks: crown is ", 0) == 0);
   }
+}
+
+TEST_CASE("landmarks that are needed are those that the template has", "[cages][fit]") {
+  Heads heads;
+  Template from = heads.from();
+  for (std::size_t i = 0; i < from.landmarks.size(); ++i) from.landmarks[i].name = "spot_" + std::to_string(i);
+  const Outcome outcome = fitCage(from, {heads.other.view()}, {}, {}, heads.out);
+  CHECK(outcome.problem == Problem::badLandmarks);
+  CHECK(outcome.message ==
+        "landmarks: 0 are known, at least 4 are needed; please give some of spot_0, spot_1, spot_2, spot_3, spot_4, "
+        "spot_5, spot_6, spot_7, spot_8, spot_9");
 }
 
 TEST_CASE("a template that cannot be fitted is refused", "[cages][fit]") {
