@@ -129,10 +129,14 @@ function describeFit({ used, confidence, missing }: Fit, given: Landmarks): stri
     .filter((name) => confidence[name]! < certain)
     .sort((a, b) => confidence[a]! - confidence[b]!)
     .map((name) => `${name} (${confidence[name]!.toFixed(2)})`);
+  const isJoint = (name: string) => name.startsWith('joint_');
   return [
     `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
     doubtful.length > 0 ? `found, but not certain (of 1): ${listed(doubtful)}` : '',
     missing.length > 0 ? `not found: ${listed(missing)}` : '',
+    missing.some(isJoint) && !all.some(isJoint)
+      ? 'no joint is found: TARGET has no skeleton, or names of bones that are not known'
+      : '',
     doubtful.length + missing.length > 0 ? 'give these for a better fit: --landmarks L.json' : '',
   ].filter(Boolean);
 }

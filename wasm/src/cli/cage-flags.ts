@@ -55,7 +55,7 @@ Exit codes: 0 good or usable, 1 an input cannot be used, 2 wrong usage, 3 unfit.
 
 Examples:
   cagecast make head.glb -o cage.glb
-  cagecast make head.glb --exclude 'eye*' --exclude 'mouth*' --triangles 800 -o cage.glb --html report.html`,
+  cagecast make head.glb --exclude 'eye*' --exclude '*teeth' --triangles 800 -o cage.glb --html report.html`,
     )
     .action(async (target: string, flags: Omit<MakeCommand, 'target' | 'reading'> & ReadFlags, command: Command) => {
       refuseOverwriting(command, [target], [flags.output, flags.html]);
