@@ -464,7 +464,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     const text = write('text.png', 'no image');
     fails(
       ['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', text],
-      /text\.png: is neither a PNG nor a JPEG image/,
+      /text\.png: is not a PNG, JPEG or WebP image/,
     );
     const half = write('half.png', paint().subarray(0, 60));
     fails(

@@ -14,6 +14,7 @@ import { inspectionPage } from './inspect-page.js';
 import { checkExclusions, fitCageTo, makeCageFor } from './make-cage.js';
 import type { Rules } from './options.js';
 import { writeFiles } from './output.js';
+import type { Found } from './print.js';
 import type { Progress } from './progress.js';
 import { type ReadModel, readBack, readModel, transferred, withUvs } from './run.js';
 import { integer } from './table.js';
@@ -41,8 +42,7 @@ export interface FitCommand extends CageOutput {
 }
 
 /** What a command prints, and what `inspect` says of the cage. */
-export interface CageVerdict {
-  text: string;
+export interface CageVerdict extends Found {
   verdict: Verdict;
 }
 
@@ -162,5 +162,5 @@ async function finish(
     ...conclusionOf(report),
     ...(html === undefined ? [] : [`wrote ${html}`]),
   ].join('\n');
-  return { text, verdict: report.verdict };
+  return { text, report, verdict: report.verdict };
 }

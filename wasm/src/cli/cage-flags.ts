@@ -1,6 +1,6 @@
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { type CageVerdict, type FitCommand, fitCommand, type MakeCommand, makeCommand } from './cage-command.js';
-import { print } from './print.js';
+import { addPrintFlags, type PrintFlags, print } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import { endingIn, refuseOverwriting, unfit } from './usage.js';
@@ -9,7 +9,7 @@ import { endingIn, refuseOverwriting, unfit } from './usage.js';
 const triangleRange = [50, 20_000] as const;
 
 const output = (command: Command): Command =>
-  addReadFlags(command)
+  addPrintFlags(addReadFlags(command))
     .addOption(
       new Option('-o, --output <CAGE.glb>', 'where to write the cage')
         .argParser(endingIn('.glb'))
@@ -31,10 +31,10 @@ function triangles(text: string): number {
 
 /** Adds the commands that make and fit cages. */
 export function addCageCommands(program: Command, progress: Progress): void {
-  const show = ({ text, verdict }: CageVerdict) => {
+  const show = (found: CageVerdict, flags: PrintFlags & { output: string; html?: string | undefined }) => {
     progress.clear();
-    print(text);
-    if (verdict === 'unfit') process.exitCode = unfit;
+    print(found, flags, [flags.output, flags.html]);
+    if (found.verdict === 'unfit') process.exitCode = unfit;
   };
   output(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
     .description('make a cage for TARGET: a hull with holes over what is not painted, and UVs; print a verdict')
@@ -57,10 +57,17 @@ Examples:
   cagecast make head.glb -o cage.glb
   cagecast make head.glb --exclude 'eye*' --exclude '*teeth' --triangles 800 -o cage.glb --html report.html`,
     )
-    .action(async (target: string, flags: Omit<MakeCommand, 'target' | 'reading'> & ReadFlags, command: Command) => {
-      refuseOverwriting(command, [target], [flags.output, flags.html]);
-      show(await makeCommand({ ...flags, target, reading: readingOf(flags) }, progress));
-    });
+    .action(
+      async (
+        target: string,
+        flags: Omit<MakeCommand, 'target' | 'reading'> & ReadFlags & PrintFlags,
+        command: Command,
+      ) => {
+        if (flags.quiet) progress.silence();
+        refuseOverwriting(command, [target], [flags.output, flags.html]);
+        show(await makeCommand({ ...flags, target, reading: readingOf(flags) }, progress), flags);
+      },
+    );
   output(
     program
       .command('fit')
@@ -90,12 +97,13 @@ Examples:
       async (
         template: string,
         target: string,
-        flags: Omit<FitCommand, 'template' | 'target' | 'reading'> & ReadFlags,
+        flags: Omit<FitCommand, 'template' | 'target' | 'reading'> & ReadFlags & PrintFlags,
         command: Command,
       ) => {
         const { templateLandmarks, landmarks, output, html } = flags;
+        if (flags.quiet) progress.silence();
         refuseOverwriting(command, [template, target, templateLandmarks, landmarks], [output, html]);
-        show(await fitCommand({ ...flags, template, target, reading: readingOf(flags) }, progress));
+        show(await fitCommand({ ...flags, template, target, reading: readingOf(flags) }, progress), flags);
       },
     );
 }

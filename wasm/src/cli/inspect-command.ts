@@ -13,7 +13,6 @@ import { type PerZone, perZone } from './zones.js';
 
 /** The arguments of `cagecast inspect`. */
 export interface InspectCommand extends Sources {
-  json: boolean;
   html?: string | undefined;
 }
 
@@ -31,13 +30,13 @@ export interface InspectionReport extends Inspection {
 
 /**
  * Checks whether a cage fits a target.
- * @returns text for people, or JSON, and the verdict.
+ * @returns what is printed, and the verdict.
  * @throws {InputError} that names the file at fault.
  */
 export async function inspectCommand(
   command: InspectCommand,
   progress: Progress,
-): Promise<{ text: string; verdict: Verdict }> {
+): Promise<{ text: string; report: InspectionReport; verdict: Verdict }> {
   const done = await run(command, progress);
   progress.step('inspecting');
   const report = inspectionReport(command, done);
@@ -46,7 +45,8 @@ export async function inspectCommand(
     writeFiles([{ path: command.html, data: inspectionPage(report, done) }]);
   }
   return {
-    text: command.json ? JSON.stringify(report, null, 2) : describe(report, command.html),
+    text: describe(report, command.html),
+    report,
     verdict: report.verdict,
   };
 }

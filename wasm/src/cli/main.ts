@@ -1,29 +1,35 @@
 import { Command, CommanderError, Option } from 'commander';
+import { forms } from '../gltf/glb-writer.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
 import { addCageCommands } from './cage-flags.js';
 import { inspectCommand } from './inspect-command.js';
 import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
-import { oneLine, print } from './print.js';
+import { addPrintFlags, oneLine, type PrintFlags, print } from './print.js';
 import { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import { autoCage } from './run.js';
-import { transferCommand } from './transfer-command.js';
+import { type TransferCommand, transferCommand } from './transfer-command.js';
 import { endingIn, refuseOverwriting, unfit, unusable, wrongUsage } from './usage.js';
 
 const progress = new Progress();
 
-interface CommonFlags extends RuleFlags, ReadFlags {
+interface CommonFlags extends RuleFlags, ReadFlags, PrintFlags {
   cage: string;
 }
 
 const common = (command: Command): Command =>
-  addReadFlags(
-    addRuleFlags(
-      command
-        .argument('<TARGET>', 'GLB or glTF that receives the texture')
-        .requiredOption('--cage <CAGE>', 'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one')
-        .allowExcessArguments(false),
+  addPrintFlags(
+    addReadFlags(
+      addRuleFlags(
+        command
+          .argument('<TARGET>', 'GLB, glTF or VRM that receives the texture')
+          .requiredOption(
+            '--cage <CAGE>',
+            'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one',
+          )
+          .allowExcessArguments(false),
+      ),
     ),
   );
 
@@ -33,7 +39,7 @@ const program = new Command('cagecast')
   )
   .version(CAGECAST_VERSION, '--version', 'print the version')
   .helpOption('-h, --help', 'print help')
-  .helpCommand(false)
+  .helpCommand('help [COMMAND]', 'print help for COMMAND')
   .exitOverride()
   .configureOutput({
     outputError: (text, write) =>
@@ -63,9 +69,13 @@ common(program.command('transfer'))
   .description('write TARGET with a new UV set and the attribute _NCZ, otherwise unchanged')
   .option(
     '--texture <PAINT>',
-    "PNG or JPEG in the cage's UV space, shown as an overlay on the triangles that may be painted",
+    "PNG, JPEG or WebP in the cage's UV space, shown as an overlay on the triangles that may be painted",
   )
-  .addOption(new Option('-o, --output <OUT.glb>', 'where to write the GLB').argParser(endingIn('.glb')))
+  .addOption(
+    new Option('-o, --output <OUT.glb>', 'where to write the GLB or VRM; - for the standard output').argParser(
+      endingIn('.glb', '.vrm'),
+    ),
+  )
   .addOption(
     new Option(
       '--borders <HOW>',
@@ -73,6 +83,11 @@ common(program.command('transfer'))
     )
       .choices(['triangle', 'cut'])
       .default('triangle'),
+  )
+  .addOption(
+    new Option('--compress <HOW>', 'how the geometry of OUT is compressed; keep: as in TARGET')
+      .choices(forms)
+      .default('keep'),
   )
   .option('--report <R.json>', 'where to write counts, areas, segments and timings as JSON')
   .addHelpText(
@@ -83,7 +98,9 @@ _NCZ is 0 for a vertex that may be painted. Other values say why it must not be 
   2  uncovered: the cage has a hole over it, or it lies outside the cage
   3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
 If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
-existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones.
+existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
+the order of vertices.
+A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
 --cage auto makes a cage for TARGET on the way, as cagecast make does; for a file named auto, write ./auto.
 
 Examples:
@@ -94,27 +111,27 @@ Examples:
   .action(
     async (
       target: string,
-      flags: CommonFlags & { texture?: string; output?: string; report?: string; borders: 'triangle' | 'cut' },
+      flags: CommonFlags & Pick<TransferCommand, 'texture' | 'output' | 'report' | 'borders' | 'compress'>,
       command: Command,
     ) => {
-      const { cage, texture, output, report, borders } = flags;
+      const { cage, texture, output, report, borders, compress } = flags;
+      if (flags.quiet) progress.silence();
       if (texture !== undefined && output === undefined)
         command.error('--texture needs -o OUT.glb, the file to add it to', { exitCode: wrongUsage });
       if (borders === 'cut' && output === undefined)
         command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
       refuseOverwriting(command, [target, cage === autoCage ? undefined : cage, texture], [output, report]);
-      const text = await transferCommand(
-        { target, cage, texture, output, report, borders, rules: rulesOf(flags), reading: readingOf(flags) },
+      const found = await transferCommand(
+        { target, cage, texture, output, report, borders, compress, rules: rulesOf(flags), reading: readingOf(flags) },
         progress,
       );
       progress.clear();
-      print(text);
+      print(found, flags, [output, report]);
     },
   );
 
 common(program.command('inspect'))
   .description('check whether the cage fits TARGET; print a verdict, reasons and advice')
-  .option('--json', 'print JSON')
   .addOption(new Option('--html <REPORT.html>', 'where to write a page with pictures').argParser(endingIn('.html')))
   .addHelpText(
     'after',
@@ -127,16 +144,17 @@ Examples:
   cagecast inspect head.glb --cage cage.glb --html report.html
   cagecast inspect head.glb --cage cage.glb --json`,
   )
-  .action(async (target: string, flags: CommonFlags & { json?: boolean; html?: string }, command: Command) => {
-    const { cage, json = false, html } = flags;
+  .action(async (target: string, flags: CommonFlags & { html?: string }, command: Command) => {
+    const { cage, html } = flags;
+    if (flags.quiet) progress.silence();
     refuseOverwriting(command, [target, cage], [html]);
-    const { text, verdict } = await inspectCommand(
-      { target, cage, json, html, rules: rulesOf(flags), reading: readingOf(flags) },
+    const found = await inspectCommand(
+      { target, cage, html, rules: rulesOf(flags), reading: readingOf(flags) },
       progress,
     );
     progress.clear();
-    print(text);
-    if (verdict === 'unfit') process.exitCode = unfit;
+    print(found, flags, [html]);
+    if (found.verdict === 'unfit') process.exitCode = unfit;
   });
 
 addCageCommands(program, progress);
@@ -149,8 +167,8 @@ try {
 } catch (error) {
   progress.clear();
   if (error instanceof CommanderError) {
-    // Help that is printed because no command was given counts as wrong usage.
-    process.exitCode = error.exitCode === 0 && error.code !== 'commander.help' ? 0 : wrongUsage;
+    // Help that is printed because no command was given is wrong usage.
+    process.exitCode = error.exitCode === 0 ? 0 : wrongUsage;
   } else {
     const known = error instanceof InputError || error instanceof CagecastError;
     const text = known ? (error as Error).message : `failed unexpectedly (${firstLine(error)}); please report it`;

@@ -1,12 +1,12 @@
 import { chmodSync, lstatSync, readlinkSync, realpathSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
-import { reasons } from '../gltf/files.js';
+import { reasons, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 
 /**
  * Writes all of the files or none: each is first written under a temporary name, and renamed once all are complete. Symbolic links
  * are followed, even to files that do not exist yet; a replaced file keeps its permissions. Pipes and devices such as /dev/null
- * are written to directly.
+ * are written to directly, the standard output for `-`.
  * @throws {InputError} that names the file that cannot be written.
  */
 export function writeFiles(files: readonly { path: string; data: Uint8Array | string }[]): void {
@@ -19,7 +19,7 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
       attempt(path, () => writeAs(place, temporary, data));
     }
     for (const { path, data } of files.filter(({ path }) => isStream(path)))
-      attempt(path, () => writeFileSync(path, data));
+      attempt(path, () => (path === standard ? process.stdout.write(data) : writeFileSync(path, data)));
     for (const { path, temporary } of written) attempt(path, () => renameSync(temporary, placeOf(path)));
   } finally {
     for (const { temporary } of written) rmSync(temporary, { force: true });
@@ -59,6 +59,7 @@ function isLink(path: string): boolean {
 
 /** Whether a path is a pipe or a device: it must be written to, not replaced. */
 function isStream(path: string): boolean {
+  if (path === standard) return true;
   const found = attempt(path, () => statSync(path, { throwIfNoEntry: false }));
   return found !== undefined && !found.isFile() && !found.isDirectory();
 }

@@ -1,3 +1,6 @@
+import type { Command } from 'commander';
+import { standard } from '../gltf/files.js';
+
 // What a terminal obeys instead of showing: control characters, and marks that turn the direction of text.
 const commands = /(?![\n\t])[\p{Cc}\p{Bidi_Control}]/gu;
 
@@ -13,7 +16,32 @@ export function oneLine(text: string): string {
 
 const escaped = (character: string): string => `\\u${character.charCodeAt(0).toString(16).padStart(4, '0')}`;
 
-/** Prints the result of a command. */
-export function print(text: string): void {
-  console.log(harmless(text));
+/** The flags that say what is printed, as commander parses them. */
+export interface PrintFlags {
+  json?: boolean;
+  quiet?: boolean;
+}
+
+/** Adds the flags that say what is printed. */
+export const addPrintFlags = (command: Command): Command =>
+  command.option('--json', 'print JSON').option('--quiet', 'print nothing but errors');
+
+/** What a command found: for people, and for programs. */
+export interface Found {
+  text: string;
+  report: object;
+}
+
+/**
+ * Prints what a command found: on the standard output, or beside it if a file is written there.
+ * @param outputs  The names of written files.
+ */
+export function print(
+  { text, report }: Found,
+  { json = false, quiet = false }: PrintFlags,
+  outputs: readonly (string | undefined)[] = [],
+): void {
+  if (quiet) return;
+  const found = `${harmless(json ? JSON.stringify(report, null, 2) : text)}\n`;
+  (outputs.includes(standard) ? process.stderr : process.stdout).write(found);
 }

@@ -7,10 +7,17 @@ const barLength = 24;
 export class Progress {
   readonly #stream = process.stderr;
   #shown = false;
+  #isQuiet = false;
+
+  /** Shows nothing from now on. */
+  silence(): void {
+    this.clear();
+    this.#isQuiet = true;
+  }
 
   /** Shows the step that begins now. */
   step(text: string): void {
-    if (!this.#stream.isTTY) return;
+    if (this.#isQuiet || !this.#stream.isTTY) return;
     this.clear();
     this.#stream.write(`${oneLine(text)} …`.slice(0, (this.#stream.columns || 80) - 1));
     this.#shown = true;

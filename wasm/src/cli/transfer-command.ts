@@ -1,6 +1,7 @@
 import { basename } from 'node:path';
 import { placeOf } from '../gltf/extract.js';
 import { readBytes } from '../gltf/files.js';
+import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
 import type { ReadLimits } from '../gltf/limits.js';
 import { diagonal, type Paint, paintOf, zoneAttribute } from '../gltf/overlay.js';
@@ -21,14 +22,19 @@ export interface TransferCommand extends Sources {
   report?: string | undefined;
   /** Whether the paint ends at existing triangle edges, or triangles are cut where it ends. */
   borders: 'triangle' | 'cut';
+  /** How the geometry of the output is compressed. */
+  compress: Form;
 }
 
 /**
  * Runs the transfer and writes the requested files.
- * @returns a summary for people.
+ * @returns a summary for people, and the report.
  * @throws {InputError} that names the file at fault; then no file is written.
  */
-export async function transferCommand(command: TransferCommand, progress: Progress): Promise<string> {
+export async function transferCommand(
+  command: TransferCommand,
+  progress: Progress,
+): Promise<{ text: string; report: Report }> {
   const paint = command.texture === undefined ? undefined : await readPaint(command.texture, command.reading.limits);
   const done = await run(command, progress);
   let added: Added[] | undefined;
@@ -37,18 +43,20 @@ export async function transferCommand(command: TransferCommand, progress: Progre
   if (command.output !== undefined) {
     if (command.borders === 'cut') cut = cutTarget(done, progress);
     progress.step(`writing ${command.output}`);
-    const written = await writeTransfer(done.targetFile, done.target, done.result, paint, cut).catch(
-      (error: unknown) => {
-        throw error instanceof InputError ? error.in(command.target) : error;
-      },
-    );
+    const written = await writeTransfer(done.targetFile, done.target, done.result, {
+      paint,
+      cut,
+      form: command.compress,
+    }).catch((error: unknown) => {
+      throw error instanceof InputError ? error.in(command.target) : error;
+    });
     added = written.added;
     files.push({ path: command.output, data: written.glb });
   }
   const report = makeReport(command, done, added, cut);
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
   writeFiles(files);
-  return summary(command, report);
+  return { text: summary(command, report), report };
 }
 
 /** Cuts the target. @throws {InputError} that names the file and the element at fault. */
@@ -63,7 +71,7 @@ function cutTarget(done: Run, progress: Progress): CutTarget {
 
 async function readPaint(path: string, limits: ReadLimits): Promise<Paint> {
   try {
-    return paintOf(await readBytes(path, limits), basename(path));
+    return paintOf(await readBytes(path, limits), basename(path), ['image/png', 'image/jpeg', 'image/webp']);
   } catch (error) {
     throw error instanceof InputError ? error.in(path) : error;
   }

@@ -1,4 +1,5 @@
 import { type Command, InvalidArgumentError } from 'commander';
+import { standard } from '../gltf/files.js';
 import { placeOf } from './output.js';
 
 /** Exit codes. */
@@ -6,22 +7,29 @@ export const unusable = 1;
 export const wrongUsage = 2;
 export const unfit = 3;
 
-/** Returns a parser for the name of a file with some ending. */
-export function endingIn(ending: string): (text: string) => string {
+/** Returns a parser for the name of a file with one of some endings, or of the standard output. */
+export function endingIn(...endings: string[]): (text: string) => string {
   return (text) => {
-    if (!text.toLowerCase().endsWith(ending)) throw new InvalidArgumentError(`Its name must end in ${ending}.`);
+    if (text !== standard && !endings.some((ending) => text.toLowerCase().endsWith(ending)))
+      throw new InvalidArgumentError(`Its name must end in ${endings.join(' or ')}, or be -, the standard output.`);
     return text;
   };
 }
 
-/** Ends the command with a message if an output is an input as well, or two outputs are one file. */
+/** Ends the command with a message if an output is an input as well, or two outputs are one file, or two inputs the standard input. */
 export function refuseOverwriting(
   command: Command,
   inputs: readonly (string | undefined)[],
   outputs: readonly (string | undefined)[],
 ): void {
+  for (const [paths, name] of [
+    [inputs, 'input'],
+    [outputs, 'output'],
+  ] as const)
+    if (paths.filter((path) => path === standard).length > 1)
+      command.error(`only one file can be the standard ${name}`, { exitCode: wrongUsage });
   const placesOf = (paths: readonly (string | undefined)[]) =>
-    paths.filter((path) => path !== undefined).map((path) => placeOf(path));
+    paths.filter((path) => path !== undefined && path !== standard).map((path) => placeOf(path!));
   const [read, written] = [placesOf(inputs), placesOf(outputs)];
   const clash = written.find((path, i) => read.includes(path) || written.indexOf(path) !== i);
   if (clash !== undefined)

@@ -1,4 +1,4 @@
-import type { Document, Mesh as DocumentMesh, Node, Primitive, Skin } from '@gltf-transform/core';
+import type { Document, Mesh as DocumentMesh, ExtensionProperty, Node, Primitive, Skin } from '@gltf-transform/core';
 import type { Mesh } from '../index.js';
 import { skinMatrix, usedJoints } from '../parts/skin.js';
 import { InputError } from './input-error.js';
@@ -14,6 +14,7 @@ import {
   joinPieces,
   type Piece,
 } from './pieces.js';
+import { transformUvs, type UvTransform } from './uv-transform.js';
 
 /** A piece, and its place in the document. */
 export interface DocumentPart extends Piece {
@@ -39,18 +40,38 @@ export interface ExtractedDocument {
 export function extractDocument(document: Document): ExtractedDocument {
   const parts = listParts(document);
   const mesh = joinPieces(parts);
-  const sets = parts.map(({ primitive }) => primitive.getAttribute('TEXCOORD_0'));
+  const layouts = parts.map(({ primitive }) => uvLayout(primitive));
+  const sets = parts.map(({ primitive }, p) => primitive.getAttribute(layouts[p]!.set));
   if (parts.length === 0 || sets.some((set) => set === null)) return { mesh, parts };
   const uvs = new Float32Array((mesh.positions.length / 3) * 2);
   parts.forEach((part, p) => {
-    const set = sets[p]!;
-    if (set.getElementSize() !== 2)
-      throw new InputError(`"${part.name}" has a TEXCOORD_0 of type ${set.getType()}, not VEC2`);
-    if (set.getCount() !== part.vertexCount)
-      throw new InputError(`"${part.name}" has ${set.getCount()} TEXCOORD_0 for ${part.vertexCount} vertices`);
-    uvs.set(decodeFloats(set), 2 * part.firstVertex);
+    const [accessor, { set, transform }] = [sets[p]!, layouts[p]!];
+    if (accessor.getElementSize() !== 2)
+      throw new InputError(`"${part.name}" has a ${set} of type ${accessor.getType()}, not VEC2`);
+    if (accessor.getCount() !== part.vertexCount)
+      throw new InputError(`"${part.name}" has ${accessor.getCount()} ${set} for ${part.vertexCount} vertices`);
+    const own = decodeFloats(accessor);
+    uvs.set(transform ? transformUvs(own, transform) : own, 2 * part.firstVertex);
   });
   return { mesh: { ...mesh, uvs }, parts };
+}
+
+/** How the base colour texture of a primitive is laid on it: by which UV set, and how its UVs are transformed. */
+function uvLayout(primitive: Primitive): { set: string; transform?: UvTransform } {
+  const info = primitive.getMaterial()?.getBaseColorTextureInfo();
+  const found = info?.getExtension('KHR_texture_transform') as KHRTransform | null | undefined;
+  if (!info || !found) return { set: 'TEXCOORD_0' };
+  const texCoord = found.getTexCoord() ?? info.getTexCoord();
+  const transform = { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale(), texCoord };
+  return { set: `TEXCOORD_${texCoord}`, transform };
+}
+
+/** The extension of glTF-Transform, which is no dependency. */
+interface KHRTransform extends ExtensionProperty {
+  getOffset(): number[];
+  getRotation(): number;
+  getScale(): number[];
+  getTexCoord(): number | null;
 }
 
 function listParts(document: Document): DocumentPart[] {

@@ -8,14 +8,31 @@ import type { GltfFile } from './read.js';
 
 export const dracoExtension = 'KHR_draco_mesh_compression';
 
+/** Marks primitives to be compressed by `packDraco`. */
+export function markForDraco(primitives: readonly GLTF.IMeshPrimitive[]): void {
+  for (const primitive of primitives)
+    primitive.extensions = { ...primitive.extensions, [dracoExtension]: { bufferView: -1, attributes: {} } };
+}
+
+/** Takes Draco's stream from primitives whose attributes are to be stored in another form. */
+export function unmarkDraco(primitives: readonly GLTF.IMeshPrimitive[]): void {
+  for (const primitive of primitives) {
+    delete primitive.extensions?.[dracoExtension];
+    if (primitive.extensions && Object.keys(primitive.extensions).length === 0) delete primitive.extensions;
+  }
+}
+
 /**
  * Compresses those primitives again that were compressed by Draco and have been added to. Positions get 14 bits, normals 10; UVs and
  * zones keep theirs. Vertices and triangles may change their order, except in primitives with morph targets.
  */
 export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void> {
-  const primitives = (writer.json.meshes ?? [])
-    .flatMap((mesh) => mesh.primitives)
-    .filter((primitive) => dracoOf(primitive) && Object.values(primitive.attributes).some((a) => writer.stored(a)));
+  const all = (writer.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
+  const isUsed = all.some(dracoOf);
+  if (isUsed || writer.json.extensionsUsed?.includes(dracoExtension)) writer.needs(dracoExtension, isUsed);
+  const primitives = all.filter(
+    (primitive) => dracoOf(primitive) && Object.values(primitive.attributes).some((a) => writer.stored(a)),
+  );
   if (primitives.length === 0) return;
   const io = new NodeIO()
     .setLogger(new Logger(Logger.Verbosity.SILENT))

@@ -15,6 +15,7 @@ import {
   type Piece,
 } from './pieces.js';
 import type { GltfFile } from './read.js';
+import { transformUvs, type UvTransform } from './uv-transform.js';
 
 /** A piece, and its place in the file's JSON. */
 export interface Part extends Piece {
@@ -207,14 +208,25 @@ function readTriangles(
 function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Array | undefined {
   const uvs = new Float32Array(2 * vertexCount);
   for (const part of parts) {
-    const accessor = accessorOf(file, placeOf(part), part.mesh, part.primitive, 'TEXCOORD_0');
+    const { set, apply } = textureTransform(file.json, part);
+    const accessor = accessorOf(file, placeOf(part), part.mesh, part.primitive, set);
     if (accessor === undefined) return undefined;
     if (accessor.getElementSize() !== 2)
-      throw new InputError(`${placeOf(part)}.attributes.TEXCOORD_0 is ${accessor.getType()}, not VEC2`);
+      throw new InputError(`${placeOf(part)}.attributes.${set} is ${accessor.getType()}, not VEC2`);
     if (accessor.getCount() !== part.vertexCount) {
-      throw new InputError(`${placeOf(part)} has ${accessor.getCount()} TEXCOORD_0 for ${part.vertexCount} vertices`);
+      throw new InputError(`${placeOf(part)} has ${accessor.getCount()} ${set} for ${part.vertexCount} vertices`);
     }
-    uvs.set(decodeFloats(accessor), 2 * part.firstVertex);
+    uvs.set(apply(decodeFloats(accessor)), 2 * part.firstVertex);
   }
   return parts.length > 0 ? uvs : undefined;
+}
+
+/** How the base colour texture of a part is laid on it: by which UV set, and how its UVs are transformed. */
+function textureTransform({ meshes, materials = [] }: GLTF.IGLTF, { mesh, primitive }: Part) {
+  const material = materials[meshes![mesh]!.primitives[primitive]!.material ?? -1];
+  const info = material?.pbrMetallicRoughness?.baseColorTexture;
+  const transform = info?.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
+  if (transform === undefined) return { set: 'TEXCOORD_0', apply: (uvs: Float32Array) => uvs };
+  const set = `TEXCOORD_${transform.texCoord ?? info!.texCoord ?? 0}`;
+  return { set, apply: (uvs: Float32Array) => transformUvs(uvs, transform) };
 }

@@ -15,11 +15,15 @@ export interface ReadOptions {
 /** How files are read if nothing else is said. */
 export const defaultReading: ReadOptions = { limits: defaultLimits, allowOutside: false };
 
+/** The name of the standard input and output. */
+export const standard = '-';
+
 /**
- * Reads a whole file or pipe.
+ * Reads a whole file or pipe, or the standard input for `-`.
  * @throws {InputError} with a message that does not name the file.
  */
 export async function readBytes(path: string, limits: ReadLimits = defaultLimits): Promise<Uint8Array> {
+  if (path === standard) return readStandardInput(limits);
   return reading(async () => {
     const file = await open(path);
     try {
@@ -77,6 +81,18 @@ function readBeside(path: string, folder: string, { limits, allowOutside }: Read
       await file.close();
     }
   });
+}
+
+async function readStandardInput(limits: ReadLimits): Promise<Uint8Array> {
+  const chunks: Buffer[] = [];
+  let length = 0;
+  for await (const chunk of process.stdin as AsyncIterable<Buffer>) {
+    chunks.push(chunk);
+    length += chunk.length;
+    if (length > limits.bytes)
+      throw exceeds(`has more than ${limits.bytes.toLocaleString('en')} bytes`, 'bytes', limits);
+  }
+  return Buffer.concat(chunks);
 }
 
 const chunkBytes = 2 ** 20;

@@ -15,6 +15,10 @@ const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
 export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
 
+/** How the geometry of written files is compressed: as that of the file that was read, or in another way. */
+export const forms = ['keep', 'none', 'meshopt', 'draco'] as const;
+export type Form = (typeof forms)[number];
+
 /** What an accessor that was added holds. */
 export interface Stored {
   values: AttributeArray;
@@ -62,7 +66,7 @@ export class GlbWriter {
   /** The name of the extension that compresses views. */
   readonly #meshopt: string | undefined;
 
-  private constructor(json: GLTF.IGLTF) {
+  private constructor(json: GLTF.IGLTF, form: Form) {
     this.json = structuredClone(json);
     this.#before = {
       accessors: numbersOf(eachAccessor, json),
@@ -70,15 +74,16 @@ export class GlbWriter {
       accessorCount: json.accessors?.length ?? 0,
       viewCount: json.bufferViews?.length ?? 0,
     };
-    this.#meshopt = meshoptExtensions.find((name) => json.bufferViews?.some((view) => view.extensions?.[name]));
+    const own = meshoptExtensions.find((name) => json.bufferViews?.some((view) => view.extensions?.[name]));
+    this.#meshopt = form === 'keep' ? own : form === 'meshopt' ? (own ?? meshoptExtensions[0]) : undefined;
   }
 
   /**
    * Starts from a file: its buffers are joined into one, and images in separate files are embedded.
    * @throws {InputError} if such an image cannot be read.
    */
-  static async from(file: GltfFile): Promise<GlbWriter> {
-    const writer = new GlbWriter(file.json);
+  static async from(file: GltfFile, form: Form): Promise<GlbWriter> {
+    const writer = new GlbWriter(file.json, form);
     writer.#mergeBuffers(file.buffers);
     await writer.#embedImages(dirname(file.path), file.reading);
     if (writer.#meshopt !== undefined) await MeshoptEncoder.ready;
@@ -228,11 +233,24 @@ export class GlbWriter {
     return this.#stored.get(this.json.accessors![accessor]!);
   }
 
-  /** Adds a texture of an image file's bytes. @returns the number of the texture. */
+  /** Adds a texture of a PNG, JPEG or WebP file's bytes. @returns the number of the texture. */
   addTexture(image: Uint8Array, mimeType: string, name: string): number {
     const { json } = this;
     const source = (json.images ??= []).push({ bufferView: this.addView(image), mimeType, name }) - 1;
-    return (json.textures ??= []).push({ source, name }) - 1;
+    if (mimeType !== 'image/webp') return (json.textures ??= []).push({ source, name }) - 1;
+    this.needs('EXT_texture_webp', true);
+    return (json.textures ??= []).push({ name, extensions: { EXT_texture_webp: { source } } }) - 1;
+  }
+
+  /** Lists an extension as one that the file needs, or does not list it. */
+  needs(name: string, isNeeded: boolean): void {
+    const { json } = this;
+    for (const list of ['extensionsUsed', 'extensionsRequired'] as const) {
+      const others = json[list]?.filter((other) => other !== name) ?? [];
+      if (isNeeded && !json[list]?.includes(name)) json[list] = [...others, name];
+      else if (!isNeeded && others.length > 0) json[list] = others;
+      else if (!isNeeded) delete json[list];
+    }
   }
 
   /** Drops accessors and views that nothing refers to any more; those to which nothing did before stay. */
@@ -255,6 +273,17 @@ export class GlbWriter {
       (v) => !views.has(v) && !viewWasUnused(v),
       (visit) => eachView(json, visit),
     );
+    for (const name of meshoptExtensions) {
+      const isUsed = json.bufferViews?.some((view) => view.extensions?.[name]) ?? false;
+      if (isUsed || all.some((view) => view.extensions?.[name])) this.needs(name, isUsed);
+    }
+    // The buffer that stands for uncompressed views goes with the last of them.
+    if (
+      json.buffers!.length === 2 &&
+      all.some(({ buffer }) => buffer === 1) &&
+      !json.bufferViews?.some(({ buffer }) => buffer === 1)
+    )
+      json.buffers!.pop();
     const kept = new Set(json.bufferViews);
     return all.filter((view) => !kept.has(view));
   }

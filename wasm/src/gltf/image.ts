@@ -8,7 +8,7 @@ export function imageType(bytes: Uint8Array): 'image/png' | 'image/jpeg' | 'imag
   return undefined;
 }
 
-/** Whether a PNG or JPEG file is complete, up to its closing chunk or marker. */
+/** Whether a PNG, JPEG or WebP file is complete, up to its closing chunk or marker. */
 export function imageIsWhole(bytes: Uint8Array): boolean {
   if (imageType(bytes) === 'image/png') {
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -17,6 +17,8 @@ export function imageIsWhole(bytes: Uint8Array): boolean {
     }
     return false;
   }
+  if (imageType(bytes) === 'image/webp')
+    return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength).getUint32(4, true) + 8 <= bytes.byteLength;
   // Cameras append data of their own after the end marker, so look for the last one.
   for (let at = bytes.byteLength - 2; at > 1; --at) if (bytes[at] === 0xff && bytes[at + 1] === 0xd9) return true;
   return false;

@@ -23,22 +23,35 @@ export const overlayMark = { cagecastOverlay: true } as const;
 export const isOverlay = (extras: object | undefined): boolean =>
   (extras as Partial<typeof overlayMark> | undefined)?.cagecastOverlay === true;
 
-/** The texture to show: a PNG or JPEG file's bytes, in the cage's UVs. */
+/** The texture to show: a PNG, JPEG or WebP file's bytes, in the cage's UVs. */
 export interface Paint {
   name: string;
   mimeType: string;
   bytes: Uint8Array;
 }
 
+const imageNames: Record<string, string> = { 'image/png': 'PNG', 'image/jpeg': 'JPEG', 'image/webp': 'WebP' };
+
 /**
  * Checks an image and finds its type.
- * @throws {InputError} if it is neither a whole PNG nor a whole JPEG file.
+ * @param types  Those that can be used.
+ * @throws {InputError} if it is not a whole file of one of these types.
  */
-export function paintOf(bytes: Uint8Array, name = 'paint'): Paint {
+export function paintOf(
+  bytes: Uint8Array,
+  name = 'paint',
+  types: readonly string[] = ['image/png', 'image/jpeg'],
+): Paint {
   const mimeType = imageType(bytes);
-  if (mimeType !== 'image/png' && mimeType !== 'image/jpeg') throw new InputError('is neither a PNG nor a JPEG image');
-  if (!imageIsWhole(bytes))
-    throw new InputError(`is truncated: the ${mimeType === 'image/png' ? 'PNG' : 'JPEG'} image is incomplete`);
+  if (mimeType === undefined || !types.includes(mimeType)) {
+    const [last, ...others] = types.map((type) => imageNames[type]).reverse();
+    throw new InputError(
+      others.length === 1
+        ? `is neither a ${others[0]} nor a ${last} image`
+        : `is not a ${others.reverse().join(', ')} or ${last} image`,
+    );
+  }
+  if (!imageIsWhole(bytes)) throw new InputError(`is truncated: the ${imageNames[mimeType]} image is incomplete`);
   return { name, mimeType, bytes };
 }
 

@@ -5,9 +5,9 @@ import { blend, blendSkin, noBlends, ruleOf } from '../parts/blend.js';
 import { cutPart } from '../parts/cut-part.js';
 import { gather, splitPart } from '../parts/split-part.js';
 import { dracoOf } from './check.js';
-import { dracoExtension, packDraco } from './draco-write.js';
+import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
 import type { Extracted, Part } from './extract.js';
-import { GlbWriter } from './glb-writer.js';
+import { type Form, GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
 import {
   cosmeticCorners,
@@ -41,7 +41,7 @@ export interface Added {
  * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices. New vertices
  * of a cut target are added in the same way, as blends of their sources. What is replaced is dropped from the file, and its
  * replacement has the same form: sparse, quantised, or compressed by meshopt or Draco. If several nodes share a mesh, each gets a copy.
- * @param cut  The cut target that `cutBorders` made from `result`, if any.
+ * @param more  The texture; the cut target that `cutBorders` made from `result`; the form of the geometry, that of the file by default.
  * @returns the bytes of a GLB, and what was added to each part.
  * @throws {InputError} if an image beside the target cannot be read.
  */
@@ -49,10 +49,9 @@ export async function writeTransfer(
   file: GltfFile,
   { mesh, parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  paint?: Paint,
-  cut?: CutTarget,
+  { paint, cut, form = 'keep' }: { paint?: Paint | undefined; cut?: CutTarget | undefined; form?: Form } = {},
 ): Promise<{ glb: Uint8Array; added: Added[] }> {
-  const writer = await GlbWriter.from(file);
+  const writer = await GlbWriter.from(file, form);
   const { json } = writer;
   const meshOfNode = separateMeshes(json, parts);
   const painter = paint && new Painter(writer, paint, overlayOffset * diagonal(mesh.positions));
@@ -77,7 +76,9 @@ export async function writeTransfer(
       added: { uvSet: '', overlayTriangles: 0, splitVertices: 0, cutTriangles: triangleCount - part.triangleCount },
     };
   });
-  for (const group of groupsOf(members)) addToGroup(writer, file, group, painter);
+  const primitives = members.map(({ primitive }) => primitive);
+  if (form === 'draco') markForDraco(primitives);
+  for (const group of groupsOf(members)) addToGroup(writer, file, group, { painter, form });
   await packDraco(writer, file);
   return { glb: writer.finish(), added: members.map(({ added }) => added) };
 }
@@ -107,16 +108,23 @@ function groupsOf(members: readonly Member[]): Member[][] {
 }
 
 /** Adds UVs, zones and overlays to primitives that share their attributes. */
-function addToGroup(writer: GlbWriter, file: GltfFile, members: readonly Member[], painter: Painter | undefined): void {
+function addToGroup(
+  writer: GlbWriter,
+  file: GltfFile,
+  members: readonly Member[],
+  { painter, form }: { painter: Painter | undefined; form: Form },
+): void {
   const { primitive: first, part } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
-  if (shared.isNew)
+  const isNew = shared.isNew || form !== 'keep';
+  if (isNew)
     rewriteAttributes(
       writer,
       file,
       members.map(({ primitive }) => primitive),
       shared,
     );
+  if (form === 'none' || form === 'meshopt') unmarkDraco(members.map(({ primitive }) => primitive));
   const uvSet = freeUvSet((semantic) => first.attributes[semantic] !== undefined);
   const uvs = storedUvs(shared.uvs);
   const attributes = {
@@ -136,7 +144,7 @@ function addToGroup(writer: GlbWriter, file: GltfFile, members: readonly Member[
     added.uvSet = uvSet;
     added.splitVertices = copies;
     copies = 0; // counted once
-    if (!shared.isNew) return;
+    if (!isNew) return;
     primitive.indices = writer.addIndices(shared.indices[m]!, shared.sources.length);
     delete primitive.mode; // strips and fans have become lists
   });
@@ -155,6 +163,8 @@ function rewriteAttributes(
     (semantic) => (attributes[semantic] === undefined ? undefined : decodedOf(attributes[semantic]).getArray()!),
     blends,
   );
+  // With other forms, primitives are marked that were not compressed.
+  const fromDraco = primitives.some((primitive) => (dracoOf(primitive)?.bufferView ?? -1) >= 0);
   const made = new Map<string, number>();
   const rewrite = (accessor: number, semantic: string, isDelta: boolean): number => {
     const decoded = decodedOf(accessor);
@@ -175,7 +185,7 @@ function rewriteAttributes(
       ...(name !== undefined && { name }),
       ...(extras && { extras }),
     };
-    const wasSparse = sparse !== undefined || (bufferView === undefined && !primitives.some(dracoOf));
+    const wasSparse = sparse !== undefined || (bufferView === undefined && !fromDraco);
     const number = writer.addAttribute(values, size, more, wasSparse);
     made.set(key, number);
     return number;

@@ -1,0 +1,176 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Document, NodeIO } from '@gltf-transform/core';
+import { ALL_EXTENSIONS, KHRTextureTransform } from '@gltf-transform/extensions';
+import { init, transfer } from 'cagecast';
+import { cagecast as cagecastTransform } from 'cagecast/gltf';
+import draco from 'draco3dgltf';
+import { MeshoptDecoder } from 'meshoptimizer';
+import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../js/glb.js';
+import { head } from '../js/scenes.js';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-features-'));
+const at = (name: string) => join(folder, name);
+const scene = head(5, 12);
+const target = { ...scene.target, groups: undefined };
+const cage = ['--cage', at('cage.glb')];
+let io: NodeIO;
+
+before(async () => {
+  await Promise.all([init(), MeshoptDecoder.ready]);
+  io = new NodeIO().registerExtensions(ALL_EXTENSIONS).registerDependencies({
+    'meshopt.decoder': MeshoptDecoder,
+    'draco3d.decoder': await draco.createDecoderModule(),
+  });
+  writeFileSync(at('cage.glb'), glbOf(scene.cage));
+  writeFileSync(at('target.glb'), glbOf(target));
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const ok = (...args: string[]) => {
+  const { status, stdout, stderr } = cagecast(...args);
+  assert.deepEqual([status, stderr], [0, '']);
+  return stdout;
+};
+const jsonOf = (name: string) => unpackGlb(readFileSync(at(name))).json;
+const uvsOf = (document: Document, set: string) => {
+  const accessor = document.getRoot().listMeshes()[0]!.listPrimitives()[0]!.getAttribute(set)!;
+  return Array.from({ length: accessor.getCount() }, (_, v) => accessor.getElement(v, []));
+};
+
+test('--compress writes the other forms, each from each', async () => {
+  ok('transfer', at('target.glb'), ...cage, '-o', at('draco.glb'), '--compress', 'draco');
+  ok('transfer', at('draco.glb'), ...cage, '-o', at('meshopt.glb'), '--compress', 'meshopt');
+  ok('transfer', at('meshopt.glb'), ...cage, '-o', at('none.glb'), '--compress', 'none');
+  for (const [name, extension] of [
+    ['draco.glb', 'KHR_draco_mesh_compression'],
+    ['meshopt.glb', 'EXT_meshopt_compression'],
+    ['none.glb', undefined],
+  ] as const) {
+    const { extensionsRequired, extensionsUsed, buffers } = jsonOf(name);
+    assert.deepEqual(
+      [extensionsUsed, extensionsRequired],
+      extension ? [[extension], [extension]] : [undefined, undefined],
+    );
+    assert.equal(buffers!.length, name === 'meshopt.glb' ? 2 : 1);
+    assert.deepEqual(await validate(at(name)), []);
+    const corners = (await io.read(at(name))).getRoot().listMeshes()[0]!.listPrimitives()[0]!.getIndices()!;
+    assert.equal(corners.getCount(), target.indices.length, name);
+  }
+});
+
+test('- is the standard input and output; the summary goes beside it', () => {
+  const run = (args: string[], input?: Uint8Array) =>
+    spawnSync(process.execPath, ['dist/cli.js', ...args], { ...(input && { input }) });
+  ok('transfer', at('target.glb'), ...cage, '-o', at('named.glb'));
+  const piped = run(['transfer', '-', ...cage, '-o', '-'], readFileSync(at('target.glb')));
+  assert.equal(piped.status, 0, piped.stderr.toString());
+  assert.deepEqual(piped.stdout, readFileSync(at('named.glb')));
+  assert.match(piped.stderr.toString(), /^-: [\d,]+ vertices/);
+  const quiet = run(['transfer', '-', ...cage, '-o', '-', '--quiet'], readFileSync(at('target.glb')));
+  assert.deepEqual([quiet.stderr.length, quiet.stdout.length], [0, piped.stdout.length]);
+  const empty = run(['inspect', '-', ...cage], new Uint8Array());
+  assert.deepEqual([empty.status, empty.stderr.toString()], [1, 'cagecast: -: the file is empty\n']);
+  const twice = run(['transfer', '-', '--cage', '-']);
+  assert.deepEqual([twice.status, twice.stderr.toString()], [2, 'cagecast: only one file can be the standard input\n']);
+});
+
+test('--json and --quiet work on every command; help is a command', () => {
+  const report = JSON.parse(ok('transfer', at('target.glb'), ...cage, '--json')) as { counts: object };
+  const inspection = JSON.parse(ok('inspect', at('target.glb'), ...cage, '--json')) as { counts: object };
+  assert.deepEqual(report.counts, inspection.counts);
+  assert.equal(ok('inspect', at('target.glb'), ...cage, '--quiet'), '');
+  const made = cagecast('make', at('target.glb'), '-o', at('made.glb'), '--json', '--triangles', '200');
+  assert.ok(['good', 'usable', 'unfit'].includes((JSON.parse(made.stdout) as { verdict: string }).verdict));
+  assert.match(ok('help'), /Usage: cagecast/);
+  assert.match(ok('help', 'transfer'), /--compress/);
+});
+
+test('a VRM stays one: what it says of its avatar is not changed', () => {
+  const maker = new GlbMaker();
+  const mesh = maker.mesh(target, { material: 0 });
+  const own = maker.json;
+  own.materials = [
+    { name: 'skin', extensions: { VRMC_materials_mtoon: { specVersion: '1.0', shadeColorFactor: [0.1, 0.25, 1] } } },
+  ];
+  maker.node({ mesh, name: 'Face', extensions: { VRMC_node_constraint: { specVersion: '1.0' } } });
+  own.extensions = {
+    VRMC_vrm: {
+      specVersion: '1.0',
+      meta: { name: 'Ünïcode', authors: ['a', 'b'] },
+      humanoid: { humanBones: { head: { node: 0 } } },
+      expressions: { preset: { happy: { morphTargetBinds: [{ node: 0, index: 0, weight: 0.3 }] } } },
+    },
+    VRMC_springBone: { springs: [{ joints: [{ node: 0, stiffness: 1e-7 }] }] },
+  };
+  own.extensionsUsed = ['VRMC_vrm', 'VRMC_springBone', 'VRMC_materials_mtoon', 'VRMC_node_constraint'];
+  writeFileSync(at('in.vrm'), maker.finish());
+  ok('transfer', at('in.vrm'), ...cage, '-o', at('out.vrm'));
+  const [before, after] = [jsonOf('in.vrm'), jsonOf('out.vrm')];
+  for (const part of ['extensions', 'extensionsUsed', 'materials', 'nodes'] as const)
+    assert.equal(JSON.stringify(after[part]), JSON.stringify(before[part]), part);
+  assert.match(cagecast('transfer', at('in.vrm'), ...cage, '-o', at('out.obj')).stderr, /must end in \.glb or \.vrm/);
+});
+
+test('a WebP texture is a WebP texture in the file', async () => {
+  // The smallest lossless WebP: 1 × 1 pixel.
+  const webp = Buffer.from('UklGRhoAAABXRUJQVlA4TA0AAAAvAAAAEAcQERGIiP4HAA==', 'base64');
+  writeFileSync(at('paint.webp'), webp);
+  ok('transfer', at('target.glb'), ...cage, '--texture', at('paint.webp'), '-o', at('webp.glb'));
+  assert.deepEqual(await validate(at('webp.glb')), []);
+  assert.deepEqual(jsonOf('webp.glb').extensionsRequired, ['EXT_texture_webp']);
+  const [texture] = (await io.read(at('webp.glb'))).getRoot().listTextures();
+  assert.deepEqual([texture!.getMimeType(), Buffer.from(texture!.getImage()!)], ['image/webp', webp]);
+  writeFileSync(at('half.webp'), webp.subarray(0, 20));
+  const half = cagecast('transfer', at('target.glb'), ...cage, '--texture', at('half.webp'), '-o', at('never.glb'));
+  assert.match(half.stderr, /half\.webp: is truncated: the WebP image is incomplete/);
+  assert.ok(!existsSync(at('never.glb')));
+});
+
+test('KHR_texture_transform on the cage is applied: scaled, rotated, moved; by the UV set that it names', async () => {
+  const document = new Document();
+  const buffer = document.createBuffer();
+  const [extension, texture] = [document.createExtension(KHRTextureTransform), document.createTexture('drawn')];
+  texture.setMimeType('image/png').setImage(new Uint8Array(8));
+  const accessor = (array: Float32Array | Uint32Array, type: 'VEC3' | 'VEC2' | 'SCALAR') =>
+    document
+      .createAccessor()
+      .setType(type)
+      .setArray(array.slice() as Float32Array<ArrayBuffer>)
+      .setBuffer(buffer);
+  const material = document.createMaterial().setBaseColorTexture(texture);
+  const transform = extension
+    .createTransform()
+    .setOffset([0.5, 0.9])
+    .setRotation(Math.PI / 2)
+    .setScale([0.5, 0.25]);
+  material.getBaseColorTextureInfo()!.setExtension('KHR_texture_transform', transform.setTexCoord(1));
+  const primitive = document
+    .createPrimitive()
+    .setAttribute('POSITION', accessor(scene.cage.positions as Float32Array, 'VEC3'))
+    .setAttribute('TEXCOORD_0', accessor(new Float32Array(scene.cage.uvs!.length), 'VEC2'))
+    .setAttribute('TEXCOORD_1', accessor(scene.cage.uvs as Float32Array, 'VEC2'))
+    .setIndices(accessor(scene.cage.indices as Uint32Array, 'SCALAR'))
+    .setMaterial(material);
+  document.createScene().addChild(document.createNode().setMesh(document.createMesh().addPrimitive(primitive)));
+  await io.write(at('turned.glb'), document);
+  ok('transfer', at('target.glb'), '--cage', at('turned.glb'), '--seams', 'vertex', '-o', at('turned-out.glb'));
+  const { uvs } = transfer(scene.cage, target, { seams: 'vertex' });
+  const expected = Array.from({ length: uvs.length / 2 }, (_, v) => [
+    0.5 + 0.25 * uvs[2 * v + 1]!,
+    0.9 - 0.5 * uvs[2 * v]!,
+  ]);
+  const near = (is: number[][], what: string) =>
+    is.forEach((uv, v) => {
+      for (const k of [0, 1])
+        assert.ok(Math.abs(uv[k]! - expected[v]![k]!) < 1e-4, `${what}: ${uv} of vertex ${v} is not ${expected[v]}`);
+    });
+  near(uvsOf(await io.read(at('turned-out.glb')), 'TEXCOORD_1'), 'command');
+  const own = await io.read(at('target.glb'));
+  await own.transform(cagecastTransform({ cage: document, seams: 'vertex' }));
+  near(uvsOf(own, 'TEXCOORD_1'), 'function');
+});

@@ -1,0 +1,31 @@
+import { InputError } from './input-error.js';
+
+/** The members of KHR_texture_transform. */
+export interface UvTransform {
+  offset: number[];
+  /** Radians, counter-clockwise. */
+  rotation: number;
+  scale: number[];
+  texCoord: number;
+}
+
+/**
+ * Where UVs are in the texture: scaled, rotated, then moved, as KHR_texture_transform says.
+ * @throws {InputError} if a member is not of finite numbers.
+ */
+export function transformUvs(
+  uvs: Float32Array,
+  { offset = [0, 0], rotation = 0, scale = [1, 1] }: Partial<UvTransform>,
+): Float32Array {
+  for (const [name, value] of Object.entries({ offset, rotation: [rotation, 0], scale }))
+    if (!(Array.isArray(value) && value.length === 2 && value.every(Number.isFinite)))
+      throw new InputError(`${name} of KHR_texture_transform is not of finite numbers`);
+  const [cos, sin] = [Math.cos(rotation), Math.sin(rotation)];
+  const out = new Float32Array(uvs.length);
+  for (let i = 0; i < uvs.length; i += 2) {
+    const [u, v] = [scale[0]! * uvs[i]!, scale[1]! * uvs[i + 1]!];
+    out[i] = offset[0]! + cos * u + sin * v;
+    out[i + 1] = offset[1]! - sin * u + cos * v;
+  }
+  return out;
+}
