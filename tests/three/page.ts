@@ -12,6 +12,7 @@ import { init } from 'cagecast';
 import { type Applied, applyTransfer, applyTransferAsync, deserialize, serialize } from 'cagecast/three';
 import {
   Bone,
+  Box3,
   BufferAttribute,
   Color,
   DataTexture,
@@ -431,6 +432,31 @@ const asyncScenes: Record<string, () => Promise<unknown>> = {
       untouched:
         left.mesh.geometry.getAttribute('position') === before && !left.mesh.geometry.hasAttribute('_cagecast_paint'),
     };
+  },
+
+  /** A painted file from afar: how many pixels within the paint show what is below it, by distance as a multiple of near. */
+  async written() {
+    const { scene } = await new GLTFLoader().loadAsync('painted.glb');
+    const box = new Box3().setFromObject(scene);
+    const [centre, size] = [box.getCenter(new Vector3()), box.getSize(new Vector3()).length()];
+    const overlays: Mesh[] = [];
+    scene.traverse((child) => {
+      if (child.userData['cagecastOverlay'] || (child as Mesh).geometry?.userData['cagecastOverlay'])
+        overlays.push(child as Mesh);
+    });
+    for (const overlay of overlays) overlay.material = new MeshBasicMaterial({ color: 0xff0000, transparent: true });
+    const counts: number[] = [];
+    const near = camera.clone();
+    for (const ratio of [10, 1000, 10_000, 100_000]) {
+      const distance = 1.2 * size;
+      near.near = distance / ratio;
+      near.far = 10 * distance;
+      near.position.copy(centre).add(new Vector3(0.3, 0.2, 1).setLength(distance));
+      near.lookAt(centre);
+      near.updateProjectionMatrix();
+      counts.push(countOf(draw(scene, 0, near).pixels, 0));
+    }
+    return counts;
   },
 
   /** A model that is applied from bytes. */

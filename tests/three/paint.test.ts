@@ -1,4 +1,5 @@
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
@@ -43,6 +44,17 @@ before(async () => {
     logLevel: 'warning',
     define: { 'import.meta.url': 'location.href' },
   });
+  const lizard = (name: string) => `build/assets/lizard/${name}`;
+  const options = [
+    '--cage',
+    lizard('cage.glb'),
+    '--texture',
+    lizard('paint-tiger.png'),
+    '-o',
+    join(folder, 'painted.glb'),
+  ];
+  const { status, stderr } = spawnSync(process.execPath, ['dist/cli.js', 'transfer', lizard('target.glb'), ...options]);
+  assert.equal(status, 0, String(stderr));
   writeFileSync(join(folder, 'index.html'), '<!doctype html><script type="module" src="page.js"></script>');
   await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
   browser = await launchChromium({ drawing: true });
@@ -224,5 +236,11 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     );
     assert.equal(apart, 0);
     assert.ok(painted > 50, `${painted}`);
+  });
+
+  test('the overlay of a written file has no holes, from whatever distance', async () => {
+    const counts = await run<number[]>('written');
+    assert.ok(counts[0]! > 500, counts.join());
+    for (const count of counts) assert.ok(count >= counts[0]! - 2, counts.join());
   });
 });

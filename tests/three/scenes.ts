@@ -74,15 +74,15 @@ export function halves(left: number, right: number): DataTexture {
 }
 
 /** Draws a model under a light from the side. @returns 4 numbers per pixel, and the number of draw calls. */
-export function draw(model: Object3D, layer = 0): { pixels: number[]; calls: number } {
+export function draw(model: Object3D, layer = 0, from = camera): { pixels: number[]; calls: number } {
   const light = new DirectionalLight(0xffffff, 2);
   light.position.set(2, 1, 2);
   light.layers.enableAll();
   const scene = new Scene().add(model, light, new AmbientLight(0xffffff, 0.5));
   scene.background = new Color(0x336699);
-  camera.layers.set(layer);
+  from.layers.set(layer);
   renderer.info.reset();
-  renderer.render(scene, camera);
+  renderer.render(scene, from);
   const { calls } = renderer.info.render;
   const gl = renderer.getContext();
   const bytes = new Uint8Array(4 * kSize * kSize);

@@ -2,6 +2,7 @@ import type {
   Accessor,
   Document,
   Mesh as DocumentMesh,
+  ExtensionProperty,
   Material,
   Node,
   Primitive,
@@ -18,23 +19,16 @@ import type { DocumentPart, ExtractedDocument } from './document.js';
 import { isTurned } from './matrix.js';
 import {
   cosmeticCorners,
-  diagonal,
+  type Finish,
   freeUvSet,
   isMorphed,
   isOverlaid,
   overlayMark,
-  overlayOffset,
   type Paint,
+  unlitExtension,
   zoneAttribute,
 } from './overlay.js';
-import {
-  type GroupMember,
-  movedPositions,
-  type SharedVertices,
-  shareVertices,
-  sparseElements,
-  storedUvs,
-} from './primitive-group.js';
+import { type GroupMember, shareVertices, sparseElements, storedUvs } from './primitive-group.js';
 
 /** A part, and what it becomes. */
 interface Member extends GroupMember {
@@ -56,7 +50,7 @@ export function addTransfer(
   paint?: Paint,
   cut?: CutTarget,
 ): void {
-  const painter = paint && new Painter(document, paint, overlayOffset * diagonal(mesh.positions));
+  const painter = paint && new Painter(document, paint);
   const primitiveOf = separatePrimitives(document, parts);
   const members = parts.map((part, p): Member => {
     const whole = { ...part, turned: isTurned(part.matrix) };
@@ -126,16 +120,10 @@ function addToGroup(document: Document, members: readonly Member[], painter: Pai
   const uvs = attribute(stored, 'VEC2', stored instanceof Uint16Array);
   const zones = attribute(shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
   const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
-  let positions: Accessor | undefined;
   members.forEach(({ primitive, part: { node }, cosmetic }, m) => {
     const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
     if (painter && corners.length > 0) {
-      if (positions === undefined) {
-        const moved = painter.positions(part, shared, first.getAttribute('POSITION')!);
-        positions = attribute(moved.array, 'VEC3', moved.normalized);
-      }
-      const own = { POSITION: positions, TEXCOORD_0: uvs };
-      node.getMesh()!.addPrimitive(painter.overlay(primitive, indices(corners), own));
+      node.getMesh()!.addPrimitive(painter.overlay(primitive, indices(corners), uvs));
     }
     primitive.setAttribute(uvSet, uvs).setAttribute(zoneAttribute, zones);
   });
@@ -241,32 +229,21 @@ class Painter {
   readonly #document: Document;
   readonly #paint: Paint;
   #texture: Texture | undefined;
-  readonly #offset: number;
   readonly #materials = new Map<string, Material>();
 
-  /** @param offset  The distance of overlays from the surface, in units of the scene. */
-  constructor(document: Document, paint: Paint, offset: number) {
+  constructor(document: Document, paint: Paint) {
     this.#document = document;
     this.#paint = paint;
-    this.#offset = offset;
   }
 
-  /** The positions of the overlays of primitives that share vertices, in the form of those beneath them. */
-  positions(part: DocumentPart, shared: SharedVertices, base: Accessor) {
-    return movedPositions(part, shared, this.#offset, {
-      componentType: base.getComponentType(),
-      normalized: base.getNormalized(),
-    });
-  }
-
-  /** A primitive of some triangles of `base`, with the same skin and morph targets. */
-  overlay(base: Primitive, indices: Accessor, own: { POSITION: Accessor; TEXCOORD_0: Accessor }): Primitive {
+  /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. */
+  overlay(base: Primitive, indices: Accessor, uvs: Accessor): Primitive {
     const overlay = this.#document
       .createPrimitive()
       .setIndices(indices)
       .setMaterial(this.#material(base.getMaterial()))
       .setExtras({ ...overlayMark });
-    for (const [semantic, accessor] of Object.entries(own)) overlay.setAttribute(semantic, accessor);
+    overlay.setAttribute('TEXCOORD_0', uvs);
     for (const semantic of base.listSemantics())
       if (isOverlaid(semantic)) overlay.setAttribute(semantic, base.getAttribute(semantic));
     for (const morph of base.listTargets()) {
@@ -276,20 +253,20 @@ class Painter {
           target.setAttribute(semantic, morph.getAttribute(semantic));
       }
       // An empty morph target is not allowed.
-      if (target.listSemantics().length === 0) target.setAttribute('POSITION', this.#still(own.POSITION));
+      if (target.listSemantics().length === 0) target.setAttribute('POSITION', this.#still(uvs));
       overlay.addTarget(target);
     }
     return overlay;
   }
 
   /** Deltas that move nothing. */
-  #still(positions: Accessor): Accessor {
+  #still(like: Accessor): Accessor {
     return this.#document
       .createAccessor()
       .setType('VEC3')
-      .setArray(new Float32Array(3 * positions.getCount()))
+      .setArray(new Float32Array(3 * like.getCount()))
       .setSparse(true)
-      .setBuffer(positions.getBuffer());
+      .setBuffer(like.getBuffer());
   }
 
   /** The texture, which the document only gets if something shows it. */
@@ -302,20 +279,27 @@ class Painter {
     return this.#texture;
   }
 
-  /** A material that shows the texture, with the roughness and sidedness of the base's material. */
+  /** A material that shows the texture, lit as the base's material is. */
   #material(base: Material | null): Material {
-    const roughness = base?.getRoughnessFactor() ?? 1;
-    const doubleSided = base?.getDoubleSided() ?? false;
-    const key = `${roughness} ${doubleSided}`;
+    const unlit = base?.getExtension<ExtensionProperty>(unlitExtension) ?? null;
+    const finish: Finish = {
+      roughness: base?.getRoughnessFactor() ?? 1,
+      doubleSided: base?.getDoubleSided() ?? false,
+      alpha: base?.getAlphaMode() === 'BLEND' ? base.getAlpha() : 1,
+      unlit: unlit !== null,
+    };
+    const key = JSON.stringify(finish);
     const known = this.#materials.get(key);
     if (known) return known;
     const material = this.#document
       .createMaterial('Cagecast overlay')
       .setAlphaMode('BLEND')
-      .setDoubleSided(doubleSided)
+      .setDoubleSided(finish.doubleSided)
       .setMetallicFactor(0)
-      .setRoughnessFactor(roughness)
+      .setRoughnessFactor(finish.roughness)
       .setBaseColorTexture(this.#shown());
+    if (finish.alpha < 1) material.setAlpha(finish.alpha);
+    if (unlit) material.setExtension(unlitExtension, unlit);
     this.#materials.set(key, material);
     return material;
   }

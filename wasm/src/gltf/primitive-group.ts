@@ -1,7 +1,5 @@
-import { type Blends, blend } from '../parts/blend.js';
-import { gather, type SplitPart } from '../parts/split-part.js';
-import { inFormOf, localOffset, overlayPositions } from './overlay.js';
-import type { Piece } from './pieces.js';
+import type { Blends } from '../parts/blend.js';
+import type { SplitPart } from '../parts/split-part.js';
 
 /** A primitive whose vertices were cut and split, as if they were its own. */
 export interface GroupMember {
@@ -79,26 +77,6 @@ export function shareVertices(vertexCount: number, members: readonly GroupMember
     indices,
     isNew: sources.length > vertexCount,
   };
-}
-
-/**
- * The positions of the overlays of primitives that share vertices, a little off the surface, in the form of those beneath them if
- * that is fine enough.
- * @param offset  The distance from the surface, in units of the scene.
- */
-export function movedPositions(
-  { matrix, localPositions }: Pick<Piece, 'matrix' | 'localPositions'>,
-  { sources, blends, indices }: SharedVertices,
-  offset: number,
-  form: { componentType: number; normalized?: boolean },
-) {
-  const shape = {
-    matrix,
-    localPositions: gather(blend(localPositions, 3, blends), 3, sources),
-    localIndices: Uint32Array.from(indices.flatMap((corners) => [...corners])),
-  };
-  const array = inFormOf(form, overlayPositions(shape, offset), localOffset(shape, offset));
-  return { array, normalized: form.normalized === true && !(array instanceof Float32Array) };
 }
 
 /**

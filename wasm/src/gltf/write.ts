@@ -11,16 +11,16 @@ import { type Form, GlbWriter } from './glb-writer.js';
 import { isTurned } from './matrix.js';
 import {
   cosmeticCorners,
-  diagonal,
+  type Finish,
   freeUvSet,
   isMorphed,
   isOverlaid,
   overlayMark,
-  overlayOffset,
   type Paint,
+  unlitExtension,
   zoneAttribute,
 } from './overlay.js';
-import { type GroupMember, movedPositions, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
+import { type GroupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
 import type { GltfFile } from './read.js';
 
 /** What was added to a primitive. */
@@ -54,7 +54,7 @@ export async function writeTransfer(
   const writer = await GlbWriter.from(file, form);
   const { json } = writer;
   const meshOfNode = separateMeshes(json, parts);
-  const painter = paint && new Painter(writer, paint, overlayOffset * diagonal(mesh.positions));
+  const painter = paint && new Painter(writer, paint);
 
   const members = parts.map((part): Member => {
     const primitives = json.meshes![meshOfNode.get(part.node)!]!.primitives;
@@ -131,14 +131,13 @@ function addToGroup(
     [uvSet]: writer.addAttribute(uvs, 2, uvs instanceof Uint16Array ? { normalized: true } : {}),
     [zoneAttribute]: writer.addAttribute(shared.zones, 1, {}, true),
   };
-  const positions = painter?.positions(part, shared, first);
   let copies = shared.sources.length - part.vertexCount - shared.blends.sources.length / 3;
   members.forEach((member, m) => {
     const { primitive, primitives, cosmetic, added } = member;
     Object.assign(primitive.attributes, attributes);
     const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
-    if (positions !== undefined && corners.length > 0) {
-      primitives.push(painter!.overlay(primitive, corners, { POSITION: positions, TEXCOORD_0: attributes[uvSet]! }));
+    if (painter && corners.length > 0) {
+      primitives.push(painter.overlay(primitive, corners, attributes[uvSet]!));
       added.overlayTriangles = corners.length / 3;
     }
     added.uvSet = uvSet;
@@ -261,37 +260,19 @@ class Painter {
   readonly #writer: GlbWriter;
   readonly #paint: Paint;
   #texture: number | undefined;
-  readonly #offset: number;
   readonly #materials = new Map<string, number>();
 
-  /** @param offset  The distance of overlays from the surface, in units of the scene. */
-  constructor(writer: GlbWriter, paint: Paint, offset: number) {
+  constructor(writer: GlbWriter, paint: Paint) {
     this.#writer = writer;
     this.#paint = paint;
-    this.#offset = offset;
   }
 
-  /**
-   * The positions of the overlays of primitives that share vertices, moved a little off the surface along their normals. In the form
-   * of the positions beneath them, unless that is too coarse.
-   * @returns the number of their accessor.
-   */
-  positions(part: Part, shared: SharedVertices, base: GLTF.IMeshPrimitive): number {
-    const accessor = this.#writer.json.accessors![base.attributes['POSITION']!]!;
-    const { array, normalized } = movedPositions(part, shared, this.#offset, accessor);
-    return this.#writer.addAttribute(array, 3, { ...(normalized && { normalized }), ...boundsOf(array, 3) });
-  }
-
-  /** A primitive of some triangles of `base`, with the same skin and morph targets. */
-  overlay(
-    base: GLTF.IMeshPrimitive,
-    corners: Uint32Array,
-    own: { POSITION: number; TEXCOORD_0: number },
-  ): GLTF.IMeshPrimitive {
-    const attributes: Record<string, number> = { ...own };
+  /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. @param uvs  Its UVs' accessor. */
+  overlay(base: GLTF.IMeshPrimitive, corners: Uint32Array, uvs: number): GLTF.IMeshPrimitive {
+    const attributes: Record<string, number> = { TEXCOORD_0: uvs };
     for (const [semantic, accessor] of Object.entries(base.attributes))
       if (isOverlaid(semantic)) attributes[semantic] = accessor;
-    const { count } = this.#writer.json.accessors![own.POSITION]!;
+    const { count } = this.#writer.json.accessors![uvs]!;
     return {
       attributes,
       indices: this.#writer.addIndices(corners, count),
@@ -319,24 +300,36 @@ class Painter {
     return this.#texture;
   }
 
-  /** A material that shows the texture, with the roughness and sidedness of the base's material. */
+  /** A material that shows the texture, lit as the base's material is. */
   #material(base: GLTF.IMeshPrimitive): number {
     const { json } = this.#writer;
     const source = base.material === undefined ? undefined : json.materials?.[base.material];
-    const roughnessFactor = source?.pbrMetallicRoughness?.roughnessFactor ?? 1;
-    const doubleSided = source?.doubleSided ?? false;
-    const key = `${roughnessFactor} ${doubleSided}`;
-    let number = this.#materials.get(key);
-    if (number === undefined) {
-      number =
-        (json.materials ??= []).push({
-          name: 'Cagecast overlay',
-          alphaMode: 'BLEND',
-          doubleSided,
-          pbrMetallicRoughness: { baseColorTexture: { index: this.#shown() }, metallicFactor: 0, roughnessFactor },
-        }) - 1;
-      this.#materials.set(key, number);
-    }
+    const { roughnessFactor = 1, baseColorFactor } = source?.pbrMetallicRoughness ?? {};
+    const finish: Finish = {
+      roughness: roughnessFactor,
+      doubleSided: source?.doubleSided ?? false,
+      alpha: source?.alphaMode === 'BLEND' ? (baseColorFactor?.[3] ?? 1) : 1,
+      unlit: source?.extensions?.[unlitExtension] !== undefined,
+    };
+    const key = JSON.stringify(finish);
+    const number = this.#materials.get(key) ?? (json.materials ??= []).push(this.#made(finish)) - 1;
+    this.#materials.set(key, number);
     return number;
+  }
+
+  #made({ roughness, doubleSided, alpha, unlit }: Finish): GLTF.IMaterial {
+    return {
+      name: 'Cagecast overlay',
+      alphaMode: 'BLEND',
+      doubleSided,
+      pbrMetallicRoughness: {
+        baseColorTexture: { index: this.#shown() },
+        ...(alpha < 1 && { baseColorFactor: [1, 1, 1, alpha] }),
+        metallicFactor: 0,
+        roughnessFactor: roughness,
+      },
+      // The base has it, so the file names it already.
+      ...(unlit && { extensions: { [unlitExtension]: {} } }),
+    };
   }
 }
