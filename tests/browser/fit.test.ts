@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
+import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
 import { inspection, reportedCounts } from '../support/command';
 import { glbOf, tetrahedron } from '../support/glb';
@@ -106,4 +107,66 @@ test('a large model is inspected on request', async () => {
   assert.equal(await page.locator('#fit-verdict').textContent(), '');
   await page.getByRole('button', { name: 'Inspect the cage' }).click();
   assert.match((await found()).verdict, /^(good|usable|unfit)$/);
+});
+
+const human = (): Buffer => readFileSync(asset('human', 'target.glb'));
+
+/** Clicks, and waits until the cage that comes of it is shown. @returns What the page says of it. */
+async function made(button: string): Promise<string> {
+  const { page } = visit;
+  const before = await page.locator('#cage-note').textContent();
+  await page.getByTestId(button).click();
+  await page.waitForFunction(
+    (text) =>
+      document.querySelector('#cage-note')!.textContent !== text ||
+      !document.querySelector<HTMLElement>('#alert')!.hidden,
+    before,
+  );
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  return (await page.locator('#cage-note').textContent())!;
+}
+
+test('a model without a cage gets one: made for it, or a template’s; it is saved as a file that fits', async () => {
+  const { page, complaints } = visit;
+  await page.getByTestId('sample-select').selectOption({ index: 0 });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.ok(await page.locator('#no-cage').isHidden(), 'a sample has a cage');
+  await drop(page, [glb('figure.glb', human())]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+
+  assert.match(await made('make-cage'), /^A cage of \d+ triangles was made/);
+  assert.equal(await page.locator('#cage-name').textContent(), 'figure-cage.glb');
+  assert.notEqual((await found()).verdict, 'unfit');
+  const counts = await shownCounts(page);
+  assert.ok(counts.cosmetic > counts.uncovered && counts.uncovered > 0, JSON.stringify(counts));
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('save-cage').click()]);
+  assert.equal(download.suggestedFilename(), 'figure-cage.glb');
+  const bytes = await readFile(await download.path());
+
+  await page.locator('#template-select').selectOption('human-head');
+  assert.match(await made('fit-cage'), /^The template was fitted/);
+  assert.notEqual((await found()).verdict, 'unfit');
+  assert.notDeepEqual(await shownCounts(page), counts);
+
+  await drop(page, [glb('figure.glb', human()), glb('figure-cage.glb', bytes)]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual(await shownCounts(page), counts, 'the saved cage is the one that was shown');
+  assert.deepEqual(complaints, []);
+});
+
+test('a cage that cannot be made is an error that names the model; cancelling leaves everything as it was', async () => {
+  const { page } = visit;
+  const before = await page.locator('#cage-name').textContent();
+  await page.evaluate(() => {
+    for (const id of ['make-cage', 'cancel']) document.querySelector<HTMLElement>(`[data-testid=${id}]`)!.click();
+  });
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(await page.locator('#cage-name').textContent(), before);
+
+  await drop(page, [glb('pyramid.glb', glbOf(tetrahedron()))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.locator('#template-select').selectOption('human-body');
+  await page.getByTestId('fit-cage').click();
+  assert.equal(await settled(page), 'error');
+  assert.match(await shownError(page), /^pyramid\.glb: /);
 });
