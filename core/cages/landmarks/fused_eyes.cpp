@@ -107,11 +107,14 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
   constexpr double kTop = 0.05, kBottom = -0.25;
   constexpr double kLeastNose = 0.012;                    ///< How far a nose stands out.
   constexpr double kLeastVotes = 2.2, kClearVotes = 3.5;  ///< Planes have 1.
+  constexpr double kLeastHead = 0.02;                     ///< Of the diagonal: figures are ten heads tall at most.
   const TriangleMesh skin = figure.only(Role::surface);
+  const double diagonal = diagonalOf(skin);
   std::optional<Eyes> best;
   double most = kLeastNose;
   for (const double side : {plane.left.x < 0 ? -1.0 : 1.0, plane.left.x < 0 ? 1.0 : -1.0}) {
     const HeadFrame frame = guessFrame(skin, plane, side);
+    if (!(frame.unit > kLeastHead * diagonal)) continue;
     const TriangleMesh local = frame.toLocal(within(skin, frame.origin, 0.6 * frame.unit));
     if (local.empty()) continue;
     const Surface surface(local);

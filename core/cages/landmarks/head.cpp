@@ -97,6 +97,7 @@ std::optional<Head> makeHead(const Figure& figure, const Eyes& eyes) {
     return std::nullopt;
 
   TriangleMesh local = frame.toLocal(within(skin, frame.origin, kHeadReach * frame.unit));
+  if (local.empty()) return std::nullopt;
   Surface surface(local);
   Eyes inside = eyes;
   for (Vec3& centre : inside.centres) centre = frame.toLocal(centre);
@@ -118,7 +119,7 @@ void findHeadLandmarks(const Figure& figure, const Eyes& eyes, Head& head) {
       face.triangles.push_back(triangle);
       isEye.push_back(eye);
     }
-    findEyeCorners(head, Surface(head.frame.toLocal(std::move(face))), isEye);
+    if (!face.empty()) findEyeCorners(head, Surface(head.frame.toLocal(std::move(face))), isEye);
   }
   if (!findProfile(head)) return;
   // A human face's landmarks mean nothing on a muzzle.

@@ -163,6 +163,32 @@ TEST_CASE("landmarks are not looked for on bad models", "[cages][landmarks]") {
   CHECK(findLandmarks(ball.model(), nullptr, found).problem == Problem::badModel);
 }
 
+TEST_CASE("what is nothing like a head has no landmarks", "[cages][landmarks]") {
+  FoundLandmarks found;
+  for (const Position& radii : {Position{1e-4f, 1, 1}, Position{1, 1, 1e-4f}, Position{1, 1e-4f, 1}}) {
+    Balls flat;
+    flat.add("flat", {0, 0, 0}, radii);
+    REQUIRE(findLandmarks(flat.model(), nullptr, found).ok());
+    CHECK(found.landmarks.empty());
+  }
+  const std::vector<float> positions = {0, 0, 0, 1, 1e-6f, 0, 2, 0, 0};
+  const std::vector<std::uint32_t> indices = {0, 1, 2};
+  REQUIRE(findLandmarks({{positions, indices}}, nullptr, found).ok());
+  CHECK(found.landmarks.empty());
+}
+
+TEST_CASE("parts that are called eyes may be anywhere", "[cages][landmarks]") {
+  FoundLandmarks found;
+  for (const Position& eye : {Position{30, 0, 0}, Position{0.2f, 40, 0}, Position{0.3f, 0, 0}, Position{0, 0.5f, 1}}) {
+    CAPTURE(eye[0], eye[1], eye[2]);
+    Balls head;
+    head.add("skin", {0, 0, 0}, {0.7f, 1, 0.85f});
+    head.add("l-eye", eye, {0.13f, 0.13f, 0.13f});
+    head.add("r-eye", {-eye[0], eye[1], eye[2]}, {0.13f, 0.13f, 0.13f});
+    CHECK(findLandmarks(head.model(), nullptr, found).ok());
+  }
+}
+
 TEST_CASE("finding landmarks can be cancelled", "[cages][landmarks]") {
   FoundLandmarks found;
   const Balls head = plainHead();
