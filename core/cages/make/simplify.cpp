@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "mesh/bounds.hpp"
+
 namespace cagecast::cages {
 
 namespace {
@@ -128,6 +130,13 @@ void separateJoinedEdges(TriangleMesh& mesh) {
   }
 }
 
+/// What positions are taken from: the middle of a mesh that is far from the origin, where floats are too coarse.
+Vec3 originFor(const TriangleMesh& mesh) {
+  constexpr double kFar = 100;  ///< Diagonals: up to there, floats are exact to a hundred-thousandth of one.
+  const Bounds bounds = boundsOf(mesh);
+  return length(bounds.middle()) > kFar * bounds.diagonal() ? bounds.middle() : Vec3{0, 0, 0};
+}
+
 /// What meshoptimizer takes.
 struct Arrays {
   std::vector<float> positions;
@@ -151,8 +160,10 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
   arrays.locks.assign(mesh.positions.size(), 0);
   for (const auto& loop : boundaryLoops(mesh)) lockLoop(mesh, loop, tolerance, arrays.locks);
   arrays.positions.reserve(3 * mesh.positions.size());
+  const Vec3 origin = originFor(mesh);
   for (const Vec3& p : mesh.positions)
-    for (const double x : {p.x, p.y, p.z}) arrays.positions.push_back(static_cast<float>(x));
+    for (const double x : {p.x - origin.x, p.y - origin.y, p.z - origin.z})
+      arrays.positions.push_back(static_cast<float>(x));
   std::vector<unsigned> indices;
   indices.reserve(3 * mesh.triangles.size());
   for (const Triangle3& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());

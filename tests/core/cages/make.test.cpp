@@ -116,6 +116,9 @@ TEST_CASE("a cage does not depend on the model's unit, place or winding", "[cage
   CHECK(boundaryLoops(mesh).size() == loops);
   CHECK(hasHoleAt(mesh, {85, 70, 150}, 20));
   CHECK(Surface(mesh).closest(Vec3{50, 150, 50}).height < 0);
+  // So far away that floats are about 0.1 % of the model apart.
+  for (float& x : model.positions) x += 4e6f;
+  CHECK(boundaryLoops(meshOf(made(model.model()))).size() == loops);
 }
 
 TEST_CASE("a cage is the same in every run", "[cages][make]") {
