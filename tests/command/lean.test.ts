@@ -75,7 +75,8 @@ function picture(corners: readonly Corner[]): Uint8Array {
       for (let x = Math.ceil(Math.min(...bounds(0))); x <= Math.max(...bounds(0)); ++x) {
         const [s, t] = [((x - p![0]!) * vy - (y - p![1]!) * vx) / area, (ux * (y - p![1]!) - uy * (x - p![0]!)) / area];
         const depth = p![2]! + s * (q![2]! - p![2]!) + t * (r![2]! - p![2]!);
-        if (s < 0 || t < 0 || s + t > 1 || depth < depths[y * size + x]!) continue;
+        // Compression may turn a triangle of the overlay, which rounds its depths otherwise.
+        if (s < 0 || t < 0 || s + t > 1 || depth < depths[y * size + x]! - 1e-6) continue;
         depths[y * size + x] = depth;
         const uv = a.uv && [0, 1].map((k) => a.uv![k]! + s * (b.uv![k]! - a.uv![k]!) + t * (c.uv![k]! - a.uv![k]!));
         colors[y * size + x] = uv ? 128 + 60 * Math.sin(20 * uv[0]!) + 60 * Math.sin(20 * uv[1]!) : 1;
