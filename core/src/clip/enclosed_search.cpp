@@ -15,7 +15,9 @@ bool EnclosedSearch::find(const List<Piece>& pieces, TrianglePoint& point) noexc
     addPart(pieces[i], {{corners[0], corners[1], corners[2]}, i, nearby});
   }
   bool isFound = false;
-  for (std::size_t next = 0; next < parts_.size() && !isFound && !failed() && !triangle_.failed(); ++next) {
+  for (std::size_t next = 0; next < parts_.size() && left_ > 0 && !isFound && !failed() && !triangle_.failed();
+       ++next) {
+    --left_;
     const Part part = parts_[next];
     const Piece& piece = pieces[part.piece];
     TrianglePoint t[6] = {part.corners[0], part.corners[1], part.corners[2]};
