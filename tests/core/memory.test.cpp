@@ -3,6 +3,9 @@
 // The linker hands every call of malloc to the functions below. Where each array of the arena is an allocation of its
 // own, with AddressSanitizer, that is every place at which a step can fail.
 
+#include <cstring>
+#include <new>
+
 #include "cagecast/split.hpp"
 #include "cuts.hpp"
 #include "hash.hpp"
@@ -15,6 +18,8 @@ namespace {
 thread_local bool isOn = false;
 thread_local std::size_t left = 0;
 thread_local bool ranOut = false;
+/// What new memory is filled with; negative: nothing.
+thread_local int filling = -1;
 
 /// @return false if this allocation has to fail.
 bool mayTake() {
@@ -37,8 +42,11 @@ void* __wrap__Znwm(std::size_t size);                                       // N
 void* __real__ZnwmRKSt9nothrow_t(std::size_t size, const std::nothrow_t&);  // NOLINT
 void* __wrap__ZnwmRKSt9nothrow_t(std::size_t size, const std::nothrow_t&);  // NOLINT
 
-void* __wrap_malloc(std::size_t size) { return mayTake() ? __real_malloc(size) : nullptr; }  // NOLINT
-void* __wrap__Znwm(std::size_t size) {                                                       // NOLINT
+void* __wrap_malloc(std::size_t size) {  // NOLINT
+  void* const data = mayTake() ? __real_malloc(size) : nullptr;
+  return data == nullptr || filling < 0 ? data : std::memset(data, filling, size);
+}
+void* __wrap__Znwm(std::size_t size) {  // NOLINT
   if (!mayTake()) throw std::bad_alloc();
   return __real__Znwm(size);
 }
@@ -139,4 +147,35 @@ TEST_CASE("wherever memory runs out when segments are judged or vertices split, 
           if (status.ok()) hash.add(split.indices);
           return status;
         }) > 2);
+}
+
+TEST_CASE("what memory held before changes no result", "[memory]") {
+  for (const scenes::Scene& scene : {scenes::patchwork(1), scenes::patchwork(5), scenes::head(6)}) {
+    std::vector<std::string> hashes;
+    for (const int fill : {0, 1, 255}) {
+      Workspace workspace;
+      TransferResult result;
+      CutTarget cut;
+      filling = fill;
+      Status status = transfer(scene.cage.view(), scene.target.view(), cutting(), workspace, result);
+      const DecidedTarget target{scene.target.view(), result.zones.zones, result.projection.segments,
+                                 result.zones.culledBy};
+      if (status.ok()) status = cutBorders(scene.cage.view(), target, cutting(), workspace, cut);
+      filling = -1;
+      REQUIRE(status.ok());
+      Hash hash;
+      hash.add(result);
+      hash.add(result.zones.scores);
+      hash.add(result.projection.recovery);
+      hash.add(result.projection.cornerUvs);
+      for (const HoleShare& share : result.projection.holeShares)
+        hashes.push_back(std::to_string(share.hole) + " " + std::to_string(share.exposedArea));
+      hash.add(cut.indices);
+      hash.add(cut.uvs);
+      hashes.push_back(hash.text());
+    }
+    const std::size_t third = hashes.size() / 3;
+    REQUIRE(hashes.size() == 3 * third);
+    for (std::size_t i = 0; i < 2 * third; ++i) CHECK(hashes[i] == hashes[i + third]);
+  }
 }

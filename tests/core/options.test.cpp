@@ -157,3 +157,23 @@ TEST_CASE("a lock of a segment or group that does not exist is an error", "[opti
   CHECK(group.at == 2);
   CHECK_THAT(scene.text(group), Contains("options.locks.groups[2]") && Contains("no segment of group 2"));
 }
+
+TEST_CASE("with minCovered 0 no segment that is covered at all is culled for its share", "[options]") {
+  const scenes::Scene scene = scenes::patchwork(3);
+  TransferOptions options;
+  options.steps.twins = false;
+  options.steps.floor = Floor::none;
+  const TransferResult without = transferred(scene.cage.view(), scene.target.view(), options);
+  for (const Floor floor : {Floor::area, Floor::depth}) {
+    options.steps.floor = floor;
+    options.minCovered = 0;
+    const TransferResult result = transferred(scene.cage.view(), scene.target.view(), options);
+    std::size_t covered = 0;
+    for (std::size_t s = 0; s < result.zones.scores.size(); ++s) {
+      const bool isCovered = result.projection.segmentStats[s].coveredArea > 0;
+      covered += isCovered;
+      CHECK(result.zones.scores[s] == (isCovered ? without.zones.scores[s] : 0));
+    }
+    CHECK(covered > 0);
+  }
+}
