@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
-import { applyTransfer, extract } from 'cagecast/three';
+import { applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
+import { terminate } from 'cagecast/worker';
 import {
   BatchedMesh,
   Bone,
@@ -605,5 +606,107 @@ describe('applyTransfer', () => {
     const [outer, inner] = target.children as [ThreeMesh, ThreeMesh];
     assert.ok(attribute(outer.geometry, '_ncz').every((zone) => zone === Zone.Cosmetic));
     assert.ok(attribute(inner.geometry, '_ncz').every((zone) => zone === Zone.Occluded));
+  });
+});
+
+describe('saved transfers', () => {
+  const texture = new Texture();
+  const geometries = (mesh: ThreeMesh) => ({
+    ...Object.fromEntries(Object.entries(mesh.geometry.attributes).map(([name, { array }]) => [name, array])),
+    index: mesh.geometry.index!.array,
+  });
+
+  for (const borders of ['triangle', 'cut'] as const) {
+    test(`give the same geometry and the same result, without a cage (borders: ${borders})`, () => {
+      const [first, second] = [meshOf(scene.target), meshOf(scene.target)];
+      const applied = applyTransfer(first, meshOf(scene.cage), { texture, borders });
+      const again = applyTransfer(second, undefined, { texture, saved: deserialize(serialize(applied)) });
+      assert.deepEqual(geometries(second), geometries(first));
+      assert.deepEqual(again.result, applied.result);
+      assert.deepEqual([again.splitVertices, again.cutTriangles], [applied.splitVertices, applied.cutTriangles]);
+      const decided = classify(project(scene.cage, { ...scene.target, groups: undefined }), { threshold: 1 });
+      for (const one of [applied, again]) one.update(decided);
+      assert.deepEqual(geometries(second), geometries(first));
+      assert.deepEqual(serialize(again), serialize(applied));
+    });
+  }
+
+  test('have a key that depends on target, cage and options', () => {
+    const keyOf = (target: Mesh, cage: Mesh, options = {}) =>
+      deserialize(serialize(applyTransfer(meshOf(target), meshOf(cage), options))).key;
+    const moved = { ...scene.cage, positions: scene.cage.positions.map((x) => 1.001 * x) };
+    const small = { ...scene.target, positions: scene.target.positions.map((x) => 0.999 * x) };
+    const keys = [
+      keyOf(scene.target, scene.cage),
+      keyOf(scene.target, moved),
+      keyOf(small, scene.cage),
+      keyOf(scene.target, scene.cage, { threshold: 0.3 }),
+      keyOf(scene.target, scene.cage, { borders: 'cut' }),
+    ];
+    assert.equal(new Set(keys).size, keys.length);
+    assert.equal(keyOf(scene.target, scene.cage), keys[0]);
+    assert.equal(keyOf(scene.target, scene.cage, { texture, opacity: 0.5 }), keys[0]);
+  });
+
+  test('of another target, damaged ones and others are errors', () => {
+    const bytes = serialize(applyTransfer(meshOf(scene.target), meshOf(scene.cage)));
+    const other = meshOf({ ...scene.target, positions: scene.target.positions.map((x) => 0.999 * x) });
+    assert.throws(() => applyTransfer(other, undefined, { saved: deserialize(bytes) }), /saved is of another target/);
+    const refuses = (wrong: Uint8Array, message: RegExp) =>
+      assert.throws(
+        () => deserialize(wrong),
+        (error) => error instanceof CagecastError && error.code === 'badArgument' && message.test(error.message),
+      );
+    refuses(new Uint8Array(3), /is nothing that serialize wrote \(3 bytes\)/);
+    refuses(bytes.subarray(0, bytes.length - 1), /is damaged or not whole/);
+    refuses(
+      bytes.map((byte, i) => (i === 5000 ? byte ^ 1 : byte)),
+      /is damaged or not whole/,
+    );
+    refuses(
+      bytes.map((byte, i) => (i === 4 ? 9 : byte)),
+      /has version 9 of the format; this one reads version 1/,
+    );
+    refuses('bytes' as unknown as Uint8Array, /bytes is bytes, not a Uint8Array/);
+    assert.throws(() => serialize({} as never), /applied is not what applyTransfer returned/);
+    assert.throws(
+      () => applyTransfer(meshOf(scene.target), undefined, { saved: {} as never }),
+      /options\.saved is an object, not what deserialize returned/,
+    );
+  });
+});
+
+describe('applyTransferAsync', () => {
+  test('gives what applyTransfer gives, and its errors', async () => {
+    const [first, second] = [meshOf(scene.target), meshOf(scene.target)];
+    const options = { texture: new Texture(), borders: 'cut' } as const;
+    const applied = applyTransfer(first, meshOf(scene.cage), options);
+    const shares: [number, string][] = [];
+    const later = await applyTransferAsync(second, meshOf(scene.cage), {
+      ...options,
+      onProgress: (...share) => shares.push(share),
+    });
+    for (const name of ['uv1', '_ncz', '_cagecast_paint', 'position'])
+      assert.deepEqual(attribute(second.geometry, name), attribute(first.geometry, name));
+    assert.deepEqual(later.result.zones, applied.result.zones);
+    assert.deepEqual(
+      shares.map(([, stage]) => stage),
+      ['transfer', 'geometry', 'done'],
+    );
+    await assert.rejects(applyTransferAsync(new Group(), meshOf(scene.cage)), { code: 'emptyMesh' });
+    await assert.rejects(applyTransferAsync(first, meshOf(scene.cage), { texture: 7 as never }), /not a Texture/);
+    await assert.rejects(
+      applyTransferAsync(meshOf(scene.target), meshOf(scene.cage), { signal: AbortSignal.abort(new Error('no')) }),
+      /^Error: no$/,
+    );
+    terminate();
+  });
+
+  test('a geometry that is replaced meanwhile is an error', async () => {
+    const target = meshOf(scene.target);
+    const work = applyTransferAsync(target, meshOf(scene.cage), { texture: new Texture() });
+    target.geometry = geometryOf(scene.target);
+    await assert.rejects(work, /was changed meanwhile/);
+    terminate();
   });
 });
