@@ -360,6 +360,19 @@ describe('applyTransfer', () => {
     assert.ok(!Object.hasOwn(material, 'onBeforeCompile'));
   });
 
+  test('a texture on a node material is an error, and nothing is changed', () => {
+    const target = meshOf(scene.target);
+    Object.assign(target.material, { isNodeMaterial: true, name: 'skin' });
+    const before = Object.keys(target.geometry.attributes);
+    assert.throws(
+      () => applyTransfer(target, meshOf(scene.cage), { texture: new Texture() }),
+      (error) => error instanceof CagecastError && /has a node material, .* give options\.material/.test(error.message),
+    );
+    assert.deepEqual(Object.keys(target.geometry.attributes), before);
+    const { overlays } = applyTransfer(target, meshOf(scene.cage), { material: new MeshStandardMaterial() });
+    assert.equal(overlays.length, 1);
+  });
+
   test('a soft border: distances from the border of the paint, 0 on it, growing by no more than the edges', () => {
     const target = meshOf(ball([0, 0, 0], () => 1, 24, 36));
     const around = ball([0, 0, 0], () => 1.1, 24, 36);

@@ -56,6 +56,17 @@ function ownGeometries(parts: readonly Part[]): void {
   }
 }
 
+/** Node materials are for `WebGPURenderer`, which would show an overlay of ours without its paint. */
+function checkMaterials(parts: readonly Part[]): void {
+  for (const { name, mesh } of parts) {
+    if (![mesh?.material].flat().some((material) => (material as { isNodeMaterial?: true })?.isNodeMaterial)) continue;
+    throw new CagecastError(
+      'badOption',
+      `cagecast/three: "${name}" has a node material, on which options.texture cannot be shown; give options.material, a material of yours that shows it`,
+    );
+  }
+}
+
 /**
  * Applies what was prepared to the geometries and materials of a target. Nothing is changed before the last step; yields after each
  * attribute that was extended, for callers that share the thread.
@@ -66,6 +77,7 @@ export function* apply(
   options: ApplyOptions,
 ): Generator<void, Applied> {
   const channel = options.channel ?? freeChannel(parts);
+  if (options.texture && !options.material) checkMaterials(parts);
   const geometries = parts.map(({ geometry }) => geometry);
   const remades: (Remade | undefined)[] = [];
   for (const [p, part] of parts.entries())

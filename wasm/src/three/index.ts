@@ -63,7 +63,7 @@ export {
  * A material that already shows another paint on other meshes is copied. A later transfer of the same meshes replaces the paint.
  *
  * A `ShaderMaterial` asks for paint by `#ifdef CAGECAST_PAINT`, within which `vec3 cagecastPaint(vec3 color)` returns a colour, in
- * linear light, with the paint on it. `WebGPURenderer` does not run such shaders: use `material` there.
+ * linear light, with the paint on it. `WebGPURenderer` does not run such shaders: use the option `material` there.
  *
  * Call `await init()` once before. `applyTransferAsync` keeps the main thread free.
  *

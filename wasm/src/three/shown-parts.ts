@@ -66,7 +66,9 @@ export function writePaint(parts: readonly ShownPart[], reach: number, diagonal:
     const count = split.sources.length;
     const isPainted = paintedVertices(split.indices, cosmetic, count);
     const known = geometry.getAttribute(paintAttribute) as BufferAttribute | undefined;
-    const attribute = known?.count === count ? known : new BufferAttribute(new Float32Array(4 * count), 4);
+    // One that came with the model's file may be laid out in another way.
+    const isOwn = known?.isBufferAttribute && known.array.length === 4 * count && known.array instanceof Float32Array;
+    const attribute = isOwn ? known : new BufferAttribute(new Float32Array(4 * count), 4);
     const values = attribute.array;
     for (let v = 0; v < count; ++v) {
       values[4 * v] = split.uvs[2 * v]!;
