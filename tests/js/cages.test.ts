@@ -155,6 +155,11 @@ describe('makeCage', () => {
     const untyped = makeCage as (...args: unknown[]) => Promise<unknown>;
     for (const [call, code, says] of [
       [() => untyped(null), 'badArgument', 'model is null, not a mesh { positions, indices, … }'],
+      [
+        () => untyped({ scene: () => {} }),
+        'badArgument',
+        'model has no positions (cageModel of cagecast/gltf or cagecast/three makes a model of a document or scene)',
+      ],
       [() => untyped(bad({ positions: [1] })), 'badArgument', 'model.positions is of type Array, not a Float32Array'],
       [() => untyped(bad({ parts: 'skin' })), 'badArgument', 'model.parts is "skin", not an array of names'],
       [

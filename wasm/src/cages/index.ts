@@ -7,6 +7,7 @@
  */
 import { spawn } from '#spawn-cages';
 import type { Mesh } from '../api/mesh.js';
+import { CagecastError } from '../index.js';
 import { type CallOptions, type OnProgress, WorkerQueue } from '../worker/queue.js';
 import type {
   Cage,
@@ -20,11 +21,11 @@ import type {
   Template,
 } from './types.js';
 
-export { CagecastError } from '../index.js';
 export { cageGlb } from './glb.js';
 export { type TemplateName, templateNames } from './template-names.js';
 export { loadTemplate } from './templates.js';
 export type * from './types.js';
+export { CagecastError };
 
 /** Options of every call. */
 export interface CageCallOptions extends CallOptions {
@@ -36,6 +37,14 @@ export interface CageCallOptions extends CallOptions {
 }
 
 const queue = new WorkerQueue(spawn);
+
+/** A rejection if a document or a scene is given instead of a model: it cannot be sent to the worker. */
+function unreadOf(fn: string, model: Partial<CageModel> | undefined): Promise<never> | undefined {
+  if (typeof model !== 'object' || model === null || model.positions !== undefined) return undefined;
+  const text =
+    'model has no positions (cageModel of cagecast/gltf or cagecast/three makes a model of a document or scene)';
+  return Promise.reject(new CagecastError('badArgument', `${fn}: ${text}`));
+}
 
 /**
  * Makes a cage for a model: a hull around it, with holes over the parts that are not painted, unwrapped into few charts.
@@ -51,7 +60,7 @@ const queue = new WorkerQueue(spawn);
  * const result = transfer(cage, { positions, indices, groups });
  */
 export function makeCage(model: CageModel, options: MakeOptions & CageCallOptions = {}): Promise<Cage> {
-  return queue.withOptions('makeCage', [model], options);
+  return unreadOf('makeCage', model) ?? queue.withOptions('makeCage', [model], options);
 }
 
 /**
@@ -70,7 +79,7 @@ export function fitCage(
   landmarks?: Landmarks,
   options: FitOptions & CageCallOptions = {},
 ): Promise<Fit> {
-  return queue.withOptions('fitCage', [template, model, landmarks], options);
+  return unreadOf('fitCage', model) ?? queue.withOptions('fitCage', [template, model, landmarks], options);
 }
 
 /**
@@ -78,7 +87,7 @@ export function fitCage(
  * @throws {CagecastError} as `makeCage`.
  */
 export function findLandmarks(model: CageModel, options: CageCallOptions = {}): Promise<FoundLandmarks> {
-  return queue.withOptions('findLandmarks', [model], options);
+  return unreadOf('findLandmarks', model) ?? queue.withOptions('findLandmarks', [model], options);
 }
 
 /**
@@ -92,7 +101,7 @@ export function refineCage(
   model: CageModel,
   options: RefineOptions & CageCallOptions = {},
 ): Promise<Cage> {
-  return queue.withOptions('refineCage', [cage, model], options);
+  return unreadOf('refineCage', model) ?? queue.withOptions('refineCage', [cage, model], options);
 }
 
 /** The patterns of names of parts that are not painted unless the option `exclude` says otherwise. */
