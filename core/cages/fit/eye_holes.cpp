@@ -216,11 +216,12 @@ std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::
 
 }  // namespace
 
-void fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
-                 const std::vector<Landmark>& to, std::vector<Vec3>& positions) {
+std::vector<bool> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
+                              const std::vector<Landmark>& to, std::vector<Vec3>& positions) {
+  std::vector<bool> moved(positions.size());
   const std::optional<Vec3> own[2] = {centreOf(from, "left"), centreOf(from, "right")};
   const std::optional<Vec3> there[2] = {centreOf(to, "left"), centreOf(to, "right")};
-  if (!own[0] || !own[1] || !there[0] || !there[1]) return;
+  if (!own[0] || !own[1] || !there[0] || !there[1]) return moved;
   const Surface surface(figure.mesh);
   for (std::size_t side = 0; side < 2; ++side) {
     const int hole = holeAt(cage, *own[side], *own[1 - side]);
@@ -228,8 +229,11 @@ void fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::
     const std::vector<bool> isEye = eyeAt(figure, *there[side], *there[1 - side], cage.diagonal);
     if (std::find(isEye.begin(), isEye.end(), true) == isEye.end()) continue;
     const std::optional<Opening> opening = openingOf(figure, surface, isEye, cage.diagonal);
-    if (opening) drawTo(*opening, cage.loops[static_cast<std::size_t>(hole)], surface, cage.offset, positions);
+    if (!opening) continue;
+    drawTo(*opening, cage.loops[static_cast<std::size_t>(hole)], surface, cage.offset, positions);
+    for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) moved[v] = true;
   }
+  return moved;
 }
 
 }  // namespace cagecast::cages

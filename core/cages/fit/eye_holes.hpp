@@ -16,7 +16,8 @@ struct EyedFigure {
 /// Draws the borders of eye holes to the contours of what is visible of the eyes, seen along the direction in which
 /// they look. Where a model has no eyes of their own, holes stay where they are.
 /// @param from,to  Landmarks of the template and of the target, both in the template's space.
-void fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
-                 const std::vector<Landmark>& to, std::vector<Vec3>& positions);
+/// @return Per vertex of the cage: whether it was moved.
+std::vector<bool> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
+                              const std::vector<Landmark>& to, std::vector<Vec3>& positions);
 
 }  // namespace cagecast::cages

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "fit/relax.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -11,12 +11,10 @@ namespace cagecast::cages {
 namespace {
 
 constexpr int kPushes = 12;
-constexpr double kMostPush = 4;      ///< Of a vertex in all, in offsets: beyond it fins grow between legs.
-constexpr double kClearance = 0.1;   ///< How far skin should stay inside of the cage, in offsets.
-constexpr double kVisible = 1.6;     ///< Skin farther inside of the hull is not pushed for, in offsets.
-constexpr double kPushReach = 4;     ///< Skin farther away from the cage is not pushed for, in offsets.
-constexpr double kSharpTurn = -0.5;  ///< Cosine of the angle at an edge at which two triangles count as folded.
-constexpr int kUntangleRounds = 60;
+constexpr double kMostPush = 4;     ///< Of a vertex in all, in offsets: beyond it fins grow between legs.
+constexpr double kClearance = 0.1;  ///< How far skin should stay inside of the cage, in offsets.
+constexpr double kVisible = 1.6;    ///< Skin farther inside of the hull is not pushed for, in offsets.
+constexpr double kPushReach = 4;    ///< Skin farther away from the cage is not pushed for, in offsets.
 
 /// A point of the skin that should be inside, with its normal.
 struct SkinPoint {
@@ -39,6 +37,25 @@ std::vector<bool> borderVertices(const TemplateCage& cage) {
   return out;
 }
 
+/// Takes moves back where triangles would be folded that are not so in the template.
+void undoFolds(const TemplateCage& cage, const std::vector<Vec3>& old, const std::vector<bool>& foldedBefore,
+               std::vector<Vec3>& positions) {
+  for (bool any = true; any;) {
+    any = false;
+    const std::vector<bool> folded = foldedTriangles({positions, cage.mesh.triangles});
+    std::vector<bool> stays(positions.size());
+    for (std::size_t t = 0; t < folded.size(); ++t)
+      if (folded[t] && !foldedBefore[t])
+        for (const std::uint32_t v : cage.mesh.triangles[t]) stays[v] = true;
+    grow(cage, stays);
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      if (!stays[v] || !(length(positions[v] - old[v]) > 0)) continue;
+      positions[v] = old[v];
+      any = true;
+    }
+  }
+}
+
 }  // namespace
 
 bool pushOut(const TemplateCage& cage, const TriangleMesh& skin, const TriangleMesh& hull,
@@ -48,6 +65,7 @@ bool pushOut(const TemplateCage& cage, const TriangleMesh& skin, const TriangleM
   std::vector<Vec3> places;
   places.reserve(points.size());
   for (const SkinPoint& point : points) places.push_back(point.position);
+  const std::vector<bool> foldedBefore = foldedTriangles(cage.mesh);
   std::vector<double> pushed(positions.size());
   for (int round = 0; round < kPushes; ++round) {
     if (!step(static_cast<double>(round) / kPushes)) return false;
@@ -73,6 +91,7 @@ bool pushOut(const TemplateCage& cage, const TriangleMesh& skin, const TriangleM
         wanted[t[k]] = std::max(wanted[t[k]], missing * closest[i].weights[k] / squares);
     }
     if (!any) break;
+    const std::vector<Vec3> old = positions;
     for (std::size_t v = 0; v < positions.size(); ++v) {
       // Half of what the neighbours need, so that no single vertex sticks out.
       double around = 0;
@@ -82,68 +101,9 @@ bool pushOut(const TemplateCage& cage, const TriangleMesh& skin, const TriangleM
       pushed[v] += push;
       positions[v] = positions[v] + push * normals[v];
     }
+    undoFolds(cage, old, foldedBefore, positions);
   }
   return true;
-}
-
-std::vector<bool> foldedTriangles(const TriangleMesh& mesh) {
-  const std::size_t count = mesh.triangles.size();
-  std::vector<Vec3> normals(count), around(mesh.positions.size(), Vec3{0, 0, 0});
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> triangleAt;
-  for (std::size_t t = 0; t < count; ++t) {
-    normals[t] = areaNormal(mesh, mesh.triangles[t]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      around[mesh.triangles[t][k]] = around[mesh.triangles[t][k]] + normals[t];
-      triangleAt[{mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}] = t;
-    }
-  }
-  std::vector<bool> folded(count);
-  for (std::size_t t = 0; t < count; ++t) {
-    Vec3 sum = -3.0 * normals[t];
-    for (const std::uint32_t v : mesh.triangles[t]) sum = sum + around[v];
-    if (dot(sum, normals[t]) < 0) folded[t] = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto other = triangleAt.find({mesh.triangles[t][(k + 1) % 3], mesh.triangles[t][k]});
-      if (other == triangleAt.end()) continue;
-      const Vec3& n = normals[other->second];
-      if (dot(n, normals[t]) < kSharpTurn * length(n) * length(normals[t])) folded[t] = folded[other->second] = true;
-    }
-  }
-  return folded;
-}
-
-void untangle(const TemplateCage& cage, std::vector<Vec3>& positions) {
-  const std::vector<bool> before = foldedTriangles(cage.mesh);
-  const std::vector<bool> onBorder = borderVertices(cage);
-  for (int round = 0; round < kUntangleRounds; ++round) {
-    const std::vector<bool> folded = foldedTriangles({positions, cage.mesh.triangles});
-    std::vector<bool> moves(positions.size());
-    bool any = false;
-    for (std::size_t t = 0; t < folded.size(); ++t) {
-      if (!folded[t] || before[t]) continue;
-      any = true;
-      for (const std::uint32_t v : cage.mesh.triangles[t]) moves[v] = true;
-    }
-    if (!any) return;
-    // The displacement from the template is smoothed, not the shape: what is sharp in the template stays so.
-    std::vector<Vec3> next = positions;
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-      if (!moves[v] || cage.neighbours[v].empty()) continue;
-      Vec3 mean{0, 0, 0};
-      double total = 0;
-      for (const std::uint32_t u : cage.neighbours[v]) {
-        if (round < kUntangleRounds / 2 && onBorder[v] && !onBorder[u])
-          continue;  // A border keeps its course at first.
-        const Vec3 target = round < kUntangleRounds / 2
-                                ? positions[u] + (cage.mesh.positions[v] - cage.mesh.positions[u])
-                                : positions[u];
-        mean = mean + target;
-        ++total;
-      }
-      if (total > 0) next[v] = 0.5 * positions[v] + 0.5 / total * mean;
-    }
-    positions = std::move(next);
-  }
 }
 
 }  // namespace cagecast::cages

@@ -7,6 +7,7 @@
 #include "fit/check_landmarks.hpp"
 #include "fit/eye_holes.hpp"
 #include "fit/finish.hpp"
+#include "fit/relax.hpp"
 #include "fit/rim.hpp"
 #include "fit/template_cage.hpp"
 #include "fit/tighten.hpp"
@@ -27,10 +28,11 @@ namespace {
 struct Settings {
   double closing;
   std::uint32_t voxels;
+  int passes;  ///< Of drawing the cage onto the hull, each from where the last one ended: bodies differ more.
   TightenOptions tighten;
 };
-constexpr Settings kHead{0.022, 80, {.reach = 0.06, .sliding = 0.5, .stiffest = 30, .softest = 1}};
-constexpr Settings kBody{0.010, 200, {.reach = 0.02, .sliding = 0.05, .stiffest = 30, .softest = 1}};
+constexpr Settings kHead{0.022, 80, 1, {.reach = 0.06, .sliding = 0.5, .stiffest = 30, .softest = 1}};
+constexpr Settings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .stiffest = 30, .softest = 1}};
 /// The hull is at least this far off, in diagonals: templates whose landmarks lie on the cage.
 constexpr double kLeastOffset = 0.003;
 /// Anchors that are closer than this share of the diagonal count once.
@@ -219,16 +221,19 @@ Outcome Fit::run(FittedCage& out) {
       },
       hull);
   if (!done || hull.empty()) return cancelled;
-  std::vector<Vec3> positions = tighten(cage, start(cage), hull, settings.tighten, [&](double share) {
-    return tell(kHullEnd + share * (kTightenEnd - kHullEnd), "fit");
-  });
-  if (positions.empty()) return cancelled;
-  fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
+  std::vector<Vec3> positions = start(cage);
+  for (int pass = 0; pass < settings.passes; ++pass) {
+    if (pass > 0) relax(cage, std::vector<bool>(positions.size()), positions);
+    positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
+      return tell(kHullEnd + (pass + share) / settings.passes * (kTightenEnd - kHullEnd), "fit");
+    });
+    if (positions.empty()) return cancelled;
+  }
+  relax(cage, fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions), positions);
   const bool pushed = pushOut(
       cage, skin_, hull, [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); },
       positions);
   if (!pushed) return cancelled;
-  untangle(cage, positions);
   out.positions.clear();
   for (const std::uint32_t v : cage.vertexOf) {
     const Vec3 p = map_(positions[v]);

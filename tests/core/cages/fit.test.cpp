@@ -6,7 +6,7 @@
 #include <random>
 
 #include "cagecast/cages.hpp"
-#include "fit/finish.hpp"
+#include "fit/relax.hpp"
 #include "fit/template_cage.hpp"
 #include "fit/warp.hpp"
 #include "mesh/surface.hpp"
@@ -295,4 +295,31 @@ TEST_CASE("a template that cannot be fitted is refused", "[cages][fit]") {
     from.landmarks.resize(3);
     CHECK(messageOf() == "template: it has 3 landmarks; at least 4 are needed");
   }
+}
+
+TEST_CASE("relaxing unfolds what was moved over its neighbours, and leaves the rest where it is", "[cages][fit]") {
+  const HeadMesh mesh = headMesh({}, 24, 16, 0.03);
+  const std::vector<Landmark> landmarks = headLandmarks({});
+  const TemplateCage cage = prepareTemplate({mesh.view(), landmarks});
+  const std::uint32_t seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  std::vector<Vec3> positions = cage.mesh.positions;
+  std::vector<bool> near(positions.size());
+  const auto vertex = static_cast<std::uint32_t>(random() % positions.size());
+  near[vertex] = true;
+  grow(cage, near);
+  // Two vertices change places.
+  const std::uint32_t other = cage.neighbours[vertex][random() % cage.neighbours[vertex].size()];
+  std::swap(positions[vertex], positions[other]);
+  for (int ring = 0; ring < 4; ++ring) grow(cage, near);
+  const auto foldCount = [&] {
+    const std::vector<bool> folded = foldedTriangles({positions, cage.mesh.triangles});
+    return std::count(folded.begin(), folded.end(), true);
+  };
+  REQUIRE(foldCount() > 0);
+  relax(cage, std::vector<bool>(positions.size()), positions);
+  CHECK(foldCount() == 0);
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (!near[v]) CHECK(length(positions[v] - cage.mesh.positions[v]) == 0);
 }

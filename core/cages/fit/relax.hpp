@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "fit/template_cage.hpp"
+
+namespace cagecast::cages {
+
+/// Restores the template's shape where triangles are folded over, or thin, that are not so in the template.
+/// @param fixed  Per vertex: it moves only if a triangle at it cannot be unfolded otherwise.
+void relax(const TemplateCage& cage, const std::vector<bool>& fixed, std::vector<Vec3>& positions);
+
+/// Whether each triangle faces away from those around it, or turns by more than 120 degrees at an edge.
+std::vector<bool> foldedTriangles(const TriangleMesh& mesh);
+
+/// Adds the neighbours of some vertices to them.
+void grow(const TemplateCage& cage, std::vector<bool>& vertices);
+
+}  // namespace cagecast::cages
