@@ -1,7 +1,10 @@
+import { isMainThread } from 'node:worker_threads';
 import { Command, CommanderError, Option } from 'commander';
 import { forms } from '../gltf/glb-writer.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
+import { addBatchCommand } from './batch-flags.js';
+import { serveBatch } from './batch-worker.js';
 import { addCageCommands } from './cage-flags.js';
 import { inspectCommand } from './inspect-command.js';
 import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
@@ -61,8 +64,9 @@ Examples:
   cagecast inspect head.glb --cage cage.glb
   cagecast make head.glb -o cage.glb
   cagecast fit template.glb head.glb -o cage.glb
+  cagecast batch 'heads/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
 
-Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make or fit finds the cage unfit.`,
+Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make, fit or batch finds a cage unfit.`,
   );
 
 common(program.command('transfer'))
@@ -158,21 +162,29 @@ Examples:
   });
 
 addCageCommands(program, progress);
+addBatchCommand(program, progress);
 
 // A reader that closes the pipe early, such as `head`, is not an error.
 process.stdout.on('error', (error: NodeJS.ErrnoException) => process.exit(error.code === 'EPIPE' ? 0 : unusable));
 
-try {
-  await program.parseAsync();
-} catch (error) {
-  progress.clear();
-  if (error instanceof CommanderError) {
-    // Help that is printed because no command was given is wrong usage.
-    process.exitCode = error.exitCode === 0 ? 0 : wrongUsage;
-  } else {
-    const known = error instanceof InputError || error instanceof CagecastError;
-    const text = known ? (error as Error).message : `failed unexpectedly (${firstLine(error)}); please report it`;
-    process.stderr.write(`cagecast: ${oneLine(text)}\n`);
-    process.exitCode = unusable;
+/** Runs the command that the arguments say. */
+async function main(): Promise<void> {
+  try {
+    await program.parseAsync();
+  } catch (error) {
+    progress.clear();
+    if (error instanceof CommanderError) {
+      // Help that is printed because no command was given is wrong usage.
+      process.exitCode = error.exitCode === 0 ? 0 : wrongUsage;
+    } else {
+      const known = error instanceof InputError || error instanceof CagecastError;
+      const text = known ? (error as Error).message : `failed unexpectedly (${firstLine(error)}); please report it`;
+      process.stderr.write(`cagecast: ${oneLine(text)}\n`);
+      process.exitCode = unusable;
+    }
   }
 }
+
+// A batch runs this file in its threads.
+if (isMainThread) await main();
+else serveBatch();

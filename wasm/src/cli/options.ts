@@ -141,7 +141,7 @@ export const quoted = (name: string): string => `"${cut(name, mostCharacters)}"`
  * Returns a test whether a name matches a pattern, in which `*` matches any text. Takes time in proportion to name and pattern at
  * most, times each other: a regular expression would try all ways to share a name among the stars.
  */
-function matcher(pattern: string): (name: string) => boolean {
+export function matcher(pattern: string): (name: string) => boolean {
   const [first = '', ...pieces] = pattern.split('*');
   const last = pieces.pop();
   return (text) => {

@@ -35,12 +35,37 @@ export const autoCage = 'auto';
  * Reads target and cage, or makes a cage, and runs the transfer.
  * @throws {InputError} that names the file at fault.
  */
-export async function run({ target, cage: cagePath, rules, reading }: Sources, progress: Progress): Promise<Run> {
+export async function run(
+  { target, cage: cagePath, rules, reading }: Sources,
+  progress: Progress,
+  models: Models = { cage: readModel },
+): Promise<Run> {
   const read = await readModel(target, reading, progress);
   const options = optionsFor(read.file, read.extracted, rules);
   const cage =
-    cagePath === autoCage ? await madeCage(read, progress) : withUvs(await readModel(cagePath, reading, progress));
+    cagePath === autoCage ? await madeCage(read, progress) : withUvs(await models.cage(cagePath, reading, progress));
   return transferred(read, cage, options, progress);
+}
+
+/** How cages are read. */
+export interface Models {
+  cage: typeof readModel;
+}
+
+/** Reads cages once, and forgets them when it has read some others. */
+export function rememberingModels(): Models {
+  const most = 8;
+  const known = new Map<string, Promise<ReadModel>>();
+  return {
+    cage: (path, reading, progress) => {
+      const key = JSON.stringify([path, reading]);
+      const model = known.get(key) ?? readModel(path, reading, progress);
+      known.delete(key);
+      known.set(key, model);
+      for (const [oldest] of known) if (known.size > most) known.delete(oldest);
+      return model;
+    },
+  };
 }
 
 /** A file, and all triangles of its scene. */
@@ -60,9 +85,10 @@ export async function readModel(path: string, reading: ReadOptions, progress: Pr
 export function withUvs(model: ReadModel): ReadModel {
   const { file, extracted } = model;
   if (extracted.mesh.uvs !== undefined) return model;
-  const part = extracted.parts.find(
-    ({ mesh, primitive }) => file.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined,
-  )!;
+  const part =
+    extracted.parts.find(
+      ({ mesh, primitive }) => file.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined,
+    ) ?? extracted.parts[0]!;
   throw new InputError(
     `${placeOf(part)} (${quoted(part.name)}) has no TEXCOORD_0: the texture is drawn in the cage's UVs`,
   ).in(file.path);

@@ -11,7 +11,7 @@ import { vertexAreas } from '../inspect/geometry.js';
 import { type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
-import { inFile, type Run, run, type Sources } from './run.js';
+import { inFile, type Models, type Run, run, type Sources } from './run.js';
 import { integer, percent, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
@@ -28,15 +28,17 @@ export interface TransferCommand extends Sources {
 
 /**
  * Runs the transfer and writes the requested files.
- * @returns a summary for people, and the report.
+ * @param models  How the cage is read.
+ * @returns a summary for people, the report, and what it is about.
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 export async function transferCommand(
   command: TransferCommand,
   progress: Progress,
-): Promise<{ text: string; report: Report }> {
+  models?: Models,
+): Promise<{ text: string; report: Report; done: Run }> {
   const paint = command.texture === undefined ? undefined : await readPaint(command.texture, command.reading.limits);
-  const done = await run(command, progress);
+  const done = await run(command, progress, models);
   let added: Added[] | undefined;
   let cut: CutTarget | undefined;
   const files: { path: string; data: Uint8Array | string }[] = [];
@@ -56,7 +58,7 @@ export async function transferCommand(
   const report = makeReport(command, done, added, cut);
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
   writeFiles(files);
-  return { text: summary(command, report), report };
+  return { text: summary(command, report), report, done };
 }
 
 /** Cuts the target. @throws {InputError} that names the file and the element at fault. */

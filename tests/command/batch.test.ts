@@ -1,0 +1,138 @@
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { cagecast, glbOf } from '../js/glb.js';
+import { head } from '../js/scenes.js';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-batch-'));
+const at = (...names: string[]) => join(folder, ...names);
+const scene = head(6, 8);
+const target = glbOf({ ...scene.target, groups: undefined });
+
+interface Line {
+  target: string;
+  output: string | null;
+  key: string;
+  status: 'done' | 'failed' | 'skipped';
+  error?: string;
+  verdict?: string;
+  counts?: object;
+}
+
+const linesOf = (text: string): Line[] =>
+  text
+    .split('\n')
+    .filter(Boolean)
+    .map((line) => JSON.parse(line) as Line);
+
+before(() => {
+  for (const name of ['in', 'in/deep', 'out']) mkdirSync(at(name));
+  writeFileSync(at('cage.glb'), glbOf(scene.cage));
+  writeFileSync(at('away.glb'), glbOf({ ...scene.cage, positions: scene.cage.positions.map((x) => x + 9) }));
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+test('200 jobs, five of them broken, killed in the middle and resumed: every good job once, nothing half-written', async () => {
+  const broken = [3, 40, 77, 120, 199];
+  for (let i = 0; i < 200; ++i)
+    writeFileSync(at('in', `${i}.glb`), broken.includes(i) ? target.subarray(0, target.length / 2) : target);
+  const results = at('results.jsonl');
+  const args = ['batch', at('in/*.glb'), '--cage', at('cage.glb'), '-o', at('out/{name}.glb'), '--results', results];
+  const first = spawn(process.execPath, ['dist/cli.js', ...args, '--workers', '2'], { stdio: 'ignore' });
+  const written = () => (existsSync(results) ? readFileSync(results, 'utf8').split('\n').length - 1 : 0);
+  while (written() < 30) await new Promise((resolve) => setTimeout(resolve, 5));
+  first.kill('SIGKILL');
+  await once(first, 'exit');
+  const doneBefore = linesOf(readFileSync(results, 'utf8').replace(/[^\n]*$/, '')).length;
+  assert.ok(doneBefore < 190, `${doneBefore} jobs were done before it was killed`);
+  writeFileSync(results, '{"target":"cut o', { flag: 'a' }); // as if killed within a line
+
+  const { status, stdout, stderr } = cagecast(...args, '--resume');
+  assert.equal(status, 1);
+  assert.equal(stdout, '');
+  assert.match(stderr, /^200 jobs: \d+ done, 5 failed, \d+ done before; [\d.]+ s\n$/);
+  const lines = readFileSync(results, 'utf8')
+    .split('\n')
+    .filter((line) => line.endsWith('}'))
+    .map((line) => JSON.parse(line) as Line);
+  const done = lines.filter((line) => line.status === 'done').map((line) => line.target);
+  assert.equal(new Set(done).size, 195);
+  assert.equal(done.length, 195);
+  const failed = new Set(lines.filter((line) => line.status === 'failed').map((line) => line.target));
+  assert.deepEqual([...failed].sort(), broken.map((i) => at('in', `${i}.glb`)).sort());
+  assert.ok(lines.every((line) => line.status === 'done' || /: is truncated/.test(line.error!)));
+  const files = readdirSync(at('out'));
+  assert.equal(files.length, 195, 'no file under a temporary name is left');
+  for (const name of files) {
+    const bytes = readFileSync(at('out', name));
+    assert.equal(bytes.readUInt32LE(8), bytes.length, name);
+  }
+
+  // What has changed is done again, and nothing else.
+  writeFileSync(at('in/5.glb'), target);
+  rmSync(at('out/6.glb'));
+  const again = cagecast(...args, '--resume', '--json');
+  const { seconds: _, ...summary } = JSON.parse(again.stderr) as { seconds: number };
+  assert.deepEqual(summary, { jobs: 200, done: 2, failed: 5, skipped: 193, misfits: 0 });
+});
+
+test('patterns reach into folders, lines are printed, and --fail-on exits 3', () => {
+  writeFileSync(at('in/deep/a.glb'), target);
+  writeFileSync(at('in/deep/.hidden.glb'), target);
+  const found = cagecast('batch', at('**/deep/*.glb'), '--cage', at('cage.glb'), '--fail-on', 'unfit', '--quiet');
+  assert.deepEqual([found.status, found.stdout, found.stderr], [0, '', '']);
+  const away = cagecast('batch', at('in/deep/a.glb'), '--cage', at('away.glb'), '--fail-on', 'unfit');
+  assert.equal(away.status, 3);
+  const [line, ...others] = linesOf(away.stdout);
+  assert.equal(others.length, 0);
+  assert.deepEqual(
+    [line!.target, line!.output, line!.status, line!.verdict],
+    [at('in/deep/a.glb'), null, 'done', 'unfit'],
+  );
+  assert.match(away.stderr, /1 with a cage that does not fit as demanded/);
+});
+
+test('a manifest has a job per line, with options of its own; a wrong line is a job that fails', () => {
+  const jobs = [
+    { target: 'in/0.glb', cage: 'cage.glb', output: 'out/kept.glb', report: 'kept.json', exclude: ['only'] },
+    { target: 'in/0.glb', cage: 'cage.glb', report: 'high.json', threshold: 1 },
+    { target: 'in/0.glb', cage: 'cage.glb', treshold: 1 },
+    { target: 'in/gone.glb' },
+  ];
+  writeFileSync(at('jobs.jsonl'), `${jobs.map((job) => JSON.stringify(job)).join('\n')}\nno JSON\n\n`);
+  const { status, stdout } = cagecast('batch', '--manifest', at('jobs.jsonl'), '--workers', '1');
+  assert.equal(status, 1);
+  const lines = linesOf(stdout);
+  const errors = lines.flatMap(({ error }) => error ?? []).sort();
+  assert.equal(errors.length, 3);
+  assert.match(errors[0]!, /^line 3 of .*jobs\.jsonl: "treshold" is unknown; there are: target, cage, /);
+  assert.match(errors[1]!, /^line 4 of .*jobs\.jsonl: .*has no cage/);
+  assert.match(errors[2]!, /^line 5 of .*jobs\.jsonl: is not JSON/);
+  assert.equal(lines.filter((line) => line.status === 'done').length, 2);
+  const { counts } = JSON.parse(readFileSync(at('kept.json'), 'utf8')) as { counts: { cosmetic: number } };
+  assert.equal(counts.cosmetic, 0);
+  const { options } = JSON.parse(readFileSync(at('high.json'), 'utf8')) as { options: { threshold: number } };
+  assert.equal(options.threshold, 1);
+});
+
+test('a batch that cannot be right does not begin', () => {
+  const cage = ['--cage', at('cage.glb')];
+  const cases: [string[], number, RegExp][] = [
+    [['batch'], 2, /give either TARGETS or --manifest/],
+    [['batch', at('in/*.glb')], 2, /TARGETS need --cage/],
+    [['batch', at('in/*.glb'), ...cage, '--resume'], 2, /--resume needs --results/],
+    [['batch', at('in/*.gltf'), ...cage], 1, /in\/\*\.gltf: no file has such a name/],
+    [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 1, /same\.glb: is written for .* and .*; use \{name\}/],
+    [['batch', at('in/*.glb'), ...cage, '-o', at('in/{name}.glb')], 1, /: is read and written by this batch/],
+  ];
+  for (const [args, code, message] of cases) {
+    const { status, stdout, stderr } = cagecast(...args);
+    assert.deepEqual([status, stdout], [code, ''], args.join(' '));
+    assert.match(stderr, message);
+    assert.match(stderr, /^cagecast: [^\n]+\n$/);
+  }
+});

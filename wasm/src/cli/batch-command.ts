@@ -1,0 +1,163 @@
+import { appendFileSync, existsSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
+import { basename, dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { Worker } from 'node:worker_threads';
+import { firstLine, InputError } from '../gltf/input-error.js';
+import type { Verdict } from '../inspect/index.js';
+import { isWritten, type Job } from './batch-jobs.js';
+import type { Outcome, Task } from './batch-worker.js';
+import { placeOf } from './output.js';
+import { oneLine } from './print.js';
+import type { Progress } from './progress.js';
+
+/** The arguments of `cagecast batch`. */
+export interface BatchCommand {
+  jobs: readonly Job[];
+  /** Where lines are added, one per job; if none, on the standard output. */
+  results?: string | undefined;
+  /** Whether jobs are skipped that `results` says are done. */
+  resume: boolean;
+  /** The verdict from which on the batch fails. */
+  failOn?: 'usable' | 'unfit' | undefined;
+  workers?: number | undefined;
+}
+
+/** A line of the results. */
+export type ResultLine = { target: string; output: string | null; key: string } & (
+  | Outcome
+  | { status: 'skipped'; verdict?: Verdict }
+);
+
+/** What became of the jobs of a batch. */
+export interface BatchSummary {
+  jobs: number;
+  done: number;
+  failed: number;
+  skipped: number;
+  /** How many cages got a verdict that `failOn` names, or a worse one. */
+  misfits: number;
+  seconds: number;
+}
+
+/** Verdicts, from bad to good. */
+const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
+
+/**
+ * Runs jobs, each in one of some threads. A job that fails does not stop the others.
+ * @param write  Takes each line as soon as its job has ended.
+ * @throws {InputError} if the results cannot be read or written.
+ */
+export async function batchCommand(
+  { jobs, results, resume, failOn, workers }: BatchCommand,
+  write: (line: string) => void,
+  progress: Progress,
+): Promise<BatchSummary> {
+  const began = performance.now();
+  const before = resume ? readResults(results!) : new Map<string, ResultLine>();
+  const summary: BatchSummary = { jobs: jobs.length, done: 0, failed: 0, skipped: 0, misfits: 0, seconds: 0 };
+  const take = (job: Job, outcome: Outcome | { status: 'skipped'; verdict?: Verdict }) => {
+    const { target, output = null } = job.command;
+    const line: ResultLine = { target, output, key: job.key, ...outcome };
+    ++summary[line.status];
+    if (failOn && 'verdict' in line && verdicts.indexOf(line.verdict!) <= verdicts.indexOf(failOn)) ++summary.misfits;
+    const text = `${JSON.stringify(line)}\n`;
+    if (results === undefined) write(text);
+    else if (line.status !== 'skipped') append(results, text);
+    const ended = summary.done + summary.failed + summary.skipped;
+    progress.share(`${ended} of ${jobs.length} jobs, ${summary.failed} failed`, ended / jobs.length);
+  };
+  const waiting: Job[] = [];
+  for (const job of jobs) {
+    const known = before.get(job.key);
+    if (job.error !== undefined) take(job, { status: 'failed', ms: 0, error: job.error });
+    else if (known?.status === 'done' && isWritten(job) && (!failOn || known.verdict))
+      take(job, { status: 'skipped', ...(known.verdict && { verdict: known.verdict }) });
+    else waiting.push(job);
+  }
+  if (resume) for (const { command } of waiting) removeLeftovers([command.output, command.report]);
+  const count = Math.min(workers ?? availableParallelism(), waiting.length);
+  await Promise.all(Array.from({ length: count }, () => work(waiting, failOn !== undefined, take)));
+  progress.clear();
+  return { ...summary, seconds: (performance.now() - began) / 1000 };
+}
+
+/** Runs jobs in a thread, one after another, until none is waiting. A thread that dies is replaced. */
+async function work(waiting: Job[], inspects: boolean, take: (job: Job, outcome: Outcome) => void): Promise<void> {
+  let worker: Worker | undefined;
+  for (let job = waiting.shift(); job; job = waiting.shift()) {
+    worker ??= new Worker(fileURLToPath(import.meta.url), { argv: [] });
+    const outcome = await ask(worker, { command: job.command, inspects });
+    if (outcome === undefined) worker = undefined;
+    take(
+      job,
+      outcome ?? { status: 'failed', ms: 0, error: `${job.command.target}: its thread died, as if out of memory` },
+    );
+  }
+  await worker?.terminate();
+}
+
+/** The answer of a worker; `undefined` if it died. */
+function ask(worker: Worker, task: Task): Promise<Outcome | undefined> {
+  return new Promise((resolve) => {
+    const answered = (outcome: Outcome) => end(outcome);
+    const died = () => end(undefined);
+    const end = (outcome: Outcome | undefined) => {
+      // Not removeAllListeners: Worker has some of its own.
+      worker.off('message', answered).off('error', died).off('exit', died);
+      resolve(outcome);
+    };
+    worker.on('message', answered).on('error', died).on('exit', died);
+    worker.postMessage(task);
+  });
+}
+
+/** The last line about each job, by key. A line that was not written to its end is left out. */
+function readResults(path: string): Map<string, ResultLine> {
+  const lines = new Map<string, ResultLine>();
+  if (!existsSync(path)) return lines;
+  const text = attempt(path, 'read', () => readFileSync(path, 'utf8'));
+  for (const one of text.split('\n')) {
+    try {
+      const line = JSON.parse(one) as ResultLine;
+      if (typeof line.key === 'string') lines.set(line.key, line);
+    } catch {
+      // Cut off when the batch was killed.
+    }
+  }
+  if (text !== '' && !text.endsWith('\n')) append(path, '\n');
+  return lines;
+}
+
+const append = (path: string, text: string): void => attempt(path, 'written', () => appendFileSync(path, text));
+
+function attempt<Result>(path: string, what: string, work: () => Result): Result {
+  try {
+    return work();
+  } catch (error) {
+    throw new InputError(`cannot be ${what} (${firstLine(error)})`, { cause: error }).in(path);
+  }
+}
+
+/** Removes files under temporary names that a batch left when it was killed. */
+function removeLeftovers(paths: readonly (string | undefined)[]): void {
+  for (const path of paths) {
+    if (path === undefined) continue;
+    const place = placeOf(path);
+    const folder = dirname(place);
+    if (!existsSync(folder)) continue;
+    for (const name of readdirSync(folder))
+      if (name.startsWith(`.${basename(place)}.`) && name.endsWith('.tmp')) rmSync(join(folder, name), { force: true });
+  }
+}
+
+/** A summary for people. */
+export function describeBatch({ jobs, done, failed, skipped, misfits, seconds }: BatchSummary): string {
+  const parts = [
+    `${done} done`,
+    `${failed} failed`,
+    ...(skipped > 0 ? [`${skipped} done before`] : []),
+    ...(misfits > 0 ? [`${misfits} with a cage that does not fit as demanded`] : []),
+  ];
+  return oneLine(`${jobs} jobs: ${parts.join(', ')}; ${seconds.toFixed(1)} s`);
+}

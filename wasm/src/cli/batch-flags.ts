@@ -1,0 +1,108 @@
+import { type Command, InvalidArgumentError, Option } from 'commander';
+import { forms } from '../gltf/glb-writer.js';
+import { batchCommand, describeBatch } from './batch-command.js';
+import { jobsOfManifest, jobsOfPatterns } from './batch-jobs.js';
+import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
+import { addPrintFlags, type PrintFlags } from './print.js';
+import type { Progress } from './progress.js';
+import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
+import type { TransferCommand } from './transfer-command.js';
+import { endingIn, unfit, unusable, wrongUsage } from './usage.js';
+
+interface BatchFlags
+  extends RuleFlags,
+    ReadFlags,
+    PrintFlags,
+    Pick<TransferCommand, 'texture' | 'output' | 'report' | 'borders' | 'compress'> {
+  cage?: string;
+  manifest?: string;
+  results?: string;
+  resume?: boolean;
+  failOn?: 'usable' | 'unfit';
+  workers?: number;
+}
+
+function workers(text: string): number {
+  if (!/^[1-9]\d{0,2}$/.test(text)) throw new InvalidArgumentError('It is not a whole number within 1..999.');
+  return Number(text);
+}
+
+/** Adds the command that runs many transfers. */
+export function addBatchCommand(program: Command, progress: Progress): void {
+  const command = addPrintFlags(
+    addReadFlags(
+      addRuleFlags(
+        program
+          .command('batch')
+          .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders'),
+      ),
+    ),
+  )
+    .description('transfer to many files, in threads; print a line of JSON for each')
+    .option(
+      '--manifest <JOBS.jsonl>',
+      'a JSON object per line: target, cage, texture, output, report, and options; - for the standard input',
+    )
+    .option('--cage <CAGE>', 'the cage of jobs that name none; auto makes one for each target')
+    .option('--texture <PAINT>', 'the texture of jobs that name none')
+    .addOption(
+      new Option(
+        '-o, --output <OUT.glb>',
+        'where to write; {name} is the name of the target, {dir} its folder',
+      ).argParser(endingIn('.glb', '.vrm')),
+    )
+    .option('--report <R.json>', 'where to write reports; {name} and {dir} as above')
+    .addOption(new Option('--borders <HOW>', 'as for transfer').choices(['triangle', 'cut']).default('triangle'))
+    .addOption(new Option('--compress <HOW>', 'as for transfer').choices(forms).default('keep'))
+    .option('--results <RESULTS.jsonl>', 'add the lines to this file instead of printing them')
+    .option('--resume', 'skip jobs that --results says are done, if nothing they read has changed')
+    .addOption(
+      new Option('--fail-on <VERDICT>', 'inspect each cage, and exit 3 if one is no better than this').choices([
+        'usable',
+        'unfit',
+      ]),
+    )
+    .addOption(new Option('--workers <N>', 'threads (default: one per processor)').argParser(workers))
+    .addHelpText(
+      'after',
+      `
+A line of a manifest, with paths relative to the manifest:
+  {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["eye*"]}
+A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings if there are.
+A job that fails does not stop the others. Files are complete or not there, even if the batch is killed.
+Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 --fail-on found a cage that does not fit as demanded.
+
+Examples:
+  cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
+  cagecast batch --manifest jobs.jsonl --results results.jsonl --resume --fail-on unfit`,
+    );
+  command.action(async (targets: string[], flags: BatchFlags) => {
+    const { manifest, results, resume = false, failOn, workers, texture, output, report, cage } = flags;
+    const wrong = (text: string) => command.error(text, { exitCode: wrongUsage });
+    if (targets.length > 0 === (manifest !== undefined)) wrong('give either TARGETS or --manifest');
+    if (resume && results === undefined) wrong('--resume needs --results, which says what is done');
+    if (manifest === undefined && cage === undefined) wrong('TARGETS need --cage');
+    if (texture !== undefined && output === undefined && manifest === undefined) wrong('--texture needs -o OUT.glb');
+    if (flags.quiet) progress.silence();
+    const { borders, compress } = flags;
+    const defaults = {
+      cage,
+      texture,
+      output,
+      report,
+      borders,
+      compress,
+      rules: rulesOf(flags),
+      reading: readingOf(flags),
+    };
+    const jobs = manifest === undefined ? jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
+    const write = (line: string) => process.stdout.write(line);
+    const summary = await batchCommand(
+      { jobs, results, resume, failOn, workers },
+      flags.quiet ? () => {} : write,
+      progress,
+    );
+    if (!flags.quiet) process.stderr.write(`${flags.json ? JSON.stringify(summary) : describeBatch(summary)}\n`);
+    process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
+  });
+}

@@ -1,0 +1,49 @@
+import { parentPort } from 'node:worker_threads';
+import { firstLine, InputError } from '../gltf/input-error.js';
+import { CagecastError } from '../index.js';
+import type { Verdict } from '../inspect/index.js';
+import { inspectionReport } from './inspect-command.js';
+import { Progress } from './progress.js';
+import { rememberingModels } from './run.js';
+import { type Report, type TransferCommand, transferCommand } from './transfer-command.js';
+
+/** What a worker is asked. */
+export interface Task {
+  command: TransferCommand;
+  /** Whether to inspect the cage as well. */
+  inspects: boolean;
+}
+
+/** What a worker found. */
+export type Outcome =
+  | { status: 'done'; ms: number; counts: Report['counts']; verdict?: Verdict; findings?: string[] }
+  | { status: 'failed'; ms: number; error: string };
+
+/** Answers tasks until the thread is ended. Cages are read once. */
+export function serveBatch(): void {
+  const port = parentPort!;
+  const progress = new Progress();
+  progress.silence();
+  const models = rememberingModels();
+  port.on('message', async ({ command, inspects }: Task) => {
+    const began = performance.now();
+    const ms = () => Math.round(performance.now() - began);
+    try {
+      const { report, done } = await transferCommand(command, progress, models);
+      const inspection = inspects ? inspectionReport(command, done) : undefined;
+      port.postMessage({
+        status: 'done',
+        ms: ms(),
+        counts: report.counts,
+        ...(inspection && {
+          verdict: inspection.verdict,
+          findings: inspection.findings.map(({ code }) => code),
+        }),
+      } satisfies Outcome);
+    } catch (error) {
+      const known = error instanceof InputError || error instanceof CagecastError;
+      const text = known ? error.message : `failed unexpectedly (${firstLine(error)}); please report it`;
+      port.postMessage({ status: 'failed', ms: ms(), error: text } satisfies Outcome);
+    }
+  });
+}
