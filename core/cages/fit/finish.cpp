@@ -40,19 +40,21 @@ std::vector<bool> borderVertices(const TemplateCage& cage) {
 /// Takes moves back where triangles would be folded that are not so in the template.
 void undoFolds(const TemplateCage& cage, const std::vector<Vec3>& old, const std::vector<bool>& foldedBefore,
                std::vector<Vec3>& positions) {
-  for (bool any = true; any;) {
-    any = false;
+  // The corners first, then their neighbours as well.
+  for (int ring = 0; ring < 2;) {
     const std::vector<bool> folded = foldedTriangles({positions, cage.mesh.triangles});
     std::vector<bool> stays(positions.size());
     for (std::size_t t = 0; t < folded.size(); ++t)
       if (folded[t] && !foldedBefore[t])
         for (const std::uint32_t v : cage.mesh.triangles[t]) stays[v] = true;
-    grow(cage, stays);
+    if (ring > 0) grow(cage, stays);
+    bool any = false;
     for (std::size_t v = 0; v < positions.size(); ++v) {
       if (!stays[v] || !(length(positions[v] - old[v]) > 0)) continue;
       positions[v] = old[v];
       any = true;
     }
+    if (!any) ++ring;
   }
 }
 

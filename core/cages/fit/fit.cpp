@@ -163,6 +163,7 @@ std::vector<Vec3> Fit::start(const TemplateCage& cage) {
     anchors.push_back({positionOf(pairs_.from[i]), positionOf(pairs_.to[i]),
                        kSlack * (1 - static_cast<double>(pairs_.to[i].confidence))});
   }
+  for (const Anchor& anchor : jawAnchors(from_.landmarks, pairs_.to)) anchors.push_back(anchor);
   for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
   if (bones_.empty())
     for (const Anchor& anchor : rimAnchors(cage, skin_, axes)) anchors.push_back(anchor);

@@ -13,6 +13,9 @@ constexpr int kPerSide = 4;          ///< Anchors from front to back on each sid
 constexpr double kStep = 0.005;      ///< Distance of samples along a rim, in diagonals.
 constexpr double kSmoothing = 0.03;  ///< Ragged rims are smoothed over this share of their length.
 
+/// Where on the line from menton to the lobe of an ear the jaw is held, too.
+constexpr double kJawShare = 0.35;
+
 struct Rim {
   std::vector<Vec3> points;
   Vec3 centre{};
@@ -106,6 +109,24 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Vec3 outward = perpendicular(b[i] - to.centre, to.normal);
     anchors.push_back({a[i], b[i] + cage.offset / std::max(length(outward), cage.offset) * outward});
+  }
+  return anchors;
+}
+
+std::vector<Anchor> jawAnchors(const std::vector<Landmark>& own, const std::vector<Landmark>& to) {
+  std::vector<Anchor> anchors;
+  const Landmark *chin = findLandmark(own, "chin"), *toChin = findLandmark(to, "chin");
+  const Landmark* menton = findLandmark(own, "menton");
+  if (chin == nullptr || toChin == nullptr || menton == nullptr || findLandmark(to, "menton") != nullptr)
+    return anchors;
+  const Vec3 below = positionOf(*menton), move = positionOf(*toChin) - positionOf(*chin);
+  anchors.push_back({below, below + move});
+  for (const char* side : {"ear_lobe_left", "ear_lobe_right"}) {
+    const Landmark *lobe = findLandmark(own, side), *toLobe = findLandmark(to, side);
+    if (lobe == nullptr || toLobe == nullptr) continue;
+    const Vec3 at = positionOf(*lobe);
+    const Vec3 edge = below + kJawShare * (at - below);
+    anchors.push_back({edge, edge + (1 - kJawShare) * move + kJawShare * (positionOf(*toLobe) - at)});
   }
   return anchors;
 }

@@ -12,6 +12,11 @@ namespace cagecast::cages {
 /// @param target  The target's skin, in the template's space.
 std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& target, const Axes& axes);
 
+/// Pairs along the lower edge of a jaw of which only the chin is known, as where a mouth is open or the chin double:
+/// all of it moves with the chin, less and less towards the lobes of the ears. Empty if menton is known.
+/// @param own  All landmarks of the template.
+std::vector<Anchor> jawAnchors(const std::vector<Landmark>& own, const std::vector<Landmark>& to);
+
 /// Pairs above and below each eye: an eye that is wider is higher, too, by as much.
 std::vector<Anchor> eyeAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to, const Axes& axes);
 

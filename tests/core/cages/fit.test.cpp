@@ -7,6 +7,7 @@
 
 #include "cagecast/cages.hpp"
 #include "fit/relax.hpp"
+#include "fit/rim.hpp"
 #include "fit/template_cage.hpp"
 #include "fit/warp.hpp"
 #include "mesh/surface.hpp"
@@ -322,4 +323,17 @@ TEST_CASE("relaxing unfolds what was moved over its neighbours, and leaves the r
   CHECK(foldCount() == 0);
   for (std::size_t v = 0; v < positions.size(); ++v)
     if (!near[v]) CHECK(length(positions[v] - cage.mesh.positions[v]) == 0);
+}
+
+TEST_CASE("a jaw of which only the chin is known moves with it", "[cages][fit]") {
+  const std::vector<Landmark> own{{"chin", {0, -1, 1}}, {"menton", {0, -1.5F, 0.5F}}, {"ear_lobe_left", {1, 0, 0}}};
+  std::vector<Landmark> to{{"chin", {0, -2, 1}}, {"ear_lobe_left", {1, 0, 0}}};
+  const std::vector<Anchor> anchors = jawAnchors(own, to);
+  REQUIRE(anchors.size() == 2);
+  CHECK(length(anchors[0].to - Vec3{0, -2.5, 0.5}) < 1e-6);
+  const Vec3 move = anchors[1].to - anchors[1].from;
+  CHECK(move.y < 0);
+  CHECK(move.y > -1);
+  to.push_back({"menton", {0, -2.4F, 0.5F}});
+  CHECK(jawAnchors(own, to).empty());
 }
