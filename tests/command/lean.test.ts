@@ -11,7 +11,7 @@ import draco from 'draco3dgltf';
 import { MeshoptDecoder, MeshoptEncoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
 import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../js/glb.js';
-import { head } from '../js/scenes.js';
+import { ball, head } from '../js/scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-lean-'));
 const at = (name: string) => join(folder, name);
@@ -143,10 +143,55 @@ describe('files stay lean', () => {
       [],
     );
     const bytes = json.bufferViews!.reduce((sum, { byteLength }) => sum + Math.ceil(byteLength / 4) * 4, 0);
-    assert.equal(json.buffers![0]!.byteLength, bytes);
+    assert.equal(Math.ceil(json.buffers![0]!.byteLength / 4) * 4, bytes);
     const [primitive] = document.getRoot().listMeshes()[0]!.listPrimitives();
     assert.equal(primitive!.getAttribute('TEXCOORD_1')!.getArray()!.constructor, Uint16Array);
     assert.equal(primitive!.getAttribute('_NCZ')!.getArray()!.constructor, Uint8Array);
+  });
+
+  test('what shares a view with something that is replaced stays, without it', async () => {
+    const maker = new GlbMaker();
+    const other = ball([0, 0, 5], () => 0.2, 12, 16);
+    const both = new Float32Array([...other.positions, ...target.positions]);
+    const bufferView = maker.view(new Uint8Array(both.buffer), { target: 34962, byteStride: 12 });
+    const part = (positions: Float32Array, indices: Uint32Array, byteOffset: number, isShown: boolean) => {
+      const bound = (pick: (...values: number[]) => number) =>
+        [0, 1, 2].map((k) =>
+          positions.filter((_: number, i: number) => i % 3 === k).reduce((a: number, b: number) => pick(a, b)),
+        );
+      const POSITION =
+        maker.json.accessors.push({
+          bufferView,
+          byteOffset,
+          componentType: 5126,
+          count: positions.length / 3,
+          type: 'VEC3',
+          min: bound(Math.min),
+          max: bound(Math.max),
+        } as GLTF.IAccessor) - 1;
+      const primitives = [{ attributes: { POSITION }, indices: maker.accessor(indices, 'SCALAR') }];
+      const node = maker.node({ mesh: maker.json.meshes.push({ primitives }) - 1 }, isShown);
+      if (!isShown) maker.json.scenes!.push({ nodes: [node] });
+    };
+    part(other.positions as Float32Array, other.indices, 0, false); // in another scene
+    part(target.positions as Float32Array, target.indices as Uint32Array, 4 * other.positions.length, true);
+    writeFileSync(at('joined.glb'), maker.finish());
+    const { json, document } = await written('joined.glb');
+    const [first, second] = document
+      .getRoot()
+      .listMeshes()
+      .map((mesh) => mesh.listPrimitives()[0]!.getAttribute('POSITION')!);
+    assert.deepEqual(first!.getArray(), other.positions);
+    assert.ok(second!.getCount() > target.positions.length / 3, 'vertices are split');
+    const stored = 12 * (first!.getCount() + second!.getCount());
+    const views = json.bufferViews!.filter(
+      ({ target, byteLength }) => target === 34962 && byteLength > 4 * first!.getCount(),
+    );
+    assert.ok(views.reduce((sum, { byteLength }) => sum + byteLength, 0) <= stored + 4 * second!.getCount() * 2);
+    assert.equal(
+      Math.ceil(json.buffers![0]!.byteLength / 4) * 4,
+      json.bufferViews!.reduce((sum, { byteLength }) => sum + Math.ceil(byteLength / 4) * 4, 0),
+    );
   });
 
   test('the overlay has positions and triangles of its own, and nothing else', async () => {

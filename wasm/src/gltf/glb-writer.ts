@@ -1,5 +1,5 @@
 import { dirname } from 'node:path';
-import type { GLTF } from '@gltf-transform/core';
+import type { Accessor, GLTF } from '@gltf-transform/core';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
 import { type ReadOptions, readUri } from './files.js';
@@ -66,8 +66,12 @@ export class GlbWriter {
   /** The name of the extension that compresses views. */
   readonly #meshopt: string | undefined;
 
-  private constructor(json: GLTF.IGLTF, form: Form) {
+  /** The accessors of the file, decoded. */
+  readonly #decoded: Accessor[];
+
+  private constructor({ json, geometry }: GltfFile, form: Form) {
     this.json = structuredClone(json);
+    this.#decoded = geometry.getRoot().listAccessors();
     this.#before = {
       accessors: numbersOf(eachAccessor, json),
       views: numbersOf(eachView, json),
@@ -83,7 +87,7 @@ export class GlbWriter {
    * @throws {InputError} if such an image cannot be read.
    */
   static async from(file: GltfFile, form: Form): Promise<GlbWriter> {
-    const writer = new GlbWriter(file.json, form);
+    const writer = new GlbWriter(file, form);
     writer.#mergeBuffers(file.buffers);
     await writer.#embedImages(dirname(file.path), file.reading);
     if (writer.#meshopt !== undefined) await MeshoptEncoder.ready;
@@ -190,9 +194,14 @@ export class GlbWriter {
     };
     const listed = maySparse && this.#meshopt === undefined ? sparseElements(values, size) : undefined;
     if (listed) return this.#addAccessor({ ...accessor, ...this.#sparse(values, size, listed) }, values, size);
+    return this.#addAccessor({ ...accessor, bufferView: this.#addVertices(values, size) }, values, size);
+  }
+
+  /** Adds the bytes of a vertex attribute. @returns the number of their view. */
+  #addVertices(values: AttributeArray, size: number): number {
     const { aligned, byteStride } = align(values, size);
     const stride = byteStride ?? (this.#meshopt === undefined ? undefined : size * values.BYTES_PER_ELEMENT);
-    return this.#addAccessor({ ...accessor, bufferView: this.#addData(aligned, arrayBuffer, stride) }, values, size);
+    return this.#addData(aligned, arrayBuffer, stride);
   }
 
   /** Stores some elements of an accessor; the others are 0. */
@@ -253,6 +262,41 @@ export class GlbWriter {
     }
   }
 
+  /** Gives accessors views of their own that share one with accessors that nothing refers to any more. */
+  #splitViews(): void {
+    const { accessors = [] } = this.json;
+    const used = numbersOf(eachAccessor, this.json);
+    const isDropped = (a: number) => this.#before.accessors.has(a) && !used.has(a);
+    const usersOf = new Map<number, number[]>();
+    accessors.forEach(({ bufferView }, a) => {
+      if (bufferView !== undefined) usersOf.set(bufferView, [...(usersOf.get(bufferView) ?? []), a]);
+    });
+    const references = new Map<number, number>();
+    eachView(this.json, (owner, key) => references.set(owner[key]!, (references.get(owner[key]!) ?? 0) + 1));
+    const primitives = (this.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
+    const indices = new Set(primitives.flatMap((primitive) => primitive.indices ?? []));
+    const isVertices = numbersOf(eachAccessor, {
+      ...this.json,
+      skins: [],
+      animations: [],
+      nodes: [],
+    } as unknown as GLTF.IGLTF);
+    for (const [view, users] of usersOf) {
+      if (!users.some(isDropped) || references.get(view) !== users.length) continue;
+      const kept = users.filter((a) => !isDropped(a));
+      if (kept.some((a) => accessors[a]!.sparse || a >= this.#decoded.length)) continue;
+      for (const a of kept) {
+        const values = this.#decoded[a]!.getArray()!;
+        delete accessors[a]!.byteOffset;
+        accessors[a]!.bufferView = indices.has(a)
+          ? this.#addData(values, elementArrayBuffer)
+          : isVertices.has(a)
+            ? this.#addVertices(values, this.#decoded[a]!.getElementSize())
+            : this.addView(bytesOf(values)); // of a skin or an animation
+      }
+    }
+  }
+
   /** Drops accessors and views that nothing refers to any more; those to which nothing did before stay. */
   #dropUnused(): GLTF.IBufferView[] {
     const { json } = this;
@@ -291,6 +335,7 @@ export class GlbWriter {
   /** The bytes of the GLB. */
   finish(): Uint8Array {
     const { json } = this;
+    this.#splitViews();
     const dropped = this.#dropUnused();
     const chunks = this.#cutOut(dropped.filter((view) => !this.#added.has(view)));
     let length = chunks.reduce((sum, { byteLength }) => sum + byteLength, 0);
