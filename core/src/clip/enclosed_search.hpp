@@ -8,22 +8,22 @@ namespace cagecast {
 /// Finds regions that lie inside a piece without reaching its edges: no crossing on an edge tells of them.
 class EnclosedSearch {
  public:
-  explicit EnclosedSearch(TargetTriangle& triangle) noexcept : triangle_(triangle) {}
-
-  /// Begins with another triangle of the target, for whose pieces together `kMaxParts` parts may be searched.
-  void begin() noexcept { left_ = kMaxParts; }
+  explicit EnclosedSearch(TargetTriangle& triangle) noexcept
+      : triangle_(triangle), left_(kBaseParts + kPartsPerTriangle * triangle.input.target.indices.size() / 3) {}
 
   /// Finds a point well inside one of some pieces that is not in the region of that piece.
   /// Cost: a piece is quartered until its parts surely lie in one region or are as small as the features that may be
   /// missed. Where neither is provable, that is some thousand parts for a large piece.
-  /// @return false if there is none, or none was found when the parts of the triangle were used up.
+  /// @return false if there is none, or none was found when the parts of the whole call were used up.
   bool find(const List<Piece>& pieces, TrianglePoint& point) noexcept;
 
   [[nodiscard]] bool failed() const noexcept { return parts_.failed(); }
 
  private:
-  /// Some triangles of real models need 50,000.
-  static constexpr std::uint32_t kMaxParts = 1u << 16;
+  /// How many parts may be searched in a call, and how many more for each triangle of the target. A real car with bad
+  /// borders needs 300 per triangle; scenes that are made for it would need millions.
+  static constexpr std::size_t kBaseParts = 8192;
+  static constexpr std::size_t kPartsPerTriangle = 256;
 
   /// A part of a piece that has to be searched.
   struct Part {
@@ -39,7 +39,7 @@ class EnclosedSearch {
 
   TargetTriangle& triangle_;
   List<Part> parts_;
-  std::uint32_t left_ = 0;  ///< How many parts may still be searched.
+  std::size_t left_;  ///< How many parts may still be searched.
 };
 
 }  // namespace cagecast

@@ -54,7 +54,6 @@ class TriangleCutter {
  private:
   void cut(std::uint32_t t) noexcept {
     triangle_.begin(t);
-    enclosed_.begin();
     builder_.forget();
     polygons_.cut(0);
     crossings_.inside.cut(0);
