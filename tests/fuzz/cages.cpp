@@ -1,0 +1,56 @@
+// Makes, fits and refines cages for any model: an outcome with a sentence, or a cage that is consistent.
+
+#include "cagecast/cages.hpp"
+
+#include <cmath>
+
+#include "fuzz/input.hpp"
+
+using namespace cagecast;
+using fuzz::require;
+
+namespace {
+
+void check(const cages::Outcome& outcome, const cages::Cage& cage) {
+  if (!outcome.ok()) return require(!outcome.message.empty());
+  const std::size_t vertices = cage.positions.size() / 3;
+  require(cage.uvs.size() == 2 * vertices && cage.indices.size() % 3 == 0);
+  for (const float x : cage.positions) require(std::isfinite(x));
+  for (const float x : cage.uvs) require(std::isfinite(x));
+  for (const std::uint32_t index : cage.indices) require(index < vertices);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Input input(data, size);
+  const fuzz::Mesh mesh(input, false), other(input, true);
+  const char* const names[] = {"head", "eye_l", "hair", "body/skin"};
+  cages::Model model{mesh.view()};
+  for (std::uint32_t i = input.below(5); i > 0; --i) model.parts.emplace_back(names[input.below(4)]);
+  const cages::Position anywhere{input.coordinate(), input.coordinate(), input.coordinate()};
+  if (input.flag()) model.joints.push_back({"Head", anywhere, -1});
+  const cages::Progress progress = [](float, const char*) { return true; };
+  switch (input.below(3)) {
+    case 0: {
+      cages::MakeOptions options;
+      options.kind = static_cast<cages::Kind>(input.below(4));
+      options.voxels = 32;
+      options.triangles = 50 + input.below(200);
+      cages::Cage cage;
+      check(makeCage(model, options, progress, cage), cage);
+      break;
+    }
+    case 1: {
+      cages::Template from{other.view(), {{"nose_tip", anywhere}, {"chin", {0, 0, 0}}, {"crown", {0, 1, 0}}}};
+      cages::FittedCage cage;
+      check(fitCage(from, model, {}, progress, cage), cage);
+      break;
+    }
+    default: {
+      cages::Cage cage;
+      check(refineCage(other.view(), model, {}, progress, cage), cage);
+    }
+  }
+  return 0;
+}

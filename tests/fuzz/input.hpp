@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "cagecast/transfer.hpp"
+
+/// Makes meshes and options of a fuzzer's bytes, so that small changes of them are small changes of a scene. Bytes that
+/// are missing count as 0.
+namespace cagecast::fuzz {
+
+/// Ends the program if a promise does not hold; a fuzzer reports that with the input that led to it.
+inline void require(bool holds) {
+  if (!holds) __builtin_trap();
+}
+
+class Input {
+ public:
+  Input(const std::uint8_t* data, std::size_t size) : rest_(data, size) {}
+
+  std::uint8_t byte() {
+    if (rest_.empty()) return 0;
+    const std::uint8_t first = rest_.front();
+    rest_ = rest_.subspan(1);
+    return first;
+  }
+  bool flag() { return (byte() & 1) != 0; }
+  /// A whole number in 0..limit-1, for limits up to 65536.
+  std::uint32_t below(std::uint32_t limit) {
+    std::uint32_t value = byte();
+    if (limit > 256) value = value << 8 | byte();
+    return value % limit;
+  }
+  /// A number in 0..1, in steps of 1/255.
+  float share() { return static_cast<float>(byte()) / 255; }
+
+  /// A coordinate: mostly on a grid of 1/16, where coincidences are frequent, else a little off it, or any float.
+  float coordinate() {
+    const std::uint8_t kind = byte();
+    const float onGrid = static_cast<float>(static_cast<std::int8_t>(byte())) / 16;
+    if (kind < 200) return onGrid;
+    if (kind < 250) return onGrid + static_cast<float>(kind - 225) * 1e-6f;
+    std::uint32_t bits = 0;
+    for (int i = 0; i < 4; ++i) bits = bits << 8 | byte();
+    float any;
+    std::memcpy(&any, &bits, sizeof any);
+    return any;
+  }
+
+  TransferOptions options() {
+    TransferOptions out = flag() ? TransferOptions{} : TransferOptions::paper();
+    out.threshold = share();
+    out.seams = flag() ? Seams::corner : Seams::vertex;
+    if (flag()) out.weldTolerance = share() / 100;
+    if (flag()) out.minCovered = share();
+    if (flag()) out.steps.floor = static_cast<Floor>(below(3));
+    const std::uint8_t off = byte();
+    if ((off & 1) != 0) out.steps.interiorSamples = false;
+    if ((off & 2) != 0) out.steps.depthWeighting = false;
+    if ((off & 4) != 0) out.steps.secondLook = false;
+    if ((off & 8) != 0) out.steps.holes = false;
+    if ((off & 16) != 0) out.steps.twins = false;
+    return out;
+  }
+
+ private:
+  std::span<const std::uint8_t> rest_;
+};
+
+/// A mesh and its arrays.
+struct Mesh {
+  std::vector<float> positions, uvs;
+  std::vector<std::uint32_t> indices, groups;
+
+  /// Up to 40 vertices and 60 triangles.
+  explicit Mesh(Input& input, bool hasUvs) {
+    const std::uint32_t vertices = input.below(41), triangles = input.below(61);
+    for (std::uint32_t i = 0; i < 3 * vertices; ++i) positions.push_back(input.coordinate());
+    // One more than there are, now and then.
+    const std::uint32_t range = vertices + (input.byte() == 255 ? 1u : 0u);
+    for (std::uint32_t i = 0; i < 3 * triangles; ++i) indices.push_back(range == 0 ? 0 : input.below(range));
+    for (std::uint32_t i = 0; i < 2 * vertices && hasUvs; ++i) uvs.push_back(input.share());
+    if (input.flag())
+      for (std::uint32_t i = 0; i < vertices; ++i) groups.push_back(input.below(3));
+  }
+  [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
+};
+
+/// A cage, a target and options.
+struct Scene {
+  Mesh cage, target;
+  TransferOptions options;
+
+  explicit Scene(Input& input) : cage(input, true), target(input, false), options(input.options()) {}
+};
+
+}  // namespace cagecast::fuzz
