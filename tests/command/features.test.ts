@@ -90,6 +90,36 @@ test('--json and --quiet work on every command; help is a command', () => {
   assert.match(ok('help', 'transfer'), /--compress/);
 });
 
+test('diff shows what changed between two reports, and exits 4 over the limit', () => {
+  const report = (name: string, ...flags: string[]) =>
+    ok('transfer', at('target.glb'), ...cage, '--report', at(name), '--quiet', ...flags);
+  report('a.json');
+  report('b.json');
+  report('c.json', '--exclude', 'only');
+  assert.equal(ok('diff', at('a.json'), at('b.json')), 'nothing changed\n');
+  const { status, stdout } = cagecast('diff', at('a.json'), at('c.json'));
+  assert.equal(status, 4);
+  assert.match(stdout, /area cosmetic +[\d.]+ % +0\.0 % +over/);
+  assert.match(stdout, /part only: culled/);
+  const { over, changes } = JSON.parse(cagecast('diff', at('a.json'), at('c.json'), '--json').stdout) as {
+    over: number;
+    changes: { measure: string; isOver: boolean }[];
+  };
+  assert.equal(over, changes.filter(({ isOver }) => isOver).length);
+  assert.equal(cagecast('diff', at('a.json'), at('c.json'), '--tolerance', '1', '--quiet').status, 0);
+  writeFileSync(
+    at('worse.json'),
+    ok('inspect', at('target.glb'), ...cage, '--json').replace(/"verdict": "\w+"/, '"verdict": "unfit"'),
+  );
+  writeFileSync(at('same.json'), ok('inspect', at('target.glb'), ...cage, '--json'));
+  const worse = cagecast('diff', at('same.json'), at('worse.json'));
+  assert.equal(worse.status, 4);
+  assert.match(worse.stdout, /verdict +(good|usable) +unfit +over/);
+  const wrong = cagecast('diff', at('a.json'), at('target.glb'));
+  assert.deepEqual([wrong.status, wrong.stdout], [1, '']);
+  assert.match(wrong.stderr, /^cagecast: .*target\.glb: is not JSON/);
+});
+
 test('a VRM stays one: what it says of its avatar is not changed', () => {
   const maker = new GlbMaker();
   const mesh = maker.mesh(target, { material: 0 });

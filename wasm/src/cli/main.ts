@@ -6,14 +6,15 @@ import { CagecastError } from '../index.js';
 import { addBatchCommand } from './batch-flags.js';
 import { serveBatch } from './batch-worker.js';
 import { addCageCommands } from './cage-flags.js';
+import { diffCommand } from './diff-command.js';
 import { inspectCommand } from './inspect-command.js';
-import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
+import { addRuleFlags, numberWithin, type RuleFlags, rulesOf } from './options.js';
 import { addPrintFlags, oneLine, type PrintFlags, print } from './print.js';
 import { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import { autoCage } from './run.js';
 import { type TransferCommand, transferCommand } from './transfer-command.js';
-import { endingIn, refuseOverwriting, unfit, unusable, wrongUsage } from './usage.js';
+import { changed, endingIn, refuseOverwriting, unfit, unusable, wrongUsage } from './usage.js';
 
 const progress = new Progress();
 
@@ -66,7 +67,8 @@ Examples:
   cagecast fit template.glb head.glb -o cage.glb
   cagecast batch 'heads/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
 
-Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make, fit or batch finds a cage unfit.`,
+Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make, fit or batch finds a cage unfit,
+4 diff finds a change over the limit.`,
   );
 
 common(program.command('transfer'))
@@ -163,6 +165,31 @@ Examples:
 
 addCageCommands(program, progress);
 addBatchCommand(program, progress);
+
+addPrintFlags(
+  program
+    .command('diff')
+    .argument('<BEFORE.json>', 'a report of transfer, or of inspect --json')
+    .argument('<AFTER.json>', 'another'),
+)
+  .description('show what changed between two reports: zones, coverage of parts, distances, borders, verdict')
+  .addOption(
+    new Option('--tolerance <SHARE>', 'how much a share may change').argParser(numberWithin(0, 1)).default(0.01),
+  )
+  .addHelpText(
+    'after',
+    `
+Exit codes: 0 nothing changed by more than the tolerance, 1 a file cannot be used, 2 wrong usage, 4 a share changed by
+more, the verdict is worse, or a part is new or gone.
+
+Example:
+  cagecast diff approved/head.json build/head.json --tolerance 0.005`,
+  )
+  .action(async (before: string, after: string, flags: PrintFlags & { tolerance: number }) => {
+    const found = await diffCommand({ before, after, tolerance: flags.tolerance });
+    print(found, flags);
+    if (found.over > 0) process.exitCode = changed;
+  });
 
 // A reader that closes the pipe early, such as `head`, is not an error.
 process.stdout.on('error', (error: NodeJS.ErrnoException) => process.exit(error.code === 'EPIPE' ? 0 : unusable));

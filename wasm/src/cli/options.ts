@@ -61,7 +61,8 @@ export function addRuleFlags(command: Command): Command {
     );
 }
 
-function numberWithin(least: number, most: number): (text: string) => number {
+/** Returns a parser for a number within two others. */
+export function numberWithin(least: number, most: number): (text: string) => number {
   return (text) => {
     const value = Number(text);
     if (text.trim() === '' || !(value >= least && value <= most))

@@ -6,6 +6,7 @@ import { placeOf } from './output.js';
 export const unusable = 1;
 export const wrongUsage = 2;
 export const unfit = 3;
+export const changed = 4;
 
 /** Returns a parser for the name of a file with one of some endings, or of the standard output. */
 export function endingIn(...endings: string[]): (text: string) => string {

@@ -1,0 +1,144 @@
+import { readBytes } from '../gltf/files.js';
+import { firstLine, InputError } from '../gltf/input-error.js';
+import type { Verdict } from '../inspect/index.js';
+import type { InspectionReport } from './inspect-command.js';
+import type { Found } from './print.js';
+import { cut, integer, percent, table } from './table.js';
+import type { Report } from './transfer-command.js';
+import type { PerZone } from './zones.js';
+
+/** The arguments of `cagecast diff`. */
+export interface DiffCommand {
+  before: string;
+  after: string;
+  /** How much a share may change. */
+  tolerance: number;
+}
+
+/** A measure that two reports have. A share is compared with the tolerance; a number is only shown. */
+interface Change {
+  measure: string;
+  kind: 'share' | 'number' | 'verdict' | 'part';
+  before: number | string | null;
+  after: number | string | null;
+  isOver: boolean;
+}
+
+/** What of a report is compared; reports of `transfer` and of `inspect --json` have some of it each. */
+type AnyReport = Pick<Report, 'target' | 'segments'> &
+  Partial<Omit<Report, 'target' | 'segments'>> &
+  Partial<Omit<InspectionReport, 'target' | 'segments' | 'cage' | 'options' | 'versions' | 'counts'>>;
+
+const zoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
+/** Verdicts, from bad to good. */
+const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
+
+/**
+ * Compares two reports.
+ * @returns what is printed, and how many changes are over the limit.
+ * @throws {InputError} that names the file that is no report.
+ */
+export async function diffCommand({ before, after, tolerance }: DiffCommand): Promise<Found & { over: number }> {
+  const [old, now] = [await readReport(before), await readReport(after)];
+  const changes = [...compare(measuresOf(old), measuresOf(now), tolerance), ...compareVerdicts(old, now)].filter(
+    (change) => change.before !== change.after,
+  );
+  const over = changes.filter(({ isOver }) => isOver).length;
+  const shown = ({ kind }: Change, value: Change['before']) =>
+    value === null ? '–' : typeof value === 'string' ? value : kind === 'share' ? percent(value) : integer(value);
+  const rows = changes.map((change) => [
+    cut(change.measure, 60),
+    shown(change, change.before),
+    shown(change, change.after),
+    change.isOver ? 'over' : '',
+  ]);
+  const text = [
+    ...(rows.length > 0 ? [table([['', 'before', 'after', ''], ...rows])] : []),
+    rows.length === 0
+      ? 'nothing changed'
+      : `${integer(rows.length)} changes, ${integer(over)} over the limit (${percent(tolerance)} of a share, a worse verdict, a part more or less)`,
+  ].join('\n');
+  return { text, report: { before, after, tolerance, over, changes }, over };
+}
+
+async function readReport(path: string): Promise<AnyReport> {
+  let report: Partial<AnyReport> | null;
+  try {
+    report = JSON.parse(new TextDecoder().decode(await readBytes(path))) as Partial<AnyReport> | null;
+  } catch (error) {
+    throw (error instanceof InputError ? error : new InputError(`is not JSON (${firstLine(error)})`)).in(path);
+  }
+  const { target, segments, areas, coverage } = report ?? {};
+  if (typeof target !== 'object' || !Array.isArray(segments) || typeof (areas ?? coverage) !== 'object')
+    throw new InputError('is no report of cagecast transfer (--report) or inspect (--json)').in(path);
+  return report as AnyReport;
+}
+
+type Measures = Map<string, { kind: 'share' | 'number' | 'part'; value: number }>;
+
+/** What a report says, by name. */
+function measuresOf(report: AnyReport): Measures {
+  const { areas, coverage, target, triangles, segments, parts, placement, uv, holes } = report;
+  const all: Measures = new Map();
+  const share = (name: string, value: number | undefined) => {
+    if (value !== undefined && Number.isFinite(value)) all.set(name, { kind: 'share', value });
+  };
+  const number = (name: string, value: number | undefined) => {
+    if (value !== undefined) all.set(name, { kind: 'number', value });
+  };
+  const zones: PerZone | undefined = areas ?? coverage;
+  for (const zone of zoneNames) share(`area ${zone}`, zones && zones[zone] / (areas?.total || 1));
+  share('triangles painted', triangles && triangles.cosmetic / (triangles.total || 1));
+  for (const [part, { exposed, covered, area, culled }] of perPart(segments)) {
+    all.set(`part ${part}`, { kind: 'part', value: 1 });
+    share(`part ${part}: covered`, exposed > 0 ? covered / exposed : undefined);
+    share(`part ${part}: culled`, area > 0 ? culled / area : undefined);
+  }
+  share('outside the cage', placement?.outside.area);
+  share('distance to the cage, median', placement?.distances.p50);
+  share('distance to the cage, 99 % within', placement?.distances.p99);
+  share('texture in use', uv?.used);
+  share('texture in use twice', uv?.overlap.share);
+  number('holes', holes?.length);
+  number('charts', uv?.charts);
+  number('vertices', target.vertices);
+  number('triangles', target.triangles);
+  number('segments', segments.length);
+  number('vertices split at seams', sum(parts?.map(({ splitVertices }) => splitVertices)));
+  number('triangles added by cutting', sum(parts?.map(({ cutTriangles }) => cutTriangles)));
+  return all;
+}
+
+const sum = (values: (number | null)[] | undefined): number | undefined =>
+  values?.reduce<number>((total, value) => total + (value ?? 0), 0);
+
+function perPart(segments: AnyReport['segments']) {
+  const parts = new Map<string, { area: number; culled: number; exposed: number; covered: number }>();
+  for (const { part, area, exposedArea, coveredArea, culled } of segments) {
+    const all = parts.get(part) ?? { area: 0, culled: 0, exposed: 0, covered: 0 };
+    all.area += area;
+    if (culled) all.culled += area;
+    all.exposed += exposedArea;
+    all.covered += coveredArea;
+    parts.set(part, all);
+  }
+  return parts;
+}
+
+function compare(before: Measures, after: Measures, tolerance: number): Change[] {
+  return [...new Set([...before.keys(), ...after.keys()])].flatMap((measure): Change[] => {
+    const [old, now] = [before.get(measure), after.get(measure)];
+    const { kind } = (old ?? now)!;
+    // Only one of the two kinds of reports has it, or the part is not there.
+    if ((!old || !now) && kind !== 'part') return [];
+    const isOver = kind === 'part' || (kind === 'share' && Math.abs(now!.value - old!.value) > tolerance);
+    const value = (one: typeof old) => (kind === 'part' ? (one ? 'there' : null) : one!.value);
+    return [{ measure, kind, before: value(old), after: value(now), isOver }];
+  });
+}
+
+function compareVerdicts({ verdict: before }: AnyReport, { verdict: after }: AnyReport): Change[] {
+  if (before === undefined || after === undefined) return [];
+  const isOver = verdicts.indexOf(after) < verdicts.indexOf(before);
+  return [{ measure: 'verdict', kind: 'verdict', before, after, isOver }];
+}
