@@ -66,31 +66,49 @@ Rim sample(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, dou
   return rim;
 }
 
+/// Where the mirror plane crosses a rim.
+struct Crossing {
+  Vec3 place;
+  std::size_t next;  ///< The first point of the rim after it.
+};
+
+/// Points at equal shares of the length of a path, its end left out.
+void divide(const std::vector<Vec3>& path, std::vector<Vec3>& out) {
+  std::vector<double> along(1, 0.0);
+  for (std::size_t i = 1; i < path.size(); ++i) along.push_back(along.back() + length(path[i] - path[i - 1]));
+  std::size_t i = 1;
+  for (int k = 0; k < kPerSide; ++k) {
+    const double wanted = along.back() * k / kPerSide;
+    while (i + 1 < path.size() && along[i] < wanted) ++i;
+    const double piece = along[i] - along[i - 1];
+    const double share = piece > 0 ? (wanted - along[i - 1]) / piece : 0;
+    out.push_back(path[i - 1] + share * (path[i] - path[i - 1]));
+  }
+}
+
 /// Points at equal shares of the length from front to back on both sides; empty if the mirror plane misses the rim.
 std::vector<Vec3> stations(const Rim& rim, const Axes& axes) {
   const std::size_t count = rim.points.size();
-  std::size_t front = count, back = count;
+  std::vector<Crossing> crossings;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 a = rim.points[i] - axes.middle, b = rim.points[(i + 1) % count] - axes.middle;
-    if ((dot(a, axes.left) <= 0) == (dot(b, axes.left) <= 0)) continue;
-    if (front == count || dot(a, axes.front) > dot(rim.points[front] - axes.middle, axes.front)) front = i;
-    if (back == count || dot(a, axes.front) < dot(rim.points[back] - axes.middle, axes.front)) back = i;
+    const std::size_t next = (i + 1) % count;
+    const Vec3 a = rim.points[i], b = rim.points[next];
+    const double before = dot(a - axes.middle, axes.left), after = dot(b - axes.middle, axes.left);
+    if ((before <= 0) != (after <= 0)) crossings.push_back({a + before / (before - after) * (b - a), next});
   }
   std::vector<Vec3> out;
-  if (front == count || front == back) return out;
-  const auto walk = [&](std::size_t first, std::size_t last) {
-    const std::size_t steps = (last + count - first) % count;
-    std::vector<double> along(1, 0.0);
-    for (std::size_t i = 0; i < steps; ++i)
-      along.push_back(along.back() + length(rim.points[(first + i + 1) % count] - rim.points[(first + i) % count]));
-    for (int k = 0; k < kPerSide; ++k) {
-      const double wanted = along.back() * k / kPerSide;
-      const auto at = std::lower_bound(along.begin(), along.end(), wanted) - along.begin();
-      out.push_back(rim.points[(first + static_cast<std::size_t>(at)) % count]);
-    }
+  if (crossings.empty()) return out;
+  const auto [back, front] =
+      std::minmax_element(crossings.begin(), crossings.end(),
+                          [&](const Crossing& a, const Crossing& b) { return dot(a.place - b.place, axes.front) < 0; });
+  const auto walk = [&](const Crossing& from, const Crossing& to) {
+    std::vector<Vec3> path{from.place};
+    for (std::size_t i = from.next; i != to.next; i = (i + 1) % count) path.push_back(rim.points[i]);
+    path.push_back(to.place);
+    divide(path, out);
   };
-  walk(front, back);
-  walk(back, front);
+  walk(*front, *back);
+  walk(*back, *front);
   return out;
 }
 
