@@ -2,7 +2,7 @@
 // borders. For the samples, the models of CAGECAST_ASSETS, and each of them with nothing but positions and indices.
 //   CAGECAST_ASSETS=folder npx tsx bench/output-size.ts [MODEL …]
 
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, statSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -14,6 +14,7 @@ import { table } from './table.js';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
 const folder = join(root, 'build/bench/output-size');
+const cli = join(root, 'dist/cli.js');
 
 interface Model {
   name: string;
@@ -21,12 +22,14 @@ interface Model {
   cage: string;
 }
 
-/** Cages of models that share their vertices. */
-const cageOfKind = (assets: string, path: string): string => {
-  if (/sedan/.test(path)) return join(assets, 'kenney_sedan/cage.glb');
-  if (/head/.test(path)) return join(assets, 'makehuman_head/cage.glb');
-  return /body/.test(path) ? join(assets, 'makehuman_body/cage.glb') : 'auto';
-};
+/** The cage of a model that has none beside it: made for it, or that of the same model in another form. */
+function cageFor(assets: string | undefined, name: string, target: string): string {
+  if (assets !== undefined && /sedan/.test(name)) return join(assets, 'kenney_sedan/cage.glb');
+  const cage = join(folder, `${name.replaceAll(/\W+/g, '-')}-cage.glb`);
+  // Exit 3, for a cage that does not fit well, matters here as little as how it looks.
+  if (!existsSync(cage)) spawnSync(process.execPath, [cli, 'make', target, '-o', cage, '--quiet']);
+  return existsSync(cage) ? cage : 'auto';
+}
 
 function models(): Model[] {
   const assets = process.env['CAGECAST_ASSETS'];
@@ -35,8 +38,8 @@ function models(): Model[] {
     for (const path of readdirSync(base, { recursive: true, encoding: 'utf8' }).sort()) {
       if (!/\.(glb|gltf)$/.test(path) || /^(cage|template)/.test(basename(path))) continue;
       const own = join(base, dirname(path), 'cage.glb');
-      const cage = existsSync(own) ? own : base === assets ? cageOfKind(base, path) : 'auto';
-      found.push({ name: path.replace(/\/target\.glb$|\.(glb|gltf)$/, ''), target: join(base, path), cage });
+      const name = path.replace(/\/target\.glb$|\.(glb|gltf)$/, '');
+      found.push({ name, target: join(base, path), cage: existsSync(own) ? own : '' });
     }
   }
   return found;
@@ -64,11 +67,16 @@ async function bare({ name, target, cage }: Model): Promise<Model> {
 
 const paint = join(root, 'build/assets/car/paint-rally.png');
 
-/** The size of what the command writes. */
+/** The size of what the command writes, without the bytes of the paint. */
 function written({ name, target, cage }: Model, how: string, ...flags: string[]): number {
   const out = join(folder, `${name.replaceAll(/\W+/g, '-')}-${how}.glb`);
-  execFileSync(process.execPath, [join(root, 'dist/cli.js'), 'transfer', target, '--cage', cage, '-o', out, ...flags]);
-  return statSync(out).size;
+  const arguments_ = [cli, 'transfer', target, '--cage', cage, '-o', out, '--json', ...flags];
+  const report = JSON.parse(execFileSync(process.execPath, arguments_, { encoding: 'utf8', maxBuffer: 2 ** 28 })) as {
+    texture: string | null;
+    parts: { overlayTriangles: number }[];
+  };
+  const isPainted = report.parts.some(({ overlayTriangles }) => overlayTriangles > 0);
+  return statSync(out).size - (report.texture !== null && isPainted ? statSync(report.texture).size : 0);
 }
 
 const median = (values: number[]): number => values.sort((a, b) => a - b)[Math.floor(values.length / 2)]!;
@@ -78,13 +86,14 @@ const chosen = process.argv.slice(2);
 const wanted = models().filter(({ name }) => chosen.length === 0 || chosen.some((part) => name.includes(part)));
 const rows: string[][] = [];
 const ratios = { whole: [[], []] as number[][], bare: [[], []] as number[][] };
-for (const model of wanted) {
+for (const { name, target, cage } of wanted) {
+  const model = { name, target, cage: cage || cageFor(process.env['CAGECAST_ASSETS'], name, target) };
   for (const one of /draco/.test(model.name) ? [model] : [model, await bare(model)]) {
     const size = statSync(one.target).size;
     const sizes = [
       written(one, 'plain'),
       written(one, 'cut', '--borders', 'cut'),
-      written(one, 'painted', '--texture', paint) - statSync(paint).size,
+      written(one, 'painted', '--texture', paint),
     ];
     const times = sizes.map((written) => written / size);
     const list = one === model ? ratios.whole : ratios.bare;

@@ -6,6 +6,8 @@ import { dracoOf } from './check.js';
 import type { GlbWriter } from './glb-writer.js';
 import type { GltfFile } from './read.js';
 
+const silent = new Logger(Logger.Verbosity.SILENT);
+
 export const dracoExtension = 'KHR_draco_mesh_compression';
 
 /** Marks primitives to be compressed by `packDraco`. */
@@ -35,13 +37,19 @@ export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void
   );
   if (primitives.length === 0) return;
   const io = new NodeIO()
-    .setLogger(new Logger(Logger.Verbosity.SILENT))
+    .setLogger(silent)
     .registerExtensions([KHRDracoMeshCompression])
     .registerDependencies({ 'draco3d.encoder': await createEncoderModule({ wasmBinary }) });
   for (const primitive of primitives) {
     const { json, resources } = await io.writeJSON(documentOf(writer, file, primitive));
     const packed = json.meshes![0]!.primitives[0]!;
-    const { bufferView, attributes } = dracoOf(packed)!;
+    const stream = dracoOf(packed);
+    if (stream === undefined) {
+      // Draco has no form for it, such as for triangles without any area.
+      writePlain(writer, file, primitive);
+      continue;
+    }
+    const { bufferView, attributes } = stream;
     const { buffer, byteOffset = 0, byteLength } = json.bufferViews![bufferView]!;
     const bytes = resources[json.buffers![buffer]!.uri!]!.slice(byteOffset, byteOffset + byteLength);
     primitive.extensions = {
@@ -57,6 +65,25 @@ export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void
   }
 }
 
+/** Stores what only a Draco stream holds. */
+function writePlain(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive): void {
+  const inStream = (accessor: number) =>
+    !writer.stored(accessor) && writer.json.accessors![accessor]!.bufferView === undefined;
+  const decodedOf = (accessor: number) => file.geometry.getRoot().listAccessors()[accessor]!;
+  for (const [semantic, accessor] of Object.entries(primitive.attributes)) {
+    if (!inStream(accessor)) continue;
+    const { normalized, min, max } = writer.json.accessors![accessor]!;
+    const more = { ...(normalized && { normalized }), ...(min && { min }), ...(max && { max }) };
+    const decoded = decodedOf(accessor);
+    primitive.attributes[semantic] = writer.addAttribute(decoded.getArray()!, decoded.getElementSize(), more);
+  }
+  if (primitive.indices !== undefined && inStream(primitive.indices)) {
+    const count = writer.json.accessors![primitive.attributes['POSITION']!]!.count;
+    primitive.indices = writer.addIndices(Uint32Array.from(decodedOf(primitive.indices).getArray()!), count);
+  }
+  unmarkDraco([primitive]);
+}
+
 /** In a compressed primitive, the stream has the bytes. */
 function withoutView({ bufferView: _, byteOffset: __, ...accessor }: GLTF.IAccessor): GLTF.IAccessor {
   return accessor;
@@ -64,7 +91,7 @@ function withoutView({ bufferView: _, byteOffset: __, ...accessor }: GLTF.IAcces
 
 /** A document of one primitive. */
 function documentOf(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive): Document {
-  const document = new Document();
+  const document = new Document().setLogger(silent);
   document.createExtension(KHRDracoMeshCompression).setRequired(true);
   const buffer = document.createBuffer();
   const accessorOf = (accessor: number): Accessor => {

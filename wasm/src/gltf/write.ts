@@ -143,7 +143,8 @@ function addToGroup(
     added.uvSet = uvSet;
     added.splitVertices = copies;
     copies = 0; // counted once
-    if (!isNew) return;
+    // Draco's streams are of indexed triangles.
+    if (!isNew && (primitive.indices !== undefined || !dracoOf(primitive))) return;
     primitive.indices = writer.addIndices(shared.indices[m]!, shared.sources.length);
     delete primitive.mode; // strips and fans have become lists
   });
