@@ -58,7 +58,8 @@ async function bare({ name, target, cage }: Model): Promise<Model> {
     }
   }
   for (const node of document.getRoot().listNodes()) node.setSkin(null);
-  for (const extension of document.getRoot().listExtensionsUsed()) extension.dispose();
+  for (const extension of document.getRoot().listExtensionsUsed())
+    if (extension.extensionName !== 'KHR_mesh_quantization') extension.dispose();
   await document.transform(prune());
   const path = join(folder, `${name.replaceAll('/', '-')}-bare.glb`);
   await io.write(path, document);
