@@ -111,6 +111,7 @@ TEST_CASE("of equally near triangles the farthest plane wins, of equal planes th
   CHECK(winner({candidate(5, 0, 0.5), candidate(3, 2 * kTieDistance, 0.5)}) == 5);
   CHECK(winner({candidate(5, 0, kTiePlane), candidate(3, 0, 0)}) == 3);
   CHECK(winner({candidate(5, 0, 2 * kTiePlane), candidate(3, 0, 0)}) == 5);
+  CHECK(winner({candidate(3, 0, 0.25), candidate(5, kTieDistance, 0.5)}) == 5);
   // A plane counts only if its triangle is near.
   CHECK(winner({candidate(1, 1, 9), candidate(5, 0, 0), candidate(3, 0, 0)}) == 3);
 }

@@ -160,6 +160,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   if (share < kLeastShare)
     return {Problem::badModel,
             "model is in pieces that lie too far apart for one cage: make one for each, or raise options.closing"};
+  if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
 
   const Surface surface(mesh);
   const MarkedMesh marked{&mesh, &surface, std::move(isMarked)};
