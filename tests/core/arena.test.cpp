@@ -20,7 +20,7 @@ using cagecast::Arena;
 TEST_CASE("arrays of an arena are aligned and do not overlap", "[arena]") {
   Arena arena;
   const char* end = nullptr;
-  for (std::size_t count : {1, 3, 16, 1000, 100000}) {
+  for (const std::size_t count : std::initializer_list<std::size_t>{1, 3, 16, 1000, 100000}) {
     const char* array = arena.allocate<char>(count);
     REQUIRE(array != nullptr);
     CHECK(reinterpret_cast<std::uintptr_t>(array) % 16 == 0);

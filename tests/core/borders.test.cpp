@@ -149,7 +149,8 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
   };
   for (std::size_t t = 0; t < triangleCount; ++t) {
     if (!takesPart[t]) continue;
-    const auto [a, b, c] = cornersOf(t);
+    const auto corners = cornersOf(t);
+    const Vec a = corners[0], b = corners[1], c = corners[2];  // Clang 14 cannot capture structured bindings.
     const auto isWellInside = [&](Vec p) {
       for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
         if (length(cross(to - from, p - from)) <= deep * length(to - from)) return false;
