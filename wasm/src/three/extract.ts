@@ -77,7 +77,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
       throw wrong(
         argument,
         name,
-        'is a batch or an instanced geometry, of which no triangle has a place; make each instance a mesh of its own first',
+        'is a batch or an instanced geometry; make each instance a mesh of its own first',
       );
     const position = geometry.getAttribute('position') as Attribute | undefined;
     const vertexCount = position?.count ?? 0;
