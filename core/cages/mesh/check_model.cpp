@@ -12,6 +12,9 @@ namespace cagecast::cages {
 
 namespace {
 
+/// A mesh needs a triangle that is higher than this share of its diagonal.
+constexpr double kLeastHeight = 1e-6;
+
 /// Farthest a coordinate may be from the origin, in diagonals of the mesh: what `Surface` can take.
 constexpr double kMaxProportion = 1e6;
 
@@ -59,12 +62,19 @@ std::string valuesOf(const MeshView& mesh, const char* name) {
 
 /// The sentence about its size and place in space, or nothing.
 std::string extentOf(const MeshView& mesh, const std::string& name) {
-  const auto corner = [&](std::size_t i) { return &mesh.positions[std::size_t{3} * mesh.indices[i]]; };
-  bool hasArea = false;
-  for (std::size_t i = 0; i < mesh.indices.size() && !hasArea; i += 3)
-    hasArea = length(cagecast::areaNormal(corner(i), corner(i + 1), corner(i + 2))) > 0;
-  if (!hasArea) return name + " has no triangle with an area";
   const auto [low, high] = boundsOf(mesh);
+  const auto corner = [&](std::size_t i) { return &mesh.positions[std::size_t{3} * mesh.indices[i]]; };
+  const auto edge = [&](std::size_t i, std::size_t j) {
+    return length(cagecast::Vec3::from(corner(j)) - cagecast::Vec3::from(corner(i)));
+  };
+  // Its height counts by the size of the mesh: the searches scale that to 1, and take floats.
+  const double least = kLeastHeight * length(high - low);
+  bool hasArea = false;
+  for (std::size_t i = 0; i < mesh.indices.size() && !hasArea; i += 3) {
+    const double longest = std::max({edge(i, i + 1), edge(i + 1, i + 2), edge(i + 2, i)});
+    hasArea = length(cagecast::areaNormal(corner(i), corner(i + 1), corner(i + 2))) > least * longest;
+  }
+  if (!hasArea) return name + " has no triangle with an area";
   const double farthest = std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z});
   if (farthest > kMaxProportion * length(high - low))
     return name + " is more than a million times its size away from the origin";
