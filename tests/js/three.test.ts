@@ -461,10 +461,13 @@ describe('applyTransfer', () => {
     assert.deepEqual(mesh.positions, scene.target.positions);
     const { result } = applyTransfer(instanced, meshOf(scene.cage), { texture: new Texture() });
     assert.deepEqual(result.zones, transfer(scene.cage, { ...scene.target, groups: undefined }).zones);
-    assert.throws(() => extract(new Group().add(new BatchedMesh(2, 99, 99, material))), /no triangle has a place/);
+    assert.throws(
+      () => extract(new Group().add(new BatchedMesh(2, 99, 99, material))),
+      /make each instance a mesh of its own/,
+    );
     assert.throws(
       () => extract(new ThreeMesh(new InstancedBufferGeometry().copy(geometry as InstancedBufferGeometry), material)),
-      /no triangle has a place/,
+      /make each instance a mesh of its own/,
     );
     const few = geometry.clone().setAttribute('heat', new BufferAttribute(new Float32Array(5), 1));
     assert.throws(() => extract(few), /"geometry" has 5 heat for \d+ vertices/);

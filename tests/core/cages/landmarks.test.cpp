@@ -171,10 +171,12 @@ TEST_CASE("what is nothing like a head has no landmarks", "[cages][landmarks]") 
     REQUIRE(findLandmarks(flat.model(), nullptr, found).ok());
     CHECK(found.landmarks.empty());
   }
-  const std::vector<float> positions = {0, 0, 0, 1, 1e-6f, 0, 2, 0, 0};
   const std::vector<std::uint32_t> indices = {0, 1, 2};
-  REQUIRE(findLandmarks({{positions, indices}}, nullptr, found).ok());
+  const std::vector<float> thin = {0, 0, 0, 1, 1e-5f, 0, 2, 0, 0};
+  REQUIRE(findLandmarks({{thin, indices}}, nullptr, found).ok());
   CHECK(found.landmarks.empty());
+  const std::vector<float> thinner = {0, 0, 0, 1, 1e-7f, 0, 2, 0, 0};
+  CHECK(findLandmarks({{thinner, indices}}, nullptr, found).problem == Problem::badModel);
 }
 
 TEST_CASE("parts that are called eyes may be anywhere", "[cages][landmarks]") {
