@@ -33,10 +33,10 @@ const isOverlay = (primitive: Primitive): boolean => primitive.getMaterial()?.ge
 /** The UVs of the middle of each triangle. */
 function middles(primitive: Primitive, semantic: string): { corners: string; u: number; v: number }[] {
   const indices = primitive.getIndices()!.getArray()!;
-  const uvs = primitive.getAttribute(semantic)!.getArray()!;
+  const uvs = primitive.getAttribute(semantic)!;
   return Array.from({ length: indices.length / 3 }, (_, triangle) => {
     const corners = [...indices.subarray(3 * triangle, 3 * triangle + 3)] as number[];
-    const mean = (k: number): number => corners.reduce((sum, vertex) => sum + uvs[2 * vertex + k]!, 0) / 3;
+    const mean = (k: number): number => corners.reduce((sum, vertex) => sum + uvs.getElement(vertex, [])[k]!, 0) / 3;
     return { corners: corners.join(), u: mean(0), v: mean(1) };
   });
 }
