@@ -80,19 +80,3 @@ TEST_CASE("wherever memory runs out, the status says so and the next call is rig
     CHECK(failures > 1);
   }
 }
-
-TEST_CASE("cutting borders reports that memory ran out", "[workspace][borders]") {
-  const scenes::Scene scene = scenes::patchwork(1);
-  const TransferResult result = transferred(scene.cage.view(), scene.target.view(), cutting());
-  const DecidedTarget target{scene.target.view(), result.zones.zones, result.projection.segments,
-                             result.zones.culledBy};
-  Code code = Code::outOfMemory;
-  std::size_t failures = 0;
-  for (std::size_t limit = 0; code == Code::outOfMemory; limit += std::size_t{1} << 16, ++failures) {
-    Workspace workspace(limit);
-    CutTarget cut;
-    code = cutBorders(scene.cage.view(), target, cutting(), workspace, cut).code;
-  }
-  CHECK(code == Code::ok);
-  CHECK(failures > 1);
-}

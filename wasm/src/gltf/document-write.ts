@@ -12,11 +12,9 @@ import type {
   TypedArray,
 } from '@gltf-transform/core';
 import type { CutTarget, TransferResult } from '../index.js';
-import { type AttributeArray, type Blends, blend, blendSkin, noBlends, ruleOf } from '../parts/blend.js';
-import { cutPart } from '../parts/cut-part.js';
-import { gather, splitPart } from '../parts/split-part.js';
+import { type AttributeArray, type Blends, blend, blendSkin, ruleOf } from '../parts/blend.js';
+import { gather } from '../parts/split-part.js';
 import type { DocumentPart, ExtractedDocument } from './document.js';
-import { isTurned } from './matrix.js';
 import {
   cosmeticCorners,
   type Finish,
@@ -28,14 +26,12 @@ import {
   unlitExtension,
   zoneAttribute,
 } from './overlay.js';
-import { type GroupMember, shareVertices, sparseElements, storedUvs } from './primitive-group.js';
+import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from './primitive-group.js';
 
 /** A part, and what it becomes. */
 interface Member extends GroupMember {
   part: DocumentPart;
   primitive: Primitive;
-  /** 1 per triangle. */
-  cosmetic: Uint8Array;
 }
 
 /**
@@ -52,23 +48,10 @@ export function addTransfer(
 ): void {
   const painter = paint && new Painter(document, paint);
   const primitiveOf = separatePrimitives(document, parts);
-  const members = parts.map((part, p): Member => {
-    const whole = { ...part, turned: isTurned(part.matrix) };
-    const {
-      geometry,
-      result: own,
-      blends,
-    } = cut ? cutPart(whole, cut, mesh.positions.length / 3) : { geometry: whole, result, blends: noBlends };
-    const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
-    return {
-      part,
-      primitive: primitiveOf[p]!,
-      split: splitPart(geometry, own),
-      zones: own.zones.subarray(firstVertex, firstVertex + vertexCount),
-      blends,
-      cosmetic: own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
-    };
-  });
+  const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
+  const members = parts.map(
+    (part, p): Member => ({ ...groupMember(part, result, pieces), part, primitive: primitiveOf[p]! }),
+  );
   for (const group of groupsOf(members)) addToGroup(document, group, painter);
 }
 

@@ -1,5 +1,9 @@
-import type { Blends } from '../parts/blend.js';
-import type { SplitPart } from '../parts/split-part.js';
+import type { CutTarget, TransferResult } from '../index.js';
+import { type Blends, noBlends } from '../parts/blend.js';
+import { cutPart } from '../parts/cut-part.js';
+import { type SplitPart, splitPart } from '../parts/split-part.js';
+import { isTurned } from './matrix.js';
+import type { Piece } from './pieces.js';
 
 /** A primitive whose vertices were cut and split, as if they were its own. */
 export interface GroupMember {
@@ -8,6 +12,29 @@ export interface GroupMember {
   zones: Uint8Array;
   /** The vertices that cutting added. */
   blends: Blends;
+  /** 1 per triangle. */
+  cosmetic: Uint8Array;
+}
+
+/** What a result makes of one part of a target. */
+export function groupMember(
+  part: Piece,
+  result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
+  cut: { target: CutTarget; ownCount: number } | undefined,
+): GroupMember {
+  const whole = { ...part, turned: isTurned(part.matrix) };
+  const {
+    geometry,
+    result: own,
+    blends,
+  } = cut ? cutPart(whole, cut.target, cut.ownCount) : { geometry: whole, result, blends: noBlends };
+  const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
+  return {
+    split: splitPart(geometry, own),
+    zones: own.zones.subarray(firstVertex, firstVertex + vertexCount),
+    blends,
+    cosmetic: own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
+  };
 }
 
 /** Vertices that primitives share. Existing ones keep their numbers; those of cuts follow, then copies. */

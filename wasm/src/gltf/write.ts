@@ -1,14 +1,12 @@
 import type { GLTF } from '@gltf-transform/core';
 import type { CutTarget } from '../api/cut-borders.js';
 import type { TransferResult } from '../api/result.js';
-import { blend, blendSkin, noBlends, ruleOf } from '../parts/blend.js';
-import { cutPart } from '../parts/cut-part.js';
-import { gather, splitPart } from '../parts/split-part.js';
+import { blend, blendSkin, ruleOf } from '../parts/blend.js';
+import { gather } from '../parts/split-part.js';
 import { dracoOf } from './check.js';
 import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
 import type { Extracted, Part } from './extract.js';
 import { type Form, GlbWriter } from './glb-writer.js';
-import { isTurned } from './matrix.js';
 import {
   cosmeticCorners,
   type Finish,
@@ -20,7 +18,7 @@ import {
   unlitExtension,
   zoneAttribute,
 } from './overlay.js';
-import { type GroupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
+import { type GroupMember, groupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
 import type { GltfFile } from './read.js';
 
 /** What was added to a primitive. */
@@ -56,25 +54,13 @@ export async function writeTransfer(
   const meshOfNode = separateMeshes(json, parts);
   const painter = paint && new Painter(writer, paint);
 
+  const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map((part): Member => {
-    const primitives = json.meshes![meshOfNode.get(part.node)!]!.primitives;
-    const whole = { ...part, turned: isTurned(part.matrix) };
-    const {
-      geometry,
-      result: own,
-      blends,
-    } = cut ? cutPart(whole, cut, mesh.positions.length / 3) : { geometry: whole, result, blends: noBlends };
-    const { firstVertex, vertexCount, firstTriangle, triangleCount } = geometry;
-    return {
-      primitives,
-      primitive: primitives[part.primitive]!,
-      part,
-      split: splitPart(geometry, own),
-      zones: own.zones.subarray(firstVertex, firstVertex + vertexCount),
-      blends,
-      cosmetic: own.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount),
-      added: { uvSet: '', overlayTriangles: 0, splitVertices: 0, cutTriangles: triangleCount - part.triangleCount },
-    };
+    const { primitives } = json.meshes![meshOfNode.get(part.node)!]!;
+    const member = groupMember(part, result, pieces);
+    const cutTriangles = member.cosmetic.length - part.triangleCount;
+    const added = { uvSet: '', overlayTriangles: 0, splitVertices: 0, cutTriangles };
+    return { ...member, primitives, primitive: primitives[part.primitive]!, part, added };
   });
   const primitives = members.map(({ primitive }) => primitive);
   if (form === 'draco') markForDraco(primitives);
@@ -89,8 +75,6 @@ interface Member extends GroupMember {
   primitives: GLTF.IMeshPrimitive[];
   primitive: GLTF.IMeshPrimitive;
   part: Part;
-  /** 1 per triangle. */
-  cosmetic: Uint8Array;
   added: Added;
 }
 
