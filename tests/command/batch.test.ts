@@ -77,7 +77,7 @@ test('200 jobs, five of them broken, killed in the middle and resumed: every goo
   rmSync(at('out/6.glb'));
   const again = cagecast(...args, '--resume', '--json');
   const { seconds: _, ...summary } = JSON.parse(again.stderr) as { seconds: number };
-  assert.deepEqual(summary, { jobs: 200, done: 2, failed: 5, skipped: 193, misfits: 0 });
+  assert.deepEqual(summary, { jobs: 200, done: 2, failed: 5, skipped: 193, misfits: 0, configs: [] });
 });
 
 test('patterns reach into folders, lines are printed, and --fail-on exits 3', () => {

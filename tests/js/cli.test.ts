@@ -646,7 +646,7 @@ describe('transfer', () => {
       parts.map(({ name, place, vertices, uvSet }) => [name, place, vertices, uvSet]),
       [['only', 'meshes[0].primitives[0]', target.vertices, null]],
     );
-    assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [] });
+    assert.deepEqual(options, { preset: 'default', ...presetOptions(), keep: [], exclude: [], config: null });
     assert.deepEqual(
       parts.map(({ splitVertices }) => splitVertices),
       [null],

@@ -1,12 +1,14 @@
-// Writes what follows from the lists of options, error codes and zones of the core: wasm/src/generated/*.ts and docs/options.md.
+// Writes what follows from the lists of options, error codes and zones of the core: wasm/src/generated/*.ts and docs/options.md;
+// and from the list of the command's flags: docs/cli.md.
 //
 //   node wasm/tools/generate.mjs [--check] [--root FOLDER]
 //     --check   writes nothing; fails if a file is not as it would be written
 //     --root    another tree than this repository, such as a test's
 
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import { parseArgs } from 'node:util';
 import { readCodes, readOptions, readZones } from './options-list.mjs';
 
@@ -128,12 +130,53 @@ contributes and are not part of the stable interface.
 ${head}${rows(true)}`;
 }
 
+/**
+ * The page about the command, from the very list that `--help` prints. The command's sources are bundled without the modules that
+ * the C++ build makes, which are not there yet.
+ */
+async function makeCommandPage() {
+  const { build } = await import('esbuild');
+  const folder = mkdtempSync(join(tmpdir(), 'cagecast-cli-'));
+  const outfile = join(folder, 'program.mjs');
+  const withoutModules = {
+    name: 'without-modules',
+    setup({ onResolve, onLoad }) {
+      onResolve({ filter: /^#/ }, ({ path }) => ({ path, namespace: 'module' }));
+      onLoad({ filter: /.*/, namespace: 'module' }, () => ({ contents: 'module.exports = {};' }));
+    },
+  };
+  try {
+    const contents =
+      "export { makeProgram } from './program.ts'; export { pageOf } from './page.ts'; export { Progress } from '../progress.ts';";
+    await build({
+      stdin: { contents, resolveDir: join(root, 'wasm/src/cli/program'), loader: 'ts' },
+      outfile,
+      bundle: true,
+      format: 'esm',
+      platform: 'node',
+      logLevel: 'error',
+      define: { CAGECAST_VERSION: '""' },
+      banner: {
+        js: "import { createRequire } from 'node:module'; const require = createRequire(import.meta.url), __dirname = '', __filename = '';",
+      },
+      loader: { '.wasm': 'empty' },
+      plugins: [withoutModules],
+    });
+    const { makeProgram, pageOf, Progress } = await import(pathToFileURL(outfile));
+    return pageOf(makeProgram(new Progress()));
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
 const options = readOptions(root);
 const files = {
   'wasm/src/generated/options.ts': makeOptions(options),
   'wasm/src/generated/codes.ts': makeCodes(readCodes(root)),
   'wasm/src/generated/zone.ts': makeZones(readZones(root)),
   'docs/options.md': makePage(options),
+  // A test's tree has no command.
+  ...(existsSync(join(root, 'wasm/src/cli/program')) && { 'docs/cli.md': await makeCommandPage() }),
 };
 let stale = 0;
 for (const [name, text] of Object.entries(files)) {

@@ -37,6 +37,8 @@ export interface BatchSummary {
   skipped: number;
   /** How many cages got a verdict that `failOn` names, or a worse one. */
   misfits: number;
+  /** The configuration files that settings come from. */
+  configs: string[];
   seconds: number;
 }
 
@@ -55,7 +57,8 @@ export async function batchCommand(
 ): Promise<BatchSummary> {
   const began = performance.now();
   const before = resume ? readResults(results!) : new Map<string, ResultLine>();
-  const summary: BatchSummary = { jobs: jobs.length, done: 0, failed: 0, skipped: 0, misfits: 0, seconds: 0 };
+  const configs = [...new Set(jobs.flatMap(({ command }) => command.rules.config ?? []))];
+  const summary: BatchSummary = { jobs: jobs.length, done: 0, failed: 0, skipped: 0, misfits: 0, configs, seconds: 0 };
   const take = (job: Job, outcome: Outcome | { status: 'skipped'; verdict?: Verdict }) => {
     const { target, output = null } = job.command;
     const line: ResultLine = { target, output, key: job.key, ...outcome };
@@ -152,12 +155,13 @@ function removeLeftovers(paths: readonly (string | undefined)[]): void {
 }
 
 /** A summary for people. */
-export function describeBatch({ jobs, done, failed, skipped, misfits, seconds }: BatchSummary): string {
+export function describeBatch({ jobs, done, failed, skipped, misfits, configs, seconds }: BatchSummary): string {
   const parts = [
     `${done} done`,
     `${failed} failed`,
     ...(skipped > 0 ? [`${skipped} done before`] : []),
     ...(misfits > 0 ? [`${misfits} with a cage that does not fit as demanded`] : []),
   ];
-  return oneLine(`${jobs} jobs: ${parts.join(', ')}; ${seconds.toFixed(1)} s`);
+  const from = configs.length > 0 ? `; settings from ${configs.join(', ')}` : '';
+  return oneLine(`${jobs} jobs: ${parts.join(', ')}; ${seconds.toFixed(1)} s${from}`);
 }

@@ -2,7 +2,9 @@ import { type Command, InvalidArgumentError, Option } from 'commander';
 import { forms } from '../gltf/glb-writer.js';
 import { batchCommand, describeBatch } from './batch-command.js';
 import { jobsOfManifest, jobsOfPatterns } from './batch-jobs.js';
-import { addRuleFlags, type RuleFlags, rulesOf } from './options.js';
+import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
+import { borderKinds } from './config/settings.js';
+import { addRuleFlags, type RuleFlags } from './options.js';
 import { addPrintFlags, type PrintFlags } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
@@ -11,6 +13,7 @@ import { endingIn, unfit, unusable, wrongUsage } from './usage.js';
 
 interface BatchFlags
   extends RuleFlags,
+    ConfigFlags,
     ReadFlags,
     PrintFlags,
     Pick<TransferCommand, 'texture' | 'output' | 'report' | 'borders' | 'compress'> {
@@ -31,10 +34,12 @@ function workers(text: string): number {
 export function addBatchCommand(program: Command, progress: Progress): void {
   const command = addPrintFlags(
     addReadFlags(
-      addRuleFlags(
-        program
-          .command('batch')
-          .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders'),
+      addConfigFlags(
+        addRuleFlags(
+          program
+            .command('batch')
+            .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders'),
+        ),
       ),
     ),
   )
@@ -52,7 +57,7 @@ export function addBatchCommand(program: Command, progress: Progress): void {
       ).argParser(endingIn('.glb', '.vrm')),
     )
     .option('--report <R.json>', 'where to write reports; {name} and {dir} as above')
-    .addOption(new Option('--borders <HOW>', 'as for transfer').choices(['triangle', 'cut']).default('triangle'))
+    .addOption(new Option('--borders <HOW>', 'as for transfer').choices(borderKinds).default('triangle'))
     .addOption(new Option('--compress <HOW>', 'as for transfer').choices(forms).default('keep'))
     .option('--results <RESULTS.jsonl>', 'add the lines to this file instead of printing them')
     .option('--resume', 'skip jobs that --results says are done, if nothing they read has changed')
@@ -84,17 +89,7 @@ Examples:
     if (manifest === undefined && cage === undefined) wrong('TARGETS need --cage');
     if (texture !== undefined && output === undefined && manifest === undefined) wrong('--texture needs -o OUT.glb');
     if (flags.quiet) progress.silence();
-    const { borders, compress } = flags;
-    const defaults = {
-      cage,
-      texture,
-      output,
-      report,
-      borders,
-      compress,
-      rules: rulesOf(flags),
-      reading: readingOf(flags),
-    };
+    const defaults = { cage, texture, output, report, settled: settler(command, flags), reading: readingOf(flags) };
     const jobs = manifest === undefined ? jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
     const write = (line: string) => process.stdout.write(line);
     const summary = await batchCommand(

@@ -1,10 +1,10 @@
 import { createHash } from 'node:crypto';
 import { existsSync, statSync } from 'node:fs';
 import { basename, dirname, extname, resolve } from 'node:path';
-import { optionFlags } from '../generated/options.js';
 import { readBytes, standard } from '../gltf/files.js';
-import { forms } from '../gltf/glb-writer.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
+import type { Settled } from './config/config-flags.js';
+import { isObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
 import { autoCage } from './run.js';
@@ -19,8 +19,11 @@ export interface Job {
   error?: string;
 }
 
-/** What jobs have in common, from the command line. */
-export type JobDefaults = Omit<TransferCommand, 'target' | 'cage'> & { cage?: string | undefined };
+/** What jobs have in common, from the command line and configuration files. */
+export interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Settled> {
+  cage?: string | undefined;
+  settled: (target: string) => Settled;
+}
 
 /** The jobs for the files that patterns name. @throws {InputError} for a pattern without files. */
 export function jobsOfPatterns(patterns: readonly string[], defaults: JobDefaults): Job[] {
@@ -29,7 +32,9 @@ export function jobsOfPatterns(patterns: readonly string[], defaults: JobDefault
     if (found.length === 0) throw new InputError('no file has such a name').in(pattern);
     return found;
   });
-  return refuseClashes([...new Set(targets)].map((target) => jobOf({ ...defaults, target })));
+  return refuseClashes(
+    [...new Set(targets)].map((target) => jobOf({ ...defaults, target, ...defaults.settled(target) })),
+  );
 }
 
 /**
@@ -52,7 +57,8 @@ export async function jobsOfManifest(path: string, defaults: JobDefaults): Promi
         try {
           return jobOf({ ...defaults, ...jobLine(line, folder, defaults) });
         } catch (error) {
-          const command = { ...defaults, target: place, cage: '' };
+          const { reading } = defaults;
+          const command = { target: place, cage: '', reading, ...noSettings };
           return { command, key: place, error: `${place}: ${firstLine(error)}` };
         }
       }),
@@ -61,53 +67,53 @@ export async function jobsOfManifest(path: string, defaults: JobDefaults): Promi
 
 const paths = ['target', 'cage', 'texture', 'output', 'report'] as const;
 
-/** A line of a manifest. @throws {InputError} that names the member. */
-function jobLine(line: string, folder: string, { rules }: JobDefaults): Partial<TransferCommand> & { target: string } {
-  let all: unknown;
+/** Stands for those of a job that cannot be started. */
+const noSettings: Settled = {
+  rules: { preset: 'default', single: {}, keep: [], exclude: [] },
+  borders: 'triangle',
+  compress: 'keep',
+};
+
+/** A line of a manifest: its settings win over flags. @throws {InputError} that names the member. */
+function jobLine(line: string, folder: string, { settled }: JobDefaults): JobNames & Settled {
+  let given: unknown;
   try {
-    all = JSON.parse(line);
+    given = JSON.parse(line);
   } catch (error) {
     throw new InputError(`is not JSON (${firstLine(error)})`);
   }
-  if (typeof all !== 'object' || all === null || Array.isArray(all)) throw new InputError('is not a JSON object');
-  const given = all as Record<string, unknown>;
-  const known = [...paths, 'borders', 'compress', 'preset', 'keep', 'exclude', ...optionFlags.map(({ name }) => name)];
-  const unknown = Object.keys(given).find((name) => !(known as string[]).includes(name));
-  if (unknown !== undefined) throw new InputError(`"${unknown}" is unknown; there are: ${known.join(', ')}`);
-  const choice = (name: string, choices: readonly string[]) => {
-    if (given[name] !== undefined && !choices.includes(given[name] as string))
-      throw new InputError(`"${name}" is not one of ${choices.join(', ')}`);
-  };
-  choice('borders', ['triangle', 'cut']);
-  choice('compress', forms);
-  choice('preset', ['default', 'paper']);
+  if (!isObject(given)) throw new InputError('is not a JSON object');
+  refuseUnknown(given, [...paths, ...settingNames]);
   for (const name of paths)
     if (given[name] !== undefined && typeof given[name] !== 'string') throw new InputError(`"${name}" is not a path`);
-  for (const name of ['keep', 'exclude'])
-    if (
-      given[name] !== undefined &&
-      !(Array.isArray(given[name]) && given[name].every((one) => typeof one === 'string'))
-    )
-      throw new InputError(`"${name}" is not an array of names`);
   if (given['target'] === undefined) throw new InputError('has no "target"');
   const own = Object.fromEntries(
     paths.flatMap((name) => {
       const path = given[name] as string | undefined;
       return path === undefined ? [] : [[name, name === 'cage' && path === autoCage ? path : resolve(folder, path)]];
     }),
-  );
-  const { borders, compress, preset = rules.preset, keep = rules.keep, exclude = rules.exclude, ...others } = given;
-  for (const name of paths) delete others[name];
+  ) as Partial<JobNames> & { target: string };
+  const { borders, compress, preset, keep, exclude, single } = settingsOf(given);
+  const common = settled(own.target);
+  const { rules } = common;
   return {
     ...own,
-    ...(borders !== undefined && { borders }),
-    ...(compress !== undefined && { compress }),
-    rules: { preset, keep, exclude, single: { ...rules.single, ...others } },
-  } as Partial<TransferCommand> & { target: string };
+    borders: borders ?? common.borders,
+    compress: compress ?? common.compress,
+    rules: {
+      ...rules,
+      preset: preset ?? rules.preset,
+      keep: keep ?? rules.keep,
+      exclude: exclude ?? rules.exclude,
+      single: { ...rules.single, ...single },
+    },
+  };
 }
 
+type JobNames = Pick<TransferCommand, 'target' | 'texture' | 'output' | 'report'> & { cage?: string | undefined };
+
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
-function jobOf(given: JobDefaults & { target: string }): Job {
+function jobOf({ settled: _, ...given }: JobDefaults & JobNames & Settled): Job {
   const { target, cage, output, report, texture } = given;
   if (cage === undefined)
     throw new InputError('has no cage; give one with --cage, or as "cage" in the manifest').in(target);

@@ -3,7 +3,7 @@ import { counted } from '../inspect/finding.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import { type Inspection, inspect, unfitFrom, usableFrom, type Verdict } from '../inspect/index.js';
 import { inspectionPage } from './inspect-page.js';
-import { type EffectiveOptions, effectiveOptions } from './options.js';
+import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
 import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
@@ -166,6 +166,7 @@ function describe(report: InspectionReport, html: string | undefined): string {
     '',
     ...conclusionOf(report),
     html === undefined ? '' : `wrote ${html}`,
+    configLine(report.options.config),
   ]
     .join('\n')
     .replace(/\n{3,}/g, '\n\n')

@@ -5,7 +5,7 @@ import { InputError } from '../gltf/input-error.js';
 import { type Lock, type Preset, type PresetOptions, presetOptions, type TransferOptions } from '../index.js';
 import { cut } from './table.js';
 
-type Single = Partial<Omit<PresetOptions, 'steps'>>;
+export type Single = Partial<Omit<PresetOptions, 'steps'>>;
 
 /** The options of a transfer, from the command line. */
 export interface Rules {
@@ -16,6 +16,10 @@ export interface Rules {
   keep: string[];
   /** The same for parts that are never painted. */
   exclude: string[];
+  /** Those of both that may match nothing. */
+  optional?: string[];
+  /** The configuration file that some of it comes from. */
+  config?: string;
 }
 
 /** The flags of these options, as commander parses them. */
@@ -82,20 +86,28 @@ export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> 
   occlusionReach: number | null;
   keep: string[];
   exclude: string[];
+  /** The configuration file that some of them come from. */
+  config: string | null;
 }
 
 /** The options in full; needs `init`. */
-export function effectiveOptions({ preset, single, keep, exclude }: Rules): EffectiveOptions {
+export function effectiveOptions({ preset, single, keep, exclude, config }: Rules): EffectiveOptions {
   const all = { ...presetOptions(preset), ...single };
   const occlusionReach = Number.isFinite(all.occlusionReach) ? all.occlusionReach : null;
-  return { preset, ...all, occlusionReach, keep, exclude };
+  return { preset, ...all, occlusionReach, keep, exclude, config: config ?? null };
 }
+
+/** Says which configuration file settings come from; empty if there is none. */
+export const configLine = (config: string | null | undefined): string => (config ? `settings from ${config}` : '');
 
 /**
  * The options of `transfer`. Names of parts become locks by group, because each part is a group.
  * @throws {InputError} if nothing has a given name, or a part is both kept and excluded.
  */
-export function transferOptions({ preset, single, keep, exclude }: Rules, { parts }: Extracted): TransferOptions {
+export function transferOptions(
+  { preset, single, keep, exclude, optional = [] }: Rules,
+  { parts }: Extracted,
+): TransferOptions {
   const groups: Record<number, Lock> = {};
   const saidBy = new Map<number, string>();
   for (const [lock, patterns] of [
@@ -105,7 +117,7 @@ export function transferOptions({ preset, single, keep, exclude }: Rules, { part
     for (const pattern of patterns) {
       const matches = matcher(pattern);
       const found = [...parts.keys()].filter((p) => parts[p]!.vertexCount > 0 && parts[p]!.aliases.some(matches));
-      if (found.length === 0) throw noSuchName(`--${lock} ${pattern}`, parts);
+      if (found.length === 0 && !optional.includes(pattern)) throw noSuchName(`--${lock} ${pattern}`, parts);
       for (const p of found) {
         if (groups[p] !== undefined && groups[p] !== lock)
           throw new InputError(

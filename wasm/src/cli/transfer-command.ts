@@ -8,7 +8,7 @@ import { diagonal, type Paint, paintOf, zoneAttribute } from '../gltf/overlay.js
 import { type Added, writeTransfer } from '../gltf/write.js';
 import { type CutTarget, cutBorders } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
-import { type EffectiveOptions, effectiveOptions } from './options.js';
+import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
 import type { Progress } from './progress.js';
 import { inFile, type Models, type Run, run, type Sources } from './run.js';
@@ -225,6 +225,7 @@ function summary(
       ? ''
       : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
     command.report === undefined ? '' : `wrote ${command.report}`,
+    configLine(command.rules.config),
     output === null && command.report === undefined
       ? 'nothing written; to save the result, add -o OUT.glb or --report R.json'
       : '',

@@ -1,0 +1,137 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { cagecast, glbOf } from '../js/glb.js';
+import { head } from '../js/scenes.js';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-config-'));
+const at = (...names: string[]) => join(folder, ...names);
+const config = at('cagecast.config.json');
+const scene = head(5, 8);
+const cage = ['--cage', at('cage.glb')];
+
+interface Options {
+  preset: string;
+  threshold: number;
+  exclude: string[];
+  config: string | null;
+}
+
+before(() => {
+  mkdirSync(at('assets/heads'), { recursive: true });
+  writeFileSync(at('cage.glb'), glbOf(scene.cage));
+  for (const name of ['ada', 'bao'])
+    writeFileSync(at('assets/heads', `${name}.glb`), glbOf({ ...scene.target, groups: undefined }));
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const ada = at('assets/heads/ada.glb');
+const set = (settings: object, path = config) => writeFileSync(path, JSON.stringify(settings));
+const optionsOf = (...args: string[]): Options => {
+  const { stdout, stderr } = cagecast(...args, ...cage, '--json');
+  assert.equal(stderr, '');
+  return (JSON.parse(stdout) as { options: Options }).options;
+};
+
+test('settings come from the nearest file above the target; characters by name win over all, and flags over both', () => {
+  set({
+    threshold: 0.4,
+    exclude: ['no such part'],
+    characters: { 'a*': { preset: 'paper', exclude: ['only'] }, 'ada.glb': { threshold: 0.3 } },
+  });
+  const own = optionsOf('transfer', ada);
+  assert.deepEqual([own.preset, own.threshold, own.exclude], ['paper', 0.3, ['no such part', 'only']]);
+  assert.equal(own.config, config);
+  const other = optionsOf('inspect', at('assets/heads/bao.glb'));
+  assert.deepEqual([other.preset, other.threshold], ['default', 0.4]);
+  const won = optionsOf('transfer', ada, '--preset', 'default', '--threshold', '0.6');
+  assert.deepEqual([won.preset, won.threshold, won.exclude.length], ['default', 0.6, 2]);
+  // What a flag names must be there; what the file names need not.
+  const { status, stderr } = cagecast('transfer', ada, ...cage, '--exclude', 'gone');
+  assert.deepEqual([status, /--exclude gone/.test(stderr)], [1, true]);
+});
+
+test('--config names another file, --no-config none; the output says which file was used', () => {
+  set({ threshold: 0.4 });
+  set({ threshold: 0.2, borders: 'cut', compress: 'meshopt' }, at('other.json'));
+  assert.equal(optionsOf('transfer', ada, '--no-config').config, null);
+  assert.equal(optionsOf('transfer', ada, '--config', at('other.json')).threshold, 0.2);
+  const written = cagecast('transfer', ada, ...cage, '--config', at('other.json'), '-o', at('out.glb'));
+  assert.match(written.stdout, new RegExp(`settings from ${at('other.json')}\n$`));
+  assert.match(written.stdout, /cut along borders/);
+  assert.match(readFileSync(at('out.glb')).toString('latin1'), /EXT_meshopt_compression/);
+  assert.match(cagecast('inspect', ada, ...cage).stdout, new RegExp(`settings from ${config}\n$`));
+});
+
+test('a batch takes the settings of each of its targets; a line of a manifest wins over them', () => {
+  set({ threshold: 0.4, characters: { bao: { threshold: 0.9 } } });
+  const report = ['--report', at('{name}.json')];
+  const { status, stderr } = cagecast('batch', at('assets/heads/*.glb'), ...cage, ...report);
+  assert.equal(status, 0);
+  assert.match(stderr, new RegExp(`; settings from ${config}\n$`));
+  const thresholdOf = (name: string) =>
+    (JSON.parse(readFileSync(at(name), 'utf8')) as { options: Options }).options.threshold;
+  assert.deepEqual(['ada.json', 'bao.json'].map(thresholdOf), [0.4, 0.9]);
+  const line = { target: ada, cage: at('cage.glb'), report: at('line.json'), threshold: 0.1 };
+  writeFileSync(at('jobs.jsonl'), JSON.stringify(line));
+  assert.equal(cagecast('batch', '--manifest', at('jobs.jsonl'), '--threshold', '0.7').status, 0);
+  assert.equal(thresholdOf('line.json'), 0.1);
+});
+
+test('what is wrong in the file is one line that names file, member and value', () => {
+  const cases: [string, RegExp][] = [
+    ['{', /is not JSON/],
+    ['[]', /is not a JSON object/],
+    ['{"treshold": 1}', /"treshold" is unknown; there are: preset, borders, compress, keep, exclude, threshold, /],
+    ['{"threshold": 3}', /"threshold" is 3, not a number within 0\.\.1/],
+    ['{"seams": "edge"}', /"seams" is "edge", not one of vertex, corner/],
+    ['{"preset": 1}', /"preset" is 1, not one of default, paper/],
+    ['{"exclude": "eye"}', /"exclude" is "eye", not an array of names/],
+    ['{"characters": []}', /"characters" is not an object of patterns and settings/],
+    ['{"characters": {"a*": 1}}', /"characters" "a\*": is not an object of settings/],
+    [
+      '{"characters": {"a*": {"borders": "soft"}}}',
+      /"characters" "a\*": "borders" is "soft", not one of triangle, cut/,
+    ],
+  ];
+  for (const [text, message] of cases) {
+    writeFileSync(config, text);
+    const { status, stdout, stderr } = cagecast('inspect', ada, ...cage);
+    assert.deepEqual([status, stdout], [1, ''], text);
+    assert.match(stderr, message);
+    assert.match(stderr, /^cagecast: [^\n]*cagecast\.config\.json: [^\n]+\n$/);
+  }
+  const gone = cagecast('inspect', ada, ...cage, '--config', at('gone.json'));
+  assert.match(gone.stderr, /gone\.json: no such file\n$/);
+  rmSync(config);
+});
+
+test('completion offers the commands, their flags and the choices of a flag; docs/cli.md lists the same', () => {
+  const script = cagecast('completion', 'bash').stdout;
+  const completed = (...words: string[]) => {
+    const run = `${script}\nCOMP_WORDS=(${words.map((word) => `'${word}'`).join(' ')}); COMP_CWORD=${words.length - 1}\n_cagecast; printf '%s\\n' "\${COMPREPLY[@]}"`;
+    const { status, stdout, stderr } = spawnSync('bash', ['-c', run], { encoding: 'utf8' });
+    assert.deepEqual([status, stderr], [0, '']);
+    return stdout.split('\n').filter(Boolean);
+  };
+  assert.deepEqual(completed('cagecast', 'tr'), ['transfer']);
+  assert.deepEqual(completed('cagecast', 'transfer', '--borders', ''), ['triangle', 'cut']);
+  assert.deepEqual(completed('cagecast', 'batch', '--res'), ['--results', '--resume']);
+  assert.deepEqual(completed('cagecast', 'transfer', 'fi'), [], 'files are offered by the shell itself');
+  const [zsh, fish] = [cagecast('completion', 'zsh').stdout, cagecast('completion', 'fish').stdout];
+  const page = readFileSync('docs/cli.md', 'utf8');
+  const flags = cagecast('help', 'batch')
+    .stdout.match(/^ +(-\w, )?--[\w-]+/gm)!
+    .map((line) => line.trim().split(' ').at(-1)!);
+  assert.ok(flags.length > 15);
+  for (const flag of flags) {
+    assert.ok(zsh.includes(`*${flag}[`), flag);
+    assert.ok(fish.includes(` -l ${flag.slice(2)} `), flag);
+    assert.ok(page.slice(page.indexOf('## cagecast batch')).includes(flag), flag);
+  }
+  const wrong = cagecast('completion', 'tcsh');
+  assert.deepEqual([wrong.status, /There are: bash, zsh, fish\./.test(wrong.stderr)], [2, true]);
+});

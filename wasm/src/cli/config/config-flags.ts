@@ -1,0 +1,58 @@
+import type { Command } from 'commander';
+import { type RuleFlags, type Rules, rulesOf } from '../options.js';
+import { Configuration, configName } from './config-file.js';
+import type { Settings } from './settings.js';
+
+/** The flags that say which configuration file is read, as commander parses them. */
+export interface ConfigFlags {
+  config?: string | false;
+}
+
+/** What holds for a transfer in the end. */
+export interface Settled extends Required<Pick<Settings, 'borders' | 'compress'>> {
+  rules: Rules;
+}
+
+/** Adds the flags that say which configuration file is read. */
+export const addConfigFlags = (command: Command): Command =>
+  command
+    .option(
+      '--config <FILE>',
+      `settings for all files, and by their names; default: the nearest ${configName}, from TARGET upwards`,
+    )
+    .option('--no-config', `read no ${configName}`);
+
+/**
+ * Returns what finds the settings of a target: flags that were given, then those of the configuration file, then default values.
+ * @param command  The one that parsed the flags.
+ */
+export function settler(
+  command: Command,
+  flags: RuleFlags & ConfigFlags & Partial<Pick<Settled, 'borders' | 'compress'>>,
+): (target: string) => Settled {
+  const files = new Configuration(flags.config);
+  const own = rulesOf(flags);
+  const { borders = 'triangle', compress = 'keep' } = flags;
+  const isGiven = (name: string) => command.getOptionValueSource(name) === 'cli';
+  return (target) => {
+    const found = files.settingsFor(target);
+    if (found === undefined) return { rules: own, borders, compress };
+    const pick = <Value>(name: string, value: Value, other: Value | undefined) =>
+      isGiven(name) ? value : (other ?? value);
+    const { path, single } = found;
+    const [keep, exclude] = [pick('keep', own.keep, found.keep), pick('exclude', own.exclude, found.exclude)];
+    return {
+      rules: {
+        preset: pick('preset', own.preset, found.preset),
+        single: { ...single, ...own.single },
+        keep,
+        exclude,
+        config: path,
+        // A file speaks of many models, and not each of them has every part.
+        optional: [...(isGiven('keep') ? [] : keep), ...(isGiven('exclude') ? [] : exclude)],
+      },
+      borders: pick('borders', borders, found.borders),
+      compress: pick('compress', compress, found.compress),
+    };
+  };
+}

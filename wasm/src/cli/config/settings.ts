@@ -1,0 +1,79 @@
+import { optionFlags } from '../../generated/options.js';
+import { type Form, forms } from '../../gltf/glb-writer.js';
+import { InputError } from '../../gltf/input-error.js';
+import type { Preset } from '../../index.js';
+import type { Single } from '../options.js';
+import { quoted } from '../options.js';
+
+/** How paint may end: at existing edges of triangles, or where triangles are cut. */
+export const borderKinds = ['triangle', 'cut'] as const;
+export const presets = ['default', 'paper'] as const;
+
+/** What can be said of a transfer besides its files: by flags, in a configuration file, in a line of a manifest. */
+export interface Settings {
+  preset?: Preset;
+  borders?: (typeof borderKinds)[number];
+  compress?: Form;
+  keep?: string[];
+  exclude?: string[];
+  /** Options of `transfer`. */
+  single: Single;
+}
+
+/** The names of settings in JSON. */
+export const settingNames: readonly string[] = [
+  'preset',
+  'borders',
+  'compress',
+  'keep',
+  'exclude',
+  ...optionFlags.map(({ name }) => name),
+];
+
+const choices: Readonly<Record<string, readonly string[]>> = {
+  preset: presets,
+  borders: borderKinds,
+  compress: forms,
+};
+
+const shown = (value: unknown): string => quoted(JSON.stringify(value) ?? String(value)).slice(1, -1);
+
+/**
+ * Checks settings that were read from JSON; other members of the object are ignored.
+ * @throws {InputError} that names the member, its value and what it may be.
+ */
+export function settingsOf(given: Readonly<Record<string, unknown>>): Settings {
+  const wrong = (name: string, text: string) => new InputError(`"${name}" is ${shown(given[name])}, not ${text}`);
+  const settings: Record<string, unknown> = {};
+  const single: Record<string, unknown> = {};
+  for (const [name, known] of Object.entries(choices)) {
+    if (given[name] === undefined) continue;
+    if (!known.includes(given[name] as string)) throw wrong(name, `one of ${known.join(', ')}`);
+    settings[name] = given[name];
+  }
+  for (const name of ['keep', 'exclude']) {
+    const list = given[name];
+    if (list === undefined) continue;
+    if (!(Array.isArray(list) && list.every((one) => typeof one === 'string'))) throw wrong(name, 'an array of names');
+    settings[name] = list;
+  }
+  for (const { name, kind, range } of optionFlags) {
+    const value = given[name];
+    if (value === undefined) continue;
+    if (kind === 'choice') {
+      if (!(range as readonly unknown[]).includes(value)) throw wrong(name, `one of ${range.join(', ')}`);
+    } else if (!(typeof value === 'number' && value >= range[0] && value <= range[1]))
+      throw wrong(name, `a number within ${range[0]}..${range[1]}`);
+    single[name] = value;
+  }
+  return { ...settings, single } as Settings;
+}
+
+/** @throws {InputError} for a member that is not among the known ones. */
+export function refuseUnknown(given: object, known: readonly string[]): void {
+  const unknown = Object.keys(given).find((name) => !known.includes(name));
+  if (unknown !== undefined) throw new InputError(`"${unknown}" is unknown; there are: ${known.join(', ')}`);
+}
+
+export const isObject = (value: unknown): value is Record<string, unknown> =>
+  typeof value === 'object' && value !== null && !Array.isArray(value);

@@ -1,0 +1,79 @@
+import { type Command, Option } from 'commander';
+import { forms } from '../../gltf/glb-writer.js';
+import { settler } from '../config/config-flags.js';
+import { borderKinds } from '../config/settings.js';
+import { print } from '../print.js';
+import type { Progress } from '../progress.js';
+import { readingOf } from '../read-flags.js';
+import { autoCage } from '../run.js';
+import { type TransferCommand, transferCommand } from '../transfer-command.js';
+import { endingIn, refuseOverwriting, wrongUsage } from '../usage.js';
+import { addCommonFlags, type CommonFlags } from './common-flags.js';
+
+/** Adds the command that transfers to a file. */
+export function addTransferCommand(program: Command, progress: Progress): void {
+  addCommonFlags(program.command('transfer'))
+    .description('write TARGET with a new UV set and the attribute _NCZ, otherwise unchanged')
+    .option(
+      '--texture <PAINT>',
+      "PNG, JPEG or WebP in the cage's UV space, shown as an overlay on the triangles that may be painted",
+    )
+    .addOption(
+      new Option('-o, --output <OUT.glb>', 'where to write the GLB or VRM; - for the standard output').argParser(
+        endingIn('.glb', '.vrm'),
+      ),
+    )
+    .addOption(
+      new Option(
+        '--borders <HOW>',
+        'triangle: the paint ends at existing triangle edges; cut: triangles are cut at holes and seams',
+      )
+        .choices(borderKinds)
+        .default('triangle'),
+    )
+    .addOption(
+      new Option('--compress <HOW>', 'how the geometry of OUT is compressed; keep: as in TARGET')
+        .choices(forms)
+        .default('keep'),
+    )
+    .option('--report <R.json>', 'where to write counts, areas, segments and timings as JSON')
+    .addHelpText(
+      'after',
+      `
+_NCZ is 0 for a vertex that may be painted. Other values say why it must not be painted:
+  1  occluded: another surface of the target lies over it
+  2  uncovered: the cage has a hole over it, or it lies outside the cage
+  3  culled: the cage covers too little of its segment (connected part), or has a hole meant for that segment
+If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
+existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
+the order of vertices.
+A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
+--cage auto makes a cage for TARGET on the way, as cagecast make does; for a file named auto, write ./auto.
+
+Examples:
+  cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
+  cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
+  cagecast transfer body.glb --cage cage.glb --keep skin --exclude 'eye*' -o painted.glb`,
+    )
+    .action(
+      async (
+        target: string,
+        flags: CommonFlags & Pick<TransferCommand, 'texture' | 'output' | 'report' | 'borders' | 'compress'>,
+        command: Command,
+      ) => {
+        const { cage, texture, output, report } = flags;
+        if (flags.quiet) progress.silence();
+        if (texture !== undefined && output === undefined)
+          command.error('--texture needs -o OUT.glb, the file to add it to', { exitCode: wrongUsage });
+        if (flags.borders === 'cut' && output === undefined)
+          command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
+        refuseOverwriting(command, [target, cage === autoCage ? undefined : cage, texture], [output, report]);
+        const found = await transferCommand(
+          { target, cage, texture, output, report, ...settler(command, flags)(target), reading: readingOf(flags) },
+          progress,
+        );
+        progress.clear();
+        print(found, flags, [output, report]);
+      },
+    );
+}
