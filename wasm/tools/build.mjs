@@ -146,7 +146,7 @@ async function bundleEntries(bundle) {
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager });
   await bundle('core/read-wasm.ts', 'read-wasm.js', 'neutral', reading('cagecast'));
   await bundle('core/read-wasm-node.ts', 'read-wasm-node.js', 'node', reading('cagecast'));
-  for (const entry of ['inspect', 'three', 'gltf', 'worker', 'cages'])
+  for (const entry of ['inspect', 'bake', 'three', 'gltf', 'worker', 'cages'])
     await bundle(`${entry}/index.ts`, `${entry}.js`, 'neutral', shared);
   await bundle('worker/spawn.ts', 'spawn.js', 'neutral', shared);
   await bundle('worker/spawn-node.ts', 'spawn-node.js', 'node', shared);
@@ -214,6 +214,7 @@ function wasmModules(wasm, { index, read } = {}) {
       if (index) {
         build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
         build.onResolve({ filter: /^\.\.\/cages\/index\.js$/ }, () => ({ path: './cages.js', external: true }));
+        build.onResolve({ filter: /^\.\.\/bake\/index\.js$/ }, () => ({ path: './bake.js', external: true }));
         build.onResolve({ filter: /^\.\.\/worker\/index\.js$/ }, () => ({ path: './worker.js', external: true }));
       }
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({

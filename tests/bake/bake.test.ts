@@ -1,0 +1,275 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { before, test } from 'node:test';
+import { NodeIO, type Primitive } from '@gltf-transform/core';
+import { CagecastError, init, type Mesh, type TransferResult, transfer } from 'cagecast';
+import { bake, cageTexture, fill, type Image, type Layout, layOver, resize } from 'cagecast/bake';
+import { PNG } from 'pngjs';
+import { randomNumbers, smoothImage, texelsOf } from './reference';
+
+before(init);
+
+/** Triangles anywhere in both textures; every fifth is not painted, every ninth has no area. */
+function randomLayouts(seed: number, reach = 1): Layout[] {
+  const random = randomNumbers(seed);
+  return ['first', 'second'].map((name) => {
+    const count = 12;
+    const to = new Float64Array(6 * count);
+    for (let t = 0; t < count; ++t) {
+      const [u, v] = [reach * random(), reach * random()];
+      for (let k = 0; k < 6; ++k) to[6 * t + k] = (k % 2 ? v : u) + 0.4 * (random() - 0.5);
+      if (t % 9 === 4) to.copyWithin(6 * t + 2, 6 * t, 6 * t + 2);
+    }
+    const from = Float64Array.from({ length: 6 * count }, () => random());
+    return { name, to, from, painted: Uint8Array.from({ length: count }, (_, t) => Number(t % 5 !== 2)) };
+  });
+}
+
+const texel = ({ data, width }: Image, x: number, y: number): number[] => [
+  ...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 4),
+];
+const apart = (a: readonly number[], b: readonly number[]): number =>
+  Math.max(...a.map((value, k) => Math.abs(value - b[k]!)));
+
+/** Compares every texel with the reference, but for those on edges. */
+function compare(layouts: Layout[], image: Image, size: number, far = 0): void {
+  const isCoarse = image.width < size;
+  const baked = fill('test', layouts, image, { width: size, gutter: 0, wrap: far > 0 ? 'repeat' : 'clamp' });
+  let [painted, clear, worst] = [0, 0, 0];
+  texelsOf(layouts, image, { size, samples: isCoarse ? 2 : 4, isCoarse, far }).forEach((expected, i) => {
+    if (!expected) return;
+    const found = [...baked.data.subarray(4 * i, 4 * i + 4)];
+    if (expected[3] === 0) {
+      ++clear;
+      assert.deepEqual(found, [0, 0, 0, 0], `texel ${i}`);
+    } else if (expected[3]! > 8) {
+      ++painted;
+      worst = Math.max(worst, apart(found, expected));
+    }
+  });
+  assert.ok(painted > 50 && (clear > 100 || far > 0), `${painted} texels are painted, ${clear} are clear`);
+  assert.ok(worst <= 1.5, `off by up to ${worst}`);
+}
+
+for (const seed of [1, 2, 3]) {
+  test(`a texture is what a search among all triangles finds, texel by texel: scene ${seed}`, () => {
+    const layouts = randomLayouts(seed);
+    for (const isOpaque of [true, false]) {
+      compare(layouts, smoothImage(20, 15, isOpaque), 64);
+      compare(layouts, smoothImage(600, 400, isOpaque), 40);
+    }
+  });
+}
+
+test('UVs beyond 0 to 1 repeat', () => {
+  const layouts = randomLayouts(7, 2);
+  compare(layouts, smoothImage(20, 20), 64, 3);
+  compare(layouts, smoothImage(600, 600), 40, 3);
+});
+
+/** A square of two triangles in the whole texture, `n` by `n`, beside which nothing is. */
+const square = (at = 0, size = 1): Mesh & { uvs: Float32Array } => ({
+  positions: new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]),
+  indices: new Uint32Array([0, 1, 2, 0, 2, 3]),
+  uvs: Float32Array.from([0, 0, 1, 0, 1, 1, 0, 1], (value) => at + size * value),
+});
+
+const resultOf = (mesh: Mesh, uvs = mesh.uvs!): Pick<TransferResult, 'uvs' | 'cornerUvs' | 'cosmeticTriangles'> => ({
+  uvs: Float32Array.from(uvs),
+  cornerUvs: new Float32Array(0),
+  cosmeticTriangles: new Uint8Array(mesh.indices.length / 3).fill(1),
+});
+
+test('a square with the same UVs in both textures copies the paint, byte for byte', () => {
+  const mesh = square();
+  const image = smoothImage(64, 64, false);
+  const { data, mask } = bake(mesh, resultOf(mesh), image, { width: 64 });
+  for (let at = 0; at < data.length; at += 4)
+    assert.ok(
+      image.data[at + 3]! < 8 || apart([...data.subarray(at, at + 4)], [...image.data.subarray(at, at + 4)]) <= 1,
+    );
+  assert.ok(mask.every((share) => share === 255));
+});
+
+test('the gutter has the colour of the edge; beyond it, and in the mask, nothing is', () => {
+  const mesh = square(0.25, 0.5);
+  const red = { width: 1, height: 1, data: new Uint8Array([230, 30, 40, 255]) };
+  const baked = bake(mesh, resultOf(mesh), red, { width: 64, gutter: 5 });
+  for (let y = 0; y < 64; ++y)
+    for (let x = 0; x < 64; ++x) {
+      const beyond = Math.max(16 - x, x - 47, 16 - y, y - 47);
+      assert.deepEqual(texel(baked, x, y), beyond <= 5 ? [230, 30, 40, 255] : [0, 0, 0, 0], `${x}, ${y}`);
+      assert.equal(baked.mask[64 * y + x], beyond <= 0 ? 255 : 0);
+    }
+});
+
+test('what must not be painted keeps its texels clear, though its neighbours are painted', () => {
+  const mesh = square();
+  const result = resultOf(mesh);
+  result.cosmeticTriangles[0] = 0;
+  const baked = bake(mesh, result, smoothImage(8, 8), { width: 64 });
+  for (let y = 0; y < 64; ++y)
+    for (let x = 0; x < 64; ++x) {
+      if (x > y) assert.equal(texel(baked, x, y)[3], 0);
+      if (x < y) assert.equal(texel(baked, x, y)[3], 255);
+    }
+});
+
+test('mirrored halves that share texels are told, with the names of the parts; parts alone are not', () => {
+  const mesh = square();
+  const half = [0, 0, 0.5, 0, 0.5, 1, 0, 1];
+  const uvs = Float32Array.from([...half, ...half.map((value, k) => (k % 2 ? value : 0.5 - value))]);
+  const both = { indices: new Uint32Array([...mesh.indices, ...mesh.indices.map((v) => v + 4)]), uvs };
+  const parts = ['left', 'right'].map((name, p) => ({ name, firstTriangle: 2 * p, triangleCount: 2 }));
+  const result = { ...resultOf(mesh), uvs, cosmeticTriangles: new Uint8Array(4).fill(1) };
+  const { overlap } = bake(both, result, smoothImage(16, 16), { width: 64, parts });
+  assert.deepEqual(overlap, { texels: 1, lost: 0.5, parts: ['left', 'right'] });
+  const alone = bake(both, result, smoothImage(16, 16), { width: 64, parts: parts.slice(0, 1) });
+  assert.deepEqual(alone.overlap, { texels: 0, lost: 0, parts: [] });
+  assert.equal(texel(alone, 50, 32)[3], 0, 'the other half of the texture is empty');
+});
+
+test('a normal map is turned with the UVs: a quarter turn, a mirror, and back', () => {
+  const mesh = square();
+  const turned = Float32Array.from([1, 0, 1, 1, 0, 1, 0, 0]); // the tangent is where −v was
+  const mirrored = Float32Array.from([1, 0, 0, 0, 0, 1, 1, 1]);
+  const normals = { width: 1, height: 1, data: new Uint8Array([204, 128, 230, 255]) }; // leans to +x
+  const leaning = (uvs: Float32Array): number[] =>
+    texel(bake({ ...mesh, uvs }, resultOf(mesh), normals, { width: 16, kind: 'normal' }), 8, 8);
+  assert.ok(apart(leaning(mesh.uvs), [204, 128, 230, 255]) <= 2, String(leaning(mesh.uvs)));
+  assert.ok(apart(leaning(mirrored), [51, 128, 230, 255]) <= 2, String(leaning(mirrored)));
+  assert.ok(apart(leaning(turned), [128, 51, 230, 255]) <= 2, String(leaning(turned)));
+  const there = bake({ ...mesh, uvs: turned }, resultOf(mesh), normals, { width: 16, kind: 'normal' });
+  const back = cageTexture({ ...mesh, uvs: turned }, resultOf(mesh), there, { width: 16, kind: 'normal' });
+  assert.ok(apart(texel(back, 8, 8), [204, 128, 230, 255]) <= 2);
+});
+
+test('other values than colours are averaged as they are', () => {
+  const mesh = square();
+  const image = { width: 2, height: 1, data: new Uint8Array([0, 40, 0, 255, 200, 40, 0, 255]) };
+  const middle = (kind: 'color' | 'data') =>
+    texel(bake(mesh, resultOf(mesh), image, { width: 4, height: 1, gutter: 0, kind }), 1, 0)[0]!;
+  assert.ok(Math.abs(middle('data') - 50) <= 1);
+  assert.ok(middle('color') > 90, 'colours are mixed in linear light');
+});
+
+test('what is baked lies over an image of the same size; alpha and bytes beyond are kept', () => {
+  const mesh = square(0.25, 0.5);
+  const red = { width: 1, height: 1, data: new Uint8Array([230, 30, 40, 255]) };
+  const base = smoothImage(64, 64, false);
+  const baked = bake(mesh, resultOf(mesh), red, { width: 64, gutter: 0 });
+  const laid = layOver(base, baked);
+  for (let y = 0; y < 64; ++y)
+    for (let x = 0; x < 64; ++x) {
+      const inside = Math.min(x, y) >= 16 && Math.max(x, y) < 48;
+      const before = texel(base, x, y);
+      assert.deepEqual(texel(laid, x, y), inside ? [230, 30, 40, before[3]] : before, `${x}, ${y}`);
+    }
+  assert.throws(() => layOver(smoothImage(32, 64), baked), /image has 32 × 64 texels, what was baked 64 × 64/);
+});
+
+test('an image is resized by the areas that pixels cover', () => {
+  const image = {
+    width: 4,
+    height: 2,
+    data: new Uint8Array(32).map((_, at) => (at % 4 === 3 ? 255 : at % 16 < 8 ? 10 : 210)),
+  };
+  const small = resize(image, 2, 1);
+  assert.ok(small.data[0]! < 60 && small.data[4]! > 160, String(small.data));
+  assert.equal(resize(image, 4, 2), image);
+  assert.deepEqual(resize(resize(image, 64, 64), 64, 64).width, 64);
+});
+
+/** The only primitive of a node, as a mesh, and the paint in the cage's UVs. */
+async function sample(name: string, node: string) {
+  const read = async (file: string, of?: string): Promise<Mesh & { uvs: Float32Array }> => {
+    const document = await new NodeIO().read(`build/assets/${name}/${file}.glb`);
+    const nodes = document
+      .getRoot()
+      .listNodes()
+      .filter((one) => one.getMesh());
+    const primitive: Primitive = (of ? nodes.find((one) => one.getName() === of)! : nodes[0]!)
+      .getMesh()!
+      .listPrimitives()[0]!;
+    return {
+      positions: primitive.getAttribute('POSITION')!.getArray() as Float32Array,
+      indices: Uint32Array.from(primitive.getIndices()!.getArray()!),
+      uvs: primitive.getAttribute('TEXCOORD_0')!.getArray() as Float32Array,
+    };
+  };
+  const [cage, target] = [await read('cage'), await read('target', node)];
+  return { cage, target, result: transfer(cage, target) };
+}
+
+test('there and back, from the cage to the lizard’s atlas and to the cage, the paint differs by 2/255 at most, on the mean', async () => {
+  const { target, result } = await sample('lizard', 'skin');
+  const war = PNG.sync.read(readFileSync('build/assets/lizard/paint-war-paint.png'));
+  for (const paint of [smoothImage(1024, 1024), war as Image]) {
+    const atlas = bake(target, result, paint, { width: 1024 });
+    const back = cageTexture(target, result, atlas, { width: 1024 });
+    const before = resize(paint, 1024, 1024);
+    let [sum, covered] = [0, 0];
+    back.mask.forEach((share, i) => {
+      if (share !== 255) return;
+      ++covered;
+      // By what is seen: premultiplied.
+      for (let k = 0; k < 4; ++k) {
+        const seen = ({ data }: Image) => (k === 3 ? data[4 * i + 3]! : (data[4 * i + k]! * data[4 * i + 3]!) / 255);
+        sum += Math.abs(seen(back) - seen(before)) / 4;
+      }
+    });
+    assert.ok(covered > 300_000 && sum / covered <= 2, `${sum / covered} over ${covered} texels`);
+    // The left eye is a hole of the cage.
+    assert.deepEqual(texel(back, 374, 786), [0, 0, 0, 0]);
+  }
+});
+
+test('what cannot be baked is one clear error', () => {
+  const mesh = square();
+  const [result, paint] = [resultOf(mesh), smoothImage(4, 4)];
+  const cases: [() => unknown, RegExp][] = [
+    [() => bake({ indices: mesh.indices }, result, paint), /^bake: target has no UVs/],
+    [
+      () => bake({ ...mesh, uvs: mesh.uvs.map((u, i) => (i === 5 ? NaN : u)) }, result, paint),
+      /^bake: target\.uvs\[5\] is NaN/,
+    ],
+    [
+      () => bake({ ...mesh, indices: new Uint32Array([0, 1, 9]) }, result, paint),
+      /target\.indices\[2\] = 9 is out of range \(4 UVs\)/,
+    ],
+    [
+      () => bake(mesh, { ...result, cosmeticTriangles: new Uint8Array(7) }, paint),
+      /result\.cosmeticTriangles has 7 entries, the target needs 2/,
+    ],
+    [
+      () => bake(mesh, result, { ...paint, data: new Uint8Array(5) }),
+      /image\.data has 5 bytes, not 4 for each of 4 × 4/,
+    ],
+    [
+      () => bake(mesh, result, paint, { kind: 'hue' as 'color' }),
+      /options\.kind is hue; there are: color, data, normal/,
+    ],
+    [() => bake(mesh, result, paint, { wrap: 'fold' as 'clamp' }), /options\.wrap is fold; there are/],
+    [() => bake(mesh, result, paint, { gutter: -1 }), /options\.gutter is -1/],
+    [
+      () => bake(mesh, result, paint, { parts: [{ name: 'x', firstTriangle: 1, triangleCount: 2 }] }),
+      /options\.parts\[0\] is not/,
+    ],
+    [
+      () => bake({ ...mesh, positions: new Float32Array(3) }, result, paint, { kind: 'normal' }),
+      /target\.positions has 3 numbers/,
+    ],
+    [
+      () => bake({ ...mesh, uvs: mesh.uvs.map((u) => 1e6 * u) }, result, paint),
+      /triangle 0 of "target": a triangle extends over more than 64 textures/,
+    ],
+    [() => cageTexture({ indices: mesh.indices }, result, paint), /^cageTexture: target has no UVs/],
+  ];
+  for (const size of [0, 1e5, NaN, 2.5, -1])
+    cases.push([
+      () => bake(mesh, result, paint, { width: size }),
+      new RegExp(`options\\.width is ${size}, not a whole number of texels from 1 to 8192`),
+    ]);
+  for (const [call, message] of cases)
+    assert.throws(call, (error) => error instanceof CagecastError && message.test(error.message), String(message));
+});

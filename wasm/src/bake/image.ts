@@ -1,0 +1,117 @@
+import { show } from '../api/error.js';
+import { CagecastError } from '../index.js';
+
+/** An image: 4 bytes per pixel (red, green, blue, alpha), not premultiplied, upper row first, as in glTF's UV space. */
+export interface Image {
+  width: number;
+  height: number;
+  data: Uint8Array | Uint8ClampedArray;
+}
+
+/** The longest side of an image that can be baked, in texels: some 24 bytes of memory for each texel are needed. */
+export const mostTexels = 8192;
+
+/** Linear light, 0..1, for each byte of sRGB. */
+export const linearOf = Float32Array.from({ length: 256 }, (_, byte) =>
+  byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4,
+);
+
+/** The same for bytes that are not colours. */
+export const shareOf = Float32Array.from({ length: 256 }, (_, byte) => byte / 255);
+
+const kSteps = 1 << 16;
+let bytes: Uint8Array | undefined;
+
+/** Bytes of sRGB for linear light, in steps of 1/65536: 20 of them lie between two dark bytes. */
+function srgbBytes(): Uint8Array {
+  bytes ??= Uint8Array.from({ length: kSteps + 1 }, (_, step) => {
+    const linear = step / kSteps;
+    return Math.round(255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055));
+  });
+  return bytes;
+}
+
+/** Returns a function from linear light to bytes of sRGB. */
+export function colorByte(): (linear: number) => number {
+  const table = srgbBytes();
+  return (linear) => table[linear <= 0 ? 0 : linear >= 1 ? kSteps : (linear * kSteps + 0.5) | 0]!;
+}
+
+/**
+ * Checks a size in texels.
+ * @throws {CagecastError} `badArgument`
+ */
+export function checkSize(fn: string, name: string, value: unknown): number {
+  if (!Number.isInteger(value) || (value as number) < 1 || (value as number) > mostTexels)
+    throw new CagecastError(
+      'badArgument',
+      `${fn}: ${name} is ${show(value)}, not a whole number of texels from 1 to ${mostTexels}`,
+    );
+  return value as number;
+}
+
+/**
+ * Checks an image.
+ * @throws {CagecastError} `badArgument`
+ */
+export function checkImage(fn: string, name: string, image: unknown): Image {
+  const wrong = (text: string) => new CagecastError('badArgument', `${fn}: ${name}${text}`);
+  if (typeof image !== 'object' || image === null)
+    throw wrong(` is ${show(image)}, not an image { width, height, data }`);
+  const { width, height, data } = image as Partial<Image>;
+  checkSize(fn, `${name}.width`, width);
+  checkSize(fn, `${name}.height`, height);
+  if (!(data instanceof Uint8Array || data instanceof Uint8ClampedArray))
+    throw wrong(`.data is ${show(data)}, not a Uint8Array or Uint8ClampedArray`);
+  if (data.length !== 4 * width! * height!)
+    throw wrong(`.data has ${data.length} bytes, not 4 for each of ${width} × ${height} pixels`);
+  return image as Image;
+}
+
+/**
+ * Resizes an image: every pixel is the mean of the area that it covers. Colours are averaged as they are stored, weighted by
+ * alpha.
+ * @throws {CagecastError} `badArgument` for a size that is not 1 to 8192.
+ */
+export function resize(image: Image, width: number, height: number): Image {
+  const from = checkImage('resize', 'image', image);
+  checkSize('resize', 'width', width);
+  checkSize('resize', 'height', height);
+  if (from.width === width && from.height === height) return from;
+  const [columns, rows] = [spansOf(from.width, width), spansOf(from.height, height)];
+  const data = new Uint8ClampedArray(4 * width * height);
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) {
+      let [r, g, b, a, sum] = [0, 0, 0, 0, 0];
+      for (const [row, down] of rows[y]!) {
+        for (const [column, across] of columns[x]!) {
+          const at = 4 * (row * from.width + column);
+          const share = down * across;
+          const weight = share * from.data[at + 3]!;
+          r += weight * from.data[at]!;
+          g += weight * from.data[at + 1]!;
+          b += weight * from.data[at + 2]!;
+          a += weight;
+          sum += share;
+        }
+      }
+      data.set(a > 0 ? [r / a, g / a, b / a, a / sum] : [0, 0, 0, 0], 4 * (y * width + x));
+    }
+  }
+  return { width, height, data };
+}
+
+/** For each pixel of a new row, the pixels of the old one that it covers, and how much of each; at least two are blended. */
+function spansOf(before: number, after: number): [number, number][][] {
+  const scale = before / after;
+  const reach = Math.max(scale, 1);
+  return Array.from({ length: after }, (_, place) => {
+    const middle = (place + 0.5) * scale;
+    const span: [number, number][] = [];
+    for (let i = Math.floor(middle - reach); i <= Math.ceil(middle + reach); ++i) {
+      const weight = 1 - Math.abs(i + 0.5 - middle) / reach;
+      if (weight > 0) span.push([Math.min(before - 1, Math.max(0, i)), weight]);
+    }
+    return span;
+  });
+}

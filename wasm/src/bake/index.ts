@@ -1,0 +1,9 @@
+/**
+ * Baking: the paint in a model's own UVs, and back. Needs neither three.js nor a canvas: typed arrays in, bytes of RGBA out.
+ * @module cagecast/bake
+ */
+
+export { type BakeOptions, type BakePart, type BakeResult, type BakeTarget, bake, cageTexture } from './bake.js';
+export { type Image, mostTexels, resize } from './image.js';
+export { type Baked, type FillOptions, fill, type Layout, layOver } from './layout.js';
+export type { Kind, Wrap } from './raster.js';

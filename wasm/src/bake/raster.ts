@@ -1,0 +1,271 @@
+import { CagecastError } from '../index.js';
+import { fillGutter, type Place } from './gutter.js';
+import { type Image, linearOf, shareOf } from './image.js';
+
+/** How a texture goes on beyond its border, as in glTF. */
+export type Wrap = 'repeat' | 'mirror' | 'clamp';
+
+/** What an image holds: colours in sRGB, other values (roughness, say), or a normal map. */
+export type Kind = 'color' | 'data' | 'normal';
+
+/** Samples per texel and direction: two for edges, more where the image is finer than the texture. */
+const kFewestSamples = 2;
+const kMostSamples = 4;
+/** If the image has fewer texels per texel than this, all samples of a texel take its middle: their mean would blur the image. */
+const kCoarse = 1.5;
+
+/** A triangle larger than this, in textures, would be drawn for minutes; its UVs are a mistake. */
+const kMostRepeats = 64;
+
+/** Where the corners of triangles are in a texture. */
+export type Corners = ArrayLike<number>;
+
+/** What a triangle shows. */
+export interface Shown {
+  /** 6 numbers: the UVs of its corners in the image that is sampled. */
+  corners: Corners;
+  /** For normal maps, 4 numbers: the matrix, row by row, from the tangent space of the image to that of the texture. */
+  turn?: readonly [number, number, number, number] | undefined;
+}
+
+/**
+ * An image resampled into other UVs, triangle by triangle. Where triangles overlap, the first one wins. Samples on a shared edge
+ * belong to exactly one triangle.
+ */
+export class Raster {
+  readonly width: number;
+  readonly height: number;
+  readonly #image: Image;
+  readonly #samples: number;
+  readonly #isCoarse: boolean;
+  readonly #columnOf: Place;
+  readonly #rowOf: Place;
+  readonly #table: Float32Array;
+  /** 4 per texel: premultiplied RGBA, linear; sums over samples, and means once finished. */
+  readonly colors: Float32Array;
+  /** 1 per texel: how many of its samples are covered. */
+  readonly #covered: Uint8Array;
+  /** 1 per texel: how many of these are painted. */
+  readonly #painted: Uint8Array;
+  /** 1 per texel: the part that came first, counted from 1. */
+  readonly #owners: Uint16Array;
+  /** 1 per texel: samples that came second. */
+  readonly #second: Uint8Array;
+  /** 1 per part: whether it shares texels with itself or another. */
+  readonly #sharing = new Set<number>();
+  /** Spans of the rows of samples in a row of texels. */
+  readonly #lefts = new Float64Array(kMostSamples);
+  readonly #rights = new Float64Array(kMostSamples);
+  #refused = 0;
+  #laid = 0;
+
+  /**
+   * @param size     Of the texture, in texels.
+   * @param image    What is sampled; it repeats.
+   * @param density  Texels of the image per texel of the texture, in one direction.
+   */
+  constructor(
+    { width, height }: { width: number; height: number },
+    wraps: readonly [Wrap, Wrap],
+    image: Image,
+    density: number,
+    kind: Kind,
+  ) {
+    this.width = width;
+    this.height = height;
+    this.#image = image;
+    this.#samples = Math.max(kFewestSamples, Math.min(kMostSamples, Math.ceil(density)));
+    this.#isCoarse = density < kCoarse;
+    this.#columnOf = placer(width, wraps[0]);
+    this.#rowOf = placer(height, wraps[1]);
+    this.#table = kind === 'color' ? linearOf : shareOf;
+    const texels = width * height;
+    this.colors = new Float32Array(4 * texels);
+    this.#covered = new Uint8Array(texels);
+    this.#painted = new Uint8Array(texels);
+    this.#owners = new Uint16Array(texels);
+    this.#second = new Uint8Array(texels);
+  }
+
+  /** Share of the paint that was left out, because its texels were taken. */
+  get lost(): number {
+    return this.#refused === 0 ? 0 : this.#refused / (this.#refused + this.#laid);
+  }
+
+  /** The covered texels of which at least half is claimed twice, as a share of all covered ones, and the numbers of parts there. */
+  claimedTwice(): { share: number; parts: number[] } {
+    const half = 0.5 * this.#samples ** 2;
+    let [twice, all] = [0, 0];
+    for (let texel = 0; texel < this.#covered.length; ++texel) {
+      if (this.#covered[texel] !== 0) ++all;
+      if (this.#second[texel]! >= half) ++twice;
+    }
+    return { share: all === 0 ? 0 : twice / all, parts: [...this.#sharing].sort((a, b) => a - b) };
+  }
+
+  /**
+   * Draws a triangle.
+   * @param own    6 numbers: the UVs of its corners in the texture.
+   * @param shown  What it shows; undefined for triangles that are not painted, which only take their place.
+   * @param part   The number of the part that it belongs to.
+   */
+  draw(own: Corners, shown: Shown | undefined, part: number): void {
+    const n = this.#samples;
+    const [width, height] = [this.width * n, this.height * n];
+    // In sample coordinates: samples lie at integers.
+    const [x0, x1, x2] = [own[0]! * width - 0.5, own[2]! * width - 0.5, own[4]! * width - 0.5];
+    const [y0, y1, y2] = [own[1]! * height - 0.5, own[3]! * height - 0.5, own[5]! * height - 0.5];
+    const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
+    if (area === 0) return;
+    const [top, end] = [Math.ceil(Math.min(y0, y1, y2)), Math.ceil(Math.max(y0, y1, y2))];
+    if (Math.abs(area) > kMostRepeats * 2 * width * height || end - top > kMostRepeats * height)
+      throw new CagecastError('badArgument', `a triangle extends over more than ${kMostRepeats} textures in UV space`);
+    // UVs are linear on the triangle.
+    let [u, ux, uy, v, vx, vy] = [0, 0, 0, 0, 0, 0];
+    if (shown) {
+      const { corners: c } = shown;
+      const [u1, u2, v1, v2] = [c[2]! - c[0]!, c[4]! - c[0]!, c[3]! - c[1]!, c[5]! - c[1]!];
+      ux = (u1 * (y2 - y0) - u2 * (y1 - y0)) / area;
+      uy = (u2 * (x1 - x0) - u1 * (x2 - x0)) / area;
+      vx = (v1 * (y2 - y0) - v2 * (y1 - y0)) / area;
+      vy = (v2 * (x1 - x0) - v1 * (x2 - x0)) / area;
+      u = c[0]! - ux * x0 - uy * y0;
+      v = c[1]! - vx * x0 - vy * y0;
+    }
+    const edges = [x0, y0, x1, y1, x1, y1, x2, y2, x2, y2, x0, y0];
+    const [lefts, rights] = [this.#lefts, this.#rights];
+    for (let y = Math.floor(top / n); y < end / n; ++y) {
+      const row = this.#rowOf(y);
+      if (row < 0) continue;
+      let [left, right] = [Infinity, -Infinity];
+      for (let k = 0; k < n; ++k) {
+        spanOf(edges, y * n + k, k, lefts, rights);
+        left = Math.min(left, lefts[k]!);
+        right = Math.max(right, rights[k]!);
+      }
+      for (let x = Math.floor(left / n); x < right / n; ++x) {
+        const column = this.#columnOf(x);
+        if (column < 0) continue;
+        let count = 0;
+        for (let k = 0; k < n; ++k)
+          count += Math.max(0, Math.min(rights[k]!, (x + 1) * n) - Math.max(lefts[k]!, x * n));
+        if (count === 0) continue;
+        const texel = row * this.width + column;
+        const taken = this.#claim(texel, count, shown !== undefined, part);
+        if (!shown || taken === 0) continue;
+        if (this.#isCoarse) {
+          const [sx, sy] = [(x + 0.5) * n - 0.5, (y + 0.5) * n - 0.5];
+          this.#addSample(4 * texel, u + ux * sx + uy * sy, v + vx * sx + vy * sy, taken, shown.turn);
+          continue;
+        }
+        for (let k = 0, left = taken; k < n && left > 0; ++k) {
+          const stop = Math.min(rights[k]!, (x + 1) * n);
+          for (let sx = Math.max(lefts[k]!, x * n); sx < stop && left > 0; ++sx, --left) {
+            const sy = y * n + k;
+            this.#addSample(4 * texel, u + ux * sx + uy * sy, v + vx * sx + vy * sy, 1, shown.turn);
+          }
+        }
+      }
+    }
+  }
+
+  /** Claims samples of a texel. @returns how many of them were free. */
+  #claim(texel: number, count: number, isPainted: boolean, part: number): number {
+    const before = this.#covered[texel]!;
+    const taken = Math.min(count, this.#samples ** 2 - before);
+    if (taken < count) {
+      if (isPainted || this.#painted[texel] !== 0) this.#refused += count - taken;
+      this.#second[texel] = Math.min(255, this.#second[texel]! + count - taken);
+      this.#sharing.add(part).add(this.#owners[texel]! - 1);
+    }
+    if (before === 0) this.#owners[texel] = part + 1;
+    this.#covered[texel] = before + taken;
+    if (isPainted) {
+      this.#painted[texel]! += taken;
+      this.#laid += taken;
+    }
+    return taken;
+  }
+
+  /** Adds a bilinear sample of the image. @param times  How many samples it stands for. */
+  #addSample(to: number, u: number, v: number, times: number, turn: Shown['turn']): void {
+    const { width, height, data } = this.#image;
+    const [x, y] = [u * width - 0.5, v * height - 0.5];
+    const [column, row] = [Math.floor(x), Math.floor(y)];
+    const [right, down] = [x - column, y - row];
+    const isInner = column >= 0 && row >= 0 && column < width - 1 && row < height - 1;
+    const c0 = isInner ? column : modulo(column, width);
+    const c1 = isInner ? column + 1 : modulo(column + 1, width);
+    const r0 = width * (isInner ? row : modulo(row, height));
+    const r1 = isInner ? r0 + width : width * modulo(row + 1, height);
+    const share = times / 255;
+    const [a, b, c, d] = [4 * (r0 + c0), 4 * (r0 + c1), 4 * (r1 + c0), 4 * (r1 + c1)];
+    const wa = share * (1 - right) * (1 - down) * data[a + 3]!;
+    const wb = share * right * (1 - down) * data[b + 3]!;
+    const wc = share * (1 - right) * down * data[c + 3]!;
+    const wd = share * right * down * data[d + 3]!;
+    const alpha = wa + wb + wc + wd;
+    if (alpha === 0) return;
+    const [table, colors] = [this.#table, this.colors];
+    let red = wa * table[data[a]!]! + wb * table[data[b]!]! + wc * table[data[c]!]! + wd * table[data[d]!]!;
+    let green =
+      wa * table[data[a + 1]!]! + wb * table[data[b + 1]!]! + wc * table[data[c + 1]!]! + wd * table[data[d + 1]!]!;
+    const blue =
+      wa * table[data[a + 2]!]! + wb * table[data[b + 2]!]! + wc * table[data[c + 2]!]! + wd * table[data[d + 2]!]!;
+    if (turn) {
+      const [across, up] = [red - 0.5 * alpha, green - 0.5 * alpha];
+      red = turn[0] * across + turn[1] * up + 0.5 * alpha;
+      green = turn[2] * across + turn[3] * up + 0.5 * alpha;
+    }
+    colors[to]! += red;
+    colors[to + 1]! += green;
+    colors[to + 2]! += blue;
+    colors[to + 3]! += alpha;
+  }
+
+  /**
+   * Makes means of sums, and fills the gutter. Call it once, after all triangles.
+   * @returns 1 per texel: how much of what is covered is painted, 0 to 255, without the gutter.
+   */
+  finish(gutter: number): Uint8Array<ArrayBuffer> {
+    const [colors, covered, painted] = [this.colors, this.#covered, this.#painted];
+    const mask = new Uint8Array(covered.length);
+    for (let texel = 0; texel < covered.length; ++texel) {
+      if (painted[texel] === 0) continue;
+      const share = 1 / covered[texel]!;
+      mask[texel] = Math.round(255 * share * painted[texel]!);
+      for (let at = 4 * texel; at < 4 * texel + 4; ++at) colors[at]! *= share;
+    }
+    const { width, height } = this;
+    fillGutter({ width, height, columnOf: this.#columnOf, rowOf: this.#rowOf, colors, covered }, gutter);
+    return mask;
+  }
+}
+
+/** Where a row of samples meets a triangle: from the first sample inside to the first one beyond. */
+function spanOf(edges: readonly number[], y: number, k: number, lefts: Float64Array, rights: Float64Array): void {
+  let [left, right] = [Infinity, -Infinity];
+  for (let e = 0; e < 12; e += 4) {
+    // Independent of the direction of the edge, so equal for both of its triangles.
+    const isDown = edges[e + 1]! < edges[e + 3]!;
+    const [p, q] = isDown ? [e, e + 2] : [e + 2, e];
+    const [py, qy] = [edges[p + 1]!, edges[q + 1]!];
+    if (!(py <= y && y < qy)) continue;
+    const x = edges[p]! + ((edges[q]! - edges[p]!) * (y - py)) / (qy - py);
+    if (x < left) left = x;
+    if (x > right) right = x;
+  }
+  lefts[k] = Math.ceil(left);
+  rights[k] = Math.ceil(right);
+}
+
+const modulo = (a: number, b: number): number => a - b * Math.floor(a / b);
+
+function placer(size: number, wrap: Wrap): Place {
+  if (wrap === 'repeat') return (place) => (place >= 0 && place < size ? place : modulo(place, size));
+  if (wrap === 'clamp') return (place) => (place >= 0 && place < size ? place : -1);
+  return (place) => {
+    const there = modulo(place, 2 * size);
+    return there < size ? there : 2 * size - 1 - there;
+  };
+}
