@@ -138,7 +138,7 @@ async function testFolders(folders, env) {
 /** Runs the tests that are written in TypeScript: those of all suites at once, as some leave a core idle. */
 async function testScripts(names) {
   const folders = {
-    package: ['tests/js', 'tests/bake', 'tests/command', 'tests/package', 'tests/three'],
+    package: ['tests/js', 'tests/bake', 'tests/command', 'tests/package', 'tests/three', 'tests/hosts'],
     browser: ['tests/browser', 'tests/web'],
   };
   const page = names.includes('browser') ? await timed('build the page', servePage) : undefined;

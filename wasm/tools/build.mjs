@@ -130,6 +130,8 @@ async function buildPackage() {
     cpSync(at(kTemplates), join(fresh, 'templates'), { recursive: true });
     const tsc = at('node_modules/@typescript/native/bin/tsc');
     run(process.execPath, [tsc, '-p', at('wasm/tsconfig.types.json'), '--outDir', fresh]);
+    for (const name of readdirSync(fresh, { recursive: true }))
+      if (name.endsWith('.d.ts')) widenTypes(join(fresh, name));
     writeFileSync(join(fresh, 'THIRD-PARTY-NOTICES.txt'), noticesOf(root, bundled, at('build', preset)));
   }
   rmSync(out, { recursive: true, force: true });
@@ -138,35 +140,16 @@ async function buildPackage() {
 
 /** Bundles what package.json exports besides the index. */
 async function bundleEntries(bundle) {
-  // What is imported from index.js, by one of the names in package.json's "imports", or from a peer stays a file of its own.
-  const shared = {
-    external: ['#spawn', '#spawn-cages', '#read-file', './index.js', 'three'],
-    plugins: [wasmModules('wasm-file.ts', { index: './index.js' })],
-  };
-  await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager });
-  await bundle('core/read-wasm.ts', 'read-wasm.js', 'neutral', reading('cagecast'));
-  await bundle('core/read-wasm-node.ts', 'read-wasm-node.js', 'node', reading('cagecast'));
+  // What is imported from index.js or from a peer stays a file of its own.
+  const shared = { external: ['./index.js', 'three'], plugins: [wasmModules('wasm-file.ts', { index: './index.js' })] };
+  await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager, ...reading('cagecast') });
   for (const entry of ['inspect', 'bake', 'three', 'gltf', 'worker', 'cages'])
     await bundle(`${entry}/index.ts`, `${entry}.js`, 'neutral', shared);
-  await bundle('worker/spawn.ts', 'spawn.js', 'neutral', shared);
-  await bundle('worker/spawn-node.ts', 'spawn-node.js', 'node', shared);
   await bundle('worker/thread.ts', 'worker-thread.js', 'neutral', shared);
-  await bundle('worker/thread-node.ts', 'worker-thread-node.js', 'node', shared);
-  await bundleCages(bundle, shared);
-}
-
-/** The entries that make cages have a WebAssembly module of their own; their workers are files that need no other script. */
-async function bundleCages(bundle, shared) {
-  const alone = (read) => ({ ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts', { read })] });
-  await bundle('core/read-file.ts', 'read-file.js', 'neutral', {});
-  await bundle('core/read-file-node.ts', 'read-file-node.js', 'node', {});
-  await bundle('cages/spawn.ts', 'spawn-cages.js', 'neutral', shared);
-  await bundle('cages/spawn-node.ts', 'spawn-cages-node.js', 'node', shared);
-  await bundle('cages/thread.ts', 'cages-thread.js', 'neutral', alone('read-wasm.ts'));
-  await bundle('cages/thread-node.ts', 'cages-thread-node.js', 'node', alone('read-wasm-node.ts'));
-  await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', alone());
-  await bundle('core/read-wasm.ts', 'read-cages.js', 'neutral', reading('cagecast-cages'));
-  await bundle('core/read-wasm-node.ts', 'read-cages-node.js', 'node', reading('cagecast-cages'));
+  // What makes cages has a WebAssembly module of its own; its worker is a file that needs no other script.
+  const alone = { ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts')] };
+  await bundle('cages/thread.ts', 'cages-thread.js', 'neutral', alone);
+  await bundle('cages/sync.ts', 'cages-sync.js', 'neutral', alone);
 }
 
 /** Options for a script that reads a WebAssembly file beside it. */
@@ -184,6 +167,7 @@ async function bundleCommand(bundle) {
     'const require = cagecastRequire(import.meta.url), __filename = cagecastPath(import.meta.url), __dirname = cagecastDirname(__filename);',
   ];
   await bundle('cli/main.ts', 'cli.js', 'node', {
+    ...reading('cagecast-cages'),
     target: 'node20',
     sourcemap: false, // most of it is what others wrote
     banner: { js: banner.join('\n') },
@@ -196,21 +180,18 @@ async function bundleCommand(bundle) {
  * Resolves the names that stand for what the C++ build makes.
  * @param wasm   How the package comes by its WebAssembly.
  * @param index  The file that importers of the package's index share; without, it is bundled.
- * @param read   What reads the module that makes cages; without, a file of its own.
  */
-function wasmModules(wasm, { index, read } = {}) {
+function wasmModules(wasm, { index } = {}) {
   const files = {
     '#glue': at('build', preset, 'wasm/cagecast.js'),
     '#cages-glue': at('build', preset, 'wasm/cagecast-cages.js'),
     '#wasm-text': at('build', preset, 'wasm/cagecast.wasm'),
     '#wasm': at('wasm/src/core', wasm),
-    ...(read && { '#read-cages': at('wasm/src/core', read) }),
   };
   return {
     name: 'wasm-modules',
     setup(build) {
       build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
-      build.onResolve({ filter: /^#read-(wasm|cages)$/ }, ({ path }) => ({ path, external: true }));
       if (index) {
         build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
         build.onResolve({ filter: /^\.\.\/cages\/index\.js$/ }, () => ({ path: './cages.js', external: true }));
@@ -218,11 +199,18 @@ function wasmModules(wasm, { index, read } = {}) {
         build.onResolve({ filter: /^\.\.\/worker\/index\.js$/ }, () => ({ path: './worker.js', external: true }));
       }
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
-        contents: readFileSync(path).toString('latin1'),
+        // Parcel writes a NUL before a digit as an octal escape, which modules do not have. U+0100 is the same byte when it is read.
+        contents: readFileSync(path).toString('latin1').replaceAll('\0', '\u0100'),
         loader: 'text',
       }));
     },
   };
+}
+
+/** Makes types fit for TypeScript before 5.7, to which `Float32Array<ArrayBuffer>` is an error; what is written instead is just that since then. */
+function widenTypes(path) {
+  const text = readFileSync(path, 'utf8');
+  writeFileSync(path, text.replace(/\b(\w+Array)<ArrayBuffer>/g, "ReturnType<$1Constructor['from']>"));
 }
 
 /** Makes a source map fit to be packed: without the text of the WebAssembly module, with paths from dist/ on. */

@@ -9,7 +9,7 @@ import { existsSync, lstatSync, readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
-const kOldestNode = 20;
+const kOldestNode = [20, 19]; // as Vite asks for; the package itself runs on 20.16
 
 const command = (name) => () => spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
 const header = (path) => () =>
@@ -57,7 +57,10 @@ function fail(message) {
 }
 
 /** @param {string} version  As `node --version` prints it. */
-const isNewEnough = (version) => Number(version.replace('v', '').split('.')[0]) >= kOldestNode;
+function isNewEnough(version) {
+  const [major, minor] = version.replace('v', '').split('.').map(Number);
+  return major > kOldestNode[0] || (major === kOldestNode[0] && minor >= kOldestNode[1]);
+}
 
 function installSystemPackages(names) {
   const missing = [...new Set(names)].filter((name) => !kNeeds[name].there());
@@ -83,21 +86,23 @@ function installSystemPackages(names) {
   const node = spawnSync('node', ['--version'], { encoding: 'utf8' }).stdout?.trim() ?? 'none';
   if (!isNewEnough(node))
     fail(
-      `The node in your PATH is now ${node}, from a Debian package; Cagecast needs ${kOldestNode} or newer. Put yours before it, in /usr/local/bin say, and run this again.`,
+      `The node in your PATH is now ${node}, from a Debian package; Cagecast needs ${kOldestNode.join('.')} or newer. Put yours before it, in /usr/local/bin say, and run this again.`,
     );
 }
 
-function installNpmPackages() {
+/** Installs the packages of a folder of the repository as its lock file says, unless that was done before. */
+function installNpmPackages(folder = '') {
+  const home = `${root}${folder}`;
   // The packages of another checkout, shared by a link as worktrees do: npm ci would empty them.
-  if (lstatSync(`${root}node_modules`, { throwIfNoEntry: false })?.isSymbolicLink()) return;
+  if (lstatSync(`${home}node_modules`, { throwIfNoEntry: false })?.isSymbolicLink()) return;
   const lock = createHash('sha256')
-    .update(readFileSync(`${root}package-lock.json`))
+    .update(readFileSync(`${home}package-lock.json`))
     .digest('hex');
-  const stamp = `${root}node_modules/.installed-lock`;
+  const stamp = `${home}node_modules/.installed-lock`;
   if (existsSync(stamp) && readFileSync(stamp, 'utf8') === lock) return;
-  console.log('Installing npm packages…');
+  console.log(`Installing npm packages${folder && ` of ${folder}`}…`);
   execFileSync('npm', ['ci', '--no-audit', '--no-fund', '--loglevel=error'], {
-    cwd: root,
+    cwd: home,
     stdio: ['ignore', 'inherit', 'inherit'],
   });
   writeFileSync(stamp, lock);
@@ -106,6 +111,7 @@ function installNpmPackages() {
 const purpose = process.argv[2];
 if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
 if (!isNewEnough(process.version))
-  fail(`Cagecast needs Node ${kOldestNode} or newer; this is ${process.versions.node}.`);
+  fail(`Cagecast needs Node ${kOldestNode.join('.')} or newer; this is ${process.versions.node}.`);
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();
+if (purpose === 'test') installNpmPackages('tests/hosts/');

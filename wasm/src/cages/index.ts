@@ -5,10 +5,10 @@
  * WebAssembly, `cagecast-cages.wasm`, then: until a function is called, nothing of it is loaded.
  * @module cagecast/cages
  */
-import { spawn } from '#spawn-cages';
 import type { Mesh } from '../api/mesh.js';
 import { CagecastError } from '../index.js';
 import { type CallOptions, type OnProgress, WorkerQueue } from '../worker/queue.js';
+import { spawn } from './spawn.js';
 import type {
   Cage,
   CageModel,

@@ -1,7 +1,11 @@
 import type { Spawn } from '../worker/protocol.js';
-import { threadOf } from '../worker/thread-of.js';
+import { threadOf, threadOfNode } from '../worker/thread-of.js';
 
-/** Starts a worker in a browser. */
-export const spawn: Spawn = (onReply, onFailure) =>
+/** Starts a worker. */
+export const spawn: Spawn = (onReply, onFailure) => {
+  const url = import.meta.url.replace(/[^/]*$/, 'cages-thread.js');
+  if (typeof Worker !== 'function') return threadOfNode(url, onReply, onFailure);
   // Bundlers find the worker's script only in this form.
-  threadOf(new Worker(new URL('./cages-thread.js', import.meta.url), { type: 'module' }), onReply, onFailure);
+  const worker = new Worker(new URL('./cages-thread.js', import.meta.url), { type: 'module' });
+  return threadOf(worker, url, onReply, onFailure);
+};

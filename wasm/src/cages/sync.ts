@@ -5,11 +5,11 @@
  * @module cagecast/cages/sync
  */
 import createModule from '#cages-glue';
-import { readWasm } from '#read-cages';
 import { CagecastError, type Code, show } from '../api/error.js';
 import type { Mesh } from '../api/mesh.js';
 import { instantiate, isLackOfMemory, unsupported } from '../core/instantiate.js';
 import { nameOf } from '../core/module.js';
+import { compileFile } from '../core/read-file.js';
 import {
   checkCage,
   checkLandmarks,
@@ -51,17 +51,16 @@ let compiled: WebAssembly.Module | undefined;
 
 /** Loads the WebAssembly module, `cagecast-cages.wasm`. All calls share it. @throws {CagecastError} `unsupported` */
 export function init(): Promise<void> {
-  starting ??= readWasm()
-    .then((bytes) => WebAssembly.compile(bytes))
-    .then(
-      (module) => {
-        compiled = module;
-      },
-      (cause: unknown) => {
-        starting = undefined;
-        throw unsupported(cause);
-      },
-    );
+  // The build inserts the file name as a literal, so that bundlers find the file.
+  starting ??= compileFile(new URL(CAGECAST_WASM, import.meta.url)).then(
+    (module) => {
+      compiled = module;
+    },
+    (cause: unknown) => {
+      starting = undefined;
+      throw unsupported(cause);
+    },
+  );
   return starting;
 }
 

@@ -1,5 +1,5 @@
-import { readFile } from '#read-file';
 import { show } from '../api/error.js';
+import { readFile } from '../core/read-file.js';
 import { CagecastError } from '../index.js';
 import { readExtras } from '../parts/template.js';
 import { type TemplateName, templateNames } from './template-names.js';
@@ -31,12 +31,13 @@ export async function loadTemplate(name: TemplateName): Promise<Cage> {
       'badArgument',
       `loadTemplate: name is ${show(name)}, not one of ${templateNames.map((known) => `"${known}"`).join(', ')}`,
     );
+  const url = files[name]();
   try {
-    return readTemplate(await readFile(files[name]()));
+    return readTemplate(await readFile(url));
   } catch (cause) {
     throw new CagecastError(
       'unsupported',
-      `loadTemplate: the file of "${name}" cannot be loaded (${String(cause)})`,
+      `loadTemplate: the file of "${name}", ${url.href}, cannot be loaded (${String(cause)})`,
       0,
       {
         cause,

@@ -1,8 +1,8 @@
-// What runs in a worker of a browser.
-import type { Request } from '../worker/protocol.js';
+// What runs in a worker.
+import { listen } from '../worker/thread-of.js';
 import { serve } from './serve.js';
 
-addEventListener('message', async ({ data }: MessageEvent<Request>) => {
-  const { reply, move } = await serve(data, (progress) => postMessage(progress));
-  postMessage(reply, { transfer: move });
+listen(async (request, post) => {
+  const { reply, move } = await serve(request, post);
+  post(reply, move);
 });

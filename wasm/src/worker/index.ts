@@ -4,7 +4,6 @@
  * All calls share one worker, which starts with the first call and runs them in order.
  * @module cagecast/worker
  */
-import { spawn } from '#spawn';
 import {
   CagecastError,
   type Classification,
@@ -21,6 +20,7 @@ import {
 } from '../index.js';
 import type { Prepared, PrepareInput } from '../parts/prepare.js';
 import { type CallOptions, WorkerQueue } from './queue.js';
+import { spawn } from './spawn.js';
 
 export * from '../index.js';
 export type { CallOptions };

@@ -1,7 +1,11 @@
 import type { Spawn } from './protocol.js';
-import { threadOf } from './thread-of.js';
+import { threadOf, threadOfNode } from './thread-of.js';
 
-/** Starts a worker in a browser. */
-export const spawn: Spawn = (onReply, onFailure) =>
+/** Starts a worker. */
+export const spawn: Spawn = (onReply, onFailure) => {
+  const url = import.meta.url.replace(/[^/]*$/, 'worker-thread.js');
+  if (typeof Worker !== 'function') return threadOfNode(url, onReply, onFailure);
   // Bundlers find the worker's script only in this form.
-  threadOf(new Worker(new URL('./worker-thread.js', import.meta.url), { type: 'module' }), onReply, onFailure);
+  const worker = new Worker(new URL('./worker-thread.js', import.meta.url), { type: 'module' });
+  return threadOf(worker, url, onReply, onFailure);
+};

@@ -1,19 +1,50 @@
-import type { Reply, Thread } from './protocol.js';
+import { nodeModule } from '../core/node.js';
+import type { Reply, Request, Thread } from './protocol.js';
 
-/** A worker of a browser as a thread. */
-export function threadOf(
-  worker: Worker,
-  onReply: (reply: Reply) => void,
-  onFailure: (message: string) => void,
-): Thread {
+type OnReply = (reply: Reply) => void;
+type OnFailure = (message: string) => void;
+
+/** A worker of a browser, Deno or Bun as a thread. @param url  Of a file in the folder where the script should be. */
+export function threadOf(worker: Worker, url: string, onReply: OnReply, onFailure: OnFailure): Thread {
   worker.onmessage = ({ data }: MessageEvent<Reply>) => onReply(data);
   worker.onerror = (event) => {
     event.preventDefault();
-    onFailure(event.message ?? 'its script could not be loaded');
+    onFailure(event.message ?? `its script could not be loaded; without a bundler that finds it, it is ${url}`);
   };
   return {
     post: (request, move) => worker.postMessage(request, move),
     terminate: () => worker.terminate(),
     setBusy: () => undefined,
   };
+}
+
+/** Starts a worker thread in Node. @throws Error if this is another host. */
+export function threadOfNode(url: string, onReply: OnReply, onFailure: OnFailure): Thread {
+  const threads = nodeModule('node:worker_threads');
+  if (!threads) throw new Error('it has neither Worker nor process.getBuiltinModule, as Node 20.16 has');
+  // Do not inherit the flags of this process: some, such as --input-type, are invalid for a file, and none is needed.
+  const worker = new threads.Worker(new URL(url), { execArgv: [] });
+  worker.on('message', onReply);
+  worker.on('error', (error) => onFailure(error.message));
+  worker.unref();
+  return {
+    post: (request, move) => worker.postMessage(request, move),
+    terminate: () => void worker.terminate(),
+    setBusy: (busy) => (busy ? worker.ref() : worker.unref()),
+  };
+}
+
+type Post = (message: Reply, move?: ArrayBuffer[]) => void;
+
+/** In a worker: listens to requests. @param serve  Answers one by means of `post`. */
+export function listen(serve: (request: Request, post: Post) => Promise<void>): void {
+  const port = typeof postMessage === 'function' ? undefined : nodeModule('node:worker_threads')?.parentPort;
+  if (port)
+    port.on('message', (request: Request) => void serve(request, (reply, move) => port.postMessage(reply, move)));
+  else
+    addEventListener(
+      'message',
+      ({ data }: MessageEvent<Request>) =>
+        void serve(data, (reply, move = []) => postMessage(reply, { transfer: move })),
+    );
 }

@@ -1,8 +1,8 @@
-// What runs in a worker of a browser.
-import type { Request } from './protocol.js';
+// What runs in a worker.
 import { serve } from './serve.js';
+import { listen } from './thread-of.js';
 
-addEventListener('message', async ({ data }: MessageEvent<Request>) => {
-  const { reply, move } = await serve(data);
-  postMessage(reply, { transfer: move });
+listen(async (request, post) => {
+  const { reply, move } = await serve(request);
+  post(reply, move);
 });
