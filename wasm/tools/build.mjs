@@ -193,9 +193,9 @@ function wasmModules(wasm, { index } = {}) {
     setup(build) {
       build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
       if (index) {
-        build.onResolve({ filter: /^\.\.\/index\.js$/ }, () => ({ path: index, external: true }));
+        build.onResolve({ filter: /^(\.\.\/)+index\.js$/ }, () => ({ path: index, external: true }));
         build.onResolve({ filter: /^\.\.\/cages\/index\.js$/ }, () => ({ path: './cages.js', external: true }));
-        build.onResolve({ filter: /^\.\.\/bake\/index\.js$/ }, () => ({ path: './bake.js', external: true }));
+        build.onResolve({ filter: /^(\.\.\/)+bake\/index\.js$/ }, () => ({ path: './bake.js', external: true }));
         build.onResolve({ filter: /^\.\.\/worker\/index\.js$/ }, () => ({ path: './worker.js', external: true }));
       }
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({

@@ -20,6 +20,8 @@ import { addTransfer } from './document-write.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
+export { type BakeOptions, bake } from './bake/document.js';
+export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
 export { type CheckOptions, checkGltf } from './check-file.js';
 export {
   addCage,

@@ -1,8 +1,7 @@
 import type { Mesh } from 'cagecast';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Session } from '../scene/session';
-import type { ExportReply, ExportRequest, PaintInto } from './export-messages';
-import type { Baked } from './texture/bake';
+import type { Baked, ExportReply, ExportRequest, PaintInto } from './export-messages';
 
 /**
  * Writes the target as a GLB with the new UV set, its zones and the paint, as `cagecast transfer` does: undeformed, with the

@@ -1,6 +1,5 @@
 import type { Mesh, TransferOptions } from 'cagecast';
 import type { CagecastOptions } from 'cagecast/gltf';
-import type { Baked } from './texture/bake';
 
 /** A request to the export worker. */
 export interface ExportRequest {
@@ -12,6 +11,16 @@ export interface ExportRequest {
   /** Paint as an overlay, or in the model's own textures where it has some. */
   into: PaintInto;
   options: TransferOptions & Pick<CagecastOptions, 'borders'>;
+}
+
+/** Summary of the baking. */
+export interface Baked {
+  /** Number of painted textures. */
+  textures: number;
+  /** Names of the parts that have an overlay, for lack of a suitable texture. */
+  overlays: string[];
+  /** Share of the paint that was left out, because several parts of the surface use the same texels. */
+  overlapping: number;
 }
 
 export type PaintInto = 'overlay' | 'texture';

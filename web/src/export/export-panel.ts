@@ -2,9 +2,8 @@ import { download } from '../platform/download';
 import { announce, element, showError, showNotice } from '../platform/page';
 import type { Session } from '../scene/session';
 import { type Code, codeFor } from './code';
-import type { PaintInto } from './export-messages';
+import type { Baked, PaintInto } from './export-messages';
 import { type Linked, linkOf } from './links';
-import type { Baked } from './texture/bake';
 import { zonesJson } from './zones';
 
 /** The panel “Export”: the model, the zones, code and a link. */

@@ -1,12 +1,10 @@
-import { type Document, type JSONDocument, Logger, type Material, Primitive, WebIO } from '@gltf-transform/core';
+import { type Document, type JSONDocument, Logger, WebIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
-import { convertPrimitiveToTriangles } from '@gltf-transform/functions';
-import { cagecast } from 'cagecast/gltf';
+import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { readGltfHead } from '../scene/gltf-file';
-import type { ExportReply, ExportRequest } from './export-messages';
-import { paintIntoTextures } from './texture/bake';
-import { readPixels } from './texture/pixels';
+import type { Baked, ExportReply, ExportRequest } from './export-messages';
+import { readPixels, writePng } from './texture/pixels';
 
 /** Removed on export: the overlay shares vertices with the model, so both are written uncompressed. */
 const kCompressions = ['KHR_draco_mesh_compression', 'EXT_meshopt_compression', 'KHR_meshopt_compression'];
@@ -30,14 +28,13 @@ async function paintModel({
 }: ExportRequest): Promise<Exclude<ExportReply, { message: string }>> {
   const io = new WebIO().setLogger(new Logger(Logger.Verbosity.SILENT)).registerExtensions(ALL_EXTENSIONS);
   const document = await read(io, files);
-  const own = new Set(document.getRoot().listMaterials());
-  if (into === 'texture') expandStrips(document);
-  await document.transform(cagecast({ ...options, cage, texture }));
-  const isOverlay = (material: Material): boolean => !own.has(material);
-  const baked =
-    into === 'texture'
-      ? await paintIntoTextures(document, isOverlay, await readPixels(new Blob([texture])))
-      : undefined;
+  let baked: Baked | undefined;
+  if (into === 'overlay') await document.transform(cagecast({ ...options, cage, texture }));
+  else {
+    const color = await readPixels(new Blob([texture]));
+    const onBaked = (report: BakeReport): void => void (baked = summaryOf(report));
+    await document.transform(bake({ ...options, cage, texture, paints: { color }, images, onBaked }));
+  }
   const left = document
     .getRoot()
     .listTextures()
@@ -49,17 +46,26 @@ async function paintModel({
   return { glb: await io.writeBinary(document), ...(baked && { baked }) };
 }
 
-/** Converts strips and fans to triangle lists, which baking needs. */
-function expandStrips(document: Document): void {
-  const { TRIANGLE_STRIP, TRIANGLE_FAN } = Primitive.Mode as Record<string, number>;
-  for (const primitive of document
-    .getRoot()
-    .listMeshes()
-    .flatMap((mesh) => mesh.listPrimitives())) {
-    if (primitive.getMode() === TRIANGLE_STRIP || primitive.getMode() === TRIANGLE_FAN)
-      convertPrimitiveToTriangles(primitive);
-  }
+const kLeastSide = 1024; // texels, longer side
+const kMostSide = 2048;
+
+/** The model's own textures, in a size that holds the paint. */
+const images: ImageCodec = {
+  decode: (bytes, type) => readPixels(new Blob([bytes as Uint8Array<ArrayBuffer>], { type }), fitSize),
+  encode: writePng,
+};
+
+function fitSize(width: number, height: number): [number, number] {
+  const longer = Math.max(width, height);
+  const scale = Math.max(kLeastSide, Math.min(kMostSide, longer)) / longer;
+  return [Math.max(1, Math.round(scale * width)), Math.max(1, Math.round(scale * height))];
 }
+
+const summaryOf = ({ textures, left }: BakeReport): Baked => ({
+  textures: textures.length,
+  overlays: left.map(({ part }) => part),
+  overlapping: Math.max(0, ...textures.map(({ overlap }) => overlap.lost)),
+});
 
 async function read(io: WebIO, files: ExportRequest['files']): Promise<Document> {
   const { bytes } = files[0]!;

@@ -1,4 +1,5 @@
 import { Command } from 'commander';
+import { addBakeCommand } from '../bake/flags.js';
 import { addBatchCommand } from '../batch-flags.js';
 import { addCageCommands } from '../cage-flags.js';
 import { oneLine } from '../print.js';
@@ -35,6 +36,7 @@ export function makeProgram(progress: Progress): Command {
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
   cagecast transfer head.glb --cage cage.glb -o head-with-uvs.glb --report report.json
+  cagecast bake head.glb cage.glb paint.png -o painted.glb
   cagecast inspect head.glb --cage cage.glb
   cagecast make head.glb -o cage.glb
   cagecast fit template.glb head.glb -o cage.glb
@@ -46,6 +48,7 @@ Exit codes: 0 success, 1 an input cannot be used, 2 wrong usage, 3 inspect, make
 
   addTransferCommand(program, progress);
   addInspectCommand(program, progress);
+  addBakeCommand(program, progress);
   addCageCommands(program, progress);
   addBatchCommand(program, progress);
   addDiffCommand(program);

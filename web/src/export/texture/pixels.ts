@@ -1,12 +1,8 @@
+import type { Image } from 'cagecast/bake';
 import { encodePng } from '../../platform/encode-png';
 import { readKtx2 } from './ktx2';
 
-/** An image: 4 bytes per pixel, sRGB, straight alpha, upper row first, as in glTF's UV space. */
-export interface Pixels {
-  width: number;
-  height: number;
-  data: Uint8ClampedArray<ArrayBuffer>;
-}
+type Pixels = Image & { data: Uint8ClampedArray<ArrayBuffer> };
 
 /**
  * Reads an image file, including KTX2, without loss: through WebGL, as a 2D canvas premultiplies colours.
@@ -54,7 +50,9 @@ export async function readPixels(
 }
 
 /** Encodes a PNG without loss. */
-export async function writePng({ width, height, data }: Pixels): Promise<Uint8Array<ArrayBuffer>> {
-  const bitmap = await createImageBitmap(new ImageData(data, width, height), { premultiplyAlpha: 'none' });
+export async function writePng({ width, height, data }: Image): Promise<Uint8Array<ArrayBuffer>> {
+  const bitmap = await createImageBitmap(new ImageData(data as Uint8ClampedArray<ArrayBuffer>, width, height), {
+    premultiplyAlpha: 'none',
+  });
   return new Uint8Array(await (await encodePng(bitmap)).arrayBuffer());
 }

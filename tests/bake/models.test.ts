@@ -1,0 +1,272 @@
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { type Document, type Material, NodeIO } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { init } from 'cagecast';
+import type { Image } from 'cagecast/bake';
+import { type BakeReport, bake, type ImageCodec } from 'cagecast/gltf';
+import { PNG } from 'pngjs';
+import { cagecast, unpackGlb, validate } from '../js/glb.js';
+import { islandAt, islandCage, texturedBox } from '../support/models';
+
+const folder = mkdtempSync(join(tmpdir(), 'cagecast-bake-'));
+const at = (name: string) => join(folder, name);
+const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
+const size = 96;
+
+/** A picture of a function of its pixels. */
+function picture(width: number, colorAt: (x: number, y: number) => readonly number[]): Image {
+  const data = new Uint8Array(4 * width * width);
+  for (let i = 0; i < width * width; ++i) data.set(colorAt(i % width, Math.floor(i / width)), 4 * i);
+  return { width, height: width, data };
+}
+const pngOf = ({ width, height, data }: Image): Buffer =>
+  PNG.sync.write(Object.assign(new PNG({ width, height }), { data: Buffer.from(data) }));
+const own = picture(size, (x, y) => [10, 20, 200, (x * 7 + y * 3) % 256]);
+const red = picture(4, () => [230, 30, 40, 255]);
+const images: ImageCodec = {
+  decode: async (bytes) => PNG.sync.read(Buffer.from(bytes)),
+  encode: async (image) => pngOf(image),
+};
+
+before(async () => {
+  await init();
+  writeFileSync(at('cage.glb'), (await islandCage(1)).buffer);
+  writeFileSync(at('box.glb'), (await texturedBox(pngOf(own))).buffer);
+  writeFileSync(at('moved.glb'), (await texturedBox(pngOf(own), { moved: true })).buffer);
+  writeFileSync(at('mirrored.glb'), (await texturedBox(pngOf(own), { mirrored: true })).buffer);
+  writeFileSync(at('red.png'), pngOf(red));
+  writeFileSync(at('lean.png'), pngOf(picture(4, () => [204, 128, 230, 255])));
+  writeFileSync(at('rough.png'), pngOf(picture(4, () => [255, 60, 90, 255])));
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const texel = ({ data }: Image, x: number, y: number) => [...data.subarray(4 * (y * size + x), 4 * (y * size + x) + 4)];
+const imageOf = (texture: { getImage(): Uint8Array | null } | null): Image =>
+  PNG.sync.read(Buffer.from(texture!.getImage()!));
+const materialOf = (document: Document): Material => document.getRoot().listMaterials()[0]!;
+
+/** Checks that the islands of a box are red, and all else is as before. */
+function assertPainted(image: Image): void {
+  const counts = [0, 0];
+  for (let y = 0; y < size; ++y) {
+    for (let x = 0; x < size; ++x) {
+      const before = texel(own, x, y);
+      const island = islandAt(x, y, size, Math.ceil(size / 64) + 2);
+      if (island === 1) assert.deepEqual(texel(image, x, y), [230, 30, 40, before[3]], `${x}, ${y}`);
+      if (island === 0) assert.deepEqual(texel(image, x, y), before, `${x}, ${y}`);
+      if (island >= 0) ++counts[island]!;
+    }
+  }
+  assert.ok(Math.min(...counts) > 1000, String(counts));
+}
+
+/** Bakes into a document. */
+async function baked(document: Document, more: Partial<Parameters<typeof bake>[0]> = {}): Promise<BakeReport> {
+  let report: BakeReport | undefined;
+  const cage = await io.read(at('cage.glb'));
+  await document.transform(
+    bake({ cage, paints: { color: red }, images, onBaked: (found) => void (report = found), ...more }),
+  );
+  return report!;
+}
+
+for (const name of ['box', 'moved']) {
+  test(`${name}: a document and the command paint the texture in place, and nothing else changes`, async () => {
+    const document = await io.read(at(`${name}.glb`));
+    const before = document
+      .getRoot()
+      .listAccessors()
+      .map((accessor) => accessor.getArray());
+    const report = await baked(document);
+    assert.deepEqual(
+      document
+        .getRoot()
+        .listAccessors()
+        .map((accessor) => accessor.getArray()),
+      before,
+    );
+    assert.equal(document.getRoot().listTextures().length, 1);
+    assertPainted(imageOf(materialOf(document).getBaseColorTexture()));
+    assert.deepEqual(report.left, []);
+    assert.deepEqual(
+      report.textures.map(({ slot, parts, width }) => [slot, parts, width]),
+      [['color', ['box'], size]],
+    );
+
+    const { status, stderr } = cagecast('bake', at(`${name}.glb`), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
+    assert.deepEqual([status, stderr], [0, '']);
+    const bytes = readFileSync(at('out.glb'));
+    await validate(at('out.glb'));
+    assertPainted(imageOf(materialOf(await io.readBinary(bytes)).getBaseColorTexture()));
+    const [was, is] = [readFileSync(at(`${name}.glb`)), bytes].map((glb) => unpackGlb(glb).json);
+    const { bufferViews: _, buffers: __, ...rest } = is!;
+    const { bufferViews: ___, buffers: ____, ...restBefore } = was!;
+    const withoutViews = (json: object) =>
+      JSON.parse(JSON.stringify(json, (key, value) => (key === 'bufferView' ? undefined : value)));
+    assert.deepEqual(withoutViews(rest), withoutViews(restBefore), 'the texture is replaced in its place');
+  });
+}
+
+test('a PNG has the paint alone; the way back has it in the cage’s UVs', () => {
+  assert.equal(cagecast('bake', at('box.glb'), at('cage.glb'), at('red.png'), '-o', at('paint.png')).status, 0);
+  const paint = PNG.sync.read(readFileSync(at('paint.png')));
+  assert.equal(paint.width, size);
+  assert.equal(cagecast('bake', at('box.glb'), at('cage.glb'), at('red.png'), '-o', at('painted.glb')).status, 0);
+  const { status, stderr } = cagecast(
+    'bake',
+    at('painted.glb'),
+    at('cage.glb'),
+    '--back',
+    '--size',
+    String(size),
+    '-o',
+    at('back.png'),
+  );
+  assert.deepEqual([status, stderr], [0, '']);
+  const back = PNG.sync.read(readFileSync(at('back.png')));
+  for (let y = 0; y < size; ++y)
+    for (let x = 0; x < size; ++x) {
+      if (islandAt(x, y, size, 0) === 1) {
+        assert.deepEqual(texel(paint, x, y), [230, 30, 40, 255]);
+        // The alpha of the model's texture is its own.
+        if (texel(back, x, y)[3]! > 16) assert.deepEqual(texel(back, x, y).slice(0, 3), [230, 30, 40], `${x}, ${y}`);
+      }
+      if (islandAt(x, y, size, Math.ceil(size / 64) + 2) === 0) {
+        assert.equal(texel(paint, x, y)[3], 0);
+        assert.equal(texel(back, x, y)[3], 0);
+      }
+    }
+});
+
+test('maps of normals and of roughness are added to materials that lack them, flat beside the paint', async () => {
+  const args = [
+    'bake',
+    at('box.glb'),
+    at('cage.glb'),
+    '--normal',
+    at('lean.png'),
+    '--orm',
+    at('rough.png'),
+    '--size',
+    String(size),
+  ];
+  const { status, stderr } = cagecast(...args, '-o', at('maps.glb'));
+  assert.deepEqual([status, stderr], [0, '']);
+  await validate(at('maps.glb'));
+  const material = materialOf(await io.read(at('maps.glb')));
+  const [normal, rough, color] = [
+    imageOf(material.getNormalTexture()),
+    imageOf(material.getMetallicRoughnessTexture()),
+    imageOf(material.getBaseColorTexture()),
+  ];
+  // The middle of an island, where box and cage have the same UVs, and a corner beside all of them.
+  const near = (a: number[], b: number[]) =>
+    assert.ok(
+      a.every((value, k) => Math.abs(value - b[k]!) <= 2),
+      String(a),
+    );
+  near(texel(normal, 16, 24), [204, 128, 230, 255]);
+  near(texel(normal, 0, 0), [128, 128, 255, 255]);
+  near(texel(rough, 16, 24), [255, 60, 90, 255]);
+  near(texel(rough, 0, 0), [255, 255, 0, 255]);
+  assert.deepEqual([material.getRoughnessFactor(), material.getMetallicFactor()], [1, 1]);
+  assert.deepEqual(texel(color, 16, 24), texel(own, 16, 24), 'colours stay');
+  assert.equal(material.getOcclusionTexture(), material.getMetallicRoughnessTexture());
+});
+
+test('two primitives with images of their own are painted each in its own; what cannot hold paint is told', async () => {
+  const document = await io.read(at('box.glb'));
+  const [mesh] = document.getRoot().listMeshes();
+  const [first] = mesh!.listPrimitives();
+  const indices = first!.getIndices()!;
+  const all = [...indices.getArray()!];
+  const materials = ['second', 'bare'].map((name) => document.createMaterial(name));
+  const second = document
+    .createTexture('other')
+    .setMimeType('image/png')
+    .setImage(new Uint8Array(pngOf(own)));
+  materials[0]!.setBaseColorTexture(second);
+  const third = all.length / 3;
+  [first!, ...materials].forEach((of, p) => {
+    const primitive = p === 0 ? first! : first!.clone().setMaterial(of as Material);
+    const part = document.createAccessor().setArray(Uint16Array.from(all.slice(p * third, (p + 1) * third)));
+    primitive.setIndices(part.setBuffer(document.getRoot().listBuffers()[0]!));
+    if (p > 0) mesh!.addPrimitive(primitive);
+  });
+  const report = await baked(document);
+  assert.deepEqual(
+    report.textures.map(({ parts }) => parts),
+    [['box/own'], ['box/second']],
+  );
+  assert.deepEqual(report.left, [{ part: 'box/bare', reason: 'its material has no texture' }]);
+  const [ownImage, otherImage] = [materialOf(document), materials[0]!].map((material) =>
+    imageOf(material.getBaseColorTexture()),
+  );
+  // Islands 0 and 1 are of the first primitive, 2 and 3 of the second.
+  assert.deepEqual(
+    [texel(ownImage!, 16, 24), texel(ownImage!, 80, 24)],
+    [[230, 30, 40, texel(own, 16, 24)[3]], texel(own, 80, 24)],
+  );
+  assert.deepEqual(
+    [texel(otherImage!, 16, 24), texel(otherImage!, 80, 24)],
+    [texel(own, 16, 24), [230, 30, 40, texel(own, 80, 24)[3]]],
+  );
+
+  const overlaid = await io.read(at('box.glb'));
+  materialOf(overlaid).setBaseColorTexture(null);
+  const without = await baked(overlaid, { texture: new Uint8Array(pngOf(red)) });
+  assert.equal(without.textures.length, 0);
+  assert.equal(overlaid.getRoot().listMeshes()[0]!.listPrimitives().length, 2, 'what cannot be baked gets an overlay');
+});
+
+test('overlapping UVs are told by the command', () => {
+  const { status, stdout } = cagecast('bake', at('mirrored.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
+  assert.equal(status, 0);
+  assert.match(
+    stdout,
+    /UVs overlap: \d+\.\d % of its texels are claimed twice, \d+\.\d % of the paint found no room \("box"\)/,
+  );
+});
+
+test('what cannot be baked is one line that names the file', async () => {
+  const bare = await io.read(at('box.glb'));
+  for (const primitive of bare.getRoot().listMeshes()[0]!.listPrimitives()) primitive.setAttribute('TEXCOORD_0', null);
+  writeFileSync(at('bare.glb'), await io.writeBinary(bare));
+  writeFileSync(at('short.png'), pngOf(red).subarray(0, 40));
+  writeFileSync(at('text.png'), 'no picture');
+  const [box, cage, paint, out] = [at('box.glb'), at('cage.glb'), at('red.png'), ['-o', at('none.glb')]];
+  const cases: [string[], number, RegExp][] = [
+    [
+      [at('bare.glb'), cage, paint, ...out],
+      1,
+      /bare\.glb: nothing can be baked: "box": it has no TEXCOORD_0, the UVs of its texture/,
+    ],
+    [[at('bare.glb'), cage, paint, '-o', at('none.png')], 1, /bare\.glb: "box" has no TEXCOORD_0/],
+    [[box, cage, at('short.png'), ...out], 1, /short\.png: is truncated/],
+    [[box, cage, at('text.png'), ...out], 1, /text\.png: is not a PNG, JPEG or WebP image/],
+    [[box, cage, ...out], 2, /there is nothing to bake/],
+    [[box, cage, paint, '--back', '-o', at('none.png')], 2, /--back takes TARGET and CAGE only/],
+    [
+      [box, cage, paint, '--part', 'nose', '-o', at('none.png')],
+      1,
+      /--part nose: no node or material has this name; there are: box, own/,
+    ],
+    ...['0', '1e5', 'NaN', '100000'].map((text): [string[], number, RegExp] => [
+      [box, cage, paint, '--size', text, ...out],
+      2,
+      /It is not a whole number of texels within 1\.\.8192/,
+    ]),
+  ];
+  for (const [args, code, message] of cases) {
+    const { status, stderr } = cagecast('bake', ...args);
+    assert.deepEqual([status, stderr.trimEnd().includes('\n')], [code, false], stderr);
+    assert.match(stderr, message);
+  }
+  const document = await io.read(at('box.glb'));
+  await assert.rejects(async () => baked(document, { paints: {} }), /bake: paints has none of color, normal, orm/);
+  await assert.rejects(async () => baked(document, { images: undefined as never }), /bake: images is undefined, not/);
+});

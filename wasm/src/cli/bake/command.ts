@@ -1,0 +1,203 @@
+import { type Baked, cageTexture, fill, type Image, type Layout } from '../../bake/index.js';
+import { FileModel } from '../../gltf/bake/file.js';
+import { type BakeReport, bakeModel, layoutsOf, type Paints, type TextureUse } from '../../gltf/bake/plan.js';
+import type { Part } from '../../gltf/extract.js';
+import { GlbWriter } from '../../gltf/glb-writer.js';
+import { InputError } from '../../gltf/input-error.js';
+import { type CutTarget, cutBorders } from '../../index.js';
+import { matcher, noSuchName, quoted } from '../options.js';
+import { writeFiles } from '../output.js';
+import type { Found } from '../print.js';
+import type { Progress } from '../progress.js';
+import { inFile, type Run, run, type Sources } from '../run.js';
+import { percent } from '../table.js';
+import { decodeImage, encodePng, readImage } from './images.js';
+
+/** The arguments of `cagecast bake`. */
+export interface BakeCommand extends Sources {
+  /** Files of images in the cage's UVs. */
+  paint?: string | undefined;
+  normal?: string | undefined;
+  orm?: string | undefined;
+  /** A GLB or VRM, or a PNG: the paint alone, in the model's UVs. */
+  output: string;
+  /** Whether the PNG is in the cage's UVs: what is painted on the model. */
+  back: boolean;
+  /** Names of the parts whose texture is meant, for a PNG; empty for all. */
+  part: string[];
+  size?: number | undefined;
+  borders: 'triangle' | 'cut';
+}
+
+/** Side of a PNG if the model has no texture. */
+const kSide = 1024;
+
+/**
+ * Bakes paints into a model's own textures, or into a PNG.
+ * @throws {InputError} that names the file at fault; then no file is written.
+ */
+export async function bakeCommand(command: BakeCommand, progress: Progress): Promise<Found> {
+  const { paint, normal, orm, reading } = command;
+  const [color, normals, rough] = await Promise.all(
+    [paint, normal, orm].map((path) => (path === undefined ? undefined : readImage(path, reading))),
+  );
+  const done = await run(command, progress);
+  const cut = command.borders === 'cut' ? cutTarget(done, progress) : undefined;
+  progress.step('baking');
+  return command.output.toLowerCase().endsWith('.png')
+    ? bakePicture(command, done, cut, color)
+    : bakeFile(command, done, cut, { color, normal: normals, orm: rough });
+}
+
+const inTarget = (error: unknown, path: string): unknown => (error instanceof InputError ? error.in(path) : error);
+
+/** Writes the model with the paint in its textures. */
+async function bakeFile(
+  { output, target, size }: BakeCommand,
+  done: Run,
+  cut: CutTarget | undefined,
+  paints: Paints,
+): Promise<Found> {
+  const writer = await GlbWriter.from(done.targetFile, 'keep').catch((error) => {
+    throw inTarget(error, target);
+  });
+  const model = new FileModel(done.targetFile, done.target.parts, writer);
+  const { report } = await bakeModel(model, {
+    result: done.result,
+    cut: cut && { target: cut, ownCount: done.target.mesh.positions.length / 3 },
+    paints,
+    codec: { decode: decodeImage, encode: encodePng },
+    size,
+  }).catch((error) => {
+    throw inTarget(error, target);
+  });
+  if (report.textures.length === 0) {
+    const [first] = report.left;
+    throw new InputError(
+      first ? `nothing can be baked: ${quoted(first.part)}: ${first.reason}` : 'nothing of it may be painted',
+    ).in(target);
+  }
+  writeFiles([{ path: output, data: writer.finish() }]);
+  return { text: summary(output, report), report: { output, ...report } };
+}
+
+function summary(output: string, { textures, left }: BakeReport): string {
+  return [
+    `wrote ${output}`,
+    ...textures.map(
+      ({ slot, parts, width, height, overlap }) =>
+        `${slot}: ${width} × ${height}, on ${list(parts)}${overlapText(overlap)}`,
+    ),
+    ...left.map(({ part, reason }) => `not painted: ${quoted(part)}: ${reason}`),
+  ].join('\n');
+}
+
+const kMostNames = 8;
+const kFewTexels = 0.001; // is due to touching edges
+
+const list = (names: readonly string[]): string =>
+  `${names.slice(0, kMostNames).map(quoted).join(', ')}${names.length > kMostNames ? `, and ${names.length - kMostNames} more` : ''}`;
+
+const overlapText = ({ texels, lost, parts }: Baked['overlap']): string =>
+  texels < kFewTexels
+    ? ''
+    : `; UVs overlap: ${percent(texels)} of its texels are claimed twice, ${percent(lost)} of the paint found no room (${list(parts)})`;
+
+/** Writes the paint alone in the model's UVs, or what is painted on the model in the cage's. */
+async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | undefined, color?: Image): Promise<Found> {
+  const { output, target, size, back } = command;
+  const writer = await GlbWriter.from(done.targetFile, 'keep');
+  const model = new FileModel(done.targetFile, done.target.parts, writer);
+  try {
+    const { parts, texture } = oneTexture(model, done, command.part);
+    const file = texture === undefined ? undefined : await model.imageOf(texture);
+    const own = file && (back || size === undefined) ? await decodeImage(file.bytes) : undefined;
+    const layouts = layoutsOf(
+      model,
+      parts,
+      { result: done.result, cut: cut && { target: cut, ownCount: done.target.mesh.positions.length / 3 } },
+      (part) => useOf(model, part as Part),
+    );
+    if (back && !own) throw new InputError('its painted parts have no texture to take the paint from');
+    const wide = size ?? (back ? kSide : (own?.width ?? kSide));
+    const high = size ?? (back ? kSide : (own?.height ?? kSide));
+    const baked = back
+      ? pictureOfCage(layouts, own!, wide)
+      : fill('bake', layouts, color!, { width: wide, height: high });
+    writeFiles([{ path: output, data: await encodePng(baked) }]);
+    const names = parts.map(({ name }) => name);
+    const { overlap } = baked;
+    return {
+      text: `wrote ${output}: ${wide} × ${high}, ${back ? 'of' : 'for'} ${list(names)}${back ? '' : overlapText(overlap)}`,
+      report: { output, parts: names, width: wide, height: high, overlap },
+    };
+  } catch (error) {
+    throw inTarget(error, target);
+  }
+}
+
+/** What is painted on a model, in the cage's UVs. */
+function pictureOfCage(layouts: readonly Layout[], own: Image, width: number): Baked {
+  const corners = layouts.map(({ painted }) => Uint32Array.from({ length: 3 * painted.length }, (_, i) => i));
+  const all = (values: Layout['to'][]) => Float32Array.from(values.flatMap((one) => [...one]));
+  const painted = Uint8Array.from(layouts.flatMap((layout) => [...layout.painted]));
+  const indices = Uint32Array.from({ length: corners.reduce((sum, { length }) => sum + length, 0) }, (_, i) => i);
+  const result = {
+    uvs: all(layouts.map(({ from }) => from)),
+    cornerUvs: new Float32Array(0),
+    cosmeticTriangles: painted,
+  };
+  return cageTexture({ indices, uvs: all(layouts.map(({ to }) => to)) }, result, own, { width });
+}
+
+/** How the texture of a part lies on it, if it has one. */
+function uses(model: FileModel, part: Part): TextureUse<number> | undefined {
+  const material = model.materialOf(part);
+  return material === undefined ? undefined : model.useOf(material, 'color');
+}
+
+/** The same; by the first UVs if it has none. */
+const useOf = (model: FileModel, part: Part): Pick<TextureUse<number>, 'set' | 'transform'> =>
+  uses(model, part) ?? { set: 'TEXCOORD_0', transform: undefined };
+
+/** The parts that share one texture. @throws {InputError} if there are several textures, or a part has no UVs. */
+function oneTexture(model: FileModel, { result, target }: Run, names: readonly string[]) {
+  const isPainted = ({ firstTriangle, triangleCount }: Part) =>
+    result.cosmeticTriangles.subarray(firstTriangle, firstTriangle + triangleCount).includes(1);
+  for (const name of names)
+    if (!target.parts.some(({ aliases }) => aliases.some(matcher(name))))
+      throw noSuchName(`--part ${name}`, target.parts);
+  const isChosen = ({ aliases }: Part) => names.length === 0 || names.some((name) => aliases.some(matcher(name)));
+  const chosen = target.parts.filter((part) => isPainted(part) && isChosen(part));
+  const textured = chosen.filter((part) => uses(model, part));
+  const painted = textured.length > 0 ? textured : chosen;
+  if (painted.length === 0) throw new InputError('nothing of it may be painted');
+  const bare = painted.find((part) => !model.uvsOf(part, useOf(model, part).set));
+  if (bare)
+    throw new InputError(
+      `${quoted(bare.name)} has no ${useOf(model, bare).set}: a texture can only be laid on a model that is unwrapped`,
+    );
+  const textures = new Set(painted.map((part) => uses(model, part)?.texture));
+  if (textures.size > 1)
+    throw new InputError(
+      `its painted parts have ${textures.size} textures, which a PNG cannot hold; choose parts of one by --part: ${list(painted.map(({ name }) => name))}`,
+    );
+  const [texture] = textures;
+  // Other parts with this texture take their place in it.
+  const parts =
+    texture === undefined || names.length > 0
+      ? painted
+      : target.parts.filter(
+          (part) => uses(model, part)?.texture === texture && model.uvsOf(part, useOf(model, part).set),
+        );
+  return { parts, texture };
+}
+
+function cutTarget(done: Run, progress: Progress): CutTarget {
+  progress.step('cutting borders');
+  try {
+    return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options);
+  } catch (error) {
+    throw inFile(error, done);
+  }
+}

@@ -1,0 +1,77 @@
+import { PNG } from 'pngjs';
+import { type Image, mostTexels } from '../../bake/index.js';
+import { type ReadOptions, readBytes } from '../../gltf/files.js';
+import { imageIsWhole, imageType } from '../../gltf/image.js';
+import { firstLine, InputError } from '../../gltf/input-error.js';
+
+/** Reads an image file. @throws {InputError} that names the file. */
+export async function readImage(path: string, { limits }: ReadOptions): Promise<Image> {
+  try {
+    return await decodeImage(await readBytes(path, limits));
+  } catch (error) {
+    throw error instanceof InputError ? error.in(path) : error;
+  }
+}
+
+/**
+ * Decodes a PNG; other types by sharp, if it is installed.
+ * @throws {InputError}
+ */
+export async function decodeImage(bytes: Uint8Array): Promise<Image> {
+  const type = imageType(bytes);
+  if (type === undefined) throw new InputError('is not a PNG, JPEG or WebP image');
+  if (type === 'image/ktx2') throw new InputError('is a KTX2 image, which cannot be baked; convert it to PNG');
+  if (!imageIsWhole(bytes)) throw new InputError('is truncated: the image is incomplete');
+  if (type === 'image/png') return decodePng(bytes);
+  const sharp = await loadSharp();
+  if (!sharp)
+    throw new InputError(
+      `is a ${type === 'image/jpeg' ? 'JPEG' : 'WebP'} image; to read those, npm install sharp beside cagecast`,
+    );
+  try {
+    const { data, info } = await sharp(bytes).ensureAlpha().raw().toBuffer({ resolveWithObject: true });
+    return { width: info.width, height: info.height, data };
+  } catch (error) {
+    throw new InputError(`cannot be decoded (${firstLine(error)})`);
+  }
+}
+
+function decodePng(bytes: Uint8Array): Image {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  // The header comes first: nothing is decoded that is too large.
+  const [width, height] = bytes.byteLength < 24 ? [0, 0] : [view.getUint32(16), view.getUint32(20)];
+  if (width === 0 || height === 0 || width > mostTexels || height > mostTexels)
+    throw new InputError(`has ${width} × ${height} pixels; both must be from 1 to ${mostTexels}`);
+  try {
+    const { data } = PNG.sync.read(Buffer.from(bytes));
+    return { width, height, data };
+  } catch (error) {
+    throw new InputError(`cannot be decoded (${firstLine(error)})`);
+  }
+}
+
+/** Encodes a PNG. */
+export async function encodePng({ width, height, data }: Image): Promise<Uint8Array> {
+  const png = new PNG({ width, height });
+  png.data = Buffer.from(data.buffer, data.byteOffset, data.byteLength);
+  return PNG.sync.write(png);
+}
+
+/** The parts of sharp that are used here. */
+type Sharp = (bytes: Uint8Array) => {
+  ensureAlpha(): {
+    raw(): {
+      toBuffer(options: object): Promise<{ data: Uint8Array; info: { width: number; height: number } }>;
+    };
+  };
+};
+
+/** sharp, which has native code and is no dependency. */
+async function loadSharp(): Promise<Sharp | undefined> {
+  const name = 'sharp';
+  try {
+    return ((await import(name)) as { default: Sharp }).default;
+  } catch {
+    return undefined;
+  }
+}

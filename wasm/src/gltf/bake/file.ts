@@ -1,0 +1,176 @@
+import { dirname } from 'node:path';
+import type { GLTF } from '@gltf-transform/core';
+import type { Wrap } from '../../bake/index.js';
+import type { Part } from '../extract.js';
+import { readUri } from '../files.js';
+import type { GlbWriter } from '../glb-writer.js';
+import { imageType } from '../image.js';
+import { decodeFloats } from '../pieces.js';
+import type { GltfFile } from '../read.js';
+import type { UvTransform } from '../uv-transform.js';
+import type { BakeModel, Slot, TextureUse } from './plan.js';
+
+/** Extensions that give a texture another image. */
+const imageExtensions = ['KHR_texture_basisu', 'EXT_texture_webp', 'EXT_texture_avif'];
+
+const wrapOf = (wrap?: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
+
+/** The image of a texture. */
+function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
+  const other = imageExtensions.map((name) => (extensions?.[name] as { source?: number } | undefined)?.source);
+  return other.find((found) => found !== undefined) ?? source;
+}
+
+/** A file as baking sees it. Materials and textures are their numbers. What is painted goes to a writer of the file. */
+export class FileModel implements BakeModel<number, number> {
+  readonly #file: GltfFile;
+  readonly #writer: GlbWriter;
+  readonly parts: readonly Part[];
+
+  constructor(file: GltfFile, parts: readonly Part[], writer: GlbWriter) {
+    this.#file = file;
+    this.#writer = writer;
+    this.parts = parts;
+  }
+
+  #primitive({ mesh, primitive }: Part): GLTF.IMeshPrimitive {
+    return this.#file.json.meshes![mesh]!.primitives[primitive]!;
+  }
+
+  #material(number: number): GLTF.IMaterial {
+    return this.#writer.json.materials![number]!;
+  }
+
+  materialOf(part: Part): number | undefined {
+    return this.#primitive(part).material;
+  }
+
+  uvsOf(part: Part, set: string): Float32Array | undefined {
+    const number = this.#primitive(part).attributes[set];
+    const accessor = number === undefined ? undefined : this.#file.geometry.getRoot().listAccessors()[number];
+    return accessor?.getElementSize() === 2 && accessor.getCount() === part.vertexCount
+      ? decodeFloats(accessor)
+      : undefined;
+  }
+
+  isTinted(part: Part): boolean {
+    return this.#primitive(part).attributes['COLOR_0'] !== undefined;
+  }
+
+  useOf(material: number, slot: Slot): TextureUse<number> | undefined {
+    const info = infoOf(this.#material(material), slot);
+    if (!info) return undefined;
+    const texture = this.#writer.json.textures![info.index]!;
+    const sampler = texture.sampler === undefined ? undefined : this.#writer.json.samplers?.[texture.sampler];
+    const transform = info.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
+    return {
+      texture: info.index,
+      set: `TEXCOORD_${transform?.texCoord ?? info.texCoord ?? 0}`,
+      transform,
+      wraps: [wrapOf(sampler?.wrapS), wrapOf(sampler?.wrapT)],
+    };
+  }
+
+  factorOf(material: number, slot: Slot): [number, number, number] {
+    const {
+      baseColorFactor = [1, 1, 1],
+      roughnessFactor = 1,
+      metallicFactor = 1,
+    } = this.#material(material).pbrMetallicRoughness ?? {};
+    if (slot === 'normal') return [1, 1, 1];
+    if (slot === 'orm') return [1, roughnessFactor, metallicFactor];
+    return [baseColorFactor[0]!, baseColorFactor[1]!, baseColorFactor[2]!];
+  }
+
+  async imageOf(texture: number): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
+    const { json, buffers, path, reading } = this.#file;
+    const source = sourceOf(json.textures![texture]!);
+    const image = source === undefined ? undefined : json.images?.[source];
+    if (!image) return undefined;
+    let bytes: Uint8Array;
+    if (image.uri !== undefined) bytes = await readUri(`images[${source}]`, image.uri, dirname(path), reading);
+    else {
+      const { buffer, byteOffset = 0, byteLength } = json.bufferViews![image.bufferView!]!;
+      bytes = buffers[buffer]!.subarray(byteOffset, byteOffset + byteLength);
+    }
+    return { bytes, mimeType: imageType(bytes) ?? image.mimeType ?? 'an unknown type' };
+  }
+
+  replace(materials: readonly number[], slot: Slot, png: Uint8Array, use: TextureUse<number>): void {
+    const { json } = this.#writer;
+    const before = json.textures![use.texture]!;
+    const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
+    const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
+    const number = this.#writer.addTexture(png, 'image/png', name);
+    const made = json.textures![number]!;
+    if (before.sampler !== undefined) made.sampler = before.sampler;
+    if (isOwn && this.#isOnlyFor(use.texture, materials, slot)) {
+      // In its place, so that extensions with materials of their own, such as those of avatars, show it, too.
+      const image = json.images!.pop()!;
+      json.textures!.pop();
+      const source = sourceOf(before)!;
+      const isShared = json.textures!.some((other) => other !== before && sourceOf(other) === source);
+      for (const extension of imageExtensions) delete before.extensions?.[extension];
+      if (before.extensions && Object.keys(before.extensions).length === 0) delete before.extensions;
+      if (isShared) before.source = json.images!.push(image) - 1;
+      else {
+        json.images![source] = { ...image, name: json.images![source]!.name ?? name };
+        before.source = source;
+      }
+      for (const extension of imageExtensions)
+        if (json.extensionsUsed?.includes(extension))
+          this.#writer.needs(
+            extension,
+            json.textures!.some((texture) => texture.extensions?.[extension]),
+          );
+    } else for (const material of materials) lay(this.#material(material), slot, number);
+    for (const material of materials) resetFactors(this.#material(material), slot);
+  }
+
+  /** Whether the standard materials use a texture in no other way. */
+  #isOnlyFor(texture: number, materials: readonly number[], slot: Slot): boolean {
+    return (this.#writer.json.materials ?? []).every((material, m) => {
+      const { pbrMetallicRoughness: pbr, normalTexture, occlusionTexture, emissiveTexture } = material;
+      const uses: [GLTF.ITextureInfo | undefined, Slot | undefined][] = [
+        [pbr?.baseColorTexture, 'color'],
+        [pbr?.metallicRoughnessTexture, 'orm'],
+        [occlusionTexture, 'orm'],
+        [normalTexture, 'normal'],
+        [emissiveTexture, undefined],
+      ];
+      return uses.every(([info, used]) => info?.index !== texture || (used === slot && materials.includes(m)));
+    });
+  }
+}
+
+function infoOf(material: GLTF.IMaterial, slot: Slot): GLTF.ITextureInfo | undefined {
+  if (slot === 'color') return material.pbrMetallicRoughness?.baseColorTexture;
+  return slot === 'normal' ? material.normalTexture : material.pbrMetallicRoughness?.metallicRoughnessTexture;
+}
+
+/** Gives a material a texture. A new one lies as that of the base colour does. */
+function lay(material: GLTF.IMaterial, slot: Slot, index: number): void {
+  const pbr = (material.pbrMetallicRoughness ??= {});
+  const info = { ...(infoOf(material, slot) ?? pbr.baseColorTexture), index };
+  if (slot === 'color') pbr.baseColorTexture = info;
+  else if (slot === 'normal') material.normalTexture = info;
+  else {
+    const { occlusionTexture } = material;
+    if (!occlusionTexture || occlusionTexture.index === pbr.metallicRoughnessTexture?.index)
+      material.occlusionTexture = { ...occlusionTexture, ...info };
+    pbr.metallicRoughnessTexture = info;
+  }
+}
+
+/** The factors are in the texture now. */
+function resetFactors({ pbrMetallicRoughness: pbr }: GLTF.IMaterial, slot: Slot): void {
+  if (!pbr || slot === 'normal') return;
+  if (slot === 'orm') {
+    delete pbr.roughnessFactor;
+    delete pbr.metallicFactor;
+    return;
+  }
+  const alpha = pbr.baseColorFactor?.[3] ?? 1;
+  if (alpha === 1) delete pbr.baseColorFactor;
+  else pbr.baseColorFactor = [1, 1, 1, alpha];
+}
