@@ -41,6 +41,7 @@ import {
 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
+import { layerScenes } from './layer-scenes';
 import { ball, cage, camera, countOf, difference, draw, flat, halves, modelOf, renderer } from './scenes';
 
 const kPaint = 0xcc3311;
@@ -495,7 +496,7 @@ Object.assign(globalThis, {
   /** Runs a scene. @returns what it returned, or its error. */
   run: async (name: string): Promise<unknown> => {
     try {
-      return await (scenes[name] ?? asyncScenes[name])!();
+      return await (scenes[name] ?? asyncScenes[name] ?? layerScenes[name])!();
     } catch (error) {
       return { error: String((error as Error).stack ?? error) };
     }

@@ -244,3 +244,176 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     for (const count of counts) assert.ok(count >= counts[0]! - 2, counts.join());
   });
 });
+
+const decode = (byte: number): number =>
+  byte <= 0.04045 * 255 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4;
+const encode = (share: number): number =>
+  255 * (share <= 0.0031308 ? 12.92 * share : 1.055 * share ** (1 / 2.4) - 0.055);
+const formulas: Record<string, (below: number, layer: number) => number> = {
+  normal: (_, layer) => layer,
+  multiply: (below, layer) => below * layer,
+  screen: (below, layer) => below + layer - below * layer,
+  add: (below, layer) => Math.min(1, below + layer),
+};
+
+interface LayerStyle {
+  color: number[];
+  blend: string;
+  opacity: number;
+  tint: string;
+}
+
+/** What layers look like, by “Compositing and Blending Level 1” in linear light. */
+function blended(layers: readonly LayerStyle[]): number[] {
+  let [color, alpha] = [[0, 0, 0], 0];
+  for (const { color: own, blend, opacity, tint } of layers) {
+    const layerAlpha = (opacity * own[3]!) / 255;
+    const whole = layerAlpha + alpha * (1 - layerAlpha);
+    color = color.map((below, k) => {
+      const layer = decode(own[k]!) * decode(Number.parseInt(tint.slice(1 + 2 * k, 3 + 2 * k), 16));
+      const mixed = (1 - alpha) * layer + alpha * formulas[blend]!(below, layer);
+      return whole === 0 ? 0 : (layerAlpha * mixed + (1 - layerAlpha) * alpha * below) / whole;
+    });
+    alpha = whole;
+  }
+  return [...color.map(encode), 255 * alpha];
+}
+
+const assertNear = (found: readonly number[], expected: readonly number[], most = 3): void =>
+  found.forEach((value, k) => assert.ok(Math.abs(value - expected[k]!) <= most, `${found} is not ${expected}`));
+
+describe('cagecast/three/layers, drawn by Chromium', () => {
+  test('sixteen layers blend by the formulas of their modes; a wrong one is refused; all can be undone', async () => {
+    const seen = await run<{
+      styles: LayerStyle[];
+      all: number[];
+      moved: number[];
+      undone: [string, number[]];
+      fewer: number[];
+      back: number[];
+      count: number;
+      errors: string[];
+    }>('sixteenLayers');
+    const { styles } = seen;
+    assertNear(seen.all, blended(styles));
+    assertNear(seen.moved, blended([styles[15]!, ...styles.slice(0, 15)]));
+    assert.equal(seen.undone[0], 'moving Layer 16');
+    assert.deepEqual(seen.undone[1], seen.all);
+    assertNear(seen.fewer, blended(styles.slice(0, 14)));
+    assert.deepEqual(seen.back, seen.all);
+    assert.equal(seen.count, 16);
+    const expected = [
+      /^There are already 16 layers, the maximum\. Remove one first\.$/,
+      /opacity is NaN, not a number from 0 to 1$/,
+      /blend is "overlay", not one of normal, multiply, screen, add$/,
+      /tint is "red", not a colour such as #ff8800$/,
+      /place of a layer is 0\.5, not an integer$/,
+      /options\.renderer is not a WebGLRenderer$/,
+      /texture is an object, not a Texture$/,
+      /size is 0, not an integer from 1 to 2048$/,
+    ];
+    seen.errors.forEach((message, i) => assert.match(message, expected[i]!));
+  });
+
+  test('one stack is shown on several models as a texture would be, and drawn again only after a change', async () => {
+    const { apart, hidden, idle, changed } = await run<{
+      apart: number[];
+      hidden: number[];
+      idle: boolean;
+      changed: number[];
+    }>('stackOnModels');
+    for (const most of apart) assert.ok(most <= 2, apart.join());
+    assert.deepEqual(hidden, [0, 0]);
+    assert.equal(idle, false);
+    for (const count of changed) assert.ok(count > 100, changed.join());
+  });
+});
+
+describe('cagecast/three/paint, drawn by Chromium', () => {
+  test('a stroke can be undone and repeated; the eraser leaves nothing of it, not even its soft edge', async () => {
+    const seen = await run<{
+      middle: number[][];
+      names: string[];
+      undone: number;
+      redone: number;
+      soft: { texels: number; most: number };
+      left: { texels: number };
+      again: { texels: number };
+      half: { texels: number };
+      errors: string[];
+      steps: number;
+    }>('strokes');
+    const [on, off] = seen.middle as [number[], number[]];
+    assert.ok(on[0]! > 200 && on[1]! < 40, on.join());
+    assert.ok(off[0] === off[1], off.join());
+    assert.deepEqual(seen.names, ['stroke', 'stroke']);
+    assert.deepEqual([seen.undone, seen.redone], [0, 0]);
+    assert.ok(seen.soft.texels > 1000);
+    assertNear([seen.soft.most], [0.6 * 255]);
+    assert.equal(seen.left.texels, 0);
+    assert.equal(seen.again.texels, seen.soft.texels);
+    assert.ok(seen.half.texels > 0.3 * seen.soft.texels && seen.half.texels < seen.soft.texels, `${seen.half.texels}`);
+    const expected = [
+      /size is NaN, not a number from 0 to 2$/,
+      /color is "red", not a colour such as #ff8800$/,
+      /opacity is 2, not a number from 0 to 1$/,
+      /a point is \(NaN, 0\), not a UV$/,
+      /options\.applied is not what applyTransfer returned$/,
+      /size is 512, not one of 1024, 2048$/,
+    ];
+    seen.errors.forEach((message, i) => assert.match(message, expected[i]!));
+    assert.equal(seen.steps, 1);
+  });
+
+  test('mirrored strokes paint both sides, and pressure makes them wider', async () => {
+    const { sides, full, thin, widths } = await run<{
+      sides: number[][];
+      full: number;
+      thin: number;
+      widths: [number, number];
+    }>('mirroredAndPressed');
+    for (const [r, g] of sides) assert.ok(r! > 200 && g! < 40, sides.join(' '));
+    assert.ok(thin > 0.2 * full && thin < 0.8 * full, `${thin} of ${full}`);
+    assert.ok(widths[1] > 2 * widths[0] && widths[0] > 0, widths.join());
+  });
+
+  test('text and images lie upright on the model, or turned', async () => {
+    const { text, upright, turned } = await run<{ text: number; upright: string[]; turned: string[] }>('stickers');
+    assert.ok(text > 5, `${text}`);
+    assert.deepEqual(upright, ['red', 'blue']);
+    assert.deepEqual(turned, ['blue', 'red']);
+  });
+
+  test('models that were moved, turned and posed are painted where they are seen', async () => {
+    const seen =
+      await run<{ surface: number[]; right: number[]; scale: number; pixel: number[]; missed: boolean }[]>('posed');
+    for (const { surface, right, scale, pixel, missed } of seen) {
+      // Turned by a quarter about y, what was on the left is in front.
+      assertNear(surface, [-1.1, 0, 0], 0.05);
+      assertNear(right, [0, 0, 1], 0.05);
+      assertNear([scale], [0.5], 0.01);
+      assert.ok(pixel[0]! > 200 && pixel[1]! < 40, pixel.join());
+      assert.ok(missed);
+    }
+  });
+
+  test('pointers paint, erase and place stickers; beside the model they are left to others', async () => {
+    const seen = await run<{
+      stroke: number[];
+      whole: number;
+      pen: number;
+      captured: number;
+      beside: number;
+      erased: boolean;
+      sticker: number;
+      two: number;
+      rest: number;
+    }>('pointers');
+    for (const green of seen.stroke) assert.ok(green < 40, seen.stroke.join());
+    assert.ok(seen.pen > 0 && seen.pen < 0.6 * seen.whole, `${seen.pen} of ${seen.whole}`);
+    assert.deepEqual([seen.captured, seen.beside, seen.erased], [0, 1, true]);
+    assert.ok(seen.sticker > 5, `${seen.sticker}`);
+    assert.deepEqual([seen.two, seen.rest], [0, 0]);
+    assert.equal(await run('rendererState'), true, 'the renderer is as it was');
+  });
+});

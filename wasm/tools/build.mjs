@@ -17,7 +17,7 @@ import {
   symlinkSync,
   writeFileSync,
 } from 'node:fs';
-import { delimiter, dirname, join, resolve } from 'node:path';
+import { delimiter, dirname, join, relative, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { noticesOf } from './notices.mjs';
@@ -36,6 +36,19 @@ const stamp = at('build', preset, 'package.stamp');
 
 /** Template cages, made by `npm run assets` and checked in: the package is built without the models. */
 const kTemplates = 'examples/assets/templates';
+
+/** Folders of wasm/src and the files that are made of their index.ts. One that imports another has it as a file beside it. */
+const kEntries = {
+  inspect: 'inspect',
+  bake: 'bake',
+  three: 'three',
+  'three/gpu': 'three-gpu',
+  'three/layers': 'three-layers',
+  'three/painting': 'three-paint',
+  gltf: 'gltf',
+  worker: 'worker',
+  cages: 'cages',
+};
 
 /** Options of esbuild for every file of the package. */
 const common = {
@@ -143,8 +156,8 @@ async function bundleEntries(bundle) {
   // What is imported from index.js or from a peer stays a file of its own.
   const shared = { external: ['./index.js', 'three'], plugins: [wasmModules('wasm-file.ts', { index: './index.js' })] };
   await bundle('index.ts', 'slim.js', 'neutral', { ...shared, ...eager, ...reading('cagecast') });
-  for (const entry of ['inspect', 'bake', 'three', 'gltf', 'worker', 'cages'])
-    await bundle(`${entry}/index.ts`, `${entry}.js`, 'neutral', shared);
+  for (const [folder, name] of Object.entries(kEntries))
+    await bundle(`${folder}/index.ts`, `${name}.js`, 'neutral', shared);
   await bundle('worker/thread.ts', 'worker-thread.js', 'neutral', shared);
   // What makes cages has a WebAssembly module of its own; its worker is a file that needs no other script.
   const alone = { ...reading('cagecast-cages'), plugins: [wasmModules('wasm-file.ts')] };
@@ -193,10 +206,17 @@ function wasmModules(wasm, { index } = {}) {
     setup(build) {
       build.onResolve({ filter: /^#/ }, ({ path }) => (files[path] ? { path: files[path] } : undefined));
       if (index) {
-        build.onResolve({ filter: /^(\.\.\/)+index\.js$/ }, () => ({ path: index, external: true }));
-        build.onResolve({ filter: /^\.\.\/cages\/index\.js$/ }, () => ({ path: './cages.js', external: true }));
-        build.onResolve({ filter: /^(\.\.\/)+bake\/index\.js$/ }, () => ({ path: './bake.js', external: true }));
-        build.onResolve({ filter: /^\.\.\/worker\/index\.js$/ }, () => ({ path: './worker.js', external: true }));
+        // An entry imports the others as files of their own.
+        const entries = {
+          ...Object.fromEntries(
+            Object.entries(kEntries).map(([folder, name]) => [`${folder}/index.js`, `./${name}.js`]),
+          ),
+          'index.js': index,
+        };
+        build.onResolve({ filter: /^\.\..*\/index\.js$/ }, ({ path, resolveDir }) => {
+          const file = entries[relative(at('wasm/src'), join(resolveDir, path)).replaceAll('\\', '/')];
+          return file ? { path: file, external: true } : undefined;
+        });
       }
       build.onLoad({ filter: /cagecast\.wasm$/ }, ({ path }) => ({
         // Parcel writes a NUL before a digit as an octal escape, which modules do not have. U+0100 is the same byte when it is read.

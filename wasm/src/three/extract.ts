@@ -107,7 +107,7 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   object.traverse((child) => {
     if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
     const name = child.name || child.parent?.name || `mesh ${parts.length}`;
-    if (!isInstanced(child) || child.count > 0) add(name, child, child.geometry, placeOf(child));
+    if (!isInstanced(child) || child.count > 0) add(name, child, child.geometry, placeOf(child).clone());
   });
   return parts;
 }

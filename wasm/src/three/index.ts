@@ -15,6 +15,7 @@ import { type Calling, nextTask, share } from './async.js';
 import { cutGeometry } from './cut.js';
 import { type Extracted, extract, type Part, placeOf } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths, checkOptions, transferOptions } from './options.js';
+import { paintAttribute } from './paint.js';
 import { checkSaved, deserialize, keyOf, remember, type Saved, serialize } from './saved.js';
 import { zoneAttribute } from './shown-parts.js';
 import { atOnce } from './split.js';
@@ -43,6 +44,7 @@ export {
   type Part,
   type PartRange,
   type Prepared,
+  paintAttribute,
   placeOf,
   type Saved,
   type SplitPart,

@@ -28,11 +28,13 @@ varying vec4 vCagecastPaint;
 uniform sampler2D cagecastMap;
 uniform mat3 cagecastPlace;
 vec4 cagecastTexel() {
-  // The last row of a transform of UVs is 0, 0, 1, so there is room for opacity, feather and whether to decode sRGB.
+  // The last row of a transform of UVs is 0, 0, 1, so there is room for opacity, feather and how to decode: 1 for sRGB, 2 for
+  // colours that are multiplied by alpha.
   vec3 amount = vec3(cagecastPlace[0].z, cagecastPlace[1].z, cagecastPlace[2].z);
   vec4 texel = texture2D(cagecastMap, (cagecastPlace * vec3(vCagecastPaint.xy, 1.0)).xy);
   vec3 linear = mix(pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), texel.rgb / 12.92, vec3(lessThanEqual(texel.rgb, vec3(0.04045))));
-  texel.rgb = mix(texel.rgb, linear, amount.z);
+  texel.rgb = mix(texel.rgb, linear, step(abs(amount.z - 1.0), 0.5));
+  texel.rgb /= amount.z > 1.5 ? max(texel.a, 1e-4) : 1.0;
   float inside = vCagecastPaint.w - 1.0;
   float border = amount.y > 0.0 ? smoothstep(0.0, amount.y, inside) : step(-0.5, inside);
   texel.a *= amount.x * border * step(abs(vCagecastPaint.z), 1e-6);
@@ -131,9 +133,10 @@ export class Place {
     const { elements } = this.#matrix.copy(texture.matrix);
     elements[2] = opacity;
     elements[5] = feather;
-    // The GPU decodes all but videos.
-    elements[8] =
-      (texture as { isVideoTexture?: true }).isVideoTexture === true && texture.colorSpace === 'srgb' ? 1 : 0;
+    // The GPU decodes all but videos. What is drawn, as by `cagecast/three/layers`, may be premultiplied; it is no video.
+    const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture === true;
+    const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture === true;
+    elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
     return this.#matrix;
   }
 }

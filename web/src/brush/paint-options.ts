@@ -1,5 +1,5 @@
+import { type PaintingSize, paintingSizes } from 'cagecast/three/paint';
 import { element } from '../platform/page';
-import { kPaintedSizes, type PaintedSize } from './painted-sheet';
 
 /** The painting tools; each shows its own options. */
 export type Kind = 'brush' | 'eraser' | 'sticker';
@@ -51,12 +51,12 @@ export class PaintOptions {
   }
 
   /** Texture size of the painting, in texels per side. */
-  get texels(): PaintedSize {
-    return kPaintedSizes[this.#fine.checked ? 1 : 0];
+  get texels(): PaintingSize {
+    return paintingSizes[this.#fine.checked ? 1 : 0];
   }
 
-  set texels(texels: PaintedSize) {
-    this.#fine.checked = texels === kPaintedSizes[1];
+  set texels(texels: PaintingSize) {
+    this.#fine.checked = texels === paintingSizes[1];
   }
 
   get text(): string {

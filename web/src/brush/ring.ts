@@ -1,3 +1,4 @@
+import type { Aim } from 'cagecast/three/paint';
 import { element } from '../platform/page';
 
 /** The outline of the brush at the pointer. */
@@ -8,6 +9,12 @@ export class Ring {
     this.#ring.className = 'brush-ring';
     this.#ring.hidden = true;
     element('stage', HTMLElement).append(this.#ring);
+  }
+
+  /** Shows a length of the cage where the pointer can paint, and hides otherwise: fingers cover it. */
+  follow(aim: Aim | undefined, { clientX, clientY, pointerType }: PointerEvent, length: number): void {
+    if (!aim?.surface || pointerType === 'touch') this.hide();
+    else this.show(clientX, clientY, length * aim.scale);
   }
 
   /** @param x,y In client pixels. @param diameter In pixels. */

@@ -28,8 +28,8 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
   const ring = new Ring();
   const sticker = new StickerTool(painter, viewer, options, ring);
   const chosen = {
-    brush: new BrushTool(painter, viewer, options, ring, false),
-    eraser: new BrushTool(painter, viewer, options, ring, true),
+    brush: new BrushTool(painter, options, ring, false),
+    eraser: new BrushTool(painter, options, ring, true),
     sticker,
   };
   const keys = paintByKeys(viewer);

@@ -1,10 +1,10 @@
+import { type StickerPicture, StickerSheet } from 'cagecast/three/paint';
 import type { Spot } from '../view/pick';
 import type { Tool } from '../view/pointing';
 import type { Viewer } from '../view/viewer';
 import type { PaintOptions } from './paint-options';
 import type { Painter } from './painter';
 import type { Ring } from './ring';
-import { type StickerPicture, StickerSheet } from './sticker';
 
 /** Places a text or an image where the pointer is pressed; it follows the pointer until release. */
 export class StickerTool implements Tool {
@@ -28,14 +28,16 @@ export class StickerTool implements Tool {
 
   down(spot: Spot | undefined): boolean {
     const picture = this.#picture();
-    if (!picture || !this.painter.surfacePointOf(spot)) return false;
+    if (!picture || !this.painter.aimOf(spot)?.surface) return false;
     const key = 'text' in picture ? `${picture.text} ${picture.color}` : 'image';
     if (key !== this.#drawn) this.#sheet.draw(picture);
     this.#drawn = key;
     const { color, opacity } = this.options;
-    if (!this.painter.begin('sticker', { color, opacity, hardness: 1, erases: false })) return false;
-    this.go(spot);
-    return true;
+    return this.painter.telling(() => {
+      this.painter.begin('sticker', { color, opacity, hardness: 1, erases: false });
+      this.go(spot);
+      return true;
+    });
   }
 
   move(spot: Spot | undefined, event: PointerEvent): void {
@@ -45,15 +47,10 @@ export class StickerTool implements Tool {
 
   /** Moves it. */
   go(spot: Spot | undefined): void {
-    const point = this.painter.surfacePointOf(spot);
-    const { cageTexels: texels } = this.painter;
-    if (!point || !texels) return;
-    this.painter.stick(
-      point,
-      this.#sheet,
-      { size: this.options.size * texels.diagonal, angle: this.options.angle },
-      this.viewer.up,
-    );
+    const point = this.painter.aimOf(spot)?.surface;
+    if (!point) return;
+    const { size, angle } = this.options;
+    this.painter.stick(point, this.#sheet, { size: this.painter.lengthOf(size), angle }, this.viewer.up);
   }
 
   up(): void {
@@ -64,10 +61,8 @@ export class StickerTool implements Tool {
     this.painter.cancel();
   }
 
-  hover(spot: Spot | undefined, { clientX, clientY, pointerType }: PointerEvent): void {
-    const { cageTexels: texels } = this.painter;
-    if (!texels || !this.painter.surfacePointOf(spot) || pointerType === 'touch') this.ring.hide();
-    else this.ring.show(clientX, clientY, this.options.size * texels.diagonal * this.viewer.pixelsAt(spot!.seen));
+  hover(spot: Spot | undefined, event: PointerEvent): void {
+    this.ring.follow(this.painter.aimOf(spot), event, this.painter.lengthOf(this.options.size));
   }
 
   #picture(): StickerPicture | undefined {

@@ -1,6 +1,4 @@
-import type { Edits } from '../layers/edits';
-import { type Blend, kBlends, type Layer, type Style } from '../layers/layer';
-import type { LayerStack } from '../layers/stack';
+import { type Blend, blendModes, type Edits, type Layer, type LayerStack, type Style } from 'cagecast/three/layers';
 import { pngOf } from '../platform/png';
 import type { Opener } from '../scene/opener';
 import { type Paint, titleOf } from '../scene/paint';
@@ -23,7 +21,7 @@ export function exportedPaint(
   /** The name of a layer's paint in links; undefined for the user's own. */
   const nameOf = ({ sheet }: Layer): string | undefined => {
     if (sheet === session.checker) return kChecker;
-    const name = paintName(sheet.picture);
+    const name = paintName(sheet.picture ?? '');
     return opener.has(name) ? name : undefined;
   };
   let requests = 0;
@@ -79,7 +77,7 @@ export function exportedPaint(
 }
 
 function styleOf({ opacity, tint, blend, visible }: LinkedLayer): Style {
-  return { opacity, tint, blend: kBlends.includes(blend as Blend) ? (blend as Blend) : 'normal', visible };
+  return { opacity, tint, blend: blendModes.includes(blend as Blend) ? (blend as Blend) : 'normal', visible };
 }
 
 function latestPng({ layers }: LayerStack): Promise<Blob> {

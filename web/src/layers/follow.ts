@@ -1,9 +1,7 @@
+import { Composite, type Edits, type LayerStack } from 'cagecast/three/layers';
 import { type Paint, titleOf } from '../scene/paint';
 import type { Session } from '../scene/session';
 import type { Viewer } from '../view/viewer';
-import { Composite } from './composite';
-import type { Edits } from './edits';
-import type { LayerStack } from './stack';
 
 /** Makes the paint of the current model the base layer, and adds the user's own paints on top. */
 export function followPaints(session: Session, stack: LayerStack, edits: Edits): void {

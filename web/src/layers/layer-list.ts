@@ -1,8 +1,16 @@
+import {
+  type Blend,
+  blendModes,
+  type Edits,
+  type Layer,
+  type LayerStack,
+  maxLayers,
+  type Style,
+} from 'cagecast/three/layers';
 import { announce, element } from '../platform/page';
-import { kMostLayers } from './composite';
-import type { Edits } from './edits';
-import { type Blend, kBlends, type Layer, type Style } from './layer';
-import type { LayerStack } from './stack';
+
+// One transparent pixel.
+const kNoPicture = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEKAAEALAAAAAABAAEAAAICTAEAOw==';
 
 const kBlendTitles: Record<Blend, string> = { normal: 'Normal', multiply: 'Multiply', screen: 'Screen', add: 'Add' };
 
@@ -67,7 +75,7 @@ export class LayerList {
       if (focused instanceof HTMLElement && this.#list.contains(focused)) focused.focus({ preventScroll: true });
     }
     this.#list.hidden = items.length === 0;
-    element('layer-count', HTMLElement).textContent = `${layers.length} of ${kMostLayers}`;
+    element('layer-count', HTMLElement).textContent = `${layers.length} of ${maxLayers}`;
     for (const name of ['add-image', 'add-painting']) element(name, HTMLButtonElement).disabled = this.#stack.full;
   }
 
@@ -87,7 +95,7 @@ export class LayerList {
     item.className = 'layer';
     item.innerHTML = kRow;
     const controls = controlsOf(item);
-    for (const name of kBlends) controls.blend.add(new Option(kBlendTitles[name], name));
+    for (const name of blendModes) controls.blend.add(new Option(kBlendTitles[name], name));
     controls.choose.addEventListener('click', () => this.#stack.select(this.#layerOf(id)));
     controls.remove.addEventListener('click', () => this.#remove(id));
     this.#connectStyle(id, controls);
@@ -200,7 +208,7 @@ function showLayer(item: HTMLElement, controls: Controls, layer: Layer, selected
   const { grip, choose, remove, visible, opacity, tint, blend } = controls;
   const { name } = layer;
   item.classList.toggle('selected', selected);
-  item.querySelector('img')!.src = layer.sheet.picture;
+  item.querySelector('img')!.src = layer.sheet.picture ?? kNoPicture;
   item.querySelector('.name')!.textContent = choose.title = name;
   choose.setAttribute('aria-pressed', String(selected));
   grip.setAttribute('aria-label', `Reorder ${name} with the up and down keys`);

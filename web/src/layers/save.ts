@@ -1,10 +1,9 @@
+import { type Composite, readStraight } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
 import { download } from '../platform/download';
 import { element, showError } from '../platform/page';
 import { pngOf } from '../platform/png';
 import type { Viewer } from '../view/viewer';
-import type { Composite } from './composite';
-import { readStraight } from './straight';
 
 /**
  * Encodes the composite of the layers as a PNG, in the cage's UV space.

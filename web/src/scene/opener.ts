@@ -1,6 +1,5 @@
+import type { Edits, LayerStack } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
-import type { Edits } from '../layers/edits';
-import type { LayerStack } from '../layers/stack';
 import { type Choice, offerPaints } from '../panels/paint-picker';
 import { element, showError } from '../platform/page';
 import { type Intake, setUpFiles } from './files';

@@ -1,5 +1,5 @@
+import { maxCompositeSize } from 'cagecast/three/layers';
 import { CanvasTexture, RepeatWrapping, SRGBColorSpace, Texture } from 'three';
-import { kMostSize } from '../layers/composite';
 import type { Sample } from './samples';
 
 /** A texture in the cage's UV space. */
@@ -18,7 +18,7 @@ export function titleOf({ name, picture, sample }: Paint): string {
   return sample?.paints.find(({ file }) => file === picture)?.title ?? name;
 }
 
-const kLargest = kMostSize;
+const kLargest = maxCompositeSize;
 
 /**
  * Reads an image to paint with.

@@ -1,6 +1,6 @@
 import { CagecastError, type Classification, classify, init, type Lock, type Preset, type Timings } from 'cagecast';
 import type { Borders } from 'cagecast/three';
-import { Emitter } from '../platform/events';
+import { Emitter } from 'cagecast/three/layers';
 import { Pace } from '../platform/pace';
 import { kFirstView, type View } from '../view/view';
 import type { Model } from './load-model';

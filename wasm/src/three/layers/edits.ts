@@ -1,6 +1,6 @@
-import type { Command, History } from '../platform/history';
-import { areSame, type Layer } from './layer';
-import type { LayerStack } from './stack';
+import type { Command, History } from './history.js';
+import { areSame, type Layer } from './layer.js';
+import type { LayerStack } from './stack.js';
 
 const kOneGo = 600; // milliseconds: equal edits in quick succession, such as a held key, become one step
 
@@ -68,9 +68,12 @@ export class Edits {
     if (this.#before) return run();
     this.begin();
     try {
-      return run();
-    } finally {
+      const result = run();
       this.end(name);
+      return result;
+    } catch (error) {
+      this.cancel();
+      throw error;
     }
   }
 }

@@ -1,4 +1,4 @@
-import { Emitter } from './events';
+import { Emitter } from './emitter.js';
 
 /** An action that can be undone. */
 export interface Command {

@@ -1,9 +1,13 @@
-import { Emitter } from '../platform/events';
-import { kMostLayers } from './composite';
-import { difference, kPlain, type Layer, type Sheet, type Style } from './layer';
+import { CagecastError } from '../../index.js';
+import { Emitter } from './emitter.js';
+import { checkStyle, checkTexture, difference, type Layer, plainStyle, type Sheet, type Style } from './layer.js';
 
-/** Message when there is no room for another layer. */
-export const kFull = `There are already ${kMostLayers} layers, the maximum. Remove one first.`;
+/** The greatest number of layers. */
+export const maxLayers = 16;
+
+/** @returns the error for a layer too many. */
+const full = (): CagecastError =>
+  new CagecastError('badArgument', `There are already ${maxLayers} layers, the maximum. Remove one first.`);
 
 export interface StackEvents {
   /** Layers were added, removed, moved or restyled. */
@@ -14,7 +18,7 @@ export interface StackEvents {
   select: Layer | undefined;
 }
 
-/** Up to eight layers of paint, from the lowest to the uppermost. It is kept when the model changes. */
+/** Up to `maxLayers` layers of paint, from the lowest to the uppermost. It is kept when the model changes. */
 export class LayerStack extends Emitter<StackEvents> {
   #layers: readonly Layer[] = [];
   #selected: number | undefined;
@@ -31,7 +35,7 @@ export class LayerStack extends Emitter<StackEvents> {
   }
 
   get full(): boolean {
-    return this.#layers.length >= kMostLayers;
+    return this.#layers.length >= maxLayers;
   }
 
   /** Sets the base layer, in place of the previous one. */
@@ -41,7 +45,7 @@ export class LayerStack extends Emitter<StackEvents> {
       this.#replace({ ...base, name, sheet, visible: true });
       return;
     }
-    if (this.full) throw new Error(kFull);
+    if (this.full) throw full();
     const layer = this.#make(name, sheet, {}, 0);
     this.#base = layer.id;
     this.select(layer);
@@ -52,9 +56,9 @@ export class LayerStack extends Emitter<StackEvents> {
     return this.#layers.find(({ id }) => id === this.#base);
   }
 
-  /** Adds a layer on top and selects it. @throws Error if there are eight. */
+  /** Adds a layer on top and selects it. @throws {CagecastError} if there are `maxLayers` already, or the style is wrong. */
   add(name: string, sheet: Sheet, style: Partial<Style> = {}): Layer {
-    if (this.full) throw new Error(kFull);
+    if (this.full) throw full();
     const layer = this.#make(name, sheet, style, this.#layers.length);
     this.select(layer);
     return layer;
@@ -63,14 +67,14 @@ export class LayerStack extends Emitter<StackEvents> {
   /** Removes a layer. */
   remove(id: number): void {
     const place = this.#placeOf({ id });
-    this.#set(this.#layers.toSpliced(place, 1));
+    this.#set(this.#layers.filter((_, index) => index !== place));
     if (this.#selected === id) this.select(this.#layers[Math.min(place, this.#layers.length - 1)]);
   }
 
   /**
    * Applies the difference between two states of the stack to the current one, and selects the first layer it concerns.
    * Whatever is equal in both states stays as it is now.
-   * @throws Error if there would be more than eight.
+   * @throws {CagecastError} if there would be more than `maxLayers`.
    */
   change(from: readonly Layer[], to: readonly Layer[]): void {
     const find = (layers: readonly Layer[], { id }: Layer): Layer | undefined =>
@@ -87,21 +91,27 @@ export class LayerStack extends Emitter<StackEvents> {
     this.#layers.forEach((layer, place) => {
       if (!find(from, layer) && !find(to, layer)) layers.splice(place, 0, layer);
     });
-    if (layers.length > kMostLayers) throw new Error(kFull);
+    if (layers.length > maxLayers) throw full();
     const place = this.#layers.findIndex(({ id }) => id === this.#selected);
     this.#set(layers);
     this.select(concerned ?? this.selected ?? layers[Math.min(place, layers.length - 1)]);
   }
 
-  /** Moves a layer. @param place From 0, the lowest. */
-  move(layer: Layer, place: number): void {
+  /** Moves a layer. @param place From 0, the lowest; what is out of range is clamped. */
+  move(layer: Pick<Layer, 'id'>, place: number): void {
     const from = this.#placeOf(layer);
+    if (!Number.isInteger(place))
+      throw new CagecastError('badArgument', `cagecast/three/layers: the place of a layer is ${place}, not an integer`);
     const to = Math.max(0, Math.min(this.#layers.length - 1, place));
-    if (from !== to) this.#set(this.#layers.toSpliced(from, 1).toSpliced(to, 0, this.#layers[from]!));
+    if (from === to) return;
+    const layers = [...this.#layers];
+    layers.splice(to, 0, ...layers.splice(from, 1));
+    this.#set(layers);
   }
 
   /** Changes a layer's style. */
-  restyle(layer: Layer, style: Partial<Style>): void {
+  restyle(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
+    checkStyle(style);
     this.#replace({ ...this.#layers[this.#placeOf(layer)]!, ...style });
   }
 
@@ -117,19 +127,22 @@ export class LayerStack extends Emitter<StackEvents> {
   }
 
   #make(name: string, sheet: Sheet, style: Partial<Style>, place: number): Layer {
-    const layer = { id: ++this.#lastId, name, sheet, ...kPlain, ...style };
-    this.#set(this.#layers.toSpliced(place, 0, layer));
+    checkTexture(sheet?.texture, `the texture of "${name}"`);
+    checkStyle(style);
+    const layer = { id: ++this.#lastId, name, sheet, ...plainStyle, ...style };
+    this.#set([...this.#layers.slice(0, place), layer, ...this.#layers.slice(place)]);
     return layer;
   }
 
   #placeOf({ id }: Pick<Layer, 'id'>): number {
     const place = this.#layers.findIndex((layer) => layer.id === id);
-    if (place < 0) throw new Error('That layer was removed.');
+    if (place < 0) throw new CagecastError('badArgument', 'That layer was removed.');
     return place;
   }
 
   #replace(layer: Layer): void {
-    this.#set(this.#layers.with(this.#placeOf(layer), layer));
+    const place = this.#placeOf(layer);
+    this.#set(this.#layers.map((one, index) => (index === place ? layer : one)));
   }
 
   #set(layers: readonly Layer[]): void {

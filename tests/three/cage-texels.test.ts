@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BoxGeometry, type BufferGeometry, SphereGeometry, Vector3 } from 'three';
-import { type CageMesh, CageTexels, kFacing, type SurfacePoint } from '../../web/src/brush/cage-texels';
-import { Stroke } from '../../web/src/brush/stroke';
-import { disjoint, type Rect } from '../../web/src/layers/rect';
-import { History } from '../../web/src/platform/history';
+import { disjoint, type Rect } from '../../wasm/src/three/gpu/rect';
+import { History } from '../../wasm/src/three/layers/history';
+import { type CageMesh, CageTexels, kFacing, type SurfacePoint } from '../../wasm/src/three/painting/cage-texels';
+import { Stroke } from '../../wasm/src/three/painting/stroke';
 
 const kSize = 128;
 

@@ -1,5 +1,5 @@
 import type { WebGLRenderer, WebGLRenderTarget } from 'three';
-import { disjoint, type Rect } from './rect';
+import { disjoint, type Rect } from './rect.js';
 
 // Each rectangle takes a call per level: a few large ones cost less than many small ones.
 const kMostParts = 8;
@@ -41,7 +41,8 @@ export function refreshMipmaps(renderer: WebGLRenderer, target: WebGLRenderTarge
   }
   state.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
   state.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
-  renderer.setRenderTarget(null);
+  // Binds what the renderer draws to again, with its scissor.
+  renderer.setRenderTarget(renderer.getRenderTarget(), renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel());
 }
 
 function half({ left, top, right, bottom }: Rect): Rect {

@@ -1,11 +1,22 @@
 import { CanvasTexture, SRGBColorSpace, Vector3, type WebGLRenderer } from 'three';
-import { Composite } from '../layers/composite';
-import { kPlain } from '../layers/layer';
-import type { SurfacePoint } from './cage-texels';
-import type { Sticker } from './stroke-layer';
+import { Composite, plainStyle } from '../layers/index.js';
+import type { SurfacePoint } from './cage-texels.js';
+import type { Sticker } from './stroke-layer.js';
 
-/** What a sticker shows. */
-export type StickerPicture = { text: string; color: string } | { image: ImageBitmap };
+/** An image that a canvas can draw, with its size. */
+export type StickerImage = ImageBitmap | HTMLImageElement | HTMLCanvasElement | OffscreenCanvas;
+
+/** A line of text. */
+export interface StickerText {
+  text: string;
+  /** A colour of CSS. */
+  color: string;
+  /** A font family of CSS. Default: `system-ui, sans-serif`. */
+  font?: string | undefined;
+}
+
+/** What a sticker shows: a line of text, or an image. */
+export type StickerPicture = StickerText | { image: StickerImage };
 
 /** Size and rotation of a sticker. */
 export interface StickerStyle {
@@ -22,18 +33,19 @@ const kMargin = 4; // transparent pixels around it, so that filtering does not w
 export class StickerSheet {
   // A composite of one layer brings mipmaps and premultiplied alpha, so that edges keep their colour.
   readonly #composite = new Composite();
-  #canvas = document.createElement('canvas');
-  #texture: CanvasTexture | undefined;
+  #canvas = makeCanvas(1, 1);
+  #texture: CanvasTexture<Canvas> | undefined;
 
   /** Shows another picture. */
   draw(picture: StickerPicture): void {
     this.#canvas = 'text' in picture ? drawText(picture) : drawImage(picture.image);
     this.#texture?.dispose();
-    this.#texture = new CanvasTexture(this.#canvas);
-    this.#texture.colorSpace = SRGBColorSpace;
-    this.#texture.flipY = false;
-    this.#texture.generateMipmaps = false;
-    this.#composite.set([{ ...kPlain, id: 0, name: '', sheet: { texture: this.#texture, picture: '' } }]);
+    const texture = new CanvasTexture(this.#canvas);
+    texture.colorSpace = SRGBColorSpace;
+    texture.flipY = false;
+    texture.generateMipmaps = false;
+    this.#texture = texture;
+    this.#composite.set([{ ...plainStyle, id: 0, name: '', sheet: { texture } }]);
   }
 
   /** The sticker at a point of the cage, upright with respect to `up`. */
@@ -49,12 +61,27 @@ export class StickerSheet {
     const right = new Vector3().crossVectors(upright, normal);
     return { texture: this.#composite.texture, width: width * scale, height: height * scale, right, up: upright };
   }
+
+  /** Frees its GPU memory. */
+  dispose(): void {
+    this.#composite.dispose();
+    this.#texture?.dispose();
+  }
 }
 
-function drawText({ text, color }: { text: string; color: string }): HTMLCanvasElement {
-  const font = (pixels: number): string => `700 ${pixels}px system-ui, sans-serif`;
-  const canvas = document.createElement('canvas');
-  const context = canvas.getContext('2d')!;
+type Canvas = HTMLCanvasElement | OffscreenCanvas;
+type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
+
+/** An element where there is a document, as its fonts are those of the page. */
+function makeCanvas(width: number, height: number): Canvas {
+  if (typeof document === 'undefined') return new OffscreenCanvas(width, height);
+  return Object.assign(document.createElement('canvas'), { width, height });
+}
+
+function drawText({ text, color, font: family = 'system-ui, sans-serif' }: StickerText): Canvas {
+  const font = (pixels: number): string => `700 ${pixels}px ${family}`;
+  const canvas = makeCanvas(1, 1);
+  const context = canvas.getContext('2d') as Context;
   context.font = font(100);
   const measured = context.measureText(text);
   const wide = Math.max(1, measured.actualBoundingBoxLeft + measured.actualBoundingBoxRight);
@@ -72,13 +99,11 @@ function drawText({ text, color }: { text: string; color: string }): HTMLCanvasE
   return canvas;
 }
 
-function drawImage(image: ImageBitmap): HTMLCanvasElement {
+function drawImage(image: StickerImage): Canvas {
   const scale = (kSide - 2 * kMargin) / Math.max(image.width, image.height);
   const [width, height] = [Math.max(1, Math.round(image.width * scale)), Math.max(1, Math.round(image.height * scale))];
-  const canvas = document.createElement('canvas');
-  canvas.width = width + 2 * kMargin;
-  canvas.height = height + 2 * kMargin;
-  const context = canvas.getContext('2d')!;
+  const canvas = makeCanvas(width + 2 * kMargin, height + 2 * kMargin);
+  const context = canvas.getContext('2d') as Context;
   context.imageSmoothingQuality = 'high';
   context.drawImage(image, kMargin, kMargin, width, height);
   return canvas;

@@ -1,6 +1,6 @@
 import { NoColorSpace, type Texture, type WebGLRenderer, WebGLRenderTarget } from 'three';
-import { Pass } from './pass';
-import { kWhole, toTexels } from './rect';
+import { Pass } from './pass.js';
+import { kWhole, toTexels } from './rect.js';
 
 const kShader = /* glsl */ `
 uniform sampler2D source;
@@ -17,7 +17,7 @@ void main() {
 }
 `;
 
-const pass = new Pass(kShader, { source: { value: null as Texture | null }, size: { value: 1 } });
+let pass: Pass<{ source: { value: Texture | null }; size: { value: number } }> | undefined;
 
 /**
  * Reads a premultiplied texture as an image file has it: sRGB, colours not multiplied by alpha, upper row first.
@@ -25,6 +25,7 @@ const pass = new Pass(kShader, { source: { value: null as Texture | null }, size
  */
 export function readStraight(renderer: WebGLRenderer, source: Texture, size: number): ImageData {
   const target = new WebGLRenderTarget(size, size, { colorSpace: NoColorSpace, depthBuffer: false });
+  pass ??= new Pass(kShader, { source: { value: null }, size: { value: 1 } });
   pass.uniforms.source.value = source;
   pass.uniforms.size.value = size;
   pass.run(renderer, target, [toTexels(kWhole, size)]);

@@ -13,7 +13,7 @@ import {
   type WebGLRenderer,
   type WebGLRenderTarget,
 } from 'three';
-import type { Rect } from './rect';
+import type { Rect } from './rect.js';
 
 /** Rectangles that one pass can be run over. */
 export const kMostRects = 128;
@@ -60,12 +60,13 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
     rects.forEach((rect, index) => this.#setCorners(index, rect, target));
     this.#corners.needsUpdate = true;
     this.#geometry.setDrawRange(0, 6 * rects.length);
-    const { autoClear } = renderer;
-    renderer.autoClear = false;
-    renderer.setRenderTarget(target);
-    renderer.render(this.#scene, this.#camera);
-    renderer.setRenderTarget(null);
-    renderer.autoClear = autoClear;
+    keepState(renderer, () => {
+      renderer.autoClear = false;
+      // In a headset it would draw once for each eye.
+      renderer.xr.enabled = false;
+      renderer.setRenderTarget(target);
+      renderer.render(this.#scene, this.#camera);
+    });
   }
 
   #setCorners(index: number, { left, top, right, bottom }: Rect, { width, height }: WebGLRenderTarget): void {
@@ -77,5 +78,19 @@ export class Pass<Uniforms extends Record<string, IUniform>> {
   dispose(): void {
     this.#geometry.dispose();
     this.#material.dispose();
+  }
+}
+
+/** Runs something that draws, and makes the renderer what it was. */
+export function keepState(renderer: WebGLRenderer, draw: () => void): void {
+  const { autoClear, xr } = renderer;
+  const before = renderer.getRenderTarget();
+  const [face, level, isInHeadset] = [renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel(), xr.enabled];
+  try {
+    draw();
+  } finally {
+    renderer.autoClear = autoClear;
+    xr.enabled = isInHeadset;
+    renderer.setRenderTarget(before, face, level);
   }
 }

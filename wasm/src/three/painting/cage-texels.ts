@@ -1,5 +1,5 @@
 import { Line3, Triangle, Vector3 } from 'three';
-import type { Rect } from '../layers/rect';
+import type { Rect } from '../gpu/index.js';
 
 /** The arrays of a cage that painting needs. */
 export interface CageMesh {
@@ -18,11 +18,14 @@ export interface SurfacePoint {
   normal: Vector3;
 }
 
-/** What a brush touches between two points: everything within `radius` of the line segment between them. */
+/** What a brush touches between two points: everything within a radius of the line segment between them. */
 export interface Capsule {
   from: SurfacePoint;
   to: SurfacePoint;
+  /** At `from`. */
   radius: number;
+  /** At `to`. Default: `radius`. In between it grows evenly. */
+  toRadius?: number;
 }
 
 // Width of the gutter around a UV chart, in texels, filled with the colour of its border. Bilinear filtering needs two; the
@@ -137,7 +140,8 @@ export class CageTexels {
    * The parts of the texture that a brush touches, in shares; conservative, and they may overlap.
    * @param without Indices of patches to leave out.
    */
-  touched({ from, to, radius }: Capsule, without: ReadonlySet<number>): Rect[] {
+  touched({ from, to, ...radii }: Capsule, without: ReadonlySet<number>): Rect[] {
+    const radius = Math.max(radii.radius, radii.toRadius ?? 0);
     const rects: Rect[] = [];
     const margin = (kGutter + 1) / this.size;
     const [a, b] = [new Vector3(), new Vector3()];
@@ -176,8 +180,9 @@ export class CageTexels {
     return rects;
   }
 
-  /** Indices of the patches that lie entirely within a capsule and face it along its whole length. */
-  enclosed({ from, to, radius }: Capsule): number[] {
+  /** Indices of the patches that lie entirely within a capsule, where that is thinnest, and face it along its whole length. */
+  enclosed({ from, to, ...radii }: Capsule): number[] {
+    const radius = Math.min(radii.radius, radii.toRadius ?? radii.radius);
     const way = new Line3(from.point, to.point);
     const found = new Vector3();
     // A capsule is convex: it contains a triangle if it contains the corners.

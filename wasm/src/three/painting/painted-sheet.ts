@@ -1,13 +1,10 @@
 import { DataTexture, SRGBColorSpace, type Texture, Vector2, type WebGLRenderer, WebGLRenderTarget } from 'three';
-import type { Sheet } from '../layers/layer';
-import { isEmpty, type Rect } from '../layers/rect';
+import { isEmpty, type Rect } from '../gpu/index.js';
+import type { Sheet } from '../layers/index.js';
 
 /** Sizes of paintings, in texels per side. */
-export const kPaintedSizes = [1024, 2048] as const;
-export type PaintedSize = (typeof kPaintedSizes)[number];
-
-// One transparent pixel.
-const kNoPicture = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEKAAEALAAAAAABAAEAAAICTAEAOw==';
+export const paintingSizes = [1024, 2048] as const;
+export type PaintingSize = (typeof paintingSizes)[number];
 
 /** A render target to paint on: sRGB, premultiplied alpha, transparent at first. */
 export function makePaintTarget(size: number): WebGLRenderTarget {
@@ -24,10 +21,11 @@ export class PaintedSheet implements Sheet {
   readonly target: WebGLRenderTarget;
   readonly #bytes: Uint8Array;
   readonly bytes: number;
-  picture = kNoPicture;
+  /** URL of a thumbnail, for lists. */
+  picture?: string;
 
   /** @param size Texels per side. */
-  constructor(readonly size: PaintedSize) {
+  constructor(readonly size: PaintingSize) {
     this.target = makePaintTarget(size);
     this.bytes = 4 * size * size;
     this.#bytes = new Uint8Array(this.bytes);
@@ -62,6 +60,11 @@ export class PaintedSheet implements Sheet {
   /** Uploads the bytes again, after the graphics context was lost. */
   restore(renderer: WebGLRenderer): void {
     upload(renderer, this.target, { left: 0, top: 0, right: this.size, bottom: this.size }, this.#bytes);
+  }
+
+  /** Frees its GPU memory. */
+  dispose(): void {
+    this.target.dispose();
   }
 
   #keep(rect: Rect, part: Uint8Array): void {

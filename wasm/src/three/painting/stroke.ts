@@ -1,4 +1,4 @@
-import type { CageTexels, Capsule, SurfacePoint } from './cage-texels';
+import type { CageTexels, Capsule, SurfacePoint } from './cage-texels.js';
 
 /** Size and symmetry of a stroke. */
 export interface StrokeShape {
@@ -13,10 +13,13 @@ const kFarthest = 4;
 // A straight line may leave the cage: it is divided into pieces of this length, in radii, and each end is projected back.
 const kPiece = 1;
 const kMostPieces = 16;
+// A brush without a radius would divide by zero.
+const kLeastPressure = 0.05;
 
 /** Turns the points of a pointer path into the capsules that a brush touches. */
 export class Stroke {
   #last: SurfacePoint | undefined;
+  #lastRadius = 0;
 
   constructor(
     private readonly texels: CageTexels,
@@ -26,25 +29,28 @@ export class Stroke {
   /**
    * Extends the stroke to a point, or interrupts it if there is none.
    * @param step Expected distance of consecutive points in the cage's space, if the surface faces the viewer.
+   * @param pressure 0..1: the share of the radius at this point.
    * @returns The capsules to paint.
    */
-  to(point: SurfacePoint | undefined, step = 0): Capsule[] {
-    const last = this.#last;
+  to(point: SurfacePoint | undefined, step = 0, pressure = 1): Capsule[] {
+    const [last, lastRadius] = [this.#last, this.#lastRadius];
     this.#last = point;
     if (!point) return [];
-    const { radius, mirror } = this.shape;
+    const { mirror } = this.shape;
+    const radius = this.shape.radius * Math.max(kLeastPressure, Math.min(1, pressure));
+    this.#lastRadius = radius;
     // Behind the edge of a nose lies the cheek: do not connect the two.
-    const near = last && last.point.distanceTo(point.point) <= kFarthest * Math.max(radius, step);
-    const capsules = near ? this.#between(last, point) : [{ from: point, to: point, radius }];
+    const near = last && last.point.distanceTo(point.point) <= kFarthest * Math.max(radius, lastRadius, step);
+    const capsules = near ? this.#between(last, point, [lastRadius, radius]) : [{ from: point, to: point, radius }];
     if (!mirror) return capsules;
     return capsules.flatMap((capsule) => [
       capsule,
-      { from: this.texels.mirrored(capsule.from), to: this.texels.mirrored(capsule.to), radius },
+      { ...capsule, from: this.texels.mirrored(capsule.from), to: this.texels.mirrored(capsule.to) },
     ]);
   }
 
-  #between(first: SurfacePoint, last: SurfacePoint): Capsule[] {
-    const { radius } = this.shape;
+  #between(first: SurfacePoint, last: SurfacePoint, [from, to]: readonly [number, number]): Capsule[] {
+    const radius = Math.max(from, to);
     const pieces = Math.min(
       kMostPieces,
       Math.max(1, Math.ceil(first.point.distanceTo(last.point) / (kPiece * radius))),
@@ -55,6 +61,12 @@ export class Stroke {
       if (piece === pieces) return last;
       return this.texels.nearest(first.point.clone().lerp(last.point, piece / pieces), outside) ?? first;
     });
-    return points.slice(1).map((to, piece) => ({ from: points[piece]!, to, radius }));
+    const radiusAt = (piece: number): number => from + ((to - from) * piece) / pieces;
+    return points.slice(1).map((point, piece) => ({
+      from: points[piece]!,
+      to: point,
+      radius: radiusAt(piece),
+      toRadius: radiusAt(piece + 1),
+    }));
   }
 }

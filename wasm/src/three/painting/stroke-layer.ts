@@ -13,17 +13,26 @@ import {
   RGBAFormat,
   type ShaderMaterialParameters,
   type Texture,
-  Vector2,
-  Vector3,
+  type Vector3,
   type WebGLRenderer,
   type WebGLRenderTarget,
-  ZeroFactor,
 } from 'three';
-import type { ActiveStroke } from '../layers/composite';
-import { kMostRects, Pass } from '../layers/pass';
-import { disjoint, type Rect, toShares, toTexels } from '../layers/rect';
-import { type CageTexels, type Capsule, kFacing, kPatchTexels, type SurfacePoint } from './cage-texels';
-import { makePaintTarget, type PaintedSheet } from './painted-sheet';
+import { disjoint, kMostRects, Pass, type Rect, toShares, toTexels } from '../gpu/index.js';
+import type { ActiveStroke } from '../layers/index.js';
+import type { CageTexels, Capsule, SurfacePoint } from './cage-texels.js';
+import { makePaintTarget, type PaintedSheet } from './painted-sheet.js';
+import {
+  brushShader,
+  brushUniforms,
+  commitUniforms,
+  kClearShader,
+  kCommitShader,
+  kEraseShader,
+  kMostCapsules,
+  kTableWidth,
+  stickerShader,
+  stickerUniforms,
+} from './stroke-shaders.js';
 
 /** How one stroke or sticker is applied, from press to release. */
 export interface StrokeStyle {
@@ -47,105 +56,16 @@ export interface Sticker {
   up: Vector3;
 }
 
-const kTableWidth = 1024; // a power of two
 const kWithin = 0.999; // a safety margin, as the GPU computes in single precision
-const kMostCapsules = 8; // per pass
-
-/** @param size Texels a side. */
-const surfacePointShader = (size: number): string => /* glsl */ `
-uniform highp isampler2D owners;
-uniform sampler2D patches;
-const float kFacing = ${kFacing};
-
-vec4 row(int patchIndex, int index) {
-  int at = patchIndex * ${kPatchTexels} + index;
-  return texelFetch(patches, ivec2(at & ${kTableWidth - 1}, at >> ${Math.log2(kTableWidth)}), 0);
-}
-
-// The point of the cage at this texel; in the gutter of a chart, the nearest point of its border. False where there is none.
-bool surfacePoint(out vec3 point, out vec3 normal) {
-  int owner = texelFetch(owners, ivec2(gl_FragCoord.xy), 0).r;
-  if (owner < 0) return false;
-  vec4 a = row(owner, 0), b = row(owner, 1), c = row(owner, 2), growth = row(owner, 3);
-  vec2 from = gl_FragCoord.xy / ${size}.0 - vec2(a.w, b.w);
-  vec2 shares = vec2(dot(from, growth.xy), dot(from, growth.zw));
-  vec3 inside = max(vec3(1.0 - shares.x - shares.y, shares), 0.0);
-  point = mat3(a.xyz, b.xyz, c.xyz) * inside / (inside.x + inside.y + inside.z);
-  normal = row(owner, 4).xyz;
-  return true;
-}
-`;
-
-const brushShader = (size: number): string => /* glsl */ `
-${surfacePointShader(size)}
-uniform vec3 from[${kMostCapsules}];
-uniform vec3 to[${kMostCapsules}];
-uniform vec3 fromNormal[${kMostCapsules}];
-uniform vec3 toNormal[${kMostCapsules}];
-uniform int count;
-uniform float radius;
-uniform float hardness;
-uniform vec3 paint;
-out vec4 color;
-
-void main() {
-  vec3 point, normal;
-  if (!surfacePoint(point, normal)) discard;
-  float cover = 0.0;
-  for (int i = 0; i < count; i++) {
-    vec3 way = to[i] - from[i];
-    float share = clamp(dot(point - from[i], way) / max(dot(way, way), 1e-30), 0.0, 1.0);
-    if (dot(normal, mix(fromNormal[i], toNormal[i], share)) < kFacing) continue;
-    cover = max(cover, 1.0 - smoothstep(hardness, 1.0, distance(point, from[i] + share * way) / radius));
-  }
-  if (cover == 0.0) discard;
-  color = cover * vec4(paint, 1.0);
-}
-`;
-
-const stickerShader = (size: number): string => /* glsl */ `
-${surfacePointShader(size)}
-uniform sampler2D picture;
-uniform vec3 center;
-uniform vec3 outward;
-uniform vec3 right;
-uniform vec3 up;
-uniform vec2 extent;
-uniform float texel; // the size of a texel of this texture, in texels of the picture
-out vec4 color;
-
-void main() {
-  vec3 point, normal;
-  if (!surfacePoint(point, normal)) discard;
-  vec3 from = point - center;
-  vec2 at = vec2(dot(from, right), -dot(from, up)) / extent + 0.5;
-  // Skip what faces away or lies far behind: it is another surface that happens to be underneath.
-  if (dot(normal, outward) < 0.1 || abs(dot(from, outward)) > 0.5 * max(extent.x, extent.y)) discard;
-  if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)))) discard;
-  color = textureLod(picture, at, log2(max(texel, 1.0)));
-}
-`;
-
-const kCommitShader = /* glsl */ `
-uniform sampler2D stroke;
-uniform float opacity;
-out vec4 color;
-void main() { color = opacity * texelFetch(stroke, ivec2(gl_FragCoord.xy), 0); }
-`;
-
-const kClearShader = /* glsl */ `
-out vec4 color;
-void main() { color = vec4(0.0); }
-`;
+const kFade = 1.5; // texels that the hardest edge fades over, so that it shows no steps
 
 const blending = (
   blendEquation: typeof AddEquation | typeof MaxEquation,
-  src: typeof OneFactor | typeof ZeroFactor,
   dst: typeof OneFactor | typeof OneMinusSrcAlphaFactor,
 ): ShaderMaterialParameters => ({
   blending: CustomBlending,
   blendEquation,
-  blendSrc: src,
+  blendSrc: OneFactor,
   blendDst: dst,
 });
 
@@ -154,12 +74,11 @@ export class StrokeLayer {
   readonly #target: WebGLRenderTarget;
   readonly #brush: Pass<ReturnType<typeof brushUniforms>>;
   readonly #sticker: Pass<ReturnType<typeof stickerUniforms>>;
-  readonly #lay = new Pass(kCommitShader, commitUniforms(), blending(AddEquation, OneFactor, OneMinusSrcAlphaFactor));
-  readonly #erase = new Pass(
-    kCommitShader,
-    commitUniforms(),
-    blending(AddEquation, ZeroFactor, OneMinusSrcAlphaFactor),
-  );
+  readonly #lay = new Pass(kCommitShader, commitUniforms(), blending(AddEquation, OneMinusSrcAlphaFactor));
+  readonly #erase = new Pass(kEraseShader, commitUniforms());
+  readonly #copy = new Pass(kCommitShader, commitUniforms());
+  /** What an eraser leaves, until it is copied to the sheet: a shader cannot read what it draws to. */
+  #rest: WebGLRenderTarget | undefined;
   readonly #clear = new Pass(kClearShader, {});
   readonly #textures: readonly Texture[];
   #style: StrokeStyle = { color: '#000000', opacity: 1, hardness: 1, erases: false };
@@ -185,11 +104,7 @@ export class StrokeLayer {
       texture.unpackAlignment = 4;
       texture.needsUpdate = true;
     }
-    this.#brush = new Pass(
-      brushShader(size),
-      brushUniforms(owners, patches),
-      blending(MaxEquation, OneFactor, OneFactor),
-    );
+    this.#brush = new Pass(brushShader(size), brushUniforms(owners, patches), blending(MaxEquation, OneFactor));
     this.#sticker = new Pass(stickerShader(size), stickerUniforms(owners, patches));
   }
 
@@ -206,28 +121,32 @@ export class StrokeLayer {
     this.#full.clear();
   }
 
-  /** Draws part of a brush stroke. @param capsules All of one radius. @returns The parts it touched, in shares. */
+  /** Draws part of a brush stroke. @returns The parts it touched, in shares. */
   stroke(renderer: WebGLRenderer, capsules: readonly Capsule[]): Rect[] {
     const rest = capsules.slice(kMostCapsules);
     if (rest.length > 0)
       return [...this.stroke(renderer, capsules.slice(0, kMostCapsules)), ...this.stroke(renderer, rest)];
-    const { from, to, fromNormal, toNormal, count, radius, hardness, paint } = this.#brush.uniforms;
+    const { from, to, fromNormal, toNormal, radii, count, hardness, fade, paint } = this.#brush.uniforms;
     capsules.forEach((capsule, index) => {
       from.value[index]!.copy(capsule.from.point);
       to.value[index]!.copy(capsule.to.point);
       fromNormal.value[index]!.copy(capsule.from.normal);
       toNormal.value[index]!.copy(capsule.to.normal);
-      radius.value = capsule.radius;
+      radii.value[index]!.set(capsule.radius, capsule.toRadius ?? capsule.radius);
     });
     count.value = capsules.length;
-    // The hardest edge still fades over 1.5 texels, so that it shows no steps.
-    hardness.value = Math.max(0, Math.min(this.#style.hardness, 1 - (1.5 * this.cageTexels.pitch) / radius.value));
+    hardness.value = this.#style.hardness;
+    fade.value = kFade * this.cageTexels.pitch;
     const { r, g, b } = new Color(this.#style.color);
     paint.value.set(r, g, b);
     const touched = capsules.flatMap((capsule) => this.cageTexels.touched(capsule, this.#full));
-    const core = kWithin * hardness.value * radius.value;
-    for (const capsule of capsules)
-      for (const patch of this.cageTexels.enclosed({ ...capsule, radius: core })) this.#full.add(patch);
+    // The part of a radius that is painted fully.
+    const core = (radius: number): number =>
+      kWithin * Math.max(0, Math.min(radius * hardness.value, radius - fade.value));
+    for (const { radius, toRadius = radius, ...ends } of capsules) {
+      const inner = { ...ends, radius: core(radius), toRadius: core(toRadius) };
+      for (const patch of this.cageTexels.enclosed(inner)) this.#full.add(patch);
+    }
     return this.#draw(renderer, this.#brush, touched);
   }
 
@@ -262,11 +181,17 @@ export class StrokeLayer {
   commit(renderer: WebGLRenderer): { rect: Rect; before: Uint8Array; after: Uint8Array }[] {
     const sheet = this.#sheet;
     if (!sheet) return [];
-    const pass = this.#style.erases ? this.#erase : this.#lay;
-    pass.uniforms.stroke.value = this.#target.texture;
-    pass.uniforms.opacity.value = this.#style.opacity;
     const rects = this.#rects;
-    pass.run(renderer, sheet.target, rects);
+    const { erases, opacity } = this.#style;
+    const [pass, target] = erases ? [this.#erase, this.#makeRest()] : [this.#lay, sheet.target];
+    pass.uniforms.sheet.value = erases ? sheet.texture : null;
+    pass.uniforms.stroke.value = this.#target.texture;
+    pass.uniforms.opacity.value = opacity;
+    pass.run(renderer, target, rects);
+    if (erases) {
+      this.#copy.uniforms.stroke.value = target.texture;
+      this.#copy.run(renderer, sheet.target, rects);
+    }
     this.end(renderer);
     return rects.map((rect) => ({ rect, before: sheet.get(rect), after: sheet.readBack(renderer, rect) }));
   }
@@ -280,8 +205,13 @@ export class StrokeLayer {
   /** Frees its GPU memory. */
   dispose(): void {
     this.#target.dispose();
+    this.#rest?.dispose();
     for (const texture of this.#textures) texture.dispose();
-    for (const pass of [this.#brush, this.#sticker, this.#lay, this.#erase, this.#clear]) pass.dispose();
+    for (const pass of [this.#brush, this.#sticker, this.#lay, this.#erase, this.#copy, this.#clear]) pass.dispose();
+  }
+
+  #makeRest(): WebGLRenderTarget {
+    return (this.#rest ??= makePaintTarget(this.cageTexels.size));
   }
 
   #draw(renderer: WebGLRenderer, pass: { run: Pass<never>['run'] }, touched: readonly Rect[]): Rect[] {
@@ -293,38 +223,4 @@ export class StrokeLayer {
     this.#rects = disjoint([...this.#rects, ...rects], kMostRects);
     return rects.map((rect) => toShares(rect, this.cageTexels.size));
   }
-}
-
-function brushUniforms(owners: Texture, patches: Texture) {
-  const vectors = (): Vector3[] => Array.from({ length: kMostCapsules }, () => new Vector3());
-  return {
-    owners: { value: owners },
-    patches: { value: patches },
-    from: { value: vectors() },
-    to: { value: vectors() },
-    fromNormal: { value: vectors() },
-    toNormal: { value: vectors() },
-    count: { value: 0 },
-    radius: { value: 1 },
-    hardness: { value: 1 },
-    paint: { value: new Vector3() },
-  };
-}
-
-function stickerUniforms(owners: Texture, patches: Texture) {
-  return {
-    owners: { value: owners },
-    patches: { value: patches },
-    picture: { value: null as Texture | null },
-    center: { value: new Vector3() },
-    outward: { value: new Vector3() },
-    right: { value: new Vector3() },
-    up: { value: new Vector3() },
-    extent: { value: new Vector2() },
-    texel: { value: 1 },
-  };
-}
-
-function commitUniforms() {
-  return { stroke: { value: null as Texture | null }, opacity: { value: 1 } };
 }

@@ -1,0 +1,351 @@
+// What the page of the tests does with layers and painters. Runs in the browser.
+import { type Applied, applyTransfer } from 'cagecast/three';
+import { type Blend, createLayers, type Layers } from 'cagecast/three/layers';
+import { createPainter, type Painter, type StrokePoint } from 'cagecast/three/paint';
+import {
+  Bone,
+  BufferAttribute,
+  DataTexture,
+  MeshBasicMaterial,
+  type Object3D,
+  Raycaster,
+  Skeleton,
+  SkinnedMesh,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+} from 'three';
+import { ball, cage, camera, countOf, difference, draw, flat, kSize, modelOf, renderer } from './scenes';
+
+/** A texture of one colour with alpha, given as sRGB. */
+function clear(color: number, alpha: number): DataTexture {
+  const texture = flat(color);
+  const data = texture.image.data as Uint8Array;
+  for (let at = 3; at < data.length; at += 4) data[at] = alpha;
+  return texture;
+}
+
+const texelOf = ({ data }: ImageData): number[] => [...data.subarray(0, 4)];
+const white = (): MeshBasicMaterial => new MeshBasicMaterial({ color: 0xbbbbbb });
+const messageOf = (run: () => unknown): string => {
+  try {
+    run();
+    return 'no error';
+  } catch (error) {
+    return (error as Error).message;
+  }
+};
+
+/** What a pixel of the picture is, 0 to 255. */
+const pixelAt = (pixels: readonly number[], x: number, y: number): number[] =>
+  pixels.slice(4 * (y * kSize + x), 4 * (y * kSize + x) + 3);
+
+/** A ray through a pixel of the picture. */
+function ray(x: number, y: number): Raycaster {
+  const raycaster = new Raycaster();
+  camera.updateMatrixWorld();
+  raycaster.setFromCamera(new Vector2((2 * (x + 0.5)) / kSize - 1, (2 * (y + 0.5)) / kSize - 1), camera);
+  return raycaster;
+}
+
+interface Painted {
+  model: Object3D;
+  applied: Applied;
+  painter: Painter;
+  /** The model as it is drawn now. */
+  look(): number[];
+  /** The spots of the model at some pixels. */
+  spots(...at: readonly (readonly [number, number])[]): StrokePoint[];
+}
+
+function paintedBall(model: Object3D = modelOf(white()), layers?: Layers): Painted {
+  const applied = applyTransfer(model, cage());
+  const painter = createPainter({ renderer, layers, applied, cage: cage() });
+  painter.brush.color = '#ff0000';
+  const look = (): number[] => {
+    painter.update();
+    return draw(model).pixels;
+  };
+  const spots: Painted['spots'] = (...at) => at.map(([x, y]) => painter.pick(ray(x, y))!);
+  return { model, applied, painter, look, spots };
+}
+
+/** Texels with paint. */
+function filled(painter: Painter): { texels: number; most: number } {
+  const { data } = painter.layers.toImageData();
+  let [texels, most] = [0, 0];
+  for (let at = 3; at < data.length; at += 4) {
+    if (data[at]! > 0) texels++;
+    most = Math.max(most, data[at]!);
+  }
+  return { texels, most };
+}
+
+export const layerScenes: Record<string, () => unknown> = {
+  /** Sixteen layers, beside what the formulas say. */
+  sixteenLayers() {
+    const blends: Blend[] = ['normal', 'multiply', 'screen', 'add'];
+    const layers = createLayers({ renderer });
+    const styles = Array.from({ length: 16 }, (_, i) => ({
+      color: [(i * 97) % 256, (i * 53 + 80) % 256, (i * 29 + 30) % 256, 255 - 13 * i] as const,
+      blend: i === 0 ? 'normal' : blends[i % 4]!,
+      opacity: 1 - 0.04 * i,
+      tint: i % 3 === 0 ? '#ffffff' : '#ffcc99',
+    }));
+    const added = styles.map(({ color: [r, g, b, a], ...style }) =>
+      layers.add(clear((r << 16) + (g << 8) + b, a), style),
+    );
+    const errors = [
+      () => layers.add(flat(0)),
+      () => layers.set(added[0]!, { opacity: Number.NaN }),
+      () => layers.set(added[0]!, { blend: 'overlay' as Blend }),
+      () => layers.set(added[0]!, { tint: 'red' }),
+      () => layers.move(added[0]!, 0.5),
+      () => createLayers({} as Parameters<typeof createLayers>[0]),
+      () => createLayers({ renderer }).add({} as DataTexture),
+      () => layers.toImageData(0),
+    ].map(messageOf);
+    const all = texelOf(layers.toImageData(16));
+    layers.move(added[15]!, 0);
+    const moved = texelOf(layers.toImageData(16));
+    const undone = [layers.undo(), texelOf(layers.toImageData(16))];
+    layers.set(added[15]!, { visible: false });
+    layers.remove(added[14]!);
+    const fewer = texelOf(layers.toImageData(16));
+    layers.undo();
+    layers.undo();
+    const back = texelOf(layers.toImageData(16));
+    const count = layers.list.length;
+    layers.dispose();
+    return { styles, all, moved, undone, fewer, back, count, errors };
+  },
+
+  /** One stack on two models, beside the same colour as a texture; a texture that changes. */
+  stackOnModels() {
+    const layers = createLayers({ renderer });
+    const models = [modelOf(white()), modelOf(white())];
+    const applied = models.map((model) => applyTransfer(model, cage()));
+    for (const one of applied) one.setTexture(layers.texture);
+    const layer = layers.add(clear(0xdd3311, 120));
+    const plain = modelOf(white());
+    applyTransfer(plain, cage(), { texture: clear(0xdd3311, 120) });
+    const look = () => {
+      layers.update();
+      return models.map((model) => draw(model).pixels);
+    };
+    const apart = look().map((pixels) => difference(pixels, draw(plain).pixels));
+    layers.set(layer, { opacity: 0 });
+    const bare = modelOf(white());
+    const hidden = look().map((pixels) => difference(pixels, draw(bare).pixels));
+    const idle = layers.update();
+
+    const texture = new DataTexture(new Uint8Array(16), 2, 2);
+    texture.colorSpace = SRGBColorSpace;
+    layers.add(texture);
+    layers.update();
+    (texture.image.data as Uint8Array).set([255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255]);
+    texture.needsUpdate = true;
+    const changed = look().map((pixels) => countOf(pixels, 0));
+    for (const one of applied) one.dispose();
+    layers.dispose();
+    return { apart, hidden, idle, changed };
+  },
+
+  /** A stroke, undone and repeated; erased with its soft edge; on layers below. */
+  strokes() {
+    const { painter, look, spots } = paintedBall();
+    const bare = look();
+    const path = spots([24, 32], [40, 32]);
+    painter.stroke(path, { size: 0.1, hardness: 1 });
+    const painted = look();
+    const middle = [pixelAt(painted, 32, 32), pixelAt(painted, 32, 48)];
+    const names = [painter.undo()];
+    const undone = difference(look(), bare);
+    names.push(painter.redo());
+    const redone = difference(look(), painted);
+    painter.undo();
+    // Over and over, and softly.
+    painter.stroke(path, { size: 0.15, hardness: 0, opacity: 0.6 });
+    const soft = filled(painter);
+    painter.erase(path, { size: 0.15, hardness: 0, opacity: 0.6 });
+    const left = filled(painter);
+    painter.undo();
+    const again = filled(painter);
+    painter.erase(spots([40, 32]), { size: 0.05, hardness: 1 });
+    const half = filled(painter);
+    const errors = [
+      () => painter.stroke(path, { size: Number.NaN }),
+      () => painter.stroke(path, { color: 'red' }),
+      () => painter.stroke(path, { opacity: 2 }),
+      () => painter.stroke([{ x: Number.NaN, y: 0 }]),
+      () => createPainter({ renderer, applied: {} as Applied, cage: cage() }),
+      () => createPainter({ renderer, applied: [], cage: cage(), size: 512 as 1024 }),
+    ].map(messageOf);
+    const steps = painter.layers.list.length;
+    painter.dispose();
+    return { middle, names, undone, redone, soft, left, again, half, errors, steps };
+  },
+
+  /** Mirrored strokes, and those of a pen. */
+  mirroredAndPressed() {
+    const { painter, look, spots } = paintedBall();
+    painter.stroke(spots([20, 32]), { size: 0.1, hardness: 1, mirror: true });
+    const pixels = look();
+    const sides = [20, 43].map((x) => pixelAt(pixels, x, 32));
+    painter.undo();
+    const [from, to] = spots([16, 32], [48, 32]) as [StrokePoint, StrokePoint];
+    painter.stroke([from, to], { size: 0.2, hardness: 1 });
+    const full = filled(painter).texels;
+    painter.undo();
+    painter.stroke(
+      [
+        { ...from, pressure: 0.1 },
+        { ...to, pressure: 1 },
+      ],
+      { size: 0.2, hardness: 1 },
+    );
+    const pressed = look();
+    // How wide the stroke is near its ends.
+    const width = (x: number): number =>
+      Array.from({ length: kSize }, (_, y) => pixelAt(pressed, x, y)).filter(([r, g]) => r! > 200 && g! < 80).length;
+    const widths = [20, 44].map(width);
+    const thin = filled(painter).texels;
+    painter.dispose();
+    return { sides, full, thin, widths };
+  },
+
+  /** Text and an image on the model. */
+  stickers() {
+    const { painter, look, spots } = paintedBall();
+    const [at] = spots([32, 32]) as [StrokePoint];
+    painter.sticker({ text: 'III', color: '#ff0000' }, { at, size: 0.25 });
+    const text = countOf(look(), 0);
+    painter.undo();
+    const context = document.createElement('canvas').getContext('2d')!;
+    context.canvas.width = context.canvas.height = 64;
+    // Red above, blue below.
+    context.fillStyle = '#ff0000';
+    context.fillRect(0, 0, 64, 32);
+    context.fillStyle = '#0000ff';
+    context.fillRect(0, 32, 64, 32);
+    painter.sticker({ image: context.canvas }, { at, size: 0.25 });
+    const upright = look();
+    painter.undo();
+    painter.sticker({ image: context.canvas }, { at, size: 0.25, angle: Math.PI });
+    const turned = look();
+    const ends = (pixels: number[]): string[] =>
+      [36, 28].map((y) => (pixelAt(pixels, 32, y)[0]! > 150 ? 'red' : 'blue'));
+    painter.dispose();
+    return { text, upright: ends(upright), turned: ends(turned) };
+  },
+
+  /** A model that was moved, turned and posed since it was painted. */
+  posed() {
+    const geometry = ball();
+    const { count } = geometry.getAttribute('position');
+    geometry.setAttribute('skinIndex', new BufferAttribute(new Uint16Array(4 * count), 4));
+    const weights = Float32Array.from({ length: 4 * count }, (_, i) => (i % 4 === 0 ? 1 : 0));
+    geometry.setAttribute('skinWeight', new BufferAttribute(weights, 4));
+    const [skinned, bone] = [new SkinnedMesh(geometry, white()), new Bone()];
+    skinned.add(bone);
+    skinned.bind(new Skeleton([bone]));
+    return [modelOf(white()), skinned].map((model) => {
+      const { painter, look, spots } = paintedBall(model);
+      model.scale.setScalar(0.5);
+      model.position.x = 0.3;
+      if (model === skinned) bone.rotation.y = Math.PI / 2;
+      else model.rotation.y = Math.PI / 2;
+      model.updateMatrixWorld(true);
+      const seen = (() => {
+        const raycaster = new Raycaster(new Vector3(0.3, 0, 4), new Vector3(0, 0, -1));
+        return painter.pick(raycaster)!;
+      })();
+      const up = new Vector3(1, 0, 0).transformDirection(seen.toCage);
+      painter.stroke([seen], { size: 0.1, hardness: 1 });
+      const pixels = look();
+      const x = Math.floor((new Vector3(0.3, 0, 0.5).project(camera).x + 1) * 0.5 * kSize);
+      const miss = spots([2, 2])[0];
+      painter.dispose();
+      return {
+        surface: seen.surface!.point.toArray(),
+        right: up.toArray(),
+        scale: seen.scale,
+        pixel: pixelAt(pixels, x, 32),
+        missed: miss === undefined,
+      };
+    });
+  },
+
+  /** What pointers do on the model and beside it. */
+  pointers() {
+    const { painter, look } = paintedBall();
+    const canvas = renderer.domElement;
+    document.body.append(canvas);
+    const { setPointerCapture } = canvas;
+    canvas.setPointerCapture = () => {}; // these pointers are made up
+    const bare = look();
+    let seen = 0;
+    const count = (): number => ++seen;
+    canvas.addEventListener('pointerdown', count);
+    const stop = painter.listen(camera);
+    const { left, top } = canvas.getBoundingClientRect();
+    const send = (type: string, x: number, y: number, rest: PointerEventInit = {}): void => {
+      const at = { clientX: left + x + 0.5, clientY: top + kSize - y - 0.5 };
+      canvas.dispatchEvent(new PointerEvent(type, { pointerId: 7, ...at, ...rest, bubbles: true, cancelable: true }));
+    };
+    const drag = (from: [number, number], to: [number, number], rest?: PointerEventInit): void => {
+      send('pointerdown', ...from, rest);
+      send('pointermove', ...to, rest);
+      send('pointerup', ...to, rest);
+    };
+    Object.assign(painter.brush, { size: 0.08, hardness: 1 });
+    drag([24, 32], [40, 32]);
+    const stroke = [24, 32, 40].map((x) => pixelAt(look(), x, 32)[1]!);
+    const whole = filled(painter).texels;
+    const captured = seen;
+    drag([1, 1], [10, 10]);
+    const beside = seen - captured;
+    painter.tool = 'eraser';
+    drag([32, 32], [33, 32]);
+    const erased = pixelAt(look(), 32, 32)[1]! > 100;
+    painter.undo();
+    painter.undo();
+    painter.tool = 'brush';
+    drag([24, 32], [40, 32], { pointerType: 'pen', pressure: 0.3 });
+    const pen = filled(painter).texels;
+    painter.undo();
+    painter.tool = 'sticker';
+    painter.picture = { text: 'II', color: '#ff0000', size: 0.3 };
+    drag([20, 32], [32, 32]);
+    const sticker = countOf(look(), 0);
+    painter.undo();
+    painter.tool = 'brush';
+    // A second finger takes back what the first began.
+    send('pointerdown', 24, 32, { pointerType: 'touch' });
+    send('pointerdown', 30, 32, { pointerType: 'touch', pointerId: 8 });
+    const two = difference(look(), bare);
+    send('pointerup', 24, 32, { pointerType: 'touch' });
+    painter.tool = undefined;
+    drag([24, 32], [40, 32]);
+    stop();
+    painter.tool = 'brush';
+    drag([24, 32], [40, 32]);
+    const left2 = difference(look(), bare);
+    canvas.removeEventListener('pointerdown', count);
+    canvas.setPointerCapture = setPointerCapture;
+    canvas.remove();
+    painter.dispose();
+    return { stroke, whole, pen, captured, beside, erased, sticker, two, rest: left2 };
+  },
+
+  /** What a painter needs of the renderer stays as it was. */
+  rendererState() {
+    const { painter, spots } = paintedBall();
+    const before = [renderer.getRenderTarget(), renderer.autoClear, renderer.xr.enabled];
+    painter.stroke(spots([32, 32]));
+    painter.update();
+    const after = [renderer.getRenderTarget(), renderer.autoClear, renderer.xr.enabled];
+    painter.dispose();
+    return before.every((value, i) => value === after[i]);
+  },
+};

@@ -1,0 +1,185 @@
+import {
+  Color,
+  type IUniform,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  RepeatWrapping,
+  SRGBColorSpace,
+  type Texture,
+  Vector4,
+  type WebGLRenderer,
+  WebGLRenderTarget,
+} from 'three';
+import { disjoint, kMostRects, kWhole, Pass, type Rect, refreshMipmaps, toTexels } from '../gpu/index.js';
+import { fragmentShader } from './composite-shader.js';
+import { blendModes, type Layer, type Sheet } from './layer.js';
+
+/** Layers that one pass draws, as there may be only 16 textures in a shader. The stack has at most twice as many. */
+const kMostAtOnce = 8;
+const kLeastSize = 1024; // texels per side
+/** The greatest number of texels per side of a composite. */
+export const maxCompositeSize = 2048;
+
+/** A stroke in progress: shown over one sheet, or erased from it, until it is committed. */
+export interface ActiveStroke {
+  sheet: Sheet;
+  /** Premultiplied, of the same size as the sheet. */
+  texture: Texture;
+  /** 0..1, of the whole stroke. */
+  opacity: number;
+  erases: boolean;
+}
+
+const kFormat = { colorSpace: SRGBColorSpace, depthBuffer: false } as const;
+
+/**
+ * The layers blended into one texture, with mipmaps and premultiplied alpha. `update` redraws it after a change, and only the
+ * parts that changed.
+ */
+export class Composite {
+  readonly #target = new WebGLRenderTarget(kLeastSize, kLeastSize, {
+    ...kFormat,
+    generateMipmaps: true,
+    minFilter: LinearMipmapLinearFilter,
+    magFilter: LinearFilter,
+    wrapS: RepeatWrapping,
+    wrapT: RepeatWrapping,
+    anisotropy: 8,
+  });
+  readonly #uniforms = {
+    sheets: { value: [] as (Texture | null)[] },
+    tints: { value: Array.from({ length: kMostAtOnce }, () => new Vector4()) },
+    blends: { value: new Array<number>(kMostAtOnce).fill(0) },
+    premultiplied: { value: new Array<boolean>(kMostAtOnce).fill(false) },
+    stroke: { value: null as Texture | null },
+    below: { value: null as Texture | null },
+    strokeOpacity: { value: 1 },
+    strokeErases: { value: false },
+    size: { value: kLeastSize },
+  };
+  /** By recipe. */
+  readonly #passes = new Map<string, Pass<Record<string, IUniform>>>();
+  /** The lower half of many layers. */
+  #below: WebGLRenderTarget | undefined;
+  #layers: readonly Layer[] = [];
+  /** Versions of the textures that were drawn. */
+  #drawn: readonly number[] = [];
+  #stroke: ActiveStroke | undefined;
+  /** The sheet of the last stroke: the next stroke is likely to use it, and its shader. */
+  #strokeSheet: Sheet | undefined;
+  /** The parts that changed since the last update, in shares. */
+  #stale: Rect[] = [kWhole];
+
+  constructor() {
+    // `refreshMipmaps` updates the changed parts; the renderer would rebuild all levels for every stroke.
+    this.#target.texture.mipmapsAutoUpdate = false;
+    // The renderer does not upload it; this tells `cagecast/three` how its texels are stored.
+    this.#target.texture.premultiplyAlpha = true;
+    this.#target.texture.name = 'cagecast layers';
+  }
+
+  /** Always the same object. sRGB, premultiplied alpha, first row at v = 0. */
+  get texture(): Texture {
+    return this.#target.texture;
+  }
+
+  /** Texels per side: as many as the largest layer needs. */
+  get size(): number {
+    return this.#target.width;
+  }
+
+  /** @param layers From the lowest to the uppermost, at most `maxLayers`. */
+  set(layers: readonly Layer[]): void {
+    this.#layers = layers.filter(({ visible, opacity }) => visible && opacity > 0);
+    this.#stale = [kWhole];
+  }
+
+  /** Marks parts of a sheet as changed. @param rects In shares. @param stroke The stroke in progress, if any. */
+  touch(rects: readonly Rect[], stroke?: ActiveStroke): void {
+    this.#stroke = stroke;
+    this.#strokeSheet = stroke?.sheet ?? this.#strokeSheet;
+    this.#stale.push(...rects);
+  }
+
+  /** Redraws what changed, including textures with `needsUpdate`. @returns Whether anything did. */
+  update(renderer: WebGLRenderer): boolean {
+    const versions = this.#layers.map(({ sheet }) => sheet.texture.version);
+    if (versions.some((version, index) => version !== this.#drawn[index])) this.#stale = [kWhole];
+    this.#drawn = versions;
+    if (this.#stale.length === 0) return false;
+    const size = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize)
+      ? maxCompositeSize
+      : kLeastSize;
+    const whole = size !== this.size || this.#stale.includes(kWhole);
+    this.#target.setSize(size, size);
+    // In texels: upsampling a smaller sheet spreads each of its texels over the neighbours.
+    const margin = this.#layers.every(({ sheet }) => isSquare(sheet.texture, size)) ? 0 : 2;
+    const rects = whole
+      ? [toTexels(kWhole, size)]
+      : disjoint(
+          this.#stale.map((rect) => toTexels(rect, size, margin)),
+          kMostRects,
+        );
+    this.#stale = [];
+    const first = this.#layers.length > kMostAtOnce ? this.#layers.slice(0, kMostAtOnce) : [];
+    if (first.length > 0) {
+      this.#below ??= new WebGLRenderTarget(size, size, kFormat);
+      this.#below.setSize(size, size);
+      this.#draw(renderer, this.#below, first, rects);
+    }
+    this.#draw(renderer, this.#target, this.#layers.slice(first.length), rects, first.length > 0);
+    refreshMipmaps(renderer, this.#target, rects);
+    return true;
+  }
+
+  /** Frees its GPU memory. */
+  dispose(): void {
+    this.#target.dispose();
+    this.#below?.dispose();
+    for (const pass of this.#passes.values()) pass.dispose();
+    this.#passes.clear();
+    this.#below = undefined;
+    this.#stale = [kWhole];
+  }
+
+  /** Draws some layers, on nothing or on those below. */
+  #draw(
+    renderer: WebGLRenderer,
+    target: WebGLRenderTarget,
+    layers: readonly Layer[],
+    rects: readonly Rect[],
+    hasBelow = false,
+  ): void {
+    this.#fill(layers, hasBelow);
+    const takes = layers.map(({ sheet }) => (isSquare(sheet.texture, target.width) ? 'whole' : 'spread'));
+    const recipe = { takes, stroke: layers.findIndex(({ sheet }) => sheet === this.#strokeSheet), hasBelow };
+    const key = JSON.stringify(recipe);
+    let pass = this.#passes.get(key);
+    if (!pass) this.#passes.set(key, (pass = new Pass(fragmentShader(recipe), this.#uniforms)));
+    pass.run(renderer, target, rects);
+  }
+
+  #fill(layers: readonly Layer[], hasBelow: boolean): void {
+    const { sheets, tints, blends, premultiplied, stroke, below, strokeOpacity, strokeErases, size } = this.#uniforms;
+    // Set all entries: a stale one could be the texture that is drawn to, which WebGL forbids.
+    sheets.value = Array.from({ length: kMostAtOnce }, (_, index) => layers[index]?.sheet.texture ?? null);
+    below.value = hasBelow ? this.#below!.texture : null;
+    layers.forEach(({ sheet, tint, opacity, blend }, index) => {
+      const { r, g, b } = new Color(tint);
+      tints.value[index]!.set(r, g, b, opacity);
+      blends.value[index] = blendModes.indexOf(blend);
+      premultiplied.value[index] = sheet.premultiplied ?? false;
+    });
+    stroke.value = this.#stroke?.texture ?? null;
+    strokeOpacity.value = this.#stroke?.opacity ?? 0;
+    strokeErases.value = this.#stroke?.erases ?? false;
+    size.value = this.size;
+  }
+}
+
+function sidesOf({ image }: Texture): [width: number, height: number] {
+  const { width = 0, height = 0 } = (image ?? {}) as { width?: number; height?: number };
+  return [width, height];
+}
+
+const isSquare = (texture: Texture, side: number): boolean => sidesOf(texture).every((found) => found === side);

@@ -1,0 +1,169 @@
+import type { Texture, WebGLRenderer } from 'three';
+import { CagecastError } from '../../index.js';
+import { readStraight } from '../gpu/index.js';
+import { Composite, maxCompositeSize } from './composite.js';
+import { Edits } from './edits.js';
+import { Emitter } from './emitter.js';
+import { History } from './history.js';
+import { checkTexture, type Layer, type Style } from './layer.js';
+import { LayerStack } from './stack.js';
+
+/** Options of `createLayers`. */
+export interface LayersOptions {
+  renderer: WebGLRenderer;
+}
+
+/** The style of a new layer, its name, and where it lies. */
+export interface NewLayer extends Partial<Style> {
+  /** For people, also in the undo history. Default: the texture's name. */
+  name?: string | undefined;
+  /** From 0, the lowest. Default: on top. */
+  place?: number | undefined;
+}
+
+/** A stack of layers that is shown as one texture. Every change is a step that can be undone. */
+export class Layers extends Emitter<{
+  /** The texture will change with the next `update`: draw a frame. */
+  change: undefined;
+}> {
+  /** The layers by themselves, with their events; what is changed here cannot be undone. */
+  readonly stack = new LayerStack();
+  readonly history = new History();
+  readonly edits = new Edits(this.stack, this.history);
+  readonly composite = new Composite();
+  readonly renderer: WebGLRenderer;
+  readonly #restored = (): void => this.composite.set(this.stack.layers);
+
+  constructor({ renderer }: LayersOptions) {
+    super();
+    // Other renderers have no such map.
+    if (typeof renderer?.properties?.get !== 'function')
+      throw new CagecastError('badArgument', 'cagecast/three/layers: options.renderer is not a WebGLRenderer');
+    this.renderer = renderer;
+    this.stack.on('change', (layers) => {
+      this.composite.set(layers);
+      this.emit('change', undefined);
+    });
+    renderer.domElement.addEventListener('webglcontextrestored', this.#restored);
+  }
+
+  /**
+   * All layers in one, for `applied.setTexture` of any number of models. Always the same object, 1024² or 2048² as the largest layer
+   * needs, with mipmaps; its colours are premultiplied by alpha. Call `update` before it is drawn.
+   */
+  get texture(): Texture {
+    return this.composite.texture;
+  }
+
+  /** From the lowest to the uppermost. */
+  get list(): readonly Layer[] {
+    return this.stack.layers;
+  }
+
+  /**
+   * Adds a layer.
+   * @param texture  In the cage's UV space; its `colorSpace` counts, its `flipY` must be false. One whose `needsUpdate` is set later,
+   *                 such as a canvas, is drawn again by `update`. It is not disposed of with the layer.
+   * @throws {CagecastError} `badArgument` for the 17th layer or if it is not a texture, `badOption` that names an option and its value.
+   */
+  add(texture: Texture, { name, place, ...style }: NewLayer = {}): Layer {
+    checkTexture(texture, 'texture');
+    const title = name ?? (texture.name || `Layer ${this.list.length + 1}`);
+    return this.edits.do(`adding ${title}`, () => {
+      const premultiplied = texture.premultiplyAlpha;
+      const layer = this.stack.add(title, { texture, premultiplied }, style);
+      if (place !== undefined) this.stack.move(layer, place);
+      return layer;
+    });
+  }
+
+  /** Changes opacity, tint, blend mode or visibility. Equal changes in quick succession, as of a slider, are one step. */
+  set(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
+    this.edits.do(`changing ${Object.keys(style).join(', ')} of ${this.#nameOf(layer)}`, () =>
+      this.stack.restyle(layer, style),
+    );
+  }
+
+  /** Moves a layer. @param place  From 0, the lowest; what is out of range is clamped. */
+  move(layer: Pick<Layer, 'id'>, place: number): void {
+    this.edits.do(`moving ${this.#nameOf(layer)}`, () => this.stack.move(layer, place));
+  }
+
+  /** Removes a layer. */
+  remove(layer: Pick<Layer, 'id'>): void {
+    this.edits.do(`removing ${this.#nameOf(layer)}`, () => this.stack.remove(layer.id));
+  }
+
+  /** Undoes the last step. @returns its name; undefined if there was none. */
+  undo(): string | undefined {
+    return this.history.undo()?.name;
+  }
+
+  /** Repeats the step that was undone. @returns its name; undefined if there was none. */
+  redo(): string | undefined {
+    return this.history.redo()?.name;
+  }
+
+  get canUndo(): boolean {
+    return this.history.last !== undefined;
+  }
+
+  get canRedo(): boolean {
+    return this.history.next !== undefined;
+  }
+
+  /**
+   * Draws the texture again where it has changed. Call it before each frame.
+   * @returns whether anything had changed.
+   * Cost: nothing if not; else one pass over what has changed, two with more than eight visible layers.
+   */
+  update(): boolean {
+    return this.composite.update(this.renderer);
+  }
+
+  /** Announces that a part of the texture has changed, or that a stroke is in progress. For painters. */
+  touch(...change: Parameters<Composite['touch']>): void {
+    this.composite.touch(...change);
+    this.emit('change', undefined);
+  }
+
+  /**
+   * Reads the texture, as image files have it: sRGB, colours not multiplied by alpha. Waits for the GPU.
+   * @param size  Texels per side, 1 to 2048. Default: those of the texture.
+   */
+  toImageData(size = this.composite.size): ImageData {
+    if (!(Number.isInteger(size) && size > 0 && size <= maxCompositeSize))
+      throw new CagecastError(
+        'badArgument',
+        `cagecast/three/layers: size is ${size}, not an integer from 1 to ${maxCompositeSize}`,
+      );
+    this.update();
+    return readStraight(this.renderer, this.texture, size);
+  }
+
+  /** Frees the GPU memory of the texture. Those that were added are the caller's. */
+  dispose(): void {
+    this.renderer.domElement.removeEventListener('webglcontextrestored', this.#restored);
+    this.composite.dispose();
+  }
+
+  #nameOf({ id }: Pick<Layer, 'id'>): string {
+    return this.list.find((layer) => layer.id === id)?.name ?? 'a layer';
+  }
+}
+
+/**
+ * Makes an empty stack of layers.
+ *
+ * @example
+ * const layers = createLayers({ renderer });
+ * layers.add(stripes);
+ * const blush = layers.add(cheeks, { blend: 'multiply', opacity: 0.6, tint: '#ff8080' });
+ * for (const applied of models) applied.setTexture(layers.texture);
+ * layers.set(blush, { opacity: 0.3 });
+ * renderer.setAnimationLoop(() => {
+ *   layers.update();
+ *   renderer.render(scene, camera);
+ * });
+ */
+export const createLayers = (options: LayersOptions): Layers => new Layers(options);

@@ -1,0 +1,206 @@
+import type { Vector3, WebGLRenderer } from 'three';
+import { CagecastError } from '../../index.js';
+import { type Rect, toShares } from '../gpu/index.js';
+import { type Composite, type Edits, Emitter, type Layer, type LayerStack } from '../layers/index.js';
+import { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './cage-texels.js';
+import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
+import type { StickerSheet, StickerStyle } from './sticker.js';
+import { StrokeLayer, type StrokeStyle } from './stroke-layer.js';
+
+/** The layers that are painted on, their composite, and the undo steps, as `Layers` has them. */
+export interface PaintedLayers {
+  renderer: WebGLRenderer;
+  stack: LayerStack;
+  composite: Composite;
+  edits: Edits;
+}
+
+export interface LayerPainterEvents {
+  /** The composite is to be drawn again. */
+  change: undefined;
+  /** A painting was changed by a whole stroke or sticker, by undo or by redo. */
+  painted: PaintedSheet;
+}
+
+/**
+ * Paints in the space of a cage: holds the stroke in progress, and commits it to a layer as an undo step. It knows nothing of
+ * models and pointers; `Painter` does.
+ */
+export class LayerPainter extends Emitter<LayerPainterEvents> {
+  readonly #layers: PaintedLayers;
+  /** For the current cage, by texture size. */
+  readonly #surfaces = new Map<PaintingSize, StrokeLayer>();
+  /** The one in use, or used last. */
+  #stroke: StrokeLayer | undefined;
+  #cage: CageMesh | undefined;
+  #size: PaintingSize = paintingSizes[0];
+  /** The layer under the stroke in progress, and the name of its undo step. */
+  #layer: Layer | undefined;
+  #name = '';
+  /** All sheets that may be shown again: in the stack, or removed and kept by the undo history. */
+  readonly #sheets: WeakRef<PaintedSheet>[] = [];
+
+  constructor(layers: PaintedLayers) {
+    super();
+    this.#layers = layers;
+  }
+
+  /** Texels per side of the paintings that are added and painted on. Default: 1024. */
+  get size(): PaintingSize {
+    return this.#size;
+  }
+
+  set size(size: PaintingSize) {
+    if (!paintingSizes.includes(size))
+      throw new CagecastError(
+        'badOption',
+        `cagecast/three/paint: size is ${size}, not one of ${paintingSizes.join(', ')}`,
+      );
+    this.#size = size;
+  }
+
+  /** Paints on another cage from now on; a stroke in progress is discarded. */
+  setCage(cage: CageMesh | undefined): void {
+    this.cancel();
+    if (cage === this.#cage) return;
+    for (const surface of this.#surfaces.values()) surface.dispose();
+    this.#surfaces.clear();
+    this.#cage = cage;
+  }
+
+  /** The texel map of the cage. Cost: tens of milliseconds the first time for each cage and size. */
+  get cageTexels(): CageTexels | undefined {
+    return this.#surface()?.cageTexels;
+  }
+
+  /** Whether there is a painting of the current size. */
+  get hasPainting(): boolean {
+    return this.#paintedLayer() !== undefined;
+  }
+
+  /**
+   * Begins a stroke or a sticker, on a new layer if there is none to paint on.
+   * @param name  Of the undo step.
+   * @throws {CagecastError} `badArgument` if there is nothing to erase, or no room for a layer.
+   */
+  begin(name: string, style: StrokeStyle): void {
+    const { stack, edits } = this.#layers;
+    this.cancel();
+    const stroke = this.#surface();
+    const painted = this.#paintedLayer();
+    if (!stroke) throw new CagecastError('badArgument', 'There is no cage to paint on yet.');
+    if (!painted && style.erases) throw new CagecastError('badArgument', 'There is no painting to erase yet.');
+    edits.begin();
+    try {
+      const layer = painted ?? this.addLayer();
+      stack.select(layer);
+      if (!layer.visible) stack.restyle(layer, { visible: true });
+      stroke.begin(layer.sheet as PaintedSheet, style);
+      this.#layer = layer;
+    } catch (error) {
+      edits.cancel(); // or the step would stay open
+      throw error;
+    }
+    this.#name = name;
+    this.#stroke = stroke;
+  }
+
+  /** Extends the stroke. */
+  extend(capsules: readonly Capsule[]): void {
+    if (capsules.length > 0 && this.#layer) this.#show(this.#stroke!.stroke(this.#layers.renderer, capsules));
+  }
+
+  /** Places a sticker; it moves from where it was placed since `begin`. @param up In the cage's space. */
+  stick(place: SurfacePoint, sheet: StickerSheet, style: StickerStyle, up: Vector3): void {
+    const { renderer } = this.#layers;
+    if (this.#layer) this.#show(this.#stroke!.stick(renderer, place, sheet.at(renderer, place, up, style)));
+  }
+
+  /** Commits the stroke to its layer, as an undo step. Waits for the GPU. */
+  end(): void {
+    const layer = this.#layer;
+    if (!layer) return;
+    this.#layer = undefined;
+    const { renderer, edits } = this.#layers;
+    const sheet = layer.sheet as PaintedSheet;
+    let parts: ReturnType<StrokeLayer['commit']> = [];
+    try {
+      parts = this.#stroke!.commit(renderer);
+    } finally {
+      if (parts.length === 0) edits.cancel();
+    }
+    if (parts.length === 0) return;
+    const put = (which: 'before' | 'after'): void => {
+      for (const part of parts) sheet.put(renderer, part.rect, part[which]);
+      this.#changed(
+        sheet,
+        parts.map(({ rect }) => rect),
+      );
+    };
+    edits.end(this.#name, {
+      bytes: parts.reduce((sum, { before, after }) => sum + before.length + after.length, 0),
+      undo: () => put('before'),
+      redo: () => put('after'),
+    });
+    this.#changed(
+      sheet,
+      parts.map(({ rect }) => rect),
+    );
+  }
+
+  /** Discards the stroke. */
+  cancel(): void {
+    if (!this.#layer) return;
+    this.#layer = undefined;
+    this.#show(this.#stroke!.end(this.#layers.renderer));
+    this.#layers.edits.cancel();
+  }
+
+  /** Adds an empty layer to paint on. @throws {CagecastError} if there are too many. */
+  addLayer(): Layer {
+    const { stack } = this.#layers;
+    const sheet = new PaintedSheet(this.size);
+    this.#sheets.push(new WeakRef(sheet));
+    let number = 1;
+    while (stack.layers.some(({ name }) => name === `Painting ${number}`)) number++;
+    return stack.add(`Painting ${number}`, sheet);
+  }
+
+  /** Uploads all paintings again, after the graphics context was lost. */
+  restore(): void {
+    const { renderer, composite, stack } = this.#layers;
+    for (const sheet of this.#sheets) sheet.deref()?.restore(renderer);
+    composite.set(stack.layers);
+    this.emit('change', undefined);
+  }
+
+  /** Frees its GPU memory, but for the paintings, which belong to their layers. */
+  dispose(): void {
+    this.setCage(undefined);
+  }
+
+  #show(rects: readonly Rect[]): void {
+    this.#layers.composite.touch(rects, this.#stroke?.active);
+    this.emit('change', undefined);
+  }
+
+  #changed(sheet: PaintedSheet, rects: readonly Rect[]): void {
+    this.#show(rects.map((rect) => toShares(rect, sheet.size)));
+    this.emit('painted', sheet);
+  }
+
+  /** The layer to paint on: the selected one if it is a painting of the chosen size, else the uppermost such painting. */
+  #paintedLayer(): Layer | undefined {
+    const { selected, layers } = this.#layers.stack;
+    const fits = ({ sheet }: Layer): boolean => sheet instanceof PaintedSheet && sheet.size === this.size;
+    return selected && fits(selected) ? selected : [...layers].reverse().find(fits);
+  }
+
+  #surface(): StrokeLayer | undefined {
+    if (!this.#cage) return undefined;
+    const { size } = this;
+    const surface = this.#surfaces.get(size) ?? new StrokeLayer(new CageTexels(this.#cage, size));
+    this.#surfaces.set(size, surface);
+    return surface;
+  }
+}

@@ -1,0 +1,302 @@
+import { type BufferGeometry, type Camera, type Object3D, Raycaster, type Texture, Vector2, Vector3 } from 'three';
+import { CagecastError } from '../../index.js';
+import { type Applied, extract } from '../index.js';
+import { createLayers, type Layers, type LayersOptions } from '../layers/index.js';
+import type { CageMesh, SurfacePoint } from './cage-texels.js';
+import { LayerPainter } from './layer-painter.js';
+import type { PaintingSize } from './painted-sheet.js';
+import { pickSpot, pixelsPerUnit, type Spot } from './pick.js';
+import { type Drag, listenTo } from './pointer.js';
+import { type Aim, type BrushStyle, PointerStroke } from './pointer-stroke.js';
+import { type StickerPicture, StickerSheet } from './sticker.js';
+import { Stroke } from './stroke.js';
+
+/** Options of `createPainter`. */
+export interface PainterOptions extends Partial<LayersOptions> {
+  /** The layers to paint on, of `cagecast/three/layers`. Default: new ones, for which `renderer` is needed. */
+  layers?: Layers | undefined;
+  /** The lowest of new layers, as for `layers.add`. */
+  texture?: Texture | undefined;
+  /** What was painted: the models that pointers paint on. Each of them is given the layers' texture. */
+  applied: Applied | readonly Applied[];
+  /** The cage of the transfer; of several models with cages of one layout, that of one of them. */
+  cage: Object3D | BufferGeometry;
+  /** Texels per side of what is painted, 1024 or 2048. Default: 1024. */
+  size?: PaintingSize | undefined;
+}
+
+/** What pointers do. */
+export type Tool = 'brush' | 'eraser' | 'sticker';
+
+/** A spot of a model, or a UV of the cage; with the pressure there, 0 to 1 (default: 1), which makes the brush smaller. */
+export type StrokePoint = (Spot | { x: number; y: number }) & { pressure?: number | undefined };
+
+/** Where a sticker lies, and how. */
+export interface StickerPlace {
+  /** A spot of a model, or a UV of the cage. */
+  at: Spot | { x: number; y: number };
+  /** Its longer side, as a share of the diagonal of the cage. Default: 0.2. */
+  size?: number | undefined;
+  /** Radians, clockwise as seen. Default: 0. */
+  angle?: number | undefined;
+  /** 0 to 1. Default: 1. */
+  opacity?: number | undefined;
+  /** The direction of its upper edge, in the cage's space. Default: that of y. */
+  up?: Vector3 | undefined;
+}
+
+const kSticker = { size: 0.2, angle: 0, opacity: 1 };
+
+const checkShare = (name: string, value: number): void => {
+  if (!(value >= 0 && value <= 1))
+    throw new CagecastError('badOption', `cagecast/three/paint: ${name} is ${value}, not a number from 0 to 1`);
+};
+
+/** Paints on models, in the cage's UV space. */
+export class Painter {
+  readonly layers: Layers;
+  /** How `stroke` and pointers paint; the fields may be set. A size of 0.05 is a twentieth of the diagonal of the cage. */
+  readonly brush: Omit<BrushStyle, 'erases'> = {
+    color: '#000000',
+    size: 0.05,
+    hardness: 0.5,
+    opacity: 1,
+    mirror: false,
+  };
+  /** What pointers do; undefined leaves them to others. */
+  tool: Tool | undefined = 'brush';
+  /** What pointers place with the tool `sticker`. */
+  picture: (StickerPicture & { size?: number; angle?: number; opacity?: number }) | undefined;
+  readonly #painter: LayerPainter;
+  readonly #models: readonly Applied[];
+  readonly #sheet = new StickerSheet();
+  #drawn: unknown;
+  readonly #stops = new Set<() => void>();
+  readonly #restored = (): void => this.#painter.restore();
+
+  constructor({ layers, renderer, texture, applied, cage, size }: PainterOptions) {
+    this.#models = [applied].flat();
+    for (const model of this.#models)
+      if (typeof model?.setTexture !== 'function')
+        throw new CagecastError(
+          'badArgument',
+          'cagecast/three/paint: options.applied is not what applyTransfer returned',
+        );
+    const { positions, indices, uvs } = extract(cage, 'cage').mesh;
+    if (!uvs) throw new CagecastError('badArgument', 'cagecast/three/paint: options.cage has no UVs');
+    this.layers = layers ?? createLayers({ renderer } as LayersOptions);
+    if (texture) this.layers.add(texture);
+    this.#painter = new LayerPainter(this.layers);
+    if (size !== undefined) this.#painter.size = size;
+    const mesh: CageMesh = { positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) };
+    this.#painter.setCage(mesh);
+    this.#painter.on('change', () => this.layers.touch([]));
+    for (const model of this.#models) model.setTexture(this.layers.texture);
+    this.layers.renderer.domElement.addEventListener('webglcontextrestored', this.#restored);
+  }
+
+  /** All layers in one, for further models. */
+  get texture(): Texture {
+    return this.layers.texture;
+  }
+
+  /** The nearest spot of the models on a ray. Where nothing may be painted its `uv` is undefined. */
+  pick(raycaster: Raycaster): Spot | undefined {
+    return pickSpot(this.#models, raycaster, this.#painter.cageTexels);
+  }
+
+  /** As `pick`, for a position of a page. @param position  Such as a pointer event. */
+  pickAt({ clientX, clientY }: { clientX: number; clientY: number }, camera: Camera): Spot | undefined {
+    const { left, top, width, height } = (this.layers.renderer.domElement as HTMLElement).getBoundingClientRect();
+    const at = new Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height);
+    camera.updateMatrixWorld();
+    const raycaster = new Raycaster();
+    raycaster.setFromCamera(at, camera);
+    raycaster.layers.mask = camera.layers.mask;
+    return this.pick(raycaster);
+  }
+
+  /**
+   * Paints a stroke along the cage through some points, as one undo step.
+   * @param style  What differs from `brush`.
+   * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if there is no room for a layer.
+   */
+  stroke(points: readonly StrokePoint[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
+    this.#stroke(points, { ...this.brush, ...style, erases: false });
+  }
+
+  /** Erases along some points what was painted, as `stroke` paints: what that has left, it takes away. The texture stays. */
+  erase(points: readonly StrokePoint[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
+    if (this.#painter.hasPainting) this.#stroke(points, { ...this.brush, ...style, erases: true });
+  }
+
+  /** Lays a text or an image on the model, as one undo step; nothing where no cage is. */
+  sticker(picture: StickerPicture, place: StickerPlace): void {
+    const surface = this.#surfaceAt(place.at);
+    if (!surface) return;
+    this.#beginSticker(picture, place);
+    this.#moveSticker(surface, place);
+    this.#painter.end();
+  }
+
+  undo(): string | undefined {
+    return this.layers.undo();
+  }
+
+  redo(): string | undefined {
+    return this.layers.redo();
+  }
+
+  get canUndo(): boolean {
+    return this.layers.canUndo;
+  }
+
+  get canRedo(): boolean {
+    return this.layers.canRedo;
+  }
+
+  /** Draws the texture again where it has changed, as `layers.update`. Call it before each frame. */
+  update(): boolean {
+    return this.layers.update();
+  }
+
+  /** Adds an empty layer on top, which is painted on from now on. @throws {CagecastError} for the 17th layer. */
+  addLayer(): void {
+    this.layers.edits.do('adding a painting', () => this.#painter.addLayer());
+  }
+
+  /**
+   * Lets pointers paint with `tool`: those that go down where paint may be are not seen by what listens to the element otherwise, such
+   * as `OrbitControls`. The pressure of pens makes the brush smaller.
+   * @param element  Default: the renderer's canvas.
+   * @returns a function that ends it.
+   */
+  listen(camera: Camera, element = this.layers.renderer.domElement as HTMLElement): () => void {
+    const stop = listenTo(element, (event) => this.#drag(event, camera));
+    this.#stops.add(stop);
+    return () => {
+      stop();
+      this.#stops.delete(stop);
+    };
+  }
+
+  /** Frees what is its own. The layers stay, with what was painted. */
+  dispose(): void {
+    for (const stop of this.#stops) stop();
+    this.layers.renderer.domElement.removeEventListener('webglcontextrestored', this.#restored);
+    this.#painter.dispose();
+    this.#sheet.dispose();
+  }
+
+  /** Begins what the tool does with a pointer. */
+  #drag(event: PointerEvent, camera: Camera): Drag | undefined {
+    const { tool } = this;
+    const spot = tool && this.pickAt(event, camera);
+    if (!spot?.surface) return undefined;
+    if (tool === 'sticker') return this.#dragSticker(spot, camera);
+    if (tool === 'eraser' && !this.#painter.hasPainting) return undefined;
+    const style = { ...this.brush, erases: tool === 'eraser' };
+    checkBrush(style);
+    const stroke = new PointerStroke(this.#painter, {
+      aimAt: (clientX, clientY) => this.#aim(this.pickAt({ clientX, clientY }, camera), camera),
+      triangles: this.#models.reduce((sum, { result }) => sum + result.cosmeticTriangles.length, 0),
+    });
+    if (!stroke.begin(this.#aim(spot, camera), event, style)) return undefined;
+    return {
+      move: (moved) => stroke.move(this.#aim(this.pickAt(moved, camera), camera), moved),
+      end: () => stroke.end(),
+      cancel: () => stroke.cancel(),
+    };
+  }
+
+  /** A sticker follows the pointer until that goes up. */
+  #dragSticker(first: Spot, camera: Camera): Drag | undefined {
+    const { picture } = this;
+    if (!picture) return undefined;
+    this.#beginSticker(picture, picture);
+    const place = (spot: Spot | undefined): void => {
+      if (!spot?.surface) return;
+      const up = new Vector3().setFromMatrixColumn(camera.matrixWorld, 1).transformDirection(spot.toCage);
+      this.#moveSticker(spot.surface, { ...picture, up });
+    };
+    place(first);
+    return {
+      move: (event) => place(this.pickAt(event, camera)),
+      end: () => this.#painter.end(),
+      cancel: () => this.#painter.cancel(),
+    };
+  }
+
+  #aim(spot: Spot | undefined, camera: Camera): Aim | undefined {
+    if (!spot) return undefined;
+    const { height } = (this.layers.renderer.domElement as HTMLElement).getBoundingClientRect();
+    return { surface: spot.surface, scale: spot.scale * pixelsPerUnit(camera, spot.point, height) };
+  }
+
+  #beginSticker(picture: StickerPicture, { opacity = kSticker.opacity }: Partial<StickerPlace>): void {
+    checkShare('opacity', opacity);
+    const key = 'text' in picture ? JSON.stringify([picture.text, picture.color, picture.font]) : picture.image;
+    if (key !== this.#drawn) this.#sheet.draw(picture);
+    this.#drawn = key;
+    this.#painter.begin('sticker', { color: '#000000', opacity, hardness: 1, erases: false });
+  }
+
+  #moveSticker(
+    surface: SurfacePoint,
+    { size = kSticker.size, angle = kSticker.angle, up = new Vector3(0, 1, 0) }: Partial<StickerPlace>,
+  ): void {
+    const { diagonal } = this.#painter.cageTexels!;
+    this.#painter.stick(surface, this.#sheet, { size: size * diagonal, angle }, up);
+  }
+
+  #stroke(points: readonly StrokePoint[], style: BrushStyle): void {
+    checkBrush(style);
+    const texels = this.#painter.cageTexels!;
+    const stroke = new Stroke(texels, { radius: (style.size / 2) * texels.diagonal, mirror: style.mirror });
+    this.#painter.begin(style.erases ? 'erasing' : 'stroke', style);
+    try {
+      for (const point of points)
+        this.#painter.extend(stroke.to(this.#surfaceAt(point), Infinity, point.pressure ?? 1));
+    } catch (error) {
+      this.#painter.cancel();
+      throw error;
+    }
+    this.#painter.end();
+  }
+
+  #surfaceAt(point: Spot | { x: number; y: number }): SurfacePoint | undefined {
+    if ('toCage' in point) return point.surface;
+    const { x, y } = point;
+    if (!(Number.isFinite(x) && Number.isFinite(y)))
+      throw new CagecastError('badArgument', `cagecast/three/paint: a point is (${x}, ${y}), not a UV`);
+    return this.#painter.cageTexels?.at(x, y);
+  }
+}
+
+/** @throws {CagecastError} `badOption` that names the field and its value. */
+function checkBrush({ color, size, hardness, opacity }: BrushStyle): void {
+  if (!/^#[0-9a-f]{6}$/i.test(color))
+    throw new CagecastError('badOption', `cagecast/three/paint: color is "${color}", not a colour such as #ff8800`);
+  checkShare('opacity', opacity);
+  checkShare('hardness', hardness);
+  if (!(size > 0 && size <= 2))
+    throw new CagecastError('badOption', `cagecast/three/paint: size is ${size}, not a number from 0 to 2`);
+}
+
+/**
+ * Makes a painter, and shows what it paints on the models.
+ * @throws {CagecastError} that names the option.
+ * Cost: tens of milliseconds for the first stroke.
+ *
+ * @example
+ * const applied = applyTransfer(head.scene, cage.scene, { texture });
+ * const painter = createPainter({ renderer, texture, applied, cage: cage.scene });
+ * painter.brush.color = '#cc2244';
+ * painter.listen(camera);
+ * renderer.setAnimationLoop(() => {
+ *   painter.update();
+ *   renderer.render(scene, camera);
+ * });
+ * undoButton.onclick = () => painter.undo();
+ */
+export const createPainter = (options: PainterOptions): Painter => new Painter(options);

@@ -1,0 +1,53 @@
+/** What is done with a pointer from when it goes down until it goes up. */
+export interface Drag {
+  move(event: PointerEvent): void;
+  end(): void;
+  cancel(): void;
+}
+
+/**
+ * Passes the pointers on an element to what `begin` makes of them.
+ * @param begin  Undefined leaves the pointer to others.
+ * @returns a function that ends it.
+ */
+export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => Drag | undefined): () => void {
+  let drag: Drag | undefined;
+  let pointer: number | undefined;
+
+  const finish = (how: 'end' | 'cancel'): void => {
+    const done = drag;
+    drag = undefined;
+    done?.[how]();
+  };
+  const down = (event: PointerEvent): void => {
+    if (drag) {
+      // Another finger: most likely the two shall turn or zoom the model.
+      if (event.pointerType === 'touch') finish('cancel');
+      return;
+    }
+    if (event.button !== 0) return;
+    drag = begin(event);
+    if (!drag) return;
+    pointer = event.pointerId;
+    event.stopImmediatePropagation();
+    element.setPointerCapture(event.pointerId);
+  };
+  const move = (event: PointerEvent): void => {
+    if (event.pointerId === pointer) drag?.move(event);
+  };
+  const up = (event: PointerEvent): void => {
+    if (event.pointerId === pointer) finish(event.type === 'pointerup' ? 'end' : 'cancel');
+  };
+
+  const listeners = { pointerdown: down, pointermove: move, pointerup: up, pointercancel: up };
+  const entries = Object.entries(listeners) as [keyof typeof listeners, (event: PointerEvent) => void][];
+  // First of all, so that others do not see what paints.
+  for (const [type, listener] of entries) element.addEventListener(type, listener, { capture: true });
+  const { touchAction } = element.style;
+  element.style.touchAction = 'none';
+  return () => {
+    finish('cancel');
+    for (const [type, listener] of entries) element.removeEventListener(type, listener, { capture: true });
+    element.style.touchAction = touchAction;
+  };
+}
