@@ -1,5 +1,6 @@
 import { init } from 'cagecast';
-import { applyTransfer } from 'cagecast/three';
+import { bake, layOver } from 'cagecast/bake';
+import { applyTransfer, extract } from 'cagecast/three';
 import { createLayers } from 'cagecast/three/layers';
 import { createPainter } from 'cagecast/three/paint';
 import * as THREE from 'three';
@@ -27,6 +28,7 @@ camera.position.copy(controls.target).z += 2.5;
 
 const layers = createLayers({ renderer });
 const base = layers.add(stripes, { name: 'stripes' });
+const model = extract(head.scene); // as it is in the file: painting adds vertices
 const applied = applyTransfer(head.scene, cage.scene);
 const painter = createPainter({ layers, applied, cage: cage.scene });
 painter.picture = { text: 'Rrr!', color: '#ffffff', size: 0.3 };
@@ -38,12 +40,15 @@ control('color').oninput = ({ target }) => (painter.brush.color = painter.pictur
 control('size').oninput = ({ target }) => (painter.brush.size = Number(target.value));
 control('mirror').oninput = ({ target }) => (painter.brush.mirror = target.checked);
 control('stripes').oninput = ({ target }) => layers.set(base, { opacity: Number(target.value) });
-control('undo').onclick = () => painter.undo();
-control('redo').onclick = () => painter.redo();
+for (const step of ['undo', 'redo']) control(step).onclick = () => painter[step]();
 control('save').onclick = () => {
-  const canvas = Object.assign(document.createElement('canvas'), { width: 1024, height: 1024 });
-  canvas.getContext('2d').putImageData(layers.toImageData(1024), 0, 0);
-  Object.assign(document.createElement('a'), { href: canvas.toDataURL(), download: 'paint.png' }).click();
+  const context = Object.assign(document.createElement('canvas'), { width: 1024, height: 1024 }).getContext('2d');
+  context.drawImage(head.scene.getObjectByName('skin').material.map.image, 0, 0, 1024, 1024);
+  const parts = model.parts.filter(({ name }) => name === 'skin'); // those that this texture is for
+  const baked = bake(model.mesh, applied.result, layers.toImageData(), { width: 1024, parts });
+  const { data } = layOver(context.getImageData(0, 0, 1024, 1024), baked);
+  context.putImageData(new ImageData(data, 1024), 0, 0);
+  Object.assign(document.createElement('a'), { href: context.canvas.toDataURL(), download: 'skin.png' }).click();
 };
 
 renderer.setAnimationLoop(() => {
