@@ -85,7 +85,7 @@ export const layerScenes: Record<string, () => unknown> = {
   /** Sixteen layers, beside what the formulas say. */
   sixteenLayers() {
     const blends: Blend[] = ['normal', 'multiply', 'screen', 'add'];
-    const layers = createLayers({ renderer });
+    const layers = createLayers({ renderer, size: 256 });
     const styles = Array.from({ length: 16 }, (_, i) => ({
       color: [(i * 97) % 256, (i * 53 + 80) % 256, (i * 29 + 30) % 256, 255 - 13 * i] as const,
       blend: i === 0 ? 'normal' : blends[i % 4]!,
@@ -104,6 +104,7 @@ export const layerScenes: Record<string, () => unknown> = {
       () => createLayers({} as Parameters<typeof createLayers>[0]),
       () => createLayers({ renderer }).add({} as DataTexture),
       () => layers.toImageData(0),
+      () => createLayers({ renderer, size: 100 as 256 }),
     ].map(messageOf);
     const all = texelOf(layers.toImageData(16));
     layers.move(added[15]!, 0);
@@ -115,9 +116,10 @@ export const layerScenes: Record<string, () => unknown> = {
     layers.undo();
     layers.undo();
     const back = texelOf(layers.toImageData(16));
+    const { width } = layers.toImageData();
     const count = layers.list.length;
     layers.dispose();
-    return { styles, all, moved, undone, fewer, back, count, errors };
+    return { styles, all, moved, undone, fewer, back, count, width, errors };
   },
 
   /** One stack on two models, beside the same colour as a texture; a texture that changes. */

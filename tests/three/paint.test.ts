@@ -292,6 +292,7 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
       fewer: number[];
       back: number[];
       count: number;
+      width: number;
       errors: string[];
     }>('sixteenLayers');
     const { styles } = seen;
@@ -301,7 +302,7 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
     assert.deepEqual(seen.undone[1], seen.all);
     assertNear(seen.fewer, blended(styles.slice(0, 14)));
     assert.deepEqual(seen.back, seen.all);
-    assert.equal(seen.count, 16);
+    assert.deepEqual([seen.count, seen.width], [16, 256]);
     const expected = [
       /^There are already 16 layers, the maximum\. Remove one first\.$/,
       /opacity is NaN, not a number from 0 to 1$/,
@@ -311,6 +312,7 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
       /options\.renderer is not a WebGLRenderer$/,
       /texture is an object, not a Texture$/,
       /size is 0, not an integer from 1 to 2048$/,
+      /size is 100, not one of 256, 512, 1024, 2048$/,
     ];
     seen.errors.forEach((message, i) => assert.match(message, expected[i]!));
   });

@@ -70,7 +70,8 @@ export class Composite {
   /** The parts that changed since the last update, in shares. */
   #stale: Rect[] = [kWhole];
 
-  constructor() {
+  /** @param size  Texels per side, a power of two. Default: 1024 or 2048, as the largest layer needs. */
+  constructor(private readonly fixedSize?: number) {
     // `refreshMipmaps` updates the changed parts; the renderer would rebuild all levels for every stroke.
     this.#target.texture.mipmapsAutoUpdate = false;
     // The renderer does not upload it; this tells `cagecast/three` how its texels are stored.
@@ -107,9 +108,8 @@ export class Composite {
     if (versions.some((version, index) => version !== this.#drawn[index])) this.#stale = [kWhole];
     this.#drawn = versions;
     if (this.#stale.length === 0) return false;
-    const size = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize)
-      ? maxCompositeSize
-      : kLeastSize;
+    const isLarge = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize);
+    const size = this.fixedSize ?? (isLarge ? maxCompositeSize : kLeastSize);
     const whole = size !== this.size || this.#stale.includes(kWhole);
     this.#target.setSize(size, size);
     // In texels: upsampling a smaller sheet spreads each of its texels over the neighbours.

@@ -11,7 +11,11 @@ import { LayerStack } from './stack.js';
 /** Options of `createLayers`. */
 export interface LayersOptions {
   renderer: WebGLRenderer;
+  /** Texels per side of the texture: 256, 512, 1024 or 2048. Default: 1024, or 2048 where a layer is larger than 1024. */
+  size?: (typeof kSizes)[number] | undefined;
 }
+
+const kSizes = [256, 512, 1024, maxCompositeSize] as const;
 
 /** The style of a new layer, its name, and where it lies. */
 export interface NewLayer extends Partial<Style> {
@@ -30,16 +34,19 @@ export class Layers extends Emitter<{
   readonly stack = new LayerStack();
   readonly history = new History();
   readonly edits = new Edits(this.stack, this.history);
-  readonly composite = new Composite();
+  readonly composite: Composite;
   readonly renderer: WebGLRenderer;
   readonly #restored = (): void => this.composite.set(this.stack.layers);
 
-  constructor({ renderer }: LayersOptions) {
+  constructor({ renderer, size }: LayersOptions) {
     super();
     // Other renderers have no such map.
     if (typeof renderer?.properties?.get !== 'function')
       throw new CagecastError('badArgument', 'cagecast/three/layers: options.renderer is not a WebGLRenderer');
+    if (size !== undefined && !kSizes.includes(size))
+      throw new CagecastError('badOption', `cagecast/three/layers: size is ${size}, not one of ${kSizes.join(', ')}`);
     this.renderer = renderer;
+    this.composite = new Composite(size);
     this.stack.on('change', (layers) => {
       this.composite.set(layers);
       this.emit('change', undefined);
@@ -48,8 +55,8 @@ export class Layers extends Emitter<{
   }
 
   /**
-   * All layers in one, for `applied.setTexture` of any number of models. Always the same object, 1024² or 2048² as the largest layer
-   * needs, with mipmaps; its colours are premultiplied by alpha. Call `update` before it is drawn.
+   * All layers in one, for `applied.setTexture` of any number of models. Always the same object, with mipmaps;
+   * its colours are premultiplied by alpha. Call `update` before it is drawn.
    */
   get texture(): Texture {
     return this.composite.texture;

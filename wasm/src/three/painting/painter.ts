@@ -12,7 +12,7 @@ import { type StickerPicture, StickerSheet } from './sticker.js';
 import { Stroke } from './stroke.js';
 
 /** Options of `createPainter`. */
-export interface PainterOptions extends Partial<LayersOptions> {
+export interface PainterOptions extends Partial<Pick<LayersOptions, 'renderer'>> {
   /** The layers to paint on, of `cagecast/three/layers`. Default: new ones, for which `renderer` is needed. */
   layers?: Layers | undefined;
   /** The lowest of new layers, as for `layers.add`. */
