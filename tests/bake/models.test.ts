@@ -7,7 +7,7 @@ import { type Document, type Material, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { init } from 'cagecast';
 import type { Image } from 'cagecast/bake';
-import { type BakeReport, bake, type ImageCodec } from 'cagecast/gltf';
+import { type BakeReport, bake, cagecast as cagecastTransform, type ImageCodec } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { cagecast, unpackGlb, validate } from '../js/glb.js';
 import { islandAt, islandCage, texturedBox } from '../support/models';
@@ -221,6 +221,63 @@ test('two primitives with images of their own are painted each in its own; what 
   const without = await baked(overlaid, { texture: new Uint8Array(pngOf(red)) });
   assert.equal(without.textures.length, 0);
   assert.equal(overlaid.getRoot().listMeshes()[0]!.listPrimitives().length, 2, 'what cannot be baked gets an overlay');
+});
+
+test('masks by images and by colours keep paint away, and bring it back: documents, files', async () => {
+  // The left third is white: the islands 0 and 3.
+  const left = picture(96, (x) => (x < 32 ? [255, 255, 255, 255] : [0, 0, 0, 255]));
+  const all = picture(8, () => [255, 255, 255, 255]);
+  writeFileSync(at('left.png'), pngOf(left));
+  writeFileSync(at('all.png'), pngOf(all));
+  const islands = (image: Image) =>
+    [16, 48, 80].flatMap((x) => [24, 72].map((y) => Number(texel(image, x, y)[0] === 230))).join('');
+  const command = (...flags: string[]) => {
+    const found = cagecast('bake', at('box.glb'), at('cage.glb'), at('red.png'), ...flags, '-o', at('masked.png'));
+    assert.deepEqual([found.status, found.stderr], [0, '']);
+    return islands(PNG.sync.read(readFileSync(at('masked.png'))));
+  };
+  assert.equal(command(), '111111');
+  assert.equal(command('--never-mask', at('left.png')), '001111');
+  assert.equal(command('--always-mask', at('left.png'), '--exclude', 'box'), '110000');
+  assert.equal(command('--always-mask', at('all.png'), '--never-mask', at('left.png')), '001111');
+
+  const document = await io.read(at('box.glb'));
+  await baked(document, { maskImages: { never: left } });
+  assert.equal(islands(imageOf(materialOf(document).getBaseColorTexture())), '001111');
+
+  const colored = await io.read(at('box.glb'));
+  const [primitive] = colored.getRoot().listMeshes()[0]!.listPrimitives();
+  const uvs = primitive!.getAttribute('TEXCOORD_0')!;
+  const colors = Float32Array.from({ length: 3 * uvs.getCount() }, (_, i) =>
+    uvs.getElement(Math.floor(i / 3), [])[0]! < 1 / 3 && i % 3 > 0 ? 0 : 1,
+  );
+  primitive!.setAttribute(
+    '_MASK',
+    colored.createAccessor().setType('VEC3').setArray(colors).setBuffer(uvs.getBuffer()),
+  );
+  writeFileSync(at('colored.glb'), await io.writeBinary(colored));
+  let painted = 0;
+  const document2 = await io.read(at('colored.glb'));
+  await document2.transform(
+    cagecastTransform({
+      cage: await io.read(at('cage.glb')),
+      maskColors: '_MASK',
+      onResult: ({ zones }) => void (painted = zones.filter((zone) => zone === 0).length),
+    }),
+  );
+  assert.equal(painted, (uvs.getCount() * 4) / 6);
+  const { status, stderr } = cagecast(
+    'bake',
+    at('box.glb'),
+    at('cage.glb'),
+    at('red.png'),
+    '--mask-colors',
+    'COLOR_0',
+    '-o',
+    at('none.png'),
+  );
+  assert.equal(status, 1);
+  assert.match(stderr, /box\.glb: no part has COLOR_0 of 3 or 4 numbers/);
 });
 
 test('overlapping UVs are told by the command', () => {

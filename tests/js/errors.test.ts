@@ -178,7 +178,7 @@ describe('errors', () => {
     fails(
       untyped(cage, target, { treshold: 0.5 }),
       'badOption',
-      'transfer: options.treshold is not an option; there are: preset, threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered, steps, locks, reuse',
+      'transfer: options.treshold is not an option; there are: preset, threshold, seams, weldTolerance, occlusionReach, pokeThrough, minCovered, steps, locks, masks, reuse',
     );
     fails(
       untyped(cage, target, { preset: 'deflaut' }),

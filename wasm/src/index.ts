@@ -6,6 +6,7 @@
 export { classify } from './api/classify.js';
 export { type CutTarget, cutBorders } from './api/cut-borders.js';
 export { CagecastError, type Code } from './api/error.js';
+export type { Masks } from './api/masks.js';
 export type { Mesh } from './api/mesh.js';
 export {
   type ClassifyOptions,

@@ -117,10 +117,30 @@ C++ (\`TransferOptions\`), JavaScript and the command have the same options with
 of the preset: \`default\`, or \`paper\` for the method as published.
 
 ${head}${rows(false)}
-JavaScript also has \`preset\`, \`locks\` and \`reuse\` (an earlier result whose arrays are overwritten). For example,
+JavaScript also has \`preset\`, \`locks\`, \`masks\` and \`reuse\` (an earlier result whose arrays are overwritten). For example,
 \`locks: { segments: { 7: 'keep' }, groups: { 3: 'exclude' } }\` never culls segment 7 and always culls the segments of
 group 3. \`keep\` only prevents culling: occluded and uncovered points of a kept segment stay unpainted unless step 6 or 7
 recovers them. The command has ${flags.join(', ')}, \`--preset\`, \`--keep\` and \`--exclude\`.
+
+## Masks
+
+Locks are for whole segments and parts. Masks are for what no name tells apart, such as the eyes of a scan in one piece:
+−1 is never painted, 1 always, and 0 is left to the method. −1 overrides 1, and masks override locks.
+
+| Source | \`cagecast\`, \`cagecast/worker\` | \`cagecast/gltf\` | \`cagecast/three\` | Command |
+|---|---|---|---|---|
+| an array, as a painting tool makes | \`masks: { vertices, triangles }\`, \`Int8Array\`s | \`masks\` | \`masks\` | |
+| an image in the model's own UVs: white is masked | \`maskTriangles\` of \`cagecast/bake\` | \`maskImages: { never, always }\` | \`modelMasks\` | \`--never-mask\`, \`--always-mask\` |
+| vertex colours: red never, green always | \`maskVertices\` of \`cagecast/bake\` | \`maskColors: 'COLOR_0'\` | \`modelMasks\` | \`--mask-colors COLOR_0\` |
+
+- **Masks end at edges of triangles.** An image masks a triangle if at least half of it is white. A vertex of −1 keeps paint
+  from all triangles at it; a triangle with a vertex of 1 is painted if its other vertices may be. With \`borders: 'cut'\`, a masked
+  triangle is decided as a whole.
+- **"Always" does not make room on the cage.** Over a hole, or beyond the cage's border, what is painted shows the nearest place of the
+  cage, often stretched. Under another surface it is painted, but not seen.
+- Masks change neither segments nor their scores, and explain no holes. A masked vertex has zone 3, culled, though its
+  segment is not. Pass the same masks to \`classify\` and \`cutBorders\`.
+- Images hold for all parts with UVs. Where parts have textures of their own, use arrays.
 
 ## Steps
 

@@ -2,6 +2,7 @@ import { callCore, useCore } from '../core/engine.js';
 import type { CoreProjection } from '../core/module.js';
 import { Zone } from '../generated/zone.js';
 import { CagecastError, show } from './error.js';
+import { applyMasks, checkMaskLengths } from './masks.js';
 import { count } from './mesh.js';
 import { type ClassifyOptions, checkOptions } from './options.js';
 import type { Classification, HoleShare, Projection, SegmentStats } from './result.js';
@@ -15,11 +16,14 @@ import { type ArrayKind, plainArray, showArray } from './typed-arrays.js';
  */
 export function classify(projection: Projection, options?: ClassifyOptions & Reuse<Classification>): Classification {
   if (typeof projection !== 'object' || projection === null) throw wrong(` is ${show(projection)}`);
-  const { core, locks } = checkOptions('classify', options, projection.preset);
+  const { core, locks, masks } = checkOptions('classify', options, projection.preset);
   const arrays = checkReuse('classify', options?.reuse);
   // Last: getters of the options may have written to it.
   const whole = checkProjection(projection);
+  const { zones, indices } = whole;
+  checkMaskLengths('classify', masks, zones.length, indices.length / 3);
   const result = callCore('classify', ({ workspace }) => workspace.classify(whole, core, locks), arrays);
+  applyMasks(masks, indices, result, core.steps['partialTriangles'] === true);
   return handOver(result, options?.reuse);
 }
 

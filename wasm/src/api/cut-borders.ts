@@ -2,6 +2,7 @@ import { callCore, useCore } from '../core/engine.js';
 import type { CoreDecision } from '../core/module.js';
 import { Zone } from '../generated/zone.js';
 import { CagecastError, show } from './error.js';
+import { applyMasksToCut, checkMaskLengths } from './masks.js';
 import { type CheckedMesh, checkMesh, count, type Mesh } from './mesh.js';
 import { checkOptions, type TransferOptions } from './options.js';
 import type { TransferResult } from './result.js';
@@ -41,7 +42,8 @@ export interface CutTarget {
  * @param cage     As for `transfer`.
  * @param target   As for `transfer`. The attributes of a new vertex are those of its `sources`, blended by `weights`.
  * @param result   What `transfer` returned for the same cage, target and options.
- * @param options  The options of the transfer. `locks` are ignored: the result already contains their effect.
+ * @param options  The options of the transfer. `locks` are ignored: the result already contains their effect. Triangles that a mask
+ * decides are decided as a whole.
  * @throws {CagecastError} `resultMismatch` if the result does not belong to this target; else as `transfer` does.
  *
  * @example
@@ -57,7 +59,13 @@ export function cutBorders(
   const checked = checkOptions('cutBorders', options);
   const [cageMesh, targetMesh] = [checkMesh('cutBorders', 'cage', cage), checkMesh('cutBorders', 'target', target)];
   const decision = checkResult(result, targetMesh);
-  return callCore('cutBorders', ({ workspace }) => workspace.cutBorders(cageMesh, targetMesh, decision, checked.core));
+  const { positions, indices } = targetMesh;
+  checkMaskLengths('cutBorders', checked.masks, positions.length / 3, indices.length / 3);
+  const cut = callCore('cutBorders', ({ workspace }) =>
+    workspace.cutBorders(cageMesh, targetMesh, decision, checked.core),
+  );
+  applyMasksToCut(checked.masks, indices, decision.zones, cut, checked.core.steps['partialTriangles'] === true);
+  return cut;
 }
 
 /** Checks that a result is complete and belongs to this target, because the core does not check it. */

@@ -8,6 +8,7 @@ import {
   type ProjectSteps,
 } from '../generated/options.js';
 import { CagecastError, show } from './error.js';
+import { checkMasks, type Masks } from './masks.js';
 
 /**
  * A named set of values for all options. `paper` is the method as published: *Cage-based Texture Transfer with Geometric
@@ -43,6 +44,8 @@ export interface ClassifyOptions extends ClassifyStage {
   steps?: ClassifySteps | undefined;
   /** Segments and groups that are always or never painted. */
   locks?: Locks | undefined;
+  /** Vertices and triangles that are always or never painted. */
+  masks?: Masks | undefined;
 }
 
 /** Options of `transfer` and `cutBorders`. An option that is not given has the value of the preset. */
@@ -53,6 +56,8 @@ export interface TransferOptions extends ProjectStage, ClassifyStage {
   steps?: (ProjectSteps & ClassifySteps) | undefined;
   /** Segments and groups that are always or never painted. */
   locks?: Locks | undefined;
+  /** Vertices and triangles that are always or never painted. */
+  masks?: Masks | undefined;
 }
 
 type AllOf<T> = { [Name in keyof T]-?: NonNullable<T[Name]> };
@@ -67,14 +72,15 @@ export interface CheckedOptions {
   preset: Preset;
   core: CoreOptions;
   locks: CoreLocks;
+  masks: Masks | undefined;
 }
 
 /** For each function, the stages whose options it takes, and its other options. */
 const functions = {
   project: { stages: ['project'], others: ['reuse'] },
-  classify: { stages: ['classify'], others: ['locks', 'reuse'] },
-  transfer: { stages: ['project', 'classify'], others: ['locks', 'reuse'] },
-  cutBorders: { stages: ['project', 'classify'], others: ['locks'] },
+  classify: { stages: ['classify'], others: ['locks', 'masks', 'reuse'] },
+  transfer: { stages: ['project', 'classify'], others: ['locks', 'masks', 'reuse'] },
+  cutBorders: { stages: ['project', 'classify'], others: ['locks', 'masks'] },
 } as const;
 type Fn = keyof typeof functions;
 
@@ -145,7 +151,7 @@ export function checkOptions(fn: Fn, options: unknown = {}, preset: Preset = 'de
     if (given[name] !== undefined) core[name] = checkValue(fn, 'options', name, given[name]);
   for (const name of optionsOf(fn, true))
     if (steps[name] !== undefined) core.steps[name] = checkValue(fn, 'options.steps', name, steps[name]);
-  return { preset: chosen, core, locks: checkLocks(fn, given['locks']) };
+  return { preset: chosen, core, locks: checkLocks(fn, given['locks']), masks: checkMasks(fn, given['masks']) };
 }
 
 function checkNames(fn: string, where: string, given: unknown = {}, known: readonly string[]): Record<string, unknown> {

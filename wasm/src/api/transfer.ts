@@ -1,4 +1,5 @@
 import { callCore } from '../core/engine.js';
+import { applyMasks, checkMaskLengths } from './masks.js';
 import { checkMesh, type Mesh } from './mesh.js';
 import { checkOptions, type ProjectOptions, type TransferOptions } from './options.js';
 import type { Projection, TransferResult } from './result.js';
@@ -19,10 +20,13 @@ import { checkReuse, handOver, type Reuse } from './reuse.js';
  * transfer(cage, target, { threshold: 0.5, reuse: result });
  */
 export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & Reuse<TransferResult>): TransferResult {
-  const { core, locks } = checkOptions('transfer', options);
+  const { core, locks, masks } = checkOptions('transfer', options);
   const arrays = checkReuse('transfer', options?.reuse);
   const [cageMesh, targetMesh] = [checkMesh('transfer', 'cage', cage), checkMesh('transfer', 'target', target)];
+  const { positions, indices } = targetMesh;
+  checkMaskLengths('transfer', masks, positions.length / 3, indices.length / 3);
   const result = callCore('transfer', ({ workspace }) => workspace.transfer(cageMesh, targetMesh, core, locks), arrays);
+  applyMasks(masks, indices, result, core.steps['partialTriangles'] === true);
   return handOver(result, options?.reuse);
 }
 

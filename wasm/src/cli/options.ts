@@ -7,6 +7,13 @@ import { cut } from './table.js';
 
 export type Single = Partial<Omit<PresetOptions, 'steps'>>;
 
+/** Where the target is never or always painted: files of images in its own UVs, and an attribute of colours. */
+export interface MaskFiles {
+  never?: string | undefined;
+  always?: string | undefined;
+  colors?: string | undefined;
+}
+
 /** The options of a transfer, from the command line. */
 export interface Rules {
   preset: Preset;
@@ -16,6 +23,7 @@ export interface Rules {
   keep: string[];
   /** The same for parts that are never painted. */
   exclude: string[];
+  masks?: MaskFiles;
   /** Those of both that may match nothing. */
   optional?: string[];
   /** The configuration file that some of it comes from. */
@@ -27,6 +35,9 @@ export interface RuleFlags extends Single {
   preset: Preset;
   keep: string[];
   exclude: string[];
+  neverMask?: string;
+  alwaysMask?: string;
+  maskColors?: string;
 }
 
 /** Adds the flags of all options to a command; those in core/include/cagecast/options.def come from there. */
@@ -62,6 +73,12 @@ export function addRuleFlags(command: Command): Command {
       new Option('--exclude <NAME>', 'never paint parts of this node or material (* matches any text); may be repeated')
         .default([], 'none')
         .argParser(oneMore),
+    )
+    .option('--never-mask <IMAGE>', "never paint where this image, in TARGET's own UVs, is white")
+    .option('--always-mask <IMAGE>', 'paint where this one is white, whatever the rules say')
+    .option(
+      '--mask-colors <ATTRIBUTE>',
+      'never paint red vertices, always green ones; by an attribute such as COLOR_0',
     );
 }
 
@@ -75,9 +92,11 @@ export function numberWithin(least: number, most: number): (text: string) => num
   };
 }
 
-export function rulesOf({ preset, keep, exclude, ...flags }: RuleFlags): Rules {
+export function rulesOf({ preset, keep, exclude, neverMask, alwaysMask, maskColors, ...flags }: RuleFlags): Rules {
   const given = optionFlags.map(({ name }) => [name, flags[name]] as const).filter(([, value]) => value !== undefined);
-  return { preset, keep, exclude, single: Object.fromEntries(given) };
+  const isMasked = [neverMask, alwaysMask, maskColors].some((flag) => flag !== undefined);
+  const masks = { never: neverMask, always: alwaysMask, colors: maskColors };
+  return { preset, keep, exclude, single: Object.fromEntries(given), ...(isMasked && { masks }) };
 }
 
 /** All options that a transfer was made with, for a report. `occlusionReach` is `null` if it is infinite. */
@@ -86,15 +105,17 @@ export interface EffectiveOptions extends Omit<PresetOptions, 'occlusionReach'> 
   occlusionReach: number | null;
   keep: string[];
   exclude: string[];
+  /** If there are any. */
+  masks?: MaskFiles;
   /** The configuration file that some of them come from. */
   config: string | null;
 }
 
 /** The options in full; needs `init`. */
-export function effectiveOptions({ preset, single, keep, exclude, config }: Rules): EffectiveOptions {
+export function effectiveOptions({ preset, single, keep, exclude, masks, config }: Rules): EffectiveOptions {
   const all = { ...presetOptions(preset), ...single };
   const occlusionReach = Number.isFinite(all.occlusionReach) ? all.occlusionReach : null;
-  return { preset, ...all, occlusionReach, keep, exclude, config: config ?? null };
+  return { preset, ...all, occlusionReach, keep, exclude, ...(masks && { masks }), config: config ?? null };
 }
 
 /** Says which configuration file settings come from; empty if there is none. */

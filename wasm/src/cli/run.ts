@@ -1,10 +1,13 @@
 import { cageGlb } from '../cages/glb.js';
 import type { Cage } from '../cages/types.js';
+import { FileModel } from '../gltf/bake/file.js';
+import { masksOf } from '../gltf/bake/masks.js';
 import { type Extracted, extract, partOf, placeOf } from '../gltf/extract.js';
 import type { ReadOptions } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
-import { CagecastError, init, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { CagecastError, init, type Masks, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import { readImage } from './bake/images.js';
 import { makeCageFor } from './make-cage.js';
 import { quoted, type Rules, transferOptions } from './options.js';
 import type { Progress } from './progress.js';
@@ -41,10 +44,29 @@ export async function run(
   models: Models = { cage: readModel },
 ): Promise<Run> {
   const read = await readModel(target, reading, progress);
-  const options = optionsFor(read.file, read.extracted, rules);
+  const masks = await readMasks(read, rules, reading);
+  const options = { ...optionsFor(read.file, read.extracted, rules), ...(masks && { masks }) };
   const cage =
     cagePath === autoCage ? await madeCage(read, progress) : withUvs(await models.cage(cagePath, reading, progress));
   return transferred(read, cage, options, progress);
+}
+
+/** The masks of a target. @throws {InputError} that names the file at fault. */
+async function readMasks(
+  { file, extracted }: ReadModel,
+  { masks }: Rules,
+  reading: ReadOptions,
+): Promise<Masks | undefined> {
+  if (!masks) return undefined;
+  const [never, always] = await Promise.all(
+    [masks.never, masks.always].map((path) => (path === undefined ? undefined : readImage(path, reading))),
+  );
+  try {
+    const images = never || always ? { never, always } : undefined;
+    return masksOf(new FileModel(file, extracted.parts), undefined, { images, colors: masks.colors });
+  } catch (error) {
+    throw error instanceof InputError ? error.in(file.path) : error;
+  }
 }
 
 /** How cages are read. */

@@ -15,12 +15,15 @@ import {
   transfer,
 } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
+import { DocumentModel } from './bake/document.js';
+import { type MaskSources, masksOf } from './bake/masks.js';
 import { extractDocument } from './document.js';
 import { addTransfer } from './document-write.js';
 import { InputError } from './input-error.js';
 import { paintOf } from './overlay.js';
 
 export { type BakeOptions, bake } from './bake/document.js';
+export type { MaskSources } from './bake/masks.js';
 export type { BakeReport, ImageCodec, Paints } from './bake/plan.js';
 export { type CheckOptions, checkGltf } from './check-file.js';
 export {
@@ -46,7 +49,7 @@ export interface PartRange {
 }
 
 /** Options of `cagecast`: those of `transfer`, and what to transfer. */
-export interface CagecastOptions extends TransferOptions {
+export interface CagecastOptions extends TransferOptions, MaskSources {
   /** The cage that the texture was drawn for: a mesh, or a document, of which the default scene is used. It must have UVs. */
   cage: Document | Mesh;
   /** The bytes of a PNG or JPEG file in the cage's UV space, shown as an overlay on the cosmetic triangles. Default: no overlay. */
@@ -81,7 +84,7 @@ export interface CagecastOptions extends TransferOptions {
 export function cagecast(options: CagecastOptions): Transform {
   if (typeof options !== 'object' || options === null)
     throw new CagecastError('badArgument', `cagecast: the argument is ${show(options)}, not an object`);
-  const { cage, texture, borders, onResult, ...rules } = options;
+  const { cage, texture, borders, onResult, maskImages, maskColors, ...own } = options;
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
     await init();
@@ -93,6 +96,9 @@ export function cagecast(options: CagecastOptions): Transform {
     const paint = texture && within('texture', () => paintOf(texture));
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));
+    const model = new DocumentModel(document, target.parts);
+    const masks = within('target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
+    const rules = { ...own, masks };
     const result = transfer(source, target.mesh, rules);
     const cut = cuts ? cutBorders(source, target.mesh, result, rules) : undefined;
     addTransfer(document, target, result, paint, cut);

@@ -31,6 +31,7 @@ export {
   makeCage,
   refineCage,
 } from './loaded-cages.js';
+export { type ModelMasks, modelMasks } from './masks.js';
 export {
   type Applied,
   type ApplyOptions,

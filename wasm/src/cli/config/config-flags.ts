@@ -47,6 +47,7 @@ export function settler(
         single: { ...single, ...own.single },
         keep,
         exclude,
+        ...(own.masks && { masks: own.masks }),
         config: path,
         // A file speaks of many models, and not each of them has every part.
         optional: [...(isGiven('keep') ? [] : keep), ...(isGiven('exclude') ? [] : exclude)],

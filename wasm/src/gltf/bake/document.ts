@@ -9,6 +9,7 @@ import { InputError } from '../input-error.js';
 import { paintOf } from '../overlay.js';
 import { decodeFloats } from '../pieces.js';
 import type { UvTransform } from '../uv-transform.js';
+import { type MaskSources, masksOf } from './masks.js';
 import {
   type BakeModel,
   type BakeReport,
@@ -20,7 +21,7 @@ import {
 } from './plan.js';
 
 /** Options of `bake`: those of `transfer`, and what to bake. */
-export interface BakeOptions extends TransferOptions {
+export interface BakeOptions extends TransferOptions, MaskSources {
   /** The cage that the paints were drawn for: a mesh, or a document, of which the default scene is used. It must have UVs. */
   cage: Document | Mesh;
   /** Images in the cage's UVs; at least one. */
@@ -63,7 +64,7 @@ export interface BakeOptions extends TransferOptions {
 export function bake(options: BakeOptions): (document: Document) => Promise<void> {
   if (typeof options !== 'object' || options === null)
     throw new CagecastError('badArgument', `bake: the argument is ${show(options)}, not an object`);
-  const { cage, paints: given, images, size, borders, texture, onBaked, ...rules } = options;
+  const { cage, paints: given, images, size, borders, texture, onBaked, maskImages, maskColors, ...own } = options;
   return async function bake(document: Document): Promise<void> {
     const cuts = isCut('bake', borders);
     const paints = checkPaints('bake', given);
@@ -75,10 +76,13 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
     const overlay = texture && within('texture', () => paintOf(texture));
     const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
     const target = within('target', () => extractDocument(document));
+    const model = new DocumentModel(document, target.parts);
+    const masks = within('target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
+    const rules = { ...own, masks };
     const result = transfer(source, target.mesh, rules);
     const cut = cuts ? cutBorders(source, target.mesh, result, rules) : undefined;
     const ownCount = target.mesh.positions.length / 3;
-    const { report, baked } = await bakeModel(new DocumentModel(document, target.parts), {
+    const { report, baked } = await bakeModel(model, {
       result,
       cut: cut && { target: cut, ownCount },
       paints,
@@ -126,7 +130,7 @@ interface KHRTransform extends ExtensionProperty {
 const wrapOf = (wrap: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
 
 /** A document as baking sees it. */
-class DocumentModel implements BakeModel<Material, Texture> {
+export class DocumentModel implements BakeModel<Material, Texture> {
   readonly #document: Document;
   readonly parts: readonly DocumentPart[];
 
@@ -142,6 +146,11 @@ class DocumentModel implements BakeModel<Material, Texture> {
   uvsOf({ primitive, vertexCount }: DocumentPart, set: string): Float32Array | undefined {
     const accessor = primitive.getAttribute(set);
     return accessor?.getElementSize() === 2 && accessor.getCount() === vertexCount ? decodeFloats(accessor) : undefined;
+  }
+
+  colorsOf({ primitive }: DocumentPart, semantic: string): { values: Float32Array; size: number } | undefined {
+    const accessor = primitive.getAttribute(semantic);
+    return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
   }
 
   isTinted({ primitive }: DocumentPart): boolean {

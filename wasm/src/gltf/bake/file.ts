@@ -24,11 +24,14 @@ function sourceOf({ source, extensions }: GLTF.ITexture): number | undefined {
 /** A file as baking sees it. Materials and textures are their numbers. What is painted goes to a writer of the file. */
 export class FileModel implements BakeModel<number, number> {
   readonly #file: GltfFile;
-  readonly #writer: GlbWriter;
+  readonly #json: GLTF.IGLTF;
+  readonly #writer: GlbWriter | undefined;
   readonly parts: readonly Part[];
 
-  constructor(file: GltfFile, parts: readonly Part[], writer: GlbWriter) {
+  /** @param writer  Without one, nothing can be replaced. */
+  constructor(file: GltfFile, parts: readonly Part[], writer?: GlbWriter) {
     this.#file = file;
+    this.#json = writer?.json ?? file.json;
     this.#writer = writer;
     this.parts = parts;
   }
@@ -38,7 +41,7 @@ export class FileModel implements BakeModel<number, number> {
   }
 
   #material(number: number): GLTF.IMaterial {
-    return this.#writer.json.materials![number]!;
+    return this.#json.materials![number]!;
   }
 
   materialOf(part: Part): number | undefined {
@@ -53,6 +56,12 @@ export class FileModel implements BakeModel<number, number> {
       : undefined;
   }
 
+  colorsOf(part: Part, semantic: string): { values: Float32Array; size: number } | undefined {
+    const number = this.#primitive(part).attributes[semantic];
+    const accessor = number === undefined ? undefined : this.#file.geometry.getRoot().listAccessors()[number];
+    return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
+  }
+
   isTinted(part: Part): boolean {
     return this.#primitive(part).attributes['COLOR_0'] !== undefined;
   }
@@ -60,8 +69,8 @@ export class FileModel implements BakeModel<number, number> {
   useOf(material: number, slot: Slot): TextureUse<number> | undefined {
     const info = infoOf(this.#material(material), slot);
     if (!info) return undefined;
-    const texture = this.#writer.json.textures![info.index]!;
-    const sampler = texture.sampler === undefined ? undefined : this.#writer.json.samplers?.[texture.sampler];
+    const texture = this.#json.textures![info.index]!;
+    const sampler = texture.sampler === undefined ? undefined : this.#json.samplers?.[texture.sampler];
     const transform = info.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
     return {
       texture: info.index,
@@ -97,11 +106,11 @@ export class FileModel implements BakeModel<number, number> {
   }
 
   replace(materials: readonly number[], slot: Slot, png: Uint8Array, use: TextureUse<number>): void {
-    const { json } = this.#writer;
+    const [json, writer] = [this.#json, this.#writer!];
     const before = json.textures![use.texture]!;
     const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
-    const number = this.#writer.addTexture(png, 'image/png', name);
+    const number = writer.addTexture(png, 'image/png', name);
     const made = json.textures![number]!;
     if (before.sampler !== undefined) made.sampler = before.sampler;
     if (isOwn && this.#isOnlyFor(use.texture, materials, slot)) {
@@ -119,7 +128,7 @@ export class FileModel implements BakeModel<number, number> {
       }
       for (const extension of imageExtensions)
         if (json.extensionsUsed?.includes(extension))
-          this.#writer.needs(
+          writer.needs(
             extension,
             json.textures!.some((texture) => texture.extensions?.[extension]),
           );
@@ -129,7 +138,7 @@ export class FileModel implements BakeModel<number, number> {
 
   /** Whether the standard materials use a texture in no other way. */
   #isOnlyFor(texture: number, materials: readonly number[], slot: Slot): boolean {
-    return (this.#writer.json.materials ?? []).every((material, m) => {
+    return (this.#json.materials ?? []).every((material, m) => {
       const { pbrMetallicRoughness: pbr, normalTexture, occlusionTexture, emissiveTexture } = material;
       const uses: [GLTF.ITextureInfo | undefined, Slot | undefined][] = [
         [pbr?.baseColorTexture, 'color'],

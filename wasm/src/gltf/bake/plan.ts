@@ -37,6 +37,8 @@ export interface BakeModel<Material, Texture> {
   materialOf(part: Piece): Material | undefined;
   /** The values of a set of UVs, decoded. */
   uvsOf(part: Piece, set: string): Float32Array | undefined;
+  /** The values of an attribute of colours, decoded, and how many a vertex has. */
+  colorsOf(part: Piece, semantic: string): { values: Float32Array; size: number } | undefined;
   /** Whether its vertices have colours, by which its texture is multiplied. */
   isTinted(part: Piece): boolean;
   useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
