@@ -66,6 +66,12 @@ test('--config names another file, --no-config none; the output says which file 
   assert.match(cagecast('inspect', ada, ...cage).stdout, new RegExp(`settings from ${config}\n$`));
 });
 
+test('masks are paths from the folder of the file; flags about masks replace them', () => {
+  set({ alwaysMask: 'gone.png' });
+  assert.match(cagecast('transfer', ada, ...cage).stderr, new RegExp(`${at('gone.png')}: no such file`));
+  assert.match(cagecast('transfer', ada, ...cage, '--never-mask', at('other.png')).stderr, /other\.png: no such file/);
+});
+
 test('a batch takes the settings of each of its targets; a line of a manifest wins over them', () => {
   set({ threshold: 0.4, characters: { bao: { threshold: 0.9 } } });
   const report = ['--report', at('{name}.json')];
@@ -85,11 +91,15 @@ test('what is wrong in the file is one line that names file, member and value', 
   const cases: [string, RegExp][] = [
     ['{', /is not JSON/],
     ['[]', /is not a JSON object/],
-    ['{"treshold": 1}', /"treshold" is unknown; there are: preset, borders, compress, keep, exclude, threshold, /],
+    [
+      '{"treshold": 1}',
+      /"treshold" is unknown; there are: preset, borders, compress, keep, exclude, neverMask, alwaysMask, maskColors, threshold, /,
+    ],
     ['{"threshold": 3}', /"threshold" is 3, not a number within 0\.\.1/],
     ['{"seams": "edge"}', /"seams" is "edge", not one of vertex, corner/],
     ['{"preset": 1}', /"preset" is 1, not one of default, paper/],
     ['{"exclude": "eye"}', /"exclude" is "eye", not an array of names/],
+    ['{"neverMask": 1}', /"neverMask" is 1, not a path/],
     ['{"characters": []}', /"characters" is not an object of patterns and settings/],
     ['{"characters": {"a*": 1}}', /"characters" "a\*": is not an object of settings/],
     [

@@ -465,7 +465,7 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
     const text = write('text.png', 'no image');
     fails(
       ['transfer', at('target.glb'), '--cage', at('cage.glb'), '--texture', text],
-      /text\.png: is not a PNG, JPEG or WebP image/,
+      /text\.png: is not a PNG, JPEG, WebP or KTX2 image/,
     );
     const half = write('half.png', paint().subarray(0, 60));
     fails(
@@ -1164,18 +1164,45 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(made('rigged', (maker) => rigged(maker, 128))), expected());
   });
 
-  test('a mesh with instances is an error', () => {
+  test('a mesh with instances is where its first instance is', () => {
     const path = made('instanced', (maker) => {
-      const translation = maker.accessor(new Float32Array([0, 0, 0, 3, 0, 0]), 'VEC3');
-      maker.node({
-        mesh: maker.mesh(scene.target),
-        extensions: { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: translation } } },
-      });
+      const TRANSLATION = maker.accessor(new Float32Array([0, 4, 0, 3, 0, 0]), 'VEC3');
+      const ROTATION = maker.accessor(new Float32Array([0, 0, 1, 0, 0, 0, 0, 1]), 'VEC4');
+      const SCALE = maker.accessor(new Float32Array([2, 2, 2, 1, 1, 1]), 'VEC3');
+      // Undone by the node: moved back, turned back, and made small again.
+      const instances = maker.node(
+        {
+          mesh: maker.mesh(scene.target),
+          translation: [0, 2, 0],
+          rotation: [0, 0, 1, 0],
+          scale: [0.5, 0.5, 0.5],
+          extensions: { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION, ROTATION, SCALE } } },
+        },
+        false,
+      );
+      maker.node({ children: [instances] });
       maker.json.extensionsUsed = ['EXT_mesh_gpu_instancing'];
     });
-    const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'), '-o', at('instanced-out.glb'));
-    assert.equal(status, 1);
-    assert.match(stderr, /instanced\.glb: nodes\[0\] is instanced, so its mesh is in many places at once/);
+    assert.deepEqual(answer(path), expected());
+  });
+
+  test('instances with broken references are errors', () => {
+    for (const [TRANSLATION, says] of [
+      [99, /nodes\[0\]: TRANSLATION of EXT_mesh_gpu_instancing is 99, not one of 2 accessors/],
+      ['first', /is "first", not one of 2 accessors/],
+      [1, /TRANSLATION of EXT_mesh_gpu_instancing is not of 3 finite numbers/],
+    ] as const) {
+      const path = made('instanced', (maker) => {
+        const instances = { attributes: { TRANSLATION } } as object;
+        maker.node({
+          mesh: maker.mesh({ ...scene.target, uvs: undefined }),
+          extensions: { EXT_mesh_gpu_instancing: instances },
+        });
+      });
+      const { status, stderr } = cagecast('transfer', path, '--cage', at('cage.glb'));
+      assert.equal(status, 1);
+      assert.match(stderr, says);
+    }
   });
 
   test('skins with broken references are errors', () => {

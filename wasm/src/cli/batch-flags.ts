@@ -5,19 +5,22 @@ import { jobsOfManifest, jobsOfPatterns } from './batch-jobs.js';
 import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
 import { borderKinds } from './config/settings.js';
 import { addRuleFlags, type RuleFlags } from './options.js';
+import { addCageAreaFlags, addRegionFlag, type CageFlags } from './paint/paint-flags.js';
 import { addPrintFlags, type PrintFlags } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
-import type { TransferCommand } from './transfer-command.js';
+import type { Region, TransferCommand } from './transfer-command.js';
 import { endingIn, unfit, unusable, wrongUsage } from './usage.js';
 
 interface BatchFlags
   extends RuleFlags,
+    CageFlags,
     ConfigFlags,
     ReadFlags,
     PrintFlags,
     Pick<TransferCommand, 'texture' | 'output' | 'report' | 'borders' | 'compress'> {
   cage?: string;
+  region: Region[];
   manifest?: string;
   results?: string;
   resume?: boolean;
@@ -36,9 +39,13 @@ export function addBatchCommand(program: Command, progress: Progress): void {
     addReadFlags(
       addConfigFlags(
         addRuleFlags(
-          program
-            .command('batch')
-            .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders'),
+          addRegionFlag(
+            addCageAreaFlags(
+              program
+                .command('batch')
+                .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders'),
+            ),
+          ),
         ),
       ),
     ),
@@ -46,7 +53,7 @@ export function addBatchCommand(program: Command, progress: Progress): void {
     .description('transfer to many files, in threads; print a line of JSON for each')
     .option(
       '--manifest <JOBS.jsonl>',
-      'a JSON object per line: target, cage, texture, output, report, and options; - for the standard input',
+      'a JSON object per line: target, cage, referenceCage, uvBounds, texture, regions, output, report, and options; - for the standard input',
     )
     .option('--cage <CAGE>', 'the cage of jobs that name none; auto makes one for each target')
     .option('--texture <PAINT>', 'the texture of jobs that name none')
@@ -54,7 +61,7 @@ export function addBatchCommand(program: Command, progress: Progress): void {
       new Option(
         '-o, --output <OUT.glb>',
         'where to write; {name} is the name of the target, {dir} its folder',
-      ).argParser(endingIn('.glb', '.vrm')),
+      ).argParser(endingIn('.glb', '.vrm', '.gltf')),
     )
     .option('--report <R.json>', 'where to write reports; {name} and {dir} as above')
     .addOption(new Option('--borders <HOW>', 'as for transfer').choices(borderKinds).default('triangle'))
@@ -89,7 +96,17 @@ Examples:
     if (manifest === undefined && cage === undefined) wrong('TARGETS need --cage');
     if (texture !== undefined && output === undefined && manifest === undefined) wrong('--texture needs -o OUT.glb');
     if (flags.quiet) progress.silence();
-    const defaults = { cage, texture, output, report, settled: settler(command, flags), reading: readingOf(flags) };
+    const defaults = {
+      cage,
+      uvBounds: flags.uvBounds,
+      referenceCage: flags.referenceCage,
+      texture,
+      regions: flags.region,
+      output,
+      report,
+      settled: settler(command, flags),
+      reading: readingOf(flags),
+    };
     const jobs = manifest === undefined ? jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
     const write = (line: string) => process.stdout.write(line);
     const summary = await batchCommand(

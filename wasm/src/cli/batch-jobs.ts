@@ -7,8 +7,10 @@ import type { Settled } from './config/config-flags.js';
 import { isObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
+import { areBounds, boundsText } from './paint/cage-area.js';
+import { tilePath } from './paint/read-paint.js';
 import { autoCage } from './run.js';
-import type { TransferCommand } from './transfer-command.js';
+import type { Region, TransferCommand } from './transfer-command.js';
 
 /** A transfer of a batch. */
 export interface Job {
@@ -65,7 +67,7 @@ export async function jobsOfManifest(path: string, defaults: JobDefaults): Promi
   );
 }
 
-const paths = ['target', 'cage', 'texture', 'output', 'report'] as const;
+const paths = ['target', 'cage', 'referenceCage', 'texture', 'output', 'report'] as const;
 
 /** Stands for those of a job that cannot be started. */
 const noSettings: Settled = {
@@ -83,18 +85,24 @@ function jobLine(line: string, folder: string, { settled }: JobDefaults): JobNam
     throw new InputError(`is not JSON (${firstLine(error)})`);
   }
   if (!isObject(given)) throw new InputError('is not a JSON object');
-  refuseUnknown(given, [...paths, ...settingNames]);
+  refuseUnknown(given, [...paths, 'regions', 'uvBounds', ...settingNames]);
   for (const name of paths)
     if (given[name] !== undefined && typeof given[name] !== 'string') throw new InputError(`"${name}" is not a path`);
   if (given['target'] === undefined) throw new InputError('has no "target"');
-  const own = Object.fromEntries(
-    paths.flatMap((name) => {
+  const { uvBounds, regions } = given;
+  if (uvBounds !== undefined && !areBounds(uvBounds))
+    throw new InputError(`"uvBounds" is not an array of ${boundsText}`);
+  const inFolder = (path: string, isCage: boolean) => (isCage && path === autoCage ? path : resolve(folder, path));
+  const own = Object.fromEntries([
+    ...paths.flatMap((name) => {
       const path = given[name] as string | undefined;
-      return path === undefined ? [] : [[name, name === 'cage' && path === autoCage ? path : resolve(folder, path)]];
+      return path === undefined ? [] : [[name, inFolder(path, name === 'cage')]];
     }),
-  ) as Partial<JobNames> & { target: string };
-  const { borders, compress, preset, keep, exclude, single } = settingsOf(given);
+    ...(uvBounds === undefined ? [] : [['uvBounds', uvBounds]]),
+    ...(regions === undefined ? [] : [['regions', regionsOf(regions, inFolder)]]),
+  ]) as Partial<JobNames> & { target: string };
   const common = settled(own.target);
+  const { borders, compress, preset, keep, exclude, masks = common.rules.masks, single } = settingsOf(given, folder);
   const { rules } = common;
   return {
     ...own,
@@ -105,25 +113,39 @@ function jobLine(line: string, folder: string, { settled }: JobDefaults): JobNam
       preset: preset ?? rules.preset,
       keep: keep ?? rules.keep,
       exclude: exclude ?? rules.exclude,
+      ...(masks && { masks }),
       single: { ...rules.single, ...single },
     },
   };
 }
 
-type JobNames = Pick<TransferCommand, 'target' | 'texture' | 'output' | 'report'> & { cage?: string | undefined };
+/** @throws {InputError} */
+function regionsOf(regions: unknown, inFolder: (path: string, isCage: boolean) => string): Region[] {
+  const isRegion = (one: unknown): one is Region =>
+    isObject(one) && typeof one['cage'] === 'string' && typeof one['texture'] === 'string';
+  if (!Array.isArray(regions) || !regions.every(isRegion))
+    throw new InputError('"regions" is not an array of {"cage": …, "texture": …}');
+  return regions.map(({ cage, texture }) => ({ cage: inFolder(cage, true), texture: inFolder(texture, false) }));
+}
+
+type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | 'regions' | 'output' | 'report'> & {
+  cage?: string | undefined;
+};
 
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
 function jobOf({ settled: _, ...given }: JobDefaults & JobNames & Settled): Job {
-  const { target, cage, output, report, texture } = given;
+  const { target, cage, output, report } = given;
   if (cage === undefined)
     throw new InputError('has no cage; give one with --cage, or as "cage" in the manifest').in(target);
   const fill = (path: string | undefined) =>
     path?.replaceAll('{name}', basename(target, extname(target))).replaceAll('{dir}', dirname(target));
   const command: TransferCommand = { ...given, cage, output: fill(output), report: fill(report) };
-  const read = [target, cage, texture].map((path) => {
-    const found = path === undefined ? undefined : statSync(path, { throwIfNoEntry: false });
-    return [found?.size, found?.mtimeMs];
-  });
+  const read = readBy(command)
+    .flatMap((path) => filesOf(tilePath(path, '*')))
+    .map((path) => {
+      const found = statSync(path, { throwIfNoEntry: false });
+      return [found?.size, found?.mtimeMs];
+    });
   const key = createHash('sha256')
     .update(JSON.stringify([command, read]))
     .digest('hex')
@@ -131,13 +153,21 @@ function jobOf({ settled: _, ...given }: JobDefaults & JobNames & Settled): Job 
   return { command, key };
 }
 
+/** The files that a job reads, as they are named. */
+const readBy = ({ target, cage, referenceCage, texture, rules, regions = [] }: TransferCommand): string[] =>
+  [
+    target,
+    cage,
+    referenceCage,
+    texture,
+    rules.masks?.never,
+    rules.masks?.always,
+    ...regions.flatMap((region) => [region.cage, region.texture]),
+  ].filter((path) => path !== undefined);
+
 /** @throws {InputError} if two jobs write the same file, or one writes what another reads. */
 function refuseClashes(jobs: Job[]): Job[] {
-  const read = new Set(
-    jobs.flatMap(({ command: { target, cage, texture } }) =>
-      [target, cage, texture].flatMap((path) => (path === undefined ? [] : [placeOf(path)])),
-    ),
-  );
+  const read = new Set(jobs.flatMap(({ command }) => readBy(command).map((path) => placeOf(path))));
   const written = new Map<string, string>();
   for (const { command, error } of jobs) {
     for (const path of error === undefined ? [command.output, command.report] : []) {

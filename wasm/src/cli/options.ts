@@ -23,9 +23,9 @@ export interface Rules {
   keep: string[];
   /** The same for parts that are never painted. */
   exclude: string[];
-  masks?: MaskFiles;
   /** Those of both that may match nothing. */
   optional?: string[];
+  masks?: MaskFiles;
   /** The configuration file that some of it comes from. */
   config?: string;
 }

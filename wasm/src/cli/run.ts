@@ -10,6 +10,7 @@ import { CagecastError, init, type Masks, type TransferOptions, type TransferRes
 import { readImage } from './bake/images.js';
 import { makeCageFor } from './make-cage.js';
 import { quoted, type Rules, transferOptions } from './options.js';
+import { type UvBounds, withinBounds, withoutLacking } from './paint/cage-area.js';
 import type { Progress } from './progress.js';
 
 /** Two files, read and transferred. */
@@ -27,6 +28,10 @@ export interface Run {
 export interface Sources {
   target: string;
   cage: string;
+  /** The part of the cage's UVs that the texture covers; by default 0..1. */
+  uvBounds?: UvBounds | undefined;
+  /** A cage with the UVs of all triangles that count; others count as cut away. */
+  referenceCage?: string | undefined;
   rules: Rules;
   reading: ReadOptions;
 }
@@ -36,18 +41,23 @@ export const autoCage = 'auto';
 
 /**
  * Reads target and cage, or makes a cage, and runs the transfer.
+ * @param target  If it is read already.
  * @throws {InputError} that names the file at fault.
  */
 export async function run(
-  { target, cage: cagePath, rules, reading }: Sources,
+  sources: Sources,
   progress: Progress,
   models: Models = { cage: readModel },
+  target?: ReadModel,
 ): Promise<Run> {
-  const read = await readModel(target, reading, progress);
+  const { rules, reading } = sources;
+  const read = target ?? (await readModel(sources.target, reading, progress));
   const masks = await readMasks(read, rules, reading);
   const options = { ...optionsFor(read.file, read.extracted, rules), ...(masks && { masks }) };
-  const cage =
-    cagePath === autoCage ? await madeCage(read, progress) : withUvs(await models.cage(cagePath, reading, progress));
+  const cageOf = async (path: string) => withUvs(await models.cage(path, reading, progress));
+  const whole = sources.cage === autoCage ? await madeCage(read, progress) : await cageOf(sources.cage);
+  const reference = sources.referenceCage === undefined ? undefined : await cageOf(sources.referenceCage);
+  const cage = withinBounds(withoutLacking(whole, reference), sources.uvBounds);
   return transferred(read, cage, options, progress);
 }
 
@@ -96,10 +106,15 @@ export interface ReadModel {
   extracted: Extracted;
 }
 
-/** Reads a model. @throws {InputError} that names the file. */
-export async function readModel(path: string, reading: ReadOptions, progress: Progress): Promise<ReadModel> {
+/** Reads a model. @param bytes  Its content, if it is known already. @throws {InputError} that names the file. */
+export async function readModel(
+  path: string,
+  reading: ReadOptions,
+  progress: Progress,
+  bytes?: Uint8Array,
+): Promise<ReadModel> {
   progress.step(`reading ${path}`);
-  const file = await readGltf(path, reading);
+  const file = await readGltf(path, reading, bytes);
   return { file, extracted: usable(file, extract(file)) };
 }
 

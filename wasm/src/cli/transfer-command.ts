@@ -1,17 +1,17 @@
-import { basename } from 'node:path';
+import { basename, dirname, join } from 'node:path';
+import { dracoOf, meshoptView } from '../gltf/check.js';
 import { placeOf } from '../gltf/extract.js';
-import { readBytes } from '../gltf/files.js';
 import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
-import type { ReadLimits } from '../gltf/limits.js';
-import { diagonal, type Paint, paintOf, zoneAttribute } from '../gltf/overlay.js';
+import { diagonal, zoneAttribute } from '../gltf/overlay.js';
 import { type Added, writeTransfer } from '../gltf/write.js';
 import { type CutTarget, cutBorders } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
-import { writeFiles } from './output.js';
+import { placeOf as fileOf, writeFiles } from './output.js';
+import { isTiled, readPaint, readTiles } from './paint/read-paint.js';
 import type { Progress } from './progress.js';
-import { inFile, type Models, type Run, run, type Sources } from './run.js';
+import { inFile, type Models, type Run, readModel, run, type Sources } from './run.js';
 import { integer, percent, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
@@ -24,6 +24,14 @@ export interface TransferCommand extends Sources {
   borders: 'triangle' | 'cut';
   /** How the geometry of the output is compressed. */
   compress: Form;
+  /** Further cages with textures: each paints only what none before it does. */
+  regions?: readonly Region[] | undefined;
+}
+
+/** A further cage, and the texture that was drawn for it. */
+export interface Region {
+  cage: string;
+  texture: string;
 }
 
 /**
@@ -37,28 +45,122 @@ export async function transferCommand(
   progress: Progress,
   models?: Models,
 ): Promise<{ text: string; report: Report; done: Run }> {
-  const paint = command.texture === undefined ? undefined : await readPaint(command.texture, command.reading.limits);
-  const done = await run(command, progress, models);
-  let added: Added[] | undefined;
-  let cut: CutTarget | undefined;
-  const files: { path: string; data: Uint8Array | string }[] = [];
-  if (command.output !== undefined) {
-    if (command.borders === 'cut') cut = cutTarget(done, progress);
-    progress.step(`writing ${command.output}`);
-    const written = await writeTransfer(done.targetFile, done.target, done.result, {
-      paint,
-      cut,
-      form: command.compress,
-    }).catch((error: unknown) => {
-      throw error instanceof InputError ? error.in(command.target) : error;
+  const { output, regions = [] } = command;
+  const first = await transferRegion(command, command.texture, progress, { models, isLast: regions.length === 0 });
+  const report = makeReport(command, first.done, output === undefined ? undefined : first.written?.added, first.cut);
+  let last = first;
+  for (const [r, { cage, texture }] of regions.entries()) {
+    const { uvBounds: _, referenceCage: __, ...same } = command;
+    last = await transferRegion({ ...same, cage }, texture, progress, {
+      models,
+      isLast: r === regions.length - 1,
+      before: { painted: last.painted, bytes: last.written!.data, form: finalForm(command, first.done) },
+      zones: `${zoneAttribute}_${r + 1}`,
     });
-    added = written.added;
-    files.push({ path: command.output, data: written.glb });
+    report.regions.push(regionReport({ cage, texture, output }, last));
   }
-  const report = makeReport(command, done, added, cut);
+  const files: { path: string; data: Uint8Array | string }[] = [];
+  if (output !== undefined) {
+    const { data, beside } = last.written!;
+    const others = beside.map(({ name, data }) => ({ path: join(dirname(output), name), data }));
+    refuseInputs(command, first.done, others);
+    files.push({ path: output, data }, ...others);
+  }
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
   writeFiles(files);
-  return { text: summary(command, report), report, done };
+  return { text: summary(command, report), report, done: first.done };
+}
+
+/** What a region's transfer is given besides its files. */
+interface RegionContext {
+  models: Models | undefined;
+  /** Whether what it writes is the output. */
+  isLast: boolean;
+  /** What earlier regions made of the target: 1 per triangle that they paint, the bytes of a GLB, and the form of the output. */
+  before?: { painted: Uint8Array; bytes: Uint8Array; form: Form };
+  /** The name of the attribute with its zones. */
+  zones?: string;
+}
+
+/** What a transfer came to. */
+interface DoneRegion {
+  done: Run;
+  cut: CutTarget | undefined;
+  /** 1 per triangle of what was written that this or an earlier region paints. */
+  painted: Uint8Array;
+  /** How many of them an earlier region paints. */
+  before: number;
+  written: Awaited<ReturnType<typeof writeTransfer>> | undefined;
+  zones: string;
+}
+
+/** Runs the transfer of a region. Triangles that an earlier one paints are not painted again. */
+async function transferRegion(
+  command: TransferCommand,
+  texture: string | undefined,
+  progress: Progress,
+  { models, isLast, before, zones = zoneAttribute }: RegionContext,
+): Promise<DoneRegion> {
+  const { target, output, reading, uvBounds } = command;
+  const paint = texture === undefined || isTiled(texture) ? undefined : await readPaint(texture, reading.limits);
+  const model = before && (await readModel(target, reading, progress, before.bytes));
+  const done = await run(command, progress, models, model);
+  const cage = { file: done.cageFile, extracted: done.cage };
+  const tiles = texture !== undefined && isTiled(texture) ? await readTiles(texture, cage, reading.limits) : [];
+  const paints = paint ? [{ ...paint, ...(uvBounds && { area: 'bounded' as const }) }] : tiles;
+  const cut = output !== undefined && command.borders === 'cut' ? cutTarget(done, progress) : undefined;
+  const { cosmeticTriangles } = cut ?? done.result;
+  const painted = Uint8Array.from(cosmeticTriangles, (_, t) => before?.painted[cut ? cut.triangles[t]! : t] ?? 0);
+  const earlier = sumOf(painted);
+  const own = cosmeticTriangles.map((isCosmetic, t) => (painted[t] ? 0 : isCosmetic));
+  own.forEach((isPainted, t) => {
+    if (isPainted) painted[t] = 1;
+  });
+  if (output === undefined && isLast) return { done, cut, painted, before: earlier, written: undefined, zones };
+  progress.step(`writing ${output ?? target}`);
+  const finalOne = before?.form ?? command.compress;
+  const isText = isLast && output !== undefined && /\.gltf$/i.test(output);
+  const written = await writeTransfer(
+    done.targetFile,
+    done.target,
+    cut ? done.result : { ...done.result, cosmeticTriangles: own },
+    {
+      paints,
+      cut: cut && { ...cut, cosmeticTriangles: own },
+      // Draco changes the order of triangles, which says what is painted already.
+      form: isLast ? finalOne : compressionOf(done) === undefined ? 'keep' : 'none',
+      zones,
+      stem: isText ? basename(output).slice(0, -'.gltf'.length) : undefined,
+    },
+  ).catch((error: unknown) => {
+    throw error instanceof InputError ? error.in(target) : error;
+  });
+  return { done, cut, painted, before: earlier, written, zones };
+}
+
+/** How the geometry of a target is compressed. */
+function compressionOf({ targetFile: { json } }: Run): Form | undefined {
+  if (json.meshes?.some(({ primitives }) => primitives.some(dracoOf))) return 'draco';
+  return json.bufferViews?.some(meshoptView) ? 'meshopt' : undefined;
+}
+
+/** The form of an output that several regions are written to: as the target was, if it is to be kept. */
+const finalForm = ({ compress }: TransferCommand, first: Run): Form =>
+  compress === 'keep' ? (compressionOf(first) ?? 'keep') : compress;
+
+/** @throws {InputError} if a file beside the output would overwrite one that is read. */
+function refuseInputs(
+  { target, cage, texture }: TransferCommand,
+  { targetFile }: Run,
+  files: { path: string }[],
+): void {
+  const { buffers = [], images = [] } = targetFile.json;
+  const uris = [...buffers, ...images].flatMap(({ uri }) => (uri === undefined || uri.startsWith('data:') ? [] : uri));
+  const beside = uris.map((uri) => join(dirname(target), decodeURIComponent(uri)));
+  const read = [target, cage, ...(texture === undefined ? [] : [texture]), ...beside].map((path) => fileOf(path));
+  const clash = files.find(({ path }) => read.includes(fileOf(path)));
+  if (clash)
+    throw new InputError('would be overwritten, but is read by this command; choose another output').in(clash.path);
 }
 
 /** Cuts the target. @throws {InputError} that names the file and the element at fault. */
@@ -68,14 +170,6 @@ function cutTarget(done: Run, progress: Progress): CutTarget {
     return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options);
   } catch (error) {
     throw inFile(error, done);
-  }
-}
-
-async function readPaint(path: string, limits: ReadLimits): Promise<Paint> {
-  try {
-    return paintOf(await readBytes(path, limits), basename(path), ['image/png', 'image/jpeg', 'image/webp']);
-  } catch (error) {
-    throw error instanceof InputError ? error.in(path) : error;
   }
 }
 
@@ -129,6 +223,16 @@ export interface Report {
     splitVertices: number | null;
     cutTriangles: number | null;
   }[];
+  /** Further cages with textures. All other fields are about the first cage. `triangles.cosmetic` are those that no cage before paints. */
+  regions: {
+    cage: string;
+    texture: string;
+    /** The attributes that were added: UVs and zones; `null` if no output was written. */
+    uvSet: string | null;
+    zones: string;
+    counts: PerZone;
+    triangles: { total: number; cosmetic: number };
+  }[];
   /** Milliseconds of CPU time. */
   timings: Run['result']['timings'];
   peakBytes: number;
@@ -136,7 +240,7 @@ export interface Report {
 
 const trianglesOf = (cosmetic: Uint8Array): Report['triangles'] => ({
   total: cosmetic.length,
-  cosmetic: cosmetic.reduce((sum, one) => sum + one, 0),
+  cosmetic: sumOf(cosmetic),
 });
 
 function makeReport(
@@ -200,14 +304,32 @@ function makeReport(
       splitVertices: added?.[p]?.splitVertices ?? null,
       cutTriangles: added?.[p]?.cutTriangles ?? null,
     })),
+    regions: [],
     timings: result.timings,
     peakBytes: result.peakBytes,
   };
 }
 
+function regionReport(
+  { cage, texture, output }: Region & Pick<TransferCommand, 'output'>,
+  { done, painted, before, written, zones }: DoneRegion,
+): Report['regions'][number] {
+  const sets = [...new Set(output === undefined ? [] : written?.added.map(({ uvSet }) => uvSet))];
+  return {
+    cage,
+    texture,
+    uvSet: sets.length > 0 ? sets.join(', ') : null,
+    zones,
+    counts: perZone(done.result.zones),
+    triangles: { total: painted.length, cosmetic: sumOf(painted) - before },
+  };
+}
+
+const sumOf = (flags: Uint8Array): number => flags.reduce((sum, one) => sum + one, 0);
+
 function summary(
   command: TransferCommand,
-  { target, counts, areas, triangles, cut, segments, parts, timings, output }: Report,
+  { target, counts, areas, triangles, cut, segments, parts, regions, timings, output }: Report,
 ): string {
   const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const rows = [
@@ -224,6 +346,10 @@ function summary(
     output === null
       ? ''
       : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
+    ...regions.map(
+      ({ cage, texture, triangles: { cosmetic, total } }) =>
+        `${cage}: ${integer(cosmetic)} of ${integer(total)} triangles more may be painted, by ${texture}`,
+    ),
     command.report === undefined ? '' : `wrote ${command.report}`,
     configLine(command.rules.config),
     output === null && command.report === undefined

@@ -1,8 +1,16 @@
-import type { Document, Mesh as DocumentMesh, ExtensionProperty, Node, Primitive, Skin } from '@gltf-transform/core';
+import type {
+  Accessor,
+  Document,
+  Mesh as DocumentMesh,
+  ExtensionProperty,
+  Node,
+  Primitive,
+  Skin,
+} from '@gltf-transform/core';
 import type { Mesh } from '../index.js';
 import { skinMatrix, usedJoints } from '../parts/skin.js';
 import { InputError } from './input-error.js';
-import { instancing, isInstanced } from './instancing.js';
+import { firstInstance, instancing } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
@@ -74,6 +82,11 @@ interface KHRTransform extends ExtensionProperty {
   getTexCoord(): number | null;
 }
 
+/** The other one. */
+interface InstancedMesh extends ExtensionProperty {
+  getAttribute(semantic: string): Accessor | null;
+}
+
 function listParts(document: Document): DocumentPart[] {
   const root = document.getRoot();
   const meshNumbers = new Map(root.listMeshes().map((mesh, m) => [mesh, m]));
@@ -83,14 +96,18 @@ function listParts(document: Document): DocumentPart[] {
   const stack = roots.map((node) => ({ node, parent: identity })).reverse();
   for (let next = stack.pop(); next; next = stack.pop()) {
     const { node, parent } = next;
-    const matrix = multiply(
+    let matrix = multiply(
       parent,
       localMatrix({ translation: node.getTranslation(), rotation: node.getRotation(), scale: node.getScale() }),
     );
     for (const child of node.listChildren().reverse()) stack.push({ node: child, parent: matrix });
     const [mesh, skin] = [node.getMesh(), node.getSkin()];
-    if (mesh && node.getExtension(instancing))
-      throw new InputError(`"${node.getName() || mesh.getName()}" ${isInstanced}`);
+    const instances = node.getExtension(instancing) as InstancedMesh | null;
+    if (mesh && instances)
+      matrix = multiply(
+        matrix,
+        firstInstance(`"${node.getName() || mesh.getName()}"`, (semantic) => instances.getAttribute(semantic)),
+      );
     mesh?.listPrimitives().forEach((primitive, p) => {
       const place = `meshes[${meshNumbers.get(mesh)}].primitives[${p}]`;
       const position = primitive.getAttribute('POSITION');

@@ -1,8 +1,9 @@
 import type { Accessor, GLTF } from '@gltf-transform/core';
+import { show } from '../api/error.js';
 import type { Mesh } from '../api/mesh.js';
 import { skinMatrix, usedJoints } from '../parts/skin.js';
 import { InputError } from './input-error.js';
-import { instancing, isInstanced } from './instancing.js';
+import { firstInstance, instancing } from './instancing.js';
 import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
 import { isOverlay } from './overlay.js';
 import {
@@ -72,10 +73,11 @@ function listParts(file: GltfFile): Part[] {
   const stack = [...roots(file.json)].reverse();
   for (let node = stack.pop(); node !== undefined; node = stack.pop()) {
     const nodeDef = nodes[node]!;
-    const matrix = placeOf[node]!;
+    let matrix = placeOf[node]!;
     for (const child of [...(nodeDef.children ?? [])].reverse()) stack.push(child);
     if (nodeDef.mesh === undefined) continue;
-    if (nodeDef.extensions?.[instancing] !== undefined) throw new InputError(`nodes[${node}] ${isInstanced}`);
+    const instances = nodeDef.extensions?.[instancing] as { attributes?: Record<string, unknown> } | undefined;
+    if (instances !== undefined) matrix = multiply(matrix, instanceOf(file, `nodes[${node}]`, instances.attributes));
     const meshDef = meshes[nodeDef.mesh]!;
     meshDef.primitives.forEach((primitive, p) => {
       if (isOverlay(primitive.extras)) return;
@@ -116,6 +118,20 @@ function listParts(file: GltfFile): Part[] {
     });
   }
   return parts;
+}
+
+/** The place of the first instance of a node. */
+function instanceOf(file: GltfFile, place: string, attributes: Record<string, unknown> = {}): Matrix {
+  const accessors = file.geometry.getRoot().listAccessors();
+  return firstInstance(place, (semantic) => {
+    const number = attributes[semantic];
+    if (number === undefined) return undefined;
+    const accessor = Number.isInteger(number) ? accessors[number as number] : undefined;
+    if (accessor) return accessor;
+    throw new InputError(
+      `${place}: ${semantic} of ${instancing} is ${show(number)}, not one of ${accessors.length} accessors`,
+    );
+  });
 }
 
 /** Where a skin holds a primitive. */

@@ -5,12 +5,21 @@ import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
 import { type ReadOptions, readUri } from './files.js';
 import { imageType } from './image.js';
 import { InputError } from './input-error.js';
+import { type Contents, imageFile, type NamedFile, packGlb, packGltf, whole } from './output/pack.js';
+import { subtract } from './output/ranges.js';
+import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
 import type { GltfFile } from './read.js';
 import { drop, eachAccessor, eachView, numbersOf } from './references.js';
 
 const arrayBuffer = 34962;
 const elementArrayBuffer = 34963;
+const clampToEdge = 33071;
+/** The extensions by which textures have images that are neither PNG nor JPEG. */
+const imageExtensions: Readonly<Record<string, string>> = {
+  'image/webp': 'EXT_texture_webp',
+  'image/ktx2': 'KHR_texture_basisu',
+};
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
 export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
@@ -45,9 +54,6 @@ function align(values: AttributeArray, size: number): { aligned: AttributeArray;
 }
 
 const bytesOf = (values: AttributeArray) => new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
-
-/** The next multiple of four. */
-const whole = (length: number): number => Math.ceil(length / 4) * 4;
 
 /**
  * Writes a GLB that has everything of a glTF file, with additions, and without what they replace.
@@ -242,13 +248,20 @@ export class GlbWriter {
     return this.#stored.get(this.json.accessors![accessor]!);
   }
 
-  /** Adds a texture of a PNG, JPEG or WebP file's bytes. @returns the number of the texture. */
-  addTexture(image: Uint8Array, mimeType: string, name: string): number {
+  /**
+   * Adds a texture of an image file's bytes.
+   * @param isClamped  Whether its border goes on outside of 0..1, instead of the whole texture once more.
+   * @returns the number of the texture.
+   */
+  addTexture({ bytes, mimeType, name }: Paint, isClamped = false): number {
     const { json } = this;
-    const source = (json.images ??= []).push({ bufferView: this.addView(image), mimeType, name }) - 1;
-    if (mimeType !== 'image/webp') return (json.textures ??= []).push({ source, name }) - 1;
-    this.needs('EXT_texture_webp', true);
-    return (json.textures ??= []).push({ name, extensions: { EXT_texture_webp: { source } } }) - 1;
+    const source = (json.images ??= []).push({ bufferView: this.addView(bytes), mimeType, name }) - 1;
+    const sampler = isClamped ? (json.samplers ??= []).push({ wrapS: clampToEdge, wrapT: clampToEdge }) - 1 : undefined;
+    const texture = { name, ...(sampler !== undefined && { sampler }) };
+    const extension = imageExtensions[mimeType];
+    if (extension === undefined) return (json.textures ??= []).push({ source, ...texture }) - 1;
+    this.needs(extension, true);
+    return (json.textures ??= []).push({ ...texture, extensions: { [extension]: { source } } }) - 1;
   }
 
   /** Lists an extension as one that the file needs, or does not list it. */
@@ -334,6 +347,29 @@ export class GlbWriter {
 
   /** The bytes of the GLB. */
   finish(): Uint8Array {
+    return packGlb(this.#contents([]));
+  }
+
+  /** The text of a glTF, and what belongs beside it. @param stem  How its file is named, without the ending. */
+  finishText(stem: string): { text: Uint8Array; beside: NamedFile[] } {
+    return packGltf(this.#contents(this.#takeImages(stem)), stem);
+  }
+
+  /** Takes images out of the buffer, which get files of their own. */
+  #takeImages(stem: string): Contents['images'] {
+    return (this.json.images ?? []).flatMap((image, i) => {
+      const view = image.bufferView === undefined ? undefined : this.json.bufferViews![image.bufferView]!;
+      if (view === undefined) return [];
+      const { byteOffset = 0, byteLength } = view;
+      const bytes = this.#added.get(view) ?? this.#bytes.subarray(byteOffset, byteOffset + byteLength);
+      const name = imageFile(stem, i, image.mimeType);
+      delete image.bufferView;
+      image.uri = encodeURIComponent(name);
+      return [{ name, bytes }];
+    });
+  }
+
+  #contents(images: Contents['images']): Contents {
     const { json } = this;
     this.#splitViews();
     const dropped = this.#dropUnused();
@@ -352,7 +388,7 @@ export class GlbWriter {
     else json.buffers!.shift();
     for (const name of ['accessors', 'bufferViews', 'buffers'] as const)
       if (json[name]?.length === 0) delete json[name];
-    return packGlb(json, chunks);
+    return { json, chunks, images };
   }
 
   /** The bytes of the file without those of some views; moves the others to where their bytes are then. */
@@ -384,53 +420,4 @@ export class GlbWriter {
     }
     return chunks;
   }
-}
-
-/** What is in some ranges but not in others, in order. */
-function subtract(ranges: readonly [number, number][], others: readonly [number, number][]): [number, number][] {
-  const marks = [
-    ...ranges.flatMap(([first, end]) => [
-      { at: first, by: 1, of: 0 },
-      { at: end, by: -1, of: 0 },
-    ]),
-    ...others.flatMap(([first, end]) => [
-      { at: first, by: 1, of: 1 },
-      { at: end, by: -1, of: 1 },
-    ]),
-  ].sort((a, b) => a.at - b.at);
-  const depth = [0, 0];
-  const found: [number, number][] = [];
-  for (const [i, { at, by, of }] of marks.entries()) {
-    depth[of]! += by;
-    const end = marks[i + 1]?.at ?? at;
-    if (end === at || depth[0] === 0 || depth[1]! > 0) continue;
-    const last = found.at(-1);
-    if (last?.[1] === at) last[1] = end;
-    else found.push([at, end]);
-  }
-  return found;
-}
-
-/** A GLB of a JSON chunk and a binary one, whose bytes are a multiple of four. */
-function packGlb(json: GLTF.IGLTF, chunks: readonly Uint8Array[]): Uint8Array {
-  const binLength = chunks.reduce((sum, { byteLength }) => sum + byteLength, 0);
-  const text = new TextEncoder().encode(JSON.stringify(json));
-  const textLength = whole(text.byteLength);
-  const total = 12 + 8 + textLength + (binLength > 0 ? 8 + binLength : 0);
-  const out = new Uint8Array(total);
-  const view = new DataView(out.buffer);
-  const words = [0x46546c67, 2, total, textLength, 0x4e4f534a]; // "glTF", its version, "JSON"
-  words.forEach((word, i) => view.setUint32(4 * i, word, true));
-  out.set(text, 20);
-  out.fill(0x20, 20 + text.byteLength, 20 + textLength);
-  if (binLength === 0) return out;
-  let at = 20 + textLength;
-  view.setUint32(at, binLength, true);
-  view.setUint32(at + 4, 0x004e4942, true); // "BIN\0"
-  at += 8;
-  for (const chunk of chunks) {
-    out.set(chunk, at);
-    at += chunk.byteLength;
-  }
-  return out;
 }

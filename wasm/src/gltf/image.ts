@@ -8,7 +8,7 @@ export function imageType(bytes: Uint8Array): 'image/png' | 'image/jpeg' | 'imag
   return undefined;
 }
 
-/** Whether a PNG, JPEG or WebP file is complete, up to its closing chunk or marker. */
+/** Whether an image file is complete, up to its closing chunk or marker, or its last level. */
 export function imageIsWhole(bytes: Uint8Array): boolean {
   if (imageType(bytes) === 'image/png') {
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -19,7 +19,32 @@ export function imageIsWhole(bytes: Uint8Array): boolean {
   }
   if (imageType(bytes) === 'image/webp')
     return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength).getUint32(4, true) + 8 <= bytes.byteLength;
+  if (imageType(bytes) === 'image/ktx2') return ktx2IsWhole(bytes);
   // Cameras append data of their own after the end marker, so look for the last one.
   for (let at = bytes.byteLength - 2; at > 1; --at) if (bytes[at] === 0xff && bytes[at + 1] === 0xd9) return true;
   return false;
+}
+
+/** The bytes of a KTX2 file before the list of its levels, and those of an entry of the list. */
+const [ktx2Head, ktx2Level] = [80, 24];
+
+function ktx2IsWhole(bytes: Uint8Array): boolean {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  if (bytes.byteLength < ktx2Head) return false;
+  const levels = Math.max(1, view.getUint32(40, true));
+  if (bytes.byteLength < ktx2Head + levels * ktx2Level) return false;
+  for (let at = ktx2Head; at < ktx2Head + levels * ktx2Level; at += ktx2Level)
+    if (view.getBigUint64(at, true) + view.getBigUint64(at + 8, true) > bytes.byteLength) return false;
+  return true;
+}
+
+/** Why glTF cannot hold a whole KTX2 file, if so: it has to be one picture by Basis Universal, of whole blocks. */
+export function ktx2Problem(bytes: Uint8Array): string | undefined {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const [format, , width, height, depth, layers, faces] = [0, 1, 2, 3, 4, 5, 6].map((n) =>
+    view.getUint32(12 + 4 * n, true),
+  );
+  if (format !== 0) return `vkFormat is ${format}, not 0 (Basis Universal)`;
+  if (depth !== 0 || layers !== 0 || faces !== 1) return 'it is not a single picture';
+  return width! % 4 === 0 && height! % 4 === 0 ? undefined : `it has ${width} × ${height} pixels, not multiples of 4`;
 }

@@ -1,6 +1,26 @@
+import type { Accessor } from '@gltf-transform/core';
+import { InputError } from './input-error.js';
+import { localMatrix, type Matrix } from './matrix.js';
+
 /** The extension by which a node draws many instances of its mesh. */
 export const instancing = 'EXT_mesh_gpu_instancing';
 
-/** Error message for such a node: a vertex has one UV, but several positions. */
-export const isInstanced =
-  'is instanced, so its mesh is in many places at once; give each instance a node of its own first';
+/**
+ * The place of the first instance in the space of its node. A vertex has one UV for all instances, so the mesh is taken once, where
+ * this one is.
+ * @param attribute  The accessor of TRANSLATION, ROTATION or SCALE, if there is one.
+ * @throws {InputError} that begins with `place`, if there is no instance, or its place is not of finite numbers.
+ */
+export function firstInstance(place: string, attribute: (semantic: string) => Accessor | null | undefined): Matrix {
+  const read = (semantic: string, size: number): number[] | undefined => {
+    const accessor = attribute(semantic);
+    if (!accessor) return undefined;
+    if (!accessor.getArray() || accessor.getCount() === 0) throw new InputError(`${place} has no instance`);
+    const value = accessor.getElement(0, []);
+    if (accessor.getElementSize() !== size || !value.every(Number.isFinite))
+      throw new InputError(`${place}: ${semantic} of ${instancing} is not of ${size} finite numbers`);
+    return value;
+  };
+  const [translation, rotation, scale] = [read('TRANSLATION', 3), read('ROTATION', 4), read('SCALE', 3)];
+  return localMatrix({ ...(translation && { translation }), ...(rotation && { rotation }), ...(scale && { scale }) });
+}

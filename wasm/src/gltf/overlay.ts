@@ -1,4 +1,4 @@
-import { imageIsWhole, imageType } from './image.js';
+import { imageIsWhole, imageType, ktx2Problem } from './image.js';
 import { InputError } from './input-error.js';
 
 /** The attribute with the `Zone` of each vertex, a byte: 0 may be painted, other values are Non-Cosmetic Zones. */
@@ -13,14 +13,24 @@ export const overlayMark = { cagecastOverlay: true } as const;
 export const isOverlay = (extras: object | undefined): boolean =>
   (extras as Partial<typeof overlayMark> | undefined)?.cagecastOverlay === true;
 
-/** The texture to show: a PNG, JPEG or WebP file's bytes, in the cage's UVs. */
+/** The texture to show: an image file's bytes, in the cage's UVs. */
 export interface Paint {
   name: string;
   mimeType: string;
   bytes: Uint8Array;
+  /** Which triangles show it, by their UVs; by default all. */
+  area?: PaintArea | undefined;
 }
 
-const imageNames: Record<string, string> = { 'image/png': 'PNG', 'image/jpeg': 'JPEG', 'image/webp': 'WebP' };
+/** Where a texture is: in a tile of UDIM; or within 0..1 only, not repeated outside. */
+export type PaintArea = { tile: number } | 'bounded';
+
+const imageNames: Record<string, string> = {
+  'image/png': 'PNG',
+  'image/jpeg': 'JPEG',
+  'image/webp': 'WebP',
+  'image/ktx2': 'KTX2',
+};
 
 /**
  * Checks an image and finds its type.
@@ -42,6 +52,8 @@ export function paintOf(
     );
   }
   if (!imageIsWhole(bytes)) throw new InputError(`is truncated: the ${imageNames[mimeType]} image is incomplete`);
+  const problem = mimeType === 'image/ktx2' ? ktx2Problem(bytes) : undefined;
+  if (problem !== undefined) throw new InputError(`is a KTX2 image that glTF cannot hold: ${problem}`);
   return { name, mimeType, bytes };
 }
 
@@ -50,6 +62,23 @@ export function freeUvSet(has: (semantic: string) => boolean): string {
   let set = 0;
   while (has(`TEXCOORD_${set}`)) ++set;
   return `TEXCOORD_${set}`;
+}
+
+/** The tile of UDIM at a UV: 1001 at 0..1, 1002 to its right, 1011 above. In glTF, v grows downwards. */
+export const tileAt = (u: number, v: number): number => 1001 + Math.floor(u) + 10 * Math.floor(1 - v);
+
+/** The corners of those triangles that show a texture. @param uvs  2 per vertex. */
+export function cornersIn(area: PaintArea | undefined, corners: Uint32Array, uvs: Float32Array): Uint32Array {
+  if (area === undefined) return corners;
+  const shows = (a: number, b: number, c: number): boolean => {
+    const [u, v] = [0, 1].map((k) => [uvs[2 * a + k]!, uvs[2 * b + k]!, uvs[2 * c + k]!]) as [number[], number[]];
+    if (area === 'bounded') return [u, v].every((of) => Math.max(...of) > 0 && Math.min(...of) < 1);
+    return tileAt((u[0]! + u[1]! + u[2]!) / 3, (v[0]! + v[1]! + v[2]!) / 3) === area.tile;
+  };
+  return corners.filter((_, i) => {
+    const first = i - (i % 3);
+    return shows(corners[first]!, corners[first + 1]!, corners[first + 2]!);
+  });
 }
 
 /** The corners of those triangles that may be painted; `cosmetic` is 1 per triangle. */

@@ -7,7 +7,9 @@ import { dracoOf } from './check.js';
 import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
 import type { Extracted, Part } from './extract.js';
 import { type Form, GlbWriter } from './glb-writer.js';
+import type { NamedFile } from './output/pack.js';
 import {
+  cornersIn,
   cosmeticCorners,
   type Finish,
   freeUvSet,
@@ -33,26 +35,39 @@ export interface Added {
   cutTriangles: number;
 }
 
+/** How a target is written. */
+export interface Writing {
+  /** Textures, each on its own triangles. Default: none */
+  paints?: readonly Paint[];
+  /** What `cutBorders` made from the result. */
+  cut?: CutTarget | undefined;
+  /** The form of the geometry. Default: that of the file */
+  form?: Form;
+  /** The name of the attribute with the zones. Default: `_NCZ` */
+  zones?: string;
+  /** Writes a glTF of text, whose file is named so, with files beside it. Default: a GLB */
+  stem?: string | undefined;
+}
+
 /**
  * Writes the target with the result of a transfer: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
  * primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
  * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices. New vertices
  * of a cut target are added in the same way, as blends of their sources. What is replaced is dropped from the file, and its
  * replacement has the same form: sparse, quantised, or compressed by meshopt or Draco. If several nodes share a mesh, each gets a copy.
- * @param more  The texture; the cut target that `cutBorders` made from `result`; the form of the geometry, that of the file by default.
- * @returns the bytes of a GLB, and what was added to each part.
+ * @returns the bytes of the file, what belongs beside it, and what was added to each part.
  * @throws {InputError} if an image beside the target cannot be read.
  */
 export async function writeTransfer(
   file: GltfFile,
   { mesh, parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  { paint, cut, form = 'keep' }: { paint?: Paint | undefined; cut?: CutTarget | undefined; form?: Form } = {},
-): Promise<{ glb: Uint8Array; added: Added[] }> {
+  { paints = [], cut, form = 'keep', zones = zoneAttribute, stem }: Writing = {},
+): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[] }> {
   const writer = await GlbWriter.from(file, form);
   const { json } = writer;
   const meshOfNode = separateMeshes(json, parts);
-  const painter = paint && new Painter(writer, paint);
+  const painters = paints.map((paint) => new Painter(writer, paint));
 
   const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map((part): Member => {
@@ -64,9 +79,12 @@ export async function writeTransfer(
   });
   const primitives = members.map(({ primitive }) => primitive);
   if (form === 'draco') markForDraco(primitives);
-  for (const group of groupsOf(members)) addToGroup(writer, file, group, { painter, form });
+  for (const group of groupsOf(members)) addToGroup(writer, file, group, { painters, form, zones });
   await packDraco(writer, file);
-  return { glb: writer.finish(), added: members.map(({ added }) => added) };
+  const added = members.map((member) => member.added);
+  if (stem === undefined) return { data: writer.finish(), beside: [], added };
+  const { text, beside } = writer.finishText(stem);
+  return { data: text, beside, added };
 }
 
 /** A part, and what it becomes. */
@@ -96,7 +114,7 @@ function addToGroup(
   writer: GlbWriter,
   file: GltfFile,
   members: readonly Member[],
-  { painter, form }: { painter: Painter | undefined; form: Form },
+  { painters, form, zones }: { painters: readonly Painter[]; form: Form; zones: string },
 ): void {
   const { primitive: first, part } = members[0]!;
   const shared = shareVertices(part.vertexCount, members);
@@ -113,16 +131,18 @@ function addToGroup(
   const uvs = storedUvs(shared.uvs);
   const attributes = {
     [uvSet]: writer.addAttribute(uvs, 2, uvs instanceof Uint16Array ? { normalized: true } : {}),
-    [zoneAttribute]: writer.addAttribute(shared.zones, 1, {}, true),
+    [zones]: writer.addAttribute(shared.zones, 1, {}, true),
   };
   let copies = shared.sources.length - part.vertexCount - shared.blends.sources.length / 3;
   members.forEach((member, m) => {
     const { primitive, primitives, cosmetic, added } = member;
     Object.assign(primitive.attributes, attributes);
-    const corners = cosmeticCorners(shared.indices[m]!, cosmetic);
-    if (painter && corners.length > 0) {
+    const all = cosmeticCorners(shared.indices[m]!, cosmetic);
+    for (const painter of painters) {
+      const corners = painter.cornersOf(all, shared.uvs);
+      if (corners.length === 0) continue;
       primitives.push(painter.overlay(primitive, corners, attributes[uvSet]!));
-      added.overlayTriangles = corners.length / 3;
+      added.overlayTriangles += corners.length / 3;
     }
     added.uvSet = uvSet;
     added.splitVertices = copies;
@@ -252,6 +272,11 @@ class Painter {
     this.#paint = paint;
   }
 
+  /** Those of some triangles that show the texture. */
+  cornersOf(corners: Uint32Array, uvs: Float32Array): Uint32Array {
+    return cornersIn(this.#paint.area, corners, uvs);
+  }
+
   /** A primitive of some triangles of `base`, with the same vertices, skin and morph targets. @param uvs  Its UVs' accessor. */
   overlay(base: GLTF.IMeshPrimitive, corners: Uint32Array, uvs: number): GLTF.IMeshPrimitive {
     const attributes: Record<string, number> = { TEXCOORD_0: uvs };
@@ -280,8 +305,7 @@ class Painter {
 
   /** The texture, which is only written if something shows it. */
   #shown(): number {
-    const { bytes, mimeType, name } = this.#paint;
-    this.#texture ??= this.#writer.addTexture(bytes, mimeType, name);
+    this.#texture ??= this.#writer.addTexture(this.#paint, this.#paint.area === 'bounded');
     return this.#texture;
   }
 

@@ -74,7 +74,7 @@ export class Configuration {
 function readConfig(path: string): ConfigFile {
   const shown = relative('.', path).startsWith('..') ? path : relative('.', path);
   try {
-    return { path: shown, ...parseConfig(readText(path)) };
+    return { path: shown, ...parseConfig(readText(path), dirname(path)) };
   } catch (error) {
     throw error instanceof InputError ? error.in(shown) : error;
   }
@@ -89,7 +89,7 @@ function readText(path: string): string {
   }
 }
 
-function parseConfig(text: string): Omit<ConfigFile, 'path'> {
+function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
   let all: unknown;
   try {
     all = JSON.parse(text);
@@ -101,12 +101,12 @@ function parseConfig(text: string): Omit<ConfigFile, 'path'> {
   const { characters = {} } = all;
   if (!isObject(characters)) throw new InputError('"characters" is not an object of patterns and settings');
   return {
-    common: settingsOf(all),
+    common: settingsOf(all, folder),
     characters: Object.entries(characters).map(([pattern, given]) => {
       try {
         if (!isObject(given)) throw new InputError('is not an object of settings');
         refuseUnknown(given, settingNames);
-        return { matches: matcher(pattern), settings: settingsOf(given) };
+        return { matches: matcher(pattern), settings: settingsOf(given, folder) };
       } catch (error) {
         throw error instanceof InputError ? error.in(`"characters" "${pattern}"`) : error;
       }

@@ -40,6 +40,8 @@ export function settler(
     const pick = <Value>(name: string, value: Value, other: Value | undefined) =>
       isGiven(name) ? value : (other ?? value);
     const { path, single } = found;
+    // Flags about masks replace all of those in the file.
+    const masks = own.masks ?? found.masks;
     const [keep, exclude] = [pick('keep', own.keep, found.keep), pick('exclude', own.exclude, found.exclude)];
     return {
       rules: {
@@ -48,6 +50,7 @@ export function settler(
         keep,
         exclude,
         ...(own.masks && { masks: own.masks }),
+        ...(masks && { masks }),
         config: path,
         // A file speaks of many models, and not each of them has every part.
         optional: [...(isGiven('keep') ? [] : keep), ...(isGiven('exclude') ? [] : exclude)],

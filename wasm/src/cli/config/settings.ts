@@ -1,9 +1,9 @@
+import { resolve } from 'node:path';
 import { optionFlags } from '../../generated/options.js';
 import { type Form, forms } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import type { Preset } from '../../index.js';
-import type { Single } from '../options.js';
-import { quoted } from '../options.js';
+import { type MaskFiles, quoted, type Single } from '../options.js';
 
 /** How paint may end: at existing edges of triangles, or where triangles are cut. */
 export const borderKinds = ['triangle', 'cut'] as const;
@@ -16,6 +16,7 @@ export interface Settings {
   compress?: Form;
   keep?: string[];
   exclude?: string[];
+  masks?: MaskFiles;
   /** Options of `transfer`. */
   single: Single;
 }
@@ -27,6 +28,9 @@ export const settingNames: readonly string[] = [
   'compress',
   'keep',
   'exclude',
+  'neverMask',
+  'alwaysMask',
+  'maskColors',
   ...optionFlags.map(({ name }) => name),
 ];
 
@@ -40,9 +44,10 @@ const shown = (value: unknown): string => quoted(JSON.stringify(value) ?? String
 
 /**
  * Checks settings that were read from JSON; other members of the object are ignored.
+ * @param folder  Where paths begin.
  * @throws {InputError} that names the member, its value and what it may be.
  */
-export function settingsOf(given: Readonly<Record<string, unknown>>): Settings {
+export function settingsOf(given: Readonly<Record<string, unknown>>, folder: string): Settings {
   const wrong = (name: string, text: string) => new InputError(`"${name}" is ${shown(given[name])}, not ${text}`);
   const settings: Record<string, unknown> = {};
   const single: Record<string, unknown> = {};
@@ -57,6 +62,15 @@ export function settingsOf(given: Readonly<Record<string, unknown>>): Settings {
     if (!(Array.isArray(list) && list.every((one) => typeof one === 'string'))) throw wrong(name, 'an array of names');
     settings[name] = list;
   }
+  const texts = ['neverMask', 'alwaysMask', 'maskColors'].map((name) => {
+    const text = given[name];
+    if (text !== undefined && typeof text !== 'string')
+      throw wrong(name, name === 'maskColors' ? 'the name of an attribute' : 'a path');
+    return text;
+  });
+  const [never, always] = texts.map((path) => (path === undefined ? undefined : resolve(folder, path)));
+  const colors = texts[2];
+  if (texts.some((text) => text !== undefined)) settings['masks'] = { never, always, colors };
   for (const { name, kind, range } of optionFlags) {
     const value = given[name];
     if (value === undefined) continue;

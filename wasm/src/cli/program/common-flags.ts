@@ -1,11 +1,12 @@
 import type { Command } from 'commander';
 import { addConfigFlags, type ConfigFlags } from '../config/config-flags.js';
 import { addRuleFlags, type RuleFlags } from '../options.js';
+import { addCageAreaFlags, type CageFlags } from '../paint/paint-flags.js';
 import { addPrintFlags, type PrintFlags } from '../print.js';
 import { addReadFlags, type ReadFlags } from '../read-flags.js';
 
 /** The flags of the commands that transfer to one target. */
-export interface CommonFlags extends RuleFlags, ConfigFlags, ReadFlags, PrintFlags {
+export interface CommonFlags extends RuleFlags, CageFlags, ConfigFlags, ReadFlags, PrintFlags {
   cage: string;
 }
 
@@ -15,13 +16,15 @@ export const addCommonFlags = (command: Command): Command =>
     addReadFlags(
       addConfigFlags(
         addRuleFlags(
-          command
-            .argument('<TARGET>', 'GLB, glTF or VRM that receives the texture')
-            .requiredOption(
-              '--cage <CAGE>',
-              'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one',
-            )
-            .allowExcessArguments(false),
+          addCageAreaFlags(
+            command
+              .argument('<TARGET>', 'GLB, glTF or VRM that receives the texture')
+              .requiredOption(
+                '--cage <CAGE>',
+                'GLB or glTF that the texture was drawn for; it must have UVs; auto makes one',
+              )
+              .allowExcessArguments(false),
+          ),
         ),
       ),
     ),

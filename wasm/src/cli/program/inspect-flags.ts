@@ -24,11 +24,19 @@ Examples:
   cagecast inspect head.glb --cage cage.glb --json`,
     )
     .action(async (target: string, flags: CommonFlags & { html?: string }, command: Command) => {
-      const { cage, html } = flags;
+      const { cage, uvBounds, referenceCage, html } = flags;
       if (flags.quiet) progress.silence();
-      refuseOverwriting(command, [target, cage], [html]);
+      refuseOverwriting(command, [target, cage, referenceCage], [html]);
       const found = await inspectCommand(
-        { target, cage, html, rules: settler(command, flags)(target).rules, reading: readingOf(flags) },
+        {
+          target,
+          cage,
+          uvBounds,
+          referenceCage,
+          html,
+          rules: settler(command, flags)(target).rules,
+          reading: readingOf(flags),
+        },
         progress,
       );
       progress.clear();

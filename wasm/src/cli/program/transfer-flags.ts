@@ -2,26 +2,28 @@ import { type Command, Option } from 'commander';
 import { forms } from '../../gltf/glb-writer.js';
 import { settler } from '../config/config-flags.js';
 import { borderKinds } from '../config/settings.js';
+import { addRegionFlag } from '../paint/paint-flags.js';
 import { print } from '../print.js';
 import type { Progress } from '../progress.js';
 import { readingOf } from '../read-flags.js';
 import { autoCage } from '../run.js';
-import { type TransferCommand, transferCommand } from '../transfer-command.js';
+import { type Region, type TransferCommand, transferCommand } from '../transfer-command.js';
 import { endingIn, refuseOverwriting, wrongUsage } from '../usage.js';
 import { addCommonFlags, type CommonFlags } from './common-flags.js';
 
 /** Adds the command that transfers to a file. */
 export function addTransferCommand(program: Command, progress: Progress): void {
-  addCommonFlags(program.command('transfer'))
+  addRegionFlag(addCommonFlags(program.command('transfer')))
     .description('write TARGET with a new UV set and the attribute _NCZ, otherwise unchanged')
     .option(
       '--texture <PAINT>',
-      "PNG, JPEG or WebP in the cage's UV space, shown as an overlay on the triangles that may be painted",
+      "PNG, JPEG, WebP or KTX2 in the cage's UV space, shown as an overlay on the triangles that may be painted; <UDIM> in its name stands for the number of each tile",
     )
     .addOption(
-      new Option('-o, --output <OUT.glb>', 'where to write the GLB or VRM; - for the standard output').argParser(
-        endingIn('.glb', '.vrm'),
-      ),
+      new Option(
+        '-o, --output <OUT.glb>',
+        'where to write the GLB, VRM, or glTF with its files beside it; - for the standard output',
+      ).argParser(endingIn('.glb', '.vrm', '.gltf')),
     )
     .addOption(
       new Option(
@@ -47,29 +49,51 @@ _NCZ is 0 for a vertex that may be painted. Other values say why it must not be 
 If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
 existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
 the order of vertices.
+Each --region adds UVs and zones of its own (_NCZ_1, …) to the same vertices. --uv-bounds and --reference-cage are about
+--cage alone. With <UDIM> in the name of a texture, each tile of the cage's UVs has its own: 1001, 1002 to its right,
+1011 above. A glTF gets OUT.bin and OUT-image0.png, … beside it. A mesh that is drawn as many instances
+(EXT_mesh_gpu_instancing) is taken once, where its first instance is; all instances show the same paint.
 A file may be - for the standard input or output; if OUT is, the summary goes to the standard error.
 --cage auto makes a cage for TARGET on the way, as cagecast make does; for a file named auto, write ./auto.
 
 Examples:
   cagecast transfer head.glb --cage cage.glb --texture paint.png -o painted.glb
   cagecast transfer head.glb --cage cage.glb --threshold 0.3 --report report.json
-  cagecast transfer body.glb --cage cage.glb --keep skin --exclude 'eye*' -o painted.glb`,
+  cagecast transfer body.glb --cage cage.glb --keep skin --exclude 'eye*' -o painted.glb
+  cagecast transfer body.glb --cage face.glb --texture face.png --region arms.glb=arms.png -o painted.gltf
+  cagecast transfer body.glb --cage tiled.glb --texture 'skin.<UDIM>.png' -o painted.glb`,
     )
     .action(
       async (
         target: string,
-        flags: CommonFlags & Pick<TransferCommand, 'texture' | 'output' | 'report' | 'borders' | 'compress'>,
+        flags: CommonFlags &
+          Pick<TransferCommand, 'texture' | 'output' | 'report' | 'borders' | 'compress'> & { region: Region[] },
         command: Command,
       ) => {
-        const { cage, texture, output, report } = flags;
+        const { cage, texture, output, report, uvBounds, referenceCage, region: regions } = flags;
         if (flags.quiet) progress.silence();
         if (texture !== undefined && output === undefined)
           command.error('--texture needs -o OUT.glb, the file to add it to', { exitCode: wrongUsage });
+        if (regions.length > 0 && output === undefined)
+          command.error('--region needs -o OUT.glb, the file to add it to', { exitCode: wrongUsage });
         if (flags.borders === 'cut' && output === undefined)
           command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
-        refuseOverwriting(command, [target, cage === autoCage ? undefined : cage, texture], [output, report]);
+        const cages = [cage, ...regions.map((region) => region.cage)].filter((path) => path !== autoCage);
+        const textures = [texture, ...regions.map((region) => region.texture)];
+        refuseOverwriting(command, [target, referenceCage, ...cages, ...textures], [output, report]);
         const found = await transferCommand(
-          { target, cage, texture, output, report, ...settler(command, flags)(target), reading: readingOf(flags) },
+          {
+            target,
+            cage,
+            uvBounds,
+            referenceCage,
+            texture,
+            regions,
+            output,
+            report,
+            ...settler(command, flags)(target),
+            reading: readingOf(flags),
+          },
           progress,
         );
         progress.clear();

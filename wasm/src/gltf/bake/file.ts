@@ -110,7 +110,7 @@ export class FileModel implements BakeModel<number, number> {
     const before = json.textures![use.texture]!;
     const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
-    const number = writer.addTexture(png, 'image/png', name);
+    const number = writer.addTexture({ bytes: png, mimeType: 'image/png', name });
     const made = json.textures![number]!;
     if (before.sampler !== undefined) made.sampler = before.sampler;
     if (isOwn && this.#isOnlyFor(use.texture, materials, slot)) {

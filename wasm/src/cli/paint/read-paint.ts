@@ -1,0 +1,74 @@
+import { basename } from 'node:path';
+import { placeOf } from '../../gltf/extract.js';
+import { readBytes } from '../../gltf/files.js';
+import { InputError } from '../../gltf/input-error.js';
+import type { ReadLimits } from '../../gltf/limits.js';
+import { type Paint, paintOf, tileAt } from '../../gltf/overlay.js';
+import { quoted } from '../options.js';
+import type { ReadModel } from '../run.js';
+
+/** What stands for the number of a tile in the name of a texture. */
+const placeholder = '<UDIM>';
+
+/** Whether a path names a texture for each tile. */
+export const isTiled = (path: string): boolean => path.includes(placeholder);
+
+/** The path of a tile's texture; with `*` for the tile, a pattern for all. */
+export const tilePath = (path: string, tile: number | '*'): string => path.replaceAll(placeholder, String(tile));
+
+/** The types of images that a GLB can have as a texture. */
+const types = ['image/png', 'image/jpeg', 'image/webp', 'image/ktx2'];
+
+/** Reads a texture. @throws {InputError} that names the file. */
+export async function readPaint(path: string, limits: ReadLimits): Promise<Paint> {
+  try {
+    return paintOf(await readBytes(path, limits), basename(path), types);
+  } catch (error) {
+    throw error instanceof InputError ? error.in(path) : error;
+  }
+}
+
+/** Reads the texture of each tile that a cage uses. @throws {InputError} that names the file, or the cage's triangle. */
+export async function readTiles(path: string, cage: ReadModel, limits: ReadLimits): Promise<Paint[]> {
+  const tiles = tilesOf(cage);
+  return Promise.all(
+    tiles.map(async (tile): Promise<Paint> => {
+      const paint = await readPaint(tilePath(path, tile), limits).catch((error: unknown) => {
+        const text = `${cage.file.path} uses the ${tiles.length === 1 ? 'tile' : 'tiles'} ${tiles.join(', ')}`;
+        throw error instanceof InputError ? new InputError(`${error.message} (${text})`, { cause: error }) : error;
+      });
+      return { ...paint, area: { tile } };
+    }),
+  );
+}
+
+/** How far a UV may be beyond the border of its tile, by rounding. */
+const slack = 1e-3;
+
+/** The tiles of UDIM that a cage's UVs are in, in order. @throws {InputError} for a triangle that is not in one of them. */
+function tilesOf({ file, extracted: { mesh, parts } }: ReadModel): number[] {
+  const { indices } = mesh;
+  const uvs = mesh.uvs!;
+  const tiles = new Set<number>();
+  for (let t = 0; t < indices.length / 3; ++t) {
+    const corners = [...indices.subarray(3 * t, 3 * t + 3)].map((v) => [uvs[2 * v]!, uvs[2 * v + 1]!] as const);
+    const centre = [0, 1].map((k) => (corners[0]![k]! + corners[1]![k]! + corners[2]![k]!) / 3) as [number, number];
+    const [left, top] = [Math.floor(centre[0]), Math.floor(centre[1])];
+    const isInside = corners.every(
+      ([u, v]) => u >= left - slack && u <= left + 1 + slack && v >= top - slack && v <= top + 1 + slack,
+    );
+    if (isInside && left >= 0 && left < 10 && top <= 0) {
+      tiles.add(tileAt(...centre));
+      continue;
+    }
+    const part = parts.find(
+      ({ firstTriangle, triangleCount }) => t >= firstTriangle && t < firstTriangle + triangleCount,
+    );
+    const where = part ? `${placeOf(part)} (${quoted(part.name)}), ` : '';
+    const shown = corners.map(([u, v]) => `${Number(u.toFixed(3))}, ${Number(v.toFixed(3))}`).join('; ');
+    throw new InputError(
+      `${where}triangle ${t - (part?.firstTriangle ?? 0)} ${isInside ? 'is in no UDIM tile' : 'is in more than one UDIM tile'}: its UVs are ${shown}`,
+    ).in(file.path);
+  }
+  return [...tiles].sort((a, b) => a - b);
+}
