@@ -16,7 +16,7 @@ const load = (file) => new GLTFLoader().loadAsync(file);
 const [head, cage, paint] = await Promise.all([
   load('target.glb'),
   load('cage.glb'),
-  new TextureLoader().loadAsync('paint.png'),
+  new TextureLoader().loadAsync('paint-tiger.png'),
   init(),
 ]);
 paint.flipY = false; // textures of glTF begin at the top

@@ -45,6 +45,7 @@ const kEntries = {
   'three/gpu': 'three-gpu',
   'three/layers': 'three-layers',
   'three/painting': 'three-paint',
+  viewer: 'viewer',
   gltf: 'gltf',
   worker: 'worker',
   cages: 'cages',

@@ -1,0 +1,299 @@
+import assert from 'node:assert/strict';
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
+import type { Browser, Page } from 'playwright-core';
+import { PNG } from 'pngjs';
+import { build } from 'vite';
+import { validate } from '../js/glb.js';
+import { launchChromium } from '../support/chromium.js';
+import { hostTools, installPacked, run, serve } from './install.js';
+
+const user = installPacked();
+/** The examples, and the folder of models that lies beside each. */
+const built: Record<string, string> = {
+  three: 'lizard',
+  'react-three-fiber': 'lizard',
+  worker: 'lizard',
+  'web-component': 'lizard',
+  'three-vrm': '.',
+  'two-avatars': '.',
+};
+const policy =
+  "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self' blob:; img-src 'self' blob:";
+
+/** How many pixels have a colour as orange as the paints', which nothing else of the pictures has. */
+function orange(picture: Buffer): number {
+  const { data } = PNG.sync.read(picture);
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4)
+    if (data[at]! > 120 && data[at]! > 1.6 * data[at + 2]! && data[at]! > 1.15 * data[at + 1]!) ++count;
+  return count;
+}
+
+let browser: Browser;
+const sites: Awaited<ReturnType<typeof serve>>[] = [];
+
+/** Builds all examples at once, as `vite build` in each of them does. */
+async function buildExamples(): Promise<void> {
+  const sources = join(user, 'examples');
+  cpSync('examples', sources, {
+    recursive: true,
+    filter: (path) => !/node_modules|examples\/(assets|native|node)/.test(path),
+  });
+  mkdirSync(join(user, 'build'));
+  symlinkSync(resolve('build/assets'), join(user, 'build/assets'));
+  const peers: Record<string, string> = { three: 'node_modules', '@pixiv/three-vrm': 'node_modules' };
+  for (const name of ['react', 'react-dom', '@react-three/fiber']) peers[name] = hostTools;
+  for (const [name, from] of Object.entries(peers)) {
+    mkdirSync(join(user, 'node_modules', name, '..'), { recursive: true });
+    symlinkSync(resolve(from, name), join(user, 'node_modules', name));
+  }
+  run(process.execPath, ['make-avatar.js'], join(sources, 'three-vrm'));
+  await build({
+    root: sources,
+    configFile: false,
+    base: './',
+    logLevel: 'error',
+    publicDir: false,
+    resolve: { dedupe: ['three', 'react'] },
+    build: {
+      target: 'es2022',
+      modulePreload: { polyfill: false },
+      outDir: join(user, 'out'),
+      rolldownOptions: { input: Object.keys(built).map((name) => join(sources, name, 'index.html')) },
+    },
+  });
+  for (const [name, models] of Object.entries(built))
+    for (const file of readdirSync(join('build/assets', models)))
+      symlinkSync(resolve('build/assets', models, file), join(user, 'out', name, file));
+  // This one needs no build.
+  symlinkSync(join(user, 'node_modules'), join(sources, 'import-map/node_modules'));
+  symlinkSync(resolve('build/assets/lizard'), join(sources, 'import-map/models'));
+}
+
+before(async () => {
+  await buildExamples();
+  sites.push(
+    await serve(join(user, 'out'), { 'content-security-policy': policy }),
+    await serve(join(user, 'examples')),
+  );
+  browser = await launchChromium({ drawing: true });
+});
+after(async () => {
+  await browser?.close();
+  for (const { close } of sites) close();
+  rmSync(user, { recursive: true, force: true });
+});
+
+async function painted(page: Page, faults: string[]): Promise<void> {
+  for (const end = Date.now() + 60000; !/painted/.test(await page.title()) && faults.length === 0 && Date.now() < end; )
+    await setTimeout(50);
+  assert.deepEqual(faults, [], page.url());
+  assert.match(await page.title(), /^[1-9]\d* painted$/);
+}
+
+/** Opens an example and waits until it says that it has painted something. */
+async function open(address: string): Promise<{ page: Page; faults: string[] }> {
+  const page = await browser.newPage({ viewport: { width: 256, height: 256 } });
+  const faults: string[] = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  page.on('console', (message) => {
+    if (message.type() === 'error' && !/favicon|404/.test(message.text())) faults.push(message.text());
+  });
+  await page.goto(address);
+  await painted(page, faults);
+  return { page, faults };
+}
+
+/** Waits until what is drawn has enough of the paint. */
+async function seen(page: Page): Promise<void> {
+  let count = 0;
+  for (const end = Date.now() + 30000; count < 400 && Date.now() < end; ) count = orange(await page.screenshot());
+  assert.ok(count >= 400, `${count} pixels`);
+}
+
+describe('examples, from the packed package', () => {
+  test('have a package of their own, at most 60 lines, and a row in the README', () => {
+    const readme = readFileSync('examples/README.md', 'utf8');
+    for (const name of [...Object.keys(built), 'import-map']) {
+      const { dependencies, scripts } = JSON.parse(readFileSync(`examples/${name}/package.json`, 'utf8'));
+      assert.ok(dependencies.cagecast && scripts.start, name);
+      for (const file of readdirSync(`examples/${name}`).filter((one) => /^(main|index)\./.test(one)))
+        assert.ok(readFileSync(`examples/${name}/${file}`, 'utf8').split('\n').length <= 61, `${name}/${file}`);
+      assert.ok(readme.includes(`(${name})`), name);
+    }
+  });
+
+  for (const name of Object.keys(built).filter((one) => one !== 'web-component'))
+    test(`${name} shows the paint`, async () => {
+      const { page, faults } = await open(`${sites[0]!.origin}/${name}/index.html`);
+      await seen(page);
+      if (name === 'worker') {
+        // The second visit needs no cage.
+        let cages = 0;
+        page.on('request', (request) => (cages += Number(request.url().endsWith('cage.glb'))));
+        await page.reload();
+        await painted(page, faults);
+        assert.equal(cages, 0);
+      }
+      if (name === 'two-avatars') {
+        const blue = () =>
+          page.screenshot().then((picture) => {
+            const { data } = PNG.sync.read(picture);
+            const columns = [0, 0];
+            for (let at = 0; at < data.length; at += 4)
+              if (data[at + 2]! > 1.3 * data[at]!) columns[Math.floor(((at / 4) % 256) / 128)]! += 1;
+            return columns;
+          });
+        const [left = 0, right = 0] = await blue();
+        for (let x = 64; x < 128; x += 4) await page.mouse.move(x, 128);
+        let both = [0, 0];
+        const isDrawn = () => both[0]! > left + 20 && both[1]! > right + 20;
+        for (const end = Date.now() + 10000; !isDrawn() && Date.now() < end; ) both = await blue();
+        assert.ok(isDrawn(), `${left}, ${right}: ${both.join()}`);
+      }
+      assert.deepEqual(faults, []);
+      await page.close();
+    });
+
+  test('import-map shows the paint, as it is', async () => {
+    const { page } = await open(`${sites[1]!.origin}/import-map/index.html`);
+    await seen(page);
+    await page.close();
+  });
+});
+
+describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
+  let page: Page;
+  let faults: string[];
+  const warnings: string[] = [];
+  before(async () => {
+    ({ page, faults } = await open(`${sites[0]!.origin}/web-component/index.html`));
+    page.on('console', (message) => message.type() === 'warning' && warnings.push(message.text()));
+    await page.evaluate(`
+      globalThis.viewer = document.querySelector('cagecast-viewer');
+      globalThis.part = (selector) => viewer.shadowRoot.querySelector(selector);
+      globalThis.told = [];
+      globalThis.watch = () => { for (const type of ['load', 'error']) viewer.addEventListener(type, ({ detail }) => told.push(detail ? type + ' ' + detail.message : type)); };
+      globalThis.next = async () => { told.length = 0; while (told.length === 0) await new Promise((done) => setTimeout(done, 20)); return told[0]; };
+      globalThis.text = (blob) => new Promise((done) => { const reader = new FileReader(); reader.onload = () => done(reader.result.split(',')[1]); reader.readAsDataURL(blob); });
+      watch();`);
+  });
+  after(() => page?.close());
+  const bytesOf = async (script: string) => Buffer.from(await page.evaluate<string>(script), 'base64');
+  const picture = () => bytesOf('viewer.toBlob().then(text)');
+
+  test('shows the painted model and says whether the cage fits', async () => {
+    await seen(page);
+    assert.match(await page.innerText('[role=status]'), /^The cage is (good|usable)\.$/);
+    assert.ok(orange(await picture()) > 400);
+  });
+
+  test('has a role and a label, and nothing that axe-core complains about', async () => {
+    assert.deepEqual(
+      await page.evaluate('[part("canvas").getAttribute("role"), part("canvas").getAttribute("aria-label")]'),
+      ['img', 'The head of a lizard with the stripes of a tiger'],
+    );
+    await page.evaluate(readFileSync('node_modules/axe-core/axe.min.js', 'utf8'));
+    assert.deepEqual(await page.evaluate('axe.run().then(({ violations }) => violations.map(({ id }) => id))'), []);
+  });
+
+  test('is turned by keys, and goes back', async () => {
+    const before = await picture();
+    await page.evaluate('viewer.focus()');
+    for (const key of ['ArrowRight', 'ArrowUp', '+']) {
+      const last = await picture();
+      await page.keyboard.press(key);
+      assert.notDeepEqual(await picture(), last, key);
+    }
+    await page.keyboard.press('Home');
+    assert.deepEqual(await picture(), before);
+    await page.evaluate('viewer.setAttribute("camera-orbit", "90deg 80deg 150%")');
+    assert.notDeepEqual(await picture(), before);
+    await page.evaluate('viewer.removeAttribute("camera-orbit")');
+  });
+
+  test('exports a valid model with its paint', async () => {
+    const file = join(user, 'exported.glb');
+    writeFileSync(file, await bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))'));
+    assert.deepEqual(await validate(file), []);
+    assert.match(readFileSync(file, 'latin1'), /"images":\[/);
+  });
+
+  test('follows its attributes: opacity and paint without another transfer', async () => {
+    const before = await picture();
+    await page.evaluate('globalThis.steps = 0; viewer.addEventListener("progress", () => ++steps);');
+    await page.evaluate('viewer.setAttribute("opacity", "0")');
+    assert.ok(orange(await picture()) < orange(before) / 2);
+    await page.evaluate('viewer.removeAttribute("opacity")');
+    assert.deepEqual(await picture(), before);
+    await page.evaluate('viewer.setAttribute("paint", "paint-war-paint.png"); next()');
+    assert.notDeepEqual(await picture(), before);
+    await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
+    assert.deepEqual(await picture(), before);
+    assert.equal(await page.evaluate('steps'), 0);
+  });
+
+  test('shows what is wrong, by attribute and address; the last change wins', async () => {
+    const wrong: Record<string, [string, RegExp]> = {
+      target: ['missing.glb', /^error target: http.*missing\.glb: 404/],
+      cage: ['paint-tiger.png', /^error cage: http.*paint-tiger\.png cannot be read/],
+      paint: ['cage.glb', /^error paint: http.*cage\.glb is not a picture/],
+      feather: ['wide', /^error cagecast\/three: options\.feather is NaN/],
+    };
+    for (const [name, [value, message]] of Object.entries(wrong)) {
+      const before = await page.evaluate<string | null>(`viewer.getAttribute("${name}")`);
+      const said = await page.evaluate<string>(`viewer.setAttribute("${name}", "${value}"); next()`);
+      assert.match(said, message);
+      assert.equal(await page.evaluate('part("[role=alert]").textContent'), said.replace('error ', ''));
+      // What would fail is given up; only the last is loaded.
+      const told = await page.evaluate<string[]>(
+        `(async () => {
+          const was = ${JSON.stringify(before)};
+          viewer.setAttribute("${name}", "other-${value}");
+          await new Promise((done) => setTimeout(done));
+          was === null ? viewer.removeAttribute("${name}") : viewer.setAttribute("${name}", was);
+          await next();
+          await new Promise((done) => setTimeout(done, 100));
+          return told;
+        })()`,
+      );
+      assert.deepEqual(told, ['load'], name);
+      assert.ok(await page.isHidden('cagecast-viewer [role=alert]'));
+    }
+  });
+
+  test('frees its graphics when it leaves the page, and comes back', async () => {
+    const lost = await page.evaluate(
+      `(async () => {
+        const [canvas, place] = [part('canvas'), viewer.parentNode];
+        viewer.remove();
+        await new Promise((done) => setTimeout(done, 50));
+        const lost = canvas.getContext('webgl2').isContextLost();
+        for (let i = 0; i < 20; ++i) {
+          const other = document.createElement('cagecast-viewer');
+          other.setAttribute('target', 'target.glb');
+          place.append(other);
+          await new Promise((done) => setTimeout(done));
+          other.remove();
+          await new Promise((done) => setTimeout(done));
+        }
+        place.append(viewer);
+        await next();
+        return lost;
+      })()`,
+    );
+    assert.equal(lost, true);
+    assert.ok(orange(await picture()) > 400);
+    assert.deepEqual(
+      warnings.filter((text) => /too many/i.test(text)),
+      [],
+    );
+    assert.deepEqual(
+      faults.filter((text) => !/missing/.test(text)),
+      [],
+    );
+  });
+});

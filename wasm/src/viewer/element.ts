@@ -1,0 +1,304 @@
+import { MeshStandardMaterial, type Texture } from 'three';
+import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { init, type Preset } from '../index.js';
+import type { Inspection } from '../inspect/index.js';
+import {
+  type Applied,
+  type ApplyOptions,
+  applyTransfer,
+  applyTransferAsync,
+  deserialize,
+  extract,
+  serialize,
+} from '../three/index.js';
+import { disposeModel, loadModel, loadPaint } from './load.js';
+import { defaultOrbit, type Orbit, Stage } from './stage.js';
+
+/** The `detail` of the event `verdict`. */
+export type Check = Pick<Inspection, 'verdict' | 'findings'>;
+
+/** Attributes of which a change means another transfer. */
+const kOfTransfer = ['target', 'cage', 'preset', 'threshold', 'borders', 'feather'];
+
+const kStyle = `
+  :host { display: block; position: relative; width: 300px; height: 300px; }
+  :host([hidden]) { display: none; }
+  canvas { display: block; width: 100%; height: 100%; touch-action: none; }
+  canvas:focus-visible { outline: 2px solid Highlight; outline-offset: -2px; }
+  .poster, .error { position: absolute; inset: 0; width: 100%; height: 100%; box-sizing: border-box; object-fit: contain; }
+  .error { margin: 0; padding: 1em; overflow: auto; color: #7a0000; background: #fff; font: 14px/1.4 system-ui, sans-serif; }
+  [hidden] { display: none; }
+`;
+
+/** What is shown. */
+interface Shown {
+  gltf: GLTF;
+  applied: Applied | undefined;
+  paint: Texture | undefined;
+}
+
+/**
+ * `<cagecast-viewer>`. Attributes, all of which may change at any time; the last change wins:
+ *
+ * - `target`, `cage`: addresses of a glTF or GLB file each. Without a cage the target is shown bare.
+ * - `paint`: the address of a picture in the cage's UVs.
+ * - `opacity`, `feather`, `preset`, `threshold`, `borders`: as the options of `applyTransfer`.
+ * - `camera-orbit`: degrees from the front and from above, and the distance as a share of that which shows all: `20deg 80deg 100%`.
+ * - `alt`: what assistive technology says. `poster`: the address of a picture to show until the model is there.
+ * - `check`: inspects the cage too, which takes about twice the time of a transfer, on the page's thread.
+ *
+ * Events: `progress` (`detail: { share, stage }`), `load`, `verdict` (`detail`: `Check`), `error` (`detail`: the `Error`, which the
+ * element shows too). Arrow keys turn the model, + and - zoom, Home goes back. When it is removed from the page, it frees all it has.
+ *
+ * In a page with a Content-Security-Policy: `script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self' blob:`.
+ */
+export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknown as typeof HTMLElement)) {
+  static readonly observedAttributes = [...kOfTransfer, 'paint', 'opacity', 'camera-orbit', 'alt', 'poster', 'check'];
+
+  /** Loads models. For files that are compressed, give it the decoders: `viewer.loader.setDRACOLoader(…)`. */
+  loader = new GLTFLoader();
+  #canvas: HTMLCanvasElement;
+  readonly #poster: HTMLImageElement;
+  readonly #error: HTMLElement;
+  #stage: Stage | undefined;
+  #shown: Shown | undefined;
+  /** Ends the loading under way. */
+  #loading: AbortController | undefined;
+  /** The attributes that have changed since the last update. */
+  #changed = new Set<string>();
+
+  constructor() {
+    super();
+    const root = this.attachShadow({ mode: 'open', delegatesFocus: true });
+    const style = new CSSStyleSheet();
+    style.replaceSync(kStyle);
+    root.adoptedStyleSheets = [style];
+    this.#canvas = this.#newCanvas();
+    this.#poster = Object.assign(document.createElement('img'), { className: 'poster', hidden: true, alt: '' });
+    this.#error = Object.assign(document.createElement('p'), { className: 'error', hidden: true });
+    this.#error.setAttribute('role', 'alert');
+    this.#error.setAttribute('part', 'error');
+    root.append(this.#canvas, this.#poster, this.#error);
+  }
+
+  connectedCallback(): void {
+    for (const name of CagecastViewer.observedAttributes) this.#change(name);
+  }
+
+  disconnectedCallback(): void {
+    // An element that is moved is connected again at once.
+    queueMicrotask(() => this.isConnected || this.#free());
+  }
+
+  attributeChangedCallback(name: string, before: string | null, now: string | null): void {
+    if (before !== now && this.isConnected) this.#change(name);
+  }
+
+  /**
+   * A picture of what is shown.
+   * @param type     An image type that canvases can write. Default: `image/png`.
+   * @param quality  0 to 1, for types with losses.
+   * @throws Error if nothing is shown yet.
+   */
+  toBlob(type?: string, quality?: number): Promise<Blob> {
+    this.#get('toBlob');
+    this.#stage!.drawNow();
+    return new Promise((resolve, reject) =>
+      this.#canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('toBlob: no picture'))), type, quality),
+    );
+  }
+
+  /**
+   * The painted model as a file, with the paint as an overlay that any glTF viewer shows.
+   * @throws Error if nothing is shown yet.
+   */
+  async exportGlb(): Promise<ArrayBuffer> {
+    const { applied, paint } = this.#get('exportGlb');
+    const address = this.getAttribute('target')!;
+    const [{ GLTFExporter }, { scene, animations }] = await Promise.all([
+      import('three/addons/exporters/GLTFExporter.js'),
+      loadModel(this.loader, 'target', address, new AbortController().signal),
+    ]);
+    try {
+      if (applied && paint) {
+        const map = paint.clone();
+        map.channel = applied.channel;
+        const material = new MeshStandardMaterial({ map, transparent: true, opacity: this.#options().opacity ?? 1 });
+        applyTransfer(scene, undefined, { saved: deserialize(serialize(applied)), channel: applied.channel, material });
+      }
+      return (await new GLTFExporter().parseAsync(scene, { binary: true, animations })) as ArrayBuffer;
+    } finally {
+      disposeModel(scene);
+    }
+  }
+
+  #get(method: string): Shown {
+    if (!this.#shown) throw new Error(`${method}: <cagecast-viewer> shows nothing yet; wait for its event load`);
+    return this.#shown;
+  }
+
+  #newCanvas(): HTMLCanvasElement {
+    const canvas = document.createElement('canvas');
+    canvas.tabIndex = 0;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-keyshortcuts', 'ArrowLeft ArrowRight ArrowUp ArrowDown + - Home');
+    return canvas;
+  }
+
+  #change(name: string): void {
+    if (this.#changed.size === 0) queueMicrotask(() => this.#update());
+    this.#changed.add(name);
+  }
+
+  #update(): void {
+    const changed = this.#changed;
+    this.#changed = new Set();
+    if (!this.isConnected) return;
+    this.#canvas.setAttribute('aria-label', this.getAttribute('alt') || '3D model');
+    const poster = this.getAttribute('poster');
+    if (poster) this.#poster.src = poster;
+    this.#poster.hidden = !poster || this.#shown !== undefined;
+    if (changed.has('camera-orbit') && this.#shown) this.#stage?.place(this.#orbit());
+    if (changed.has('opacity')) this.#setOpacity();
+    // A paint alone needs no other transfer; but one under way is begun anew.
+    const isOther = changed.has('paint') && (this.#loading !== undefined || !this.#shown);
+    if (isOther || changed.has('check') || kOfTransfer.some((name) => changed.has(name)))
+      void this.#load((signal) => this.#loadAll(signal));
+    else if (changed.has('paint')) void this.#load((signal) => this.#loadPaint(signal));
+  }
+
+  #setOpacity(): void {
+    try {
+      this.#shown?.applied?.setOpacity(this.#options().opacity ?? 1);
+      this.#stage?.draw();
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  /** Loads something instead of what is being loaded. */
+  async #load(work: (signal: AbortSignal) => Promise<void>): Promise<void> {
+    this.#loading?.abort();
+    this.#loading = undefined;
+    if (!this.getAttribute('target')) {
+      this.#drop();
+      return;
+    }
+    const loading = new AbortController();
+    this.#loading = loading;
+    this.#error.hidden = true;
+    try {
+      this.#stage ??= new Stage(this.#canvas);
+      await work(loading.signal);
+      this.#loading = undefined;
+      this.#tell('load', undefined);
+    } catch (error) {
+      if (loading.signal.aborted) return;
+      this.#loading = undefined;
+      this.#fail(error);
+    }
+  }
+
+  #fail(error: unknown): void {
+    this.#error.textContent = (error as Error).message;
+    this.#error.hidden = false;
+    this.#tell('error', error);
+  }
+
+  async #loadAll(signal: AbortSignal): Promise<void> {
+    const [target, cage, paint] = ['target', 'cage', 'paint'].map((name) => this.getAttribute(name) ?? '');
+    this.#tell('progress', { share: 0, stage: 'files' });
+    const [gltf, around, texture] = await Promise.all([
+      loadModel(this.loader, 'target', target!, signal),
+      cage ? loadModel(this.loader, 'cage', cage, signal) : undefined,
+      paint ? loadPaint(paint, signal) : undefined,
+    ]);
+    signal.throwIfAborted();
+    const options = this.#options();
+    const check = around && this.hasAttribute('check') ? await this.#inspector(gltf, around) : undefined;
+    const onProgress = (share: number, stage: string) => this.#tell('progress', { share: 0.3 + 0.7 * share, stage });
+    const applied =
+      around && (await applyTransferAsync(gltf.scene, around.scene, { ...options, texture, signal, onProgress }));
+    if (around) disposeModel(around.scene);
+    if (signal.aborted) disposeModel(gltf.scene);
+    signal.throwIfAborted();
+    this.#drop();
+    this.#shown = { gltf, applied, paint: texture };
+    this.#poster.hidden = true;
+    this.#stage!.show(gltf.scene, this.#orbit());
+    this.#setOpacity(); // It may have changed since.
+    if (check && applied) this.#tell('verdict', check(applied, options));
+  }
+
+  /** Reads the arrays before vertices are split. */
+  async #inspector(gltf: GLTF, around: GLTF) {
+    const [{ inspect }] = await Promise.all([import('../inspect/index.js'), init()]);
+    const [{ mesh, parts }, { mesh: cage }] = [extract(gltf.scene), extract(around.scene, 'cage')];
+    return ({ result }: Applied, { feather, opacity, borders, ...options }: ApplyOptions): Check => {
+      const { verdict, findings } = inspect(cage, mesh, { ...options, result, parts });
+      return { verdict, findings };
+    };
+  }
+
+  async #loadPaint(signal: AbortSignal): Promise<void> {
+    const address = this.getAttribute('paint');
+    const paint = address ? await loadPaint(address, signal) : undefined;
+    const shown = this.#shown!;
+    shown.applied?.setTexture(paint);
+    shown.paint?.dispose();
+    shown.paint = paint;
+    this.#stage!.draw();
+  }
+
+  #options(): ApplyOptions {
+    const number = (name: string) => (this.hasAttribute(name) ? Number(this.getAttribute(name)) : undefined);
+    const text = <T extends string>(name: string) => (this.getAttribute(name) as T | null) ?? undefined;
+    const all = {
+      opacity: number('opacity'),
+      feather: number('feather'),
+      threshold: number('threshold'),
+      preset: text<Preset>('preset'),
+      borders: text<'cut' | 'triangle'>('borders'),
+    };
+    return Object.fromEntries(Object.entries(all).filter(([, value]) => value !== undefined));
+  }
+
+  #orbit(): Orbit {
+    const [azimuth, polar, share] = (this.getAttribute('camera-orbit') ?? '')
+      .trim()
+      .split(/\s+/)
+      .map(Number.parseFloat);
+    const or = (value: number | undefined, other: number) => (Number.isFinite(value) ? value! : other);
+    return {
+      azimuth: or(azimuth, defaultOrbit.azimuth),
+      polar: or(polar, defaultOrbit.polar),
+      distance: or(share, 100 * defaultOrbit.distance) / 100,
+    };
+  }
+
+  #tell(type: string, detail: unknown): void {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
+  }
+
+  /** Frees what is shown. */
+  #drop(): void {
+    this.#stage?.clear();
+    this.#shown?.applied?.dispose();
+    this.#shown?.paint?.dispose();
+    if (this.#shown) disposeModel(this.#shown.gltf.scene);
+    this.#shown = undefined;
+  }
+
+  #free(): void {
+    this.#loading?.abort();
+    this.#loading = undefined;
+    this.#drop();
+    if (!this.#stage) return;
+    this.#stage.dispose();
+    this.#stage = undefined;
+    // A canvas never gets a second graphics context.
+    const canvas = this.#newCanvas();
+    this.#canvas.replaceWith(canvas);
+    this.#canvas = canvas;
+  }
+}

@@ -1,0 +1,56 @@
+import { type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
+import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+
+/** Fetches a file. @throws Error that names the attribute and the address. */
+async function fetchFile(attribute: string, address: string, signal: AbortSignal): Promise<Response> {
+  const { href } = new URL(address, document.baseURI);
+  const response = await fetch(href, { signal }).catch((cause: unknown) => {
+    signal.throwIfAborted();
+    throw new Error(`${attribute}: ${href} cannot be fetched (${(cause as Error).message})`, { cause });
+  });
+  if (!response.ok) throw new Error(`${attribute}: ${href}: ${response.status} ${response.statusText}`.trim());
+  return response;
+}
+
+/** Loads a model. @throws Error that names the attribute and the address. */
+export async function loadModel(
+  loader: GLTFLoader,
+  attribute: string,
+  address: string,
+  signal: AbortSignal,
+): Promise<GLTF> {
+  const response = await fetchFile(attribute, address, signal);
+  const bytes = await response.arrayBuffer();
+  return loader.parseAsync(bytes, new URL('.', response.url).href).catch((cause: unknown) => {
+    throw new Error(`${attribute}: ${response.url} cannot be read (${(cause as Error).message})`, { cause });
+  });
+}
+
+/** Loads a picture as a texture as glTF has them. @throws Error that names the attribute and the address. */
+export async function loadPaint(address: string, signal: AbortSignal): Promise<Texture> {
+  const response = await fetchFile('paint', address, signal);
+  // Not as an image element, whose addresses may not be allowed to be those of blobs.
+  const picture = await createImageBitmap(await response.blob()).catch((cause: unknown) => {
+    throw new Error(`paint: ${response.url} is not a picture (${(cause as Error).message})`, { cause });
+  });
+  const texture = new Texture(picture);
+  texture.flipY = false;
+  texture.colorSpace = SRGBColorSpace;
+  texture.needsUpdate = true;
+  texture.addEventListener('dispose', () => picture.close());
+  return texture;
+}
+
+/** Frees the geometries, materials and textures of a model. */
+export function disposeModel(model: Object3D): void {
+  model.traverse((child) => {
+    const { geometry, material } = child as Partial<Mesh>;
+    geometry?.dispose();
+    for (const one of [material].flat()) if (one) disposeMaterial(one);
+  });
+}
+
+function disposeMaterial(material: Material): void {
+  for (const value of Object.values(material)) if (value instanceof Texture) value.dispose();
+  material.dispose();
+}
