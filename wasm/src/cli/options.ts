@@ -40,6 +40,9 @@ export interface RuleFlags extends Single {
   maskColors?: string;
 }
 
+/** The files that these flags name. */
+export const maskInputs = ({ neverMask, alwaysMask }: RuleFlags): (string | undefined)[] => [neverMask, alwaysMask];
+
 /** Adds the flags of all options to a command; those in core/include/cagecast/options.def come from there. */
 export function addRuleFlags(command: Command): Command {
   const oneMore = (name: string, before: string[]) => [...before, name];

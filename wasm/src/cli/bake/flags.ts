@@ -2,7 +2,7 @@ import { type Command, InvalidArgumentError, Option } from 'commander';
 import { mostTexels } from '../../bake/index.js';
 import { addConfigFlags, type ConfigFlags, settler } from '../config/config-flags.js';
 import { borderKinds } from '../config/settings.js';
-import { addRuleFlags, type RuleFlags } from '../options.js';
+import { addRuleFlags, maskInputs, type RuleFlags } from '../options.js';
 import { addPrintFlags, type PrintFlags, print } from '../print.js';
 import type { Progress } from '../progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from '../read-flags.js';
@@ -80,7 +80,8 @@ Examples:
         refuse('there is nothing to bake: give PAINT, --normal or --orm');
       if (!isPicture && part.length > 0) refuse('--part is for a PNG; for a GLB, use --exclude');
       if (flags.quiet) progress.silence();
-      refuseOverwriting(command, [target, cage === autoCage ? undefined : cage, paint, normal, orm], [output]);
+      const inputs = [target, cage === autoCage ? undefined : cage, paint, normal, orm, ...maskInputs(flags)];
+      refuseOverwriting(command, inputs, [output]);
       const found = await bakeCommand(
         {
           target,

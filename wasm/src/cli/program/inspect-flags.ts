@@ -1,6 +1,7 @@
 import { type Command, Option } from 'commander';
 import { settler } from '../config/config-flags.js';
 import { inspectCommand } from '../inspect-command.js';
+import { maskInputs } from '../options.js';
 import { print } from '../print.js';
 import type { Progress } from '../progress.js';
 import { readingOf } from '../read-flags.js';
@@ -26,7 +27,7 @@ Examples:
     .action(async (target: string, flags: CommonFlags & { html?: string }, command: Command) => {
       const { cage, uvBounds, referenceCage, html } = flags;
       if (flags.quiet) progress.silence();
-      refuseOverwriting(command, [target, cage, referenceCage], [html]);
+      refuseOverwriting(command, [target, cage, referenceCage, ...maskInputs(flags)], [html]);
       const found = await inspectCommand(
         {
           target,

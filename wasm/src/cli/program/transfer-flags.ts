@@ -2,6 +2,7 @@ import { type Command, Option } from 'commander';
 import { forms } from '../../gltf/glb-writer.js';
 import { settler } from '../config/config-flags.js';
 import { borderKinds } from '../config/settings.js';
+import { maskInputs } from '../options.js';
 import { addRegionFlag } from '../paint/paint-flags.js';
 import { print } from '../print.js';
 import type { Progress } from '../progress.js';
@@ -80,7 +81,8 @@ Examples:
           command.error('--borders cut needs -o OUT.glb, the file for the cut target', { exitCode: wrongUsage });
         const cages = [cage, ...regions.map((region) => region.cage)].filter((path) => path !== autoCage);
         const textures = [texture, ...regions.map((region) => region.texture)];
-        refuseOverwriting(command, [target, referenceCage, ...cages, ...textures], [output, report]);
+        const inputs = [target, referenceCage, ...cages, ...textures, ...maskInputs(flags)];
+        refuseOverwriting(command, inputs, [output, report]);
         const found = await transferCommand(
           {
             target,
