@@ -98,7 +98,7 @@ test('patterns reach into folders, lines are printed, and --fail-on exits 3', ()
 
 test('a manifest has a job per line, with options of its own; a wrong line is a job that fails', () => {
   const jobs = [
-    { target: 'in/0.glb', cage: 'cage.glb', output: 'out/kept.glb', report: 'kept.json', exclude: ['only'] },
+    { target: 'in/0.glb', cage: 'cage.glb', output: 'new/{name}/kept.glb', report: 'kept.json', exclude: ['only'] },
     { target: 'in/0.glb', cage: 'cage.glb', report: 'high.json', threshold: 1 },
     { target: 'in/0.glb', cage: 'cage.glb', treshold: 1 },
     { target: 'in/gone.glb' },
@@ -113,6 +113,7 @@ test('a manifest has a job per line, with options of its own; a wrong line is a 
   assert.match(errors[1]!, /^line 4 of .*jobs\.jsonl: .*has no cage/);
   assert.match(errors[2]!, /^line 5 of .*jobs\.jsonl: is not JSON/);
   assert.equal(lines.filter((line) => line.status === 'done').length, 2);
+  assert.ok(existsSync(at('new/0/kept.glb')), 'folders are made');
   const { counts } = JSON.parse(readFileSync(at('kept.json'), 'utf8')) as { counts: { cosmetic: number } };
   assert.equal(counts.cosmetic, 0);
   const { options } = JSON.parse(readFileSync(at('high.json'), 'utf8')) as { options: { threshold: number } };

@@ -107,6 +107,16 @@ test('diff shows what changed between two reports, and exits 4 over the limit', 
   };
   assert.equal(over, changes.filter(({ isOver }) => isOver).length);
   assert.equal(cagecast('diff', at('a.json'), at('c.json'), '--tolerance', '1', '--quiet').status, 0);
+  // A cage with half of the texture: all of it is stretched twice as much.
+  writeFileSync(at('half.glb'), glbOf({ ...scene.cage, uvs: scene.cage.uvs!.map((x) => x / 2) }));
+  ok('transfer', at('target.glb'), '--cage', at('half.glb'), '--report', at('half.json'), '--quiet');
+  const stretched = JSON.parse(cagecast('diff', at('a.json'), at('half.json'), '--json').stdout) as {
+    changes: { measure: string; before: number; after: number; isOver: boolean }[];
+  };
+  const median = stretched.changes.find(({ measure }) => measure === 'stretch, median')!;
+  assert.ok(median.isOver && Math.abs(median.after / median.before - 2) < 1e-4);
+  const { stretch } = JSON.parse(readFileSync(at('a.json'), 'utf8')) as { stretch: Record<string, number> };
+  assert.ok(stretch['median']! > 0 && stretch['p95']! >= stretch['median']! && stretch['overTwice']! < 0.5);
   writeFileSync(
     at('worse.json'),
     ok('inspect', at('target.glb'), ...cage, '--json').replace(/"verdict": "\w+"/, '"verdict": "unfit"'),

@@ -81,7 +81,8 @@ export function addBatchCommand(program: Command, progress: Progress): void {
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["eye*"]}
 A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings if there are.
-A job that fails does not stop the others. Files are complete or not there, even if the batch is killed.
+A job that fails does not stop the others. Files are complete or not there, even if the batch is killed;
+folders that are missing are made.
 Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 --fail-on found a cage that does not fit as demanded.
 
 Examples:

@@ -1,3 +1,5 @@
+import { mkdirSync } from 'node:fs';
+import { dirname } from 'node:path';
 import { parentPort } from 'node:worker_threads';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
@@ -29,6 +31,7 @@ export function serveBatch(): void {
     const began = performance.now();
     const ms = () => Math.round(performance.now() - began);
     try {
+      makeFolders(command);
       const { report, done } = await transferCommand(command, progress, models);
       const inspection = inspects ? inspectionReport(command, done) : undefined;
       port.postMessage({
@@ -46,4 +49,15 @@ export function serveBatch(): void {
       port.postMessage({ status: 'failed', ms: ms(), error: text } satisfies Outcome);
     }
   });
+}
+
+/** Makes the folders that a job writes to: with `{name}` and `{dir}` in paths there may be many. */
+function makeFolders({ output, report }: TransferCommand): void {
+  for (const path of [output, report]) {
+    try {
+      if (path !== undefined) mkdirSync(dirname(path), { recursive: true });
+    } catch {
+      // What writes the file says what is wrong.
+    }
+  }
 }

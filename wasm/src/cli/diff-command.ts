@@ -3,7 +3,7 @@ import { firstLine, InputError } from '../gltf/input-error.js';
 import type { Verdict } from '../inspect/index.js';
 import type { InspectionReport } from './inspect-command.js';
 import type { Found } from './print.js';
-import { cut, integer, percent, table } from './table.js';
+import { cut, integer, percent, short, table } from './table.js';
 import type { Report } from './transfer-command.js';
 import type { PerZone } from './zones.js';
 
@@ -15,10 +15,10 @@ export interface DiffCommand {
   tolerance: number;
 }
 
-/** A measure that two reports have. A share is compared with the tolerance; a number is only shown. */
+/** A measure that two reports have. Shares, and ratios of lengths, are compared with the tolerance; a number is only shown. */
 interface Change {
   measure: string;
-  kind: 'share' | 'number' | 'verdict' | 'part';
+  kind: 'share' | 'ratio' | 'number' | 'verdict' | 'part';
   before: number | string | null;
   after: number | string | null;
   isOver: boolean;
@@ -45,7 +45,15 @@ export async function diffCommand({ before, after, tolerance }: DiffCommand): Pr
   );
   const over = changes.filter(({ isOver }) => isOver).length;
   const shown = ({ kind }: Change, value: Change['before']) =>
-    value === null ? '–' : typeof value === 'string' ? value : kind === 'share' ? percent(value) : integer(value);
+    value === null
+      ? '–'
+      : typeof value === 'string'
+        ? value
+        : kind === 'share'
+          ? percent(value)
+          : kind === 'ratio'
+            ? short(value)
+            : integer(value);
   const rows = changes.map((change) => [
     cut(change.measure, 60),
     shown(change, change.before),
@@ -56,7 +64,7 @@ export async function diffCommand({ before, after, tolerance }: DiffCommand): Pr
     ...(rows.length > 0 ? [table([['', 'before', 'after', ''], ...rows])] : []),
     rows.length === 0
       ? 'nothing changed'
-      : `${integer(rows.length)} changes, ${integer(over)} over the limit (${percent(tolerance)} of a share, a worse verdict, a part more or less)`,
+      : `${integer(rows.length)} changes, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part more or less)`,
   ].join('\n');
   return { text, report: { before, after, tolerance, over, changes }, over };
 }
@@ -74,11 +82,11 @@ async function readReport(path: string): Promise<AnyReport> {
   return report as AnyReport;
 }
 
-type Measures = Map<string, { kind: 'share' | 'number' | 'part'; value: number }>;
+type Measures = Map<string, { kind: 'share' | 'ratio' | 'number' | 'part'; value: number }>;
 
 /** What a report says, by name. */
 function measuresOf(report: AnyReport): Measures {
-  const { areas, coverage, target, triangles, segments, parts, placement, uv, holes } = report;
+  const { areas, coverage, target, triangles, stretch, segments, parts, placement, uv, holes } = report;
   const all: Measures = new Map();
   const share = (name: string, value: number | undefined) => {
     if (value !== undefined && Number.isFinite(value)) all.set(name, { kind: 'share', value });
@@ -94,6 +102,9 @@ function measuresOf(report: AnyReport): Measures {
     share(`part ${part}: covered`, exposed > 0 ? covered / exposed : undefined);
     share(`part ${part}: culled`, area > 0 ? culled / area : undefined);
   }
+  share('painted area stretched more than twice', stretch?.overTwice);
+  // By the size of the target, which may have another unit.
+  if (stretch) all.set('stretch, median', { kind: 'ratio', value: stretch.median / (target.diagonal || 1) });
   share('outside the cage', placement?.outside.area);
   share('distance to the cage, median', placement?.distances.p50);
   share('distance to the cage, 99 % within', placement?.distances.p99);
@@ -131,7 +142,8 @@ function compare(before: Measures, after: Measures, tolerance: number): Change[]
     const { kind } = (old ?? now)!;
     // Only one of the two kinds of reports has it, or the part is not there.
     if ((!old || !now) && kind !== 'part') return [];
-    const isOver = kind === 'part' || (kind === 'share' && Math.abs(now!.value - old!.value) > tolerance);
+    const change = kind === 'ratio' ? now!.value / old!.value - 1 : kind === 'share' ? now!.value - old!.value : 0;
+    const isOver = kind === 'part' || Math.abs(change) > tolerance;
     const value = (one: typeof old) => (kind === 'part' ? (one ? 'there' : null) : one!.value);
     return [{ measure, kind, before: value(old), after: value(now), isOver }];
   });

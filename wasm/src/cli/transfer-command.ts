@@ -10,6 +10,7 @@ import { vertexAreas } from '../inspect/geometry.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { placeOf as fileOf, writeFiles } from './output.js';
 import { isTiled, readPaint, readTiles } from './paint/read-paint.js';
+import { type Stretch, stretchOf } from './paint/stretch.js';
 import type { Progress } from './progress.js';
 import { inFile, type Models, type Run, readModel, run, type Sources } from './run.js';
 import { integer, percent, table } from './table.js';
@@ -187,6 +188,8 @@ export interface Report {
   /** Area of the target in each zone: a third of each triangle for each of its corners. */
   areas: PerZone & { total: number };
   triangles: { total: number; cosmetic: number };
+  /** How the texture is stretched where it may be painted; `null` if nowhere. */
+  stretch: Stretch | null;
   /**
    * The target after borders were cut and before vertices are split; `null` if borders were not cut. All other fields describe the
    * target as it was read.
@@ -275,6 +278,7 @@ function makeReport(
     counts: perZone(result.zones),
     areas: { total: areas.reduce((sum, area) => sum + area, 0), ...perZone(result.zones, areas) },
     triangles: trianglesOf(result.cosmeticTriangles),
+    stretch: stretchOf(mesh, result),
     cut: cut
       ? { vertices: cut.zones.length, counts: perZone(cut.zones), triangles: trianglesOf(cut.cosmeticTriangles) }
       : null,

@@ -12,9 +12,13 @@ export function addDiffCommand(program: Command): void {
       .argument('<BEFORE.json>', 'a report of transfer, or of inspect --json')
       .argument('<AFTER.json>', 'another'),
   )
-    .description('show what changed between two reports: zones, coverage of parts, distances, borders, verdict')
+    .description(
+      'show what changed between two reports: zones, coverage of parts, stretch, distances, borders, verdict',
+    )
     .addOption(
-      new Option('--tolerance <SHARE>', 'how much a share may change').argParser(numberWithin(0, 1)).default(0.01),
+      new Option('--tolerance <SHARE>', 'how much a share, or the stretch of the texture, may change')
+        .argParser(numberWithin(0, 1))
+        .default(0.01),
     )
     .addHelpText(
       'after',
