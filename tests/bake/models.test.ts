@@ -311,6 +311,15 @@ test('what cannot be baked is one line that names the file', async () => {
   writeFileSync(at('bare.glb'), await io.writeBinary(bare));
   writeFileSync(at('short.png'), pngOf(red).subarray(0, 40));
   writeFileSync(at('text.png'), 'no picture');
+  // Numbers of what is not there, and an image that is none.
+  const whole = readFileSync(at('box.glb'));
+  const patched = (name: string, from: string, to: string) => {
+    const bytes = Buffer.from(whole);
+    assert.ok(bytes.write(to, bytes.indexOf(from)) > 0 && from.length === to.length && whole.includes(from), from);
+    writeFileSync(at(name), bytes);
+  };
+  patched('texture.glb', '"baseColorTexture":{"index":0', '"baseColorTexture":{"index":7');
+  patched('image.glb', '"source":0', '"source":5');
   const [box, cage, paint, out] = [at('box.glb'), at('cage.glb'), at('red.png'), ['-o', at('none.glb')]];
   const cases: [string[], number, RegExp][] = [
     [
@@ -321,6 +330,16 @@ test('what cannot be baked is one line that names the file', async () => {
     [[at('bare.glb'), cage, paint, '-o', at('none.png')], 1, /bare\.glb: "box" has no TEXCOORD_0/],
     [[box, cage, at('short.png'), ...out], 1, /short\.png: is truncated/],
     [[box, cage, at('text.png'), ...out], 1, /text\.png: is not a PNG, JPEG or WebP image/],
+    [
+      [at('texture.glb'), cage, paint, ...out],
+      1,
+      /texture\.glb: nothing can be baked: "box": its material has no texture/,
+    ],
+    [
+      [at('image.glb'), cage, paint, ...out],
+      1,
+      /image\.glb: nothing can be baked: "box\/?.*": its texture has no image/,
+    ],
     [[box, cage, ...out], 2, /there is nothing to bake/],
     [[box, cage, paint, '--never-mask', at('none.glb'), ...out], 2, /none\.glb would overwrite another file/],
     [[box, cage, paint, '--back', '-o', at('none.png')], 2, /--back takes TARGET and CAGE only/],

@@ -4,7 +4,7 @@ import { type BakeReport, bakeModel, layoutsOf, type Paints, type TextureUse } f
 import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
-import { type CutTarget, cutBorders } from '../../index.js';
+import { CagecastError, type CutTarget, cutBorders } from '../../index.js';
 import { matcher, noSuchName, quoted } from '../options.js';
 import { writeFiles } from '../output.js';
 import type { Found } from '../print.js';
@@ -49,7 +49,11 @@ export async function bakeCommand(command: BakeCommand, progress: Progress): Pro
     : bakeFile(command, done, cut, { color, normal: normals, orm: rough });
 }
 
-const inTarget = (error: unknown, path: string): unknown => (error instanceof InputError ? error.in(path) : error);
+/** An error of reading or baking the target, with its name. */
+function inTarget(error: unknown, path: string): unknown {
+  if (error instanceof CagecastError) return new InputError(error.message, { cause: error }).in(path);
+  return error instanceof InputError ? error.in(path) : error;
+}
 
 /** Writes the model with the paint in its textures. */
 async function bakeFile(

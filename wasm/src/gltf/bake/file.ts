@@ -45,7 +45,8 @@ export class FileModel implements BakeModel<number, number> {
   }
 
   materialOf(part: Part): number | undefined {
-    return this.#primitive(part).material;
+    const { material } = this.#primitive(part);
+    return material !== undefined && this.#json.materials?.[material] ? material : undefined;
   }
 
   uvsOf(part: Part, set: string): Float32Array | undefined {
@@ -69,7 +70,8 @@ export class FileModel implements BakeModel<number, number> {
   useOf(material: number, slot: Slot): TextureUse<number> | undefined {
     const info = infoOf(this.#material(material), slot);
     if (!info) return undefined;
-    const texture = this.#json.textures![info.index]!;
+    const texture = this.#json.textures?.[info.index];
+    if (!texture) return undefined;
     const sampler = texture.sampler === undefined ? undefined : this.#json.samplers?.[texture.sampler];
     const transform = info.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
     return {
@@ -99,8 +101,10 @@ export class FileModel implements BakeModel<number, number> {
     let bytes: Uint8Array;
     if (image.uri !== undefined) bytes = await readUri(`images[${source}]`, image.uri, dirname(path), reading);
     else {
-      const { buffer, byteOffset = 0, byteLength } = json.bufferViews![image.bufferView!]!;
-      bytes = buffers[buffer]!.subarray(byteOffset, byteOffset + byteLength);
+      const view = json.bufferViews?.[image.bufferView ?? -1];
+      const buffer = view && buffers[view.buffer];
+      if (!buffer) return undefined;
+      bytes = buffer.subarray(view.byteOffset ?? 0, (view.byteOffset ?? 0) + view.byteLength);
     }
     return { bytes, mimeType: imageType(bytes) ?? image.mimeType ?? 'an unknown type' };
   }
