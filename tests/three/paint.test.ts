@@ -213,7 +213,10 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     context.diagnostic(`at once ${JSON.stringify(sync)}, in the background ${JSON.stringify(background)}`);
     assert.ok(split[0]! > 0 && split[0] === split[1], split.join());
     assert.ok(same);
-    assert.ok(background.longest < sync.longest, `${background.longest} of ${sync.longest} ms`);
+    // Half as much more than at once, where this is not a matter of some milliseconds.
+    assert.ok(background.total <= 1.5 * Math.max(sync.total, 100), `${background.total} of ${sync.total} ms`);
+    // 50 ms are a long task for a browser; on a machine that is that slow, a quarter of the time.
+    assert.ok(background.longest <= Math.max(50, sync.total / 4), `${background.longest} of ${sync.total} ms`);
     assert.deepEqual(
       shares,
       shares.toSorted((a, b) => a - b),
