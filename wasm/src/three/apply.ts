@@ -5,7 +5,7 @@ import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
 import { removeOverlay } from './overlay.js';
 import { Place, paintAttribute } from './paint.js';
-import { canBePainted, type Painting, paintOn, unpaint } from './painted-materials.js';
+import { canBePainted, makePainting, type Painting, paintOn, unpaint } from './painted-materials.js';
 import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
 import { type Remade, remake, replace } from './split.js';
 
@@ -88,13 +88,13 @@ export function* apply(
   });
 
   ownGeometries(parts);
-  const painting: Painting = {
+  const painting = makePainting({
     texture: options.texture,
     opacity: options.opacity ?? 1,
     feather: options.feather ?? 0,
     place: new Place(),
     meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
-  };
+  });
   parts.forEach(({ geometry }, p) => {
     if (remades[p]) replace(geometry, remades[p]!);
     const { split } = prepared.parts[p]!;

@@ -75,10 +75,10 @@ export const paintUniforms = (): PaintUniforms => ({
   cagecastPlace: { value: kNoPaint },
 });
 
-/** Brings the uniforms of a material up to date. Runs for each mesh in each frame. */
-export function refreshUniforms({ cagecastMap, cagecastPlace }: PaintUniforms, paint: Paint | undefined): void {
+/** Makes the uniforms of a material show a paint, or none. The matrix goes on following the paint by `Place.refresh`. */
+export function setUniforms({ cagecastMap, cagecastPlace }: PaintUniforms, paint: Paint | undefined): void {
   cagecastMap.value = paint?.texture ?? null;
-  cagecastPlace.value = paint ? paint.place.of(paint) : kNoPaint;
+  cagecastPlace.value = paint?.texture ? paint.place.matrix : kNoPaint;
 }
 
 /**
@@ -101,16 +101,16 @@ export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean
 }
 
 /**
- * How a texture is placed, and how much of it shows, as a matrix. Materials ask for it in each frame, so it is made again only if
- * something has changed.
+ * How a texture is placed, and how much of it shows, as a matrix. It is refreshed in each frame, so it is made again only if something
+ * has changed.
  */
 export class Place {
-  readonly #matrix = new Matrix3();
+  readonly matrix = new Matrix3();
   #made: readonly unknown[] = [];
 
-  of(paint: Paint): Matrix3 {
+  refresh(paint: Paint): void {
     const { texture } = paint;
-    if (!texture) return kNoPaint;
+    if (!texture) return;
     const { offset, repeat, center, rotation, matrixAutoUpdate } = texture;
     const { opacity, feather } = paint;
     const m = this.#made;
@@ -127,17 +127,16 @@ export class Place {
       m[7] === repeat.y &&
       m[8] === center.x &&
       m[9] === center.y;
-    if (isSame) return this.#matrix;
+    if (isSame) return;
     this.#made = [texture, opacity, feather, rotation, offset.x, offset.y, repeat.x, repeat.y, center.x, center.y];
     if (matrixAutoUpdate) texture.updateMatrix();
-    const { elements } = this.#matrix.copy(texture.matrix);
+    const { elements } = this.matrix.copy(texture.matrix);
     elements[2] = opacity;
     elements[5] = feather;
     // The GPU decodes all but videos. What is drawn, as by `cagecast/three/layers`, may be premultiplied; it is no video.
     const isDrawn = (texture as { isRenderTargetTexture?: boolean }).isRenderTargetTexture === true;
     const isVideo = (texture as { isVideoTexture?: true }).isVideoTexture === true;
     elements[8] = isDrawn && texture.premultiplyAlpha ? 2 : isVideo && texture.colorSpace === 'srgb' ? 1 : 0;
-    return this.#matrix;
   }
 }
 

@@ -61,6 +61,7 @@ export class Composite {
   readonly #passes = new Map<string, Pass<Record<string, IUniform>>>();
   /** The lower half of many layers. */
   #below: WebGLRenderTarget | undefined;
+  readonly #size: number | undefined;
   #layers: readonly Layer[] = [];
   /** Versions of the textures that were drawn. */
   #drawn: readonly number[] = [];
@@ -71,7 +72,8 @@ export class Composite {
   #stale: Rect[] = [kWhole];
 
   /** @param size  Texels per side, a power of two. Default: 1024 or 2048, as the largest layer needs. */
-  constructor(private readonly fixedSize?: number) {
+  constructor(size?: number) {
+    this.#size = size;
     // `refreshMipmaps` updates the changed parts; the renderer would rebuild all levels for every stroke.
     this.#target.texture.mipmapsAutoUpdate = false;
     // The renderer does not upload it; this tells `cagecast/three` how its texels are stored.
@@ -109,7 +111,7 @@ export class Composite {
     this.#drawn = versions;
     if (this.#stale.length === 0) return false;
     const isLarge = this.#layers.some(({ sheet }) => Math.max(...sidesOf(sheet.texture)) > kLeastSize);
-    const size = this.fixedSize ?? (isLarge ? maxCompositeSize : kLeastSize);
+    const size = this.#size ?? (isLarge ? maxCompositeSize : kLeastSize);
     const whole = size !== this.size || this.#stale.includes(kWhole);
     this.#target.setSize(size, size);
     // In texels: upsampling a smaller sheet spreads each of its texels over the neighbours.

@@ -86,7 +86,7 @@ export class CageTexels {
     this.pitch = pitchOf(this.#patches) / size;
   }
 
-  /** The point of the cage at a UV; undefined between charts. @param u, v Repeated outside 0..1. */
+  /** The point of the cage at a UV, which is repeated outside 0..1; undefined between charts. */
   at(u: number, v: number): SurfacePoint | undefined {
     const [insideU, insideV] = [u - Math.floor(u), v - Math.floor(v)];
     const column = Math.min(this.size - 1, Math.floor(insideU * this.size));

@@ -21,7 +21,7 @@ export interface Aim {
 
 /** Where a pointer paints. */
 export interface PointerView {
-  /** @param x,y In pixels of the screen. */
+  /** @returns what lies at a position of the screen, in pixels. */
   aimAt(x: number, y: number): Aim | undefined;
   /** Triangles that `aimAt` visits. */
   readonly triangles: number;
