@@ -5,6 +5,7 @@ import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { type ExtractedMesh, extractMesh } from './extract-mesh';
 import { readGltfHead } from './gltf-file';
 import { damageOf } from './image-damage';
+import { adviceOn, kSniffed } from './other-formats';
 import type { Sample } from './samples';
 
 /** A loaded model: the scene to show, and its triangles for the transfer. */
@@ -43,6 +44,8 @@ export async function loadModel(
         `the browser cannot read this file (${(file.size / 1e6).toLocaleString('en', { maximumFractionDigits: 1 })} MB); it may be too large, or deleted`,
       );
     });
+    const advice = adviceOn(new Uint8Array(bytes, 0, Math.min(kSniffed, bytes.byteLength)));
+    if (advice) throw new Error(advice);
     const head = readGltfHead(bytes);
     const used = [...new Set(head.uris.map((uri) => findCompanion(uri, companions)))];
     checkCost(bytes, used);
