@@ -1,29 +1,14 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import type { AxeResults } from 'axe-core';
-import type { Page } from 'playwright-core';
+import { faults } from '../support/axe';
 import { image } from '../support/layers';
 import { islandCage, morphingBalls } from '../support/models';
 import { saved } from '../support/saved';
-import { drop, glb, inRepository, Site, settled, shownError } from '../support/site';
-
-const kAxe = readFileSync(inRepository('node_modules/axe-core/axe.min.js'), 'utf8');
+import { drop, glb, Site, settled, shownError } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
 after(() => site?.close());
-
-/** What axe-core finds wrong with the page as it is, in any of its rules; the place and the reason of each. */
-async function faults(page: Page): Promise<string[]> {
-  // The policy of the page forbids foreign scripts, but not the test's own evaluation.
-  await page.evaluate(kAxe);
-  const { violations, passes } = (await page.evaluate('axe.run()')) as AxeResults;
-  assert.ok(passes.length > 20, 'it has looked');
-  return violations.flatMap(({ id, impact, nodes }) =>
-    nodes.map(({ html, failureSummary }) => `${impact} ${id}: ${html.slice(0, 120)}: ${failureSummary}`),
-  );
-}
 
 const kVisits = [
   { name: 'desk, light', viewport: { width: 1440, height: 900 } },

@@ -1,0 +1,18 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import type { AxeResults } from 'axe-core';
+import type { Page } from 'playwright-core';
+import { inRepository } from './site';
+
+const kAxe = readFileSync(inRepository('node_modules/axe-core/axe.min.js'), 'utf8');
+
+/** What axe-core finds wrong with the page as it is, in any of its rules; the place and the reason of each. */
+export async function faults(page: Page): Promise<string[]> {
+  // The policy of the page forbids foreign scripts, but not the test's own evaluation.
+  await page.evaluate(kAxe);
+  const { violations, passes } = (await page.evaluate('axe.run()')) as AxeResults;
+  assert.ok(passes.length > 20, 'it has looked');
+  return violations.flatMap(({ id, impact, nodes }) =>
+    nodes.map(({ html, failureSummary }) => `${impact} ${id}: ${html.slice(0, 120)}: ${failureSummary}`),
+  );
+}
