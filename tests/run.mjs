@@ -139,7 +139,7 @@ async function testFolders(folders, env) {
 async function testScripts(names) {
   const folders = {
     package: ['tests/js', 'tests/bake', 'tests/command', 'tests/package', 'tests/three', 'tests/hosts'],
-    browser: ['tests/browser', 'tests/web'],
+    browser: ['tests/browser', 'tests/page', 'tests/web'],
   };
   const page = names.includes('browser') ? await timed('build the page', servePage) : undefined;
   const env = {

@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
+import { forPeople } from '../../web/src/panels/wording';
 import { inspection, reportedCounts } from '../support/command';
 import { glbOf, tetrahedron } from '../support/glb';
 import { difference, look, modelArea } from '../support/picture';
@@ -52,7 +53,7 @@ for (const name of ['car', 'human-misaligned', 'lizard']) {
     const { verdict, findings } = await inspection(asset(name, 'target.glb'), asset(name, 'cage.glb'));
     assert.deepEqual(await found(), {
       verdict,
-      findings: findings.map(({ sentence, advice }) => ({ sentence, advice })),
+      findings: findings.map(({ sentence, advice }) => ({ sentence: forPeople(sentence), advice: forPeople(advice) })),
     });
     assert.deepEqual(complaints, []);
   });

@@ -186,14 +186,17 @@ test('undo restores a removed layer with its style, and redo removes it', async 
   assert.deepEqual((await savedTexture(page)).data, before.data);
 });
 
-test('the layers stay when another model is opened; only the base paint changes', async () => {
+test('layers for the last cage are put away when another model is opened, and come back when wanted', async () => {
   const { page } = visit;
   await page.getByRole('radio', { name: 'Tiger stripes' }).check({ force: true });
   assert.equal(await settled(page), 'ready');
   assert.deepEqual(await names(page), ['above.png', 'below.png', 'Tiger stripes']);
   await page.getByTestId('sample-select').selectOption('human');
   assert.equal(await settled(page), 'ready');
+  assert.deepEqual(await names(page), ['Painted skull']);
+  await page.getByRole('button', { name: 'Bring back' }).click();
   assert.deepEqual(await names(page), ['above.png', 'below.png', 'Painted skull']);
+  assert.ok(await page.getByTestId('put-away').isHidden());
   await row('above.png').locator('.choose').click();
   assert.equal(await control('combobox', 'Blending of above.png').inputValue(), 'screen');
 });

@@ -1,10 +1,13 @@
 import type { Lock } from 'cagecast';
 import type { Finding, Inspection } from 'cagecast/inspect';
 import { element } from '../platform/page';
+import type { CageMaker } from '../scene/cage-maker';
 import type { Session } from '../scene/session';
 import { Superseded, TransferClient } from '../scene/transfer-client';
 import { trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
+import { type KnownVerdict, paintableShare, type Remedy, StageVerdict } from './stage-verdict';
+import { forPeople } from './wording';
 
 const kCalm = 800; // milliseconds without a change before the cage is inspected
 const kMost = 60_000; // triangles that are inspected automatically; the time grows with their number
@@ -14,6 +17,15 @@ const kVerdicts: Record<Inspection['verdict'], string> = {
   usable: 'The cage is usable, with reservations.',
   unfit: 'The cage does not fit this model.',
 };
+/** Findings that moving, turning, scaling and bending the cage may mend. */
+const kMovable: readonly Finding['code'][] = [
+  'cageElsewhere',
+  'cageMisplaced',
+  'cageTooSmall',
+  'cageTooFar',
+  'targetPokesOut',
+  'cageInsideTarget',
+];
 
 /**
  * Shows whether the cage fits the target, and what to do if not: the findings of `cagecast inspect`, computed in a worker of
@@ -25,11 +37,15 @@ export class FitPanel {
   readonly #verdict = element('fit-verdict', HTMLElement);
   readonly #findings = element('fit-findings', HTMLElement);
   readonly #button = element('fit-inspect', HTMLButtonElement);
+  readonly #maker: CageMaker;
+  readonly #stage: StageVerdict;
   #client: TransferClient | undefined;
   #waiting: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(session: Session, viewer: Viewer | undefined) {
+  constructor(session: Session, viewer: Viewer | undefined, maker: CageMaker) {
     this.#session = session;
+    this.#maker = maker;
+    this.#stage = new StageVerdict(session);
     this.#viewer = viewer;
     session.on('transfer', () => this.#show('', [text('p', kSoon)]));
     session.on('zones', () => this.#onChange());
@@ -72,20 +88,43 @@ export class FitPanel {
     }
   }
 
-  #write({ verdict, findings }: Inspection): void {
+  #write(inspection: Inspection): void {
+    const { verdict, findings, segments } = inspection;
     const list = document.createElement('ul');
-    list.append(...findings.map((finding) => this.#item(finding)));
-    this.#show(verdict, [text('p', kVerdicts[verdict]), ...(findings.length > 0 ? [list] : [])]);
+    list.append(...findings.map((finding) => this.#item(finding, inspection)));
+    const share = `${Math.round(100 * paintableShare(segments))} % of the visible surface can be painted.`;
+    const remedies = findings.flatMap((finding) => this.#remedyFor(finding, inspection) ?? []);
+    const { target, cage } = this.#session.shown!;
+    const making = verdict === 'unfit' ? [{ title: 'Make a cage', run: () => this.#maker.make() }] : [];
+    // The cage of another model is not meant for this one.
+    if (cage.sample && cage.sample !== target.sample) remedies.unshift(...making);
+    const content = [text('p', `${share} ${kVerdicts[verdict]}`), ...(findings.length > 0 ? [list] : [])];
+    content.push(...making.map(buttonFor));
+    this.#show(verdict, content, remedies[0] ?? making[0]);
   }
 
-  #show(verdict: Inspection['verdict'] | '', content: HTMLElement[]): void {
+  #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy): void {
     this.#verdict.textContent = this.#verdict.dataset.verdict = verdict;
     this.#findings.replaceChildren(...content);
+    this.#stage.show(verdict, remedy);
   }
 
-  #item({ sentence, advice, places = [], locks }: Finding): HTMLElement {
+  /** What can be done about a finding with one click. */
+  #remedyFor({ code }: Finding, { inward }: Inspection): Remedy | undefined {
+    // A cage that was moved in vain would be moved in vain again.
+    if (kMovable.includes(code) && !this.#maker.refusedToMove)
+      return { title: 'Move the cage', run: () => this.#maker.move() };
+    return code === 'normalsInward'
+      ? { title: 'Turn its triangles', run: () => this.#maker.flip(inward.triangles) }
+      : undefined;
+  }
+
+  #item(finding: Finding, inspection: Inspection): HTMLElement {
+    const { sentence, advice, places = [], locks } = finding;
     const item = document.createElement('li');
-    item.append(text('p', `${sentence}.`), text('p', advice));
+    item.append(text('p', `${forPeople(sentence)}.`), text('p', forPeople(advice)));
+    const remedy = this.#remedyFor(finding, inspection);
+    if (remedy) item.append(buttonFor({ ...remedy, title: `Do it: ${remedy.title.toLowerCase()}` }));
     const segments = places.map(({ segment }) => segment);
     if (segments.length > 0) {
       for (const begin of ['pointerenter', 'focusin']) item.addEventListener(begin, () => this.#highlight(segments));
@@ -100,19 +139,24 @@ export class FitPanel {
   }
 
   #lockButton(segments: number[], lock: Lock): HTMLButtonElement {
-    const button = document.createElement('button');
-    button.type = 'button';
-    button.className = 'quiet';
     const them = segments.length === 1 ? 'it' : `all ${segments.length}`;
-    button.textContent = lock === 'keep' ? `Keep ${them}` : `Exclude ${them}`;
-    button.addEventListener('click', () => this.#session.lock(segments, lock));
-    return button;
+    const title = lock === 'keep' ? `Keep ${them}` : `Exclude ${them}`;
+    return buttonFor({ title, run: () => this.#session.lock(segments, lock) });
   }
 
   #highlight(segments: readonly number[]): void {
     const { shown } = this.#session;
     this.#viewer?.highlight(shown ? trianglesOf(shown, segments) : []);
   }
+}
+
+function buttonFor({ title, run }: Remedy): HTMLButtonElement {
+  const button = document.createElement('button');
+  button.type = 'button';
+  button.className = 'quiet';
+  button.textContent = title;
+  button.addEventListener('click', run);
+  return button;
 }
 
 function text(tag: string, content: string): HTMLElement {

@@ -1,14 +1,16 @@
 import type { Classification, Lock, SegmentStats } from 'cagecast';
-import { element } from '../platform/page';
+import { element, showNotice } from '../platform/page';
 import type { Primitive } from '../scene/extract-mesh';
 import type { Locks, Session, Shown } from '../scene/session';
 import { cssColor, type Rgb } from '../view/colors';
 import { segmentColors, trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
+import { nameOfPart, paintedPoints } from './part-menu';
 
 /** A scan may consist of thousands of segments. */
 const kMostRows = 50;
 const kMostColors = 3; // per row
+const kMostNotes = 3; // about parts that are kept
 const kLocks: Record<Lock, string> = { auto: 'auto', keep: 'keep', exclude: 'exclude' };
 
 /** Segments that share a row, and their sums. */
@@ -77,7 +79,7 @@ export class PartsTable {
   }
 
   /** Shows the verdict of each row. */
-  #showVerdicts({ segmentStats }: Classification): void {
+  #showVerdicts({ segmentStats, zones }: Classification): void {
     for (const { segments, cover, verdict } of this.#rows) {
       // It changes with every frame of a moving model.
       cover.textContent = coverOf(segments.map((segment) => segmentStats[segment]!));
@@ -86,6 +88,13 @@ export class PartsTable {
       verdict.textContent = culled ? 'culled' : 'passes';
       verdict.dataset.verdict = verdict.textContent;
     }
+    const shown = this.#session.shown!;
+    const kept = Object.entries(this.#session.locks).filter(([, lock]) => lock === 'keep');
+    const notes = kept.slice(0, kMostNotes).map(([key]) => {
+      const segment = Number(key);
+      return `“${nameOfPart(shown, segment)}” is kept: ${paintedPoints(shown, zones, segment)}`;
+    });
+    showNotice('keep-note', notes.join(' '));
     const real = segmentStats.filter(({ area }) => area > 0);
     const culled = real.filter((segment) => segment.culled).length;
     element('segment-summary', HTMLElement).textContent =

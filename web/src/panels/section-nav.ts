@@ -26,6 +26,15 @@ export function setUpSectionNav(): void {
   follow();
 }
 
+/** Scrolls to a section of the panel, and moves the focus there. */
+export function goTo(section: HTMLElement): void {
+  if (section instanceof HTMLDetailsElement) section.open = true;
+  const reduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  section.scrollIntoView({ behavior: reduced ? 'instant' : 'smooth', block: 'start' });
+  section.tabIndex = -1;
+  section.focus({ preventScroll: true });
+}
+
 function linkTo(section: HTMLElement): HTMLAnchorElement {
   const link = document.createElement('a');
   link.href = `#${section.id}`;
@@ -33,11 +42,7 @@ function linkTo(section: HTMLElement): HTMLAnchorElement {
   link.addEventListener('click', (event) => {
     // The URL fragment is used for links to a view.
     event.preventDefault();
-    if (section instanceof HTMLDetailsElement) section.open = true;
-    const reduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
-    section.scrollIntoView({ behavior: reduced ? 'instant' : 'smooth', block: 'start' });
-    section.tabIndex = -1;
-    section.focus({ preventScroll: true });
+    goTo(section);
   });
   return link;
 }

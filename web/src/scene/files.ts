@@ -16,7 +16,7 @@ export interface Intake {
   all: File[];
 }
 
-const kModel = /\.(glb|gltf)$/i;
+const kModel = /\.(glb|gltf|vrm)$/i;
 const kCage = /cage/i;
 const kImage = /\.(png|jpe?g|webp)$/i;
 

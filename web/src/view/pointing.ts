@@ -21,6 +21,8 @@ const kTapMove = 6; // pixels that a finger may move during a tap
 /** Passes pointers on the canvas to the tool. Pointers it does not capture, and two fingers, turn the model. */
 export class Pointing {
   tool: Tool | undefined;
+  /** What taps are for while no tool is chosen. */
+  idle: Pick<Tool, 'tap'> | undefined;
   readonly #pick: (x: number, y: number) => Spot | undefined;
   readonly #setTurning: (turns: boolean) => void;
   #captured: { id: number; tool: Tool } | undefined;
@@ -62,8 +64,8 @@ export class Pointing {
     }
     if (this.#captured) return;
     this.#setTurning(true);
-    if (!this.tool || event.button !== 0) return;
-    if (this.tool.down?.(this.#spot(event), event)) {
+    if (!(this.tool ?? this.idle) || event.button !== 0) return;
+    if (this.tool?.down?.(this.#spot(event), event)) {
       this.#captured = { id: event.pointerId, tool: this.tool };
       canvas.setPointerCapture(event.pointerId);
       // The controls still see this pointer, as a second finger may join to turn the model.
@@ -87,7 +89,7 @@ export class Pointing {
       const { x, y } = this.#pressed;
       this.#pressed = undefined;
       const tapped = Math.hypot(event.clientX - x, event.clientY - y) <= kTapMove;
-      if (tapped && event.type === 'pointerup') this.tool?.tap?.(this.#spot(event), event);
+      if (tapped && event.type === 'pointerup') (this.tool ?? this.idle)?.tap?.(this.#spot(event), event);
     }
   }
 

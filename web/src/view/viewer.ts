@@ -21,6 +21,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { disposeModel, type Model } from '../scene/load-model';
 import type { SplitProjection } from '../scene/transfer-messages';
 import { CageLines } from './cage-lines';
+import { type FreePart, fittingDistance, freePartOf } from './framing';
 import { Highlight } from './highlight';
 import { type Look, Overlay } from './overlay';
 import { pick, type Spot } from './pick';
@@ -30,8 +31,7 @@ import { type Angle, kFirstView, kLooks, showsPaint, type View } from './view';
 
 const kFieldOfView = 28; // degrees
 const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14));
-const kFill = 0.86; // below 1, as models rarely fill the corners of their bounding box
-const kToolbar = 96; // pixels at the lower edge that the toolbar covers
+const kLevel = MathUtils.degToRad(84); // of the views from the front and from the side
 const kSway = MathUtils.degToRad(40); // amplitude of the idle rotation
 const kSwaySeconds = 16; // its period
 const kLongestFrame = 0.25; // seconds: limits the rotation per frame, so that a slow frame causes no jump
@@ -65,6 +65,11 @@ export class Viewer {
   #moved = false;
   /** The distance at which the whole model is visible, for the current size. */
   #far = 1;
+  #free: FreePart = { width: 1, height: 1, top: 0, bottom: 0, fill: 1 };
+  /** The model's vertices in the studio. */
+  #points: Float32Array = new Float32Array();
+  /** Where the model looks: radians around it. */
+  #front = 0;
   #mixer: AnimationMixer | undefined;
   #played = 0;
 
@@ -180,10 +185,10 @@ export class Viewer {
     return new Vector3().setFromMatrixColumn(this.#camera.matrixWorld, 1);
   }
 
-  /** The centre of the view above the toolbar, in client coordinates. */
+  /** The centre of the free part of the view, in client coordinates. */
   get center(): { x: number; y: number } {
     const { left, top, width, height } = this.#canvas.getBoundingClientRect();
-    return { x: left + width / 2, y: top + (height - kToolbar) / 2 };
+    return { x: left + width / 2, y: top + (height + this.#free.top - this.#free.bottom) / 2 };
   }
 
   /** Calls `prepare` before each frame, to update textures. */
@@ -195,6 +200,15 @@ export class Viewer {
   setTool(tool: Tool | undefined): void {
     this.#pointing.tool = tool;
     if (tool) this.sway(false);
+  }
+
+  /** Sets what taps are for while the pointer turns the model. */
+  setIdleTool(tool: Pick<Tool, 'tap'>): void {
+    this.#pointing.idle = tool;
+  }
+
+  get hasTool(): boolean {
+    return this.#pointing.tool !== undefined;
   }
 
   /** Shows another cage, in the space of the target. */
@@ -239,7 +253,16 @@ export class Viewer {
   /** Resets the camera to show the whole model. */
   home(): void {
     this.#moved = false;
-    this.#look({ ...kHome, radius: this.#fullDistance });
+    this.#look({ phi: kHome.phi, theta: this.#front + kHome.theta, radius: this.#fullDistance });
+  }
+
+  /** Shows the whole model from its front or its side, or as large as it fits from where the camera is. */
+  face(side: 'front' | 'side' | 'fit'): void {
+    this.#markMoved();
+    const angle = new Spherical().setFromVector3(this.#camera.position);
+    if (side !== 'fit') angle.set(1, kLevel, this.#front + (side === 'side' ? Math.PI / 2 : 0));
+    const radius = fittingDistance(this.#free, kFieldOfView, this.#points, angle, true);
+    this.#look({ phi: angle.phi, theta: angle.theta, radius });
   }
 
   /** The camera angle chosen by the user; undefined by default. */
@@ -257,12 +280,8 @@ export class Viewer {
 
   /** The distance at which the whole model is visible. */
   get #fullDistance(): number {
-    // In a tall view the width limits the model.
-    const half = MathUtils.degToRad(kFieldOfView / 2);
-    const { clientWidth: width, clientHeight: height } = this.#canvas;
-    const free = Math.max(1, height - kToolbar);
-    const narrow = Math.atan((Math.tan(half) * Math.min(free, width)) / Math.max(1, height));
-    return kFill / Math.sin(narrow);
+    const home = new Spherical(1, kHome.phi, this.#front + kHome.theta);
+    return fittingDistance(this.#free, kFieldOfView, this.#points, home, false);
   }
 
   /** The user moves the camera from now on. */
@@ -289,6 +308,10 @@ export class Viewer {
       if (object instanceof Mesh) object.castShadow = object.receiveShadow = true;
     });
     this.#studio.setFloor((-size.y * scale) / 2);
+    this.#points = model.mesh.positions.map((value, i) => scale * value + stage.position.getComponent(i % 3));
+    // Figures of VRM 0 look along -z, all others along +z.
+    this.#front = model.loaded.parser?.json?.extensions?.VRM ? Math.PI : 0;
+    this.#far = this.#fullDistance;
     this.home();
   }
 
@@ -322,6 +345,9 @@ export class Viewer {
       '=': () => this.#controls.dollyIn(kKeyNearer),
       '-': () => this.#controls.dollyOut(kKeyNearer),
       Home: () => this.home(),
+      '0': () => this.face('fit'),
+      '1': () => this.face('front'),
+      '2': () => this.face('side'),
     };
     const action = actions[event.key];
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -337,8 +363,9 @@ export class Viewer {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.#camera.aspect = width / height;
-    // Centre the model in the area above the toolbar.
-    this.#camera.setViewOffset(width, height, 0, kToolbar / 2, width, height);
+    this.#free = freePartOf(this.#canvas);
+    // Centre the model in the free part.
+    this.#camera.setViewOffset(width, height, 0, (this.#free.bottom - this.#free.top) / 2, width, height);
     const far = this.#far;
     this.#far = this.#fullDistance;
     // Such as when a phone hides its address bar: keep the user's angle and magnification.
@@ -378,7 +405,7 @@ export class Viewer {
       this.#drawn = now;
       const phase = Math.sin(this.#swayed * ((2 * Math.PI) / kSwaySeconds));
       const { radius, phi } = new Spherical().setFromVector3(this.#camera.position);
-      this.#look({ radius, phi, theta: kHome.theta - kSway * phase });
+      this.#look({ radius, phi, theta: this.#front + kHome.theta - kSway * phase });
     }
     if (this.#mixer) {
       this.#mixer.update(Math.max(0, now - this.#played) / 1000);

@@ -1,0 +1,33 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { forPeople } from '../../web/src/panels/wording';
+import { inRepository } from '../support/site';
+
+test('findings are told in the words of the page: parts, no flags, no functions', () => {
+  for (const [text, told] of [
+    [
+      'If that is wrong, override it (--keep "l-eye"), or widen or close the holes over it.',
+      'If that is wrong, override it, or widen or close the holes over it.',
+    ],
+    ['Of 2 segments with the shape of "eye", 1 is painted', 'Of 2 parts with the shape of "eye", 1 is painted'],
+    [
+      'less than the threshold of 0.5, but a lock excludes it',
+      'less than the threshold of 0.5, but you chose to exclude it',
+    ],
+    ['Move it by about (0, 1), or call refineCage of cagecast/cages.', 'Move it by about (0, 1).'],
+  ] as const)
+    assert.equal(forPeople(text), told);
+});
+
+test('nothing that the package finds keeps words of programs on the page', () => {
+  for (const file of ['segments', 'placement', 'holes', 'inside', 'normals', 'topology', 'uv']) {
+    const source = readFileSync(inRepository('wasm/src/inspect', `${file}.ts`), 'utf8');
+    for (const [, text] of source.matchAll(/(?:sentence|advice):\s*[`']([^`']*)/g))
+      assert.doesNotMatch(
+        forPeople(text!.replace(/\$\{option\(\w+\)\}/, '--keep "eye"')),
+        /segment|--|refineCage/,
+        file,
+      );
+  }
+});

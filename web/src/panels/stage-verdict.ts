@@ -1,0 +1,70 @@
+import type { Inspection } from 'cagecast/inspect';
+import { element } from '../platform/page';
+import type { Session } from '../scene/session';
+import { goTo } from './section-nav';
+
+/** Something that can be done about a cage that does not fit. */
+export interface Remedy {
+  title: string;
+  run(): void;
+}
+
+/** Whether the cage fits; empty until it was inspected. */
+export type KnownVerdict = Inspection['verdict'] | '';
+
+/** Shows the verdict on the cage on the stage and on the model's card: first, how much of the model can be painted. */
+export class StageVerdict {
+  readonly #session: Session;
+  readonly #box = element('stage-verdict', HTMLElement);
+  readonly #text = element('stage-verdict-text', HTMLButtonElement);
+  readonly #button = element('stage-remedy', HTMLButtonElement);
+  readonly #card = element('model-verdict', HTMLElement);
+  #verdict: KnownVerdict = '';
+  #remedy: Remedy | undefined;
+
+  constructor(session: Session) {
+    this.#session = session;
+    this.#text.addEventListener('click', () => goTo(element('fit', HTMLElement)));
+    this.#button.addEventListener('click', () => this.#remedy?.run());
+    session.on('zones', () => this.#write());
+  }
+
+  /** @param remedy The first that can be done. */
+  show(verdict: KnownVerdict, remedy?: Remedy): void {
+    this.#verdict = verdict;
+    this.#remedy = remedy;
+    this.#write();
+  }
+
+  #write(): void {
+    const verdict = this.#verdict;
+    const { shown, classification } = this.#session;
+    if (!shown || !classification) return;
+    const share = `${Math.round(100 * paintableShare(classification.segmentStats))} % paintable`;
+    const foreign = shown.cage.sample && shown.cage.sample !== shown.target.sample;
+    const texts: Record<KnownVerdict, string> = {
+      '': foreign ? 'The cage is another model’s' : 'Checking the cage…',
+      good: share,
+      usable: `${share}, with reservations`,
+      unfit: 'The cage does not fit',
+    };
+    this.#box.hidden = this.#card.hidden = false;
+    this.#text.textContent = texts[verdict];
+    this.#card.textContent = verdict === 'unfit' ? 'does not fit' : verdict === '' ? 'not checked yet' : share;
+    this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
+    this.#button.hidden = !this.#remedy;
+    this.#button.textContent = this.#remedy?.title ?? '';
+  }
+}
+
+/** The share of the visible surface that can be painted, 0..1. */
+export function paintableShare(
+  parts: readonly { exposedArea: number; coveredArea: number; culled: boolean }[],
+): number {
+  let [visible, paintable] = [0, 0];
+  for (const { exposedArea, coveredArea, culled } of parts) {
+    visible += exposedArea;
+    if (!culled) paintable += coveredArea;
+  }
+  return visible > 0 ? Math.min(1, paintable / visible) : 0;
+}

@@ -1,0 +1,46 @@
+import type { Edits, Layer, LayerStack } from 'cagecast/three/layers';
+import { element, showError } from '../platform/page';
+import type { Model } from './load-model';
+import type { Session } from './session';
+
+/** Puts the layers away that were painted for another cage, and offers them again. They stay where a cage has the same UVs. */
+export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits): void {
+  const offer = element('put-away', HTMLElement);
+  let last: Model | undefined;
+  let away: readonly Layer[] = [];
+  const show = (layers: readonly Layer[]): void => {
+    away = layers;
+    offer.hidden = layers.length === 0;
+    const count = layers.length === 1 ? 'One layer' : `${layers.length} layers`;
+    offer.querySelector('p')!.textContent = `${count} of the last cage put away.`;
+  };
+  session.on('transfer', ({ cage }) => {
+    const before = last;
+    last = cage;
+    if (!before || haveSameUvs(before, cage)) return;
+    const old = stack.layers.filter(({ id }) => id !== stack.base?.id);
+    if (old.length > 0)
+      edits.do('putting layers away', () => {
+        for (const { id } of old) stack.remove(id);
+      });
+    show(old);
+  });
+  // Undoing brings them back too.
+  stack.on('change', (layers) => {
+    if (away.some(({ id }) => layers.some((layer) => layer.id === id))) show([]);
+  });
+  element('bring-back', HTMLButtonElement).addEventListener('click', () => {
+    try {
+      edits.do('bringing layers back', () => stack.change([], away));
+    } catch (error) {
+      showError((error as Error).message);
+    }
+  });
+}
+
+/** Whether a paint for one cage fits the other: the same triangles with the same UVs, wherever they are. */
+function haveSameUvs({ mesh: one }: Model, { mesh: other }: Model): boolean {
+  if (one === other) return true;
+  if (!one.uvs || one.uvs.length !== other.uvs?.length || one.indices.length !== other.indices.length) return false;
+  return one.uvs.every((value, i) => value === other.uvs![i]);
+}

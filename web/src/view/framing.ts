@@ -1,0 +1,63 @@
+import { MathUtils, type Spherical, Vector3 } from 'three';
+
+const kMargin = 1.03;
+const kMostPoints = 50_000; // more are sampled evenly
+const kTools = 70; // pixels at either side that tools cover
+
+/** The part of the view that no controls cover, in pixels. */
+export interface FreePart {
+  width: number;
+  height: number;
+  /** What is covered at the upper and at the lower edge. */
+  top: number;
+  bottom: number;
+  /** Its radius, in radii of a compact model. */
+  fill: number;
+}
+
+/** Reads from the stylesheet what controls cover. */
+export function freePartOf(canvas: HTMLElement): FreePart {
+  const style = getComputedStyle(canvas);
+  const value = (name: string, missing: number): number => parseFloat(style.getPropertyValue(name)) || missing;
+  return {
+    width: canvas.clientWidth,
+    height: canvas.clientHeight,
+    top: value('--stage-top', 0),
+    bottom: value('--stage-bottom', 0),
+    fill: value('--stage-fill', 1),
+  };
+}
+
+/**
+ * The distance at which a whole model is in the free part of the view.
+ * @param fieldOfView Degrees, of the view's height.
+ * @param points      3 each, around the origin; without any, those of a ball of radius 1 are supposed.
+ * @param angle       Where the camera is; its radius is ignored.
+ * @param exact       Whether the model fills the part. Otherwise a compact model gets more room, so that it can be turned.
+ */
+export function fittingDistance(
+  { width, height, top, bottom, fill }: FreePart,
+  fieldOfView: number,
+  points: ArrayLike<number>,
+  angle: Spherical,
+  exact: boolean,
+): number {
+  const half = Math.tan(MathUtils.degToRad(fieldOfView / 2));
+  const free = Math.max(1, height - top - bottom);
+  // In a tall view the width limits the model.
+  const loose = fill / Math.sin(Math.atan((half * Math.min(free, width)) / Math.max(1, height)));
+  const across = (half * Math.max(width / 2, width - 2 * kTools)) / Math.max(1, height);
+  const along = (half * free) / Math.max(1, height);
+  const toCamera = new Vector3().setFromSphericalCoords(1, angle.phi, angle.theta);
+  const right = new Vector3(Math.cos(angle.theta), 0, -Math.sin(angle.theta));
+  const up = toCamera.clone().cross(right);
+  const point = new Vector3();
+  const step = 3 * Math.ceil(points.length / 3 / kMostPoints);
+  let needed = 0;
+  for (let i = 0; i < points.length; i += step) {
+    point.fromArray(points, i);
+    const size = Math.max(Math.abs(point.dot(right)) / across, Math.abs(point.dot(up)) / along);
+    needed = Math.max(needed, size + point.dot(toCamera));
+  }
+  return exact && needed > 0 ? kMargin * needed : Math.max(loose, kMargin * needed);
+}

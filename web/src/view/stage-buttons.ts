@@ -1,0 +1,41 @@
+import type { History } from 'cagecast/three/layers';
+import { element } from '../platform/page';
+import type { Viewer } from './viewer';
+
+/** Connects the buttons on the stage: the camera, saving, and colour, size, undo and redo beside the rail while one paints. */
+export function setUpStageButtons(viewer: Viewer | undefined, history: History): void {
+  for (const button of element('angles', HTMLElement).querySelectorAll('button'))
+    button.addEventListener('click', () => viewer?.face(button.dataset.face as 'front' | 'side' | 'fit'));
+
+  // The panel has the same controls; these pass on what is done to them.
+  const [save, exports] = [element('stage-save', HTMLButtonElement), element('export-glb', HTMLButtonElement)];
+  save.addEventListener('click', () => exports.click());
+  const copySave = (): void => {
+    save.disabled = exports.disabled;
+    save.ariaBusy = exports.ariaBusy;
+  };
+  new MutationObserver(copySave).observe(exports, { attributeFilter: ['disabled', 'aria-busy'] });
+  copySave();
+  for (const name of ['color', 'size']) {
+    const [quick, field] = [element(`quick-${name}`, HTMLInputElement), element(`brush-${name}`, HTMLInputElement)];
+    const copy = (from: HTMLInputElement, to: HTMLInputElement): void => {
+      if (from.value === to.value) return;
+      to.value = from.value;
+      to.dispatchEvent(new Event('input', { bubbles: true }));
+    };
+    quick.addEventListener('input', () => copy(quick, field));
+    field.addEventListener('input', () => copy(field, quick));
+    copy(field, quick); // browsers keep the state of fields on reload
+  }
+  for (const name of ['undo', 'redo'] as const) {
+    const [quick, button] = [element(`quick-${name}`, HTMLButtonElement), element(name, HTMLButtonElement)];
+    quick.addEventListener('click', () => button.click());
+    history.on('change', () => (quick.disabled = button.disabled));
+  }
+  const options = element('tool-options', HTMLElement);
+  const follow = (): void => {
+    element('quick-paint', HTMLElement).hidden = options.hidden;
+    element('quick-color', HTMLElement).hidden = element('brush-color', HTMLElement).closest('label')!.hidden;
+  };
+  new MutationObserver(follow).observe(options, { attributeFilter: ['hidden'], subtree: true });
+}
