@@ -62,11 +62,21 @@ function onlyGltfDraco(): Plugin {
   };
 }
 
+/** Leaves out the worker of `cagecast/worker`, which `cagecast/three` could start; the page has a worker of its own. */
+function withoutSpareWorker(): Plugin {
+  const spare = /new URL\(\s*["']\.\/worker-thread\.js["'],\s*import\.meta\.url\s*\)/g;
+  return {
+    name: 'cagecast-without-spare-worker',
+    enforce: 'pre',
+    transform: (code, id) => (id.startsWith(path.join(kRepository, 'dist')) ? code.replaceAll(spare, "''") : undefined),
+  };
+}
+
 export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the page can be served from any folder.
   base: './',
-  plugins: [slim(), samples(), onlyGltfDraco(), basis(), precache()],
+  plugins: [slim(), samples(), onlyGltfDraco(), withoutSpareWorker(), basis(), precache()],
   build: {
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,
