@@ -148,7 +148,10 @@ describe('examples, from the packed package', () => {
             return columns;
           });
         const [left = 0, right = 0] = await blue();
-        for (let x = 64; x < 128; x += 16) await page.mouse.move(x, 128);
+        await page.mouse.move(70, 128);
+        await page.mouse.down();
+        for (let x = 78; x < 120; x += 8) await page.mouse.move(x, 128);
+        await page.mouse.up();
         let both = [0, 0];
         const isDrawn = () => both[0]! > left + 20 && both[1]! > right + 20;
         for (const end = Date.now() + 10000; !isDrawn() && Date.now() < end; ) both = await blue();
