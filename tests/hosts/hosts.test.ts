@@ -4,6 +4,7 @@ import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import type { Browser } from 'playwright-core';
+import { createServer } from 'vite';
 import { launchChromium } from '../support/chromium.js';
 import { hostTools, installPacked, run, serve } from './install.js';
 
@@ -168,11 +169,11 @@ describe('in Chromium', () => {
     site?.close();
   });
 
-  async function visit(path: string): Promise<unknown> {
+  async function visit(path: string, origin = site.origin): Promise<unknown> {
     const visited = await browser.newPage();
     const faults: string[] = [];
     visited.on('pageerror', (error) => faults.push(String(error)));
-    await visited.goto(`${site.origin}/${path}`);
+    await visited.goto(`${origin}/${path}`);
     let found: unknown;
     for (const end = Date.now() + 60000; found === undefined && Date.now() < end && faults.length === 0; ) {
       found = await visited.evaluate('globalThis.answer');
@@ -194,6 +195,18 @@ describe('in Chromium', () => {
       ),
     });
     assert.deepEqual(await visit('map/index.html'), answer);
+  });
+
+  test('Vite, in development', async () => {
+    put('dev', { 'program.js': program, 'index.html': page });
+    const settings = { configFile: false, logLevel: 'error', server: { port: 0, host: '127.0.0.1' } } as const;
+    const server = await createServer({ ...settings, root: join(user, 'dev'), cacheDir: join(user, 'dev/.vite') });
+    await server.listen();
+    try {
+      assert.deepEqual(await visit('index.html', server.resolvedUrls!.local[0]!.replace(/\/$/, '')), answer);
+    } finally {
+      await server.close();
+    }
   });
 
   test('Parcel', async () => {
