@@ -9,7 +9,6 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr std::size_t kLeastBones = 6;
 constexpr int kSmoothings = 4;
 /// Bones are at least this thick where weights are computed, in diagonals, so that weights stay finite.
 constexpr double kThickness = 1e-3;

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "fit/hole_outline.hpp"
+#include "mesh/bounds.hpp"
 #include "mesh/surface.hpp"
 
 namespace cagecast::cages {
@@ -17,10 +19,14 @@ constexpr double kHoleNear = 0.12;   ///< From the centre of an eye to the middl
 constexpr double kEyeNear = 0.04;    ///< From the landmark to the middle of the component that is the eye, at most.
 constexpr double kLargestEye = 0.3;  ///< The size of an eye, at most.
 constexpr double kLift = 1e-4;       ///< Rays from a surface start this far off it.
-/// The hole is larger than the contour: it is a polygon of few corners, and paint must not reach the eye. At 1.06 the
-/// transfer painted 3 % of what it should not.
-constexpr double kMargin = 1.3;
-constexpr int kDirections = 48, kSteps = 48;
+constexpr int kDirections = 144, kSteps = 144, kGrid = 48;
+/// A piece of which all is this near to the middle of an eye, as it is seen and in depth, in largest radii of what is
+/// visible, may be its lashes.
+constexpr double kCoverReach = 1.6, kCoverDepth = 4;
+/// The centre of an eye is in the box of the eyeball, enlarged by this share of its size.
+constexpr double kBoxSlack = 0.2;
+/// What is this near to the middle of an eyeball, in its radii, belongs to the eye: pupils and corneas, not lashes.
+constexpr double kBallSlack = 1.15;
 /// An eye of which fewer directions show anything is hidden.
 constexpr std::size_t kLeastSeen = 32;
 
@@ -29,36 +35,60 @@ Vec3 unit(const Vec3& v) { return 1 / length(v) * v; }
 /// What is visible of an eye, seen along its axis.
 struct Opening {
   Vec3 middle{}, axis{}, across{}, up{};
-  std::vector<Vec3> contour;  ///< In the plane through `middle`.
+  std::vector<double> contour;  ///< Distances from `middle`, from `across` to `up`.
+  std::vector<HoleContent::Cover> covers;
+
+  [[nodiscard]] Flat flat(const Vec3& p) const { return {dot(p - middle, across), dot(p - middle, up)}; }
+  [[nodiscard]] Vec3 place(const Flat& p) const { return middle + p.x * across + p.y * up; }
 };
 
-struct Box {
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  void add(const Vec3& p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+/// Boxes of the components of a mesh.
+std::vector<Bounds> boxesOf(const TriangleMesh& mesh, const std::vector<std::uint32_t>& components) {
+  std::uint32_t count = 0;
+  for (const std::uint32_t c : components) count = std::max(count, c + 1);
+  std::vector<Bounds> boxes(count);
+  for (std::size_t t = 0; t < components.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) boxes[components[t]].add(mesh.positions[v]);
+  return boxes;
+}
+
+double thickness(const Bounds& box) { return std::min({box.size().x, box.size().y, box.size().z}); }
+
+/// The component that is the eyeball around a landmark, if no name says so: the thickest one. -1 if there is none.
+int eyeballAt(const std::vector<Bounds>& boxes, const std::vector<bool>& isNear, const Vec3& centre) {
+  int best = -1;
+  for (std::size_t c = 0; c < boxes.size(); ++c) {
+    const Vec3 off = centre - boxes[c].middle(), most = (0.5 + kBoxSlack) * boxes[c].size();
+    if (!isNear[c] || std::abs(off.x) > most.x || std::abs(off.y) > most.y || std::abs(off.z) > most.z) continue;
+    if (best < 0 || thickness(boxes[c]) > thickness(boxes[static_cast<std::size_t>(best)])) best = static_cast<int>(c);
   }
-  [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
-  [[nodiscard]] double size() const { return length(high - low); }
-};
+  return best;
+}
 
-/// The triangles of the eye at a landmark: named parts on its side, else the connected component around it.
+/// The triangles of the eye at a landmark: named parts on its side, else the eyeball around it, and what is inside.
 std::vector<bool> eyeAt(const EyedFigure& figure, const Vec3& centre, const Vec3& other, double diagonal) {
   const std::size_t count = figure.mesh.triangles.size();
-  std::uint32_t componentCount = 0;
-  for (const std::uint32_t c : figure.components) componentCount = std::max(componentCount, c + 1);
-  std::vector<Box> boxes(componentCount);
-  std::vector<bool> named(componentCount);
-  bool anyNamed = false;
-  for (std::size_t t = 0; t < count; ++t) {
-    for (const std::uint32_t v : figure.mesh.triangles[t]) boxes[figure.components[t]].add(figure.mesh.positions[v]);
-    if (figure.isEye[t]) named[figure.components[t]] = anyNamed = true;
-  }
-  std::vector<bool> isEye(componentCount);
-  for (std::size_t c = 0; c < componentCount; ++c) {
+  const std::vector<Bounds> boxes = boxesOf(figure.mesh, figure.components);
+  std::vector<bool> named(boxes.size()), isNear(boxes.size()), isEye(boxes.size());
+  for (std::size_t t = 0; t < count; ++t)
+    if (figure.isEye[t]) named[figure.components[t]] = true;
+  const bool anyNamed = std::find(named.begin(), named.end(), true) != named.end();
+  for (std::size_t c = 0; c < boxes.size(); ++c) {
+    if (boxes[c].empty()) continue;
     const double distance = length(boxes[c].middle() - centre);
-    if (boxes[c].size() > kLargestEye * diagonal || distance > length(boxes[c].middle() - other)) continue;
-    isEye[c] = anyNamed ? named[c] && distance < kLargestEye * diagonal : distance < kEyeNear * diagonal;
+    if (boxes[c].diagonal() > kLargestEye * diagonal || distance > length(boxes[c].middle() - other)) continue;
+    isEye[c] = named[c] && distance < kLargestEye * diagonal;
+    isNear[c] = distance < kEyeNear * diagonal;
+  }
+  const int ball = anyNamed ? -1 : eyeballAt(boxes, isNear, centre);
+  if (ball >= 0) {
+    isEye = isNear;
+    const Bounds& box = boxes[static_cast<std::size_t>(ball)];
+    const double reach = kBallSlack * 0.5 * std::max({box.size().x, box.size().y, box.size().z});
+    for (std::size_t t = 0; t < count; ++t)
+      for (const std::uint32_t v : figure.mesh.triangles[t])
+        if (length(figure.mesh.positions[v] - box.middle()) > reach) isEye[figure.components[t]] = false;
+    isEye[static_cast<std::size_t>(ball)] = true;
   }
   std::vector<bool> out(count);
   for (std::size_t t = 0; t < count; ++t) out[t] = isEye[figure.components[t]];
@@ -90,14 +120,14 @@ std::optional<Opening> openingOf(const EyedFigure& figure, const Surface& surfac
   Opening opening;
   opening.axis = axisOf(figure.mesh, isEye, surface, diagonal);
   if (!(length(opening.axis) > 0)) return std::nullopt;
-  Box box;
+  Bounds box;
   for (std::size_t t = 0; t < isEye.size(); ++t)
     if (isEye[t])
       for (const std::uint32_t v : figure.mesh.triangles[t]) box.add(figure.mesh.positions[v]);
   const Vec3 helper = std::abs(opening.axis.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
   opening.across = unit(cross(helper, opening.axis));
   opening.up = cross(opening.axis, opening.across);
-  const double radius = 0.5 * box.size();
+  const double radius = 0.5 * box.diagonal();
   const auto seenAt = [&](const std::vector<Vec3>& places) {
     std::vector<SurfaceRay> rays;
     rays.reserve(places.size());
@@ -110,9 +140,9 @@ std::optional<Opening> openingOf(const EyedFigure& figure, const Surface& surfac
   };
   // The middle of what is visible, on a square grid.
   std::vector<Vec3> grid;
-  for (int i = -kSteps / 2; i <= kSteps / 2; ++i)
-    for (int k = -kSteps / 2; k <= kSteps / 2; ++k)
-      grid.push_back(box.middle() + 2 * radius / kSteps * (i * opening.across + k * opening.up));
+  for (int i = -kGrid / 2; i <= kGrid / 2; ++i)
+    for (int k = -kGrid / 2; k <= kGrid / 2; ++k)
+      grid.push_back(box.middle() + 2 * radius / kGrid * (i * opening.across + k * opening.up));
   std::vector<bool> seen = seenAt(grid);
   double count = 0;
   for (std::size_t i = 0; i < grid.size(); ++i)
@@ -123,19 +153,19 @@ std::optional<Opening> openingOf(const EyedFigure& figure, const Surface& surfac
   if (count < static_cast<double>(kLeastSeen)) return std::nullopt;
   opening.middle = 1 / count * opening.middle;
   // The farthest visible spot in each direction; lashes of the same mesh may cover what is nearer.
+  const double step = 2 * radius / kSteps;
   std::vector<Vec3> spokes;
   for (int d = 0; d < kDirections; ++d) {
     const double angle = 2 * std::numbers::pi * d / kDirections;
     for (int k = 0; k < kSteps; ++k)
-      spokes.push_back(opening.middle +
-                       2 * radius * k / kSteps * (std::cos(angle) * opening.across + std::sin(angle) * opening.up));
+      spokes.push_back(opening.place({step * k * std::cos(angle), step * k * std::sin(angle)}));
   }
   seen = seenAt(spokes);
   for (std::size_t d = 0; d < kDirections; ++d) {
     std::size_t last = 0;
     for (std::size_t k = 0; k < kSteps; ++k)
       if (seen[d * kSteps + k]) last = k;
-    opening.contour.push_back(spokes[d * kSteps + last]);
+    opening.contour.push_back(step * (static_cast<double>(last) + 0.5));
   }
   return opening;
 }
@@ -157,51 +187,103 @@ int holeAt(const TemplateCage& cage, const Vec3& centre, const Vec3& other) {
   return best;
 }
 
-/// Moves the border of a hole onto a contour, by angles about their middles, each in its own proportions.
-void drawTo(const Opening& opening, const std::vector<std::uint32_t>& loop, const Surface& surface, double offset,
-            std::vector<Vec3>& positions) {
-  struct Flat {
-    double x, y;
-  };
-  const auto flat = [&](const Vec3& p) {
-    return Flat{dot(p - opening.middle, opening.across), dot(p - opening.middle, opening.up)};
-  };
-  const auto spread = [](const std::vector<Flat>& points, Flat& middle) {
-    const double share = 1 / static_cast<double>(points.size());
-    middle = {0, 0};
-    Flat out{0, 0};
-    for (const Flat& p : points) middle = {middle.x + share * p.x, middle.y + share * p.y};
-    for (const Flat& p : points)
-      out = {out.x + share * std::abs(p.x - middle.x), out.y + share * std::abs(p.y - middle.y)};
-    return out;
-  };
-  std::vector<Flat> border, contour;
-  for (const std::uint32_t v : loop) border.push_back(flat(positions[v]));
-  for (const Vec3& p : opening.contour) contour.push_back(flat(p));
-  Flat borderMiddle, contourMiddle;
-  const Flat borderSpread = spread(border, borderMiddle), contourSpread = spread(contour, contourMiddle);
-  if (!(borderSpread.x > 0 && borderSpread.y > 0 && contourSpread.x > 0 && contourSpread.y > 0)) return;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const double angle =
-        std::atan2((border[i].y - borderMiddle.y) / borderSpread.y, (border[i].x - borderMiddle.x) / borderSpread.x);
-    Flat best = contourMiddle;
-    double least = std::numeric_limits<double>::infinity();
-    for (const Flat& p : contour) {
-      const double there =
-          std::atan2((p.y - contourMiddle.y) / contourSpread.y, (p.x - contourMiddle.x) / contourSpread.x);
-      const double turn = std::abs(std::remainder(there - angle, 2 * std::numbers::pi));
-      if (turn >= least) continue;
-      least = turn;
-      best = p;
+/// The mean of points, and their mean distances from it along x and y.
+Flat spreadOf(const std::vector<Flat>& points, Flat& middle) {
+  const double share = 1 / static_cast<double>(points.size());
+  middle = {};
+  for (const Flat& p : points) middle = {middle.x + share * p.x, middle.y + share * p.y};
+  Flat out;
+  for (const Flat& p : points)
+    out = {out.x + share * std::abs(p.x - middle.x), out.y + share * std::abs(p.y - middle.y)};
+  return out;
+}
+
+/// Adds the pieces of a mesh around an eye that are neither the eye nor skin.
+/// @param isEye  Per triangle; may be empty.
+void addCovers(const TriangleMesh& mesh, const std::vector<std::uint32_t>& components, const std::vector<bool>& isEye,
+               Opening& opening) {
+  std::vector<HoleContent::Cover>& covers = opening.covers;
+  const double radius = *std::max_element(opening.contour.begin(), opening.contour.end());
+  std::uint32_t count = 0;
+  for (const std::uint32_t c : components) count = std::max(count, c + 1);
+  std::vector<bool> isCover(count, true);
+  for (std::size_t t = 0; t < components.size(); ++t) {
+    if (!isEye.empty() && isEye[t]) isCover[components[t]] = false;
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      const Flat p = opening.flat(mesh.positions[v]);
+      const double depth = std::abs(dot(mesh.positions[v] - opening.middle, opening.axis));
+      if (std::hypot(p.x, p.y) > kCoverReach * radius || depth > kCoverDepth * radius) isCover[components[t]] = false;
     }
-    const Vec3 at = opening.middle + (contourMiddle.x + kMargin * (best.x - contourMiddle.x)) * opening.across +
-                    (contourMiddle.y + kMargin * (best.y - contourMiddle.y)) * opening.up;
+  }
+  std::size_t pieces = 0;
+  for (const HoleContent::Cover& cover : covers) pieces = std::max(pieces, cover.piece + 1);
+  std::vector<std::size_t> pieceOf(count, SIZE_MAX);
+  for (std::size_t t = 0; t < components.size(); ++t) {
+    const std::uint32_t c = components[t];
+    const Triangle3& corners = mesh.triangles[t];
+    const double area = length(areaNormal(mesh, corners));
+    if (!isCover[c] || !(area > 0)) continue;
+    if (pieceOf[c] == SIZE_MAX) pieceOf[c] = pieces++;
+    const Vec3 middle =
+        1.0 / 3 * (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]);
+    covers.push_back({opening.flat(middle), area, pieceOf[c]});
+  }
+}
+
+/// What a hole has to show, and the triangles around it.
+HoleContent contentOf(const TemplateCage& cage, const std::vector<std::uint32_t>& loop, const Opening& opening,
+                      const std::vector<Vec3>& positions) {
+  HoleContent content{opening.contour, opening.covers, {}};
+  for (const Triangle3& t : cage.mesh.triangles) {
+    HoleContent::Neighbour neighbour;
+    bool touches = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto corner = std::find(loop.begin(), loop.end(), t[k]);
+      neighbour.places[k] = opening.flat(positions[t[k]]);
+      neighbour.corners[k] = corner == loop.end() ? -1 : static_cast<int>(corner - loop.begin());
+      touches = touches || corner != loop.end();
+    }
+    if (touches) content.neighbours.push_back(neighbour);
+  }
+  return content;
+}
+
+/// Moves the border of a hole to where it shows an eye.
+void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Opening& opening, const Surface& surface,
+            std::vector<Vec3>& positions) {
+  double around = 0;
+  std::vector<Flat> border;
+  border.reserve(loop.size());
+  for (const std::uint32_t v : loop) border.push_back(opening.flat(positions[v]));
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Flat &a = border[i], &b = border[(i + 1) % loop.size()];
+    around += a.x * b.y - a.y * b.x;
+  }
+  if (around < 0) {
+    std::reverse(loop.begin(), loop.end());
+    std::reverse(border.begin(), border.end());
+  }
+  std::vector<Flat> contour;
+  for (std::size_t d = 0; d < opening.contour.size(); ++d) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(d) / static_cast<double>(opening.contour.size());
+    contour.push_back({opening.contour[d] * std::cos(angle), opening.contour[d] * std::sin(angle)});
+  }
+  // The angles of the corners about the middle of the hole, in its own proportions.
+  Flat borderMiddle, contourMiddle;
+  const Flat borderSpread = spreadOf(border, borderMiddle), contourSpread = spreadOf(contour, contourMiddle);
+  if (!(borderSpread.x > 0 && borderSpread.y > 0 && contourSpread.x > 0 && contourSpread.y > 0)) return;
+  for (Flat& p : border)
+    p = {(p.x - borderMiddle.x) / borderSpread.x * contourSpread.x,
+         (p.y - borderMiddle.y) / borderSpread.y * contourSpread.y};
+  const std::vector<Flat> outline = fitOutline(border, contentOf(cage, loop, opening, positions));
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec3 at = opening.place(outline[i]);
     // As far in front of the skin as the cage is elsewhere.
     const SurfaceRay ray{at + 4 * (contourSpread.x + contourSpread.y) * opening.axis, -1.0 * opening.axis};
     const RayHit hit = surface.trace(std::span(&ray, 1))[0];
     const Vec3 height = std::isinf(hit.distance)
                             ? dot(positions[loop[i]] - at, opening.axis) * opening.axis
-                            : ray.origin + hit.distance * ray.direction - at + offset * opening.axis;
+                            : ray.origin + hit.distance * ray.direction - at + cage.offset * opening.axis;
     positions[loop[i]] = at + height;
   }
 }
@@ -216,24 +298,26 @@ std::optional<Vec3> centreOf(const std::vector<Landmark>& landmarks, const std::
 
 }  // namespace
 
-std::vector<bool> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
+std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure, const std::vector<Landmark>& from,
                               const std::vector<Landmark>& to, std::vector<Vec3>& positions) {
-  std::vector<bool> moved(positions.size());
+  std::vector<Vec3> moves(positions.size(), Vec3{0, 0, 0});
   const std::optional<Vec3> own[2] = {centreOf(from, "left"), centreOf(from, "right")};
   const std::optional<Vec3> there[2] = {centreOf(to, "left"), centreOf(to, "right")};
-  if (!own[0] || !own[1] || !there[0] || !there[1]) return moved;
+  if (!own[0] || !own[1] || !there[0] || !there[1]) return moves;
   const Surface surface(figure.mesh);
   for (std::size_t side = 0; side < 2; ++side) {
     const int hole = holeAt(cage, *own[side], *own[1 - side]);
     if (hole < 0) continue;
     const std::vector<bool> isEye = eyeAt(figure, *there[side], *there[1 - side], cage.diagonal);
     if (std::find(isEye.begin(), isEye.end(), true) == isEye.end()) continue;
-    const std::optional<Opening> opening = openingOf(figure, surface, isEye, cage.diagonal);
+    std::optional<Opening> opening = openingOf(figure, surface, isEye, cage.diagonal);
     if (!opening) continue;
-    drawTo(*opening, cage.loops[static_cast<std::size_t>(hole)], surface, cage.offset, positions);
-    for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) moved[v] = true;
+    addCovers(figure.mesh, figure.components, isEye, *opening);
+    addCovers(figure.covers, figure.coverComponents, {}, *opening);
+    drawTo(cage, cage.loops[static_cast<std::size_t>(hole)], *opening, surface, positions);
+    for (const std::uint32_t v : cage.loops[static_cast<std::size_t>(hole)]) moves[v] = opening->axis;
   }
-  return moved;
+  return moves;
 }
 
 }  // namespace cagecast::cages

@@ -60,9 +60,9 @@ void undoFolds(const TemplateCage& cage, const std::vector<Vec3>& old, const std
 
 }  // namespace
 
-bool pushOut(const TemplateCage& cage, const TriangleMesh& skin, const TriangleMesh& hull,
+bool pushOut(const TemplateCage& cage, const Enclosed& inside, const std::vector<Vec3>& tracks,
              const std::function<bool(double)>& step, std::vector<Vec3>& positions) {
-  const std::vector<SkinPoint> points = visiblePoints(skin, hull, cage.offset);
+  const std::vector<SkinPoint> points = visiblePoints(inside.skin, inside.hull, cage.offset);
   const std::vector<bool> onBorder = borderVertices(cage);
   std::vector<Vec3> places;
   places.reserve(points.size());
@@ -101,7 +101,8 @@ bool pushOut(const TemplateCage& cage, const TriangleMesh& skin, const TriangleM
         around += 0.5 * wanted[u] / static_cast<double>(cage.neighbours[v].size());
       const double push = std::min(std::max(wanted[v], around), kMostPush * cage.offset - pushed[v]);
       pushed[v] += push;
-      positions[v] = positions[v] + push * normals[v];
+      const bool isFree = !(length(tracks[v]) > 0);
+      positions[v] = positions[v] + push * (isFree ? normals[v] : dot(normals[v], tracks[v]) * tracks[v]);
     }
     undoFolds(cage, old, foldedBefore, positions);
   }

@@ -37,8 +37,6 @@ constexpr Settings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .stiffe
 constexpr double kLeastOffset = 0.003;
 /// Anchors that are closer than this share of the diagonal count once.
 constexpr double kOneSpot = 1e-3;
-/// How far the map may stay off landmarks that are not sure (see `Anchor::slack`).
-constexpr double kSlack = 0.1;
 constexpr std::size_t kLeastLandmarks = 4;
 /// Of a face, these do to begin with.
 constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip", "lip_lower", "chin"};
@@ -114,7 +112,8 @@ class Fit {
     return !progress_ || progress_(static_cast<float>(share), stage);
   }
   void readTarget();
-  std::vector<Vec3> start(const TemplateCage& cage);
+  [[nodiscard]] std::vector<Anchor> anchorsOf(const TemplateCage& cage) const;
+  [[nodiscard]] std::vector<Vec3> start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const;
 
   const Template& from_;
   const Model& model_;
@@ -124,7 +123,7 @@ class Fit {
   Similarity map_;
   std::vector<Bone> bones_;
   TriangleMesh skin_;  ///< The target without excluded parts, in the template's space.
-  EyedFigure figure_;  ///< The same with eyes, which fill their sockets.
+  EyedFigure figure_;  ///< Eyes fill their sockets.
 };
 
 void Fit::readTarget() {
@@ -133,36 +132,29 @@ void Fit::readTarget() {
   for (Vec3& p : mesh.positions) p = map_.inverse(p);
   const std::vector<bool> kept = keptTriangles(model_, options_.exclude);
   const Figure parts = readFigure(model_);
-  std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size());
+  std::vector<bool> isSkin(mesh.triangles.size()), isFigure(mesh.triangles.size()), isCover(mesh.triangles.size());
   figure_ = {};
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const bool isEye = parts.roles[t] == Role::eye;
     isSkin[t] = kept[triangleOf[t]];
     isFigure[t] = isSkin[t] || isEye;
-    if (!isFigure[t]) continue;
+    isCover[t] = !isFigure[t];
+    if (isCover[t]) {
+      figure_.coverComponents.push_back(parts.components[t]);
+      continue;
+    }
     figure_.isEye.push_back(isEye);
     figure_.components.push_back(parts.components[t]);
   }
   skin_ = subset(mesh, isSkin);
   figure_.mesh = subset(mesh, isFigure);
+  figure_.covers = subset(mesh, isCover);
 }
 
-/// Where the cage belongs by landmarks and bones alone.
-std::vector<Vec3> Fit::start(const TemplateCage& cage) {
-  std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
+/// The pairs of points that the cage is moved by, once it is bent by the bones: no two of them at one spot.
+std::vector<Anchor> Fit::anchorsOf(const TemplateCage& cage) const {
   const Axes axes = axesOf(from_.landmarks);
-  std::vector<Anchor> anchors;
-  for (std::size_t i = 0; i < pairs_.from.size(); ++i) {
-    const bool isJoint = pairs_.from[i].name.rfind("joint_", 0) == 0;
-    const bool isEye = pairs_.from[i].name.rfind("eye_centre", 0) == 0;
-    const bool hasCorners =
-        isEye &&
-        findLandmark(pairs_.to, "eye_inner" + pairs_.from[i].name.substr(std::string("eye_centre").size())) != nullptr;
-    // The centre of an eye is deep inside; its corners say more.
-    if (hasCorners || (isJoint && bones_.empty())) continue;
-    anchors.push_back({positionOf(pairs_.from[i]), positionOf(pairs_.to[i]),
-                       kSlack * (1 - static_cast<double>(pairs_.to[i].confidence))});
-  }
+  std::vector<Anchor> anchors = landmarkAnchors(pairs_.from, pairs_.to, !bones_.empty());
   for (const Anchor& anchor : jawAnchors(from_.landmarks, pairs_.to)) anchors.push_back(anchor);
   for (const Anchor& anchor : eyeAnchors(pairs_.from, pairs_.to, axes)) anchors.push_back(anchor);
   if (bones_.empty())
@@ -175,7 +167,13 @@ std::vector<Vec3> Fit::start(const TemplateCage& cage) {
     });
     if (!isTwice) apart.push_back(anchor);
   }
-  const Warp warp(apart, cage.diagonal);
+  return apart;
+}
+
+/// Where the cage belongs by landmarks and bones alone.
+std::vector<Vec3> Fit::start(const TemplateCage& cage, const std::vector<Anchor>& anchors) const {
+  std::vector<Vec3> positions = bones_.empty() ? cage.mesh.positions : bend(cage, bones_);
+  const Warp warp(anchors, cage.diagonal);
   for (Vec3& p : positions) p = warp(p);
   return positions;
 }
@@ -213,6 +211,11 @@ Outcome Fit::run(FittedCage& out) {
   readTarget();
   if (skin_.empty())
     return {Problem::badModel, "model: all of its parts are excluded by name; at least one must be painted"};
+  const std::vector<Anchor> anchors = anchorsOf(cage);
+  if (anchors.empty())
+    return {Problem::badLandmarks, "landmarks: only " + std::to_string(a.size()) +
+                                       " joints are known, too few for a skeleton of " + std::to_string(kLeastBones) +
+                                       " bones; give more of them, or landmarks on the skin"};
   if (!tell(kLandmarksEnd, "hull")) return cancelled;
   TriangleMesh hull;
   const bool done = makeHull(
@@ -222,18 +225,19 @@ Outcome Fit::run(FittedCage& out) {
       },
       hull);
   if (!done || hull.empty()) return cancelled;
-  std::vector<Vec3> positions = start(cage);
+  std::vector<Vec3> positions = start(cage, anchors);
   for (int pass = 0; pass < settings.passes; ++pass) {
-    if (pass > 0) relax(cage, std::vector<bool>(positions.size()), positions);
+    if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
     positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
       return tell(kHullEnd + (pass + share) / settings.passes * (kTightenEnd - kHullEnd), "fit");
     });
     if (positions.empty()) return cancelled;
   }
-  relax(cage, fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions), positions);
+  const std::vector<Vec3> tracks = fitEyeHoles(cage, figure_, pairs_.from, pairs_.to, positions);
+  relax(cage, tracks, positions);
   const bool pushed = pushOut(
-      cage, skin_, hull, [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); },
-      positions);
+      cage, {skin_, hull}, tracks,
+      [&](double share) { return tell(kTightenEnd + share * (1 - kTightenEnd), "push out"); }, positions);
   if (!pushed) return cancelled;
   out.positions.clear();
   for (const std::uint32_t v : cage.vertexOf) {

@@ -15,9 +15,10 @@ constexpr double kSharpTurn = -0.5;  ///< Cosine of the angle at an edge at whic
 /// A triangle is thin if its smallest angle is below this, in radians, and below this share of its angle in the
 /// template.
 constexpr double kThin = 18 * std::numbers::pi / 180, kThinShare = 0.9;
-/// At first the corners of thin and folded triangles move; in each later stage those of folded ones, with one more ring
-/// of neighbours.
-constexpr int kStages = 2, kRoundsPerStage = 10;
+/// At first the corners of thin and folded triangles move; in later stages those of folded ones, with up to two rings
+/// of neighbours; in the last one those on tracks leave them.
+constexpr int kStages = 3, kRoundsPerStage = 10;
+constexpr int kRings[kStages] = {0, 1, 1};
 constexpr int kSweeps = 10;
 /// Then single vertices are tried at places around, this far off at first, in lengths of their longest edge.
 constexpr int kSearchRounds = 10;
@@ -40,7 +41,9 @@ std::vector<double> smallestAngles(const TriangleMesh& mesh) {
 
 /// Moves vertices to where the template's shape has them, turned and scaled as each place is: As-rigid-as-possible
 /// surface modeling (Sorkine, Alexa 2007), with similarities.
-void restoreShape(const TemplateCage& cage, const std::vector<bool>& moves, std::vector<Vec3>& positions) {
+/// @param tracks  Directions along which alone vertices move; zero for free ones.
+void restoreShape(const TemplateCage& cage, const std::vector<bool>& moves, const std::vector<Vec3>& tracks,
+                  std::vector<Vec3>& positions) {
   const std::vector<Vec3>& own = cage.mesh.positions;
   std::vector<bool> near = moves;
   grow(cage, near);
@@ -62,7 +65,9 @@ void restoreShape(const TemplateCage& cage, const std::vector<bool>& moves, std:
         const Vec3 edge = own[v] - own[u];
         sum = sum + positions[u] + 0.5 * (maps[u].turned(edge) + maps[v].turned(edge));
       }
-      positions[v] = 1 / static_cast<double>(cage.neighbours[v].size()) * sum;
+      const Vec3 move = 1 / static_cast<double>(cage.neighbours[v].size()) * sum - positions[v];
+      const bool isFree = !(length(tracks[v]) > 0);
+      positions[v] = positions[v] + (isFree ? move : dot(move, tracks[v]) * tracks[v]);
     }
 }
 
@@ -105,8 +110,9 @@ class Surroundings {
 };
 
 /// Moves a vertex no farther than it takes for fewer triangles around it to be folded.
+/// @param track  The direction along which alone it moves; zero if it is free.
 void searchAround(const TemplateCage& cage, const std::vector<bool>& foldedBefore, std::uint32_t vertex,
-                  std::vector<Vec3>& positions) {
+                  const Vec3& track, std::vector<Vec3>& positions) {
   Surroundings around(cage, foldedBefore, vertex, positions);
   const Vec3 start = positions[vertex];
   double size = 0;
@@ -117,7 +123,8 @@ void searchAround(const TemplateCage& cage, const std::vector<bool>& foldedBefor
     for (const double x : {-1.0, 0.0, 1.0})
       for (const double y : {-1.0, 0.0, 1.0})
         for (const double z : {-1.0, 0.0, 1.0}) {
-          const Vec3 place = start + step * size * Vec3{x, y, z};
+          const Vec3 direction = length(track) > 0 ? x * track : Vec3{x, y, z};
+          const Vec3 place = start + step * size * direction;
           const int count = around.foldsWith(place);
           if (count >= least) continue;
           least = count;
@@ -160,7 +167,7 @@ std::vector<bool> foldedTriangles(const TriangleMesh& mesh) {
   return folded;
 }
 
-void relax(const TemplateCage& cage, const std::vector<bool>& fixed, std::vector<Vec3>& positions) {
+void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vector<Vec3>& positions) {
   const std::vector<bool> foldedBefore = foldedTriangles(cage.mesh);
   const std::vector<double> own = smallestAngles(cage.mesh);
   std::vector<bool> corners;
@@ -178,14 +185,17 @@ void relax(const TemplateCage& cage, const std::vector<bool>& fixed, std::vector
     const int stage = round / kRoundsPerStage;
     if (!findCorners(stage == 0)) return;
     std::vector<bool> moves = corners;
-    for (int ring = 0; ring < stage; ++ring) grow(cage, moves);
-    for (std::size_t v = 0; v < fixed.size(); ++v)
-      if (fixed[v] && (stage == 0 || !corners[v])) moves[v] = false;
-    restoreShape(cage, moves, positions);
+    for (int ring = 0; ring < kRings[stage]; ++ring) grow(cage, moves);
+    // Off the track only where nothing else has helped.
+    std::vector<Vec3> current = tracks;
+    for (std::size_t v = 0; v < tracks.size(); ++v)
+      if (stage + 1 == kStages && corners[v]) current[v] = {0, 0, 0};
+    restoreShape(cage, moves, current, positions);
   }
   for (int round = 0; round < kSearchRounds && findCorners(false); ++round)
     for (std::uint32_t v = 0; v < positions.size(); ++v)
-      if (corners[v]) searchAround(cage, foldedBefore, v, positions);
+      if (corners[v])
+        searchAround(cage, foldedBefore, v, 2 * round < kSearchRounds ? tracks[v] : Vec3{0, 0, 0}, positions);
 }
 
 }  // namespace cagecast::cages

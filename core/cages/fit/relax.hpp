@@ -7,8 +7,9 @@
 namespace cagecast::cages {
 
 /// Restores the template's shape where triangles are folded over, or thin, that are not so in the template.
-/// @param fixed  Per vertex: it moves only if a triangle at it cannot be unfolded otherwise.
-void relax(const TemplateCage& cage, const std::vector<bool>& fixed, std::vector<Vec3>& positions);
+/// @param tracks  Per vertex: a direction along which alone it moves, unless a triangle at it cannot be unfolded
+///   otherwise; zero if it is free.
+void relax(const TemplateCage& cage, const std::vector<Vec3>& tracks, std::vector<Vec3>& positions);
 
 /// Whether each triangle faces away from those around it, or turns by more than 120 degrees at an edge.
 std::vector<bool> foldedTriangles(const TriangleMesh& mesh);

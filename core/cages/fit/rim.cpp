@@ -12,6 +12,12 @@ namespace {
 constexpr int kPerSide = 4;          ///< Anchors from front to back on each side of a rim.
 constexpr double kStep = 0.005;      ///< Distance of samples along a rim, in diagonals.
 constexpr double kSmoothing = 0.03;  ///< Ragged rims are smoothed over this share of their length.
+/// How many samples a rim has, about, at most: smoothing them takes the square of it. Necks have 200 to 400. There
+/// would be millions where landmarks that are close together make the target huge in the template's space.
+constexpr std::size_t kMostSamples = 2000;
+
+/// How far the map may stay off landmarks that are not sure (see `Anchor::slack`).
+constexpr double kSlack = 0.1;
 
 /// Where on the line from menton to the lobe of an ear the jaw is held, too.
 constexpr double kJawShare = 0.35;
@@ -27,8 +33,14 @@ Vec3 perpendicular(const Vec3& v, const Vec3& to) { return v - dot(v, to) * to; 
 /// The loop as evenly spaced points around its normal, the ragged ends smoothed away.
 Rim sample(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, double step, const Vec3& inward) {
   Rim rim;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vec3 a = mesh.positions[loop[i]], edge = mesh.positions[loop[(i + 1) % loop.size()]] - a;
+  std::vector<Vec3> corners;
+  const std::size_t stride = 1 + loop.size() / kMostSamples;
+  for (std::size_t i = 0; i < loop.size(); i += stride) corners.push_back(mesh.positions[loop[i]]);
+  double around = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) around += length(corners[(i + 1) % corners.size()] - corners[i]);
+  step = std::max(step, around / static_cast<double>(kMostSamples));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 a = corners[i], edge = corners[(i + 1) % corners.size()] - a;
     const int pieces = 1 + static_cast<int>(length(edge) / step);
     for (int k = 0; k < pieces; ++k) rim.points.push_back(a + static_cast<double>(k) / pieces * edge);
   }
@@ -42,10 +54,10 @@ Rim sample(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop, dou
   const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
   rim.normal = {normal.x(), normal.y(), normal.z()};
   if (dot(rim.normal, inward) < 0) rim.normal = -1.0 * rim.normal;
-  double around = 0;
+  double turn = 0;
   for (std::size_t i = 0; i < rim.points.size(); ++i)
-    around += dot(cross(rim.points[i] - rim.centre, rim.points[(i + 1) % rim.points.size()] - rim.centre), rim.normal);
-  if (around < 0) std::reverse(rim.points.begin(), rim.points.end());
+    turn += dot(cross(rim.points[i] - rim.centre, rim.points[(i + 1) % rim.points.size()] - rim.centre), rim.normal);
+  if (turn < 0) std::reverse(rim.points.begin(), rim.points.end());
 
   std::vector<double> along(1, 0.0);
   for (std::size_t i = 0; i < rim.points.size(); ++i)
@@ -113,6 +125,22 @@ std::vector<Vec3> stations(const Rim& rim, const Axes& axes) {
 }
 
 }  // namespace
+
+std::vector<Anchor> landmarkAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                                    bool withJoints) {
+  static const std::string kCentre = "eye_centre";
+  std::vector<Anchor> anchors;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::string& name = from[i].name;
+    if (!withJoints && name.rfind("joint_", 0) == 0) continue;
+    if (name.rfind(kCentre, 0) == 0) {
+      const std::string side = name.substr(kCentre.size());
+      if (findLandmark(to, "eye_inner" + side) != nullptr && findLandmark(to, "eye_outer" + side) != nullptr) continue;
+    }
+    anchors.push_back({positionOf(from[i]), positionOf(to[i]), kSlack * (1 - static_cast<double>(to[i].confidence))});
+  }
+  return anchors;
+}
 
 std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& target, const Axes& axes) {
   std::vector<Anchor> anchors;

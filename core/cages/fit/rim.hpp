@@ -7,6 +7,13 @@
 
 namespace cagecast::cages {
 
+/// A pair for each landmark; those that are not certain may stay off a little. The centre of an eye is deep inside, and
+/// is left out where both corners say more.
+/// @param from,to  In the same order.
+/// @param withJoints  Joints count only where there is a skeleton.
+std::vector<Anchor> landmarkAnchors(const std::vector<Landmark>& from, const std::vector<Landmark>& to,
+                                    bool withJoints);
+
 /// Pairs of points around the rims where both end, such as necks: front on front, back on back, the sides by length.
 /// Empty if one of the two has no rim.
 /// @param target  The target's skin, in the template's space.

@@ -319,7 +319,7 @@ TEST_CASE("relaxing unfolds what was moved over its neighbours, and leaves the r
     return std::count(folded.begin(), folded.end(), true);
   };
   REQUIRE(foldCount() > 0);
-  relax(cage, std::vector<bool>(positions.size()), positions);
+  relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
   CHECK(foldCount() == 0);
   for (std::size_t v = 0; v < positions.size(); ++v)
     if (!near[v]) CHECK(length(positions[v] - cage.mesh.positions[v]) == 0);
@@ -336,4 +336,39 @@ TEST_CASE("a jaw of which only the chin is known moves with it", "[cages][fit]")
   CHECK(move.y > -1);
   to.push_back({"menton", {0, -2.4F, 0.5F}});
   CHECK(jawAnchors(own, to).empty());
+}
+
+TEST_CASE("joints that are too few for a skeleton are an error", "[cages][fit]") {
+  Heads heads;
+  Template from = heads.from();
+  static constexpr const char* kJoints[] = {"joint_head", "joint_neck", "joint_chest", "joint_spine"};
+  from.landmarks.resize(4);
+  heads.landmarks.resize(4);
+  for (std::size_t i = 0; i < 4; ++i) from.landmarks[i].name = heads.landmarks[i].name = kJoints[i];
+  const Outcome outcome = fitCage(from, {heads.other.view()}, heads.options(), {}, heads.out);
+  CHECK(outcome.problem == Problem::badLandmarks);
+  CHECK(outcome.message ==
+        "landmarks: only 4 joints are known, too few for a skeleton of 6 bones; give more of them, or landmarks on the "
+        "skin");
+}
+
+TEST_CASE("an eye of which only one corner is known is held by its centre, too", "[cages][fit]") {
+  std::vector<Landmark> eye{{"eye_centre_left", {1, 0, 0}}, {"eye_inner_left", {0.8F, 0, 0}}};
+  CHECK(landmarkAnchors(eye, eye, false).size() == 2);
+  eye.push_back({"eye_outer_left", {1.2F, 0, 0}});
+  CHECK(landmarkAnchors(eye, eye, false).size() == 2);
+}
+
+TEST_CASE("a rim that is huge beside the template's has its anchors", "[cages][fit]") {
+  const HeadMesh cageMesh = headMesh(kOwn, 24, 14, 0.04), model = headMesh(kOwn, 60, 40, 0);
+  const TemplateCage cage = prepareTemplate({cageMesh.view(), headLandmarks(kOwn)});
+  TriangleMesh target = weldExactly(model.view());
+  const auto anchors = [&] { return rimAnchors(cage, target, axesOf(headLandmarks(kOwn))); };
+  const std::vector<Anchor> small = anchors();
+  REQUIRE(small.size() == 8);
+  constexpr double kScale = 1e5;
+  for (Vec3& p : target.positions) p = kScale * p;
+  const std::vector<Anchor> huge = anchors();
+  REQUIRE(huge.size() == small.size());
+  for (std::size_t i = 0; i < huge.size(); ++i) CHECK(length(1 / kScale * huge[i].to - small[i].to) < 0.1);
 }
