@@ -154,8 +154,9 @@ describe('cagecast fit', () => {
       stdout,
       /^wrote .*fit\.glb: \d+ vertices, \d+ triangles, 1 chart, 4 holes\nlandmarks: \d+ used, 0 of them given\nfound, but not certain \(of 1\): forehead \(0\.\d\d\), /,
     );
-    assert.match(stdout, /^give these for a better fit: --landmarks L\.json$/m);
     assert.match(stdout, /^(GOOD|USABLE): the cage fits/m);
+    // Of a cage that is good, nothing is asked for.
+    assert.equal(/^give these for a better fit: --landmarks L\.json$/m.test(stdout), !/^GOOD/m.test(stdout));
     assert.ok(existsSync(at('fit.html')));
     assert.deepEqual(await validate(at('fit.glb')), []);
     // What was written is a template itself.
@@ -178,6 +179,13 @@ describe('cagecast fit', () => {
     );
     assert.equal(status, 0, stderr);
     assert.match(stdout, /^landmarks: \d+ used, 2 of them given$/m);
+    // A program gets all of them, and the parts that are left out can be chosen.
+    const listed = cagecast('fit', 'human-head', target, '-o', at('listed.glb'), '--exclude', '*eye*', '--json');
+    assert.equal(listed.status, 0, listed.stderr);
+    const report = JSON.parse(listed.stdout) as { landmarks: { used: object; confidence: object; missing: string[] } };
+    assert.ok(Object.keys(report.landmarks.used).length > 12);
+    assert.deepEqual(Object.keys(report.landmarks.confidence), Object.keys(report.landmarks.used));
+    assert.ok(Array.isArray(report.landmarks.missing));
   });
 
   test('errors are one line that names the file, and write nothing', () => {
@@ -211,6 +219,11 @@ describe('cagecast fit', () => {
         /no-uvs\.glb: meshes\[0\]\.primitives\[0\] \("only"\) has no TEXCOORD_0/,
       ],
       [['human-head', at('missing.glb'), '-o', out], 1, /missing\.glb: no such file/],
+      [
+        ['human-head', target, '--exclude', 'antler', '-o', out],
+        1,
+        /target\.glb: --exclude antler: no node or material/,
+      ],
       [['human-head', target, '--landmarks', at('missing.json'), '-o', out], 1, /missing\.json: no such file/],
       [['human-head', target, '--landmarks', at('no.json'), '-o', out], 1, /no\.json: is not JSON \(/],
       [

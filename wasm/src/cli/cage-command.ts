@@ -11,7 +11,7 @@ import type { Verdict } from '../inspect/index.js';
 import { isPosition } from '../parts/template.js';
 import { conclusionOf, inspectionReport } from './inspect-command.js';
 import { inspectionPage } from './inspect-page.js';
-import { checkExclusions, fitCageTo, makeCageFor } from './make-cage.js';
+import { checkExclusions, fitCageTo, landmarksOf, makeCageFor } from './make-cage.js';
 import type { Rules } from './options.js';
 import { writeFiles } from './output.js';
 import type { Found } from './print.js';
@@ -39,6 +39,16 @@ export interface FitCommand extends CageOutput {
   target: string;
   templateLandmarks?: string | undefined;
   landmarks?: string | undefined;
+  /** Patterns of names that replace the default ones; empty for these. */
+  exclude: string[];
+}
+
+/** What a fit says of landmarks: lines for people, and all of it for programs. */
+interface FitNotes {
+  lines: string[];
+  /** What could make the fit better. */
+  advice: string;
+  report: object;
 }
 
 /** What a command prints, and what `inspect` says of the cage. */
@@ -59,7 +69,7 @@ export async function makeCommand(command: MakeCommand, progress: Progress): Pro
   await checkExclusions(exclude, model);
   const options = { ...(exclude.length > 0 && { exclude }), ...(triangles !== undefined && { triangles }) };
   const cage = await makeCageFor(model, options, progress);
-  return finish(command, model, cage, [], progress);
+  return finish(command, model, { ...cage, landmarks: await landmarksOf(model, progress) }, progress);
 }
 
 /**
@@ -67,7 +77,7 @@ export async function makeCommand(command: MakeCommand, progress: Progress): Pro
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 export async function fitCommand(command: FitCommand, progress: Progress): Promise<CageVerdict> {
-  const { template: templatePath, target, templateLandmarks, landmarks: landmarksPath, reading } = command;
+  const { template: templatePath, target, templateLandmarks, landmarks: landmarksPath, exclude, reading } = command;
   const read = withUvs(await readModel(templateFile(templatePath), reading, progress));
   const own = templateOf(read.file, read.extracted);
   const template = {
@@ -80,9 +90,11 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
     ).in(templatePath);
   const landmarks = landmarksPath === undefined ? undefined : await readLandmarks(landmarksPath);
   const model = await readModel(target, reading, progress);
+  await checkExclusions(exclude, model);
   const files = { template: templatePath, landmarks: landmarksPath };
-  const fit = await fitCageTo(model, { template, landmarks, files }, progress);
-  return finish(command, model, fit.cage, describeFit(fit, landmarks ?? {}), progress);
+  const options = exclude.length > 0 ? { exclude } : {};
+  const fit = await fitCageTo(model, { template, landmarks, files, options }, progress);
+  return finish(command, model, fit.cage, progress, describeFit(fit, landmarks ?? {}));
 }
 
 /** The file of a template: of one that comes with the package if its name is given, and no file is called so. */
@@ -120,34 +132,35 @@ const mostNames = 12;
 /** Landmarks less certain than this are listed. */
 const certain = 0.7;
 
-function describeFit({ used, confidence, missing }: Fit, given: Landmarks): string[] {
+function describeFit({ used, confidence, missing }: Fit, given: Landmarks): FitNotes {
   const all = Object.keys(used);
   const own = all.filter((name) => Object.hasOwn(given, name)).length;
   const listed = (names: string[]) =>
-    `${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more` : ''}`;
+    `${names.slice(0, mostNames).join(', ')}${names.length > mostNames ? `, and ${names.length - mostNames} more (--json lists all)` : ''}`;
   const doubtful = all
     .filter((name) => confidence[name]! < certain)
     .sort((a, b) => confidence[a]! - confidence[b]!)
     .map((name) => `${name} (${confidence[name]!.toFixed(2)})`);
   const isJoint = (name: string) => name.startsWith('joint_');
-  return [
+  const lines = [
     `landmarks: ${integer(all.length)} used, ${integer(own)} of them given`,
     doubtful.length > 0 ? `found, but not certain (of 1): ${listed(doubtful)}` : '',
     missing.length > 0 ? `not found: ${listed(missing)}` : '',
     missing.some(isJoint) && !all.some(isJoint)
       ? 'no joint is found: TARGET has no skeleton, or names of bones that are not known'
       : '',
-    doubtful.length + missing.length > 0 ? 'give these for a better fit: --landmarks L.json' : '',
   ].filter(Boolean);
+  const advice = doubtful.length + missing.length > 0 ? 'give these for a better fit: --landmarks L.json' : '';
+  return { lines, advice, report: { landmarks: { used, confidence, missing } } };
 }
 
-/** Inspects a cage and writes the files. @param lines  What else to print. */
+/** Inspects a cage and writes the files. */
 async function finish(
   { output, html }: CageOutput,
   model: ReadModel,
   cage: Cage,
-  lines: string[],
   progress: Progress,
+  notes: FitNotes = { lines: [], advice: '', report: {} },
 ): Promise<CageVerdict> {
   const done = await transferred(model, await readBack(cage, output), { preset: 'default' }, progress);
   progress.step('inspecting');
@@ -158,9 +171,11 @@ async function finish(
   ]);
   const text = [
     `wrote ${output}: ${integer(report.cage.vertices)} vertices, ${integer(report.cage.triangles)} triangles, ${counted(report.uv.charts, 'chart')}, ${counted(report.holes.length, 'hole')}`,
-    ...lines,
+    ...notes.lines,
+    // A cage that is good needs nothing.
+    ...(report.verdict === 'good' || notes.advice === '' ? [] : [notes.advice]),
     ...conclusionOf(report),
     ...(html === undefined ? [] : [`wrote ${html}`]),
   ].join('\n');
-  return { text, report, verdict: report.verdict };
+  return { text, report: { ...report, ...notes.report }, verdict: report.verdict };
 }

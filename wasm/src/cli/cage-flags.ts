@@ -22,6 +22,15 @@ const output = (command: Command): Command =>
     )
     .allowExcessArguments(false);
 
+/** Of which parts a cage takes no notice. */
+const exclusion = (): Option =>
+  new Option(
+    '--exclude <NAME>',
+    'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair',
+  )
+    .default([], 'by name')
+    .argParser((name: string, before: string[]) => [...before, name]);
+
 function triangles(text: string): number {
   const value = Number(text);
   if (!/^\d+$/.test(text) || value < triangleRange[0] || value > triangleRange[1])
@@ -38,14 +47,7 @@ export function addCageCommands(program: Command, progress: Progress): void {
   };
   output(program.command('make').argument('<TARGET>', 'GLB or glTF of a head, a figure or a thing'))
     .description('make a cage for TARGET: a hull with holes over what is not painted, and UVs; print a verdict')
-    .addOption(
-      new Option(
-        '--exclude <NAME>',
-        'do not paint parts whose node or material has this name, or this word in its name (* matches any text, case does not matter); may be repeated; replaces the default list, such as eyes, teeth and hair',
-      )
-        .default([], 'by name')
-        .argParser((name: string, before: string[]) => [...before, name]),
-    )
+    .addOption(exclusion())
     .addOption(new Option('--triangles <N>', 'triangles of the cage, about (default: by kind)').argParser(triangles))
     .addHelpText(
       'after',
@@ -83,6 +85,7 @@ Examples:
       'landmarks of the model that TEMPLATE was made for; default: those in the file (extras.landmarks)',
     )
     .option('--landmarks <L.json>', 'landmarks of TARGET; they override those that are found')
+    .addOption(exclusion())
     .addHelpText(
       'after',
       `

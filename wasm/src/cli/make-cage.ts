@@ -1,5 +1,5 @@
-import { fitCage, init, makeCage, matchingParts } from '../cages/sync.js';
-import type { Cage, Fit, Landmarks, MakeOptions, Template } from '../cages/types.js';
+import { findLandmarks, fitCage, init, makeCage, matchingParts } from '../cages/sync.js';
+import type { Cage, Fit, FitOptions, Landmarks, MakeOptions, Template } from '../cages/types.js';
 import { cageModelOf } from '../gltf/cage-file.js';
 import { InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
@@ -12,6 +12,14 @@ export function makeCageFor(model: ReadModel, options: MakeOptions, progress: Pr
   return calling('making a cage', { model: model.file.path }, progress, (onProgress) =>
     makeCage(cageModelOf(model.file, model.extracted), { ...options, onProgress }),
   );
+}
+
+/** The landmarks that are found on a model: with them, a cage that was made for it is a template. @throws {InputError} */
+export function landmarksOf(model: ReadModel, progress: Progress): Promise<Landmarks> {
+  return calling('finding landmarks', { model: model.file.path }, progress, (onProgress) => {
+    const { landmarks } = findLandmarks(cageModelOf(model.file, model.extracted), { onProgress });
+    return landmarks;
+  });
 }
 
 /** Checks that each pattern matches a part of a model. @throws {InputError} that names the file and the pattern. */
@@ -28,16 +36,17 @@ export interface FitSources {
   template: Template;
   landmarks: Landmarks | undefined;
   files: { template: string; landmarks?: string | undefined };
+  options: FitOptions;
 }
 
 /** Fits a template to a model. @throws {InputError} that names the file at fault. */
 export function fitCageTo(
   model: ReadModel,
-  { template, landmarks, files }: FitSources,
+  { template, landmarks, files, options }: FitSources,
   progress: Progress,
 ): Promise<Fit> {
   return calling('fitting the cage', { model: model.file.path, ...files }, progress, (onProgress) =>
-    fitCage(template, cageModelOf(model.file, model.extracted), landmarks, { onProgress }),
+    fitCage(template, cageModelOf(model.file, model.extracted), landmarks, { ...options, onProgress }),
   );
 }
 
