@@ -146,7 +146,10 @@ test('a model without a cage gets one: made for it, or a template’s; it is sav
 
   await page.locator('#template-select').selectOption('human-head');
   assert.match(await made('fit-cage'), /^The template was fitted/);
-  assert.notEqual((await found()).verdict, 'unfit');
+  const { verdict } = await found();
+  assert.notEqual(verdict, 'unfit');
+  const missing = await page.locator('#cage-missing').textContent();
+  assert.match(missing!, verdict === 'good' ? /^$/ : /^(Landmarks that were not found: [a-z, ]+\.)?$/);
   assert.notDeepEqual(await shownCounts(page), counts);
 
   await drop(page, [glb('figure.glb', human()), glb('figure-cage.glb', bytes)]);

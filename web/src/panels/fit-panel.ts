@@ -101,6 +101,7 @@ export class FitPanel {
     const content = [text('p', `${share} ${kVerdicts[verdict]}`), ...(findings.length > 0 ? [list] : [])];
     content.push(...making.map(buttonFor));
     this.#show(verdict, content, remedies[0] ?? making[0]);
+    this.#session.tellInspection(inspection);
   }
 
   #show(verdict: KnownVerdict, content: HTMLElement[], remedy?: Remedy): void {

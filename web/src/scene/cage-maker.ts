@@ -18,8 +18,15 @@ const kStages: Record<string, string> = {
   bend: 'Bending the cage',
 };
 
-/** The files of cages that were made here. */
-const made = new WeakSet<File>();
+/** The files of cages that were made here, and the landmarks that were not found for them. */
+const made = new WeakMap<File, readonly string[]>();
+
+/** A landmark's name for people: "ear_lobe_left" is the left ear lobe. */
+const readable = (landmark: string): string =>
+  landmark
+    .replace(/^(.*)_(left|right)$/, '$2 $1')
+    .replace(/^(.*?)joint_(.*)$/, '$1$2 joint')
+    .replaceAll('_', ' ');
 
 /**
  * Makes a cage for a model that has none, or fits a template to it, and saves the result. The engine and the templates load when
@@ -30,6 +37,7 @@ export class CageMaker {
   readonly #renderer: WebGLRenderer | undefined;
   readonly #template = element('template-select', HTMLSelectElement);
   readonly #note = element('cage-note', HTMLElement);
+  readonly #missing = element('cage-missing', HTMLElement);
   readonly #save = element('save-cage', HTMLButtonElement);
   readonly #unmoved = new WeakSet<Model>();
 
@@ -48,6 +56,14 @@ export class CageMaker {
       const isMade = made.has(cage.files[0]!);
       this.#save.hidden = !isMade;
       if (!isMade) this.#note.textContent = '';
+      this.#missing.textContent = '';
+    });
+    // Of a good cage, nobody needs to know what was not found.
+    session.on('inspected', ({ verdict }) => {
+      const file = session.shown!.cage.files[0]!;
+      const missing = (verdict !== 'good' && made.get(file)) || [];
+      this.#missing.textContent =
+        missing.length > 0 ? `Landmarks that were not found: ${missing.map(readable).join(', ')}.` : '';
     });
   }
 
@@ -94,11 +110,15 @@ export class CageMaker {
       const options = { signal: abort.signal, onProgress };
       const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
       const old = { ...kNoName, positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() } as Cage;
-      const { cage, note } = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
+      const {
+        cage,
+        note,
+        missing = [],
+      } = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
       if (abort.signal.aborted) return;
       const name = cage.uvs === old.uvs ? current.name : target.name;
       const file = new File([engine.cageGlb(cage)], name.replace(/(-cage)?(\.\w+)?$/, '-cage.glb'));
-      made.add(file);
+      made.set(file, missing);
       this.#note.textContent = note;
       done();
       this.#session.want({ cage: loadModel(file, this.#renderer) });
@@ -137,8 +157,7 @@ export class CageMaker {
   async #fit({ engine, model, options }: Context): Promise<Result> {
     const template = await engine.loadTemplate(this.#template.value as TemplateName);
     const { cage, missing }: Fit = await engine.fitCage(template, model, undefined, options);
-    const left = missing.length > 0 ? ` Not found: ${missing.join(', ')}.` : '';
-    return { cage, note: `The template was fitted: a paint for it fits every model that it was fitted to.${left}` };
+    return { cage, note: 'The template was fitted: a paint for it fits every model that it was fitted to.', missing };
   }
 }
 
@@ -183,4 +202,6 @@ interface Result {
   cage: Cage;
   /** What was made, for people. */
   note: string;
+  /** Landmarks of the template that were not found. */
+  missing?: readonly string[];
 }

@@ -1,4 +1,5 @@
 import { CagecastError, type Classification, classify, init, type Lock, type Preset, type Timings } from 'cagecast';
+import type { Inspection } from 'cagecast/inspect';
 import type { Borders } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/layers';
 import { Pace } from '../platform/pace';
@@ -60,6 +61,8 @@ export interface SessionEvents {
   zones: { classification: Classification; spent: number };
   /** The transfer was timed again, once the browser had compiled its code. */
   retimed: { timings: Timings; spent: number };
+  /** The cage that is shown was inspected. */
+  inspected: Inspection;
   /** The paint changed; after `transfer` if both did. */
   paint: Paint;
   rules: Rules;
@@ -192,6 +195,11 @@ export class Session extends Emitter<SessionEvents> {
   setView(change: Partial<View>): void {
     this.#view = { ...this.#view, ...change };
     this.emit('view', this.#view);
+  }
+
+  /** Tells what an inspection of the cage that is shown has found. */
+  tellInspection(inspection: Inspection): void {
+    this.emit('inspected', inspection);
   }
 
   /** Reports an error; the current scene stays. */
