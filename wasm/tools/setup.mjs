@@ -90,8 +90,12 @@ function installSystemPackages(names) {
     );
 }
 
-/** Installs the packages of a folder of the repository as its lock file says, unless that was done before. */
-function installNpmPackages(folder = '') {
+/**
+ * Installs the packages of a folder of the repository as its lock file says, unless that was done before.
+ * @param args  `npm ci` refuses a lock file that lacks a package's builds for other systems, which not every registry has;
+ *              `npm install --no-save` does not, and leaves the file as it is.
+ */
+function installNpmPackages(folder = '', args = ['ci']) {
   const home = `${root}${folder}`;
   // The packages of another checkout, shared by a link as worktrees do: npm ci would empty them.
   if (lstatSync(`${home}node_modules`, { throwIfNoEntry: false })?.isSymbolicLink()) return;
@@ -101,7 +105,7 @@ function installNpmPackages(folder = '') {
   const stamp = `${home}node_modules/.installed-lock`;
   if (existsSync(stamp) && readFileSync(stamp, 'utf8') === lock) return;
   console.log(`Installing npm packages${folder && ` of ${folder}`}…`);
-  execFileSync('npm', ['ci', '--no-audit', '--no-fund', '--loglevel=error'], {
+  execFileSync('npm', [...args, '--no-audit', '--no-fund', '--loglevel=error'], {
     cwd: home,
     stdio: ['ignore', 'inherit', 'inherit'],
   });
@@ -114,4 +118,4 @@ if (!isNewEnough(process.version))
   fail(`Cagecast needs Node ${kOldestNode.join('.')} or newer; this is ${process.versions.node}.`);
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();
-if (purpose === 'test') installNpmPackages('tests/hosts/');
+if (purpose === 'test') installNpmPackages('tests/hosts/', ['install', '--no-save']);
