@@ -239,6 +239,6 @@ test('a link restores the deformation of a sample, and omits the rest shape', as
   assert.deepEqual(await shownCounts(other.page), seen.counts);
   assert.equal(await slider(other.page, 'grow').inputValue(), '0.625');
   assert.equal(await linkOf(other.page), link);
-  assert.ok(difference(seen.picture, await look(other.page, area)) < 0.002);
+  assert.ok(difference(seen.picture, await look(other.page, await modelArea(other.page))) < 0.002);
   assert.deepEqual(other.complaints, []);
 });

@@ -9,9 +9,16 @@ export interface Area {
   height: number;
 }
 
-/** The part of the view without controls; on little screens, what painting needs beside the tools is hidden from then on. */
+/**
+ * The part of the view without controls; those that lie over it in small views are unseen from then on. Scrolls to the top: pictures
+ * taken where half a pixel is scrolled away differ from all others.
+ */
 export async function modelArea(page: Page): Promise<Area> {
-  await page.evaluate(() => document.querySelector('#quick-paint')?.setAttribute('style', 'visibility: hidden'));
+  await page.evaluate(() => {
+    document.querySelector('#quick-paint')?.setAttribute('style', 'visibility: hidden');
+    document.querySelector('.stage-head')?.setAttribute('style', 'opacity: 0'); // can still be used
+    scrollTo({ top: 0, behavior: 'instant' });
+  });
   const box = (await page.locator('#view').boundingBox())!;
   return { x: box.x + 0.1 * box.width, y: box.y + 0.14 * box.height, width: 0.8 * box.width, height: 0.5 * box.height };
 }
