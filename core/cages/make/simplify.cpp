@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <tuple>
 #include <utility>
 
+#include "base/union_find.hpp"
 #include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
@@ -19,6 +21,9 @@ constexpr std::size_t kLeastLocks = 5;
 constexpr std::size_t kMostLocks = 24;
 /// and between these as many as it takes to stay this close to it, as a share of its size.
 constexpr double kLoopError = 0.04;
+
+/// Triangles of a fin, at most.
+constexpr std::uint32_t kFinTriangles = 8;
 
 /// Indices from which on one call does the rest: a few tens of milliseconds.
 constexpr std::size_t kLastStep = std::size_t{3} * 15000;
@@ -89,6 +94,27 @@ void removeFlaps(std::vector<Triangle3>& triangles) {
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (!isFlap[t]) triangles[kept++] = triangles[t];
   triangles.resize(kept);
+}
+
+/// Removes fins: double sheets, flattened spikes, which collapses leave behind on an edge that four triangles share.
+void removeFins(TriangleMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> trianglesAt;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i)
+      trianglesAt[std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
+  }
+  std::vector<std::uint32_t> parents(mesh.triangles.size()), sizes(mesh.triangles.size(), 0);
+  UnionFind pieces(parents.data(), static_cast<std::uint32_t>(parents.size()));
+  for (const auto& [edge, triangles] : trianglesAt)
+    if (triangles.size() == 2) pieces.join(triangles[0], triangles[1]);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) ++sizes[pieces.find(t)];
+  std::vector<bool> isFin(mesh.triangles.size(), false), isKept(mesh.triangles.size());
+  for (const auto& [edge, triangles] : trianglesAt) {
+    for (const std::uint32_t t : triangles)
+      if (triangles.size() > 2 && sizes[pieces.find(t)] <= kFinTriangles) isFin[pieces.find(t)] = true;
+  }
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) isKept[t] = !isFin[pieces.find(t)];
+  mesh = subset(mesh, isKept);
 }
 
 /// Collapses can join a surface with itself at an edge, which four triangles then share. Two of them get the edge with
@@ -184,6 +210,7 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
     simple.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
   removeFlaps(simple.triangles);
   out = subset(simple, std::vector<bool>(simple.triangles.size(), true));
+  removeFins(out);
   separateJoinedEdges(out);
   return !progress || progress(1, "simplify");
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cagecast/cages.hpp"
+#include "make/simplify.hpp"
 #include "mesh/kind.hpp"
 #include "mesh/surface.hpp"
 #include "shapes.hpp"
@@ -185,6 +186,20 @@ TEST_CASE("a model that is not manifold gets its cage", "[cages][make]") {
   CHECK(boundaryLoops(mesh).size() == 3);
   CHECK(hasHoleAt(mesh, {0.35, 0.2, 1}, 0.2));
   CHECK(Surface(mesh).closest(Vec3{0, 1, 0}).height < 0);
+}
+
+TEST_CASE("a spike that is flattened to a double sheet is removed", "[cages][make]") {
+  const TriangleMesh ball = sphere({0, 0, 0}, 1, 12);
+  TriangleMesh mesh = ball;
+  const auto [a, b, other] = mesh.triangles[40];
+  const auto c = static_cast<std::uint32_t>(mesh.positions.size()), d = c + 1;
+  mesh.positions.push_back(1.5 * mesh.positions[b]);
+  mesh.positions.push_back(1.5 * mesh.positions[a]);
+  for (const Triangle3& t : {Triangle3{b, a, d}, {b, d, c}, {a, b, c}, {a, c, d}}) mesh.triangles.push_back(t);
+  TriangleMesh simple;
+  REQUIRE(simplify(mesh, {static_cast<std::uint32_t>(mesh.triangles.size()), 0.01}, {}, simple));
+  CHECK(simple.triangles.size() == ball.triangles.size());
+  CHECK(diagonalOf(simple) == diagonalOf(ball));
 }
 
 TEST_CASE("a made cage knows the kind of its model", "[cages][make]") {
