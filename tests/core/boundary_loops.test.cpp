@@ -2,11 +2,14 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 #include "base/arena.hpp"
 #include "geometry/closest_point.hpp"
 #include "input/cage.hpp"
+#include "input/half_edges.hpp"
 
 using namespace cagecast;
 
@@ -84,4 +87,31 @@ TEST_CASE("points nearest to an inner edge or corner are off the loop, wherever 
   CHECK(areOff({-1.2, 0.2, 0}));   // Closest to the edge from (-2, 1) to (0, 0),
   CHECK(areOff({-1.2, -0.5, 0}));  // also below the line of the open edge.
   CHECK(areOff({-4, -0.5, 0}));    // Closest to the corner (-2, 1).
+}
+
+TEST_CASE("the box of a loop is around its own vertices", "[borders]") {
+  // Four triangles around a tip. Of each, another edge is open.
+  const float positions[15] = {1, 2, 0, 4, 2, 0, 4, 8, 0, 1, 8, 0, 2, 3, 12};
+  const std::uint32_t indices[12] = {0, 1, 4, 4, 1, 2, 3, 4, 2, 3, 0, 4};
+  const float uvs[10] = {};
+  const MeshView mesh{positions, indices, uvs};
+  Arena arena;
+  Cage cage;
+  HalfEdges halfEdges;
+  BoundaryLoops loops;
+  gatherCage(mesh, Units{}, arena, cage);
+  REQUIRE(cage.count == 4);
+  REQUIRE(findHalfEdges(mesh, cage, arena, halfEdges));
+  REQUIRE(findBoundaryLoops(cage, halfEdges, arena, loops));
+  REQUIRE(loops.count == 1);
+  CHECK(std::vector<double>(loops.boxes[0].low, loops.boxes[0].low + 3) == std::vector<double>{1, 2, 0});
+  CHECK(std::vector<double>(loops.boxes[0].high, loops.boxes[0].high + 3) == std::vector<double>{4, 8, 0});
+  CHECK(loops.boxes[0].diagonal() == Approx(std::sqrt(45.0)));
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const std::uint32_t t = i / 3, k = i % 3;
+    INFO("triangle " << t << ", corner and edge " << k);
+    CHECK(loops.loopOf[6 * t + 3 + k] == (indices[i] == 4 ? BoundaryLoops::kNone : 0));
+    const bool isInner = indices[i] == 4 || indices[3 * t + (k + 1) % 3] == 4;
+    CHECK(loops.loopOf[6 * t + k] == (isInner ? BoundaryLoops::kNone : 0));
+  }
 }

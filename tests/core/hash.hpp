@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "cagecast/clip.hpp"
 #include "cagecast/transfer.hpp"
 
 namespace cagecast {
@@ -23,6 +24,17 @@ class Hash {
     add(result.zones.zones);
     add(result.projection.triangles);
     add(result.projection.segments);
+  }
+  /// The whole of a cut target.
+  void add(const CutTarget& cut) {
+    add(cut.sources);
+    add(cut.weights);
+    add(cut.indices);
+    add(cut.origins);
+    add(cut.uvs);
+    add(cut.cornerUvs);
+    add(cut.zones);
+    add(cut.cosmeticTriangles);
   }
   [[nodiscard]] std::string text() const {
     std::ostringstream out;

@@ -3,6 +3,7 @@
 // The linker hands every call of malloc to the functions below. Where each array of the arena is an allocation of its
 // own, with AddressSanitizer, that is every place at which a step can fail.
 
+#include <cmath>
 #include <cstring>
 #include <new>
 
@@ -177,5 +178,25 @@ TEST_CASE("what memory held before changes no result", "[memory]") {
     const std::size_t third = hashes.size() / 3;
     REQUIRE(hashes.size() == 3 * third);
     for (std::size_t i = 0; i < 2 * third; ++i) CHECK(hashes[i] == hashes[i + third]);
+  }
+}
+
+// Where a part that is met first has its areas is looked up in memory that nothing was written to yet.
+TEST_CASE("the first part at a hole is listed, whatever memory held before", "[memory]") {
+  const auto isAbove = [](scenes::Point p) { return p[2] > 1.9f && std::abs(p[0]) < 1 && std::abs(p[1]) < 1; };
+  const scenes::Mesh cage = scenes::without(scenes::box({}, {2, 2, 2}, 8), isAbove);
+  const scenes::Mesh target = scenes::box({}, {1.8f, 1.8f, 1.8f}, 6);
+  TransferOptions options;
+  options.steps.secondLook = false;
+  for (const int fill : {0, 255}) {
+    Workspace workspace;
+    TransferResult result;
+    filling = fill;
+    const Status status = transfer(cage.view(), target.view(), options, workspace, result);
+    filling = -1;
+    REQUIRE(status.ok());
+    INFO("memory held " << fill);
+    REQUIRE(result.projection.holeShares.size() == 1);
+    CHECK(result.projection.holeShares[0].uncoveredArea > 1);
   }
 }

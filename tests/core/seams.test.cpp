@@ -466,3 +466,20 @@ TEST_CASE("on real models corners get the reference's UVs, and at most a hundred
   }
 }
 #endif
+
+TEST_CASE("UVs of 0 and -0 are one place, where no seam runs", "[seams]") {
+  // A square of two triangles with vertices of their own; their UVs at one end of the shared edge are 0 and -0.
+  for (const auto& [u, v] : {std::pair{-0.0f, 0.0f}, {0.0f, -0.0f}}) {
+    scenes::Mesh cage;
+    cage.addVertex({0, 0, 1}, 0, 0), cage.addVertex({4, 0, 1}, 1, 0), cage.addVertex({4, 4, 1}, 1, 1);
+    cage.addVertex({0, 0, 1}, u, v), cage.addVertex({4, 4, 1}, 1, 1), cage.addVertex({0, 4, 1}, 0, 1);
+    cage.addTriangle(0, 1, 2), cage.addTriangle(3, 4, 5);
+    scenes::Mesh target;
+    target.addVertex({1, 2, 0}), target.addVertex({2, 1, 0}), target.addVertex({3, 3, 0});
+    target.addTriangle(0, 1, 2);
+    TransferOptions options;
+    options.seams = Seams::corner;
+    const TransferResult result = transferred(cage.view(), target.view(), options);
+    CHECK(copied(result.projection.cornerUvs) == std::vector<float>{0.25f, 0.5f, 0.5f, 0.25f, 0.75f, 0.75f});
+  }
+}

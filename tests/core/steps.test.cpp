@@ -54,6 +54,22 @@ TEST_CASE("a point beside the cage gets the UV of the border, and the ray misses
   CHECK(result.zones.zones[1] == Zone::uncovered);
 }
 
+TEST_CASE("whichever vertex is beside the cage is uncovered", "[uncovered]") {
+  const scenes::Mesh cage = square(2, 1);
+  TransferOptions withoutHoles;
+  withoutHoles.steps.holes = false;
+  for (const TransferOptions& options : {TransferOptions::paper(), withoutHoles}) {
+    for (std::size_t v = 0; v < 4; ++v) {
+      for (const float x : {-3.0f, 3.0f}) {
+        scenes::Mesh target = square(0.5f, 0);
+        target.positions[3 * v] = x;
+        INFO("vertex " << v << " at " << x);
+        CHECK(transferred(cage.view(), target.view(), options).zones.zones[v] == Zone::uncovered);
+      }
+    }
+  }
+}
+
 TEST_CASE("of equally near triangles the one whose plane is farthest gives the ray", "[project]") {
   // Two triangles meet in the edge x = 0, z = 0, above the point (0, 0, -1): one is level, the other one steep.
   scenes::Mesh cage;

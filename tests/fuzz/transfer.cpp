@@ -1,8 +1,11 @@
-// Transfers any scene: the status is ok or names the input, and an answer is consistent and the same every time.
+// Transfers any scene: the status is ok or names the input, and an answer is consistent, the same every time, and the
+// reference's.
 
 #include <cmath>
+#include <cstdio>
 
 #include "fuzz/input.hpp"
+#include "reference/reference.hpp"
 
 using namespace cagecast;
 using fuzz::require;
@@ -33,6 +36,26 @@ bool areEqual(const TransferResult& a, const TransferResult& b) {
          same(a.projection.triangles, b.projection.triangles) && same(a.projection.cornerUvs, b.projection.cornerUvs);
 }
 
+/// Whether all coordinates are near the grid. For others the reference has no bound of its own rounding.
+bool isNearGrid(const fuzz::Mesh& mesh) {
+  return std::all_of(mesh.positions.begin(), mesh.positions.end(), [](float x) { return std::abs(x) <= 16; });
+}
+
+/// Compares with the reference, which weighs depth, and finds twins, if and only if the floor needs that.
+void compareWithReference(const fuzz::Scene& scene, Workspace& workspace) {
+  const MeshView cage = scene.cage.view(), target = scene.target.view();
+  TransferOptions options = scene.options;
+  options.steps.depthWeighting = options.steps.floor == Floor::depth;
+  options.steps.twins = options.steps.twins && options.steps.depthWeighting;
+  // At 0 without a floor the library does not look where nothing is covered.
+  options.threshold = std::max(options.threshold, 0.01f);
+  TransferResult result;
+  require(transfer(cage, target, options, workspace, result).ok());
+  const reference::Differences found = compare(reference::transfer(cage, target, options), result, target);
+  if (found.total() > 0) std::fprintf(stderr, "not as the reference:\n%s", found.details.c_str());
+  require(found.total() == 0);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -48,5 +71,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   check(scene, result);
   require(transfer(scene.cage.view(), scene.target.view(), scene.options, workspace, again).ok());
   require(areEqual(result, again));
+  if (isNearGrid(scene.cage) && isNearGrid(scene.target)) compareWithReference(scene, workspace);
   return 0;
 }
