@@ -1,6 +1,6 @@
 // Builds everything and runs all tests; ends with how many of each suite passed, and what took how long.
 //
-//   node tests/run.mjs [suite …]        suites: lint, core, package, browser
+//   node tests/run.mjs [suite …]        suites: lint, core, package, browser, lanes
 
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
@@ -8,7 +8,7 @@ import { availableParallelism } from 'node:os';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
-const kSuites = ['lint', 'core', 'package', 'browser'];
+const kSuites = ['lint', 'core', 'package', 'browser', 'lanes'];
 
 const phases = [];
 
@@ -80,6 +80,13 @@ async function testCore() {
   return { passed: all - failed, failed: Number(failed) || Number(status !== 0) };
 }
 
+/** Whether all builds give the same answers, as a table. */
+async function compareLanes() {
+  const { status, output } = await run(process.execPath, ['--import', 'tsx', 'tests/lanes/run.mjs', '--built']);
+  const [equal, others] = /equal hashes: (\d+), with others: (\d+)/.exec(output)?.slice(1) ?? [0, 1];
+  return { passed: Number(equal), failed: Number(others) || Number(status !== 0) };
+}
+
 /** Builds the page and serves it; what tests find it by. */
 async function servePage() {
   const { build, preview } = await import('vite');
@@ -138,7 +145,10 @@ async function testFolders(folders, env) {
 /** Runs the tests that are written in TypeScript: those of all suites at once, as some leave a core idle. */
 async function testScripts(names) {
   const folders = {
-    package: ['tests/js', 'tests/bake', 'tests/command', 'tests/package', 'tests/three', 'tests/hosts'],
+    package: [
+      ...['tests/js', 'tests/bake', 'tests/properties', 'tests/mutants', 'tests/command', 'tests/package'],
+      ...['tests/three', 'tests/hosts', 'tests/catalogue'],
+    ],
     browser: ['tests/browser', 'tests/page', 'tests/web'],
   };
   const page = names.includes('browser') ? await timed('build the page', servePage) : undefined;
@@ -181,15 +191,16 @@ if (unknown) {
   console.error(`no suite "${unknown}"; there are: ${kSuites.join(', ')}`);
   process.exit(2);
 }
-const scripts = chosen.filter((name) => name !== 'lint' && name !== 'core');
+const scripts = chosen.filter((name) => name === 'package' || name === 'browser');
+const isNative = chosen.includes('core') || chosen.includes('lanes');
 if (chosen.includes('lint')) await add(['lint'], () => timed('lint', lint));
 // The builds take turns at being held up by a single process, so they run at the same time.
-const native = timed('build native', () =>
-  chosen.includes('core') || scripts.includes('package') ? buildNative(chosen.includes('core')) : 0,
-);
-const wasm = timed('build package', () => (scripts.length > 0 ? buildPackage() : 0));
+const native = timed('build native', () => (isNative || scripts.includes('package') ? buildNative(isNative) : 0));
+const wasm = timed('build package', () => (scripts.length > 0 || chosen.includes('lanes') ? buildPackage() : 0));
 const built = await Promise.allSettled([native, wasm]);
 if (chosen.includes('core')) await add(['core'], () => native.then(() => timed('test core', testCore)));
+if (chosen.includes('lanes'))
+  await add(['lanes'], () => Promise.all([native, wasm]).then(() => timed('lanes', compareLanes)));
 if (scripts.length > 0) {
   await add(scripts, () => {
     for (const { reason } of built) if (reason) throw reason;
