@@ -5,22 +5,11 @@
  */
 import type { Document, Transform } from '@gltf-transform/core';
 import { show } from '../api/error.js';
-import {
-  CagecastError,
-  cutBorders,
-  init,
-  type Mesh,
-  type TransferOptions,
-  type TransferResult,
-  transfer,
-} from '../index.js';
+import { CagecastError, type Mesh, type TransferOptions, type TransferResult } from '../index.js';
 import { type Borders, isCut } from '../parts/borders-option.js';
-import { DocumentModel } from './bake/document.js';
-import { type MaskSources, masksOf } from './bake/masks.js';
-import { extractDocument } from './document.js';
-import { addTransfer } from './document-write.js';
-import { InputError } from './input-error.js';
-import { paintOf } from './overlay.js';
+import type { MaskSources } from './bake/masks.js';
+import { transferDocument } from './document/transfer.js';
+import { addTransfer } from './document/write.js';
 
 export { type BakeOptions, bake } from './bake/document.js';
 export type { MaskSources } from './bake/masks.js';
@@ -35,7 +24,7 @@ export {
   fitCage,
   makeCage,
   refineCage,
-} from './document-cages.js';
+} from './document/cages.js';
 export type { ReadLimits } from './limits.js';
 
 /** The ranges of a part of a document in the arrays of a result. */
@@ -84,23 +73,10 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
 export function cagecast(options: CagecastOptions): Transform {
   if (typeof options !== 'object' || options === null)
     throw new CagecastError('badArgument', `cagecast: the argument is ${show(options)}, not an object`);
-  const { cage, texture, borders, onResult, maskImages, maskColors, ...own } = options;
+  const { borders, onResult, ...own } = options;
   return async function cagecast(document: Document): Promise<void> {
     const cuts = isCut('cagecast', borders);
-    await init();
-    const wrong = (argument: string, value: unknown, type: string) =>
-      new CagecastError('badArgument', `cagecast: ${argument} is ${show(value)}, not ${type}`);
-    if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'a document or a mesh');
-    if (texture !== undefined && !(texture instanceof Uint8Array))
-      throw wrong('texture', texture, "a Uint8Array of a file's bytes");
-    const paint = texture && within('texture', () => paintOf(texture));
-    const source = 'getRoot' in cage ? within('cage', () => extractDocument(cage).mesh) : cage;
-    const target = within('target', () => extractDocument(document));
-    const model = new DocumentModel(document, target.parts);
-    const masks = within('target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
-    const rules = { ...own, masks };
-    const result = transfer(source, target.mesh, rules);
-    const cut = cuts ? cutBorders(source, target.mesh, result, rules) : undefined;
+    const { target, result, cut, paint } = await transferDocument('cagecast', document, own, cuts);
     addTransfer(document, target, result, paint, cut);
     onResult?.(
       result,
@@ -113,14 +89,4 @@ export function cagecast(options: CagecastOptions): Transform {
       })),
     );
   };
-}
-
-function within<T>(argument: string, read: () => T): T {
-  try {
-    return read();
-  } catch (error) {
-    throw error instanceof InputError
-      ? new CagecastError('badArgument', `cagecast: ${argument}: ${error.message}`, 0, { cause: error })
-      : error;
-  }
 }

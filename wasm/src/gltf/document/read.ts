@@ -7,12 +7,12 @@ import type {
   Primitive,
   Skin,
 } from '@gltf-transform/core';
-import type { Mesh } from '../index.js';
-import { skinMatrix, usedJoints } from '../parts/skin.js';
-import { InputError } from './input-error.js';
-import { firstInstance, instancing } from './instancing.js';
-import { identity, localMatrix, type Matrix, multiply } from './matrix.js';
-import { isOverlay } from './overlay.js';
+import type { Mesh } from '../../index.js';
+import { skinMatrix, usedJoints } from '../../parts/skin.js';
+import { InputError } from '../input-error.js';
+import { firstInstance, instancing } from '../instancing.js';
+import { identity, localMatrix, type Matrix, multiply } from '../matrix.js';
+import { isOverlay } from '../overlay.js';
 import {
   aliasesOf,
   decodeFloats,
@@ -21,8 +21,8 @@ import {
   hasTriangles,
   joinPieces,
   type Piece,
-} from './pieces.js';
-import { transformUvs, type UvTransform } from './uv-transform.js';
+} from '../pieces.js';
+import { transformUvs, type UvTransform } from '../uv-transform.js';
 
 /** A piece, and its place in the document. */
 export interface DocumentPart extends Piece {

@@ -1,11 +1,12 @@
 import type { Document, Node } from '@gltf-transform/core';
-import { show } from '../api/error.js';
-import * as cages from '../cages/index.js';
-import { CagecastError, type Mesh } from '../index.js';
-import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../parts/joints.js';
-import { readExtras } from '../parts/template.js';
-import { type DocumentPart, extractDocument } from './document.js';
-import { InputError } from './input-error.js';
+import { show } from '../../api/error.js';
+import * as cages from '../../cages/index.js';
+import { CagecastError, type Mesh } from '../../index.js';
+import { jointPlace, listJoints, type ReadJoint, type VrmExtensions, vrmBones } from '../../parts/joints.js';
+import { readExtras } from '../../parts/template.js';
+import { InputError } from '../input-error.js';
+import { type DocumentPart, extractDocument } from './read.js';
+import { within } from './transfer.js';
 
 /** What glTF-Transform does not keep of a file. */
 export interface FileOptions {
@@ -145,11 +146,5 @@ const isDocument = (value: unknown): value is Document =>
 function read<T>(fn: string, argument: string, document: unknown, work: () => T): T {
   if (!isDocument(document))
     throw new CagecastError('badArgument', `${fn}: ${argument} is ${show(document)}, not a document of glTF-Transform`);
-  try {
-    return work();
-  } catch (error) {
-    throw error instanceof InputError
-      ? new CagecastError('badArgument', `${fn}: ${argument}: ${error.message}`, 0, { cause: error })
-      : error;
-  }
+  return within(fn, argument, work);
 }

@@ -11,10 +11,9 @@ import type {
   Texture,
   TypedArray,
 } from '@gltf-transform/core';
-import type { CutTarget, TransferResult } from '../index.js';
-import { type AttributeArray, type Blends, blend, blendSkin, ruleOf } from '../parts/blend.js';
-import { gather } from '../parts/split-part.js';
-import type { DocumentPart, ExtractedDocument } from './document.js';
+import type { CutTarget, TransferResult } from '../../index.js';
+import { type AttributeArray, type Blends, blend, blendSkin, ruleOf } from '../../parts/blend.js';
+import { gather } from '../../parts/split-part.js';
 import {
   cosmeticCorners,
   type Finish,
@@ -25,8 +24,9 @@ import {
   type Paint,
   unlitExtension,
   zoneAttribute,
-} from './overlay.js';
-import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from './primitive-group.js';
+} from '../overlay.js';
+import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
+import type { DocumentPart, ExtractedDocument } from './read.js';
 
 /** A part, and what it becomes. */
 interface Member extends GroupMember {

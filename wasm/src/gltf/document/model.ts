@@ -1,0 +1,114 @@
+import type { Document, ExtensionProperty, Material, Texture, TextureInfo } from '@gltf-transform/core';
+import type { Wrap } from '../../bake/index.js';
+import type { BakeModel, Paints, TextureUse } from '../bake/plan.js';
+import { decodeFloats } from '../pieces.js';
+import type { UvTransform } from '../uv-transform.js';
+import type { DocumentPart } from './read.js';
+
+/** The extension of glTF-Transform, which is no dependency. */
+interface KHRTransform extends ExtensionProperty {
+  getOffset(): number[];
+  getRotation(): number;
+  getScale(): number[];
+  getTexCoord(): number | null;
+}
+
+const wrapOf = (wrap: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
+
+/** A document as baking sees it. */
+export class DocumentModel implements BakeModel<Material, Texture> {
+  readonly #document: Document;
+  readonly parts: readonly DocumentPart[];
+
+  constructor(document: Document, parts: readonly DocumentPart[]) {
+    this.#document = document;
+    this.parts = parts;
+  }
+
+  materialOf(part: DocumentPart): Material | undefined {
+    return part.primitive.getMaterial() ?? undefined;
+  }
+
+  uvsOf({ primitive, vertexCount }: DocumentPart, set: string): Float32Array | undefined {
+    const accessor = primitive.getAttribute(set);
+    return accessor?.getElementSize() === 2 && accessor.getCount() === vertexCount ? decodeFloats(accessor) : undefined;
+  }
+
+  colorsOf({ primitive }: DocumentPart, semantic: string): { values: Float32Array; size: number } | undefined {
+    const accessor = primitive.getAttribute(semantic);
+    return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
+  }
+
+  isTinted({ primitive }: DocumentPart): boolean {
+    return primitive.getAttribute('COLOR_0') !== null;
+  }
+
+  useOf(material: Material, slot: keyof Paints): TextureUse<Texture> | undefined {
+    const [texture, info] = textureIn(material, slot);
+    if (!texture || !info) return undefined;
+    const found = info.getExtension('KHR_texture_transform') as KHRTransform | null;
+    const transform: Partial<UvTransform> | undefined = found
+      ? { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale() }
+      : undefined;
+    const set = `TEXCOORD_${found?.getTexCoord() ?? info.getTexCoord()}`;
+    return { texture, set, transform, wraps: [wrapOf(info.getWrapS()), wrapOf(info.getWrapT())] };
+  }
+
+  factorOf(material: Material, slot: keyof Paints): [number, number, number] {
+    if (slot === 'normal') return [1, 1, 1];
+    if (slot === 'orm') return [1, material.getRoughnessFactor(), material.getMetallicFactor()];
+    const [r, g, b] = material.getBaseColorFactor();
+    return [r, g, b];
+  }
+
+  async imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
+    const bytes = texture.getImage();
+    return bytes ? { bytes, mimeType: texture.getMimeType() } : undefined;
+  }
+
+  replace(materials: readonly Material[], slot: keyof Paints, png: Uint8Array, use: TextureUse<Texture>): void {
+    const painted = this.#document
+      .createTexture(use.texture.getName())
+      .setMimeType('image/png')
+      .setImage(png as Uint8Array<ArrayBuffer>);
+    for (const material of materials) setTexture(material, slot, painted);
+    const { texture } = use;
+    if (texture.listParents().every((parent) => parent.propertyType === 'Root')) texture.dispose();
+  }
+}
+
+function textureIn(material: Material, slot: keyof Paints): [Texture | null, TextureInfo | null] {
+  if (slot === 'color') return [material.getBaseColorTexture(), material.getBaseColorTextureInfo()];
+  if (slot === 'normal') return [material.getNormalTexture(), material.getNormalTextureInfo()];
+  return [material.getMetallicRoughnessTexture(), material.getMetallicRoughnessTextureInfo()];
+}
+
+function setTexture(material: Material, slot: keyof Paints, painted: Texture): void {
+  if (slot === 'color') {
+    material.setBaseColorTexture(painted).setBaseColorFactor([1, 1, 1, material.getBaseColorFactor()[3]]);
+    return;
+  }
+  const [before] = textureIn(material, slot);
+  if (slot === 'normal') material.setNormalTexture(painted);
+  else {
+    const occlusion = material.getOcclusionTexture();
+    if (occlusion === null || occlusion === before) {
+      material.setOcclusionTexture(painted);
+      copyUse(
+        material.getMetallicRoughnessTextureInfo() ?? material.getBaseColorTextureInfo(),
+        material.getOcclusionTextureInfo(),
+      );
+    }
+    material.setMetallicRoughnessTexture(painted).setRoughnessFactor(1).setMetallicFactor(1);
+  }
+  // A new texture lies as that of the base colour does.
+  if (before === null) copyUse(material.getBaseColorTextureInfo(), textureIn(material, slot)[1]);
+}
+
+/** Lays a texture as another one. */
+function copyUse(from: TextureInfo | null, to: TextureInfo | null): void {
+  if (!from || !to) return;
+  to.setTexCoord(from.getTexCoord()).setWrapS(from.getWrapS()).setWrapT(from.getWrapT());
+  const transform = from.getExtension('KHR_texture_transform');
+  if (transform) to.setExtension('KHR_texture_transform', transform as ExtensionProperty);
+}

@@ -1,0 +1,72 @@
+import type { Document } from '@gltf-transform/core';
+import { show } from '../../api/error.js';
+import {
+  CagecastError,
+  type CutTarget,
+  cutBorders,
+  init,
+  type Mesh,
+  type TransferOptions,
+  type TransferResult,
+  transfer,
+} from '../../index.js';
+import { type MaskSources, masksOf } from '../bake/masks.js';
+import { InputError } from '../input-error.js';
+import { type Paint, paintOf } from '../overlay.js';
+import { DocumentModel } from './model.js';
+import { type ExtractedDocument, extractDocument } from './read.js';
+
+/** Options of a transfer from a cage to a document. */
+interface DocumentTransferOptions extends TransferOptions, MaskSources {
+  cage: Document | Mesh;
+  texture?: Uint8Array | undefined;
+}
+
+/** A transfer to a document, which is not changed by it. */
+export interface DocumentTransfer {
+  target: ExtractedDocument;
+  model: DocumentModel;
+  result: TransferResult;
+  /** With borders that are cut. */
+  cut: CutTarget | undefined;
+  paint: Paint | undefined;
+}
+
+/**
+ * Transfers a cage's UVs to a document.
+ * @param caller The function that errors name.
+ * @throws {CagecastError} that names the argument, the element and the value.
+ */
+export async function transferDocument(
+  caller: string,
+  document: Document,
+  options: DocumentTransferOptions,
+  cuts: boolean,
+): Promise<DocumentTransfer> {
+  const { cage, texture, maskImages, maskColors, ...own } = options;
+  const wrong = (argument: string, value: unknown, type: string) =>
+    new CagecastError('badArgument', `${caller}: ${argument} is ${show(value)}, not ${type}`);
+  if (typeof cage !== 'object' || cage === null) throw wrong('cage', cage, 'a document or a mesh');
+  if (texture !== undefined && !(texture instanceof Uint8Array))
+    throw wrong('texture', texture, "a Uint8Array of a file's bytes");
+  await init();
+  const paint = texture && within(caller, 'texture', () => paintOf(texture));
+  const source = 'getRoot' in cage ? within(caller, 'cage', () => extractDocument(cage).mesh) : cage;
+  const target = within(caller, 'target', () => extractDocument(document));
+  const model = new DocumentModel(document, target.parts);
+  const masks = within(caller, 'target', () => masksOf(model, own.masks, { images: maskImages, colors: maskColors }));
+  const rules = { ...own, masks };
+  const result = transfer(source, target.mesh, rules);
+  return { target, model, result, cut: cuts ? cutBorders(source, target.mesh, result, rules) : undefined, paint };
+}
+
+/** Names the argument in errors of a file or document. */
+export function within<T>(caller: string, argument: string, read: () => T): T {
+  try {
+    return read();
+  } catch (error) {
+    throw error instanceof InputError
+      ? new CagecastError('badArgument', `${caller}: ${argument}: ${error.message}`, 0, { cause: error })
+      : error;
+  }
+}
