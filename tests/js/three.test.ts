@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
+import { setFlagsFromString } from 'node:v8';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
 import { applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
 import { terminate } from 'cagecast/worker';
@@ -338,6 +339,17 @@ describe('applyTransfer', () => {
     dispose();
     assert.ok(!Object.hasOwn(material, 'onBeforeCompile') && !Object.hasOwn(material, 'customProgramCacheKey'));
     assert.ok(!geometry.hasAttribute('_cagecast_paint') && geometry.hasAttribute('uv1'));
+  });
+
+  test('painted materials keep one hidden class, so that a renderer reads them as fast as others', () => {
+    setFlagsFromString('--allow-natives-syntax');
+    const isAlike = new Function('a', 'b', 'return %HaveSameMap(a, b)') as (a: object, b: object) => boolean;
+    const model = new Group().add(...[0, 1, 2, 3].map(() => meshOf(scene.target)));
+    applyTransfer(model, meshOf(scene.cage), { texture: new Texture() });
+    // The first ones show V8 what the fields hold.
+    const [, , third, fourth] = model.children.map((mesh) => (mesh as ReturnType<typeof meshOf>).material);
+    assert.equal(third!.customProgramCacheKey(), fourth!.customProgramCacheKey());
+    assert.equal(isAlike(third!, fourth!), true);
   });
 
   test('a material that two models show is painted for the first and copied for the second', () => {

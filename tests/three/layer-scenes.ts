@@ -322,10 +322,14 @@ export const layerScenes: Record<string, () => unknown> = {
     const sticker = countOf(look(), 0);
     painter.undo();
     painter.tool = 'brush';
-    // A second finger takes back what the first began.
+    // A second finger takes back what the first began; others see both come down.
+    const fingers: number[] = [];
+    const note = ({ pointerId }: PointerEvent): void => void fingers.push(pointerId);
+    canvas.addEventListener('pointerdown', note);
     send('pointerdown', 24, 32, { pointerType: 'touch' });
     send('pointerdown', 30, 32, { pointerType: 'touch', pointerId: 8 });
     const two = difference(look(), bare);
+    canvas.removeEventListener('pointerdown', note);
     send('pointerup', 24, 32, { pointerType: 'touch' });
     painter.tool = undefined;
     drag([24, 32], [40, 32]);
@@ -337,7 +341,7 @@ export const layerScenes: Record<string, () => unknown> = {
     canvas.setPointerCapture = setPointerCapture;
     canvas.remove();
     painter.dispose();
-    return { stroke, whole, pen, captured, beside, erased, sticker, two, rest: left2 };
+    return { stroke, whole, pen, captured, beside, erased, sticker, two, fingers, rest: left2 };
   },
 
   /** What a painter needs of the renderer stays as it was. */

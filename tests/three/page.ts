@@ -42,7 +42,7 @@ import {
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
 import { layerScenes } from './layer-scenes';
-import { ball, cage, camera, countOf, difference, draw, flat, halves, modelOf, renderer } from './scenes';
+import { ball, cage, camera, commandsOf, countOf, difference, draw, flat, halves, modelOf } from './scenes';
 
 const kPaint = 0xcc3311;
 const steps = new DataTexture(Uint8Array.from([90, 160, 255]), 3, 1, RedFormat);
@@ -220,7 +220,7 @@ const scenes: Record<string, () => unknown> = {
     return { before, after: draw(model).calls, red: red(model) };
   },
 
-  /** Many primitives: their draw calls, and what a frame costs the processor, in milliseconds. */
+  /** Many primitives: their draw calls, and all calls of WebGL in a frame. */
   manyParts() {
     const build = () => {
       const model = new Group();
@@ -237,21 +237,8 @@ const scenes: Record<string, () => unknown> = {
     const [plain, painted] = [build(), build()];
     applyTransfer(painted, cage(), { texture: flat(kPaint), threshold: 0 });
     const calls = [plain, painted].map((model) => draw(model).calls);
-    // One pixel, and each frame is waited for: what is measured is not the drawing, which the processor does here too.
-    renderer.setScissorTest(true);
-    renderer.setScissor(0, 0, 1, 1);
-    const times: [number[], number[]] = [[], []];
-    for (let round = 0; round < 60; ++round) {
-      [plain, painted].forEach((model, m) => {
-        const began = performance.now();
-        renderer.render(model, camera);
-        times[m]!.push(performance.now() - began);
-        renderer.getContext().finish();
-      });
-    }
-    const best = times.map((all) => all.sort((a, b) => a - b)[all.length / 4]!);
-    renderer.setScissorTest(false);
-    return { calls, best, red: red(painted) };
+    const commands = [plain, painted].map(commandsOf);
+    return { calls, commands, red: red(painted) };
   },
 
   /** Shaders of the page's own: one that asks for paint, and one that cannot take it. */

@@ -104,3 +104,22 @@ export function countOf(pixels: readonly number[], channel: 0 | 1 | 2): number {
   }
   return count;
 }
+
+/** The calls of WebGL that a frame takes, once everything is on the GPU. */
+export function commandsOf(model: Object3D): number {
+  const gl = renderer.getContext();
+  const own = gl as unknown as Record<string, unknown>;
+  const methods = Object.entries(Object.getOwnPropertyDescriptors(Object.getPrototypeOf(gl))).filter(
+    ([, { value }]) => typeof value === 'function',
+  );
+  renderer.render(model, camera);
+  let count = 0;
+  for (const [name, { value }] of methods)
+    own[name] = (...args: unknown[]) => {
+      ++count;
+      return value.apply(gl, args);
+    };
+  renderer.render(model, camera);
+  for (const [name] of methods) delete own[name];
+  return count;
+}

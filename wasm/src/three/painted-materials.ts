@@ -96,8 +96,11 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
     kHooks.flatMap((name) => (Object.hasOwn(material, name) ? [[name, material[name]]] : [])),
   );
   const times = ++record.times;
-  // By default the key is the text of `onBeforeCompile`, which must be that of the material's own.
-  const before = Object.create(material, { onBeforeCompile: { value: onBeforeCompile } }) as Material;
+  // By default the key is the text of `onBeforeCompile`, which must be that of the material's own. An object that inherits from the
+  // material would do, but V8 gives every prototype a hidden class of its own, and all that reads materials becomes slower.
+  const before = new Proxy(material, {
+    get: (_, name) => (name === 'onBeforeCompile' ? onBeforeCompile : Reflect.get(material, name)),
+  });
   material.customProgramCacheKey = () =>
     `${customProgramCacheKey.call(before)}|cagecast ${times}${alone ? ' alone' : ''}`;
   material.onBeforeCompile = (shader, renderer) => {

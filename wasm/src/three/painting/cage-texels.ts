@@ -1,4 +1,4 @@
-import { Line3, Triangle, Vector3 } from 'three';
+import { Line3, Triangle, Vector2, Vector3 } from 'three';
 import type { Rect } from '../gpu/index.js';
 
 /** The arrays of a cage that painting needs. */
@@ -16,6 +16,8 @@ export interface SurfacePoint {
   point: Vector3;
   /** Of length 1. */
   normal: Vector3;
+  /** Where it lies in the texture, if that was asked for. */
+  uv?: Vector2;
 }
 
 /** What a brush touches between two points: everything within a radius of the line segment between them. */
@@ -92,7 +94,9 @@ export class CageTexels {
     const column = Math.min(this.size - 1, Math.floor(insideU * this.size));
     const row = Math.min(this.size - 1, Math.floor(insideV * this.size));
     const patch = this.#patches[this.owners[row * this.size + column]!];
-    return patch && { point: pointOf(patch, insideU, insideV), normal: patch.normal.clone() };
+    if (!patch) return undefined;
+    const uv = new Vector2(insideU, insideV);
+    return { point: pointOf(patch, insideU, insideV), normal: patch.normal.clone(), uv };
   }
 
   /** The closest point of the triangles that face `outside`. Cost: visits all triangles. */
@@ -101,12 +105,15 @@ export class CageTexels {
     const found = new Vector3();
     let nearest: SurfacePoint | undefined;
     let least = Infinity;
-    for (const { points, normal } of this.#patches) {
+    for (const { points, normal, u, v, alongU, alongV } of this.#patches) {
       // The distance to the plane bounds the distance to the triangle.
       if (normal.dot(outside) <= 0 || Math.abs(found.subVectors(point, points[0]).dot(normal)) >= least) continue;
       triangle.set(...points).closestPointToPoint(point, found);
       const distance = found.distanceTo(point);
-      if (distance < least) [least, nearest] = [distance, { point: found.clone(), normal }];
+      if (distance >= least) continue;
+      const from = found.clone().sub(points[0]);
+      const uv = new Vector2(u + from.dot(alongU), v + from.dot(alongV));
+      [least, nearest] = [distance, { point: found.clone(), normal, uv }];
     }
     return nearest;
   }

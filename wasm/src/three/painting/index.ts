@@ -14,6 +14,7 @@ export {
   type Tool,
 } from './painter.js';
 export type { Spot } from './pick.js';
+export { type PlacedSticker, type StickerFrame, StickerPainter, StickersSheet } from './placed-stickers.js';
 export { type Aim, type BrushStyle, type PointerPosition, PointerStroke, type PointerView } from './pointer-stroke.js';
 export {
   type StickerImage,
@@ -23,4 +24,4 @@ export {
   type StickerText,
 } from './sticker.js';
 export { Stroke, type StrokeShape } from './stroke.js';
-export { type Sticker, StrokeLayer, type StrokeStyle } from './stroke-layer.js';
+export { type LaidSticker, type Sticker, StrokeLayer, type StrokeStyle } from './stroke-layer.js';

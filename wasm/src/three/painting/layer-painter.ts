@@ -4,6 +4,7 @@ import { type Rect, toShares } from '../gpu/index.js';
 import { type Composite, type Edits, Emitter, type Layer, type LayerStack } from '../layers/index.js';
 import { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './cage-texels.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
+import { StickersSheet } from './placed-stickers.js';
 import type { StickerSheet, StickerStyle } from './sticker.js';
 import { StrokeLayer, type StrokeStyle } from './stroke-layer.js';
 
@@ -107,13 +108,18 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
 
   /** Extends the stroke. */
   extend(capsules: readonly Capsule[]): void {
-    if (capsules.length > 0 && this.#layer) this.#show(this.#stroke!.stroke(this.#layers.renderer, capsules));
+    if (capsules.length > 0 && this.#layer) this.touch(this.#stroke!.stroke(this.#layers.renderer, capsules));
+  }
+
+  /** Fills triangles of the texture with the stroke's colour. @param uvs 6 numbers per triangle. */
+  fill(uvs: ArrayLike<number>): void {
+    if (this.#layer) this.touch(this.#stroke!.fill(this.#layers.renderer, uvs));
   }
 
   /** Places a sticker; it moves from where it was placed since `begin`. @param up In the cage's space. */
   stick(place: SurfacePoint, sheet: StickerSheet, style: StickerStyle, up: Vector3): void {
     const { renderer } = this.#layers;
-    if (this.#layer) this.#show(this.#stroke!.stick(renderer, place, sheet.at(renderer, place, up, style)));
+    if (this.#layer) this.touch(this.#stroke!.stick(renderer, place, sheet.at(renderer, place, up, style)));
   }
 
   /** Commits the stroke to its layer, as an undo step. Waits for the GPU. */
@@ -152,7 +158,7 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   cancel(): void {
     if (!this.#layer) return;
     this.#layer = undefined;
-    this.#show(this.#stroke!.end(this.#layers.renderer));
+    this.touch(this.#stroke!.end(this.#layers.renderer));
     this.#layers.edits.cancel();
   }
 
@@ -160,10 +166,15 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
   addLayer(): Layer {
     const { stack } = this.#layers;
     const sheet = new PaintedSheet(this.size);
-    this.#sheets.push(new WeakRef(sheet));
+    this.keep(sheet);
     let number = 1;
     while (stack.layers.some(({ name }) => name === `Painting ${number}`)) number++;
     return stack.add(`Painting ${number}`, sheet);
+  }
+
+  /** Uploads a sheet too, after the graphics context was lost. */
+  keep(sheet: PaintedSheet): void {
+    this.#sheets.push(new WeakRef(sheet));
   }
 
   /** Uploads all paintings again, after the graphics context was lost. */
@@ -179,28 +190,39 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
     this.setCage(undefined);
   }
 
-  #show(rects: readonly Rect[]): void {
+  /** Draws parts of the composite again. @param rects In shares. */
+  touch(rects: readonly Rect[]): void {
     this.#layers.composite.touch(rects, this.#stroke?.active);
     this.emit('change', undefined);
   }
 
+  /** Tells that a painting was changed. */
+  emitPainted(sheet: PaintedSheet): void {
+    this.emit('painted', sheet);
+  }
+
+  /** What strokes on the current cage are drawn with. Cost: as `cageTexels`. */
+  surfaceOf(size: PaintingSize): StrokeLayer | undefined {
+    if (!this.#cage) return undefined;
+    const surface = this.#surfaces.get(size) ?? new StrokeLayer(new CageTexels(this.#cage, size));
+    this.#surfaces.set(size, surface);
+    return surface;
+  }
+
   #changed(sheet: PaintedSheet, rects: readonly Rect[]): void {
-    this.#show(rects.map((rect) => toShares(rect, sheet.size)));
+    this.touch(rects.map((rect) => toShares(rect, sheet.size)));
     this.emit('painted', sheet);
   }
 
   /** The layer to paint on: the selected one if it is a painting of the chosen size, else the uppermost such painting. */
   #paintedLayer(): Layer | undefined {
     const { selected, layers } = this.#layers.stack;
-    const fits = ({ sheet }: Layer): boolean => sheet instanceof PaintedSheet && sheet.size === this.size;
+    const fits = ({ sheet }: Layer): boolean =>
+      sheet instanceof PaintedSheet && sheet.size === this.size && !(sheet instanceof StickersSheet && !sheet.fixed);
     return selected && fits(selected) ? selected : [...layers].reverse().find(fits);
   }
 
   #surface(): StrokeLayer | undefined {
-    if (!this.#cage) return undefined;
-    const { size } = this;
-    const surface = this.#surfaces.get(size) ?? new StrokeLayer(new CageTexels(this.#cage, size));
-    this.#surfaces.set(size, surface);
-    return surface;
+    return this.surfaceOf(this.size);
   }
 }

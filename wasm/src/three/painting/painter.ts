@@ -39,6 +39,8 @@ export interface StickerPlace {
   size?: number | undefined;
   /** Radians, clockwise as seen. Default: 0. */
   angle?: number | undefined;
+  /** Whether it is seen as in a mirror. Default: false. */
+  mirrored?: boolean | undefined;
   /** 0 to 1. Default: 1. */
   opacity?: number | undefined;
   /** The direction of its upper edge, in the cage's space. Default: that of y. */
@@ -66,7 +68,7 @@ export class Painter {
   /** What pointers do; undefined leaves them to others. */
   tool: Tool | undefined = 'brush';
   /** What pointers place with the tool `sticker`. */
-  picture: (StickerPicture & { size?: number; angle?: number; opacity?: number }) | undefined;
+  picture: (StickerPicture & { size?: number; angle?: number; opacity?: number; mirrored?: boolean }) | undefined;
   readonly #painter: LayerPainter;
   readonly #models: readonly Applied[];
   readonly #sheet = new StickerSheet();
@@ -235,7 +237,8 @@ export class Painter {
 
   #beginSticker(picture: StickerPicture, { opacity = kSticker.opacity }: Partial<StickerPlace>): void {
     checkShare('opacity', opacity);
-    const key = 'text' in picture ? JSON.stringify([picture.text, picture.color, picture.font]) : picture.image;
+    const key =
+      'text' in picture ? JSON.stringify([picture.text, picture.color, picture.font, picture.outline]) : picture.image;
     if (key !== this.#drawn) this.#sheet.draw(picture);
     this.#drawn = key;
     this.#painter.begin('sticker', { color: '#000000', opacity, hardness: 1, erases: false });
@@ -243,10 +246,10 @@ export class Painter {
 
   #moveSticker(
     surface: SurfacePoint,
-    { size = kSticker.size, angle = kSticker.angle, up = new Vector3(0, 1, 0) }: Partial<StickerPlace>,
+    { size = kSticker.size, angle = kSticker.angle, up = new Vector3(0, 1, 0), mirrored }: Partial<StickerPlace>,
   ): void {
     const { diagonal } = this.#painter.cageTexels!;
-    this.#painter.stick(surface, this.#sheet, { size: size * diagonal, angle }, up);
+    this.#painter.stick(surface, this.#sheet, { size: size * diagonal, angle, mirrored }, up);
   }
 
   #stroke(points: readonly StrokePoint[], style: BrushStyle): void {

@@ -5,6 +5,14 @@ export interface Drag {
   cancel(): void;
 }
 
+/** That the pointer of an event comes down where that was. */
+function downAt(event: PointerEvent): PointerEvent {
+  const { pointerId, pointerType, isPrimary, clientX, clientY, screenX, screenY, view } = event;
+  const at = { clientX, clientY, screenX, screenY, view };
+  const how = { pointerId, pointerType, isPrimary, button: 0, buttons: 1, bubbles: true, cancelable: true };
+  return new PointerEvent('pointerdown', { ...how, ...at });
+}
+
 /**
  * Passes the pointers on an element to what `begin` makes of them.
  * @param begin  Undefined leaves the pointer to others.
@@ -13,6 +21,9 @@ export interface Drag {
 export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => Drag | undefined): () => void {
   let drag: Drag | undefined;
   let pointer: number | undefined;
+  /** What the pointer that paints last was. */
+  let last: PointerEvent | undefined;
+  let passesOn = false;
 
   const finish = (how: 'end' | 'cancel'): void => {
     const done = drag;
@@ -20,20 +31,29 @@ export function listenTo(element: HTMLElement, begin: (event: PointerEvent) => D
     done?.[how]();
   };
   const down = (event: PointerEvent): void => {
+    if (passesOn) return;
     if (drag) {
       // Another finger: most likely the two shall turn or zoom the model.
-      if (event.pointerType === 'touch') finish('cancel');
+      if (event.pointerType !== 'touch') return;
+      finish('cancel');
+      // Those who turn it have not seen the first finger: it comes down for them where it is now.
+      passesOn = true;
+      if (last) element.dispatchEvent(downAt(last));
+      passesOn = false;
       return;
     }
     if (event.button !== 0) return;
     drag = begin(event);
     if (!drag) return;
     pointer = event.pointerId;
+    last = event;
     event.stopImmediatePropagation();
     element.setPointerCapture(event.pointerId);
   };
   const move = (event: PointerEvent): void => {
-    if (event.pointerId === pointer) drag?.move(event);
+    if (event.pointerId !== pointer || !drag) return;
+    last = event;
+    drag.move(event);
   };
   const up = (event: PointerEvent): void => {
     if (event.pointerId === pointer) finish(event.type === 'pointerup' ? 'end' : 'cancel');

@@ -13,6 +13,8 @@ export interface StickerText {
   color: string;
   /** A font family of CSS. Default: `system-ui, sans-serif`. */
   font?: string | undefined;
+  /** A colour of CSS for a line around the letters. Default: no line. */
+  outline?: string | undefined;
 }
 
 /** What a sticker shows: a line of text, or an image. */
@@ -24,9 +26,13 @@ export interface StickerStyle {
   size: number;
   /** Radians, clockwise as seen. */
   angle: number;
+  /** Whether it is seen as in a mirror. */
+  mirrored?: boolean | undefined;
 }
 
-const kSide = 512; // pixels of the longer side
+// Pixels of the longer side: more than it ever has texels, so that text is not enlarged.
+const kSide = 1024;
+const kOutline = 0.14; // width of the line around letters, as a share of the size of the font
 const kMargin = 4; // transparent pixels around it, so that filtering does not wrap around the repeating texture
 
 /** The texture of a sticker. */
@@ -49,7 +55,12 @@ export class StickerSheet {
   }
 
   /** The sticker at a point of the cage, upright with respect to `up`. */
-  at(renderer: WebGLRenderer, { normal }: SurfacePoint, up: Vector3, { size, angle }: StickerStyle): Sticker {
+  at(
+    renderer: WebGLRenderer,
+    { normal }: SurfacePoint,
+    up: Vector3,
+    { size, angle, mirrored = false }: StickerStyle,
+  ): Sticker {
     this.#composite.update(renderer);
     const { width, height } = this.#canvas;
     const scale = size / Math.max(width, height);
@@ -59,7 +70,8 @@ export class StickerSheet {
       upright.set(normal.y, normal.z, normal.x).addScaledVector(normal, -normal.dot(upright));
     upright.normalize().applyAxisAngle(normal, -angle);
     const right = new Vector3().crossVectors(upright, normal);
-    return { texture: this.#composite.texture, width: width * scale, height: height * scale, right, up: upright };
+    const { texture } = this.#composite;
+    return { texture, width: width * scale, height: height * scale, right, up: upright, mirrored };
   }
 
   /** Frees its GPU memory. */
@@ -78,24 +90,28 @@ function makeCanvas(width: number, height: number): Canvas {
   return Object.assign(document.createElement('canvas'), { width, height });
 }
 
-function drawText({ text, color, font: family = 'system-ui, sans-serif' }: StickerText): Canvas {
+function drawText({ text, color, outline, font: family = 'system-ui, sans-serif' }: StickerText): Canvas {
   const font = (pixels: number): string => `700 ${pixels}px ${family}`;
   const canvas = makeCanvas(1, 1);
   const context = canvas.getContext('2d') as Context;
   context.font = font(100);
   const measured = context.measureText(text);
-  const wide = Math.max(1, measured.actualBoundingBoxLeft + measured.actualBoundingBoxRight);
-  const high = Math.max(1, measured.actualBoundingBoxAscent + measured.actualBoundingBoxDescent);
+  const line = outline === undefined ? 0 : 100 * kOutline;
+  const wide = Math.max(1, measured.actualBoundingBoxLeft + measured.actualBoundingBoxRight + line);
+  const high = Math.max(1, measured.actualBoundingBoxAscent + measured.actualBoundingBoxDescent + line);
   const scale = (kSide - 2 * kMargin) / Math.max(wide, high);
   canvas.width = Math.ceil(wide * scale) + 2 * kMargin;
   canvas.height = Math.ceil(high * scale) + 2 * kMargin;
   context.font = font(100 * scale);
+  const [x, y] = [measured.actualBoundingBoxLeft, measured.actualBoundingBoxAscent].map(
+    (from) => kMargin + (from + line / 2) * scale,
+  ) as [number, number];
+  if (outline !== undefined) {
+    Object.assign(context, { strokeStyle: outline, lineWidth: line * scale, lineJoin: 'round' });
+    context.strokeText(text, x, y);
+  }
   context.fillStyle = color;
-  context.fillText(
-    text,
-    kMargin + measured.actualBoundingBoxLeft * scale,
-    kMargin + measured.actualBoundingBoxAscent * scale,
-  );
+  context.fillText(text, x, y);
   return canvas;
 }
 

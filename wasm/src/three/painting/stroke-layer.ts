@@ -20,6 +20,7 @@ import {
 import { disjoint, kMostRects, Pass, type Rect, toShares, toTexels } from '../gpu/index.js';
 import type { ActiveStroke } from '../layers/index.js';
 import type { CageTexels, Capsule, SurfacePoint } from './cage-texels.js';
+import { FillPass } from './fill-pass.js';
 import { makePaintTarget, type PaintedSheet } from './painted-sheet.js';
 import {
   brushShader,
@@ -54,6 +55,16 @@ export interface Sticker {
   /** Unit vectors towards its right and its top edge. */
   right: Vector3;
   up: Vector3;
+  /** Whether it is seen as in a mirror. */
+  mirrored?: boolean;
+}
+
+/** A sticker at a point of the cage. */
+export interface LaidSticker {
+  center: SurfacePoint;
+  sticker: Sticker;
+  /** 0..1 */
+  opacity: number;
 }
 
 const kWithin = 0.999; // a safety margin, as the GPU computes in single precision
@@ -74,6 +85,9 @@ export class StrokeLayer {
   readonly #target: WebGLRenderTarget;
   readonly #brush: Pass<ReturnType<typeof brushUniforms>>;
   readonly #sticker: Pass<ReturnType<typeof stickerUniforms>>;
+  /** Lays stickers over each other. */
+  readonly #stickers: Pass<ReturnType<typeof stickerUniforms>>;
+  readonly #fill: FillPass;
   readonly #lay = new Pass(kCommitShader, commitUniforms(), blending(AddEquation, OneMinusSrcAlphaFactor));
   readonly #erase = new Pass(kEraseShader, commitUniforms());
   readonly #copy = new Pass(kCommitShader, commitUniforms());
@@ -106,6 +120,12 @@ export class StrokeLayer {
     }
     this.#brush = new Pass(brushShader(size), brushUniforms(owners, patches), blending(MaxEquation, OneFactor));
     this.#sticker = new Pass(stickerShader(size), stickerUniforms(owners, patches));
+    this.#fill = new FillPass(size, owners, patches);
+    this.#stickers = new Pass(
+      stickerShader(size),
+      stickerUniforms(owners, patches),
+      blending(AddEquation, OneMinusSrcAlphaFactor),
+    );
   }
 
   /** For the composite; undefined while no stroke is in progress. */
@@ -150,20 +170,51 @@ export class StrokeLayer {
     return this.#draw(renderer, this.#brush, touched);
   }
 
+  /** Fills triangles of the texture. @param uvs 6 numbers per triangle. @returns The parts it touched, in shares. */
+  fill(renderer: WebGLRenderer, uvs: ArrayLike<number>): Rect[] {
+    const rects = this.#fill.run(renderer, this.#target, uvs, this.#style.color);
+    this.#rects = disjoint([...this.#rects, ...rects], kMostRects);
+    return rects.map((rect) => toShares(rect, this.cageTexels.size));
+  }
+
   /** Draws a sticker in place of the stroke so far. @returns The parts that changed, in shares. */
-  stick(renderer: WebGLRenderer, center: SurfacePoint, { texture, width, height, right, up }: Sticker): Rect[] {
+  stick(renderer: WebGLRenderer, center: SurfacePoint, sticker: Sticker): Rect[] {
     const before = this.clear(renderer);
-    const { uniforms } = this.#sticker;
+    this.#place(this.#sticker, { center, sticker, opacity: 1 });
+    return [...before, ...this.#draw(renderer, this.#sticker, this.reach(center, sticker))];
+  }
+
+  /** The parts of the texture that a sticker touches, in shares; conservative, and they may overlap. */
+  reach(center: SurfacePoint, { width, height }: Sticker): Rect[] {
+    const radius = Math.hypot(width, height, Math.max(width, height)) / 2 + this.cageTexels.pitch;
+    return this.cageTexels.touched({ from: center, to: center, radius }, new Set());
+  }
+
+  /** Draws stickers over each other, in place of what some parts of a sheet show. @param rects In texels. */
+  lay(
+    renderer: WebGLRenderer,
+    { target }: PaintedSheet,
+    rects: readonly Rect[],
+    stickers: readonly LaidSticker[],
+  ): void {
+    this.#clear.run(renderer, target, rects);
+    for (const one of stickers) {
+      this.#place(this.#stickers, one);
+      this.#stickers.run(renderer, target, rects);
+    }
+  }
+
+  #place({ uniforms }: Pass<ReturnType<typeof stickerUniforms>>, { center, sticker, opacity }: LaidSticker): void {
+    const { texture, width, height, right, up, mirrored = false } = sticker;
     uniforms.picture.value = texture;
     uniforms.center.value.copy(center.point);
     uniforms.outward.value.crossVectors(right, up);
-    uniforms.right.value.copy(right);
+    uniforms.right.value.copy(right).multiplyScalar(mirrored ? -1 : 1);
     uniforms.up.value.copy(up);
     uniforms.extent.value.set(width, height);
+    uniforms.pitch.value = this.cageTexels.pitch;
     uniforms.texel.value = (this.cageTexels.pitch * (texture.image as { width: number }).width) / width;
-    const radius = Math.hypot(width, height, Math.max(width, height)) / 2;
-    const touched = this.cageTexels.touched({ from: center, to: center, radius }, new Set());
-    return [...before, ...this.#draw(renderer, this.#sticker, touched)];
+    uniforms.opacity.value = opacity;
   }
 
   /** Clears the stroke so far. @returns The parts that had paint, in shares. */
@@ -207,7 +258,17 @@ export class StrokeLayer {
     this.#target.dispose();
     this.#rest?.dispose();
     for (const texture of this.#textures) texture.dispose();
-    for (const pass of [this.#brush, this.#sticker, this.#lay, this.#erase, this.#copy, this.#clear]) pass.dispose();
+    for (const pass of [
+      this.#fill,
+      this.#brush,
+      this.#sticker,
+      this.#stickers,
+      this.#lay,
+      this.#erase,
+      this.#copy,
+      this.#clear,
+    ])
+      pass.dispose();
   }
 
   #makeRest(): WebGLRenderTarget {

@@ -68,7 +68,10 @@ uniform vec3 outward;
 uniform vec3 right;
 uniform vec3 up;
 uniform vec2 extent;
-uniform float texel; // the size of a texel of this texture, in texels of the picture
+uniform float pitch; // the length of a texel in space
+uniform float texel; // the same in texels of the picture
+uniform float opacity;
+const int kSamples = 4; // per side of a texel
 out vec4 color;
 
 void main() {
@@ -76,10 +79,38 @@ void main() {
   if (!surfacePoint(point, normal)) discard;
   vec3 from = point - center;
   vec2 at = vec2(dot(from, right), -dot(from, up)) / extent + 0.5;
+  vec2 reach = pitch / extent;
   // Skip what faces away or lies far behind: it is another surface that happens to be underneath.
   if (dot(normal, outward) < 0.1 || abs(dot(from, outward)) > 0.5 * max(extent.x, extent.y)) discard;
-  if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)))) discard;
-  color = textureLod(picture, at, log2(max(texel, 1.0)));
+  if (any(lessThan(at, -reach)) || any(greaterThan(at, 1.0 + reach))) discard;
+  // Several samples, as one of a smaller level would blur thin lines, and be jagged in the narrow direction of a long text.
+  float level = log2(max(texel / float(kSamples), 1.0));
+  color = vec4(0.0);
+  for (int i = 0; i < kSamples * kSamples; i++) {
+    vec2 offset = (vec2(i % kSamples, i / kSamples) + 0.5) / float(kSamples) - 0.5;
+    vec2 spot = at + offset * reach;
+    if (all(greaterThan(spot, vec2(0.0))) && all(lessThan(spot, vec2(1.0)))) color += textureLod(picture, spot, level);
+  }
+  color *= opacity / float(kSamples * kSamples);
+}
+`;
+
+export const fillShader = (size: number): string => /* glsl */ `
+${surfacePointShader(size)}
+uniform vec3 paint;
+uniform bool guttersOnly;
+out vec4 color;
+
+void main() {
+  int owner = texelFetch(owners, ivec2(gl_FragCoord.xy), 0).r;
+  if (owner < 0) discard;
+  if (guttersOnly) {
+    vec4 growth = row(owner, 3);
+    vec2 from = gl_FragCoord.xy / ${size}.0 - vec2(row(owner, 0).w, row(owner, 1).w);
+    vec2 shares = vec2(dot(from, growth.xy), dot(from, growth.zw));
+    if (min(1.0 - shares.x - shares.y, min(shares.x, shares.y)) > -1e-6) discard;
+  }
+  color = vec4(paint, 1.0);
 }
 `;
 
@@ -134,7 +165,9 @@ export function stickerUniforms(owners: Texture, patches: Texture) {
     right: { value: new Vector3() },
     up: { value: new Vector3() },
     extent: { value: new Vector2() },
+    pitch: { value: 1 },
     texel: { value: 1 },
+    opacity: { value: 1 },
   };
 }
 
