@@ -148,9 +148,9 @@ test('other values than colours are averaged as they are', () => {
   const mesh = square();
   const image = { width: 2, height: 1, data: new Uint8Array([0, 40, 0, 255, 200, 40, 0, 255]) };
   const middle = (kind: 'color' | 'data') =>
-    texel(bake(mesh, resultOf(mesh), image, { width: 4, height: 1, gutter: 0, kind }), 1, 0)[0]!;
-  assert.ok(Math.abs(middle('data') - 50) <= 1);
-  assert.ok(middle('color') > 90, 'colours are mixed in linear light');
+    texel(bake(mesh, resultOf(mesh), image, { width: 3, height: 1, gutter: 0, kind }), 1, 0)[0]!;
+  assert.ok(Math.abs(middle('data') - 100) <= 1);
+  assert.ok(middle('color') > 130, 'colours are mixed in linear light');
 });
 
 test('what is baked lies over an image of the same size; alpha and bytes beyond are kept', () => {
@@ -201,10 +201,16 @@ async function sample(name: string, node: string) {
   return { cage, target, result: transfer(cage, target) };
 }
 
-test('there and back, from the cage to the lizard’s atlas and to the cage, the paint differs by 2/255 at most, on the mean', async () => {
+test('there and back, from the cage to the lizard’s atlas and to the cage, the paint differs little on the mean', async () => {
   const { target, result } = await sample('lizard', 'skin');
-  const war = PNG.sync.read(readFileSync('build/assets/lizard/paint-war-paint.png'));
-  for (const paint of [smoothImage(1024, 1024), war as Image]) {
+  const read = (name: string): Image => PNG.sync.read(readFileSync(`build/assets/lizard/paint-${name}.png`));
+  // The tiger has stripes as fine as the texels of the atlas.
+  const paints: [Image, number][] = [
+    [smoothImage(1024, 1024), 1],
+    [read('war-paint'), 1.2],
+    [read('tiger'), 2.4],
+  ];
+  for (const [paint, most] of paints) {
     const atlas = bake(target, result, paint, { width: 1024 });
     const back = cageTexture(target, result, atlas, { width: 1024 });
     const before = resize(paint, 1024, 1024);
@@ -218,7 +224,7 @@ test('there and back, from the cage to the lizard’s atlas and to the cage, the
         sum += Math.abs(seen(back) - seen(before)) / 4;
       }
     });
-    assert.ok(covered > 300_000 && sum / covered <= 2, `${sum / covered} over ${covered} texels`);
+    assert.ok(covered > 300_000 && sum / covered <= most, `${sum / covered} over ${covered} texels`);
     // The left eye is a hole of the cage.
     assert.deepEqual(texel(back, 374, 786), [0, 0, 0, 0]);
   }

@@ -45,6 +45,34 @@ function sample({ width, height, data }: Image, u: number, v: number): number[] 
   return out;
 }
 
+/** The weight of a texel at a distance, by Keys' cubic convolution. */
+function cubic(distance: number): number {
+  const [a, d] = [-0.75, Math.abs(distance)];
+  if (d >= 2) return 0;
+  return d < 1 ? (a + 2) * d ** 3 - (a + 3) * d ** 2 + 1 : a * (d ** 3 - 5 * d ** 2 + 8 * d - 4);
+}
+
+/** A premultiplied cubic sample, in linear light, between the values of the four nearest texels. */
+function sharpSample({ width, height, data }: Image, u: number, v: number): number[] {
+  const [x, y] = [u * width - 0.5, v * height - 0.5];
+  const sums = [0, 0, 0, 0];
+  const nearest: number[][] = [];
+  for (let row = Math.floor(y) - 1; row < Math.floor(y) + 3; ++row) {
+    for (let column = Math.floor(x) - 1; column < Math.floor(x) + 3; ++column) {
+      const at = 4 * ((((row % height) + height) % height) * width + (((column % width) + width) % width));
+      const alpha = data[at + 3]! / 255;
+      const values = [0, 1, 2, 3].map((k) => (k === 3 ? alpha : alpha * toLinear(data[at + k]!)));
+      values.forEach((value, k) => (sums[k]! += value * cubic(x - column) * cubic(y - row)));
+      if (Math.abs(x - column) < 1 && Math.abs(y - row) < 1) nearest.push(values);
+    }
+  }
+  const held = sums.map((sum, k) => {
+    const four = nearest.map((values) => values[k]!);
+    return Math.min(Math.max(...four), Math.max(Math.min(...four), sum));
+  });
+  return held.map((value) => Math.min(value, held[3]!));
+}
+
 /** A texel that lies in one triangle, or in none: its bytes. Undefined for one on an edge. */
 export type Texel = number[] | undefined;
 
@@ -87,7 +115,7 @@ export function texelsOf(
       const uv = [0, 1].map((k) =>
         weights.reduce((sum, weight, corner) => sum + weight * first.from![2 * corner + k]!, 0),
       );
-      sample(image, uv[0]!, uv[1]!).forEach((value, k) => (sums[k]! += value / used.length));
+      (isCoarse ? sharpSample : sample)(image, uv[0]!, uv[1]!).forEach((value, k) => (sums[k]! += value / used.length));
     }
     const color = [0, 1, 2].map((k) => (sums[3]! > 0 ? toByte(sums[k]! / sums[3]!) : 0));
     return [...color, 255 * sums[3]!];

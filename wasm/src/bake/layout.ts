@@ -86,7 +86,7 @@ export function checkFill(fn: string, options: FillOptions = {}): Fill {
 
 /**
  * Fills a texture by an image. Painted triangles come in the order of the layouts; those with the orientation of the texture
- * first, so that one of two mirrored halves is complete. Cost: 4 to 16 samples a texel.
+ * first, so that one of two mirrored halves is complete. Cost: as of `bake`.
  * @throws {CagecastError} `badArgument`
  */
 export function fill(fn: string, layouts: readonly Layout[], image: Image, options?: FillOptions): Baked {

@@ -9,8 +9,8 @@ export function compile(): Promise<WebAssembly.Module> {
 }
 
 /**
- * Reads a text that has one character for each byte, of which the code's lowest eight bits count. Gzipped it is 3 % larger than the bytes themselves; hexadecimal
- * digits are 11 % larger, base64 is 31 %.
+ * Reads a text with one character for each byte: the lowest eight bits of its code. Gzipped, it is 3 % larger than the bytes
+ * themselves; hexadecimal digits are 11 % larger, base64 31 %.
  */
 function bytesOf(text: string): Uint8Array<ArrayBuffer> {
   const bytes = new Uint8Array(text.length);
