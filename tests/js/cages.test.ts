@@ -13,6 +13,7 @@ import {
   fitCage,
   loadTemplate,
   makeCage,
+  matchingParts,
   refineCage,
   type Template,
   terminate,
@@ -75,7 +76,8 @@ describe('makeCage', () => {
     assert.deepEqual(sync.defaultExclusions(), await defaultExclusions());
   });
 
-  test('tells which parts patterns match', () => {
+  test('tells which parts patterns match', async () => {
+    assert.deepEqual(await matchingParts(['eye', 'lid'], ['eye']), [true, false]);
     assert.deepEqual(sync.matchingParts(['skin', ['Eye.L', 'white'], 'eyelid'], ['eye', 'sk*']), [true, true, false]);
     assert.throws(() => sync.matchingParts(['skin'], 'eye' as never), {
       message: 'matchingParts: patterns is "eye", not an array of patterns',

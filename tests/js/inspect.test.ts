@@ -404,6 +404,21 @@ describe('holes and segments', () => {
     );
   });
 
+  test('meshes are checked even where a result is given, and so are the names of parts', () => {
+    const result = transfer(cage, target);
+    const call = inspect as (...args: unknown[]) => unknown;
+    for (const [args, message] of [
+      [[cage, undefined, { result }], /^inspect: target\.positions is undefined, not a typed array/],
+      [[{}, target, { result }], /^inspect: cage\.positions is undefined, not a typed array/],
+      [[cage, target, { parts: 5 }], /^inspect: options\.parts is 5, not an array/],
+      [[cage, target, { parts: [null] }], /^inspect: options\.parts is of type Array, not an array of ranges/],
+    ] as const)
+      assert.throws(
+        () => call(...args),
+        (error) => error instanceof CagecastError && message.test(error.message),
+      );
+  });
+
   test('a target of one triangle, and one without area, can be looked at', () => {
     const tiny: Mesh = {
       positions: new Float32Array([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]),

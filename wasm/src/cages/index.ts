@@ -109,6 +109,19 @@ export function defaultExclusions(options: CallOptions = {}): Promise<string[]> 
   return queue.withOptions('defaultExclusions', [], options);
 }
 
+/**
+ * Whether each part's name matches one of some patterns, as the option `exclude` takes them.
+ * @param parts  As those of a `CageModel`.
+ * @throws {CagecastError} `badArgument`
+ */
+export function matchingParts(
+  parts: readonly (string | readonly string[])[],
+  patterns: readonly string[],
+  options: CallOptions = {},
+): Promise<boolean[]> {
+  return queue.withOptions('matchingParts', [parts, patterns], options);
+}
+
 /** Starts the worker and loads its WebAssembly before it is needed. Not necessary: every call does it. */
 export function init(): Promise<void> {
   return queue.call('init', [], {});

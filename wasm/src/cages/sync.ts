@@ -1,5 +1,6 @@
 /**
  * The functions of `cagecast/cages`, run at once on the thread that calls them: for a worker of your own. They take seconds.
+ * Their memory is freed once the event loop turns: in a long loop, `await` something between calls.
  *
  * Errors are of the class `CagecastError` that is exported here.
  * @module cagecast/cages/sync

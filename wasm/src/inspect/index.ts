@@ -105,7 +105,16 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
   if (typeof given !== 'object' || given === null)
     throw new CagecastError('badOption', `inspect: options is ${show(given)}, not an object`);
   const { result, parts, ...options } = given;
-  if (result !== undefined) checkResult(result, target);
+  if (result !== undefined) {
+    checkArrays('cage', cage, 'positions', 'indices', 'uvs');
+    checkArrays('target', target, 'positions', 'indices');
+    checkResult(result, target);
+  }
+  if (parts !== undefined && !(Array.isArray(parts) && parts.every((part) => part?.vertexCount >= 0)))
+    throw new CagecastError(
+      'badOption',
+      `inspect: options.parts is ${show(parts)}, not an array of ranges of vertices`,
+    );
   const scene = sceneOf(
     cage,
     target,
@@ -134,6 +143,13 @@ function outcomeOf(cage: Mesh, target: Mesh, given: InspectOptions = {}) {
     const turned = turnedRight(cage, orientation);
     return sceneOf(turned, target, transfer(turned, target, options), scene.threshold, scene.parts);
   }
+}
+
+/** Checks that a mesh has arrays: without a transfer, nothing else does. */
+function checkArrays(name: string, mesh: Mesh, ...fields: (keyof Mesh)[]): void {
+  for (const field of fields)
+    if (!ArrayBuffer.isView(mesh?.[field]))
+      throw new CagecastError('badArgument', `inspect: ${name}.${field} is ${show(mesh?.[field])}, not a typed array`);
 }
 
 /** Checks that a result is complete and belongs to this target. */
