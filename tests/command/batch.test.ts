@@ -31,6 +31,7 @@ const linesOf = (text: string): Line[] =>
 
 before(() => {
   for (const name of ['in', 'in/deep', 'out']) mkdirSync(at(name));
+  writeFileSync(at('in/0.glb'), target);
   writeFileSync(at('cage.glb'), glbOf(scene.cage));
   writeFileSync(at('away.glb'), glbOf({ ...scene.cage, positions: scene.cage.positions.map((x) => x + 9) }));
 });
@@ -136,4 +137,82 @@ test('a batch that cannot be right does not begin', () => {
     assert.match(stderr, message);
     assert.match(stderr, /^cagecast: [^\n]+\n$/);
   }
+});
+
+test('--resume does again what another job has overwritten since, and the last line about a target is true', () => {
+  const results = at('there-and-back.jsonl');
+  const output = at('there-and-back.glb');
+  const batch = (...more: string[]) =>
+    cagecast(
+      'batch',
+      at('in/0.glb'),
+      '--cage',
+      at('cage.glb'),
+      '-o',
+      output,
+      '--results',
+      results,
+      '--resume',
+      ...more,
+    );
+  const last = () => linesOf(readFileSync(results, 'utf8')).at(-1)!;
+  assert.equal(batch().status, 0);
+  const first = readFileSync(output);
+  batch('--threshold', '1');
+  assert.notDeepEqual(readFileSync(output), first);
+  assert.match(batch().stderr, /1 jobs: 1 done, 0 failed;/);
+  assert.deepEqual(readFileSync(output), first);
+  assert.match(batch().stderr, /1 done before/);
+
+  // A job that failed, and then is as it was: the file is still its own.
+  const config = at('in/cagecast.config.json');
+  writeFileSync(config, '{ "treshold": 1 }');
+  try {
+    assert.equal(batch().status, 1);
+    assert.deepEqual([last().status, last().target], ['failed', at('in/0.glb')]);
+    assert.match(last().error!, /cagecast\.config\.json: "treshold" is unknown/);
+  } finally {
+    rmSync(config);
+  }
+  assert.equal(batch().status, 0);
+  assert.deepEqual([last().status, last().target], ['skipped', at('in/0.glb')]);
+});
+
+test('settings that are wrong fail the jobs that they are for, and no other', () => {
+  mkdirSync(at('one'));
+  mkdirSync(at('two'));
+  for (const name of ['one/a.glb', 'two/b.glb']) writeFileSync(at(name), target);
+  writeFileSync(at('two/cagecast.config.json'), '{ "treshold": 1 }');
+  const { status, stdout } = cagecast('batch', at('one/a.glb'), at('two/b.glb'), '--cage', at('cage.glb'));
+  assert.equal(status, 1);
+  const lines = linesOf(stdout).sort((a, b) => a.target.localeCompare(b.target));
+  assert.deepEqual(
+    lines.map((line) => [line.target, line.status]),
+    [
+      [at('one/a.glb'), 'done'],
+      [at('two/b.glb'), 'failed'],
+    ],
+  );
+  writeFileSync(at('wrong.jsonl'), JSON.stringify({ target: 'one/a.glb', cage: 'cage.glb', treshold: 1 }));
+  const [line] = linesOf(cagecast('batch', '--manifest', at('wrong.jsonl')).stdout);
+  assert.deepEqual([line!.target, line!.status], [at('one/a.glb'), 'failed']);
+  assert.match(line!.error!, /^line 1 of /);
+});
+
+test('with --fail-on reports have the verdict, which diff compares', () => {
+  const report = (cage: string) => {
+    const path = at(`${cage}.json`);
+    cagecast('batch', at('in/0.glb'), '--cage', at(`${cage}.glb`), '--report', path, '--fail-on', 'unfit');
+    return path;
+  };
+  const [good, bad] = [report('cage'), report('away')];
+  const { verdict, findings } = JSON.parse(readFileSync(bad, 'utf8')) as {
+    verdict: string;
+    findings: { sentence: string }[];
+  };
+  assert.equal(verdict, 'unfit');
+  assert.ok(findings[0]!.sentence);
+  const { status, stdout } = cagecast('diff', good, bad);
+  assert.equal(status, 4);
+  assert.match(stdout, /verdict +good +unfit +over/);
 });

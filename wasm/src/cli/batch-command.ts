@@ -5,11 +5,12 @@ import { fileURLToPath } from 'node:url';
 import { Worker } from 'node:worker_threads';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import type { Verdict } from '../inspect/index.js';
-import { isWritten, type Job } from './batch-jobs.js';
-import type { Outcome, Task } from './batch-worker.js';
+import { isWritten, type Job, writtenBy } from './batch-jobs.js';
+import type { Outcome } from './batch-worker.js';
 import { placeOf } from './output.js';
 import { oneLine } from './print.js';
 import type { Progress } from './progress.js';
+import type { TransferCommand } from './transfer-command.js';
 
 /** The arguments of `cagecast batch`. */
 export interface BatchCommand {
@@ -18,13 +19,13 @@ export interface BatchCommand {
   results?: string | undefined;
   /** Whether jobs are skipped that `results` says are done. */
   resume: boolean;
-  /** The verdict from which on the batch fails. */
+  /** The verdict from which on the batch fails; the jobs inspect cages then. */
   failOn?: 'usable' | 'unfit' | undefined;
   workers?: number | undefined;
 }
 
 /** A line of the results. */
-export type ResultLine = { target: string; output: string | null; key: string } & (
+export type ResultLine = { target: string; output: string | null; report?: string; key: string } & (
   | Outcome
   | { status: 'skipped'; verdict?: Verdict }
 );
@@ -56,41 +57,42 @@ export async function batchCommand(
   progress: Progress,
 ): Promise<BatchSummary> {
   const began = performance.now();
-  const before = resume ? readResults(results!) : new Map<string, ResultLine>();
+  const before = resume ? readResults(results!) : noResults();
   const configs = [...new Set(jobs.flatMap(({ command }) => command.rules.config ?? []))];
   const summary: BatchSummary = { jobs: jobs.length, done: 0, failed: 0, skipped: 0, misfits: 0, configs, seconds: 0 };
   const take = (job: Job, outcome: Outcome | { status: 'skipped'; verdict?: Verdict }) => {
-    const { target, output = null } = job.command;
-    const line: ResultLine = { target, output, key: job.key, ...outcome };
+    const { target, output = null, report } = job.command;
+    const line: ResultLine = { target, output, ...(report && { report }), key: job.key, ...outcome };
     ++summary[line.status];
     if (failOn && 'verdict' in line && verdicts.indexOf(line.verdict!) <= verdicts.indexOf(failOn)) ++summary.misfits;
     const text = `${JSON.stringify(line)}\n`;
     if (results === undefined) write(text);
-    else if (line.status !== 'skipped') append(results, text);
+    // A job that was done before has its line, but another one may stand below it.
+    else if (line.status !== 'skipped' || before.last.get(target) !== job.key) append(results, text);
     const ended = summary.done + summary.failed + summary.skipped;
     progress.share(`${ended} of ${jobs.length} jobs, ${summary.failed} failed`, ended / jobs.length);
   };
   const waiting: Job[] = [];
   for (const job of jobs) {
-    const known = before.get(job.key);
+    const known = before.lines.get(job.key);
     if (job.error !== undefined) take(job, { status: 'failed', ms: 0, error: job.error });
-    else if (known?.status === 'done' && isWritten(job) && (!failOn || known.verdict))
-      take(job, { status: 'skipped', ...(known.verdict && { verdict: known.verdict }) });
+    else if (known && isWritten(job) && writtenBy(job).every((path) => before.writers.get(placeOf(path)) === job.key))
+      take(job, { status: 'skipped', ...('verdict' in known && { verdict: known.verdict! }) });
     else waiting.push(job);
   }
   if (resume) for (const { command } of waiting) removeLeftovers([command.output, command.report]);
   const count = Math.min(workers ?? availableParallelism(), waiting.length);
-  await Promise.all(Array.from({ length: count }, () => work(waiting, failOn !== undefined, take)));
+  await Promise.all(Array.from({ length: count }, () => work(waiting, take)));
   progress.clear();
   return { ...summary, seconds: (performance.now() - began) / 1000 };
 }
 
 /** Runs jobs in a thread, one after another, until none is waiting. A thread that dies is replaced. */
-async function work(waiting: Job[], inspects: boolean, take: (job: Job, outcome: Outcome) => void): Promise<void> {
+async function work(waiting: Job[], take: (job: Job, outcome: Outcome) => void): Promise<void> {
   let worker: Worker | undefined;
   for (let job = waiting.shift(); job; job = waiting.shift()) {
     worker ??= new Worker(fileURLToPath(import.meta.url), { argv: [] });
-    const outcome = await ask(worker, { command: job.command, inspects });
+    const outcome = await ask(worker, job.command);
     if (outcome === undefined) worker = undefined;
     take(
       job,
@@ -101,7 +103,7 @@ async function work(waiting: Job[], inspects: boolean, take: (job: Job, outcome:
 }
 
 /** The answer of a worker; `undefined` if it died. */
-function ask(worker: Worker, task: Task): Promise<Outcome | undefined> {
+function ask(worker: Worker, command: TransferCommand): Promise<Outcome | undefined> {
   return new Promise((resolve) => {
     const answered = (outcome: Outcome) => end(outcome);
     const died = () => end(undefined);
@@ -111,25 +113,41 @@ function ask(worker: Worker, task: Task): Promise<Outcome | undefined> {
       resolve(outcome);
     };
     worker.on('message', answered).on('error', died).on('exit', died);
-    worker.postMessage(task);
+    worker.postMessage(command);
   });
 }
 
-/** The last line about each job, by key. A line that was not written to its end is left out. */
-function readResults(path: string): Map<string, ResultLine> {
-  const lines = new Map<string, ResultLine>();
-  if (!existsSync(path)) return lines;
+/** What the results of earlier runs say. */
+interface EarlierResults {
+  /** The last line of each job that was done, by its key. */
+  lines: Map<string, ResultLine>;
+  /** The keys of the jobs that wrote files last, by the place of the file. */
+  writers: Map<string, string>;
+  /** The keys of the last lines, by target. */
+  last: Map<string, string>;
+}
+
+const noResults = (): EarlierResults => ({ lines: new Map(), writers: new Map(), last: new Map() });
+
+/** Reads the results of earlier runs. A line that was not written to its end is left out. */
+function readResults(path: string): EarlierResults {
+  const { lines, writers, last } = noResults();
+  if (!existsSync(path)) return { lines, writers, last };
   const text = attempt(path, 'read', () => readFileSync(path, 'utf8'));
   for (const one of text.split('\n')) {
     try {
       const line = JSON.parse(one) as ResultLine;
-      if (typeof line.key === 'string') lines.set(line.key, line);
+      if (typeof line.key !== 'string') continue;
+      last.set(line.target, line.key);
+      if (line.status !== 'done') continue;
+      lines.set(line.key, line);
+      for (const file of [line.output, line.report]) if (file) writers.set(placeOf(file), line.key);
     } catch {
       // Cut off when the batch was killed.
     }
   }
   if (text !== '' && !text.endsWith('\n')) append(path, '\n');
-  return lines;
+  return { lines, writers, last };
 }
 
 const append = (path: string, text: string): void => attempt(path, 'written', () => appendFileSync(path, text));

@@ -66,13 +66,19 @@ export function addBatchCommand(program: Command, progress: Progress): void {
     .option('--report <R.json>', 'where to write reports; {name} and {dir} as above')
     .addOption(new Option('--borders <HOW>', 'as for transfer').choices(borderKinds).default('triangle'))
     .addOption(new Option('--compress <HOW>', 'as for transfer').choices(forms).default('keep'))
-    .option('--results <RESULTS.jsonl>', 'add the lines to this file instead of printing them')
-    .option('--resume', 'skip jobs that --results says are done, if nothing they read has changed')
+    .option(
+      '--results <RESULTS.jsonl>',
+      'add the lines to this file instead of printing them; the last line about a target counts',
+    )
+    .option(
+      '--resume',
+      'skip jobs that --results says are done, if size and time of what they read are the same, and what they wrote is there',
+    )
     .addOption(
-      new Option('--fail-on <VERDICT>', 'inspect each cage, and exit 3 if one is no better than this').choices([
-        'usable',
-        'unfit',
-      ]),
+      new Option(
+        '--fail-on <VERDICT>',
+        'inspect each cage, and exit 3 if one is no better than this; reports have the verdict then',
+      ).choices(['usable', 'unfit']),
     )
     .addOption(new Option('--workers <N>', 'threads (default: one per processor)').argParser(workers))
     .addHelpText(
@@ -80,10 +86,12 @@ export function addBatchCommand(program: Command, progress: Progress): void {
       `
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["eye*"]}
-A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings if there are.
-A job that fails does not stop the others. Files are complete or not there, even if the batch is killed;
-folders that are missing are made.
-Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 --fail-on found a cage that does not fit as demanded.
+A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings (codes) if there are.
+With --results, a job that was done before gets a line only where the last line about its target is of another job.
+A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
+batch is killed; folders that are missing are made. {name} and {dir} are for -o and --report only: cages and textures that
+differ need a manifest.
+Exit codes: 0 all done, 1 a job failed, 2 wrong usage, 3 no job failed, but --fail-on found a cage that does not fit as demanded.
 
 Examples:
   cagecast batch 'in/**/*.glb' --cage cage.glb --texture paint.png -o 'out/{name}.glb'
@@ -105,6 +113,7 @@ Examples:
       regions: flags.region,
       output,
       report,
+      inspects: failOn === undefined ? undefined : true,
       settled: settler(command, flags),
       reading: readingOf(flags),
     };

@@ -4,7 +4,7 @@ import { basename, dirname, extname, resolve } from 'node:path';
 import { readBytes, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import type { Settled } from './config/config-flags.js';
-import { isObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
+import { isObject, parseObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
 import { areBounds, boundsText } from './paint/cage-area.js';
@@ -35,7 +35,13 @@ export function jobsOfPatterns(patterns: readonly string[], defaults: JobDefault
     return found;
   });
   return refuseClashes(
-    [...new Set(targets)].map((target) => jobOf({ ...defaults, target, ...defaults.settled(target) })),
+    [...new Set(targets)].map((target) => {
+      try {
+        return jobOf({ ...defaults, target, ...defaults.settled(target) });
+      } catch (error) {
+        return failedJob(target, target, defaults, error);
+      }
+    }),
   );
 }
 
@@ -59,12 +65,27 @@ export async function jobsOfManifest(path: string, defaults: JobDefaults): Promi
         try {
           return jobOf({ ...defaults, ...jobLine(line, folder, defaults) });
         } catch (error) {
-          const { reading } = defaults;
-          const command = { target: place, cage: '', reading, ...noSettings };
-          return { command, key: place, error: `${place}: ${firstLine(error)}` };
+          return failedJob(targetOf(line, folder) ?? place, place, defaults, error);
         }
       }),
   );
+}
+
+/** A job that cannot be started. @param place  What its error is about. */
+function failedJob(target: string, place: string, { reading }: JobDefaults, error: unknown): Job {
+  const text = firstLine(error);
+  const message = text.startsWith(place) ? text : `${place}: ${text}`;
+  return { command: { target, cage: '', reading, ...noSettings }, key: `${place} failed`, error: message };
+}
+
+/** The target that a line names, which may be wrong otherwise. */
+function targetOf(line: string, folder: string): string | undefined {
+  try {
+    const { target } = parseObject(line);
+    return typeof target === 'string' ? resolve(folder, target) : undefined;
+  } catch {
+    return undefined;
+  }
 }
 
 const paths = ['target', 'cage', 'referenceCage', 'texture', 'output', 'report'] as const;
@@ -78,13 +99,7 @@ const noSettings: Settled = {
 
 /** A line of a manifest: its settings win over flags. @throws {InputError} that names the member. */
 function jobLine(line: string, folder: string, { settled }: JobDefaults): JobNames & Settled {
-  let given: unknown;
-  try {
-    given = JSON.parse(line);
-  } catch (error) {
-    throw new InputError(`is not JSON (${firstLine(error)})`);
-  }
-  if (!isObject(given)) throw new InputError('is not a JSON object');
+  const given = parseObject(line);
   refuseUnknown(given, [...paths, 'regions', 'uvBounds', ...settingNames]);
   for (const name of paths)
     if (given[name] !== undefined && typeof given[name] !== 'string') throw new InputError(`"${name}" is not a path`);
@@ -183,6 +198,9 @@ function refuseClashes(jobs: Job[]): Job[] {
   return jobs;
 }
 
+/** The files that a job writes, as they are named. */
+export const writtenBy = ({ command: { output, report } }: Job): string[] =>
+  [output, report].filter((path) => path !== undefined);
+
 /** Whether all that a job writes exists. */
-export const isWritten = ({ command: { output, report } }: Job): boolean =>
-  [output, report].every((path) => path === undefined || existsSync(path));
+export const isWritten = (job: Job): boolean => writtenBy(job).every((path) => existsSync(path));

@@ -4,17 +4,9 @@ import { parentPort } from 'node:worker_threads';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import { CagecastError } from '../index.js';
 import type { Verdict } from '../inspect/index.js';
-import { inspectionReport } from './inspect-command.js';
 import { Progress } from './progress.js';
 import { rememberingModels } from './run.js';
 import { type Report, type TransferCommand, transferCommand } from './transfer-command.js';
-
-/** What a worker is asked. */
-export interface Task {
-  command: TransferCommand;
-  /** Whether to inspect the cage as well. */
-  inspects: boolean;
-}
 
 /** What a worker found. */
 export type Outcome =
@@ -27,21 +19,18 @@ export function serveBatch(): void {
   const progress = new Progress();
   progress.silence();
   const models = rememberingModels();
-  port.on('message', async ({ command, inspects }: Task) => {
+  port.on('message', async (command: TransferCommand) => {
     const began = performance.now();
     const ms = () => Math.round(performance.now() - began);
     try {
       makeFolders(command);
-      const { report, done } = await transferCommand(command, progress, models);
-      const inspection = inspects ? inspectionReport(command, done) : undefined;
+      const { report } = await transferCommand(command, progress, models);
+      const { counts, verdict, findings } = report;
       port.postMessage({
         status: 'done',
         ms: ms(),
-        counts: report.counts,
-        ...(inspection && {
-          verdict: inspection.verdict,
-          findings: inspection.findings.map(({ code }) => code),
-        }),
+        counts,
+        ...(verdict && { verdict, findings: findings!.map(({ code }) => code) }),
       } satisfies Outcome);
     } catch (error) {
       const known = error instanceof InputError || error instanceof CagecastError;

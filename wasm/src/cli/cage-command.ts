@@ -5,10 +5,11 @@ import { templateNames } from '../cages/template-names.js';
 import type { Cage, Fit, Landmarks } from '../cages/types.js';
 import { templateOf } from '../gltf/cage-file.js';
 import { type ReadOptions, readBytes } from '../gltf/files.js';
-import { firstLine, InputError } from '../gltf/input-error.js';
+import { InputError } from '../gltf/input-error.js';
 import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { isPosition } from '../parts/template.js';
+import { parseObject } from './config/settings.js';
 import { conclusionOf, inspectionReport } from './inspect-command.js';
 import { inspectionPage } from './inspect-page.js';
 import { checkExclusions, fitCageTo, landmarksOf, makeCageFor } from './make-cage.js';
@@ -110,14 +111,7 @@ function templateFile(path: string): string {
 /** Reads landmarks: a JSON object, name → [x, y, z]. @throws {InputError} that names the file and the landmark. */
 async function readLandmarks(path: string): Promise<Landmarks> {
   try {
-    let landmarks: unknown;
-    try {
-      landmarks = JSON.parse(new TextDecoder().decode(await readBytes(path)));
-    } catch (error) {
-      throw error instanceof InputError ? error : new InputError(`is not JSON (${firstLine(error)})`);
-    }
-    if (typeof landmarks !== 'object' || landmarks === null || Array.isArray(landmarks))
-      throw new InputError('is not a JSON object of names and positions');
+    const landmarks = parseObject(new TextDecoder().decode(await readBytes(path)));
     for (const [name, position] of Object.entries(landmarks))
       if (!isPosition(position)) throw new InputError(`"${name}" is not 3 numbers [x, y, z]`);
     return landmarks as Landmarks;

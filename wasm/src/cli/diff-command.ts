@@ -1,6 +1,7 @@
 import { readBytes } from '../gltf/files.js';
-import { firstLine, InputError } from '../gltf/input-error.js';
+import { InputError } from '../gltf/input-error.js';
 import type { Verdict } from '../inspect/index.js';
+import { parseObject } from './config/settings.js';
 import type { InspectionReport } from './inspect-command.js';
 import type { Found } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
@@ -54,12 +55,15 @@ export async function diffCommand({ before, after, tolerance }: DiffCommand): Pr
           : kind === 'ratio'
             ? short(value)
             : integer(value);
-  const rows = changes.map((change) => [
-    cut(change.measure, 60),
-    shown(change, change.before),
-    shown(change, change.after),
-    change.isOver ? 'over' : '',
-  ]);
+  const rows = changes
+    .map((change) => [
+      cut(change.measure, 60),
+      shown(change, change.before),
+      shown(change, change.after),
+      change.isOver ? 'over' : '',
+    ])
+    // What reads the same is for programs only.
+    .filter(([, was, is, isOver]) => was !== is || isOver);
   const text = [
     ...(rows.length > 0 ? [table([['', 'before', 'after', ''], ...rows])] : []),
     rows.length === 0
@@ -70,16 +74,15 @@ export async function diffCommand({ before, after, tolerance }: DiffCommand): Pr
 }
 
 async function readReport(path: string): Promise<AnyReport> {
-  let report: Partial<AnyReport> | null;
   try {
-    report = JSON.parse(new TextDecoder().decode(await readBytes(path))) as Partial<AnyReport> | null;
+    const report = parseObject(new TextDecoder().decode(await readBytes(path)));
+    const { target, segments, areas, coverage } = report;
+    if (typeof target !== 'object' || !Array.isArray(segments) || typeof (areas ?? coverage) !== 'object')
+      throw new InputError('is no report of cagecast transfer (--report) or inspect (--json)');
+    return report as unknown as AnyReport;
   } catch (error) {
-    throw (error instanceof InputError ? error : new InputError(`is not JSON (${firstLine(error)})`)).in(path);
+    throw error instanceof InputError ? error.in(path) : error;
   }
-  const { target, segments, areas, coverage } = report ?? {};
-  if (typeof target !== 'object' || !Array.isArray(segments) || typeof (areas ?? coverage) !== 'object')
-    throw new InputError('is no report of cagecast transfer (--report) or inspect (--json)').in(path);
-  return report as AnyReport;
 }
 
 type Measures = Map<string, { kind: 'share' | 'ratio' | 'number' | 'part'; value: number }>;

@@ -120,7 +120,7 @@ function rows(head: readonly string[], body: readonly (readonly string[])[]): st
 function figure(name: string, { pixels }: Picture): string {
   const png = new PNG({ width: size, height: size });
   png.data.set(pixels);
-  return `<figure><img alt="from the ${name}" src="data:image/png;base64,${PNG.sync.write(png).toString('base64')}"><figcaption>${name}</figcaption></figure>`;
+  return `<figure><img alt="${name === 'front' || name === 'back' ? `the ${name}` : `from ${name}`}" src="data:image/png;base64,${PNG.sync.write(png).toString('base64')}"><figcaption>${name}</figcaption></figure>`;
 }
 
 function pictureOf({ targetBox: { min, max } }: Scene, view: View): Picture {

@@ -6,7 +6,16 @@ import { type Extracted, extract, partOf, placeOf } from '../gltf/extract.js';
 import type { ReadOptions } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
-import { CagecastError, init, type Masks, type TransferOptions, type TransferResult, transfer } from '../index.js';
+import {
+  CagecastError,
+  type CutTarget,
+  cutBorders,
+  init,
+  type Masks,
+  type TransferOptions,
+  type TransferResult,
+  transfer,
+} from '../index.js';
 import { readImage } from './bake/images.js';
 import { makeCageFor } from './make-cage.js';
 import { quoted, type Rules, transferOptions } from './options.js';
@@ -193,4 +202,14 @@ export function inFile(
   const part = perVertex === undefined ? undefined : partOf(parts, Math.floor(at / perVertex));
   const where = part ? ` (${placeOf(part)}, ${quoted(part.name)})` : '';
   return new InputError(`${text}${where}`).in((isCage ? cageFile : targetFile).path);
+}
+
+/** Cuts the target. @throws {InputError} that names the file and the element at fault. */
+export function cutTarget(done: Run, progress: Progress): CutTarget {
+  progress.step('cutting borders');
+  try {
+    return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options);
+  } catch (error) {
+    throw inFile(error, done);
+  }
 }

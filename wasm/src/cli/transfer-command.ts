@@ -5,14 +5,16 @@ import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
 import { diagonal, zoneAttribute } from '../gltf/overlay.js';
 import { type Added, writeTransfer } from '../gltf/write.js';
-import { type CutTarget, cutBorders } from '../index.js';
+import type { CutTarget } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
+import type { Finding, Verdict } from '../inspect/index.js';
+import { inspectionReport } from './inspect-command.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { placeOf as fileOf, writeFiles } from './output.js';
 import { isTiled, readPaint, readTiles } from './paint/read-paint.js';
 import { type Stretch, stretchOf } from './paint/stretch.js';
 import type { Progress } from './progress.js';
-import { inFile, type Models, type Run, readModel, run, type Sources } from './run.js';
+import { cutTarget, type Models, type Run, readModel, run, type Sources } from './run.js';
 import { integer, percent, table } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
@@ -27,6 +29,8 @@ export interface TransferCommand extends Sources {
   compress: Form;
   /** Further cages with textures: each paints only what none before it does. */
   regions?: readonly Region[] | undefined;
+  /** Whether to inspect the cage as well. */
+  inspects?: boolean | undefined;
 }
 
 /** A further cage, and the texture that was drawn for it. */
@@ -49,6 +53,10 @@ export async function transferCommand(
   const { output, regions = [] } = command;
   const first = await transferRegion(command, command.texture, progress, { models, isLast: regions.length === 0 });
   const report = makeReport(command, first.done, output === undefined ? undefined : first.written?.added, first.cut);
+  if (command.inspects) {
+    const { verdict, findings } = inspectionReport(command, first.done);
+    Object.assign(report, { verdict, findings });
+  }
   let last = first;
   for (const [r, { cage, texture }] of regions.entries()) {
     const { uvBounds: _, referenceCage: __, ...same } = command;
@@ -164,16 +172,6 @@ function refuseInputs(
     throw new InputError('would be overwritten, but is read by this command; choose another output').in(clash.path);
 }
 
-/** Cuts the target. @throws {InputError} that names the file and the element at fault. */
-function cutTarget(done: Run, progress: Progress): CutTarget {
-  progress.step('cutting borders');
-  try {
-    return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options);
-  } catch (error) {
-    throw inFile(error, done);
-  }
-}
-
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
 export interface Report {
   versions: { cagecast: string; node: string };
@@ -236,6 +234,9 @@ export interface Report {
     counts: PerZone;
     triangles: { total: number; cosmetic: number };
   }[];
+  /** Whether the cage fits, and why; if it was inspected. */
+  verdict?: Verdict;
+  findings?: Finding[];
   /** Milliseconds of CPU time. */
   timings: Run['result']['timings'];
   peakBytes: number;

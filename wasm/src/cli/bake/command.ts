@@ -4,12 +4,12 @@ import { type BakeReport, bakeModel, layoutsOf, type Paints, type TextureUse } f
 import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
-import { CagecastError, type CutTarget, cutBorders } from '../../index.js';
+import { CagecastError, type CutTarget } from '../../index.js';
 import { matcher, noSuchName, quoted } from '../options.js';
 import { writeFiles } from '../output.js';
 import type { Found } from '../print.js';
 import type { Progress } from '../progress.js';
-import { inFile, type Run, run, type Sources } from '../run.js';
+import { cutTarget, type Run, run, type Sources } from '../run.js';
 import { percent } from '../table.js';
 import { decodeImage, encodePng, readImage } from './images.js';
 
@@ -195,13 +195,4 @@ function oneTexture(model: FileModel, { result, target }: Run, names: readonly s
           (part) => uses(model, part)?.texture === texture && model.uvsOf(part, useOf(model, part).set),
         );
   return { parts, texture };
-}
-
-function cutTarget(done: Run, progress: Progress): CutTarget {
-  progress.step('cutting borders');
-  try {
-    return cutBorders(done.cage.mesh, done.target.mesh, done.result, done.options);
-  } catch (error) {
-    throw inFile(error, done);
-  }
 }

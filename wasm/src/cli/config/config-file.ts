@@ -3,7 +3,7 @@ import { basename, dirname, extname, join, relative, resolve } from 'node:path';
 import { reasons, standard } from '../../gltf/files.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 import { matcher } from '../options.js';
-import { isObject, refuseUnknown, type Settings, settingNames, settingsOf } from './settings.js';
+import { isObject, parseObject, refuseUnknown, type Settings, settingNames, settingsOf } from './settings.js';
 
 /** The name under which configuration files are found. */
 export const configName = 'cagecast.config.json';
@@ -90,13 +90,7 @@ function readText(path: string): string {
 }
 
 function parseConfig(text: string, folder: string): Omit<ConfigFile, 'path'> {
-  let all: unknown;
-  try {
-    all = JSON.parse(text);
-  } catch (error) {
-    throw new InputError(`is not JSON (${firstLine(error)})`);
-  }
-  if (!isObject(all)) throw new InputError('is not a JSON object');
+  const all = parseObject(text);
   refuseUnknown(all, [...settingNames, 'characters']);
   const { characters = {} } = all;
   if (!isObject(characters)) throw new InputError('"characters" is not an object of patterns and settings');

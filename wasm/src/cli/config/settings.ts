@@ -1,7 +1,7 @@
 import { resolve } from 'node:path';
 import { optionFlags } from '../../generated/options.js';
 import { type Form, forms } from '../../gltf/glb-writer.js';
-import { InputError } from '../../gltf/input-error.js';
+import { firstLine, InputError } from '../../gltf/input-error.js';
 import type { Preset } from '../../index.js';
 import { type MaskFiles, quoted, type Single } from '../options.js';
 
@@ -91,3 +91,15 @@ export function refuseUnknown(given: object, known: readonly string[]): void {
 
 export const isObject = (value: unknown): value is Record<string, unknown> =>
   typeof value === 'object' && value !== null && !Array.isArray(value);
+
+/** Reads an object from JSON. @throws {InputError} if the text is no JSON, or not that of an object. */
+export function parseObject(text: string): Record<string, unknown> {
+  let value: unknown;
+  try {
+    value = JSON.parse(text);
+  } catch (error) {
+    throw new InputError(`is not JSON (${firstLine(error)})`);
+  }
+  if (!isObject(value)) throw new InputError('is not a JSON object');
+  return value;
+}
