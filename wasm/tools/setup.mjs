@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs assets | start | lint | test | bench | docs
+//   node wasm/tools/setup.mjs assets | start | lint | test | bench | docs | catalogue
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -35,13 +35,23 @@ const kNeeds = {
   'g++-aarch64-linux-gnu': { what: 'a C++20 cross compiler for aarch64', there: command('aarch64-linux-gnu-g++') },
   'clang-format': { what: 'clang-format 14', there: command('clang-format') },
   doxygen: { what: 'Doxygen 1.9', there: command('doxygen') },
+  'redis-server': { what: 'Redis 6.2 or newer (redis-server)', there: command('redis-server') },
   'clang-tidy': { what: 'clang-tidy 14', there: command('clang-tidy') },
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev', 'libeigen3-dev'];
 // clang-tidy reads the sources as they are compiled, so it needs what they need.
 const kLint = ['cmake', 'ninja-build', 'g++', 'libnanoflann-dev', 'libeigen3-dev', 'clang-format', 'clang-tidy'];
 // Valgrind counts instructions, which a test holds against a budget.
-const kTests = [...kPage, ...kLint, 'libtinygltf-dev', 'nlohmann-json3-dev', 'catch2', 'chromium', 'valgrind'];
+const kTests = [
+  ...kPage,
+  ...kLint,
+  'libtinygltf-dev',
+  'nlohmann-json3-dev',
+  'catch2',
+  'chromium',
+  'valgrind',
+  'redis-server',
+];
 const kPurposes = {
   assets: [],
   start: kPage,
@@ -49,6 +59,7 @@ const kPurposes = {
   test: kTests,
   bench: [...kTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
   docs: ['doxygen'],
+  catalogue: ['redis-server'],
 };
 
 function fail(message) {
@@ -119,3 +130,4 @@ if (!isNewEnough(process.version))
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();
 if (purpose === 'test') installNpmPackages('tests/hosts/', ['install', '--no-save']);
+if (purpose === 'test' || purpose === 'catalogue') installNpmPackages('examples/catalogue/', ['install', '--no-save']);

@@ -1,0 +1,51 @@
+import { CagecastError, init, type Mesh, transfer } from 'cagecast';
+import type { CageModel } from 'cagecast/cages';
+import { cageModel, cageTemplate } from 'cagecast/gltf';
+import { inspect, type PartName } from 'cagecast/inspect';
+import { Failure } from '../failure.ts';
+import type { Facts, Kind } from './kind.ts';
+import { inputFailure, readModel } from './model.ts';
+
+/** Whether a cage fits a target. Writes no file. */
+export const inspectKind: Kind = {
+  version: 1,
+  inputs: { target: 'required', cage: 'required' },
+  async run(inputs, settings) {
+    const target = await readModel('target', inputs['target']!);
+    const cage = await readModel('cage', inputs['cage']!);
+    await init();
+    try {
+      return { facts: fit(cageTemplate(cage), cageModel(target), settings) };
+    } catch (error) {
+      throw error instanceof CagecastError ? inputFailure(error) : error;
+    }
+  },
+};
+
+/**
+ * The verdict on a cage.
+ * @param result  That of `transfer` for the same meshes and settings, if it is there already.
+ * @throws {Failure} `unfit`
+ */
+export function fit(cage: Mesh, target: CageModel, settings: object, result = transfer(cage, target, settings)): Facts {
+  const { verdict, findings } = inspect(cage, target, { ...settings, result, parts: partNames(target) });
+  const { cosmeticTriangles } = result;
+  const facts: Facts = {
+    verdict,
+    findings: findings.map(({ code }) => code),
+    severity: findings[0] ? Number(findings[0].weight.toFixed(3)) : 0,
+    painted: Number((cosmeticTriangles.filter(Boolean).length / cosmeticTriangles.length).toFixed(4)),
+  };
+  if (verdict === 'unfit') throw new Failure('unfit', findings[0]!.sentence, facts);
+  return facts;
+}
+
+/** The names of a model's parts, for the sentences of findings. */
+function partNames({ groups, parts }: CageModel): PartName[] {
+  const names: PartName[] = [];
+  groups?.forEach((group, vertex) => {
+    if (vertex > 0 && group === groups[vertex - 1]) ++names.at(-1)!.vertexCount;
+    else names.push({ name: parts?.[group]?.[0] ?? `part ${group}`, firstVertex: vertex, vertexCount: 1 });
+  });
+  return names;
+}

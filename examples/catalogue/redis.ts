@@ -1,0 +1,42 @@
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { mkdirSync } from 'node:fs';
+import { type AddressInfo, createServer } from 'node:net';
+import { Redis } from 'ioredis';
+
+/** A Redis server of this machine, which keeps all that it is told in a file. */
+export interface OwnRedis {
+  url: string;
+  pid: number;
+  stop(signal?: NodeJS.Signals): Promise<void>;
+}
+
+/** Starts Debian's redis-server. @param folder  Where it keeps its append-only file. */
+export async function startRedis(folder: string, port?: number): Promise<OwnRedis> {
+  const own = port ?? (await freePort());
+  mkdirSync(folder, { recursive: true });
+  const options = { port: own, bind: '127.0.0.1', dir: folder, appendonly: 'yes', appendfsync: 'everysec', save: '' };
+  const args = Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]);
+  const server = spawn('redis-server', args, { stdio: 'ignore' });
+  const ended = once(server, 'exit');
+  const redis = new Redis(own, '127.0.0.1', { maxRetriesPerRequest: null, retryStrategy: () => 50 });
+  redis.on('error', () => {}); // until it listens
+  await Promise.race([redis.ping(), ended.then(() => Promise.reject(new Error('redis-server did not start')))]);
+  redis.disconnect();
+  return {
+    url: `redis://127.0.0.1:${own}`,
+    pid: server.pid!,
+    stop: async (signal = 'SIGTERM') => {
+      server.kill(signal);
+      await ended;
+    },
+  };
+}
+
+export async function freePort(): Promise<number> {
+  const server = createServer().listen(0, '127.0.0.1');
+  await once(server, 'listening');
+  const { port } = server.address() as AddressInfo;
+  server.close();
+  return port;
+}

@@ -1,0 +1,169 @@
+// npm run report [-- --before EARLIER.jsonl --worst N --forget]: writes results.jsonl and report.html to the output folder.
+import { execFile } from 'node:child_process';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { parseArgs, promisify } from 'node:util';
+import { reasons } from './failure.ts';
+import { type Catalogue, type CatalogueJob, type JobData, openCatalogue, type Result } from './jobs.ts';
+import { collectResults, readResults } from './results.ts';
+import { fromCaller } from './settings.ts';
+import { read, write } from './storage.ts';
+
+const command = fileURLToPath(new URL('cli.js', import.meta.resolve('cagecast')));
+/** How many jobs Redis forgets at once. */
+const chunk = 5000;
+/** How many changes, and how many dead letters, are listed. */
+const mostListed = 500;
+
+export interface ReportOptions {
+  /** How many of the worst have pictures. */
+  worst?: number;
+  /** Results of an earlier time: the report tells what is another since then. */
+  before?: string | undefined;
+  /** Whether Redis forgets what is done: the results remember it. */
+  forget?: boolean | undefined;
+}
+
+/** Writes the results and the report about them. */
+export async function report(
+  catalogue: Catalogue,
+  { worst = 12, before, forget }: ReportOptions = {},
+): Promise<string> {
+  const began = Date.now();
+  const earlier = new Map<string, string>();
+  if (before !== undefined)
+    for await (const result of readResults(before)) earlier.set(nameOf(result), outcomeOf(result));
+  const [counts, failures] = [new Map<string, number>(), new Map<string, number>()];
+  const [changes, dead]: [string[][], string[][]] = [[], []];
+  let [worstOnes, cpuMs, all]: [Result[], number, number] = [[], 0, 0];
+  await collectResults(catalogue, (result) => {
+    const outcome = outcomeOf(result);
+    ++all;
+    cpuMs += result.cpuMs ?? 0;
+    if (result.verdict) counts.set(result.verdict, (counts.get(result.verdict) ?? 0) + 1);
+    if (result.reason) failures.set(result.reason, (failures.get(result.reason) ?? 0) + 1);
+    const was = earlier.get(nameOf(result)) ?? (before === undefined ? outcome : 'new');
+    if (was !== outcome && changes.length < mostListed) changes.push([nameOf(result), was, outcome]);
+    if (result.reason && result.reason !== 'unfit' && dead.length < mostListed)
+      dead.push([nameOf(result), result.error!]);
+    if (!result.severity) return;
+    worstOnes.push(result);
+    if (worstOnes.length < 2 * worst + 100) return;
+    worstOnes = worstFirst(worstOnes).slice(0, worst);
+  });
+  const shown = worstFirst(worstOnes).slice(0, worst);
+  const figures: string[] = [];
+  for (const result of shown)
+    figures.push(await figure(result, (await catalogue.queue.getJob(result.key)) as CatalogueJob | undefined));
+  const sorted = (map: Map<string, number>) => [...map].sort(([, a], [, b]) => b - a);
+  await write(
+    'report.html',
+    page([
+      `<p>${all} jobs; ${(cpuMs / 1000).toFixed(1)} s of processor time. Each of them is a line in <a href="results.jsonl">results.jsonl</a>.</p>`,
+      section(
+        'Verdicts',
+        table(
+          ['verdict', 'jobs'],
+          sorted(counts).map(([name, n]) => [name, String(n)]),
+        ),
+      ),
+      section(
+        'Dead letters',
+        table(
+          ['reason', 'meaning', 'jobs'],
+          sorted(failures).map(([name, n]) => [name, reasons[name as keyof typeof reasons], String(n)]),
+        ),
+      ),
+      dead.length > 0 ? table(['job', 'why'], dead) : '',
+      before === undefined ? '' : section('Changes', table(['job', 'before', 'now'], changes)),
+      section('The worst', figures.length > 0 ? `${legend}${figures.join('\n')}` : '<p>None has a finding.</p>'),
+    ]),
+  );
+  // What was done since then is not in the results yet.
+  while (forget && (await catalogue.queue.clean(Date.now() - began, chunk, 'completed')).length === chunk);
+  return 'report.html';
+}
+
+const legend = '<p>Grey may be painted; blue is occluded, orange uncovered, pink culled.</p>';
+
+const worstFirst = (results: Result[]) =>
+  [...results].sort((a, b) => b.severity! - a.severity! || (a.key < b.key ? -1 : 1));
+
+/** What a job is about, in the same words every night: by names, not by content. */
+const nameOf = ({ kind, inputs, settings }: Result): string =>
+  [kind, ...Object.values(inputs), ...(Object.keys(settings).length > 0 ? [JSON.stringify(settings)] : [])].join(' ');
+
+const outcomeOf = ({ reason, verdict = 'done' }: Result): string =>
+  reason && reason !== 'unfit' ? `failed: ${reason}` : verdict;
+
+/** A finding with the pictures that `cagecast inspect --html` draws; its page is beside the report. */
+async function figure(result: Result, job: CatalogueJob | undefined): Promise<string> {
+  const { key, inputs, verdict, findings = [], error } = result;
+  const title = text(`${verdict}: ${inputs['target']} in ${inputs['cage']}`);
+  const why = text(error?.replace(/^unfit: /, '') ?? findings.join(', '));
+  const drawn = job && (await inspection(job.data).catch(() => undefined));
+  if (!drawn) return `<article><h3>${title}</h3><p>${why}</p></article>`;
+  await write(`worst/${key}.html`, drawn);
+  const pictures = drawn.match(/<img [^>]*src="data:image\/png;base64,[^"]*"[^>]*>/g) ?? [];
+  return `<article><h3><a href="worst/${key}.html">${title}</a></h3><p>${why}</p>${pictures.slice(0, 4).join('')}</article>`;
+}
+
+/** The page of `cagecast inspect --html` for a job. */
+async function inspection({ inputs, settings }: JobData): Promise<string> {
+  const folder = await mkdtemp(join(tmpdir(), 'catalogue-'));
+  try {
+    for (const name of ['target', 'cage'])
+      await writeFile(join(folder, `${name}.glb`), await read(inputs[name]!.place));
+    const { locks, steps, ...config } = settings;
+    await writeFile(join(folder, 'cagecast.config.json'), JSON.stringify(config));
+    const args = [command, 'inspect', 'target.glb', '--cage', 'cage.glb', '--html', 'page.html', '--quiet'];
+    // It exits with 3 for a cage that does not fit, and has written the page then.
+    await promisify(execFile)(process.execPath, args, { cwd: folder, timeout: 60_000 }).catch(() => {});
+    return await readFile(join(folder, 'page.html'), 'utf8');
+  } finally {
+    await rm(folder, { recursive: true, force: true });
+  }
+}
+
+const text = (value: string): string => value.replace(/[&<>"]/g, (symbol) => `&#${symbol.charCodeAt(0)};`);
+const section = (title: string, content: string): string => `<h2>${title}</h2>\n${content}`;
+
+function table(head: string[], rows: string[][]): string {
+  if (rows.length === 0) return '<p>None.</p>';
+  const row = (cells: string[], tag: string) =>
+    `<tr>${cells.map((cell) => `<${tag}>${text(cell)}</${tag}>`).join('')}</tr>`;
+  return `<table>${row(head, 'th')}${rows.map((cells) => row(cells, 'td')).join('')}</table>`;
+}
+
+const page = (sections: string[]): string => `<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Catalogue</title>
+<style>
+  body { font: 15px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 2rem auto; padding: 0 1rem; color: #1c1f24; background: #fff; }
+  h1 { font-size: 1.4rem; } h2 { font-size: 1.1rem; margin-top: 2.2rem; } h3 { font-size: 1rem; margin: 0; overflow-wrap: anywhere; }
+  table { border-collapse: collapse; } td, th { padding: .2rem 1rem .2rem 0; text-align: left; vertical-align: top; font-weight: normal; overflow-wrap: break-word; }
+  th { color: #555; border-bottom: 1px solid #ccc; } article { margin: 1.2rem 0 2rem; } article p { margin: .2rem 0 .6rem; color: #555; }
+  article img { width: 24%; height: auto; background: #f3f3f0; border-radius: .3rem; margin-right: 1%; }
+</style>
+<h1>Catalogue</h1>
+${sections.join('\n')}
+</html>
+`;
+
+if (import.meta.filename === process.argv[1]) {
+  const { values } = parseArgs({
+    options: { before: { type: 'string' }, worst: { type: 'string' }, forget: { type: 'boolean' } },
+  });
+  const catalogue = openCatalogue();
+  const name = await report(catalogue, {
+    forget: values.forget,
+    before: values.before && fromCaller(values.before),
+    ...(values.worst && { worst: Number(values.worst) }),
+  });
+  console.log(`wrote ${name} and results.jsonl`);
+  await catalogue.close();
+}
