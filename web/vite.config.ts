@@ -4,6 +4,7 @@ import { fileURLToPath } from 'node:url';
 import { defineConfig, type Plugin } from 'vite';
 import { basis } from './basis';
 import { precache } from './precache';
+import { share } from './share';
 
 const kRepository = fileURLToPath(new URL('..', import.meta.url));
 const kSamples = path.join(kRepository, 'build/assets');
@@ -76,7 +77,7 @@ export default defineConfig({
   root: fileURLToPath(new URL('.', import.meta.url)),
   // Relative, so that the page can be served from any folder.
   base: './',
-  plugins: [slim(), samples(), onlyGltfDraco(), withoutSpareWorker(), basis(), precache()],
+  plugins: [slim(), samples(), onlyGltfDraco(), withoutSpareWorker(), basis(), share(), precache()],
   build: {
     outDir: path.join(kRepository, 'build/web'),
     emptyOutDir: true,

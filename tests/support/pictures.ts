@@ -66,6 +66,32 @@ async function desktopAndPhone(site: Site): Promise<void> {
   );
 }
 
+/** What is shown for a link to the page: 1200 × 630 pixels. */
+async function share(site: Site): Promise<void> {
+  const shots: string[] = [];
+  const { page } = await site.visit({ viewport: { width: 900, height: 560 }, deviceScaleFactor: 2 });
+  await page.addStyleTag({
+    content: '* { background: none !important } .panel, header, #stage > :not(canvas) { opacity: 0 }',
+  });
+  await page.locator('#view-mode input[value=result]').check({ force: true });
+  for (const model of kModels) {
+    await choose(page, model);
+    await rest(page);
+    shots.push(dataUri(await page.locator('#stage').screenshot({ type: 'png', omitBackground: true })));
+  }
+  const picture = (shot: string): string =>
+    `<img src="${shot}" style="width:420px;height:400px;margin:0 -12px;object-fit:contain;object-view-box:inset(4% 22% 18% 22%)">`;
+  const { page: sheet } = await site.visit({ viewport: { width: 1200, height: 630 }, deviceScaleFactor: 1 });
+  await sheet.setContent(
+    `<body style="margin:0;font-family:system-ui;color:#14181d;background:radial-gradient(circle at 50% 40%,#fff,#cfd8e0)">
+      <div style="padding:44px 56px 0"><b style="font-size:64px;letter-spacing:-.02em">Cagecast</b>
+      <div style="font-size:32px;color:#445">One paint for any mesh, kept off eyes and teeth.</div></div>
+      <div style="display:flex;justify-content:center">${shots.map(picture).join('')}</div></body>`,
+  );
+  await sheet.waitForTimeout(500);
+  await sheet.screenshot({ path: `${kFolder}/share.jpg`, type: 'jpeg', quality: 85 });
+}
+
 /** Each model in the modes that are not about paint. */
 async function modes(site: Site): Promise<void> {
   const shown = {
@@ -152,7 +178,9 @@ async function choose(page: Page, model: string): Promise<void> {
 }
 
 async function hideControls(page: Page): Promise<void> {
-  await page.addStyleTag({ content: '.panel, .toolbar, .rail, .legend, header { opacity: 0 }' });
+  await page.addStyleTag({
+    content: '.panel, .toolbar, .rail, .legend, .stage-head, .angles, .quick, header { opacity: 0 }',
+  });
 }
 
 /** Waits until the picture has been drawn with all its textures. */
@@ -173,7 +201,7 @@ const wanted = process.argv.slice(2);
 const site = await Site.open();
 try {
   await mkdir(kFolder, { recursive: true });
-  for (const take of [first, compare, desktopAndPhone, modes, why, borders])
+  for (const take of [first, compare, share, desktopAndPhone, modes, why, borders])
     if (wanted.length === 0 || wanted.includes(take.name)) await take(site);
 } finally {
   await site.close();

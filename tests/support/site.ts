@@ -15,6 +15,8 @@ const kNoAntialiasing = `
   HTMLCanvasElement.prototype.getContext = function (type, options) {
     return getContext.call(this, type, options?.antialias ? { ...options, antialias: false } : options)
   }`;
+/** The guide is offered at first visits only. */
+const kSecondVisit = `try { localStorage.setItem('cagecast-guide', 'seen') } catch {}`;
 /** Logged by Playwright when service workers are blocked. */
 const kBlocked = 'Service Worker registration blocked by Playwright';
 
@@ -113,6 +115,7 @@ export class Site {
       if (protocol.startsWith('http') && origin !== new URL(this.url).origin) visit.foreign.push(request.url());
     });
     await page.addInitScript({ content: kNoAntialiasing });
+    await page.addInitScript({ content: kSecondVisit });
     if (typeof prepare === 'string') await page.addInitScript({ content: prepare });
     else await prepare?.(page);
     await page.goto(this.url + fragment);

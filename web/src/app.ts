@@ -1,6 +1,9 @@
 import { init } from 'cagecast';
 import { Edits, History, LayerStack } from 'cagecast/three/layers';
+import type { Texture } from 'three';
+import type { Painter } from './brush/painter';
 import { setUpPainting } from './brush/set-up-painting';
+import { setUpCageTools } from './cage/set-up';
 import { Explain } from './explain/explain-tool';
 import { ExportPanel } from './export/export-panel';
 import { exportedPaint } from './export/linked-layers';
@@ -10,16 +13,20 @@ import { LayerList } from './layers/layer-list';
 import { setUpSaving } from './layers/save';
 import { Live } from './live/live-panel';
 import { FitPanel } from './panels/fit-panel';
+import { offerGuide } from './panels/offer-guide';
 import { PartMenu } from './panels/part-menu';
 import { PartsTable } from './panels/parts-table';
+import { setUpPicture } from './panels/picture-panel';
 import { showResults } from './panels/results';
 import { setUpRules } from './panels/rules';
 import { setUpSectionNav } from './panels/section-nav';
 import { showStatus } from './panels/status';
-import { warnBeforeLeaving } from './platform/leave';
+import { recordControls } from './panels/steps';
+import { ThresholdMarks } from './panels/threshold-marks';
 import { keepOffline } from './platform/offline';
 import { element } from './platform/page';
 import { setUpUndo } from './platform/undo';
+import { beginProjects } from './project/begin';
 import { CageMaker } from './scene/cage-maker';
 import { Opener } from './scene/opener';
 import { putAwayLayers } from './scene/put-away-layers';
@@ -33,6 +40,7 @@ import { Tools } from './view/tool-rail';
 import { setUpViewControls } from './view/view-controls';
 import { showViewModes } from './view/view-modes';
 import { Viewer } from './view/viewer';
+import { setUpWardrobe } from './wardrobe/set-up-wardrobe';
 
 /** Undefined without WebGL; the page still transfers then. */
 function startViewer(): Viewer | undefined {
@@ -62,44 +70,58 @@ const stack = new LayerStack();
 const history = new History();
 const edits = new Edits(stack, history);
 followPaints(session, stack, edits);
-putAwayLayers(session, stack, edits);
+const away = putAwayLayers(session, stack, edits);
+const maker = new CageMaker(session, viewer?.renderer);
 let png: (() => Promise<Blob>) | undefined;
+let paint: Texture | undefined;
+let painter: Painter | undefined;
 if (viewer) {
   showModel(session, viewer);
   showViewModes(session, viewer);
   new ExactBorders(session, viewer);
   const composite = showComposite(viewer, stack);
+  paint = composite.texture;
   const tools = new Tools(viewer, element('stage', HTMLElement));
-  setUpPainting(session, viewer, tools, { stack, composite, edits });
+  painter = setUpPainting(session, viewer, tools, { stack, composite, edits });
   new Explain(session, viewer, tools);
   new PartMenu(session, viewer);
+  setUpCageTools(session, viewer, tools, maker, history);
+  setUpPicture(session, viewer);
   png = setUpSaving(viewer, composite);
-} else element('explain', HTMLElement).hidden = true;
+} else {
+  element('explain', HTMLElement).hidden = true;
+  element('open-wardrobe', HTMLButtonElement).hidden = true;
+}
 new LayerList(stack, edits);
 setUpUndo(history);
-warnBeforeLeaving(history);
 showStatus(session, viewer === undefined);
 fadePoster(session, viewer);
 showResults(session);
 new PartsTable(session, viewer);
-const maker = new CageMaker(session, viewer?.renderer);
 new FitPanel(session, viewer, maker);
 setUpRules(session);
+new ThresholdMarks(session);
 setUpViewControls(session);
 setUpSectionNav();
 setUpStageButtons(viewer, history);
 const live = new Live(session, viewer);
+recordControls(session, live, history);
 const opener = new Opener(session, stack, edits, viewer?.renderer);
 const { png: exportPng, layers } = exportedPaint(session, stack, edits, opener, png);
+if (viewer && paint)
+  opener.takesDrop = setUpWardrobe({ session, viewer, stack, paint, png: exportPng, samples: () => opener.samples });
 const linked = { session, layers, live, viewer };
 const exportPanel = new ExportPanel(linked, exportPng);
 stack.on('change', () => exportPanel.refresh());
+const restoreWork = beginProjects({ session, stack, edits, history, away, opener, painter, live, viewer });
 keepOffline(session);
+offerGuide(session);
 
 try {
   opener.listSamples(await samples);
-  // The user may have opened files while the list was loading.
-  if (!followLinks(linked, opener)) opener.openSample(opener.samples[0]!.name);
+  const failed = await restoreWork();
+  // The user may have opened files, or work was brought back.
+  if (!followLinks(linked, opener) || (failed && !location.hash)) opener.openSample(opener.samples[0]!.name);
 } catch (error) {
   session.fail(error);
 }

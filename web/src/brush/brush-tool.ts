@@ -14,6 +14,7 @@ export class BrushTool implements Tool {
     private readonly options: PaintOptions,
     private readonly ring: Ring,
     private readonly erases: boolean,
+    private readonly prepare?: () => void,
   ) {
     this.#stroke = new PointerStroke(painter, painter);
   }
@@ -21,7 +22,9 @@ export class BrushTool implements Tool {
   down(spot: Spot | undefined, position: PointerPosition): boolean {
     const { color, opacity, hardness, mirror, size } = this.options;
     const style = { color, opacity, hardness, mirror, size, erases: this.erases };
-    return this.painter.telling(() => this.#stroke.begin(this.painter.aimOf(spot), position, style));
+    const aim = this.painter.aimOf(spot);
+    if (aim?.surface) this.prepare?.();
+    return this.painter.telling(() => this.#stroke.begin(aim, position, style));
   }
 
   move(spot: Spot | undefined, event: PointerEvent): void {

@@ -1,23 +1,33 @@
+import type { PointerPosition } from 'cagecast/three/paint';
 import { element } from '../platform/page';
+import type { Spot } from '../view/pick';
+import type { Tool } from '../view/pointing';
 import type { Viewer } from '../view/viewer';
-import type { BrushTool } from './brush-tool';
-import type { StickerTool } from './sticker-tool';
+
+/** A tool that keys can apply too. */
+export interface PaintTool extends Pick<Tool, 'move' | 'cancel' | 'hover'> {
+  down?(spot: Spot | undefined, at: PointerPosition & { altKey?: boolean }): boolean;
+  /** Goes on in a straight line. */
+  go?(spot: Spot | undefined, at: PointerPosition): void;
+  up?(): void;
+  tap?(spot: Spot | undefined): void;
+}
 
 /**
  * Applies the chosen tool at the centre of the view while the space bar is held. The keys that turn the model then move it
  * under the tool.
  */
-export function paintByKeys(viewer: Viewer): { use(tool: BrushTool | StickerTool | undefined): void } {
+export function paintByKeys(viewer: Viewer): { use(tool: PaintTool | undefined): void } {
   const canvas = element('view', HTMLCanvasElement);
   const cross = document.createElement('div');
   cross.className = 'cross';
   cross.hidden = true;
   canvas.after(cross);
-  let tool: BrushTool | StickerTool | undefined;
+  let tool: PaintTool | undefined;
   let pressed: typeof tool;
 
   const release = (): void => {
-    pressed?.up();
+    pressed?.up?.();
     pressed = undefined;
   };
 
@@ -28,10 +38,13 @@ export function paintByKeys(viewer: Viewer): { use(tool: BrushTool | StickerTool
     const at = { clientX: x, clientY: y };
     if (keyEvent.key === ' ') {
       keyEvent.preventDefault();
-      if (!keyEvent.repeat && !pressed && tool.down(viewer.pick(x, y), at)) pressed = tool;
+      if (keyEvent.repeat || pressed) return;
+      const spot = viewer.pick(x, y);
+      if (tool.down?.(spot, at)) pressed = tool;
+      else tool.tap?.(spot);
     } else {
       // The model turned under the centre: extend the stroke to the new spot.
-      pressed?.go(viewer.pick(x, y), at);
+      pressed?.go?.(viewer.pick(x, y), at);
     }
   });
   canvas.addEventListener('keyup', ({ key }) => key === ' ' && release());

@@ -7,6 +7,7 @@ import {
   PaintedSheet,
   type PaintingSize,
   type PointerView,
+  StickersSheet,
 } from 'cagecast/three/paint';
 import { showError } from '../platform/page';
 import type { Session, Shown } from '../scene/session';
@@ -25,21 +26,28 @@ export class Painter extends LayerPainter implements PointerView {
   readonly #session: Session;
   readonly #viewer: Viewer;
   readonly #options: PaintOptions;
+  readonly #stack: Layers['stack'];
   #picturing: ReturnType<typeof setTimeout> | undefined;
+  readonly #unpictured = new Set<PaintedSheet>();
+  /** Called before texels are saved: it removes what is only a preview. */
+  settle: () => void = () => {};
 
   constructor(session: Session, viewer: Viewer, layers: Layers, options: PaintOptions) {
     super({ renderer: viewer.renderer, ...layers });
     this.#session = session;
     this.#viewer = viewer;
     this.#options = options;
+    this.#stack = layers.stack;
     session.on('transfer', ({ cage }) => {
       this.setCage(hasUvs(cage.mesh) ? cage.mesh : undefined);
     });
     layers.stack.on('select', (layer) => {
-      if (layer?.sheet instanceof PaintedSheet) options.texels = layer.sheet.size;
+      const sheet = layer?.sheet;
+      if (sheet instanceof StickersSheet && !sheet.fixed) return;
+      if (sheet instanceof PaintedSheet) options.texels = sheet.size;
     });
     this.on('change', () => viewer.redraw());
-    this.on('painted', (sheet) => this.#picture(sheet, layers));
+    this.on('painted', (sheet) => this.#picture(sheet));
   }
 
   override get size(): PaintingSize {
@@ -70,6 +78,21 @@ export class Painter extends LayerPainter implements PointerView {
     };
   }
 
+  /** UVs of the painted triangles of the part that a spot lies on, 6 numbers for each. */
+  uvsOfPart(spot: Spot): number[] {
+    const { shown, classification } = this.#session;
+    if (!shown || !classification) return [];
+    const { segments } = shown.projection;
+    const { indices } = shown.target.mesh;
+    const part = segments[indices[3 * spot.triangle]!];
+    const found: number[] = [];
+    classification.cosmeticTriangles.forEach((isPainted, triangle) => {
+      if (!isPainted || segments[indices[3 * triangle]!] !== part) return;
+      for (const weights of kCorners) found.push(...uvOf({ triangle, weights }, shown));
+    });
+    return found;
+  }
+
   /** A length in the cage's space. @param share Of the diagonal of the cage. */
   lengthOf(share: number): number {
     return share * (this.cageTexels?.diagonal ?? 0);
@@ -85,21 +108,39 @@ export class Painter extends LayerPainter implements PointerView {
     }
   }
 
+  /** A painting with these texels, as `PaintedSheet.get` returns them. */
+  sheetOf(size: PaintingSize, texels: Uint8Array): PaintedSheet {
+    const sheet = new PaintedSheet(size);
+    this.keep(sheet);
+    sheet.put(this.#viewer.renderer, { left: 0, top: 0, right: size, bottom: size }, texels);
+    this.#picture(sheet);
+    return sheet;
+  }
+
   /** Updates a thumbnail in the list, once the strokes pause. */
-  #picture(sheet: PaintedSheet, { stack }: Layers): void {
+  #picture(sheet: PaintedSheet): void {
+    this.#unpictured.add(sheet);
     clearTimeout(this.#picturing);
     this.#picturing = setTimeout(() => {
-      sheet.picture = addressOf(readStraight(this.#viewer.renderer, sheet.texture, kPicture));
-      stack.pictured();
+      for (const one of this.#unpictured)
+        one.picture = addressOf(readStraight(this.#viewer.renderer, one.texture, kPicture));
+      this.#unpictured.clear();
+      this.#stack.pictured();
     }, kPictureDelay);
   }
 }
+
+const kCorners: readonly Spot['weights'][] = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
 
 const hasUvs = (mesh: Partial<CageMesh>): mesh is CageMesh => mesh.uvs !== undefined;
 
 /** The UVs of a spot. */
 function uvOf(
-  { triangle, weights }: Spot,
+  { triangle, weights }: Pick<Spot, 'triangle' | 'weights'>,
   { target: { mesh }, projection: { uvs, cornerUvs } }: Shown,
 ): [number, number] {
   let [u, v] = [0, 0];

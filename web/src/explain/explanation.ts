@@ -1,4 +1,4 @@
-import { type Classification, type Lock, type PresetOptions, presetOptions, Zone } from 'cagecast';
+import { type Classification, type PresetOptions, presetOptions, Zone } from 'cagecast';
 import type { Locks, Rules, Shown } from '../scene/session';
 import { diagonalOf } from '../scene/surface';
 import type { BoundaryLoops } from './boundary-loops';
@@ -170,8 +170,9 @@ function partStep({ classification, locks }: Facts, part: SegmentFacts, options:
   const { name, segment, coverage, threshold, passes } = part;
   const { area, exposedArea, coveredArea, depthWeightedArea, culledBy } = classification.segmentStats[segment]!;
   const { floor, minOfAll, maxUncovered } = options.steps;
-  const lock: Lock = locks[segment] ?? 'auto';
+  const lock = locks[segment] ?? 'auto';
   const whole = `It belongs to ${name}.`;
+  if (lock === 'always') return `${whole} You chose to paint all of it anyway.`;
   if (lock !== 'auto')
     return `${whole} You chose to ${lock} it, regardless of its areas: it ${passes ? 'passes' : 'is culled'}.`;
   if (exposedArea === 0) return `${whole} Nothing of it is exposed${passes ? '.' : ', so it is culled as a whole.'}`;
@@ -217,6 +218,7 @@ function brief(
 ): string {
   switch (zone) {
     case Zone.Cosmetic:
+      if (locks[part.segment] === 'always') return `you chose to paint ${part.name} anyway`;
       if (shown.projection.zones[vertex] !== Zone.Cosmetic)
         return 'it seemed hidden or uncovered at first, but the second look restored it';
       return outcome === 'pokesOut'

@@ -1,5 +1,5 @@
 import { type Lock, presetOptions } from 'cagecast';
-import type { Rules, Session, Shown } from '../scene/session';
+import { asLock, type Locks, type Rules, type Session, type Shown } from '../scene/session';
 
 /** Code that reproduces the view. */
 export interface Code {
@@ -12,10 +12,10 @@ export function codeFor({ shown, rules, locks }: Session): Code {
   return { three: threeCode(shown!, rules, locks), command: commandLine(shown!, rules, locks) };
 }
 
-function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
+function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Locks>): string {
   const { preset, threshold, borders } = nonDefault(rules);
   const segments = Object.entries(locks).flatMap(([segment, lock]) =>
-    lock === 'auto' ? [] : [`${segment}: '${lock}'`],
+    lock === 'auto' ? [] : [`${segment}: '${asLock(lock)}'`],
   );
   const options = [
     'texture',
@@ -24,7 +24,7 @@ function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Record
     ...(borders ? [`borders: '${borders}'`] : []),
     ...(segments.length > 0 ? [`locks: { segments: { ${segments.join(', ')} } }`] : []),
   ];
-  return `import { init } from 'cagecast'
+  return `${noteOn(locks, '//')}import { init } from 'cagecast'
 import { applyTransfer } from 'cagecast/three'
 import { SRGBColorSpace, TextureLoader } from 'three'
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
@@ -40,7 +40,7 @@ ${borders ? 'await ' : ''}applyTransfer(target.scene, cage.scene, { ${options.jo
 scene.add(target.scene)`;
 }
 
-function commandLine(shown: Shown, rules: Rules, locks: Readonly<Record<number, Lock>>): string {
+function commandLine(shown: Shown, rules: Rules, locks: Readonly<Locks>): string {
   const { preset, threshold, borders } = nonDefault(rules);
   const words = [
     'npx cagecast transfer',
@@ -60,18 +60,25 @@ function commandLine(shown: Shown, rules: Rules, locks: Readonly<Record<number, 
   }
   const note =
     partly.length > 0 ? `# The command can only lock whole parts; you locked pieces of ${partly.join(', ')}.\n` : '';
-  return `${note}${words.join(' ')} -o painted.glb`;
+  return `${noteOn(locks, '#')}${note}${words.join(' ')} -o painted.glb`;
 }
+
+/** What the code leaves out. */
+const noteOn = (locks: Readonly<Locks>, comment: string): string =>
+  Object.values(locks).includes('always')
+    ? `${comment} Parts that you paint anyway are only kept here: give masks, too.\n`
+    : '';
 
 /** The meshes with this lock on all of their segments that have area, or on some. */
 function partsLocked(
   { target, projection }: Shown,
-  locks: Readonly<Record<number, Lock>>,
+  locks: Readonly<Locks>,
   lock: Lock,
 ): { whole: string[]; some: string[] } {
   const [locked, others] = [new Set<string>(), new Set<string>()];
   projection.segmentStats.forEach(({ group, area }, segment) => {
-    if (area > 0) (locks[segment] === lock ? locked : others).add(target.mesh.primitives[group]!.name);
+    if (area > 0)
+      (asLock(locks[segment] ?? 'auto') === lock ? locked : others).add(target.mesh.primitives[group]!.name);
   });
   return {
     whole: [...locked].filter((name) => !others.has(name)),

@@ -1,7 +1,16 @@
 import type { Mesh } from 'cagecast';
 import type { ExtractedMesh } from '../scene/extract-mesh';
-import type { Session } from '../scene/session';
+import type { Model } from '../scene/load-model';
+import type { Rules, Session } from '../scene/session';
 import type { Baked, ExportReply, ExportRequest, PaintInto } from './export-messages';
+
+/** What is exported. */
+export interface Exported {
+  target: Pick<Model, 'name' | 'files'>;
+  cage: Pick<Model, 'mesh'>;
+  rules: Readonly<Rules>;
+  choices: Session['choices'];
+}
 
 /**
  * Writes the target as a GLB with the new UV set, its zones and the paint, as `cagecast transfer` does: undeformed, with the
@@ -12,18 +21,17 @@ import type { Baked, ExportReply, ExportRequest, PaintInto } from './export-mess
  * @throws Error that begins with the file's name.
  */
 export async function exportGlb(
-  { shown, rules, locks }: Session,
+  { target, cage, rules, choices }: Exported,
   texture: Blob,
   into: PaintInto,
 ): Promise<{ glb: Blob; baked?: Baked }> {
-  const { target, cage } = shown!;
   const files = await Promise.all(target.files.map(async (file) => ({ name: file.name, bytes: await read(file) })));
   const request: ExportRequest = {
     files,
     cage: cageOf(cage.mesh),
     texture: new Uint8Array(await texture.arrayBuffer()),
     into,
-    options: { ...rules, locks: { segments: locks } },
+    options: { ...rules, ...choices },
   };
   const worker = new Worker(new URL('./export-worker.ts', import.meta.url), { type: 'module' });
   try {

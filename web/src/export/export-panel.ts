@@ -66,10 +66,12 @@ export class ExportPanel {
     if (link) this.#link.href = link;
     else this.#link.removeAttribute('href');
     this.#link.ariaDisabled = link ? null : 'true';
+    const { omitted } = this.#linked.layers;
+    this.#link.querySelector('small')!.textContent = omitted.length > 0 ? 'without your layers' : 'to this view';
     element('link-hint', HTMLElement).textContent = !link
-      ? 'Links work for samples only, because your own files stay on this device.'
-      : this.#linked.layers.omitted > 0
-        ? 'The link does not include your own paints, because they stay on this device.'
+      ? 'Links work for samples only, because your own files stay on this device. A project file has them.'
+      : omitted.length > 0
+        ? `The link leaves out ${listOf(omitted)}: your own paints stay on this device. A project file has them.`
         : 'The link opens this sample with its paints, rules, view and camera.';
   }
 
@@ -99,8 +101,9 @@ export class ExportPanel {
     try {
       const { exportGlb } = await import('./export-glb');
       const stem = this.#stem;
+      const { shown, rules, choices } = this.#session;
       const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto;
-      const { glb, baked } = await exportGlb(this.#session, await this.#png(), into);
+      const { glb, baked } = await exportGlb({ ...shown!, rules, choices }, await this.#png(), into);
       download(glb, `${stem}-painted.glb`);
       announce(`Model saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`);
       showNotice('export-note', baked ? bakedNote(baked) : '');
@@ -132,13 +135,16 @@ export class ExportPanel {
 const kMostNames = 3;
 const kOverlapping = 0.005; // less is due to touching seams
 
+/** Names in a sentence; of many, the first few. */
+function listOf(names: readonly string[]): string {
+  const most = kMostNames - 1;
+  const few = names.length > kMostNames ? [...names.slice(0, most), `${names.length - most} more`] : names;
+  return new Intl.ListFormat('en').format(few);
+}
+
 /** A summary of the baking, for people. */
 function bakedNote({ textures, overlays, overlapping }: Baked): string {
-  const names =
-    overlays.length > kMostNames
-      ? [...overlays.slice(0, kMostNames - 1), `${overlays.length - kMostNames + 1} more`]
-      : overlays;
-  const list = new Intl.ListFormat('en').format(names);
+  const list = listOf(overlays);
   return [
     `The paint is in ${textures === 1 ? 'one' : textures || 'none'} of the model’s own textures.`,
     ...(overlays.length > 0 ? [`On ${list} it is an overlay, because there is no suitable texture.`] : []),

@@ -1,7 +1,6 @@
 import { type Document, type JSONDocument, Logger, WebIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
-import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { readGltfHead } from '../scene/gltf-file';
 import type { Baked, ExportReply, ExportRequest } from './export-messages';
 import { readPixels, writePng } from './texture/pixels';
@@ -71,6 +70,7 @@ async function read(io: WebIO, files: ExportRequest['files']): Promise<Document>
   const { bytes } = files[0]!;
   const { binary, json, extensions, uris } = readGltfHead(bytes);
   if (extensions.some((name) => name.endsWith('meshopt_compression'))) {
+    const { MeshoptDecoder } = await import('meshoptimizer/decoder');
     await MeshoptDecoder.ready;
     io.registerDependencies({ 'meshopt.decoder': MeshoptDecoder });
   }

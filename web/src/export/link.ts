@@ -1,6 +1,6 @@
-import type { Lock } from 'cagecast';
 import { type Deform, kDeforms } from '../live/deform';
-import type { Locks, Rules } from '../scene/session';
+import type { Choice, Locks, Rules } from '../scene/session';
+import { kLightNames } from '../view/light';
 import { type Angle, kModes, type Mode, type View } from '../view/view';
 
 /** A layer in a link. */
@@ -53,7 +53,7 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   words.set('rules', rules.preset);
   words.set('threshold', String(rules.threshold));
   if (rules.borders !== 'triangle') words.set('borders', rules.borders);
-  for (const lock of ['keep', 'exclude'] as const) {
+  for (const lock of ['keep', 'exclude', 'always'] as const) {
     const segments = Object.keys(locks).filter((segment) => locks[Number(segment)] === lock);
     if (segments.length > 0) words.set(lock, segments.join(','));
   }
@@ -61,6 +61,8 @@ export function writeLink({ sample, layers, rules, locks, view, shape, angle }: 
   if (view.mode === 'compare') words.set('split', view.split.toFixed(3));
   if (!view.paint) words.set('paint', 'off');
   if (view.cage) words.set('cage', 'on');
+  if (view.light !== 'studio') words.set('light', view.light);
+  if (view.background) words.set('background', view.background.replace('#', ''));
   if (shape && shape.amount !== 0)
     words.set('deform', [shape.deform, Number(shape.amount.toFixed(3)), ...(shape.cage ? [] : ['alone'])].join(','));
   for (const [name, weight] of shape?.morphs ?? []) words.append('morph', `${Number(weight.toFixed(3))},${name}`);
@@ -87,12 +89,14 @@ export function readLink(fragment: string): LinkState | undefined {
       threshold: share(words.get('threshold'), 0.5),
       borders: words.get('borders') === 'cut' ? 'cut' : 'triangle',
     },
-    locks: { ...readLocks(words, 'keep'), ...readLocks(words, 'exclude') },
+    locks: { ...readLocks(words, 'keep'), ...readLocks(words, 'exclude'), ...readLocks(words, 'always') },
     view: {
       mode: kModes.includes(mode) ? mode : 'compare',
       split: share(words.get('split'), 0.5),
       paint: words.get('paint') !== 'off',
       cage: words.get('cage') === 'on',
+      light: kLightNames.find((name) => name === words.get('light')) ?? 'studio',
+      background: readColor(words.get('background') ?? '') ?? '',
     },
     shape: readShape(words),
     angle: readAngle(words.get('angle')),
@@ -104,7 +108,7 @@ function readLayer(text: string): LinkedLayer {
   return {
     paint,
     opacity: share(opacity, 1),
-    tint: /^[0-9a-f]{6}$/i.test(tint) ? `#${tint}` : '#ffffff',
+    tint: readColor(tint) ?? '#ffffff',
     blend,
     visible: hidden !== 'hidden',
   };
@@ -123,7 +127,7 @@ function readShape(words: URLSearchParams): LinkedShape | undefined {
     : undefined;
 }
 
-function readLocks(words: URLSearchParams, lock: Lock): Locks {
+function readLocks(words: URLSearchParams, lock: Choice): Locks {
   const numbers = (words.get(lock) ?? '').split(',').filter((word) => /^\d{1,9}$/.test(word));
   return Object.fromEntries(numbers.map((number) => [number, lock]));
 }
@@ -134,6 +138,8 @@ function readAngle(word: string | null): Angle | undefined {
     ? { turn, tilt, near }
     : undefined;
 }
+
+const readColor = (word: string): string | undefined => (/^[0-9a-f]{6}$/i.test(word) ? `#${word}` : undefined);
 
 /** A number from 0 to 1, or the default. */
 function share(word: string | null, otherwise: number): number {

@@ -36,7 +36,7 @@ export function exportedPaint(
         });
       },
       get omitted() {
-        return stack.layers.filter((layer) => !nameOf(layer)).length;
+        return stack.layers.flatMap((layer) => (nameOf(layer) ? [] : layer.name));
       },
       restore(layers) {
         const before = session.shown?.target;

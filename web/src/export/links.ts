@@ -8,8 +8,8 @@ import { type LinkedLayer, type LinkState, readLink, writeLink } from './link';
 export interface LinkedLayers {
   /** From the lowest to the uppermost; without the user's own paints. */
   readonly layers: LinkedLayer[];
-  /** Number of layers that a link leaves out. */
-  readonly omitted: number;
+  /** Names of the layers that a link leaves out. */
+  readonly omitted: readonly string[];
   /** Restores them once the sample is loaded. Paints that the page does not have are left out. */
   restore(layers: LinkedLayer[]): void;
 }
@@ -32,7 +32,9 @@ function stateOf({
 }: Linked): LinkState | undefined {
   const sample = shown?.target.sample;
   if (!sample || sample !== shown.cage.sample) return undefined;
-  return { sample: sample.name, layers, rules, locks, view, shape: live.shape, angle: viewer?.angle };
+  const { shape } = live;
+  const rests = shape.amount === 0 && shape.morphs.size === 0;
+  return { sample: sample.name, layers, rules, locks, view, shape: rests ? undefined : shape, angle: viewer?.angle };
 }
 
 /** The URL fragment for the current state, with `#`. @returns Undefined if the model is not a sample. */

@@ -1,5 +1,7 @@
 import { Composite, type Edits, type LayerStack } from 'cagecast/three/layers';
+import type { Model } from '../scene/load-model';
 import { type Paint, titleOf } from '../scene/paint';
+import { haveSameUvs } from '../scene/same-uvs';
 import type { Session } from '../scene/session';
 import type { Viewer } from '../view/viewer';
 
@@ -10,10 +12,13 @@ export function followPaints(session: Session, stack: LayerStack, edits: Edits):
     edits.forgetChoices();
     stack.setBase(titleOf(paint), paint);
   };
+  let last: Model | undefined;
   session.on('transfer', ({ cage }) => {
     const base = stack.base?.sheet as Paint | undefined;
+    const isSame = last !== undefined && haveSameUvs(last, cage);
+    last = cage;
     // A sample's paint does not fit another cage's UVs: show the checker instead.
-    if (base?.sample && base.sample !== cage.sample) setBase(checker);
+    if (base?.sample && base.sample !== cage.sample && !isSame) setBase(checker);
   });
   session.on('paint', (paint) => {
     if (paint === checker || paint.sample) return setBase(paint);

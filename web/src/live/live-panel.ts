@@ -6,6 +6,7 @@ import { Superseded, TransferClient } from '../scene/transfer-client';
 import type { Viewer } from '../view/viewer';
 import { Animations } from './animations';
 import { type Deform, kDeforms } from './deform';
+import { expressionsOf } from './expressions';
 import { Morphs } from './morphs';
 import { isAtRest, Pose, type Shape } from './pose';
 
@@ -32,6 +33,8 @@ export class Live {
   #moved = false;
   #stale = false;
   #started: number | undefined;
+  /** The amount when “Animate” started. */
+  #still = 0;
 
   constructor(session: Session, viewer: Viewer | undefined) {
     this.#session = session;
@@ -51,10 +54,9 @@ export class Live {
     session.on('transfer', (shown) => this.#onTransfer(shown));
   }
 
-  /** The shape chosen by the user; undefined at rest. */
-  get shape(): LinkedShape | undefined {
-    const [amount, morphs] = [Number(this.#amount.value), this.#morphs.weights];
-    if (amount === 0 && !morphs) return undefined;
+  /** The shape chosen by the user; while “Animate” moves it, the one before. */
+  get shape(): LinkedShape {
+    const amount = this.#started === undefined ? Number(this.#amount.value) : this.#still;
     return { deform: this.#deform.value as Deform, amount, cage: this.#along.checked, morphs: this.#morphs.moved };
   }
 
@@ -64,6 +66,7 @@ export class Live {
     this.#deform.value = deform;
     this.#amount.value = String(amount);
     this.#along.checked = cage;
+    this.#morphs.reset();
     if (morphs.size > 0) {
       this.#animations?.stop();
       this.#morphs.move(morphs);
@@ -79,7 +82,7 @@ export class Live {
       this.#stop();
       this.#amount.value = '0';
       this.#showFrame(0);
-      this.#morphs.offer(shown.target.mesh);
+      this.#morphs.offer(shown.target.mesh, expressionsOf(shown.target.loaded, shown.target.mesh));
       this.#animations?.offer(shown.target.animations);
     }
     // Deform the new one like the old.
@@ -93,6 +96,7 @@ export class Live {
   }
 
   #start(): void {
+    this.#still = Number(this.#amount.value);
     this.#started = performance.now();
     announce('The model moves; the transfer is repeated for every frame.');
     this.#next();

@@ -1,6 +1,8 @@
 import type { Mesh } from 'three';
 import { element } from '../platform/page';
 import type { ExtractedMesh } from '../scene/extract-mesh';
+import { titleOfMorph } from './expression-names';
+import type { Expression } from './expressions';
 
 /** Morph weights by name; others are 0. Morphs of the same name in several meshes share a weight. */
 export type Weights = ReadonlyMap<string, number>;
@@ -18,6 +20,7 @@ export function morphNames({ morphTargetDictionary, morphTargetInfluences = [] }
 export class Morphs {
   readonly #box = element('morphs', HTMLElement);
   readonly #list = element('morph-list', HTMLElement);
+  readonly #presets = element('expressions', HTMLElement);
   readonly #reset = element('morphs-reset', HTMLButtonElement);
   readonly #onMove: () => void;
   /** The weights in the file. */
@@ -35,8 +38,8 @@ export class Morphs {
     });
   }
 
-  /** Lists the morphs of a model at rest. */
-  offer({ primitives }: ExtractedMesh): void {
+  /** Lists the morphs of a model at rest, and the expressions of its file. */
+  offer({ primitives }: ExtractedMesh, expressions: readonly Expression[]): void {
     const stored = new Map<string, number>();
     for (const { mesh } of primitives) {
       morphNames(mesh).forEach((name, place) => {
@@ -46,6 +49,7 @@ export class Morphs {
     this.#stored = stored;
     this.#weights = new Map(stored);
     this.#list.replaceChildren(...[...stored].map(([name, weight]) => this.#slider(name, weight)));
+    this.#offerPresets(expressions);
     this.#box.hidden = stored.size === 0;
     element('morph-count', HTMLElement).textContent = String(stored.size);
     this.#reset.disabled = true;
@@ -76,6 +80,27 @@ export class Morphs {
     }
   }
 
+  /** A button for each expression, which shows it instead of any other. */
+  #offerPresets(expressions: readonly Expression[]): void {
+    this.#presets.hidden = expressions.length === 0;
+    this.#presets.replaceChildren(
+      ...expressions.map(({ title, weights }) => {
+        const button = document.createElement('button');
+        button.type = 'button';
+        button.textContent = title;
+        button.ariaPressed = 'false';
+        button.addEventListener('click', () => {
+          const on = button.ariaPressed !== 'true';
+          const rest = expressions.flatMap((other) => [...other.weights.keys()].map((name) => [name, 0] as const));
+          this.move(new Map([...rest, ...(on ? weights : [])]));
+          button.ariaPressed = String(on);
+          this.#onMove();
+        });
+        return button;
+      }),
+    );
+  }
+
   #slider(name: string, weight: number): HTMLElement {
     const label = document.createElement('label');
     const [title, input, output] = [
@@ -83,7 +108,8 @@ export class Morphs {
       document.createElement('input'),
       document.createElement('output'),
     ];
-    title.textContent = title.title = name;
+    title.textContent = titleOfMorph(name);
+    title.title = name;
     Object.assign(input, {
       type: 'range',
       name,
@@ -102,6 +128,7 @@ export class Morphs {
   }
 
   #read(input: HTMLInputElement): void {
+    for (const button of this.#presets.children) button.ariaPressed = 'false';
     this.#weights.set(input.name, input.valueAsNumber);
     (input.nextElementSibling as HTMLOutputElement).value = input.valueAsNumber.toFixed(2);
     this.#reset.disabled = !this.weights;

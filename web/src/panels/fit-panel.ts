@@ -67,7 +67,7 @@ export class FitPanel {
     const {
       shown,
       rules: { preset, threshold },
-      locks,
+      choices: { locks },
     } = this.#session;
     if (!shown) return;
     this.#button.hidden = true;
@@ -79,9 +79,7 @@ export class FitPanel {
         firstVertex,
         vertexCount,
       }));
-      this.#write(
-        await this.#client.ask('inspect', cage, target, { preset, threshold, locks: { segments: locks }, parts }),
-      );
+      this.#write(await this.#client.ask('inspect', cage, target, { preset, threshold, locks, parts }));
     } catch (error) {
       if (error instanceof Superseded) return;
       this.#show('', [text('p', `The cage could not be inspected: ${error instanceof Error ? error.message : error}`)]);
@@ -94,10 +92,9 @@ export class FitPanel {
     list.append(...findings.map((finding) => this.#item(finding, inspection)));
     const share = `${Math.round(100 * paintableShare(segments))} % of the visible surface can be painted.`;
     const remedies = findings.flatMap((finding) => this.#remedyFor(finding, inspection) ?? []);
-    const { target, cage } = this.#session.shown!;
     const making = verdict === 'unfit' ? [{ title: 'Make a cage', run: () => this.#maker.make() }] : [];
     // The cage of another model is not meant for this one.
-    if (cage.sample && cage.sample !== target.sample) remedies.unshift(...making);
+    if (this.#maker.isOthers) remedies.unshift(...making);
     const content = [text('p', `${share} ${kVerdicts[verdict]}`), ...(findings.length > 0 ? [list] : [])];
     content.push(...making.map(buttonFor));
     this.#show(verdict, content, remedies[0] ?? making[0]);

@@ -1,6 +1,5 @@
-import type { Lock } from 'cagecast';
 import { element } from '../platform/page';
-import type { Session, Shown } from '../scene/session';
+import type { Choice, Session, Shown } from '../scene/session';
 import type { Spot } from '../view/pick';
 import { trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
@@ -33,7 +32,7 @@ export class PartMenu {
     element('part-menu-close', HTMLButtonElement).addEventListener('click', () => this.#close());
     for (const input of this.#box.querySelectorAll('input'))
       input.addEventListener('change', () => {
-        if (this.#segment !== undefined) session.lock([this.#segment], input.value as Lock);
+        if (this.#segment !== undefined) session.lock([this.#segment], input.value as Choice);
       });
     session.on('transfer', () => this.#close());
     session.on('zones', () => this.#write());
@@ -70,8 +69,13 @@ export class PartMenu {
     const { shown, classification, locks } = this.#session;
     if (this.#segment === undefined || !shown || !classification) return;
     element('part-menu-title', HTMLElement).textContent = nameOfPart(shown, this.#segment);
-    element('part-menu-text', HTMLElement).textContent = paintedPoints(shown, classification.zones, this.#segment);
     const lock = locks[this.#segment] ?? 'auto';
+    element('part-menu-text', HTMLElement).textContent = paintedPoints(
+      shown,
+      classification.zones,
+      this.#segment,
+      lock,
+    );
     for (const input of this.#box.querySelectorAll('input')) input.checked = input.value === lock;
   }
 }
@@ -81,8 +85,8 @@ export function nameOfPart({ target, projection }: Shown, segment: number): stri
   return target.mesh.primitives[projection.segmentStats[segment]!.group]!.name;
 }
 
-/** How many points of a part are painted, and why the others are not. */
-export function paintedPoints({ projection }: Shown, zones: Uint8Array, segment: number): string {
+/** How many points of a part are painted, why the others are not, and what would paint these. */
+export function paintedPoints({ projection }: Shown, zones: Uint8Array, segment: number, lock: Choice): string {
   const counts = [0, 0, 0, 0];
   projection.segments.forEach((other, vertex) => {
     if (other === segment) counts[zones[vertex]!]!++;
@@ -95,5 +99,7 @@ export function paintedPoints({ projection }: Shown, zones: Uint8Array, segment:
     culled > 0 ? `${culled} because the whole part is not painted` : '',
   ].filter(Boolean);
   const bare = reasons.length > 0 ? ` The rest stays bare: ${reasons.join(', ')}.` : '';
-  return `${painted.toLocaleString('en')} of ${all.toLocaleString('en')} points are painted.${bare}`;
+  const stretched = uncovered > 0 ? ', stretched where the cage has a hole' : '';
+  const anyway = bare && lock === 'keep' ? ` “Paint anyway” paints it too${stretched}.` : '';
+  return `${painted.toLocaleString('en')} of ${all.toLocaleString('en')} points are painted.${bare}${anyway}`;
 }

@@ -1,7 +1,7 @@
-import type { Classification, Lock, SegmentStats } from 'cagecast';
+import type { Classification, SegmentStats } from 'cagecast';
 import { element, showNotice } from '../platform/page';
 import type { Primitive } from '../scene/extract-mesh';
-import type { Locks, Session, Shown } from '../scene/session';
+import type { Choice, Locks, Session, Shown } from '../scene/session';
 import { cssColor, type Rgb } from '../view/colors';
 import { segmentColors, trianglesOf } from '../view/segments';
 import type { Viewer } from '../view/viewer';
@@ -11,7 +11,7 @@ import { nameOfPart, paintedPoints } from './part-menu';
 const kMostRows = 50;
 const kMostColors = 3; // per row
 const kMostNotes = 3; // about parts that are kept
-const kLocks: Record<Lock, string> = { auto: 'auto', keep: 'keep', exclude: 'exclude' };
+const kLocks: Record<Choice, string> = { auto: 'auto', keep: 'keep', always: 'paint anyway', exclude: 'exclude' };
 
 /** Segments that share a row, and their sums. */
 interface Entry {
@@ -21,7 +21,7 @@ interface Entry {
   area: number;
   exposedArea: number;
   coveredArea: number;
-  lock: Lock;
+  lock: Choice;
 }
 
 interface Row {
@@ -92,7 +92,7 @@ export class PartsTable {
     const kept = Object.entries(this.#session.locks).filter(([, lock]) => lock === 'keep');
     const notes = kept.slice(0, kMostNotes).map(([key]) => {
       const segment = Number(key);
-      return `“${nameOfPart(shown, segment)}” is kept: ${paintedPoints(shown, zones, segment)}`;
+      return `“${nameOfPart(shown, segment)}” is kept: ${paintedPoints(shown, zones, segment, 'keep')}`;
     });
     showNotice('keep-note', notes.join(' '));
     const real = segmentStats.filter(({ area }) => area > 0);
@@ -123,7 +123,7 @@ export class PartsTable {
     select.name = 'lock';
     select.setAttribute('aria-label', `Override for ${name}`);
     for (const [value, text] of Object.entries(kLocks)) select.add(new Option(text, value, false, value === lock));
-    select.addEventListener('change', () => this.#session.lock(segments, select.value as Lock));
+    select.addEventListener('change', () => this.#session.lock(segments, select.value as Choice));
     return select;
   }
 

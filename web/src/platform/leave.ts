@@ -1,15 +1,15 @@
 import type { History } from 'cagecast/three/layers';
 
-const kSaving = ['export-glb', 'stage-save', 'save-texture'];
+const kSaving = ['export-glb', 'stage-save', 'save-texture', 'save-project'];
 
-/** Warns before the page is left while there is work that was not saved. */
-export function warnBeforeLeaving(history: History): void {
+/** Warns before the page is left while there is work that was not saved. @param isKept Whether this browser keeps all of it. */
+export function warnBeforeLeaving(history: History, isKept: () => boolean): void {
   let saved = history.last;
   // By the page's own buttons: whatever they save has the work in it.
   addEventListener('click', ({ target }) => {
     if (target instanceof Element && kSaving.some((id) => target.closest(`#${id}`))) saved = history.last;
   });
   addEventListener('beforeunload', (event) => {
-    if (history.last !== saved && history.last !== undefined) event.preventDefault();
+    if (history.last !== saved && history.last !== undefined && !isKept()) event.preventDefault();
   });
 }

@@ -1,4 +1,6 @@
-import type { Cage, Fit, TemplateName } from 'cagecast/cages';
+import type { Cage, CageModel, Fit, Landmarks, MakeOptions, TemplateName } from 'cagecast/cages';
+import { cageModel } from 'cagecast/three';
+import { Emitter } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
 import { download } from '../platform/download';
 import { element } from '../platform/page';
@@ -18,11 +20,21 @@ const kStages: Record<string, string> = {
   bend: 'Bending the cage',
 };
 
-/** The files of cages that were made here, and the landmarks that were not found for them. */
-const made = new WeakMap<File, readonly string[]>();
+/** A template that was fitted, or that lacks landmarks for that. */
+export interface Fitting extends Omit<Fit, 'cage'> {
+  template: TemplateName;
+  /** Those of `used` that the user placed. */
+  given: Landmarks;
+}
+
+/** A fit needs so many landmarks. */
+export const kLeastLandmarks = 4;
+
+/** The files of cages that were made here: for which target, and from which fit. */
+const made = new WeakMap<File, { target: File; fitting: Fitting | undefined }>();
 
 /** A landmark's name for people: "ear_lobe_left" is the left ear lobe. */
-const readable = (landmark: string): string =>
+export const readable = (landmark: string): string =>
   landmark
     .replace(/^(.*)_(left|right)$/, '$2 $1')
     .replace(/^(.*?)joint_(.*)$/, '$1$2 joint')
@@ -30,9 +42,9 @@ const readable = (landmark: string): string =>
 
 /**
  * Makes a cage for a model that has none, or fits a template to it, and saves the result. The engine and the templates load when
- * they are asked for.
+ * they are asked for. `fitting` tells with each cage whether it is a fit, and which landmarks that has.
  */
-export class CageMaker {
+export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
   readonly #session: Session;
   readonly #renderer: WebGLRenderer | undefined;
   readonly #template = element('template-select', HTMLSelectElement);
@@ -40,13 +52,16 @@ export class CageMaker {
   readonly #missing = element('cage-missing', HTMLElement);
   readonly #save = element('save-cage', HTMLButtonElement);
   readonly #unmoved = new WeakSet<Model>();
+  /** What the user chose for cages that are made: options, and parts that are not painted. */
+  choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
 
   /** @param renderer Undefined without WebGL. */
   constructor(session: Session, renderer: WebGLRenderer | undefined) {
+    super();
     this.#session = session;
     this.#renderer = renderer;
     element('make-cage', HTMLButtonElement).addEventListener('click', () => this.make());
-    element('fit-cage', HTMLButtonElement).addEventListener('click', () => this.#run('Fitting a template', this.#fit));
+    element('fit-cage', HTMLButtonElement).addEventListener('click', () => this.fit());
     this.#save.addEventListener('click', () => {
       const [file] = session.shown!.cage.files;
       download(file!, file!.name);
@@ -57,11 +72,12 @@ export class CageMaker {
       this.#save.hidden = !isMade;
       if (!isMade) this.#note.textContent = '';
       this.#missing.textContent = '';
+      this.emit('fitting', this.isOthers ? undefined : made.get(cage.files[0]!)?.fitting);
     });
     // Of a good cage, nobody needs to know what was not found.
     session.on('inspected', ({ verdict }) => {
       const file = session.shown!.cage.files[0]!;
-      const missing = (verdict !== 'good' && made.get(file)) || [];
+      const missing = (verdict !== 'good' && made.get(file)?.fitting?.missing) || [];
       this.#missing.textContent =
         missing.length > 0 ? `Landmarks that were not found: ${missing.map(readable).join(', ')}.` : '';
     });
@@ -72,14 +88,53 @@ export class CageMaker {
     return this.#unmoved.has(this.#session.shown!.cage);
   }
 
+  /** Whether the current cage belongs to another model. */
+  get isOthers(): boolean {
+    const { target, cage } = this.#session.shown!;
+    if (cage.sample) return cage.sample !== target.sample;
+    const own = made.get(cage.files[0]!);
+    return own !== undefined && own.target !== target.files[0];
+  }
+
+  /** Whether the current cage was made for the current target, and is no fit. */
+  get isMade(): boolean {
+    const own = made.get(this.#session.shown!.cage.files[0]!);
+    return own !== undefined && !own.fitting && !this.isOthers;
+  }
+
   /** Makes a cage for the current target. */
   make(): Promise<void> {
     return this.#run('Making a cage', this.#make);
   }
 
+  /**
+   * Fits a template to the current target.
+   * @param given    Landmarks of the target; they override those that are found.
+   * @param template By default the one that is chosen.
+   */
+  fit(given: Landmarks = {}, template = this.#template.value as TemplateName): Promise<void> {
+    return this.#run('Fitting a template', (context) => this.#fit(context, template, given));
+  }
+
   /** Moves, turns and scales the current cage onto the target, and bends it where it is inside. */
   move(): Promise<void> {
     return this.#run('Moving the cage', this.#move);
+  }
+
+  /** Shows the current cage with other positions or triangles. @returns It. */
+  async change(change: { positions?: Float32Array; indices?: Uint32Array }): Promise<Model> {
+    const { target, cage: current } = this.#session.shown!;
+    const { cageGlb } = await import('cagecast/cages');
+    const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
+    const extras: Partial<Cage> = {};
+    current.scene.traverse(({ userData }) => void (userData.landmarks && Object.assign(extras, userData)));
+    const bytes = cageGlb({ ...extras, ...({ positions: rest, indices, uvs, ...change } as Cage) });
+    const file = new File([bytes], current.name.replace(/(-cage)?(\.\w+)?$/, '-cage.glb'));
+    made.set(file, { target: target.files[0]!, fitting: made.get(current.files[0]!)?.fitting });
+    const cage = loadModel(file, this.#renderer);
+    this.#note.textContent = 'The cage was changed. Save it if it is right.';
+    this.#session.want({ cage });
+    return cage;
   }
 
   /** Turns triangles of the current cage to the other side. */
@@ -92,16 +147,15 @@ export class CageMaker {
   }
 
   /** Does cancellable work on the current target, and shows the cage that it comes to. */
-  async #run(title: string, work: (context: Context) => Promise<Result>): Promise<void> {
+  async #run(title: string, work: (context: Context) => Promise<Result | undefined>): Promise<void> {
     const { target, cage: current } = this.#session.shown!;
     const abort = new AbortController();
     const giveUp = (): void => abort.abort();
     const tell = (stage: string, share: number): unknown => this.#session.work(stage, share, giveUp);
     const done = this.#session.work(title, 0, giveUp);
     try {
-      const [engine, { cageModel }, read] = await Promise.all([
+      const [engine, read] = await Promise.all([
         import('cagecast/cages'),
-        import('cagecast/three'),
         // The model on the stage may be deformed.
         loadModel(target.files[0]!, this.#renderer, target.files.slice(1)),
       ]);
@@ -110,15 +164,13 @@ export class CageMaker {
       const options = { signal: abort.signal, onProgress };
       const { positions, rest = positions, indices, uvs = new Float32Array() } = current.mesh;
       const old = { ...kNoName, positions: rest.slice(), indices: indices.slice(), uvs: uvs.slice() } as Cage;
-      const {
-        cage,
-        note,
-        missing = [],
-      } = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
+      const result = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
       if (abort.signal.aborted) return;
+      if (!result) return done();
+      const { cage, note, fitting } = result;
       const name = cage.uvs === old.uvs ? current.name : target.name;
       const file = new File([engine.cageGlb(cage)], name.replace(/(-cage)?(\.\w+)?$/, '-cage.glb'));
-      made.set(file, missing);
+      made.set(file, { target: target.files[0]!, fitting });
       this.#note.textContent = note;
       done();
       this.#session.want({ cage: loadModel(file, this.#renderer) });
@@ -130,7 +182,8 @@ export class CageMaker {
   }
 
   async #make({ engine, model, options }: Context): Promise<Result> {
-    const cage = await engine.makeCage(model, options);
+    const { options: chosen, marks } = this.choices?.(model) ?? {};
+    const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
     return {
       cage,
       note: `A cage of ${cage.indices.length / 3} triangles was made. Save it with the paint that you draw for it.`,
@@ -154,17 +207,34 @@ export class CageMaker {
     return { cage: { ...cage, uvs: old.uvs }, note: 'The cage was moved into place. Save it if it is right.' };
   }
 
-  async #fit({ engine, model, options }: Context): Promise<Result> {
-    const template = await engine.loadTemplate(this.#template.value as TemplateName);
-    const { cage, missing }: Fit = await engine.fitCage(template, model, undefined, options);
-    return { cage, note: 'The template was fitted: a paint for it fits every model that it was fitted to.', missing };
+  /** @returns Undefined if too few landmarks are known; the user is asked for more. */
+  async #fit({ engine, model, options }: Context, name: TemplateName, given: Landmarks): Promise<Result | undefined> {
+    const template = await engine.loadTemplate(name);
+    try {
+      const { cage, ...found } = await engine.fitCage(template, model, given, options);
+      const note = 'The template was fitted: a paint for it fits every model that it was fitted to.';
+      return { cage, note, fitting: { ...found, template: name, given } };
+    } catch (error) {
+      if ((error as { code?: string }).code !== 'badLandmarks') throw error;
+      const found = await engine.findLandmarks(model, options);
+      const names = Object.keys(template.landmarks);
+      const all = { ...found.landmarks, ...given };
+      const used = Object.fromEntries(names.flatMap((known) => (all[known] ? [[known, all[known]]] : [])));
+      const count = Object.keys(used).length;
+      if (count >= kLeastLandmarks) throw error;
+      const missing = names.filter((known) => !used[known]);
+      this.#missing.textContent = '';
+      this.#note.textContent = `Of ${kLeastLandmarks} landmarks that are needed, ${count} were found: place more on the model.`;
+      this.emit('fitting', { ...found, template: name, given, used, missing });
+      return undefined;
+    }
   }
 }
 
 const kNoName = { landmarks: {}, holes: {}, kind: 'automatic' } as const;
 
 /** A cage that is nowhere near the model is put around it first, as large as the model. */
-function placeAround(cage: Cage, model: ArrayLike<number>): Cage {
+export function placeAround(cage: Cage, model: ArrayLike<number>): Cage {
   const [from, to] = [boxOf(cage.positions), boxOf(model)];
   const apart = from.low.some((low, axis) => low > to.high[axis]! || from.high[axis]! < to.low[axis]!);
   const scale = diagonal(to) / diagonal(from);
@@ -192,7 +262,7 @@ const diagonal = ({ low, high }: Box): number => Math.hypot(...high.map((value, 
 
 interface Context {
   engine: typeof import('cagecast/cages');
-  model: ReturnType<typeof import('cagecast/three').cageModel>;
+  model: ReturnType<typeof cageModel>;
   /** The current cage, undeformed. */
   old: Cage;
   options: { signal: AbortSignal; onProgress(share: number, step: string): void };
@@ -202,6 +272,6 @@ interface Result {
   cage: Cage;
   /** What was made, for people. */
   note: string;
-  /** Landmarks of the template that were not found. */
-  missing?: readonly string[];
+  /** If it is a fit. */
+  fitting?: Fitting;
 }

@@ -8,6 +8,8 @@ export interface Intake {
   target?: File | undefined;
   cage?: File | undefined;
   texture?: File | undefined;
+  /** A saved project: everything at once. */
+  project?: File | undefined;
   /** Two models of which either may be the target. */
   unclear: File[];
   /** Warnings to show. */
@@ -17,20 +19,32 @@ export interface Intake {
 }
 
 const kModel = /\.(glb|gltf|vrm)$/i;
+const kProject = /\.cagecast$/i;
 const kCage = /cage/i;
 const kImage = /\.(png|jpe?g|webp)$/i;
+
+/** The models among files: those that are named as cages, and the others. */
+export function modelsAmong(files: readonly File[]): { cages: File[]; targets: File[] } {
+  const models = files.filter(({ name }) => kModel.test(name));
+  return {
+    cages: models.filter(({ name }) => kCage.test(name)),
+    targets: models.filter(({ name }) => !kCage.test(name)),
+  };
+}
 
 /**
  * Assigns files to roles: models by their names, images as paint unless a .gltf came with them.
  * Any other file becomes the target if there is nothing else, so that the reader reports what is wrong with it.
  */
 export function sortFiles(all: readonly File[]): Intake {
+  const { cages, targets: rest } = modelsAmong(all);
   const models = all.filter(({ name }) => kModel.test(name));
   const others = all.filter((file) => !models.includes(file));
-  const [cages, rest] = [models.filter(({ name }) => kCage.test(name)), models.filter(({ name }) => !kCage.test(name))];
   // The images belong to the .gltf.
   const withGltf = models.some(({ name }) => /\.gltf$/i.test(name));
   const images = withGltf ? [] : others.filter(({ name, type }) => kImage.test(name) || type.startsWith('image/'));
+  const project = others.find(({ name }) => kProject.test(name));
+  if (project) return { project, unclear: [], warnings: [], all: [...all] };
   const intake: Intake = { texture: images.at(-1), unclear: [], warnings: [], all: [...all] };
   const known = cages.length === 1 || (cages.length > 0 && rest.length > 0) || models.length === 1;
   if (known) [intake.cage, intake.target] = [cages[0], rest[0]];
@@ -87,13 +101,18 @@ async function entriesOf(folder: FileSystemDirectoryEntry): Promise<FileSystemEn
 /**
  * Listens for files that are chosen, or dropped anywhere on the page.
  * @param onFiles A file given to one of the three fields gets the role of the field.
+ * @param takes   Whether what was dropped is for somebody else, who takes it.
  */
-export function setUpFiles(onFiles: (intake: Intake) => void): void {
+export function setUpFiles(onFiles: (intake: Intake) => void, takes: (dropped: readonly File[]) => boolean): void {
   for (const role of ['target', 'cage', 'texture'] as const) {
     const input = element(`${role}-input`, HTMLInputElement);
     const tile = element(`${role}-file`, HTMLElement);
     const give = (files: File[]): void => {
-      const main = files.find((file) => (role === 'texture' ? kImage : kModel).test(file.name)) ?? files[0];
+      const isProject = files.some(({ name }) => kProject.test(name));
+      if (isProject) onFiles(sortFiles(files));
+      const main = isProject
+        ? undefined
+        : (files.find((file) => (role === 'texture' ? kImage : kModel).test(file.name)) ?? files[0]);
       if (main) onFiles({ [role]: main, unclear: [], warnings: [], all: files });
     };
     input.addEventListener('change', () => {
@@ -128,7 +147,7 @@ export function setUpFiles(onFiles: (intake: Intake) => void): void {
     hideVeil();
     if (!event.dataTransfer) return;
     droppedFiles(event.dataTransfer).then(
-      (files) => files.length > 0 && onFiles(sortFiles(files)),
+      (files) => files.length > 0 && !takes(files) && onFiles(sortFiles(files)),
       (error: Error) => showError(error.message),
     );
   });

@@ -149,7 +149,7 @@ async function addDecoders(
 ): Promise<() => void> {
   const held: { dispose(): void }[] = [];
   if (extensions.includes('EXT_meshopt_compression') || extensions.includes('KHR_meshopt_compression')) {
-    const { MeshoptDecoder } = await import('three/addons/libs/meshopt_decoder.module.js');
+    const { MeshoptDecoder } = await import('meshoptimizer/decoder'); // as in the worker that exports: one file
     loader.setMeshoptDecoder(MeshoptDecoder);
   }
   if (extensions.includes('KHR_texture_basisu')) {

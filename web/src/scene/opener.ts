@@ -1,4 +1,4 @@
-import type { Edits, LayerStack } from 'cagecast/three/layers';
+import type { Edits, LayerStack, Sheet } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
 import { type Choice, offerPaints } from '../panels/paint-picker';
 import { element, showError } from '../platform/page';
@@ -17,9 +17,14 @@ export class Opener {
   readonly #edits: Edits;
   readonly #select = element('sample-select', HTMLSelectElement);
   readonly #renderer: WebGLRenderer | undefined;
+  /** Whether what was dropped on the page is for somebody else, who takes it. */
+  takesDrop: (files: readonly File[]) => boolean = () => false;
   #samples: Sample[] = [];
   /** Warnings about the latest files, shown once these are loaded. */
   #warnings: readonly string[] = [];
+
+  /** Opens a saved project. */
+  onProject: ((file: File) => void) | undefined;
 
   /** @param renderer Undefined without WebGL. */
   constructor(session: Session, stack: LayerStack, edits: Edits, renderer: WebGLRenderer | undefined) {
@@ -27,7 +32,10 @@ export class Opener {
     this.#stack = stack;
     this.#edits = edits;
     this.#renderer = renderer;
-    setUpFiles((intake) => this.#open(intake));
+    setUpFiles(
+      (intake) => this.#open(intake),
+      (dropped) => this.takesDrop(dropped),
+    );
     this.#select.addEventListener('change', () => this.openSample(this.#select.value));
     element('swap', HTMLButtonElement).addEventListener('click', () => session.swap());
     session.on('progress', ({ state }) => {
@@ -78,16 +86,17 @@ export class Opener {
   /** Loads a paint of any sample. @param name By `paintName`. @returns Undefined if there is none. */
   async paint(name: string): Promise<Paint | undefined> {
     if (name === kChecker) return this.#session.checker;
-    const found = this.#find(name);
+    const found = this.find(name);
     return found && this.#fetchPaint(found.sample, found.paint);
   }
 
   /** Whether there is a paint of that name, by `paintName`. */
   has(name: string): boolean {
-    return name === kChecker || this.#find(name) !== undefined;
+    return name === kChecker || this.find(name) !== undefined;
   }
 
-  #find(name: string): { sample: Sample; paint: Sample['paints'][number] } | undefined {
+  /** A sample's paint by `paintName`. */
+  find(name: string): { sample: Sample; paint: Sample['paints'][number] } | undefined {
     return this.#samples
       .flatMap((sample) => sample.paints.map((paint) => ({ sample, paint })))
       .find(({ paint }) => paintName(paint.file) === name);
@@ -98,7 +107,11 @@ export class Opener {
   }
 
   /** Opens the user's own files. */
-  #open({ target, cage, texture, unclear, warnings, all }: Intake): void {
+  #open({ target, cage, texture, project, unclear, warnings, all }: Intake): void {
+    if (project) {
+      this.onProject?.(project);
+      return;
+    }
     const wanted: Wanted = {};
     const load = (file: File): Promise<Model> => loadModel(file, this.#renderer, all);
     if (target) wanted.target = load(target);
@@ -117,12 +130,12 @@ export class Opener {
     this.#session.want(wanted);
   }
 
-  #describe({ target, cage, paint }: Shown): void {
-    // The paint may have been replaced or removed since.
+  #describe({ target, cage }: Shown): void {
     const { layers, base } = this.#stack;
-    const isOwn = !paint.sample && paint !== this.#session.checker && layers.some(({ sheet }) => sheet === paint);
-    const texture = isOwn ? paint : ((base?.sheet as Paint | undefined) ?? { name: 'none' });
-    for (const [slot, { name }] of Object.entries({ target, cage, texture })) {
+    const paints = layers.map(({ sheet }) => sheet as Sheet & Partial<Paint>);
+    const texture = paints.findLast(({ file, sample }) => file && !sample) ?? base?.sheet;
+    const names = { target: target.name, cage: cage.name, texture: (texture as Paint | undefined)?.name ?? 'none' };
+    for (const [slot, name] of Object.entries(names)) {
       const label = element(`${slot}-name`, HTMLElement);
       label.textContent = label.title = name;
     }

@@ -9,6 +9,8 @@ export interface Paint {
   texture: Texture;
   /** URL of the image. */
   picture: string;
+  /** The image; absent for the checker. */
+  file?: File;
   /** The sample it belongs to; undefined for the user's own and the checker. */
   sample?: Sample;
 }
@@ -31,7 +33,7 @@ export async function loadPaint(file: File, picture = URL.createObjectURL(file))
   // glTF's UV origin is the upper left corner of the image.
   texture.flipY = false;
   texture.needsUpdate = true;
-  return { name: file.name, texture: prepare(texture), picture };
+  return { name: file.name, texture: prepare(texture), picture, file };
 }
 
 /** Reads an image, reduced in size if it is very large. @throws Error that names the file. */

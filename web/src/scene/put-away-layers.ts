@@ -1,10 +1,18 @@
 import type { Edits, Layer, LayerStack } from 'cagecast/three/layers';
 import { element, showError } from '../platform/page';
 import type { Model } from './load-model';
+import { haveSameUvs } from './same-uvs';
 import type { Session } from './session';
 
+/** Layers that were painted for another cage. */
+export interface PutAway {
+  readonly layers: readonly Layer[];
+  /** Offers others. */
+  show(layers: readonly Layer[]): void;
+}
+
 /** Puts the layers away that were painted for another cage, and offers them again. They stay where a cage has the same UVs. */
-export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits): void {
+export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits): PutAway {
   const offer = element('put-away', HTMLElement);
   let last: Model | undefined;
   let away: readonly Layer[] = [];
@@ -36,11 +44,10 @@ export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits)
       showError((error as Error).message);
     }
   });
-}
-
-/** Whether a paint for one cage fits the other: the same triangles with the same UVs, wherever they are. */
-function haveSameUvs({ mesh: one }: Model, { mesh: other }: Model): boolean {
-  if (one === other) return true;
-  if (!one.uvs || one.uvs.length !== other.uvs?.length || one.indices.length !== other.indices.length) return false;
-  return one.uvs.every((value, i) => value === other.uvs![i]);
+  return {
+    get layers() {
+      return away;
+    },
+    show,
+  };
 }

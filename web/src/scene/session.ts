@@ -1,4 +1,13 @@
-import { CagecastError, type Classification, classify, init, type Lock, type Preset, type Timings } from 'cagecast';
+import {
+  CagecastError,
+  type Classification,
+  type ClassifyOptions,
+  classify,
+  init,
+  type Lock,
+  type Preset,
+  type Timings,
+} from 'cagecast';
 import type { Inspection } from 'cagecast/inspect';
 import type { Borders } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/layers';
@@ -6,6 +15,7 @@ import { Pace } from '../platform/pace';
 import { kFirstView, type View } from '../view/view';
 import type { Model } from './load-model';
 import { makeChecker, type Paint } from './paint';
+import { haveSameUvs } from './same-uvs';
 import { Superseded, TransferClient } from './transfer-client';
 import type { SplitProjection } from './transfer-messages';
 
@@ -32,8 +42,27 @@ export interface Rules {
   borders: Borders;
 }
 
-/** Locks by segment; all others are `auto`. */
-export type Locks = Record<number, Lock>;
+/** A lock, or all of a part painted, whatever hides it. */
+export type Choice = Lock | 'always';
+
+/** Choices by segment; all others are `auto`. */
+export type Locks = Record<number, Choice>;
+
+/** The nearest to a choice that methods without masks know. */
+export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : choice);
+
+/** The locks and masks that choices come to. @param projection Of the model that they are for. */
+export function choicesOf(
+  chosen: Locks,
+  projection: Pick<SplitProjection, 'segments'> | undefined,
+): Pick<ClassifyOptions, 'locks' | 'masks'> {
+  const entries = Object.entries(chosen);
+  const always = new Set(entries.flatMap(([segment, choice]) => (choice === 'always' ? [Number(segment)] : [])));
+  const locks = { segments: Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)])) };
+  if (always.size === 0 || !projection) return { locks };
+  const vertices = Int8Array.from(projection.segments, (segment) => (always.has(segment) ? 1 : 0));
+  return { locks, masks: { vertices } };
+}
 
 /** Called when work is cancelled by the user, or superseded by a newer request. */
 type GiveUp = (why: 'cancelled' | 'superseded') => void;
@@ -172,8 +201,14 @@ export class Session extends Emitter<SessionEvents> {
   }
 
   /** Locks segments; takes effect at once. */
-  lock(segments: readonly number[], lock: Lock): void {
+  lock(segments: readonly number[], lock: Choice): void {
     for (const segment of segments) this.#locks[segment] = lock;
+    if (this.#shown) this.#classify();
+  }
+
+  /** Sets the locks of all segments; takes effect at once. */
+  setLocks(locks: Locks): void {
+    this.#locks = { ...locks };
     if (this.#shown) this.#classify();
   }
 
@@ -189,6 +224,11 @@ export class Session extends Emitter<SessionEvents> {
     this.#shown = { ...this.#shown, projection };
     this.emit('frame', projection);
     this.#classify();
+  }
+
+  /** The locks and masks that the choices come to. */
+  get choices(): Pick<ClassifyOptions, 'locks' | 'masks'> {
+    return choicesOf(this.#locks, this.#shown?.projection);
   }
 
   /** Changes the view. */
@@ -259,7 +299,8 @@ export class Session extends Emitter<SessionEvents> {
       }
       const before = this.#shown;
       // A sample's paint does not fit another cage's UVs: show the checker instead.
-      if (scene.paint.sample && scene.paint.sample !== scene.cage.sample) scene.paint = this.checker;
+      const stays = before?.paint === scene.paint && haveSameUvs(before.cage, scene.cage);
+      if (scene.paint.sample && scene.paint.sample !== scene.cage.sample && !stays) scene.paint = this.checker;
       const { preset } = this.#rules;
       const same = scene.target === before?.target && scene.cage === before.cage && preset === before.projection.preset;
       if (!same) this.#tell('Transferring', 0.3);
@@ -376,7 +417,7 @@ export class Session extends Emitter<SessionEvents> {
     const started = performance.now();
     const classification = classify(this.#shown!.projection, {
       threshold: this.#rules.threshold,
-      locks: { segments: this.#locks },
+      ...this.choices,
     });
     return { classification, spent: performance.now() - started };
   }

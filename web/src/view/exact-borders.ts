@@ -12,6 +12,8 @@ interface Basis {
   projection: SplitProjection;
   /** One digit per segment, 1 if culled; all else follows from the projection. */
   culled: string;
+  /** The segments that are painted whatever hides them. */
+  always: string;
 }
 
 /**
@@ -41,12 +43,19 @@ export class ExactBorders {
   }
 
   #follow(classification: Classification): void {
-    const { shown, rules } = this.#session;
+    const { shown, rules, locks } = this.#session;
     const wanted =
       rules.borders === 'cut'
-        ? { projection: shown!.projection, culled: classification.segmentStats.map(({ culled }) => +culled).join('') }
+        ? {
+            projection: shown!.projection,
+            culled: classification.segmentStats.map(({ culled }) => +culled).join(''),
+            always: Object.keys(locks)
+              .filter((segment) => locks[Number(segment)] === 'always')
+              .join(),
+          }
         : undefined;
-    if (wanted?.projection === this.#basis?.projection && wanted?.culled === this.#basis?.culled) return;
+    const keys = ['projection', 'culled', 'always'] as const;
+    if (keys.every((key) => wanted?.[key] === this.#basis?.[key])) return;
     this.#clear();
     if (!wanted) return;
     this.#basis = wanted;
@@ -65,7 +74,7 @@ export class ExactBorders {
 
   async #cut({ zones, segmentStats }: Classification): Promise<void> {
     this.#due = undefined;
-    const { shown, rules } = this.#session;
+    const { shown, rules, choices } = this.#session;
     const { target, cage, projection } = shown!;
     this.#cutting = true;
     const done = this.#session.work('Cutting borders', 0.3, (why) => {
@@ -78,7 +87,7 @@ export class ExactBorders {
       const { preset, threshold } = rules;
       const cut = await this.#client.ask('cut', cage, target, {
         result: { zones, segments: projection.segments, segmentStats },
-        rules: { preset, threshold },
+        rules: { preset, threshold, ...choices },
       });
       await this.#viewer.setCut(cut);
       const more = (cut.indices.length - target.mesh.indices.length) / 3;

@@ -1,8 +1,22 @@
-import { MathUtils, type Spherical, Vector3 } from 'three';
+import { MathUtils, type Object3D, type PerspectiveCamera, type Spherical, Vector3 } from 'three';
+import type { Model } from '../scene/load-model';
+import type { Look } from './overlay';
 
 const kMargin = 1.03;
 const kMostPoints = 50_000; // more are sampled evenly
 const kTools = 70; // pixels at either side that tools cover
+
+/** Other models beside the one on the stage. The viewer moves all of them together. */
+export interface Crowd {
+  readonly object: Object3D;
+  /** Places them for a camera, in a row across its view. @param free The aspect of the free part of the view. */
+  face(camera: PerspectiveCamera): void;
+  show(look: Look): void;
+  /** Points around all, the model on the stage included, as seen from `theta`; the middle of all is the origin. */
+  extent(theta: number, aspect: number): Float32Array;
+  /** Where the middle of all is, from the middle of the model on the stage. */
+  middle(theta: number): Vector3;
+}
 
 /** The part of the view that no controls cover, in pixels. */
 export interface FreePart {
@@ -28,6 +42,18 @@ export function freePartOf(canvas: HTMLElement): FreePart {
   };
 }
 
+/** Where a model looks: radians around it. Figures of VRM 0 look along -z, all others along +z. */
+export const frontOf = ({ loaded }: Pick<Model, 'loaded'>): number =>
+  loaded.parser?.json?.extensions?.VRM ? Math.PI : 0;
+
+/** The width of what a model may fill. */
+const widthOf = ({ width }: FreePart): number => Math.max(width / 2, width - 2 * kTools);
+
+const heightOf = ({ height, top, bottom }: FreePart): number => Math.max(1, height - top - bottom);
+
+/** Width by height of what models may fill. */
+export const aspectOf = (free: FreePart): number => widthOf(free) / heightOf(free);
+
 /**
  * The distance at which a whole model is in the free part of the view.
  * @param fieldOfView Degrees, of the view's height.
@@ -36,17 +62,18 @@ export function freePartOf(canvas: HTMLElement): FreePart {
  * @param exact       Whether the model fills the part. Otherwise a compact model gets more room, so that it can be turned.
  */
 export function fittingDistance(
-  { width, height, top, bottom, fill }: FreePart,
+  part: FreePart,
   fieldOfView: number,
   points: ArrayLike<number>,
   angle: Spherical,
   exact: boolean,
 ): number {
+  const { width, height, fill } = part;
   const half = Math.tan(MathUtils.degToRad(fieldOfView / 2));
-  const free = Math.max(1, height - top - bottom);
+  const free = heightOf(part);
   // In a tall view the width limits the model.
   const loose = fill / Math.sin(Math.atan((half * Math.min(free, width)) / Math.max(1, height)));
-  const across = (half * Math.max(width / 2, width - 2 * kTools)) / Math.max(1, height);
+  const across = (half * widthOf(part)) / Math.max(1, height);
   const along = (half * free) / Math.max(1, height);
   const toCamera = new Vector3().setFromSphericalCoords(1, angle.phi, angle.theta);
   const right = new Vector3(Math.cos(angle.theta), 0, -Math.sin(angle.theta));

@@ -27,18 +27,58 @@ const lamp = (x: number, y: number, z: number, strength: number, sharpness: numb
   sharpness,
 });
 
-/** Windows at both sides, a long one above, and a rim light from behind. */
-const kLamps = [
-  lamp(-0.9, 0.55, 0.35, 2.7, 16),
-  lamp(-0.95, 0.5, -0.3, 2.3, 16),
-  lamp(0.95, 0.35, -0.1, 1.3, 12),
-  lamp(0, 0.35, 1, 0.9, 9),
-  lamp(0.25, 0.45, -1, 1.5, 20),
-  lamp(0.15, 1, 0.1, 2.4, 12),
-  lamp(-0.1, 1, -0.35, 1.9, 14),
-];
-/** Radiance of the room straight above and below; linear in between. */
-const kRoom = { ceiling: 0.23, floor: 0.13 };
+/** What lights the model. */
+interface Light {
+  lamps: readonly Lamp[];
+  /** Radiance of the room straight above and below; linear in between. */
+  room: { ceiling: number; floor: number };
+  /** Colour of lamps and room. */
+  tint: readonly [number, number, number];
+  /** The lamp that casts a shadow: its colour, and its strength as three.js has it. */
+  key: { color: number; strength: number };
+}
+
+/** The lights to choose from. */
+export const kLights = {
+  /** Windows at both sides, a long one above, and a rim light from behind. */
+  studio: {
+    lamps: [
+      lamp(-0.9, 0.55, 0.35, 2.7, 16),
+      lamp(-0.95, 0.5, -0.3, 2.3, 16),
+      lamp(0.95, 0.35, -0.1, 1.3, 12),
+      lamp(0, 0.35, 1, 0.9, 9),
+      lamp(0.25, 0.45, -1, 1.5, 20),
+      lamp(0.15, 1, 0.1, 2.4, 12),
+      lamp(-0.1, 1, -0.35, 1.9, 14),
+    ],
+    room: { ceiling: 0.23, floor: 0.13 },
+    tint: [1, 1, 1],
+    key: { color: 0xfff4e6, strength: 2.1 },
+  },
+  /** From everywhere, almost without shade: for looking at colours. */
+  soft: {
+    lamps: [lamp(0, 1, 0.4, 0.5, 1)],
+    room: { ceiling: 1, floor: 0.7 },
+    tint: [1, 1, 1],
+    key: { color: 0xffffff, strength: 0.35 },
+  },
+  /** The sun and a blue sky. */
+  day: {
+    lamps: [lamp(0, 1, 0, 0.5, 3)],
+    room: { ceiling: 0.75, floor: 0.3 },
+    tint: [0.82, 0.93, 1.12],
+    key: { color: 0xfff1d6, strength: 3.4 },
+  },
+  /** A low warm lamp, and a rim light in the dark. */
+  evening: {
+    lamps: [lamp(0.3, 0.4, -1, 2.2, 12), lamp(-1, 0.3, -0.4, 1.2, 10)],
+    room: { ceiling: 0.1, floor: 0.07 },
+    tint: [0.75, 0.85, 1.25],
+    key: { color: 0xffb468, strength: 1.9 },
+  },
+} as const satisfies Record<string, Light>;
+export type LightName = keyof typeof kLights;
+export const kLightNames = Object.keys(kLights) as LightName[];
 
 /** Texels per side of each level, by increasing roughness. Diffuse light needs at least 8. */
 const kSizes = [64, 32, 16, 8];
@@ -54,13 +94,13 @@ const kFaces: readonly [Vector3, Vector3, Vector3][] = [
 ];
 
 /**
- * Makes the light of a studio as a prefiltered environment map.
+ * Makes the light of lamps and a room as a prefiltered environment map.
  *
  * The lamps are spherical Gaussians and the room is almost uniform, so the light on a rough surface is a closed formula.
  * Rendering and prefiltering a scene took four seconds with software rendering.
  * Cost: about 5 ms, 260 KB.
  */
-export function studioLight(): Texture {
+export function environmentOf(given: Light): Texture {
   const last = kSizes.length - 1;
   const faces = kFaces.map((face) => ({
     width: kSizes[0]!,
@@ -69,7 +109,7 @@ export function studioLight(): Texture {
     mipmaps: kSizes.map((size, level) => ({
       width: size,
       height: size,
-      data: fill(face, size, 1 - Math.sqrt(1 - level / last)),
+      data: fill(given, face, size, 1 - Math.sqrt(1 - level / last)),
     })),
   }));
   // Not compressed, but the only cube map class of three.js with explicit mipmaps.
@@ -84,16 +124,18 @@ export function studioLight(): Texture {
 
 /** The texels of one face, 4 half floats each. @param roughness Of the surfaces they are for. */
 function fill(
+  given: Light,
   [middle, right, down]: readonly [Vector3, Vector3, Vector3],
   size: number,
   roughness: number,
 ): Uint16Array {
   const lobe = sharpnessOf(roughness);
-  const lamps = kLamps.map(({ direction, strength, sharpness }) => {
+  const lamps = given.lamps.map(({ direction, strength, sharpness }) => {
     // The convolution of two Gaussians is a wider and weaker Gaussian.
     const spread = (sharpness * lobe) / (sharpness + lobe);
     return { direction, sharpness: spread, strength: (strength * integralOf(sharpness)) / integralOf(spread) };
   });
+  const { ceiling, floor } = given.room;
   const slope = 1 / Math.tanh(lobe) - 1 / lobe; // attenuation of a linear gradient by the lobe
   const texels = new Uint16Array(4 * size * size).fill(DataUtils.toHalfFloat(1));
   const at = new Vector3();
@@ -105,10 +147,11 @@ function fill(
         .normalize();
       // three.js mirrors cube map lookups.
       at.x = -at.x;
-      let radiance = (kRoom.ceiling + kRoom.floor) / 2 + ((kRoom.ceiling - kRoom.floor) / 2) * slope * at.y;
+      let radiance = (ceiling + floor) / 2 + ((ceiling - floor) / 2) * slope * at.y;
       for (const { direction, sharpness, strength } of lamps)
         radiance += strength * Math.exp(sharpness * (at.dot(direction) - 1));
-      texels.fill(DataUtils.toHalfFloat(radiance), 4 * (row * size + column), 4 * (row * size + column) + 3);
+      const texel = 4 * (row * size + column);
+      given.tint.forEach((share, i) => (texels[texel + i] = DataUtils.toHalfFloat(share * radiance)));
     }
   }
   return texels;

@@ -35,7 +35,9 @@ export function setUpStageButtons(viewer: Viewer | undefined, history: History):
   const options = element('tool-options', HTMLElement);
   const follow = (): void => {
     element('quick-paint', HTMLElement).hidden = options.hidden;
-    element('quick-color', HTMLElement).hidden = element('brush-color', HTMLElement).closest('label')!.hidden;
+    const { hidden } = element('brush-color', HTMLElement).closest<HTMLElement>('[data-for]')!;
+    for (const id of ['quick-color', 'quick-pick']) element(id, HTMLElement).hidden = hidden;
+    element('quick-size', HTMLElement).hidden = element('brush-size', HTMLElement).closest('label')!.hidden;
   };
   new MutationObserver(follow).observe(options, { attributeFilter: ['hidden'], subtree: true });
 }

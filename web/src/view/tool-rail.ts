@@ -29,7 +29,7 @@ export class Tools {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === 'Escape') return this.choose(undefined);
       const found = this.#railTools.find(({ input }) => input.dataset.key === event.key.toLowerCase());
-      if (found) this.choose(found.offer);
+      if (found && !found.input.closest('label')!.hidden) this.choose(found.offer);
     });
   }
 
@@ -42,6 +42,14 @@ export class Tools {
   add(offer: RailTool): void {
     this.#add(offer, offer.title, offer.key, offer.icon);
     this.#rail.hidden = false;
+  }
+
+  /** Offers a tool or not. */
+  offer(offer: RailTool, on: boolean): void {
+    const found = this.#railTools.find((other) => other.offer === offer);
+    if (!found && on) this.add(offer);
+    else if (found) found.input.closest('label')!.hidden = !on;
+    if (!on && this.#chosen === offer) this.choose(undefined);
   }
 
   /** Chooses a tool; undefined turns the model. */

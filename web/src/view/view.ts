@@ -1,3 +1,4 @@
+import type { LightName } from './light';
 import type { Look } from './overlay';
 
 /** View modes; `compare` shows naive and result on either side of a divider. */
@@ -11,6 +12,9 @@ export interface View {
   split: number;
   paint: boolean;
   cage: boolean;
+  light: LightName;
+  /** What is behind the model, as #rrggbb; empty for the colour of the page. */
+  background: string;
 }
 
 /** Direction and distance of the camera. */
@@ -23,7 +27,14 @@ export interface Angle {
   near: number;
 }
 
-export const kFirstView: View = { mode: 'compare', split: 0.5, paint: true, cage: false };
+export const kFirstView: View = {
+  mode: 'compare',
+  split: 0.5,
+  paint: true,
+  cage: false,
+  light: 'studio',
+  background: '',
+};
 
 /** The overlay of each mode other than `compare`. */
 export const kLooks: Record<Exclude<Mode, 'compare'>, Look> = {

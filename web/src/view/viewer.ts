@@ -5,11 +5,15 @@ import {
   Box3,
   Group,
   MathUtils,
+  type Matrix4,
   Mesh,
   MOUSE,
   NeutralToneMapping,
+  type Object3D,
   PCFShadowMap,
   PerspectiveCamera,
+  type Ray,
+  Raycaster,
   Spherical,
   type Texture,
   TOUCH,
@@ -21,7 +25,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { disposeModel, type Model } from '../scene/load-model';
 import type { SplitProjection } from '../scene/transfer-messages';
 import { CageLines } from './cage-lines';
-import { type FreePart, fittingDistance, freePartOf } from './framing';
+import { aspectOf, type Crowd, type FreePart, fittingDistance, freePartOf, frontOf } from './framing';
 import { Highlight } from './highlight';
 import { type Look, Overlay } from './overlay';
 import { pick, type Spot } from './pick';
@@ -32,11 +36,27 @@ import { type Angle, kFirstView, kLooks, showsPaint, type View } from './view';
 const kFieldOfView = 28; // degrees
 const kHome = new Spherical(1, MathUtils.degToRad(80), MathUtils.degToRad(14));
 const kLevel = MathUtils.degToRad(84); // of the views from the front and from the side
+const kNear = 5; // of a camera that looks at one of several models
+const kFar = 12; // the greatest distance of the camera, from one model
+const kFarthest = 60; // and from several
+const kPortrait = 0.85; // the radius of what small pictures show, in radii of a model
 const kSway = MathUtils.degToRad(40); // amplitude of the idle rotation
 const kSwaySeconds = 16; // its period
 const kLongestFrame = 0.25; // seconds: limits the rotation per frame, so that a slow frame causes no jump
+const kTurnSeconds = 12; // of a whole turn of the turntable
+const kPicturePixels = 2; // of a saved picture, per pixel of the page
 const kKeyStep = MathUtils.degToRad(6);
 const kKeyNearer = 1 / 1.1; // of the distance
+
+/** Somebody to take a picture of. */
+export interface Sitter {
+  /** The model, scaled to a diagonal of 2 about the origin; undefined for the one on the stage. */
+  holder: Object3D | undefined;
+  overlay: Pick<Overlay, 'show'> | undefined;
+  /** Where it looks, as `frontOf`. */
+  front: number;
+  look: Look;
+}
 
 /** Shows a target with its paint and its cage, and lets the user turn it. Draws only when something changed. */
 export class Viewer {
@@ -46,7 +66,7 @@ export class Viewer {
   readonly marks = new Group();
   readonly #canvas: HTMLCanvasElement;
   readonly #studio: Studio;
-  readonly #camera = new PerspectiveCamera(kFieldOfView, 1, 0.05, 50);
+  readonly #camera = new PerspectiveCamera(kFieldOfView, 1, 0.05, 100);
   readonly #controls: OrbitControls;
   readonly #pointing: Pointing;
   #view = kFirstView;
@@ -61,6 +81,8 @@ export class Viewer {
   /** Seconds of idle rotation so far; undefined if it is off. */
   #swayed: number | undefined;
   #drawn = 0;
+  /** When the controls were updated last. */
+  #turned = 0;
   /** Whether the user moved the camera. */
   #moved = false;
   /** The distance at which the whole model is visible, for the current size. */
@@ -70,6 +92,9 @@ export class Viewer {
   #points: Float32Array = new Float32Array();
   /** Where the model looks: radians around it. */
   #front = 0;
+  /** Where the middle of the model is, but for the shift of the crowd. */
+  readonly #place0 = new Vector3();
+  #crowd: Crowd | undefined;
   #mixer: AnimationMixer | undefined;
   #played = 0;
 
@@ -97,9 +122,10 @@ export class Viewer {
     this.#controls.touches.TWO = TOUCH.DOLLY_ROTATE;
     this.#controls.enableDamping = true;
     this.#controls.dampingFactor = 0.12;
+    this.#controls.autoRotateSpeed = 60 / kTurnSeconds;
     this.#controls.enablePan = false;
     this.#controls.minDistance = 0.8;
-    this.#controls.maxDistance = 12;
+    this.#controls.maxDistance = kFar;
     this.#controls.maxPolarAngle = MathUtils.degToRad(150);
     this.#controls.addEventListener('change', () => this.redraw());
     this.#controls.addEventListener('start', () => this.#markMoved());
@@ -161,14 +187,31 @@ export class Viewer {
 
   /** The spot of the target at a position on the screen. @param x,y Client coordinates. */
   pick(x: number, y: number): Spot | undefined {
-    if (!this.#model) return undefined;
+    return this.#model && pick(this.#model.mesh, this.eyeRay(x, y));
+  }
+
+  /** The ray from the eye through a position on the screen, in the studio. @param x,y Client coordinates. */
+  eyeRay(x: number, y: number): Raycaster {
     const { left, top, width, height } = this.#canvas.getBoundingClientRect();
     this.#camera.updateMatrixWorld(); // it may have moved since the last frame
-    return pick(
-      this.#model.mesh,
-      this.#camera,
-      new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height),
-    );
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height), this.#camera);
+    return ray;
+  }
+
+  /** Where a position of the target is on the screen, in client coordinates. */
+  project(point: Vector3): { x: number; y: number } {
+    this.#camera.updateMatrixWorld();
+    this.marks.updateWorldMatrix(true, false);
+    const { x, y } = this.marks.localToWorld(point.clone()).project(this.#camera);
+    const { left, top, width, height } = this.#canvas.getBoundingClientRect();
+    return { x: left + ((1 + x) / 2) * width, y: top + ((1 - y) / 2) * height };
+  }
+
+  /** The ray through a position on the screen, in the target's space. @param x,y Client coordinates. */
+  rayAt(x: number, y: number): Ray {
+    this.marks.updateWorldMatrix(true, false);
+    return this.eyeRay(x, y).ray.applyMatrix4(this.marks.matrixWorld.clone().invert());
   }
 
   /** Screen pixels per unit of length of the target. @param seen A position in the studio, as in `Spot`. */
@@ -180,6 +223,21 @@ export class Viewer {
     );
   }
 
+  /** Where points of the target are seen, in pixels from the upper left corner of the view. */
+  toStage(points: readonly Vector3[]): { x: number; y: number }[] {
+    const { clientWidth, clientHeight } = this.#canvas;
+    this.#camera.updateMatrixWorld();
+    return points.map((point) => {
+      const { x, y } = this.#studio.stage.localToWorld(point.clone()).project(this.#camera);
+      return { x: ((x + 1) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
+    });
+  }
+
+  /** Whether a surface of the target faces the camera. */
+  faces(point: Vector3, normal: Vector3): boolean {
+    return this.#studio.stage.worldToLocal(this.#camera.position.clone()).sub(point).dot(normal) > 0;
+  }
+
   /** The direction of the view's upper edge, in the target's space. */
   get up(): Vector3 {
     return new Vector3().setFromMatrixColumn(this.#camera.matrixWorld, 1);
@@ -189,6 +247,63 @@ export class Viewer {
   get center(): { x: number; y: number } {
     const { left, top, width, height } = this.#canvas.getBoundingClientRect();
     return { x: left + width / 2, y: top + (height + this.#free.top - this.#free.bottom) / 2 };
+  }
+
+  /** Shows other models beside the one on the stage; undefined shows it alone. Call it again when the crowd has changed. */
+  setCrowd(crowd: Crowd | undefined): void {
+    const isOther = crowd !== this.#crowd;
+    if (isOther) this.#crowd?.object.removeFromParent();
+    this.#crowd = crowd;
+    if (crowd) this.#studio.scene.add(crowd.object);
+    this.#studio.showFloor(!crowd);
+    this.#controls.maxDistance = crowd ? kFarthest : kFar;
+    this.#far = this.#fullDistance;
+    if (isOther || !this.#moved) this.home();
+    else this.redraw();
+  }
+
+  /** Draws a small picture of each of some models, alone, and then all as before. @returns Addresses of the pictures. */
+  takePictures(sitters: readonly Sitter[], pixels: number): string[] {
+    for (const prepare of this.#preparations) prepare();
+    const { stage } = this.#studio;
+    const { clientWidth, clientHeight } = this.#canvas;
+    const ratio = this.renderer.getPixelRatio();
+    if (this.#crowd) this.#crowd.object.visible = false;
+    this.#cage?.show(false);
+    this.#studio.showFloor(false);
+    stage.position.copy(this.#place0);
+    this.renderer.setScissorTest(false);
+    this.renderer.setViewport(0, 0, pixels / ratio, pixels / ratio);
+    const pictures = sitters.map((sitter) => this.#takePicture(sitter, pixels));
+    this.renderer.setViewport(0, 0, clientWidth, clientHeight);
+    stage.visible = true;
+    if (this.#crowd) this.#crowd.object.visible = true;
+    this.#studio.showFloor(!this.#crowd);
+    this.#draw(); // now, or what was drawn for the pictures would be seen
+    return pictures;
+  }
+
+  #takePicture({ holder, overlay = this.#overlay, front, look }: Sitter, pixels: number): string {
+    const { stage, scene } = this.#studio;
+    const camera = new PerspectiveCamera(kFieldOfView, 1, 0.05, 50);
+    const distance = kPortrait / Math.sin(MathUtils.degToRad(kFieldOfView / 2));
+    camera.position.setFromSphericalCoords(distance, kHome.phi, front + kHome.theta);
+    camera.lookAt(0, 0, 0);
+    stage.visible = !holder;
+    const parent = holder?.parent;
+    if (holder) scene.add(holder);
+    holder?.position.set(0, 0, 0);
+    holder?.rotation.set(0, 0, 0);
+    overlay?.show(look);
+    this.#studio.follow(camera);
+    this.renderer.render(scene, camera);
+    holder?.removeFromParent();
+    if (holder) parent?.add(holder);
+    const picture = document.createElement('canvas');
+    picture.width = picture.height = pixels;
+    const top = this.#canvas.height - pixels;
+    picture.getContext('2d')!.drawImage(this.#canvas, 0, top, pixels, pixels, 0, 0, pixels, pixels);
+    return picture.toDataURL();
   }
 
   /** Calls `prepare` before each frame, to update textures. */
@@ -219,6 +334,14 @@ export class Viewer {
     this.redraw();
   }
 
+  /** Shows the cage moved; it stays where it is. */
+  moveCage(matrix: Matrix4): void {
+    if (!this.#cage) return;
+    this.#cage.object.matrixAutoUpdate = false;
+    this.#cage.object.matrix.copy(matrix);
+    this.redraw();
+  }
+
   /** Sets the paint. If it is a render target's texture, call `redraw` after it changed. */
   setPaint(paint: Texture): void {
     this.#paint = paint;
@@ -240,7 +363,28 @@ export class Viewer {
 
   setView(view: View): void {
     this.#view = view;
+    this.#studio.setLight(view.light);
+    this.#studio.setBackground(view.background);
     this.redraw();
+  }
+
+  /** Turns the model round and round, but for while the user turns it. */
+  set turntable(on: boolean) {
+    this.sway(false);
+    this.#controls.autoRotate = on;
+    this.redraw();
+  }
+
+  /** What is seen, without controls, as a PNG. @throws Error if the browser cannot encode it. */
+  async picture(): Promise<Blob> {
+    const ratio = this.renderer.getPixelRatio();
+    this.renderer.setPixelRatio(Math.max(ratio, kPicturePixels));
+    this.#draw();
+    const blob = await new Promise<Blob | null>((done) => this.#canvas.toBlob(done));
+    this.renderer.setPixelRatio(ratio);
+    this.#draw();
+    if (!blob) throw new Error('the browser cannot encode the picture');
+    return blob;
   }
 
   /** Switches the idle rotation, which ends when the user moves the camera. */
@@ -261,7 +405,7 @@ export class Viewer {
     this.#markMoved();
     const angle = new Spherical().setFromVector3(this.#camera.position);
     if (side !== 'fit') angle.set(1, kLevel, this.#front + (side === 'side' ? Math.PI / 2 : 0));
-    const radius = fittingDistance(this.#free, kFieldOfView, this.#points, angle, true);
+    const radius = fittingDistance(this.#free, kFieldOfView, this.#pointsFrom(angle), angle, true);
     this.#look({ phi: angle.phi, theta: angle.theta, radius });
   }
 
@@ -281,7 +425,26 @@ export class Viewer {
   /** The distance at which the whole model is visible. */
   get #fullDistance(): number {
     const home = new Spherical(1, kHome.phi, this.#front + kHome.theta);
-    return fittingDistance(this.#free, kFieldOfView, this.#points, home, false);
+    return fittingDistance(this.#free, kFieldOfView, this.#pointsFrom(home), home, this.#crowd !== undefined);
+  }
+
+  /** What is to be in the view. */
+  #pointsFrom({ theta }: Spherical): Float32Array {
+    return this.#crowd?.extent(theta, aspectOf(this.#free)) ?? this.#points;
+  }
+
+  /** Looks at the middle of a crowd from afar, and at the model on the stage from near. */
+  #shift(): void {
+    const { stage } = this.#studio;
+    stage.position.copy(this.#place0);
+    if (!this.#crowd) return;
+    const { radius, theta } = new Spherical().setFromVector3(this.#camera.position);
+    const near = Math.min(kNear, this.#far / 2);
+    const share = MathUtils.smoothstep(radius, near, 0.9 * this.#far);
+    const middle = this.#crowd.middle(theta).multiplyScalar(-share);
+    stage.position.add(middle);
+    this.#crowd.object.position.copy(middle);
+    this.#crowd.face(this.#camera);
   }
 
   /** The user moves the camera from now on. */
@@ -302,15 +465,15 @@ export class Viewer {
     const size = box.getSize(new Vector3());
     const scale = 2 / Math.max(size.length(), Number.MIN_VALUE);
     stage.scale.setScalar(scale);
-    box.getCenter(stage.position).multiplyScalar(-scale);
+    stage.position.copy(box.getCenter(this.#place0).multiplyScalar(-scale));
     stage.add(model.scene);
     model.scene.traverse((object) => {
       if (object instanceof Mesh) object.castShadow = object.receiveShadow = true;
     });
     this.#studio.setFloor((-size.y * scale) / 2);
     this.#points = model.mesh.positions.map((value, i) => scale * value + stage.position.getComponent(i % 3));
-    // Figures of VRM 0 look along -z, all others along +z.
-    this.#front = model.loaded.parser?.json?.extensions?.VRM ? Math.PI : 0;
+    this.#front = frontOf(model);
+    if (this.#crowd) return; // which is arranged anew next
     this.#far = this.#fullDistance;
     this.home();
   }
@@ -413,7 +576,8 @@ export class Viewer {
       this.redraw();
     }
     // Damping goes on for a few frames after a drag; each change requests the next frame.
-    this.#controls.update();
+    this.#controls.update(this.#controls.autoRotate ? Math.min(kLongestFrame, (now - this.#turned) / 1000) : null);
+    this.#turned = now;
     if (this.#stale) this.#draw();
   }
 
@@ -422,12 +586,14 @@ export class Viewer {
     if (!this.#model) return; // an empty scene is not worth drawing
     for (const prepare of this.#preparations) prepare();
     const { mode, split, paint, cage } = this.#view;
-    this.#studio.follow(this.#camera);
+    this.#shift();
+    this.#studio.follow(this.#camera, this.#crowd?.object.position);
     this.#cage?.show(cage);
     const draw = (look: Look, from: number, to: number): void => {
       const { clientWidth: width, clientHeight: height } = this.#canvas;
       this.renderer.setScissor(from * width, 0, (to - from) * width, height);
       this.#overlay?.show(look);
+      this.#crowd?.show(look);
       this.renderer.render(this.#studio.scene, this.#camera);
     };
     // The light moved with the camera. Both sides of the divider share its shadow.

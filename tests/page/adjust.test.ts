@@ -1,0 +1,111 @@
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { faults } from '../support/axe';
+import { asset, dragBy, head, ready, savedCage } from '../support/cages';
+import { difference, look, modelArea } from '../support/picture';
+import { saved, validModel } from '../support/saved';
+import { drop, glb, Site, setThreshold, shownCounts, shownParts } from '../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+test('a part that is kept says why the rest stays bare, and can be painted anyway; the slider has marks where parts change', async () => {
+  const { page, complaints } = await site.visit();
+  await page.locator('#parts summary').click();
+  const tongue = page.getByRole('combobox', { name: 'Override for tongue' });
+  await tongue.selectOption('keep');
+  const note = page.getByTestId('keep-note');
+  assert.match((await note.textContent())!, /“tongue” is kept: .* The rest stays bare: .*“Paint anyway” paints it too/);
+  const painted = (await shownCounts(page)).cosmetic;
+  const { points } = (await shownParts(page)).find(({ name }) => name === 'tongue')!;
+  await tongue.selectOption('always');
+  assert.ok(await note.isHidden());
+  const anyway = (await shownCounts(page)).cosmetic;
+  assert.ok(anyway > painted + points / 2, `${painted} points, then ${anyway}; the tongue has ${points}`);
+  const document = await validModel((await saved(page, 'export-glb')).bytes);
+  const node = document
+    .getRoot()
+    .listNodes()
+    .find((one) => one.getName() === 'tongue')!;
+  const zones = node.getMesh()!.listPrimitives()[0]!.getAttribute('_NCZ')!.getArray()!;
+  assert.ok(
+    [...zones].every((zone: number) => zone === 0),
+    'the saved model has the same',
+  );
+  await tongue.selectOption('auto');
+
+  const marks = page.getByTestId('threshold-marks').locator('i');
+  await marks.first().waitFor({ state: 'attached' });
+  const at = await marks.evaluateAll((all) =>
+    all.map((mark) => [parseFloat((mark as HTMLElement).style.left), (mark as HTMLElement).title] as const),
+  );
+  const [percent, title] = at[0]!;
+  const verdictAt = async (threshold: number) => {
+    await setThreshold(page, threshold);
+    return (await shownParts(page)).filter(({ name }) => name.startsWith(title)).map(({ culled }) => culled);
+  };
+  assert.notDeepEqual(await verdictAt((percent - 1) / 100), await verdictAt(percent / 100), `${title} at ${percent} %`);
+  assert.deepEqual(await faults(page), []);
+  assert.deepEqual(complaints, []);
+});
+
+test('the cage can be moved, turned and scaled by handles and keys, its corners moved, its holes opened and closed', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head(), glb('bust-cage.glb', asset('human', 'cage.glb'))]);
+  await ready(page);
+  const start = await shownCounts(page);
+  await page.getByTestId('adjust-cage').click();
+  const handle = (name: string) => page.locator(`[data-handle=${name}]`);
+  await handle('x').waitFor();
+  assert.deepEqual(await faults(page), []);
+  const did = async (what: string) => {
+    await page.locator(`#undo[title="Undo: ${what}"]`).waitFor();
+    await ready(page);
+  };
+  const undone = async () => {
+    await page.getByTestId('undo').click();
+    await ready(page);
+    assert.deepEqual(await shownCounts(page), start);
+  };
+  for (let i = 0; i < 9; i++) await handle('x').press('ArrowRight');
+  await did('moving the cage');
+  assert.notDeepEqual(await shownCounts(page), start, 'moved by keys');
+  await undone();
+  for (const [mode, name] of [
+    ['turn', 'x'],
+    ['scale', 'y'],
+  ] as const) {
+    await page.locator(`#adjust input[value=${mode}]`).check({ force: true });
+    await dragBy(page, handle(name), 10, -30);
+    await did('moving the cage');
+    assert.notDeepEqual(await shownCounts(page), start, mode);
+    await undone();
+  }
+  await page.locator('#adjust input[value=corner]').check({ force: true });
+  await page.locator('#view').press('Enter');
+  await handle('corner').waitFor();
+  assert.deepEqual(await faults(page), []);
+  const area = await modelArea(page);
+  const bare = await look(page, area);
+  await dragBy(page, handle('corner'), 40, 60);
+  await did('moving a corner');
+  assert.ok(difference(bare, await look(page, area)) > 0.0005);
+  await undone();
+
+  await page.locator('#adjust input[value=hole]').check({ force: true });
+  const { indices } = JSON.parse(
+    (await page.locator('#sizes').textContent())!.replace(/.*cage (\d+).*/, '{"indices":$1}'),
+  );
+  await page.locator('#view').press('Enter');
+  await did('opening a hole');
+  assert.match((await page.locator('#sizes').textContent())!, new RegExp(`cage ${indices - 1} `));
+  assert.ok(await page.getByTestId('put-away').isHidden());
+  await page.locator('#view').press('Enter');
+  await did('closing a hole');
+  assert.deepEqual(await shownCounts(page), start, 'the hole is closed');
+  await savedCage(page);
+  await page.locator('#adjust-done').click();
+  assert.ok(await page.getByTestId('adjust').isHidden());
+  assert.deepEqual(complaints, []);
+});

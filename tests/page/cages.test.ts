@@ -1,0 +1,79 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { PNG } from 'pngjs';
+import { faults } from '../support/axe';
+import { head, middleOf, ready, worked } from '../support/cages';
+import { validModel } from '../support/saved';
+import { drop, Site, shownParts } from '../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+test('a cage is made with the chosen number of triangles and parts, again when these change', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await page.getByTestId('make-options').locator('summary').click();
+  const parts = page.locator('#make-parts label');
+  await parts.first().waitFor();
+  assert.deepEqual(
+    await parts.evaluateAll((rows) => rows.map((row) => [row.textContent, row.querySelector('input')!.checked])),
+    [
+      ['skin', true],
+      ['l-eye', false],
+      ['r-eye', false],
+      ['upper-teeth', false],
+      ['lower-teeth', false],
+      ['tongue', false],
+    ],
+  );
+  assert.deepEqual(await faults(page), []);
+  await page.locator('#make-triangles').fill('5');
+  assert.match((await page.locator('#make-triangles-value').textContent())!, /^about 1\d0$/);
+  await page.locator('#make-offset').fill('20');
+  await page.getByTestId('make-cage').click();
+  const note = page.locator('#cage-note', { hasText: 'was made' });
+  await note.waitFor();
+  await ready(page);
+  const first = Number(/\d+/.exec((await note.textContent())!)![0]);
+  const cover = async () => parseInt((await shownParts(page)).find(({ name }) => /^l-eye/.test(name))!.covered, 10);
+  const before = await cover();
+  // The eyes are to be painted: no holes are cut for them.
+  await page.getByRole('checkbox', { name: 'l-eye' }).check();
+  await page.getByRole('checkbox', { name: 'r-eye' }).check();
+  await worked(page);
+  assert.ok(first < 300, `${first} triangles`);
+  const now = await cover();
+  assert.ok(before < 50 && now > 90, `the eye was covered to ${before} %, and is to ${now} %`);
+  assert.deepEqual(complaints, []);
+});
+
+test('a model dropped alone: a cage is made, it is painted, and the model is saved with the paint', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await page.getByTestId('stage-remedy').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  assert.deepEqual(await faults(page), []);
+  await page.locator('#tools input[data-key=b]').check({ force: true });
+  await page.getByTestId('brush-color').fill('#12ff34');
+  const { x, y } = await middleOf(page);
+  await page.mouse.move(x - 20, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 20, y + 10, { steps: 3 });
+  await page.mouse.up();
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('stage-save').click()]);
+  const document = await validModel(readFileSync(await download.path()));
+  const overlay = document
+    .getRoot()
+    .listMaterials()
+    .find((material) => material.getName() === 'Cagecast overlay')!;
+  const { data } = PNG.sync.read(Buffer.from(overlay.getBaseColorTexture()!.getImage()!));
+  let painted = 0;
+  for (let i = 0; i < data.length; i += 4) if (data[i]! < 40 && data[i + 1]! > 240 && data[i + 2]! < 70) painted++;
+  assert.ok(painted > 100, `${painted} texels have the colour of the brush`);
+  assert.deepEqual(complaints, []);
+});

@@ -1,0 +1,44 @@
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { faults } from '../support/axe';
+import { Site, settled } from '../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+/** A script that makes the first load of a tab a first visit. */
+const kFirstVisit = `if (!sessionStorage.begun) { sessionStorage.begun = 1; localStorage.removeItem('cagecast-guide') }`;
+const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true };
+
+test('a first visit is offered a way of four steps, which the keyboard can walk, and which is not offered again', async () => {
+  const { page, complaints } = await site.visit(kPhone, kFirstVisit);
+  const guide = page.getByTestId('guide');
+  await guide.waitFor();
+  assert.equal(await page.evaluate(() => document.activeElement?.tagName), 'BODY', 'it takes no focus by itself');
+  assert.deepEqual(await faults(page), []);
+  await guide.getByRole('button', { name: 'Show me' }).click();
+  const before = await page.locator('#view-mode input:checked').inputValue();
+  for (const [step, seen] of ['divider', 'show-cage', 'tools', 'stage-save'].entries()) {
+    assert.match((await guide.textContent())!, new RegExp(`Step ${step + 1} of 4`));
+    const marked = page.locator('.guided').last();
+    assert.ok(await marked.isVisible(), seen);
+    assert.deepEqual(await faults(page), []);
+    assert.equal(await page.locator('#show-cage').isChecked(), step === 1);
+    await page.keyboard.press('Enter');
+  }
+  await guide.waitFor({ state: 'detached' });
+  assert.equal(await page.locator('#view-mode input:checked').inputValue(), before, 'the view is as it was');
+  assert.equal(await page.locator('.guided').count(), 0);
+
+  await page.reload();
+  await settled(page);
+  await page.waitForTimeout(200);
+  assert.equal(await guide.count(), 0);
+  await page.locator('#about summary').click();
+  await page.getByTestId('show-guide').click();
+  assert.match((await guide.textContent())!, /Step 1 of 4/);
+  await page.keyboard.press('Escape');
+  await guide.waitFor({ state: 'detached' });
+  assert.deepEqual(complaints, []);
+});

@@ -1,0 +1,258 @@
+import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { faults } from '../support/axe';
+import { filled, image, names, rows, savedTexture } from '../support/layers';
+import { modelArea } from '../support/picture';
+import { saved } from '../support/saved';
+import { drop, glb, inRepository, Site, settled, shownCounts, shownError, shownParts } from '../support/site';
+
+const asset = (name: string): Buffer => readFileSync(inRepository('build/assets/human-misaligned', name));
+const project = (name: string, buffer: Buffer) => ({ name, mimeType: '', buffer });
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+/** All that somebody would miss. */
+async function state(page: Page) {
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.locator('#live[aria-busy=true]').waitFor({ state: 'detached' });
+  const texture = await savedTexture(page);
+  const value = (id: string): Promise<string> => page.getByTestId(id).inputValue();
+  return {
+    files: await page.locator('.files .name').allTextContents(),
+    counts: await shownCounts(page),
+    overrides: (await shownParts(page)).flatMap(({ name, lock }) => (lock === 'auto' ? [] : [[name, lock]])),
+    layers: await names(page),
+    opacities: await rows(page)
+      .locator('[name=opacity]')
+      .evaluateAll((all) => all.map((one) => (one as HTMLInputElement).value)),
+    painted: filled(texture),
+    texture: createHash('sha256').update(texture.data).digest('hex'),
+    threshold: await value('threshold'),
+    preset: await value('preset'),
+    amount: await value('amount'),
+    color: await value('brush-color'),
+    mode: await page.locator('#view-mode :checked').inputValue(),
+    light: await value('light'),
+    background: await page.getByLabel('Own background').isChecked(),
+  };
+}
+
+/** Whether the page would ask before it is left. */
+const warns = (page: Page): Promise<boolean> =>
+  page.evaluate(() => !dispatchEvent(new Event('beforeunload', { cancelable: true })));
+
+/** Waits until the browser keeps everything; not after `state`, which saves the texture: then the page does not ask. */
+const kept = (page: Page): Promise<unknown> =>
+  page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
+
+async function stroke(page: Page): Promise<void> {
+  await page.locator('#tools input[data-key=b]').check({ force: true });
+  await page.getByTestId('brush-color').fill('#00c040');
+  const { x, y, width, height } = await modelArea(page);
+  await page.mouse.move(x + 0.5 * width, y + 0.4 * height);
+  await page.mouse.down();
+  await page.mouse.move(x + 0.55 * width, y + 0.5 * height, { steps: 4 });
+  await page.mouse.up();
+}
+
+/** Opens files and changes everything that can be changed. */
+async function work(page: Page): Promise<void> {
+  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await drop(page, [image('stripes.png', 64, (x) => [4 * x, 20, 200, x % 8 < 4 ? 255 : 90])]);
+  await rows(page).filter({ hasText: 'stripes.png' }).waitFor();
+  await rows(page).filter({ hasText: 'stripes.png' }).locator('[name=opacity]').fill('60');
+  await stroke(page);
+  await page.locator('#parts summary').click();
+  const part = (await shownParts(page))[0]!.name;
+  await page.getByLabel(`Override for ${part}`, { exact: true }).selectOption('exclude');
+  await page.getByTestId('threshold').fill('0.7');
+  await page.getByTestId('preset').selectOption('paper');
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.getByTestId('amount').fill('0.4');
+  await page.getByTestId('light').selectOption('soft');
+  await page.getByLabel('Own background').check();
+}
+
+test('a reload in the middle of a painting brings everything back, files included; starting over can be taken back', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
+  await work(page);
+  await kept(page);
+  const before = await state(page);
+  assert.ok(before.painted > 0 && before.layers.includes('Painting 1') && before.overrides.length === 1);
+  await page.reload();
+  const line = page.getByTestId('kept');
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.deepEqual(await state(page), before);
+  assert.equal(await page.getByTestId('undo').isDisabled(), true);
+  assert.deepEqual(await faults(page), []);
+
+  // What is added to it is kept too.
+  await stroke(page);
+  await kept(page);
+  const more = await state(page);
+  const button = page.getByRole('button', { name: 'Start over' });
+  await button.focus();
+  await Promise.all([page.waitForEvent('load'), page.keyboard.press('Enter')]);
+  await line.filter({ hasText: 'put aside' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.deepEqual((await names(page)).length, 1, 'the layers of the sample');
+  assert.equal(await page.getByTestId('threshold').inputValue(), '0.5');
+  assert.deepEqual(await faults(page), []);
+  await page.getByRole('button', { name: 'Bring it back' }).click();
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.deepEqual(await state(page), more);
+
+  // Another tab does not take it away from this one.
+  const other = await page.context().newPage();
+  await other.goto(site.url);
+  assert.equal(await settled(other), 'ready', await shownError(other));
+  assert.ok(await other.getByTestId('kept').isHidden());
+  await other.close();
+  assert.deepEqual(complaints, []);
+});
+
+test('saved state that is broken, old or crashes the page does not stop the page from opening', async () => {
+  const { page } = await site.visit({ viewport: { width: 900, height: 600 } });
+  await page.getByTestId('add-painting').click();
+  await stroke(page);
+  await kept(page);
+  const before = await state(page);
+  const line = page.getByTestId('kept');
+
+  /** Changes the stored work by a function's text, and reloads the page. @returns What it says then. */
+  const reloaded = async (change: string): Promise<string> => {
+    await page.evaluate(
+      `new Promise((done, fail) => {
+        const request = indexedDB.open('cagecast');
+        request.onsuccess = () => {
+          const transaction = request.result.transaction(['works'], 'readwrite');
+          const works = transaction.objectStore('works');
+          works.getAll().onsuccess = ({ target: { result: [work, ...others] } }) => {
+            for (const { slot } of others) works.delete(slot);
+            sessionStorage.setItem('cagecast-slot', work.slot);
+            (${change})(work);
+            works.put(work);
+          };
+          transaction.oncomplete = () => { request.result.close(); done(); };
+          transaction.onabort = fail;
+        };
+      })`,
+    );
+    await page.reload();
+    await line.locator('p', { hasText: /./ }).waitFor();
+    await page.waitForFunction(
+      () => document.querySelector('#target-name')!.textContent !== 'none yet' && document.querySelector('#view-mode'),
+    );
+    return (await line.locator('p').textContent())!;
+  };
+  const copy = await page.evaluate<unknown>(
+    `new Promise((done) => { indexedDB.open('cagecast').onsuccess = ({ target: { result } }) => { result.transaction('works').objectStore('works').getAll().onsuccess = (event) => { result.close(); done(event.target.result[0]); }; }; })`,
+  );
+  const mend = `Object.assign(work, ${JSON.stringify(copy)})`;
+  for (const [change, message] of [
+    ['(work) => { work.version = 99; }', /could not be brought back: it was saved by another version/],
+    [`(work) => { ${mend}; work.parts.models = 7; }`, /could not be brought back: the project is damaged/],
+    [
+      `(work) => { ${mend}; work.parts.layers.layers[0].sheet.file = 'gone'; work.parts.layers.layers[0].sheet.paint = ''; }`,
+      /could not be brought back: the project is damaged: a file is missing/,
+    ],
+  ] as const) {
+    assert.match(await reloaded(change), message);
+    assert.ok((await shownCounts(page)).cosmetic > 0, 'a sample is open');
+  }
+  // It took the page down: it is brought back only when asked for.
+  await page.evaluate(() => localStorage.setItem('cagecast-work', 'opening'));
+  assert.match(await reloaded(`(work) => { ${mend}; }`), /did not get to show it/);
+  await page.getByRole('button', { name: 'Bring it back' }).click();
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.deepEqual(await state(page), before);
+});
+
+test('a project file holds everything; a damaged or hostile one is told in one sentence and changes nothing', async () => {
+  const first = await site.visit({ viewport: { width: 900, height: 600 } });
+  await work(first.page);
+  const before = await state(first.page);
+  const { name, bytes } = await saved(first.page, 'save-project');
+  assert.equal(name, 'bust.cagecast');
+
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
+  await page.getByTestId('threshold').fill('0.35');
+  const untouched = await state(page);
+  const length = bytes.readUInt32LE(12);
+  const text = bytes.subarray(16, 16 + length).toString();
+  /** The project with another text. */
+  const edited = (change: (text: string) => string): Buffer => {
+    const changed = Buffer.from(change(text));
+    const head = Buffer.from(bytes.subarray(0, 16));
+    head.writeUInt32LE(changed.length, 12);
+    return Buffer.concat([head, changed, bytes.subarray(16 + length)]);
+  };
+  const newer = Buffer.from(bytes);
+  newer.writeUInt32LE(9, 8);
+  const lying = Buffer.from(bytes);
+  lying.writeUInt32LE(2 ** 32 - 1, 12);
+  for (const [damaged, message] of [
+    [Buffer.from('not a project'), /^x\.cagecast: this is not a Cagecast project$/],
+    [Buffer.alloc(0), /^x\.cagecast: this is not a Cagecast project$/],
+    [bytes.subarray(0, 200), /^x\.cagecast: the project is damaged: its text cannot be read$/],
+    [bytes.subarray(0, -100), /^x\.cagecast: the project is damaged: it ends too early$/],
+    [newer, /^x\.cagecast: this project was saved by a newer version/],
+    [lying, /^x\.cagecast: the project is damaged: its text is too long$/],
+    [edited((all) => all.replace('"size":1024', '"size":2048')), /^x\.cagecast: a painting is incomplete$/],
+    [edited((all) => all.replace('"size":1024', '"size":99999')), /^x\.cagecast: .*a painting has an unknown size$/],
+    [edited(() => '{"parts":{"models":{}},"files":[]}'), /^x\.cagecast: the project is damaged: it has no model$/],
+    [edited(() => '[[[['), /^x\.cagecast: the project is damaged: its text cannot be read$/],
+    [
+      Buffer.concat([bytes.subarray(0, 16 + length), Buffer.alloc(bytes.length - 16 - length, 1)]),
+      /^x\.cagecast: bust\.glb: /,
+    ],
+  ] as const) {
+    await drop(page, [project('x.cagecast', damaged)]);
+    await page.locator('#error', { hasText: 'x.cagecast' }).waitFor();
+    assert.match(await shownError(page), message);
+    await page.locator('#alert-close').click();
+    assert.equal(await page.getByTestId('status').textContent(), 'error');
+    const now = await page.evaluate(() => document.querySelector('#target-name')!.textContent);
+    assert.equal(now, untouched.files[0]);
+  }
+  await page.getByTestId('preset').selectOption('paper');
+  assert.equal(await settled(page), 'ready');
+  await page.getByTestId('preset').selectOption('default');
+  assert.deepEqual(await state(page), untouched);
+
+  await drop(page, [project(name, bytes)]);
+  await page.waitForFunction(() => document.querySelector('#target-name')!.textContent === 'bust.glb');
+  assert.deepEqual(await state(page), before);
+  assert.deepEqual(await faults(page), []);
+  assert.deepEqual(complaints, []);
+});
+
+test('where there is no room, that is said once, and leaving asks', async () => {
+  const { page } = await site.visit(
+    { viewport: { width: 900, height: 600 } },
+    `IDBObjectStore.prototype.put = () => { throw new DOMException('full', 'QuotaExceededError'); };`,
+  );
+  assert.equal(await warns(page), false, 'there is nothing to lose');
+  await page.getByTestId('add-painting').click();
+  await page.locator('#error', { hasText: 'there is no room left' }).waitFor();
+  assert.equal(await warns(page), true);
+  await page.locator('#alert-close').click();
+  await page.getByTestId('add-painting').click();
+  await page.waitForTimeout(1500); // longer than the page waits before it tries again
+  assert.equal(await shownError(page), '');
+  assert.match((await page.getByTestId('kept-note').textContent())!, /is not kept on this device/);
+  await saved(page, 'save-project');
+  assert.equal(await warns(page), false, 'it is in a file');
+
+  // A link has none of it, and says so before it is copied.
+  await page
+    .locator('#link-hint', { hasText: 'leaves out Painting 1 and Painting 2: your own paints stay on this device' })
+    .waitFor();
+  assert.match((await page.getByTestId('share-link').textContent())!, /without your layers/);
+});

@@ -1,0 +1,97 @@
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { faults } from '../support/axe';
+import { drag, fitted, head, placeOf, ready, savedCage, worked } from '../support/cages';
+import { difference, look, modelArea } from '../support/picture';
+import { drop, Site } from '../support/site';
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit follows, and the cage is saved with them', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  assert.ok(await page.getByTestId('landmarks').isHidden());
+  await fitted(page);
+  const found = await savedCage(page);
+  assert.deepEqual(await faults(page), []);
+
+  await page.locator('#view-mode input[value=distance]').check({ force: true });
+  const area = await modelArea(page);
+  const picture = await look(page, area);
+  const [left, right] = [await placeOf(page, 'mouth_corner_left'), await placeOf(page, 'mouth_corner_right')];
+  await drag(page, 'mouth_corner_left', 0, 12);
+  await ready(page);
+  const label = (name: string) => page.locator(`[data-landmark=${name}]`).getAttribute('aria-label');
+  const lower = await placeOf(page, 'mouth_corner_left');
+  assert.ok(Math.abs(lower.y - left.y - 12) < 4, `it stays where it was dropped: from ${left.y} to ${lower.y}`);
+  assert.ok((await placeOf(page, 'mouth_corner_right')).y > right.y + 8, 'as does the other of the pair');
+  assert.deepEqual(await Promise.all(['mouth_corner_left', 'mouth_corner_right', 'nose_tip'].map(label)), [
+    'left mouth corner, placed by you',
+    'right mouth corner, placed by you',
+    'nose tip, found',
+  ]);
+  assert.ok(difference(picture, await look(page, area)) > 0.001, 'the cage has changed');
+  const moved = await savedCage(page);
+  assert.notDeepEqual(moved.landmarks.mouth_corner_right, found.landmarks.mouth_corner_right);
+
+  // By the keyboard, and without the other of the pair; what was not found is asked for.
+  await page.locator('#landmark-mirror').uncheck();
+  await page.getByRole('button', { name: 'Side', exact: true }).click();
+  await page.locator('[data-landmark=mouth_corner_left]').press('ArrowUp');
+  await page.locator('#landmark-place').click();
+  assert.match((await page.getByTestId('landmark-ask').textContent())!, /^Click on the model: nape\./);
+  assert.deepEqual(await faults(page), []);
+  const [ear, back, jaw] = [
+    await placeOf(page, 'ear_lobe_left'),
+    await placeOf(page, 'occiput'),
+    await placeOf(page, 'menton'),
+  ];
+  await page.mouse.click(ear.x + 0.4 * (back.x - ear.x), jaw.y);
+  assert.ok(await page.getByTestId('landmark-ask').isHidden());
+  await ready(page);
+  const last = await savedCage(page);
+  assert.ok(last.landmarks.nape);
+  assert.notDeepEqual(last.landmarks.mouth_corner_left, moved.landmarks.mouth_corner_left);
+  assert.deepEqual(last.landmarks.mouth_corner_right, moved.landmarks.mouth_corner_right);
+  await page.locator('#landmark-reset').click();
+  await ready(page);
+  assert.deepEqual(await savedCage(page), found);
+  await page.locator('#tools input[data-key=t]').check({ force: true });
+  assert.ok(await page.locator('#landmark-spots').isHidden());
+  assert.deepEqual(complaints, []);
+});
+
+test('with the keyboard alone: a model is opened, a template fitted, a landmark moved, and the model saved', async () => {
+  const { page, complaints } = await site.visit();
+  /** Goes on with the Tab key. */
+  const tabTo = async (selector: string): Promise<void> => {
+    for (let i = 0; i < 150; i++) {
+      if (await page.evaluate((wanted) => document.activeElement!.matches(wanted), selector)) return;
+      await page.keyboard.press('Tab');
+    }
+    assert.fail(`${selector} is not reached by Tab`);
+  };
+  await tabTo('#target-input');
+  // The dialog that follows is the browser's own.
+  await page.getByTestId('target-input').setInputFiles([head()]);
+  await page.locator('#target-name', { hasText: 'bust.glb' }).waitFor();
+  await ready(page);
+  await tabTo('#fit-cage');
+  await page.keyboard.press('Enter');
+  await page.locator('[data-landmark=nose_tip]').waitFor({ state: 'attached' });
+  await ready(page);
+  await tabTo('[data-landmark=nose_tip]');
+  await page.keyboard.press('ArrowDown');
+  await worked(page);
+  assert.ok(
+    await page.evaluate(() => document.activeElement!.matches('[data-landmark=nose_tip]')),
+    'it keeps the focus when the fit has followed',
+  );
+  await tabTo('#stage-save');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Enter')]);
+  assert.equal(download.suggestedFilename(), 'bust-painted.glb');
+  assert.deepEqual(complaints, []);
+});

@@ -1,0 +1,112 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { PNG } from 'pngjs';
+import { faults } from '../support/axe';
+import { drop, glb, inRepository, Site, shownError, type Upload } from '../support/site';
+
+const asset = (...names: string[]): Buffer => readFileSync(inRepository('build/assets', ...names));
+const figure = (name: string): Upload => glb(`${name}.glb`, asset('human-body', 'model.glb'));
+
+let site: Site;
+before(async () => void (site = await Site.open()));
+after(() => site?.close());
+
+/** What the cards say of their avatars, once nothing is done to them any more. */
+async function avatars(page: Page, count: number): Promise<string[]> {
+  await page.waitForFunction(
+    (count) => {
+      const cards = [...document.querySelectorAll('.avatars .avatar')];
+      const isBusy = cards.some((card) => /Waiting|Reading|Fitting|Painting/.test(card.textContent!));
+      return cards.length === count && !isBusy && cards.every((card) => card.querySelector('img')!.src !== '');
+    },
+    count,
+    { timeout: 120_000 },
+  );
+  return page.locator('.avatars .avatar').evaluateAll((cards) => cards.map((card) => card.textContent!));
+}
+
+// A text, as a function of its own would reach the page with the test compiler's helpers in it.
+const paintOnce = `async ({ x, y }) => {
+  const canvas = document.querySelector('#view');
+  const frame = () => new Promise((done) => requestAnimationFrame(() => done(canvas.toDataURL())));
+  const send = (type, dx) => canvas.dispatchEvent(new PointerEvent(type, {
+    clientX: x + dx, clientY: y, pointerId: 1, isPrimary: true, bubbles: true, button: type === 'pointermove' ? -1 : 0, buttons: 1,
+  }));
+  canvas.setPointerCapture = () => {}; // there is no such pointer
+  const key = (type) => canvas.dispatchEvent(new KeyboardEvent(type, { key: 'Home' }));
+  key('keydown'); // so that the frame to compare with is drawn
+  const before = await frame();
+  const began = performance.now();
+  send('pointerdown', 0);
+  send('pointermove', 4);
+  const now = await frame();
+  const spent = performance.now() - began;
+  send('pointerup', 4);
+  return { before, now, spent };
+}`;
+
+/**
+ * Paints at a position of the page.
+ * @returns The places of the canvas that have changed in the first frame after it, as shares of its size, and the milliseconds from
+ * the pointer to the end of that frame.
+ */
+async function stroke(
+  page: Page,
+  at: { x: number; y: number },
+): Promise<{ places: [number, number][]; spent: number }> {
+  const taken = await page.evaluate(`(${paintOnce})(${JSON.stringify(at)})`);
+  const { spent, ...urls } = taken as { before: string; now: string; spent: number };
+  const pngOf = (url: string): PNG => PNG.sync.read(Buffer.from(url.split(',')[1]!, 'base64'));
+  const [before, { width, height, data }] = [pngOf(urls.before), pngOf(urls.now)];
+  const changed = new Set<number>();
+  for (let i = 0; i < data.length; i += 4)
+    if ([0, 1, 2].some((c) => Math.abs(data[i + c]! - before.data[i + c]!) > 24)) changed.add(i / 4);
+  const places: [number, number][] = [];
+  while (changed.size > 0) {
+    const [first] = changed;
+    const queue = [first!];
+    const found: number[] = [];
+    for (let pixel = queue.pop(); pixel !== undefined; pixel = queue.pop()) {
+      if (!changed.delete(pixel)) continue;
+      found.push(pixel);
+      for (let dy = -2; dy <= 2; dy++) for (let dx = -2; dx <= 2; dx++) queue.push(pixel + dy * width + dx);
+    }
+    const mean = (of: (pixel: number) => number): number => found.reduce((sum, one) => sum + of(one), 0) / found.length;
+    if (found.length >= 3)
+      places.push([mean((pixel) => pixel % width) / width, mean((pixel) => Math.floor(pixel / width)) / height]);
+  }
+  return { places, spent };
+}
+
+test('figures dropped together get the template of the first; a stroke is on all six in the next frame; all are saved', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 700 }, deviceScaleFactor: 0.5 });
+  const broken = glb('broken.glb', Buffer.from('this is no model'));
+  const names = ['one', 'two', 'three', 'four', 'five', 'six'];
+  await drop(page, [...names.slice(0, 2).map(figure), broken, ...names.slice(2).map(figure)]);
+  const before = await avatars(page, 6);
+  assert.match(await shownError(page), /^broken\.glb: this is not a GLB or glTF file/);
+  assert.match(before[0]!, /^one, /);
+  for (const label of before.slice(1)) assert.match(label, /, no cage$/);
+  await page.locator('#alert-close').click();
+
+  await page.locator('#template-select').selectOption('human-body');
+  await page.getByTestId('fit-cage').click();
+  await page.waitForFunction(() => !/no cage/.test(document.querySelector('.avatars')!.textContent!), undefined, {
+    timeout: 60_000,
+  });
+  for (const label of await avatars(page, 6)) assert.match(label, /, \d+ % paintable, (good|with reservations)$/);
+  assert.ok(await page.getByTestId('wardrobe-note').isHidden(), 'the paint fits all');
+  assert.deepEqual(await faults(page), []);
+
+  await page.locator('#tools label', { hasText: 'Brush' }).click();
+  const at = (await page.locator('#view').boundingBox())!;
+  const { places, spent } = await stroke(page, { x: at.x + 0.26 * at.width, y: at.y + 0.24 * at.height });
+  assert.equal(places.length, 6, `in ${spent} ms, at ${JSON.stringify(places)}`);
+
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-all').click()]);
+  assert.equal(download.suggestedFilename(), 'avatars-painted.zip');
+  assert.equal(await shownError(page), '');
+  assert.deepEqual(complaints, []);
+});

@@ -1,0 +1,336 @@
+import { Box3, Plane, Vector3 } from 'three';
+import { firstHit } from '../explain/ray';
+import { announce, element } from '../platform/page';
+import { type CageMaker, type Fitting, kLeastLandmarks, readable } from '../scene/cage-maker';
+import type { Session } from '../scene/session';
+import type { RailTool, Tools } from '../view/tool-rail';
+import type { Viewer } from '../view/viewer';
+import { arrowStep } from './arrow-keys';
+import { LandmarkDots } from './landmark-dots';
+import { Mirror, otherSide } from './mirror';
+
+type Position = readonly [number, number, number];
+
+const kReach = 24; // pixels around a dot in which it is meant: half a finger
+const kStep = 5; // pixels per arrow key; with Shift 1
+const kCalm = 700; // milliseconds after the last key before the template is fitted again
+const kUncertain = 0.7;
+const kColors = { found: '#0072b2', uncertain: '#e69f00', given: '#d81b60' };
+/** Those that say most of a model, for templates of which few are found. */
+const kFirst =
+  /^(eye_centre|nose_tip|lip_lower|chin|bumper|roof$|wheel_|joint_(hips|neck|head|shoulder|wrist|hip|ankle))/;
+
+/** Landmarks that are not on the surface: they move parallel to the view. */
+const isInside = (name: string): boolean => /^(joint|eye_centre|wrist)/.test(name);
+
+/**
+ * The tool that shows the landmarks of a fit, lets the user move them and place those that were not found, and fits the template
+ * again to those.
+ */
+export class LandmarkEditor {
+  readonly #session: Session;
+  readonly #viewer: Viewer;
+  readonly #tools: Tools;
+  readonly #maker: CageMaker;
+  readonly #layer = element('landmark-spots', HTMLElement);
+  readonly #label = element('landmark-label', HTMLElement);
+  readonly #ask = element('landmark-ask', HTMLElement);
+  readonly #choice = element('landmark-choice', HTMLSelectElement);
+  readonly #mirror = element('landmark-mirror', HTMLInputElement);
+  readonly #buttons = new Map<string, HTMLButtonElement>();
+  readonly #offer: RailTool;
+  #dots: LandmarkDots | undefined;
+  #fitting: Fitting | undefined;
+  /** All that are known. */
+  #spots: Record<string, Position> = {};
+  /** Those of the user. */
+  #given: Record<string, Position> = {};
+  /** The one that the next click places. */
+  #placing: string | undefined;
+  #drag: { name: string; dx: number; dy: number; before: Pick<LandmarkEditor, 'spots' | 'given'> } | undefined;
+  #labelled: string | undefined;
+  #waiting: ReturnType<typeof setTimeout> | undefined;
+  #size = 1;
+  #middle = new Vector3();
+
+  constructor(session: Session, viewer: Viewer, tools: Tools, maker: CageMaker) {
+    this.#session = session;
+    this.#viewer = viewer;
+    this.#tools = tools;
+    this.#maker = maker;
+    this.#offer = {
+      title: 'Marks',
+      key: 'l',
+      icon: 'M12 21c-4-5-6-8-6-11a6 6 0 0 1 12 0c0 3-2 6-6 11zM12 12.500a2.500 2.500 0 1 0 0-5 2.500 2.500 0 0 0 0 5z',
+      tool: {
+        down: (_, event) => this.#down(event),
+        move: (_, event) => this.#move(event),
+        up: () => this.#up(),
+        cancel: () => this.#cancel(),
+        tap: (spot, event) => spot && this.#place(event.clientX, event.clientY),
+        hover: (_, event) => this.#hover(event),
+      },
+      onChoose: (on) => this.#show(on),
+    };
+    viewer.beforeDraw(() => this.#follow());
+    element('landmark-place', HTMLButtonElement).addEventListener('click', () => this.#askFor(this.#choice.value));
+    element('landmark-show', HTMLButtonElement).addEventListener('click', () => tools.choose(this.#offer));
+    element('landmark-reset', HTMLButtonElement).addEventListener('click', () => this.#reset());
+    element('view', HTMLCanvasElement).addEventListener('keydown', ({ key }) => {
+      if (key === 'Enter' && this.#placing) this.#place(viewer.center.x, viewer.center.y);
+    });
+  }
+
+  get spots(): Readonly<Record<string, Position>> {
+    return this.#spots;
+  }
+
+  get given(): Readonly<Record<string, Position>> {
+    return this.#given;
+  }
+
+  /** Shows the landmarks of a fit; undefined ends. */
+  edit(fitting: Fitting | undefined): void {
+    const isNew = fitting !== undefined && !this.#fitting;
+    this.#fitting = fitting;
+    clearTimeout(this.#waiting);
+    element('landmarks', HTMLElement).hidden = !fitting;
+    this.#tools.offer(this.#offer, fitting !== undefined);
+    this.#drag = undefined;
+    this.#spots = { ...fitting?.used };
+    this.#given = { ...fitting?.given };
+    if (!fitting) return;
+    const box = new Box3().setFromArray(this.#session.shown!.target.mesh.positions);
+    this.#size = box.getSize(new Vector3()).length();
+    box.getCenter(this.#middle);
+    this.#write();
+    if (isNew) this.#tools.choose(this.#offer);
+    if (this.#tools.chosen === this.#offer && Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
+    this.#viewer.redraw();
+  }
+
+  #show(on: boolean): void {
+    this.#layer.hidden = !on;
+    this.#label.hidden = true;
+    this.#dots?.dispose();
+    this.#dots = on ? new LandmarkDots(this.#viewer.renderer.getPixelRatio()) : undefined;
+    if (this.#dots) this.#viewer.marks.add(this.#dots.object);
+    if (!on) this.#askFor(undefined);
+    this.#viewer.redraw();
+  }
+
+  /** Writes which landmarks there are, in the panel and as buttons on the stage. */
+  #write(): void {
+    const { missing = [], used = {} } = this.#fitting!;
+    const unknown = [...Object.keys(used), ...missing].filter((name) => !this.#spots[name]);
+    unknown.sort((a, b) => Number(kFirst.test(b)) - Number(kFirst.test(a)));
+    const own = Object.keys(this.#given).length;
+    const known = Object.keys(this.#spots);
+    element('landmark-count', HTMLElement).textContent = `${known.length}, ${own} by you`;
+    element('landmark-missing', HTMLElement).hidden = unknown.length === 0;
+    element('landmark-reset', HTMLButtonElement).disabled = own === 0;
+    const chosen = this.#choice.value;
+    this.#choice.replaceChildren(...unknown.map((name) => new Option(readable(name), name)));
+    if (unknown.includes(chosen)) this.#choice.value = chosen;
+    for (const [name, button] of this.#buttons)
+      if (!this.#spots[name]) {
+        button.remove();
+        this.#buttons.delete(name);
+      }
+    for (const name of known) {
+      let button = this.#buttons.get(name);
+      if (!button) this.#buttons.set(name, (button = this.#button(name)));
+      button.setAttribute('aria-label', `${readable(name)}, ${this.#stateOf(name)}`);
+    }
+  }
+
+  #button(name: string): HTMLButtonElement {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.dataset.landmark = name;
+    button.setAttribute('aria-describedby', 'landmark-help');
+    button.addEventListener('focus', () => this.#tell(name));
+    button.addEventListener('blur', () => this.#tell(undefined));
+    button.addEventListener('keydown', (event) => this.#onKey(name, event));
+    this.#layer.append(button);
+    return button;
+  }
+
+  #stateOf(name: string): string {
+    if (this.#given[name]) return 'placed by you';
+    return (this.#fitting!.confidence[name] ?? 1) < kUncertain ? 'uncertain' : 'found';
+  }
+
+  #colorOf(name: string): string {
+    if (this.#given[name]) return kColors.given;
+    return this.#stateOf(name) === 'found' ? kColors.found : kColors.uncertain;
+  }
+
+  /** Moves dots and buttons to where the camera sees them. */
+  #follow(): void {
+    if (!this.#dots || !this.#fitting) return;
+    const { x, y } = this.#viewer.center;
+    const nearer = this.#viewer.rayAt(x, y).direction.multiplyScalar(-0.015 * this.#size);
+    const names = Object.keys(this.#spots);
+    this.#dots.show(
+      names.map((name) => ({ at: this.#at(name), color: this.#colorOf(name) })),
+      nearer,
+    );
+    const stage = this.#layer.parentElement!.getBoundingClientRect();
+    const places = names.map((name) => this.#viewer.project(this.#at(name)));
+    names.forEach((name, i) => {
+      const within = (at: number, size: number): number => Math.round(Math.max(0, Math.min(at, size)));
+      const place = `${within(places[i]!.x - stage.left, stage.width)}px ${within(places[i]!.y - stage.top, stage.height)}px`;
+      const button = this.#buttons.get(name);
+      if (button) button.style.translate = place;
+      if (name === this.#labelled) this.#label.style.translate = place;
+    });
+  }
+
+  #at(name: string): Vector3 {
+    return new Vector3(...this.#spots[name]!);
+  }
+
+  /** Shows the name of a landmark beside it. */
+  #tell(name: string | undefined): void {
+    if (this.#labelled === name) return;
+    this.#labelled = name;
+    this.#label.hidden = name === undefined;
+    if (name) this.#label.textContent = `${readable(name)}, ${this.#stateOf(name)}`;
+    this.#viewer.redraw();
+  }
+
+  /** The landmark that is meant by a position on the screen. */
+  #nearest({ clientX, clientY }: PointerEvent): string | undefined {
+    let [best, nearest] = [kReach, undefined as string | undefined];
+    for (const name of Object.keys(this.#spots)) {
+      const { x, y } = this.#viewer.project(this.#at(name));
+      const distance = Math.hypot(x - clientX, y - clientY);
+      if (distance < best) [best, nearest] = [distance, name];
+    }
+    return nearest;
+  }
+
+  #hover(event: PointerEvent): void {
+    if (!this.#layer.contains(document.activeElement)) this.#tell(this.#nearest(event));
+  }
+
+  #down(event: PointerEvent): boolean {
+    const name = this.#placing ? undefined : this.#nearest(event);
+    if (!name) return false;
+    const { x, y } = this.#viewer.project(this.#at(name));
+    const before = { spots: this.#spots, given: this.#given };
+    this.#drag = { name, dx: x - event.clientX, dy: y - event.clientY, before };
+    this.#tell(name);
+    return true;
+  }
+
+  #move({ clientX, clientY }: PointerEvent): void {
+    if (!this.#drag) return;
+    const { name, dx, dy } = this.#drag;
+    this.#put(name, clientX + dx, clientY + dy);
+  }
+
+  #up(): void {
+    const drag = this.#drag;
+    this.#drag = undefined;
+    if (drag && drag.before.spots !== this.#spots) this.#fit();
+    this.#tell(undefined);
+  }
+
+  #cancel(): void {
+    if (!this.#drag) return;
+    this.#spots = { ...this.#drag.before.spots };
+    this.#given = { ...this.#drag.before.given };
+    this.#drag = undefined;
+    this.#tell(undefined);
+    this.#viewer.redraw();
+  }
+
+  #onKey(name: string, event: KeyboardEvent): void {
+    const step = arrowStep(event);
+    if (!step) return;
+    const length = event.shiftKey ? 1 : kStep;
+    const { x, y } = this.#viewer.project(this.#at(name));
+    if (!this.#put(name, x + length * step[0], y + length * step[1])) announce('The model ends there.');
+    clearTimeout(this.#waiting);
+    this.#waiting = setTimeout(() => this.#fit(), kCalm);
+  }
+
+  /** Moves a landmark, and its counterpart, to where the model is at a position on the screen. @returns Whether it is there. */
+  #put(name: string, x: number, y: number): boolean {
+    const point = this.#pointAt(name, x, y)?.toArray();
+    if (!point) return false;
+    const before = this.#spots[name];
+    const change: Record<string, Position> = { [name]: point };
+    const other = otherSide(name);
+    const { used, missing } = this.#fitting!;
+    if (this.#mirror.checked && other && (used[other] || missing.includes(other))) {
+      const mirror = new Mirror(this.#spots, this.#middle, name);
+      const there = this.#spots[other];
+      // What is not symmetric, such as a bent arm, moves alone.
+      if (!there || !before || mirror.holds(before, there)) change[other] = mirror.image(point);
+    }
+    this.#spots = { ...this.#spots, ...change };
+    this.#given = { ...this.#given, ...change };
+    this.#write();
+    this.#tell(undefined);
+    this.#tell(name);
+    return true;
+  }
+
+  #pointAt(name: string, x: number, y: number): Vector3 | undefined {
+    if (!isInside(name)) return this.#viewer.pick(x, y)?.point;
+    const ray = this.#viewer.rayAt(x, y);
+    if (this.#spots[name])
+      return ray.intersectPlane(
+        new Plane().setFromNormalAndCoplanarPoint(ray.direction, this.#at(name)),
+        new Vector3(),
+      ) as Vector3 | undefined;
+    // Half way between where the ray enters the model and where it leaves it.
+    const { mesh } = this.#session.shown!.target;
+    const entry = firstHit(mesh, ray.origin, ray.direction, 0)?.length;
+    if (entry === undefined) return undefined;
+    const exit = firstHit(mesh, ray.origin, ray.direction, entry + 1e-5 * this.#size)?.length ?? entry;
+    return ray.at((entry + exit) / 2, new Vector3());
+  }
+
+  /** Asks the user to place a landmark; undefined ends that. */
+  #askFor(name: string | undefined): void {
+    if (name) this.#tools.choose(this.#offer);
+    this.#placing = name;
+    element('stage', HTMLElement).classList.toggle('explaining', name !== undefined);
+    this.#ask.hidden = !name;
+    if (!name) return;
+    const side = /_(left|right)$/.test(name) ? ' Left and right are the model’s own.' : '';
+    this.#ask.textContent = `Click on the model: ${readable(name)}.${side}`;
+    announce(`${this.#ask.textContent} Or turn it under the cross and press Enter.`);
+    if (!matchMedia('(pointer: coarse)').matches) element('view', HTMLCanvasElement).focus({ preventScroll: true });
+  }
+
+  #askForNext(): void {
+    this.#askFor(this.#choice.options[0]?.value);
+  }
+
+  #place(x: number, y: number): void {
+    const name = this.#placing;
+    if (!name || !this.#put(name, x, y)) return;
+    this.#tell(undefined);
+    if (Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
+    else {
+      this.#askFor(undefined);
+      this.#fit();
+    }
+  }
+
+  #reset(): void {
+    this.#given = {};
+    void this.#maker.fit({});
+  }
+
+  #fit(): void {
+    clearTimeout(this.#waiting);
+    if (this.#fitting && Object.keys(this.#spots).length >= kLeastLandmarks)
+      void this.#maker.fit(this.#given, this.#fitting.template);
+  }
+}

@@ -1,0 +1,56 @@
+import type { History } from 'cagecast/three/layers';
+import { element } from '../platform/page';
+import type { CageMaker } from '../scene/cage-maker';
+import type { Session } from '../scene/session';
+import type { Tools } from '../view/tool-rail';
+import type { Viewer } from '../view/viewer';
+import type { CageAdjuster } from './cage-adjuster';
+import type { LandmarkEditor } from './landmark-editor';
+
+/** Offers tools for a cage that was made here. They load when there is one. */
+export function setUpCageTools(
+  session: Session,
+  viewer: Viewer,
+  tools: Tools,
+  maker: CageMaker,
+  history: History,
+): void {
+  const details = element('make-options', HTMLDetailsElement);
+  let options: Promise<unknown> | undefined;
+  details.addEventListener('toggle', async () => {
+    if (!details.open || options) return;
+    options = import('./make-options').then(({ MakeOptionsPanel }) => new MakeOptionsPanel(session, viewer, maker));
+    await options.catch((error) => {
+      options = undefined;
+      session.fail(error);
+    });
+  });
+
+  let adjuster: Promise<CageAdjuster> | undefined;
+  element('adjust-cage', HTMLButtonElement).addEventListener('click', async () => {
+    adjuster ??= import('./cage-adjuster').then(
+      ({ CageAdjuster }) => new CageAdjuster(session, viewer, tools, maker, history),
+    );
+    try {
+      (await adjuster).start();
+    } catch (error) {
+      adjuster = undefined;
+      session.fail(error);
+    }
+  });
+
+  let landmarks: Promise<LandmarkEditor> | undefined;
+  let last: object | undefined;
+  maker.on('fitting', async (fitting) => {
+    last = fitting;
+    if (!fitting && !landmarks) return;
+    landmarks ??= import('./landmark-editor').then(
+      ({ LandmarkEditor }) => new LandmarkEditor(session, viewer, tools, maker),
+    );
+    const editor = await landmarks.catch((error) => {
+      landmarks = undefined;
+      session.fail(error);
+    });
+    if (last === fitting) editor?.edit(fitting);
+  });
+}

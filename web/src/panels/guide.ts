@@ -1,0 +1,117 @@
+import type { Session } from '../scene/session';
+import type { View } from '../view/view';
+
+interface Step {
+  title: string;
+  text: string;
+  /** Selects what it is about. */
+  about: string;
+  /** What is shown meanwhile. */
+  view?: Partial<View>;
+}
+
+const kSteps: readonly Step[] = [
+  {
+    title: 'Left and right of the line',
+    text: 'On the left, paint lies on eyes, teeth and tongue, as in a plain transfer. On the right, Cagecast leaves them bare. Drag the line.',
+    about: '#divider .knob',
+    view: { mode: 'compare', split: 0.5 },
+  },
+  {
+    title: 'The cage',
+    text: 'Paint is drawn once for this simple mesh. Every model in a cage like it takes the paint from there.',
+    about: '.toggle:has(#show-cage)',
+    view: { mode: 'result', cage: true },
+  },
+  {
+    title: 'Paint',
+    text: 'Choose the brush or a sticker, and paint on the model. What must stay bare stays bare.',
+    about: '#tools',
+    view: { mode: 'result' },
+  },
+  {
+    title: 'Your own model',
+    text: 'Drop a GLB, glTF or VRM file anywhere on the page. Without a cage, the page makes one. It stays on your device until you save it.',
+    about: '#target-file, #stage-save',
+  },
+];
+
+/** A way through the page in four steps, in a box on the stage. Escape ends it. */
+export class Guide {
+  readonly #session: Session;
+  readonly #before: View;
+  readonly #box = document.createElement('div');
+  readonly #ended: () => void;
+
+  /** Offers the way. @param ended  Called when it was walked, or is not wanted. */
+  constructor(session: Session, ended: () => void) {
+    this.#session = session;
+    this.#before = session.view;
+    this.#ended = ended;
+    this.#box.className = 'guide';
+    this.#box.dataset.testid = 'guide';
+    this.#box.setAttribute('role', 'dialog');
+    this.#box.setAttribute('aria-labelledby', 'guide-title');
+    this.#box.addEventListener('keydown', (event) => {
+      if (event.key !== 'Escape') return;
+      event.stopPropagation(); // it would also end a tool
+      this.#end();
+    });
+    document.querySelector('main')!.before(this.#box); // so that it is reached first
+    this.#fill('New here?', 'Four steps show what this page does.', [
+      ['No, thanks', () => this.#end()],
+      ['Show me', () => this.show(0)],
+    ]);
+  }
+
+  /** Shows one step. */
+  show(at: number): void {
+    const { title, text, about, view } = kSteps[at]!;
+    this.#mark(about);
+    this.#session.setView({ ...this.#before, ...view });
+    const isLast = at === kSteps.length - 1;
+    this.#fill(title, text, [
+      ...(isLast ? [] : [['Skip', () => this.#end()] as const]),
+      [isLast ? 'Done' : 'Next', () => (isLast ? this.#end() : this.show(at + 1))],
+    ]);
+    const count = document.createElement('small');
+    count.textContent = `Step ${at + 1} of ${kSteps.length}`;
+    this.#box.querySelector('.row')!.prepend(count);
+    this.#box.querySelector<HTMLElement>('button.strong')!.focus();
+  }
+
+  #fill(title: string, text: string, buttons: readonly (readonly [string, () => void])[]): void {
+    const heading = document.createElement('h2');
+    heading.id = 'guide-title';
+    heading.textContent = title;
+    const words = document.createElement('p');
+    words.textContent = text;
+    const row = document.createElement('div');
+    row.className = 'row';
+    for (const [label, act] of buttons) {
+      const button = document.createElement('button');
+      button.type = 'button';
+      button.className = act === buttons.at(-1)![1] ? 'strong' : 'quiet';
+      button.textContent = label;
+      button.addEventListener('click', act);
+      row.append(button);
+    }
+    this.#box.replaceChildren(heading, words, row);
+  }
+
+  #mark(about: string | undefined): void {
+    for (const marked of document.querySelectorAll('.guided')) marked.classList.remove('guided');
+    if (about) for (const found of document.querySelectorAll(about)) found.classList.add('guided');
+  }
+
+  #end(): void {
+    const isWalked = this.#box.querySelector('small') !== null;
+    this.#mark(undefined);
+    this.#box.remove();
+    if (isWalked) {
+      this.#session.setView(this.#before);
+      document.getElementById('view')?.focus({ preventScroll: true });
+    }
+    this.#ended();
+  }
+}

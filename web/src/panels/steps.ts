@@ -1,0 +1,52 @@
+import type { History } from 'cagecast/three/layers';
+import type { LinkedShape } from '../export/link';
+import type { Live } from '../live/live-panel';
+import { type Controlled, ControlSteps } from '../platform/controls';
+import type { Locks, Rules, Session } from '../scene/session';
+import { nameOfPart } from './part-menu';
+
+const kDone = { keep: 'keeping', always: 'painting anyway', exclude: 'excluding', auto: 'no override of' } as const;
+
+/** Makes changes of rules, overrides of parts and the shape steps of the undo history. */
+export function recordControls(session: Session, live: Live, history: History): void {
+  const rules: Controlled<Rules> = {
+    get: () => ({ ...session.rules }),
+    set: (state) => session.setRules(state),
+    nameOf: (before, after) =>
+      before.threshold !== after.threshold
+        ? 'changing the threshold'
+        : before.preset !== after.preset
+          ? 'choosing rules'
+          : 'exact borders',
+  };
+  const locks: Controlled<Locks> = {
+    get: () => ({ ...session.locks }),
+    set: (state) => session.setLocks(state),
+    nameOf(before, after) {
+      const changed = Object.keys({ ...before, ...after }).filter((key) => before[Number(key)] !== after[Number(key)]);
+      const segment = Number(changed[0]);
+      const rest = changed.length > 1 ? ` and ${changed.length - 1} more` : '';
+      return `${kDone[after[segment] ?? 'auto']} ${nameOfPart(session.shown!, segment)}${rest}`;
+    },
+  };
+  const shape: Controlled<Omit<LinkedShape, 'morphs'> & { morphs: [string, number][] }> = {
+    get: () => ({ ...live.shape, morphs: [...live.shape.morphs] }),
+    set: (state) => live.move({ ...state, morphs: new Map(state.morphs) }),
+    nameOf: () => 'changing the shape',
+  };
+  const steps = new ControlSteps(history, [rules, locks, shape]);
+  let last: unknown;
+  let isOpening = false;
+  session.on('transfer', ({ target }) => {
+    isOpening = target !== last;
+    last = target;
+    // Steps on another model do not apply any more.
+    if (isOpening) steps.reset();
+  });
+  session.on('progress', ({ state }) => {
+    if (state === 'working' || !isOpening) return;
+    isOpening = false;
+    // A link or a project has set states of its own.
+    steps.reset();
+  });
+}

@@ -1,0 +1,217 @@
+import type { History } from 'cagecast/three/layers';
+import { readLink } from '../export/link';
+import { showError } from '../platform/page';
+import type { Session } from '../scene/session';
+import { filesIn, kVersion } from './container';
+import { flags, holdSlot } from './flags';
+import type { Project, Snapshot } from './project';
+import { Store, type Work } from './store';
+
+// Milliseconds: work is stored when people pause, and at the latest after a while.
+const kPause = 700;
+const kLongest = 5000;
+const kOwnPatience = 1000; // until the page that was reloaded has let go of its slot
+
+/** A line about kept work, and what can be done. */
+export interface Offer {
+  text: string;
+  action?: { title: string; run(): void };
+}
+
+/** What the keeper tells. */
+export interface KeeperView {
+  offer(offer: Offer): void;
+  /** Whether work is kept on this device. */
+  note(text: string): void;
+}
+
+const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
+/**
+ * Keeps the state of the page in this browser, and brings it back. Each tab has a slot of its own; the works of the last few
+ * slots are kept.
+ */
+export class Keeper {
+  readonly #project: Project;
+  readonly #session: Session;
+  readonly #history: History;
+  readonly #view: KeeperView;
+  #store: Store | undefined;
+  #slot = newSlot();
+  /** Keys of the files of this slot that are stored. */
+  #stored = new Set<string>();
+  /** What was stored last: all of it, and the work. */
+  #kept: { all: string; work: string } | undefined;
+  /** The work of the page as it opened. */
+  #first: string | undefined;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #since: number | undefined;
+  #saving: Promise<void> | undefined;
+  #told = false;
+
+  constructor(project: Project, session: Session, history: History, view: KeeperView) {
+    this.#project = project;
+    this.#session = session;
+    this.#history = history;
+    this.#view = view;
+    project.onTouch(() => this.#touch());
+    document.addEventListener('visibilitychange', () => document.hidden && void this.save());
+  }
+
+  /** Whether nothing would be lost by leaving now. */
+  get isKept(): boolean {
+    const work = this.#project.snapshot()?.work;
+    return work === undefined || work === (this.#kept?.work ?? this.#first);
+  }
+
+  /** Brings the last work of this tab back, or of the browser. @returns Whether that was tried and failed. */
+  async restore(): Promise<boolean> {
+    try {
+      this.#store = await Store.open();
+      // What may lie there although nothing was kept would come as a surprise.
+      if (!flags.get('work')) return false;
+      const [latest, ...others] = await this.#store.works();
+      const own = flags.get('slot');
+      const work = [latest, ...others].find((one) => one?.slot === own) ?? latest;
+      const isFree = work !== undefined && (await holdSlot(work.slot, work.slot === own ? kOwnPatience : 0));
+      if (!work || !isFree) return false;
+      const aside = this.#reasonToWait(work);
+      if (!aside) return !(await this.#show(work));
+      this.#view.offer({ text: aside, action: { title: 'Bring it back', run: () => void this.#show(work) } });
+    } catch (error) {
+      this.#fail(error);
+    } finally {
+      flags.set('start', undefined);
+      void holdSlot(this.#slot, 0);
+      this.#touch();
+    }
+    return false;
+  }
+
+  /** Puts the work aside, and opens the page as at first. */
+  async startOver(): Promise<void> {
+    await this.save();
+    flags.set('start', 'over');
+    flags.set('slot', undefined);
+    location.replace(location.pathname + location.search);
+  }
+
+  /** The state is that of a project that was just opened: the work before it stays in its slot. */
+  leaveSlot(): void {
+    const before = this.#kept && this.#slot;
+    this.#slot = newSlot();
+    void holdSlot(this.#slot, 0);
+    this.#kept = this.#first = undefined;
+    this.#stored.clear();
+    this.#touch();
+    if (!before) return;
+    const back = async (): Promise<void> => {
+      const work = (await this.#store!.works()).find(({ slot }) => slot === before);
+      if (work) await this.#show(work);
+    };
+    this.#view.offer({
+      text: 'The project is open, and your last work is put aside.',
+      action: { title: 'Bring it back', run: () => void back() },
+    });
+  }
+
+  /** Stores the state now, if it is work. */
+  async save(): Promise<void> {
+    clearTimeout(this.#timer);
+    await this.#saving;
+    this.#since = undefined;
+    const snapshot = this.#project.snapshot();
+    if (!snapshot || !this.#store || !this.#isWork(snapshot)) return;
+    // A stroke that is being drawn is stored when it ends.
+    if (this.#history.held) return this.#touch();
+    this.#saving = this.#put(snapshot, this.#store).finally(() => (this.#saving = undefined));
+    await this.#saving;
+  }
+
+  /** Why a work is not brought back without asking; undefined if it is. */
+  #reasonToWait({ fragment }: Work): string | undefined {
+    if (flags.get('start') === 'over') return 'Your last work is put aside.';
+    if (flags.get('work') === 'opening') return 'Your last work is kept. The page did not get to show it last time.';
+    if (fragment !== location.hash && readLink(location.hash)) return 'Your last work is kept.';
+    return undefined;
+  }
+
+  async #show(work: Work): Promise<boolean> {
+    // If it takes the page down, the next one does not try by itself.
+    flags.set('work', 'opening');
+    try {
+      if (work.version !== kVersion) throw new Error('it was saved by another version of the page');
+      const found = new Map<string, File>();
+      for (const key of work.files) {
+        const blob = await this.#store!.file(key);
+        if (!blob) continue;
+        const file = blob instanceof File ? blob : new File([blob], 'painting');
+        this.#project.know(file, key);
+        found.set(key, file);
+      }
+      if (!(await this.#project.open(work.parts, filesIn(found)))) return false;
+      this.#slot = work.slot;
+      flags.set('slot', work.slot);
+      this.#stored = new Set(found.keys());
+      const { parts, work: now } = this.#project.snapshot()!;
+      this.#kept = { all: JSON.stringify(parts), work: now };
+      const run = (): void => void this.startOver();
+      this.#view.offer({ text: 'Your last work is back.', action: { title: 'Start over', run } });
+      this.#view.note(kKept);
+      return true;
+    } catch (error) {
+      const because = messageOf(error).replace(/\.$/, '');
+      this.#view.offer({ text: `Your last work could not be brought back: ${because}.` });
+      this.#session.fail(error);
+      return false;
+    } finally {
+      flags.set('work', 'kept');
+    }
+  }
+
+  #touch(): void {
+    if (!this.#store) return;
+    const now = performance.now();
+    this.#since ??= now;
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => void this.save(), Math.max(0, Math.min(kPause, this.#since + kLongest - now)));
+  }
+
+  #isWork({ parts, work }: Snapshot): boolean {
+    if (this.#kept) return JSON.stringify(parts) !== this.#kept.all;
+    // What the page or a link opened is no work.
+    if (!this.#project.isTouched && !this.#history.last) this.#first = work;
+    return work !== this.#first;
+  }
+
+  async #put({ parts, work, files }: Snapshot, store: Store): Promise<void> {
+    try {
+      const added = new Map<string, Blob>();
+      for (const [key, make] of files) if (!this.#stored.has(key)) added.set(key, await make());
+      const at = Date.now();
+      const { hash: fragment } = location;
+      await store.put({ slot: this.#slot, at, fragment, version: kVersion, parts, files: [...files.keys()] }, added);
+      this.#stored = new Set(files.keys());
+      this.#kept = { all: JSON.stringify(parts), work };
+      flags.set('work', 'kept');
+      flags.set('slot', this.#slot);
+      this.#view.note(kKept);
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  /** Tells once that work is not kept. */
+  #fail(error: unknown): void {
+    const isFull = (error as Error | null)?.name === 'QuotaExceededError';
+    const why = isFull ? 'there is no room left for this page' : messageOf(error);
+    const text = `Your work is not kept on this device: ${why.replace(/\.$/, '')}. Save the project as a file before you leave.`;
+    this.#view.note(text);
+    if (isFull && !this.#told) showError(text);
+    this.#told = true;
+  }
+}
+
+const kKept = 'Your work is kept on this device as you go.';
+
+const newSlot = (): string => `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}`;

@@ -1,0 +1,97 @@
+import type { History } from 'cagecast/three/layers';
+import type { Live } from '../live/live-panel';
+import { download } from '../platform/download';
+import { announce, element, showError } from '../platform/page';
+import type { Viewer } from '../view/viewer';
+import { readProject, writeProject } from './container';
+import { Keeper, type Offer } from './keeper';
+import { type LayersOfPage, layersPart } from './layers-part';
+import { Project } from './project';
+import { scenePart } from './scene-part';
+import { settingsParts } from './settings-parts';
+
+/** What projects are made of. */
+export interface ProjectOfPage extends LayersOfPage {
+  history: History;
+  live: Live;
+  /** Undefined without WebGL. */
+  viewer: Viewer | undefined;
+}
+
+/** Keeps the page's work in the browser, and saves and opens it as a file. */
+export interface Projects {
+  /** For features that join. */
+  project: Project;
+  /** Brings back what was kept. @returns Whether that failed. */
+  restore(): Promise<boolean>;
+  open(file: File): Promise<void>;
+  /** Whether nothing would be lost by leaving now. */
+  readonly isKept: boolean;
+}
+
+export function setUpProjects(page: ProjectOfPage): Projects {
+  const { session, stack, painter, history, live, viewer } = page;
+  const project = new Project(session, scenePart(session, page.opener, viewer?.renderer));
+  project.add(layersPart(page));
+  for (const part of settingsParts(session, live, viewer)) project.add(part);
+  const keeper = new Keeper(project, session, history, {
+    offer: showOffer,
+    note: (text) => void (element('kept-note', HTMLElement).textContent = text),
+  });
+  const touch = (): void => project.touch();
+  for (const event of ['zones', 'rules', 'view', 'paint'] as const) session.on(event, touch);
+  for (const event of ['change', 'select'] as const) stack.on(event, touch);
+  painter?.on('painted', touch);
+
+  const open = async (file: File): Promise<void> => {
+    try {
+      await keeper.save();
+      const { parts, files } = await readProject(file);
+      if (!(await project.open(parts, files))) return;
+      announce(`${file.name} is open.`);
+      keeper.leaveSlot();
+    } catch (error) {
+      session.fail(new Error(`${file.name}: ${(error as Error).message}`, { cause: error }));
+    }
+  };
+  const save = element('save-project', HTMLButtonElement);
+  session.on('zones', () => (save.disabled = false));
+  save.addEventListener('click', async () => {
+    try {
+      const { parts, files } = project.snapshot()!;
+      const made = new Map<string, Blob>();
+      for (const [key, make] of files) made.set(key, await make());
+      download(writeProject(parts, made), `${session.shown!.target.name.replace(/\.\w+$/, '')}.cagecast`);
+      announce('Project saved.');
+    } catch (error) {
+      showError(`The project could not be saved: ${(error as Error).message}`);
+    }
+  });
+  const input = element('open-project', HTMLInputElement);
+  input.addEventListener('change', () => {
+    const [file] = input.files ?? [];
+    input.value = ''; // so that the same file can be chosen again
+    if (file) void open(file);
+  });
+  return {
+    project,
+    open,
+    restore: () => keeper.restore(),
+    get isKept() {
+      return keeper.isKept;
+    },
+  };
+}
+
+function showOffer({ text, action }: Offer): void {
+  const [box, button] = [element('kept', HTMLElement), element('kept-action', HTMLButtonElement)];
+  box.querySelector('p')!.textContent = text;
+  button.hidden = action === undefined;
+  button.textContent = action?.title ?? '';
+  button.onclick = () => {
+    // What follows says its own.
+    box.hidden = true;
+    action?.run();
+  };
+  box.hidden = false;
+}

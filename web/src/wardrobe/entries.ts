@@ -1,0 +1,33 @@
+import type { WebGLRenderer } from 'three';
+import { modelsAmong } from '../scene/files';
+import { loadModel, type Model } from '../scene/load-model';
+import { fetchFile, type Sample } from '../scene/samples';
+import { type Entry, nameOf } from './avatar';
+
+/** A sample as an avatar. */
+export function sampleEntry(sample: Sample, renderer: WebGLRenderer): Entry {
+  const model = async (address: string): Promise<Model> => ({
+    ...(await loadModel(await fetchFile(address), renderer)),
+    sample,
+  });
+  return { name: sample.title, sample, target: () => model(sample.target), cage: () => model(sample.cage) };
+}
+
+/**
+ * Finds the cage of each model among files: a cage named as its model (`x.glb` and `x-cage.glb`), or the only cage for all of them.
+ * A cage that belongs to none is left out.
+ */
+export function entriesOf(files: readonly File[], renderer: WebGLRenderer): Entry[] {
+  const { cages, targets } = modelsAmong(files);
+  const stem = ({ name }: File): string => nameOf(name).toLowerCase();
+  return targets.map((file) => {
+    const cage =
+      cages.find((other) => stem(other).replace(/[-_. ]*cage[-_. ]*/, '') === stem(file)) ??
+      (cages.length === 1 ? cages[0] : undefined);
+    return {
+      name: nameOf(file.name),
+      target: () => loadModel(file, renderer, files),
+      cage: cage && (() => loadModel(cage, renderer, files)),
+    };
+  });
+}

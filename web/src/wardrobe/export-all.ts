@@ -1,0 +1,49 @@
+import type { PaintInto } from '../export/export-messages';
+import { zip } from '../platform/zip';
+import { choicesOf, type Session } from '../scene/session';
+import { type Avatar, nameOf } from './avatar';
+
+/**
+ * Writes the avatars as GLBs with the paint, all in one ZIP file.
+ * @param png  The composite of the layers.
+ * @param tell Told how many are done.
+ * @returns The file, and what went wrong with some of them.
+ * @throws Error if nothing could be written.
+ */
+export async function exportAll(
+  avatars: readonly Avatar[],
+  { rules, choices }: Session,
+  active: Avatar,
+  png: Blob,
+  tell: (done: number) => void,
+): Promise<{ file: Blob; count: number; troubles: string[] }> {
+  const { exportGlb } = await import('../export/export-glb');
+  const files: { name: string; blob: Blob }[] = [];
+  const troubles: string[] = [];
+  const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto;
+  for (const [done, avatar] of avatars.entries()) {
+    tell(done);
+    try {
+      const target = { name: avatar.name, files: avatar.files };
+      const scene = {
+        target,
+        cage: avatar.cage!,
+        rules,
+        choices: avatar === active ? choices : choicesOf(avatar.locks, avatar.standing?.projection),
+      };
+      const { glb } = await exportGlb(scene, png, into);
+      files.push({ name: freeName(avatar.sample?.name ?? nameOf(avatar.files[0]!.name), files), blob: glb });
+    } catch (error) {
+      troubles.push((error as Error).message);
+    }
+  }
+  if (files.length === 0) throw new Error(troubles[0] ?? 'No avatar takes this paint.');
+  return { file: await zip(files), count: files.length, troubles };
+}
+
+function freeName(stem: string, files: readonly { name: string }[]): string {
+  for (let number = 1; ; number++) {
+    const name = `${stem}${number > 1 ? `-${number}` : ''}-painted.glb`;
+    if (!files.some((file) => file.name === name)) return name;
+  }
+}

@@ -1,0 +1,59 @@
+import type { Cage, CageModel, Template } from 'cagecast/cages';
+import { cageModel } from 'cagecast/three';
+import { placeAround } from '../scene/cage-maker';
+import type { Model } from '../scene/load-model';
+import { haveSameUvs } from '../scene/same-uvs';
+
+const kReach = 0.2; // of the diagonal of the model
+
+interface Progress {
+  signal: AbortSignal;
+  onProgress(share: number): void;
+}
+
+/**
+ * Fits the cage of one model to another, with the same triangles and UVs, so that one paint fits both. A template is fitted by
+ * landmarks; any other cage is moved, scaled and bent.
+ * @param model As its file has it.
+ * @returns The cage as a file.
+ */
+export async function fitLike(cage: Model, model: Model, progress: Progress): Promise<File> {
+  const engine = await import('cagecast/cages');
+  const target = cageModel(model.loaded);
+  const template = await templateOf(cage, engine);
+  const fitted = template
+    ? (await engine.fitCage(template, target, undefined, progress)).cage
+    : await bend(cage, target, engine, progress);
+  return new File([engine.cageGlb(fitted)], model.name.replace(/(\.\w+)?$/, '-cage.glb'));
+}
+
+/** The template that a cage was made from; undefined if it is none. */
+async function templateOf(cage: Model, engine: typeof import('cagecast/cages')): Promise<Template | undefined> {
+  for (const name of engine.templateNames) {
+    const template = await engine.loadTemplate(name);
+    if (haveSameUvs(cage, { mesh: template as Template & { indices: Uint32Array } })) return template;
+  }
+  return undefined;
+}
+
+async function bend(
+  { mesh: { positions, rest = positions, indices, uvs } }: Model,
+  target: CageModel,
+  engine: typeof import('cagecast/cages'),
+  progress: Progress,
+): Promise<Cage> {
+  const old = {
+    positions: rest.slice(),
+    indices: indices.slice(),
+    uvs: (uvs ?? new Float32Array()).slice(),
+    landmarks: {},
+    holes: {},
+    kind: 'automatic',
+  } as Cage;
+  const placed = placeAround(old, target.positions);
+  const bent = await engine.refineCage(placed, target, { ...progress, reach: kReach }).catch((error: Error) => {
+    if (progress.signal.aborted) throw error;
+    return placed; // the verdict tells how it fits
+  });
+  return { ...bent, uvs: old.uvs };
+}

@@ -1,0 +1,447 @@
+import { classify } from 'cagecast';
+import { Emitter } from 'cagecast/three/layers';
+import { Group, type Texture } from 'three';
+import { paintableShare } from '../panels/stage-verdict';
+import { showError } from '../platform/page';
+import { disposeModel, loadModel, type Model } from '../scene/load-model';
+import { haveSameUvs } from '../scene/same-uvs';
+import { choicesOf, type Session, type Shown } from '../scene/session';
+import { TransferClient } from '../scene/transfer-client';
+import { frontOf } from '../view/framing';
+import { type Look, Overlay } from '../view/overlay';
+import { pick } from '../view/pick';
+import type { Viewer } from '../view/viewer';
+import { type Avatar, type Entry, kMostAvatars, nameOf } from './avatar';
+import { fitLike } from './fit-like';
+import type { Surroundings } from './set-up-wardrobe';
+import { measure, SideBySide } from './side-by-side';
+
+const kCalm = 1500; // milliseconds without a change before pictures are drawn again
+const kPicture = 128; // pixels per side
+const kMostInspected = 60_000; // triangles; the time grows with their number
+
+/** The avatars that one paint is drawn for. One of them is on the stage; the others can stand beside it. */
+export class Wardrobe extends Emitter<{ change: undefined }> {
+  readonly #session: Session;
+  readonly #viewer: Viewer;
+  readonly #paint: Texture;
+  readonly #crowd = new SideBySide();
+  readonly #client = new TransferClient();
+  readonly #avatars: Avatar[] = [];
+  #active: Avatar;
+  /** The one that is to be on the stage. */
+  #wanted: Avatar | undefined;
+  /** Resolves once it is there, or cannot be. */
+  #arrival: Promise<void> | undefined;
+  #arrived: () => void = () => {};
+  #showsAll = false;
+  /** What is to be done, one after the other. */
+  #work: Promise<void> = Promise.resolve();
+  /** Cancels the fit in progress. */
+  readonly #fits = new Map<Avatar, AbortController>();
+  readonly #outdated = new Set<Avatar>();
+  #picturing: ReturnType<typeof setTimeout> | undefined;
+  #ids = 0;
+
+  constructor({ session, viewer, paint, stack }: Surroundings) {
+    super();
+    this.#session = session;
+    this.#viewer = viewer;
+    this.#paint = paint;
+    this.#active = this.#make('');
+    this.#avatars.push(this.#active);
+    if (session.shown) this.#show(session.shown);
+    session.on('transfer', (shown) => this.#show(shown));
+    session.on('zones', () => this.#onZones());
+    session.on('inspected', ({ verdict }) => this.#tell(this.#active, { verdict }));
+    session.on('rules', () => this.#onRules());
+    stack.on('change', () => this.#pictureLater(this.#avatars));
+    stack.on('pictures', () => this.#pictureLater(this.#avatars));
+    session.on('progress', ({ state }) => {
+      if (state === 'failed') this.#onFailure();
+    });
+    this.#onZones();
+  }
+
+  get avatars(): readonly Avatar[] {
+    return this.#avatars;
+  }
+
+  /** The one on the stage. */
+  get active(): Avatar {
+    return this.#active;
+  }
+
+  /** Whether the stage shows all, side by side. */
+  get showsAll(): boolean {
+    return this.#showsAll;
+  }
+
+  set showsAll(shows: boolean) {
+    this.#showsAll = shows;
+    // One divider across all would hide more than it shows.
+    if (shows && this.#session.view.mode === 'compare') this.#session.setView({ mode: 'result' });
+    this.#arrange();
+  }
+
+  /**
+   * Adds avatars, one after the other. Tells which of them cannot be read, or find no room.
+   * @param instead What is removed once the first of them was read.
+   */
+  async add(entries: readonly Entry[], instead?: Avatar): Promise<void> {
+    const left = entries.slice(Math.max(0, kMostAvatars - this.#avatars.length + (instead ? 1 : 0)));
+    const added = entries.slice(0, entries.length - left.length).map((entry) => {
+      const avatar = { ...this.#make('Waiting'), name: entry.name, sample: entry.sample };
+      this.#avatars.push(avatar);
+      return { entry, avatar };
+    });
+    const troubles = left.length > 0 ? [fullText(left.map(({ name }) => name))] : [];
+    if (left.length > 0) showError(troubles[0]!);
+    this.#change();
+    for (const { entry, avatar } of added)
+      this.#queue(avatar, async () => {
+        try {
+          await this.#read(avatar, entry, instead === undefined);
+          if (instead) this.remove(instead);
+          instead = undefined;
+          await this.#arrival; // the others may get the cage of what is on the stage
+        } catch (error) {
+          if (!this.#avatars.includes(avatar)) return;
+          this.remove(avatar);
+          troubles.push((error as Error).message);
+          showError(troubles.join(' '));
+        }
+      });
+    await this.#work;
+  }
+
+  /** Takes an avatar out and frees its memory; the last one stays. */
+  remove(avatar: Avatar): void {
+    const at = this.#avatars.indexOf(avatar);
+    if (at < 0 || this.#avatars.length === 1) return;
+    this.#avatars.splice(at, 1);
+    this.#fits.get(avatar)?.abort();
+    if (avatar === this.#active) {
+      const next = this.#avatars
+        .slice(at)
+        .concat(this.#avatars)
+        .find(({ files }) => files.length > 0);
+      if (!next) return void this.#avatars.splice(at, 0, avatar);
+      this.activate(next);
+    }
+    this.#clear(avatar);
+    this.#arrange();
+  }
+
+  /** Puts an avatar on the stage. */
+  activate(avatar: Avatar): void {
+    if (avatar === this.#active || avatar.files.length === 0) return;
+    this.#wanted = avatar;
+    this.#arrived();
+    this.#arrival = new Promise((done) => (this.#arrived = done));
+    const { files, cage, sample, locks } = avatar;
+    const [file, ...rest] = files;
+    const target = loadModel(file!, this.#viewer.renderer, rest).then((model) => ({
+      ...model,
+      ...(sample && { sample }),
+    }));
+    this.#session.want({ target, ...(cage && { cage: Promise.resolve(cage) }) }, { ...locks }, true);
+  }
+
+  /** The avatar beside the one on the stage that is at a position of the view. @param x,y Client coordinates. */
+  at(x: number, y: number): Avatar | undefined {
+    if (!this.#showsAll) return undefined;
+    const ray = this.#viewer.eyeRay(x, y);
+    const far = (mesh: Model['mesh']): number => pick(mesh, ray)?.seen.distanceTo(ray.ray.origin) ?? Infinity;
+    let [found, nearest]: [Avatar | undefined, number] = [undefined, far(this.#session.shown!.target.mesh)];
+    for (const avatar of this.#avatars) {
+      const distance = avatar !== this.#active && avatar.standing ? far(avatar.standing.model.mesh) : Infinity;
+      if (distance < nearest) [found, nearest] = [avatar, distance];
+    }
+    return found;
+  }
+
+  /** Fits the cage of the model on the stage to all whose cages have other UVs. */
+  fitAll(): void {
+    for (const avatar of this.#avatars) if (!avatar.takesPaint && avatar.files.length > 0) this.#fitLater(avatar);
+  }
+
+  #make(doing: string): Avatar {
+    return {
+      id: ++this.#ids,
+      name: '',
+      sample: undefined,
+      files: [],
+      cage: undefined,
+      follows: false,
+      locks: {},
+      picture: '',
+      verdict: '',
+      paintable: undefined,
+      takesPaint: false,
+      doing,
+      standing: undefined,
+    };
+  }
+
+  /** Does something once all that was asked for before is done, if the avatar is still here then. */
+  #queue(avatar: Avatar, work: () => Promise<void>): void {
+    this.#work = this.#work.then(async () => {
+      if (!this.#avatars.includes(avatar)) return;
+      try {
+        await work();
+      } catch (error) {
+        if (this.#avatars.includes(avatar)) showError((error as Error).message);
+      } finally {
+        this.#tell(avatar, { doing: '' });
+      }
+    });
+  }
+
+  #tell(avatar: Avatar, change: Partial<Avatar>): void {
+    Object.assign(avatar, change);
+    this.#change();
+  }
+
+  #change(): void {
+    this.emit('change', undefined);
+  }
+
+  /** Another model or cage is on the stage. */
+  #show({ target, cage }: Shown): void {
+    const wanted = this.#wanted;
+    const came = wanted && target.files[0] === wanted.files[0] ? wanted : undefined;
+    this.#wanted = undefined;
+    this.#arrived();
+    const left = this.#active;
+    if (came) this.#active = came;
+    const active = this.#active;
+    if (target.files[0] !== active.files[0]) {
+      this.#clear(active);
+      const name = target.sample?.title ?? nameOf(target.name);
+      Object.assign(active, { name, files: target.files, sample: target.sample, picture: '', follows: false });
+    }
+    const isOther = cage !== active.cage;
+    if (isOther && active.standing) this.#clear(active);
+    if (isOther) Object.assign(active, { cage, verdict: '' });
+    if (came && left !== came && this.#avatars.includes(left)) this.#stand(left);
+    const isForeign = cage.sample !== undefined && cage.sample !== target.sample;
+    for (const avatar of this.#avatars) {
+      avatar.takesPaint = avatar.cage !== undefined && haveSameUvs(avatar.cage, cage);
+      if (avatar.standing) avatar.standing.takesPaint = avatar.takesPaint;
+      if (avatar === active || avatar.takesPaint || isForeign || avatar.files.length === 0) continue;
+      // What was fitted to the last cage of this model follows it.
+      if (!avatar.cage || (!came && isOther && avatar.follows)) this.#fitLater(avatar);
+    }
+    this.#arrange();
+    this.#pictureLater(this.#avatars);
+  }
+
+  /** What was to be on the stage is not there: the one that is stays. */
+  #onFailure(): void {
+    this.#wanted = undefined;
+    this.#arrived();
+    if (this.#avatars.includes(this.#active)) return;
+    this.#avatars.unshift(this.#active);
+    this.#arrange();
+  }
+
+  /** Makes an avatar that was on the stage stand beside it. */
+  #stand(avatar: Avatar): void {
+    if (avatar.standing) {
+      this.#classify(avatar);
+      return;
+    }
+    this.#queue(avatar, async () => {
+      if (avatar === this.#active || avatar.standing) return;
+      await this.#place(avatar, await this.#load(avatar));
+    });
+  }
+
+  #load({ files: [file, ...rest] }: Avatar): Promise<Model> {
+    return loadModel(file!, this.#viewer.renderer, rest);
+  }
+
+  /** Reads a new avatar and its cage. @param fits Whether the cage of the one on the stage is fitted to it if it has none. */
+  async #read(avatar: Avatar, { target, cage }: Entry, fits: boolean): Promise<void> {
+    this.#tell(avatar, { doing: 'Reading' });
+    const model = await target();
+    if (!this.#avatars.includes(avatar)) return disposeModel(model);
+    try {
+      avatar.files = model.files;
+      avatar.cage = await cage?.();
+    } catch (error) {
+      disposeModel(model);
+      throw error;
+    }
+    const { shown } = this.#session;
+    const isForeign = shown?.cage.sample !== undefined && shown.cage.sample !== shown.target.sample;
+    if (!avatar.cage && shown && fits && !isForeign) await this.#fit(avatar, model);
+    await this.#place(avatar, model);
+  }
+
+  #fitLater(avatar: Avatar): void {
+    this.#tell(avatar, { doing: 'Waiting' });
+    this.#queue(avatar, async () => {
+      const model = await this.#load(avatar);
+      await this.#fit(avatar, model);
+      if (avatar === this.#active) return disposeModel(model);
+      this.#clear(avatar);
+      await this.#place(avatar, model);
+    });
+  }
+
+  /** Fits the cage of the model on the stage. If that is not possible the avatar stays without. */
+  async #fit(avatar: Avatar, model: Model): Promise<void> {
+    const { cage } = this.#session.shown!;
+    const abort = new AbortController();
+    this.#fits.set(avatar, abort);
+    const onProgress = (share: number): void => this.#tell(avatar, { doing: `Fitting ${Math.round(100 * share)} %` });
+    try {
+      onProgress(0);
+      const file = await fitLike(cage, model, { signal: abort.signal, onProgress });
+      avatar.cage = await loadModel(file, this.#viewer.renderer);
+      avatar.follows = true;
+    } catch (error) {
+      if (abort.signal.aborted) return;
+      showError(`${avatar.name}: ${(error as Error).message.replace(/^\w+: /, '')}`);
+    } finally {
+      this.#fits.delete(avatar);
+    }
+  }
+
+  /** Transfers the paint to an avatar, and lets it stand beside the one on the stage. */
+  async #place(avatar: Avatar, model: Model): Promise<void> {
+    if (!this.#avatars.includes(avatar)) return disposeModel(model);
+    const { cage } = avatar;
+    const { preset } = this.#session.rules;
+    this.#tell(avatar, { doing: 'Painting' });
+    const projection = cage && (await this.#client.ask('project', cage, model, { preset }));
+    if (!this.#avatars.includes(avatar)) return disposeModel(model);
+    const { scale, middle, wide, high } = measure(model);
+    const [holder, inner] = [new Group(), new Group()];
+    inner.position.copy(middle).negate();
+    inner.add(model.scene);
+    holder.add(inner);
+    holder.scale.setScalar(scale);
+    const overlay = projection && new Overlay(model.mesh, projection, this.#paint);
+    avatar.takesPaint = cage !== undefined && haveSameUvs(cage, this.#session.shown!.cage);
+    avatar.standing = { holder, overlay, model, projection, wide, high, takesPaint: avatar.takesPaint };
+    this.#classify(avatar);
+    this.#arrange();
+    this.#pictureLater([avatar]);
+    await this.#inspect(avatar);
+  }
+
+  async #inspect(avatar: Avatar): Promise<void> {
+    const { standing, cage, locks } = avatar;
+    if (!standing || !cage || standing.model.mesh.indices.length + cage.mesh.indices.length > 3 * kMostInspected)
+      return;
+    const { preset, threshold } = this.#session.rules;
+    const options = {
+      preset,
+      threshold,
+      locks: choicesOf(locks, undefined).locks,
+      parts: standing.model.mesh.primitives,
+    };
+    const parts = options.parts.map(({ name, firstVertex, vertexCount }) => ({ name, firstVertex, vertexCount }));
+    const { verdict } = await this.#client.ask('inspect', cage, standing.model, { ...options, parts });
+    this.#tell(avatar, { verdict });
+  }
+
+  #classify(avatar: Avatar): void {
+    const { standing, locks } = avatar;
+    if (!standing?.projection) return;
+    const { threshold } = this.#session.rules;
+    const classification = classify(standing.projection, { threshold, ...choicesOf(locks, standing.projection) });
+    standing.overlay?.classify(classification);
+    avatar.paintable = paintableShare(classification.segmentStats);
+    this.#viewer.redraw();
+  }
+
+  #onZones(): void {
+    const { classification, locks } = this.#session;
+    if (!classification) return;
+    this.#active.locks = { ...locks };
+    this.#tell(this.#active, { paintable: paintableShare(classification.segmentStats) });
+    this.#pictureLater([this.#active]);
+  }
+
+  #onRules(): void {
+    for (const avatar of this.#avatars) {
+      if (avatar === this.#active || !avatar.standing?.projection) continue;
+      if (avatar.standing.projection.preset === this.#session.rules.preset) this.#classify(avatar);
+      else
+        this.#queue(avatar, async () => {
+          const { model } = avatar.standing ?? {};
+          if (!model || !avatar.cage) return;
+          const { preset } = this.#session.rules;
+          const projection = await this.#client.ask('project', avatar.cage, model, { preset });
+          if (!avatar.standing) return;
+          avatar.standing.projection = projection;
+          avatar.standing.overlay?.setProjection(projection);
+          this.#classify(avatar);
+        });
+    }
+  }
+
+  /** Frees what stands beside the stage. */
+  #clear(avatar: Avatar): void {
+    const { standing } = avatar;
+    if (!standing) return;
+    avatar.standing = undefined;
+    standing.holder.removeFromParent();
+    standing.overlay?.dispose();
+    disposeModel(standing.model);
+  }
+
+  /** Shows who is to be seen. */
+  #arrange(): void {
+    const { shown } = this.#session;
+    this.#change();
+    if (!this.#showsAll || !shown || this.#avatars.length < 2) {
+      this.#viewer.setCrowd(undefined);
+      return;
+    }
+    const front = frontOf(shown.target);
+    const cells = this.#avatars.flatMap((avatar) => {
+      if (avatar === this.#active) return [undefined];
+      if (!avatar.standing) return [];
+      avatar.standing.holder.rotation.y = front - frontOf(avatar.standing.model);
+      return [avatar.standing];
+    });
+    this.#crowd.set(cells, measure(shown.target));
+    this.#viewer.setCrowd(this.#crowd);
+  }
+
+  /** Draws the pictures of some avatars again, once nothing has changed for a while. */
+  #pictureLater(avatars: readonly Avatar[]): void {
+    for (const avatar of avatars) this.#outdated.add(avatar);
+    const isNew = [...this.#outdated].some(({ picture }) => picture === '');
+    clearTimeout(this.#picturing);
+    this.#picturing = setTimeout(() => this.#takePictures(), isNew ? 0 : kCalm);
+  }
+
+  #takePictures(): void {
+    const { shown, classification } = this.#session;
+    if (!shown || !classification) return; // the zones bring it up again
+    const sitters = [...this.#outdated].flatMap((avatar) => {
+      const { standing, takesPaint } = avatar;
+      const look: Look = takesPaint ? 'result' : 'bare';
+      const { holder, overlay } = standing ?? {};
+      if (avatar === this.#active)
+        return [{ avatar, holder: undefined, overlay: undefined, front: frontOf(shown.target), look }];
+      return standing ? [{ avatar, holder, overlay, front: frontOf(standing.model), look }] : [];
+    });
+    this.#outdated.clear();
+    if (sitters.length === 0) return;
+    const pictures = this.#viewer.takePictures(sitters, kPicture);
+    sitters.forEach(({ avatar }, index) => (avatar.picture = pictures[index]!));
+    this.#arrange(); // they were turned for the pictures
+  }
+}
+
+const fullText = (names: readonly string[]): string =>
+  `The wardrobe is full: it holds ${kMostAvatars} avatars, and ${new Intl.ListFormat('en').format(
+    names.length > 3 ? [...names.slice(0, 2), `${names.length - 2} more`] : names,
+  )} found no room. Remove one first.`;
