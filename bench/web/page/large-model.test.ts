@@ -5,13 +5,11 @@ import { mkdtemp, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import type { Page } from 'playwright-core';
 import { islandCage, lumpyBall } from '../../../tests/support/models';
 import { Site, settled, shownCounts, shownError } from '../../../tests/support/site';
-import { compute, kComputation, mainThreadWork } from './processor-time';
+import { kMostMs, longestTask } from './processor-time';
 
 const kSide = 500; // 500,000 triangles
-const kMostMs = 100;
 
 let site: Site;
 let folder: string;
@@ -26,26 +24,6 @@ after(async () => {
   await site?.close();
   await rm(folder, { recursive: true, force: true });
 });
-
-/**
- * Processor time of the longest task of an action, in ms: the minimum of up to three runs, relative to a fixed computation in
- * tasks of 30 ms.
- * @param undo Called before the action is repeated.
- */
-async function longestTask(page: Page, action: () => Promise<unknown>, undo: () => Promise<unknown>): Promise<number> {
-  const kTasks = 10;
-  const once = async (): Promise<number> => {
-    const { longest } = await mainThreadWork(page, action);
-    const same = await mainThreadWork(page, () => compute(page, kTasks));
-    return longest / Math.max(1, same.longest / (kComputation / kTasks));
-  };
-  let longest = await once();
-  for (let more = 2; longest >= kMostMs && more > 0; --more) {
-    await undo();
-    longest = Math.min(longest, await once());
-  }
-  return longest;
-}
 
 test('while half a million triangles are transferred, no task takes 100 ms', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 800, height: 500 } });
