@@ -1,4 +1,5 @@
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { before, describe, test } from 'node:test';
 import { CagecastError, init, type Mesh, project, type TransferResult, transfer } from 'cagecast';
 import { type FindingCode, type Inspection, inspect } from 'cagecast/inspect';
@@ -428,4 +429,12 @@ describe('holes and segments', () => {
     assert.doesNotThrow(() => inspect(cage, { ...tiny, positions: new Float32Array(9) }));
     assert.doesNotThrow(() => inspect(cage, join3d(tiny, target)));
   });
+});
+
+test('the guide explains every finding, and none that does not exist', () => {
+  const named = (file: string, pattern: RegExp) =>
+    [...readFileSync(file, 'utf8').matchAll(pattern)].map(([, name]) => name).sort();
+  const codesOfType = named('wasm/src/inspect/finding.ts', /^ {2}\| '(\w+)'/gm);
+  assert.ok(codesOfType.length >= 20);
+  assert.deepEqual(named('docs/guides.md', /^\| `(\w+)` \|/gm), codesOfType);
 });
