@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -130,6 +130,49 @@ test('diff shows what changed between two reports, and exits 4 over the limit', 
   const wrong = cagecast('diff', at('a.json'), at('target.glb'));
   assert.deepEqual([wrong.status, wrong.stdout], [1, '']);
   assert.match(wrong.stderr, /^cagecast: .*target\.glb: is not JSON/);
+});
+
+test('diff compares the reports of two folders: what changed, is gone and is new', () => {
+  const report = (name: string, ...flags: string[]) =>
+    ok('transfer', at('target.glb'), ...cage, '--report', at(name), '--quiet', ...flags);
+  for (const folder of ['approved', 'build', 'none']) mkdirSync(at(folder), { recursive: true });
+  for (const name of [
+    'approved/same.json',
+    'build/same.json',
+    'approved/other.json',
+    'approved/gone.json',
+    'build/new.json',
+  ])
+    report(name);
+  report('build/other.json', '--exclude', 'only');
+  const { status, stdout } = cagecast('diff', at('approved'), at('build'));
+  assert.equal(status, 4);
+  assert.match(stdout, /^other\.json\n +before +after/);
+  assert.match(
+    stdout,
+    /\ngone: gone\.json\nnew: new\.json\n2 reports compared: 1 changed, 1 over the limit; 1 gone, 1 new\n$/,
+  );
+  const found = JSON.parse(cagecast('diff', at('approved'), at('build'), '--json').stdout) as {
+    over: number;
+    reports: { name: string; over: number }[];
+    gone: string[];
+    new: string[];
+  };
+  assert.deepEqual([found.gone, found.new], [['gone.json'], ['new.json']]);
+  assert.equal(found.over, 1 + found.reports.find(({ name }) => name === 'other.json')!.over);
+  // A report that is gone is a change by itself; a new one is not.
+  for (const name of ['approved/gone.json', 'approved/other.json', 'build/other.json']) rmSync(at(name));
+  assert.match(ok('diff', at('approved'), at('build')), /^new: new\.json\n1 report compared: 0 changed/);
+  assert.equal(cagecast('diff', at('build'), at('approved')).status, 4);
+  for (const [before, after, message] of [
+    ['approved', 'build/same.json', /approved: is a folder, and the other is a file/],
+    ['approved', 'none', /none: has no reports \(\*\.json\)/],
+    ['approved', 'nowhere', /nowhere/],
+  ] as const) {
+    const wrong = cagecast('diff', at(before), at(after));
+    assert.deepEqual([wrong.status, wrong.stdout], [1, '']);
+    assert.match(wrong.stderr, message);
+  }
 });
 
 test('a VRM stays one: what it says of its avatar is not changed', () => {

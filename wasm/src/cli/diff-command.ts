@@ -1,9 +1,12 @@
-import { readBytes } from '../gltf/files.js';
+import { readdir } from 'node:fs/promises';
+import { join } from 'node:path';
+import { isFolder, readBytes } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
+import { counted } from '../inspect/finding.js';
 import type { Verdict } from '../inspect/index.js';
 import { parseObject } from './config/settings.js';
 import type { InspectionReport } from './inspect-command.js';
-import type { Found } from './print.js';
+import { type Found, oneLine } from './print.js';
 import { cut, integer, percent, short, table } from './table.js';
 import type { Report } from './transfer-command.js';
 import type { PerZone } from './zones.js';
@@ -34,27 +37,73 @@ const zoneNames = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
 /** Verdicts, from bad to good. */
 const verdicts: readonly Verdict[] = ['unfit', 'usable', 'good'];
 
+/** What changed between two reports. */
+interface Difference {
+  over: number;
+  changes: Change[];
+}
+
 /**
- * Compares two reports.
+ * Compares two reports, or all that two folders have by the same names.
  * @returns what is printed, and how many changes are over the limit.
  * @throws {InputError} that names the file that is no report.
  */
-export async function diffCommand({ before, after, tolerance }: DiffCommand): Promise<Found & { over: number }> {
+export async function diffCommand(command: DiffCommand): Promise<Found & { over: number }> {
+  const areFolders = await Promise.all(
+    [command.before, command.after].map((path) => naming(path, () => isFolder(path))),
+  );
+  if (areFolders[0] !== areFolders[1])
+    throw new InputError('is a folder, and the other is a file; compare two files or two folders').in(
+      areFolders[0] ? command.before : command.after,
+    );
+  if (areFolders[0]) return diffFolders(command);
+  const found = await diffReports(command);
+  return { text: textOf(found, command.tolerance), report: { ...command, ...found }, over: found.over };
+}
+
+/** Compares reports of the same name. One that is gone counts as a change over the limit, a new one does not. */
+async function diffFolders({ before, after, tolerance }: DiffCommand): Promise<Found & { over: number }> {
+  const [old, now] = [await reportsIn(before), await reportsIn(after)];
+  const gone = old.filter((name) => !now.includes(name));
+  const added = now.filter((name) => !old.includes(name));
+  const both = old.filter((name) => now.includes(name));
+  const reports: (Difference & { name: string })[] = [];
+  for (const name of both)
+    reports.push({
+      name,
+      ...(await diffReports({ before: join(before, name), after: join(after, name), tolerance })),
+    });
+  const over = gone.length + sum(reports.map((report) => report.over))!;
+  const changed = reports
+    .map((report) => ({ name: report.name, text: textOf(report, tolerance) }))
+    .filter(({ text }) => text !== unchanged);
+  const text = [
+    ...changed.map((report) => `${oneLine(report.name)}\n${report.text}`),
+    ...gone.map((name) => `gone: ${oneLine(name)}`),
+    ...added.map((name) => `new: ${oneLine(name)}`),
+    `${counted(both.length, 'report')} compared: ${integer(changed.length)} changed, ${integer(reports.filter((report) => report.over > 0).length)} over the limit; ${integer(gone.length)} gone, ${integer(added.length)} new`,
+  ].join('\n');
+  return { text, report: { before, after, tolerance, over, reports, gone, new: added }, over };
+}
+
+async function reportsIn(folder: string): Promise<string[]> {
+  const names = (await readdir(folder)).filter((name) => name.endsWith('.json')).sort();
+  if (names.length === 0) throw new InputError('has no reports (*.json)').in(folder);
+  return names;
+}
+
+async function diffReports({ before, after, tolerance }: DiffCommand): Promise<Difference> {
   const [old, now] = [await readReport(before), await readReport(after)];
   const changes = [...compare(measuresOf(old), measuresOf(now), tolerance), ...compareVerdicts(old, now)].filter(
     (change) => change.before !== change.after,
   );
-  const over = changes.filter(({ isOver }) => isOver).length;
-  const shown = ({ kind }: Change, value: Change['before']) =>
-    value === null
-      ? '–'
-      : typeof value === 'string'
-        ? value
-        : kind === 'share'
-          ? percent(value)
-          : kind === 'ratio'
-            ? short(value)
-            : integer(value);
+  return { over: changes.filter(({ isOver }) => isOver).length, changes };
+}
+
+const unchanged = 'nothing changed';
+
+/** A difference for people. */
+function textOf({ changes, over }: Difference, tolerance: number): string {
   const rows = changes
     .map((change) => [
       cut(change.measure, 60),
@@ -64,22 +113,31 @@ export async function diffCommand({ before, after, tolerance }: DiffCommand): Pr
     ])
     // What reads the same is for programs only.
     .filter(([, was, is, isOver]) => was !== is || isOver);
-  const text = [
-    ...(rows.length > 0 ? [table([['', 'before', 'after', ''], ...rows])] : []),
-    rows.length === 0
-      ? 'nothing changed'
-      : `${integer(rows.length)} changes, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part more or less)`,
-  ].join('\n');
-  return { text, report: { before, after, tolerance, over, changes }, over };
+  if (rows.length === 0) return unchanged;
+  const count = `${integer(rows.length)} changes, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part more or less)`;
+  return `${table([['', 'before', 'after', ''], ...rows])}\n${count}`;
 }
 
-async function readReport(path: string): Promise<AnyReport> {
-  try {
+function shown({ kind }: Change, value: Change['before']): string {
+  if (value === null) return '–';
+  if (typeof value === 'string') return value;
+  return kind === 'share' ? percent(value) : kind === 'ratio' ? short(value) : integer(value);
+}
+
+function readReport(path: string): Promise<AnyReport> {
+  return naming(path, async () => {
     const report = parseObject(new TextDecoder().decode(await readBytes(path)));
     const { target, segments, areas, coverage } = report;
     if (typeof target !== 'object' || !Array.isArray(segments) || typeof (areas ?? coverage) !== 'object')
       throw new InputError('is no report of cagecast transfer (--report) or inspect (--json)');
     return report as unknown as AnyReport;
+  });
+}
+
+/** Adds the name of what is read to errors. */
+async function naming<Result>(path: string, read: () => Promise<Result>): Promise<Result> {
+  try {
+    return await read();
   } catch (error) {
     throw error instanceof InputError ? error.in(path) : error;
   }

@@ -1,5 +1,5 @@
 import { constants } from 'node:fs';
-import { type FileHandle, open, realpath } from 'node:fs/promises';
+import { type FileHandle, open, realpath, stat } from 'node:fs/promises';
 import { isAbsolute, relative, resolve } from 'node:path';
 import { show } from '../api/error.js';
 import { firstLine, InputError } from './input-error.js';
@@ -128,6 +128,11 @@ export const reasons: Readonly<Record<string, string>> = {
   ELOOP: 'is a link that leads back to itself',
   ENAMETOOLONG: 'its name is too long',
 };
+
+/** Whether a path leads to a folder. @throws {InputError} if it leads nowhere. */
+export async function isFolder(path: string): Promise<boolean> {
+  return path !== standard && (await reading(() => stat(path))).isDirectory();
+}
 
 /** Turns errors of the system into plain ones. */
 async function reading<Result>(read: () => Promise<Result>): Promise<Result> {

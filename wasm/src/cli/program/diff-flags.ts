@@ -9,8 +9,8 @@ export function addDiffCommand(program: Command): void {
   addPrintFlags(
     program
       .command('diff')
-      .argument('<BEFORE.json>', 'a report of transfer, or of inspect --json')
-      .argument('<AFTER.json>', 'another'),
+      .argument('<BEFORE>', 'a report of transfer, or of inspect --json, or a folder of reports')
+      .argument('<AFTER>', 'another; in a folder, reports of the same names are compared'),
   )
     .description(
       'show what changed between two reports: zones, coverage of parts, stretch, distances, borders, verdict',
@@ -24,10 +24,11 @@ export function addDiffCommand(program: Command): void {
       'after',
       `
 Exit codes: 0 nothing changed by more than the tolerance, 1 a file cannot be used, 2 wrong usage, 4 a share changed by
-more, the verdict is worse, or a part is new or gone.
+more, the verdict is worse, a part is new or gone, or a report is gone.
 
-Example:
-  cagecast diff approved/head.json build/head.json --tolerance 0.005`,
+Examples:
+  cagecast diff approved/head.json build/head.json --tolerance 0.005
+  cagecast diff approved build`,
     )
     .action(async (before: string, after: string, flags: PrintFlags & { tolerance: number }) => {
       const found = await diffCommand({ before, after, tolerance: flags.tolerance });
