@@ -1,10 +1,13 @@
 import type { CageModel } from 'cagecast/cages';
 import { cageModel } from 'cagecast/three';
+import type { History } from 'cagecast/three/layers';
 import { announce, element } from '../platform/page';
 import type { CageMaker } from '../scene/cage-maker';
 import { loadModel, type Model } from '../scene/load-model';
 import type { Session } from '../scene/session';
+import type { Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
+import { BareBrush } from './bare-brush';
 
 const kSteps = 40;
 const kCalm = 700; // milliseconds after the last change before the cage is made again
@@ -13,7 +16,7 @@ const kCalm = 700; // milliseconds after the last change before the cage is made
 const valueAt = (step: number, least: number, most: number): number =>
   step === 0 ? 0 : least * (most / least) ** ((step - 1) / (kSteps - 1));
 
-/** What can be chosen for cages that are made: how far off, how fine, and which parts are not painted. */
+/** What can be chosen for cages that are made: how far off, how fine, and which parts and spots are not painted. */
 export class MakeOptionsPanel {
   readonly #session: Session;
   readonly #viewer: Viewer;
@@ -22,9 +25,11 @@ export class MakeOptionsPanel {
   #target: Model | undefined;
   /** By part: whether it is painted unless the user chooses otherwise. */
   #usual: boolean[] = [];
+  /** The marks that the cage is made with. */
+  #bare: Uint8Array | undefined;
   #waiting: ReturnType<typeof setTimeout> | undefined;
 
-  constructor(session: Session, viewer: Viewer, maker: CageMaker) {
+  constructor(session: Session, viewer: Viewer, maker: CageMaker, tools: Tools, history: History) {
     this.#session = session;
     this.#viewer = viewer;
     this.#maker = maker;
@@ -35,7 +40,17 @@ export class MakeOptionsPanel {
       });
     this.#parts.addEventListener('change', () => this.#change());
     for (const end of ['pointerleave', 'focusout']) this.#parts.addEventListener(end, () => viewer.highlight([]));
-    session.on('transfer', () => void this.#list());
+    session.on('transfer', () => {
+      this.#bare = session.bare;
+      void this.#list();
+    });
+    session.on('zones', () => {
+      if (session.bare === this.#bare) return;
+      this.#bare = session.bare;
+      this.#change();
+    });
+    this.#bare = session.bare;
+    new BareBrush(session, viewer, tools, history);
     maker.choices = (model) => this.#choices(model);
     this.#write();
     void this.#list();

@@ -19,7 +19,9 @@ export function setUpCageTools(
   let options: Promise<unknown> | undefined;
   details.addEventListener('toggle', async () => {
     if (!details.open || options) return;
-    options = import('./make-options').then(({ MakeOptionsPanel }) => new MakeOptionsPanel(session, viewer, maker));
+    options = import('./make-options').then(
+      ({ MakeOptionsPanel }) => new MakeOptionsPanel(session, viewer, maker, tools, history),
+    );
     await options.catch((error) => {
       options = undefined;
       session.fail(error);

@@ -81,7 +81,7 @@ export class Explain {
   }
 
   #explain(spot: Pick<Spot, 'triangle' | 'weights'> | undefined): Explanation | undefined {
-    const { shown, classification, rules, locks } = this.#session;
+    const { shown, classification, rules, locks, bare } = this.#session;
     const hadMarks = this.#marks !== undefined;
     this.#marks?.dispose();
     this.#marks = undefined;
@@ -89,7 +89,7 @@ export class Explain {
     const explanation =
       spot && shown && classification
         ? explain(
-            { shown, classification, rules, locks, loops: (this.#loops ??= new BoundaryLoops(shown.cage.mesh)) },
+            { shown, classification, rules, locks, bare, loops: (this.#loops ??= new BoundaryLoops(shown.cage.mesh)) },
             spot.triangle,
             spot.weights,
           )

@@ -43,6 +43,8 @@ export interface Facts {
   classification: Classification;
   rules: Pick<Rules, 'preset' | 'threshold'>;
   locks: Locks;
+  /** As in the session. */
+  bare?: Uint8Array | undefined;
   loops: BoundaryLoops;
 }
 
@@ -66,7 +68,11 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
   );
   const part = segmentOf(facts, vertex);
   const secondLook = secondLookStep(facts, vertex);
+  const isMarked = facts.bare?.[triangle] === 1;
   const steps = [
+    ...(isMarked
+      ? [{ title: 'Marked', sentence: 'You marked this spot: it stays bare, whatever the rules say.' }]
+      : []),
     { title: 'Closest', sentence: closestStep(path, cageTriangle, diagonal) },
     { title: 'Ray', sentence: rayStep(facts, path, diagonal) },
     ...(secondLook ? [{ title: 'Second look', sentence: secondLook }] : []),
@@ -79,8 +85,8 @@ export function explain(facts: Facts, triangle: number, weights: readonly number
     cageTriangle,
     diagonal,
     part,
-    verdict: kVerdicts[zone]!,
-    because: brief(facts, zone, vertex, path, part),
+    verdict: isMarked ? 'Not painted: marked' : kVerdicts[zone]!,
+    because: isMarked ? 'you marked this spot to stay bare' : brief(facts, zone, vertex, path, part),
     steps,
   };
 }

@@ -8,9 +8,15 @@ export interface Code {
 }
 
 /** Generates code for the current scene and options, for three.js and for the command line. Needs `init`. */
-export function codeFor({ shown, rules, locks }: Session): Code {
-  return { three: threeCode(shown!, rules, locks), command: commandLine(shown!, rules, locks) };
+export function codeFor({ shown, rules, locks, bare }: Session): Code {
+  const noted = (code: string, comment: string): string => (bare ? `${comment} ${kMarked}\n${code}` : code);
+  return {
+    three: noted(threeCode(shown!, rules, locks), '//'),
+    command: noted(commandLine(shown!, rules, locks), '#'),
+  };
 }
+
+const kMarked = 'What you marked to stay bare is not in it: give masks, too.';
 
 function threeCode({ target, cage }: Shown, rules: Rules, locks: Readonly<Locks>): string {
   const { preset, threshold, borders } = nonDefault(rules);

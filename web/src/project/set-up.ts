@@ -3,6 +3,7 @@ import type { Live } from '../live/live-panel';
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';
 import type { Viewer } from '../view/viewer';
+import { barePart } from './bare-part';
 import { readProject, writeProject } from './container';
 import { Keeper, type Offer } from './keeper';
 import { type LayersOfPage, layersPart } from './layers-part';
@@ -34,6 +35,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   const project = new Project(session, scenePart(session, page.opener, viewer?.renderer));
   project.add(layersPart(page));
   for (const part of settingsParts(session, live, viewer)) project.add(part);
+  project.add(barePart(session));
   const keeper = new Keeper(project, session, history, {
     offer: showOffer,
     note: (text) => void (element('kept-note', HTMLElement).textContent = text),

@@ -182,7 +182,10 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
   }
 
   async #make({ engine, model, options }: Context): Promise<Result> {
-    const { options: chosen, marks } = this.choices?.(model) ?? {};
+    const { options: chosen, marks: parts } = this.choices?.(model) ?? {};
+    const { bare } = this.#session;
+    // What was marked on the model is not painted, whatever is chosen for its part.
+    const marks = bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
     return {
       cage,

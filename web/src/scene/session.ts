@@ -51,17 +51,23 @@ export type Locks = Record<number, Choice>;
 /** The nearest to a choice that methods without masks know. */
 export const asLock = (choice: Choice): Lock => (choice === 'always' ? 'keep' : choice);
 
-/** The locks and masks that choices come to. @param projection Of the model that they are for. */
+/**
+ * The locks and masks that choices come to.
+ * @param projection Of the model that they are for.
+ * @param bare       Its triangles that stay bare, as `bareOf` gives them.
+ */
 export function choicesOf(
   chosen: Locks,
   projection: Pick<SplitProjection, 'segments'> | undefined,
+  bare?: Uint8Array,
 ): Pick<ClassifyOptions, 'locks' | 'masks'> {
   const entries = Object.entries(chosen);
   const always = new Set(entries.flatMap(([segment, choice]) => (choice === 'always' ? [Number(segment)] : [])));
   const locks = { segments: Object.fromEntries(entries.map(([s, choice]) => [s, asLock(choice)])) };
-  if (always.size === 0 || !projection) return { locks };
-  const vertices = Int8Array.from(projection.segments, (segment) => (always.has(segment) ? 1 : 0));
-  return { locks, masks: { vertices } };
+  const vertices =
+    always.size > 0 && projection && Int8Array.from(projection.segments, (segment) => (always.has(segment) ? 1 : 0));
+  const triangles = bare && Int8Array.from(bare, (mark) => -mark);
+  return { locks, ...((vertices || triangles) && { masks: { vertices: vertices || undefined, triangles } }) };
 }
 
 /** Called when work is cancelled by the user, or superseded by a newer request. */
@@ -117,6 +123,8 @@ export class Session extends Emitter<SessionEvents> {
   #locks: Locks = {};
   /** Locks of the requested target. */
   #wantedLocks: Locks = {};
+  /** What stays bare of each target, by its file: it comes back with the target. */
+  readonly #bare = new WeakMap<File, Uint8Array>();
   #view = kFirstView;
   #runs = 0;
   #working = false;
@@ -212,6 +220,25 @@ export class Session extends Emitter<SessionEvents> {
     if (this.#shown) this.#classify();
   }
 
+  /** 1 for each triangle of the shown target that the user marked to stay bare; undefined if there are none. */
+  get bare(): Uint8Array | undefined {
+    return this.#shown && this.bareOf(this.#shown.target.files);
+  }
+
+  /** The same of another model. @param files Its files. */
+  bareOf([file]: readonly File[]): Uint8Array | undefined {
+    return file && this.#bare.get(file);
+  }
+
+  /** Sets which triangles of the shown target stay bare; takes effect at once. */
+  setBare(marks: Uint8Array | undefined): void {
+    const [file] = this.#shown?.target.files ?? [];
+    if (!file) return;
+    if (marks?.includes(1)) this.#bare.set(file, marks);
+    else this.#bare.delete(file);
+    this.#classify();
+  }
+
   /** Whether the target is deformed. */
   get moved(): boolean {
     return this.#moved;
@@ -228,7 +255,7 @@ export class Session extends Emitter<SessionEvents> {
 
   /** The locks and masks that the choices come to. */
   get choices(): Pick<ClassifyOptions, 'locks' | 'masks'> {
-    return choicesOf(this.#locks, this.#shown?.projection);
+    return choicesOf(this.#locks, this.#shown?.projection, this.bare);
   }
 
   /** Changes the view. */

@@ -12,11 +12,12 @@ import { type Avatar, nameOf } from './avatar';
  */
 export async function exportAll(
   avatars: readonly Avatar[],
-  { rules, choices }: Session,
+  session: Session,
   active: Avatar,
   png: Blob,
   tell: (done: number) => void,
 ): Promise<{ file: Blob; count: number; troubles: string[] }> {
+  const { rules, choices } = session;
   const { exportGlb } = await import('../export/export-glb');
   const files: { name: string; blob: Blob }[] = [];
   const troubles: string[] = [];
@@ -29,7 +30,10 @@ export async function exportAll(
         target,
         cage: avatar.cage!,
         rules,
-        choices: avatar === active ? choices : choicesOf(avatar.locks, avatar.standing?.projection),
+        choices:
+          avatar === active
+            ? choices
+            : choicesOf(avatar.locks, avatar.standing?.projection, session.bareOf(avatar.files)),
       };
       const { glb } = await exportGlb(scene, png, into);
       files.push({ name: freeName(avatar.sample?.name ?? nameOf(avatar.files[0]!.name), files), blob: glb });

@@ -350,10 +350,11 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   }
 
   #classify(avatar: Avatar): void {
-    const { standing, locks } = avatar;
+    const { standing, locks, files } = avatar;
     if (!standing?.projection) return;
     const { threshold } = this.#session.rules;
-    const classification = classify(standing.projection, { threshold, ...choicesOf(locks, standing.projection) });
+    const choices = choicesOf(locks, standing.projection, this.#session.bareOf(files));
+    const classification = classify(standing.projection, { threshold, ...choices });
     standing.overlay?.classify(classification);
     avatar.paintable = paintableShare(classification.segmentStats);
     this.#viewer.redraw();
