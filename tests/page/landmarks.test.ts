@@ -37,10 +37,20 @@ test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit
   const moved = await savedCage(page);
   assert.notDeepEqual(moved.landmarks.mouth_corner_right, found.landmarks.mouth_corner_right);
 
+  // One step back, the pair and the fit are as they were found; and one step on as they were moved.
+  assert.equal(await page.getByTestId('undo').getAttribute('title'), 'Undo: moving the left mouth corner');
+  await page.keyboard.press('Control+z');
+  await worked(page);
+  assert.deepEqual(await savedCage(page), found);
+  assert.equal(await label('mouth_corner_left'), 'left mouth corner, found');
+  await page.keyboard.press('Control+Shift+z');
+  await worked(page);
+  assert.deepEqual(await savedCage(page), moved);
+
   // By the keyboard, and without the other of the pair; what was not found is asked for.
   await page.locator('#landmark-mirror').uncheck();
   await page.getByRole('button', { name: 'Side', exact: true }).click();
-  await page.locator('[data-landmark=mouth_corner_left]').press('ArrowUp');
+  for (let i = 0; i < 2; i++) await page.locator('[data-landmark=mouth_corner_left]').press('ArrowUp');
   await page.locator('#landmark-place').click();
   assert.match((await page.getByTestId('landmark-ask').textContent())!, /^Click on the model: nape\./);
   assert.deepEqual(await faults(page), []);
@@ -57,8 +67,15 @@ test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit
   assert.notDeepEqual(last.landmarks.mouth_corner_left, moved.landmarks.mouth_corner_left);
   assert.deepEqual(last.landmarks.mouth_corner_right, moved.landmarks.mouth_corner_right);
   await page.locator('#landmark-reset').click();
-  await ready(page);
+  await worked(page);
   assert.deepEqual(await savedCage(page), found);
+  const undo = page.getByTestId('undo');
+  for (const name of ['forgetting your landmarks', 'placing the nape', 'moving the left mouth corner']) {
+    assert.equal(await undo.getAttribute('title'), `Undo: ${name}`);
+    await page.keyboard.press('Control+z');
+    await worked(page);
+  }
+  assert.deepEqual(await savedCage(page), moved, 'keys in quick succession are one step');
   await page.locator('#tools input[data-key=t]').check({ force: true });
   assert.ok(await page.locator('#landmark-spots').isHidden());
   assert.deepEqual(complaints, []);

@@ -1,3 +1,4 @@
+import type { Command, History } from 'cagecast/three/layers';
 import { Box3, Plane, Vector3 } from 'three';
 import { firstHit } from '../explain/ray';
 import { announce, element } from '../platform/page';
@@ -10,6 +11,12 @@ import { LandmarkDots } from './landmark-dots';
 import { Mirror, otherSide } from './mirror';
 
 type Position = readonly [number, number, number];
+
+/** All landmarks that are known, and those of the user. */
+interface Spots {
+  spots: Readonly<Record<string, Position>>;
+  given: Readonly<Record<string, Position>>;
+}
 
 const kReach = 24; // pixels around a dot in which it is meant: half a finger
 const kStep = 5; // pixels per arrow key; with Shift 1
@@ -32,6 +39,7 @@ export class LandmarkEditor {
   readonly #viewer: Viewer;
   readonly #tools: Tools;
   readonly #maker: CageMaker;
+  readonly #history: History;
   readonly #layer = element('landmark-spots', HTMLElement);
   readonly #label = element('landmark-label', HTMLElement);
   readonly #ask = element('landmark-ask', HTMLElement);
@@ -47,17 +55,18 @@ export class LandmarkEditor {
   #given: Record<string, Position> = {};
   /** The one that the next click places. */
   #placing: string | undefined;
-  #drag: { name: string; dx: number; dy: number; before: Pick<LandmarkEditor, 'spots' | 'given'> } | undefined;
+  #drag: { name: string; dx: number; dy: number; before: Spots } | undefined;
   #labelled: string | undefined;
   #waiting: ReturnType<typeof setTimeout> | undefined;
   #size = 1;
   #middle = new Vector3();
 
-  constructor(session: Session, viewer: Viewer, tools: Tools, maker: CageMaker) {
+  constructor(session: Session, viewer: Viewer, tools: Tools, maker: CageMaker, history: History) {
     this.#session = session;
     this.#viewer = viewer;
     this.#tools = tools;
     this.#maker = maker;
+    this.#history = history;
     this.#offer = {
       title: 'Marks',
       key: 'l',
@@ -92,11 +101,15 @@ export class LandmarkEditor {
   /** Shows the landmarks of a fit; undefined ends. */
   edit(fitting: Fitting | undefined): void {
     const isNew = fitting !== undefined && !this.#fitting;
+    // Steps on another model or template do not apply any more.
+    if (fitting?.template !== this.#fitting?.template)
+      this.#history.forget((command) => command instanceof LandmarkStep);
     this.#fitting = fitting;
     clearTimeout(this.#waiting);
+    this.#waiting = undefined;
     element('landmarks', HTMLElement).hidden = !fitting;
     this.#tools.offer(this.#offer, fitting !== undefined);
-    this.#drag = undefined;
+    this.#letGo();
     this.#spots = { ...fitting?.used };
     this.#given = { ...fitting?.given };
     if (!fitting) return;
@@ -219,7 +232,8 @@ export class LandmarkEditor {
     const name = this.#placing ? undefined : this.#nearest(event);
     if (!name) return false;
     const { x, y } = this.#viewer.project(this.#at(name));
-    const before = { spots: this.#spots, given: this.#given };
+    const before = this.#state;
+    this.#history.held = true;
     this.#drag = { name, dx: x - event.clientX, dy: y - event.clientY, before };
     this.#tell(name);
     return true;
@@ -233,8 +247,11 @@ export class LandmarkEditor {
 
   #up(): void {
     const drag = this.#drag;
-    this.#drag = undefined;
-    if (drag && drag.before.spots !== this.#spots) this.#fit();
+    this.#letGo();
+    if (drag && drag.before.spots !== this.#spots) {
+      this.#record(`moving the ${readable(drag.name)}`, drag.before);
+      this.#fit();
+    }
     this.#tell(undefined);
   }
 
@@ -242,7 +259,7 @@ export class LandmarkEditor {
     if (!this.#drag) return;
     this.#spots = { ...this.#drag.before.spots };
     this.#given = { ...this.#drag.before.given };
-    this.#drag = undefined;
+    this.#letGo();
     this.#tell(undefined);
     this.#viewer.redraw();
   }
@@ -252,7 +269,9 @@ export class LandmarkEditor {
     if (!step) return;
     const length = event.shiftKey ? 1 : kStep;
     const { x, y } = this.#viewer.project(this.#at(name));
+    const before = this.#state;
     if (!this.#put(name, x + length * step[0], y + length * step[1])) announce('The model ends there.');
+    else this.#record(`moving the ${readable(name)}`, before, this.#waiting !== undefined);
     clearTimeout(this.#waiting);
     this.#waiting = setTimeout(() => this.#fit(), kCalm);
   }
@@ -314,7 +333,9 @@ export class LandmarkEditor {
 
   #place(x: number, y: number): void {
     const name = this.#placing;
+    const before = this.#state;
     if (!name || !this.#put(name, x, y)) return;
+    this.#record(`placing the ${readable(name)}`, before);
     this.#tell(undefined);
     if (Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
     else {
@@ -324,13 +345,60 @@ export class LandmarkEditor {
   }
 
   #reset(): void {
+    const before = this.#state;
     this.#given = {};
-    void this.#maker.fit({});
+    this.#record('forgetting your landmarks', before);
+    void this.#maker.fit({}, this.#fitting!.template);
+  }
+
+  get #state(): Spots {
+    return { spots: this.#spots, given: this.#given };
+  }
+
+  #letGo(): void {
+    if (this.#drag) this.#history.held = false;
+    this.#drag = undefined;
+  }
+
+  /** Makes what was done since `before` a step that can be undone. @param goesOn Whether it may go on with the last step. */
+  #record(name: string, before: Spots, goesOn = false): void {
+    const { last } = this.#history;
+    if (goesOn && last instanceof LandmarkStep && last.name === name) last.after = this.#state;
+    else this.#history.add(new LandmarkStep(name, before, this.#state, (state) => this.#restore(state)));
+  }
+
+  #restore({ spots, given }: Spots): void {
+    this.#spots = { ...spots };
+    this.#given = { ...given };
+    this.#write();
+    this.#tell(undefined);
+    this.#viewer.redraw();
+    this.#fit();
   }
 
   #fit(): void {
     clearTimeout(this.#waiting);
+    this.#waiting = undefined;
     if (this.#fitting && Object.keys(this.#spots).length >= kLeastLandmarks)
       void this.#maker.fit(this.#given, this.#fitting.template);
+  }
+}
+
+class LandmarkStep implements Command {
+  readonly bytes = 0;
+
+  constructor(
+    readonly name: string,
+    private readonly before: Spots,
+    public after: Spots,
+    private readonly put: (state: Spots) => void,
+  ) {}
+
+  undo(): void {
+    this.put(this.before);
+  }
+
+  redo(): void {
+    this.put(this.after);
   }
 }

@@ -47,7 +47,7 @@ export function setUpCageTools(
     last = fitting;
     if (!fitting && !landmarks) return;
     landmarks ??= import('./landmark-editor').then(
-      ({ LandmarkEditor }) => new LandmarkEditor(session, viewer, tools, maker),
+      ({ LandmarkEditor }) => new LandmarkEditor(session, viewer, tools, maker, history),
     );
     const editor = await landmarks.catch((error) => {
       landmarks = undefined;
