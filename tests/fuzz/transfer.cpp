@@ -36,9 +36,21 @@ bool areEqual(const TransferResult& a, const TransferResult& b) {
          same(a.projection.triangles, b.projection.triangles) && same(a.projection.cornerUvs, b.projection.cornerUvs);
 }
 
-/// Whether all coordinates are near the grid. For others the reference has no bound of its own rounding.
+/// Whether all coordinates are on the grid, or off it by far more than rounding. Of others, such as of a triangle of
+/// width 1e-15, rounding decides what the reference says.
 bool isNearGrid(const fuzz::Mesh& mesh) {
-  return std::all_of(mesh.positions.begin(), mesh.positions.end(), [](float x) { return std::abs(x) <= 16; });
+  return std::all_of(mesh.positions.begin(), mesh.positions.end(), [](float x) {
+    const float offset = std::abs(x - std::round(16 * x) / 16);
+    return std::abs(x) <= 16 && (offset == 0 || offset > 5e-7f);
+  });
+}
+
+/// Whether a mesh has a size. Ties are told by shares of the target's, so that rounding decides them where it has none.
+bool hasSize(const fuzz::Mesh& mesh) {
+  const std::vector<float>& p = mesh.positions;
+  for (std::size_t i = 3; i < p.size(); ++i)
+    if (p[i] != p[i % 3]) return true;
+  return false;
 }
 
 /// Compares with the reference, which weighs depth, and finds twins, if and only if the floor needs that.
@@ -71,6 +83,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   check(scene, result);
   require(transfer(scene.cage.view(), scene.target.view(), scene.options, workspace, again).ok());
   require(areEqual(result, again));
-  if (isNearGrid(scene.cage) && isNearGrid(scene.target)) compareWithReference(scene, workspace);
+  if (isNearGrid(scene.cage) && isNearGrid(scene.target) && hasSize(scene.target)) compareWithReference(scene, workspace);
   return 0;
 }
