@@ -4,7 +4,10 @@ import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
-import { drop, glb, inRepository, Site, shownError, type Upload } from '../support/site';
+import { glbOf, tetrahedron } from '../support/glb';
+import { saved, validModel } from '../support/saved';
+import { drop, glb, inRepository, Site, settled, shownError, type Upload } from '../support/site';
+import { unzip } from '../support/zip';
 
 const asset = (...names: string[]): Buffer => readFileSync(inRepository('build/assets', ...names));
 const figure = (name: string): Upload => glb(`${name}.glb`, asset('human-body', 'model.glb'));
@@ -107,6 +110,105 @@ test('figures dropped together get the template of the first; a stroke is on all
 
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('export-all').click()]);
   assert.equal(download.suggestedFilename(), 'avatars-painted.zip');
+  const files = unzip(readFileSync(await download.path()));
+  assert.deepEqual(
+    [...files.keys()],
+    names.map((name) => `${name}-painted.glb`),
+  );
+  for (const bytes of files.values()) {
+    const document = await validModel(bytes);
+    const [overlay] = document
+      .getRoot()
+      .listMaterials()
+      .filter((material) => material.getName() === 'Cagecast overlay');
+    const { data } = PNG.sync.read(Buffer.from(overlay!.getBaseColorTexture()!.getImage()!));
+    assert.ok(
+      data.some((value, i) => i % 4 === 3 && value > 0),
+      'there is paint',
+    );
+  }
   assert.equal(await shownError(page), '');
   assert.deepEqual(complaints, []);
+});
+
+test('twelve avatars are taken; the thirteenth is refused by name, and finds room when one is removed', async () => {
+  const { page, complaints } = await site.visit();
+  const model = (name: string): Upload => glb(`${name}.glb`, glbOf(tetrahedron()));
+  const names = Array.from({ length: 12 }, (_, i) => `figure-${i + 1}`);
+  await drop(page, [...names, 'one-too-many'].map(model));
+  const full = 'The wardrobe is full: it holds 12 avatars, and one-too-many found no room. Remove one first.';
+  await page.locator('#error', { hasText: full }).waitFor();
+  const labels = await avatars(page, 12);
+  names.forEach((name, i) => assert.match(labels[i]!, new RegExp(`^${name}, `)));
+  assert.ok(await page.getByTestId('wardrobe-input').isDisabled());
+  await page.locator('#alert-close').click();
+  await drop(page, [model('one-too-many')]);
+  await page.locator('#error', { hasText: full }).waitFor();
+
+  await page.locator('#alert-close').click();
+  await page.getByRole('button', { name: 'Remove figure-1', exact: true }).click();
+  await avatars(page, 11);
+  await drop(page, [model('one-too-many')]);
+  assert.match((await avatars(page, 12)).at(-1)!, /^one-too-many, /);
+  assert.equal(await shownError(page), '');
+  assert.deepEqual(complaints, []);
+});
+
+/** Waits until the browser keeps the wardrobe with the avatar at a place on the stage. */
+async function keptAt(page: Page, place: number): Promise<void> {
+  const read = `new Promise((done) => {
+    indexedDB.open('cagecast').onsuccess = ({ target: { result } }) => {
+      result.transaction('works').objectStore('works').getAll().onsuccess = (event) => {
+        result.close();
+        done(event.target.result[0]?.parts.wardrobe.at);
+      };
+    };
+  })`;
+  for (const end = Date.now() + 60_000; (await page.evaluate(read)) !== place; ) {
+    assert.ok(Date.now() < end, 'it is not kept');
+    await page.waitForTimeout(200);
+  }
+}
+
+test('the avatars are back after a reload, with their cages, overrides and order, and are in the project file', async () => {
+  const { page, complaints } = await site.visit();
+  await page.getByTestId('open-wardrobe').click();
+  await avatars(page, 1);
+  await drop(page, [
+    glb('bust.glb', asset('human-misaligned', 'target.glb')),
+    glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
+  ]);
+  await page.getByTestId('wardrobe-sample').selectOption('car');
+  await avatars(page, 3);
+  // What is excluded of one is remembered while another is on the stage.
+  await page.locator('.avatars .avatar').nth(1).click();
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'bust' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.locator('#parts summary').click();
+  await page.locator('#segment-rows select').first().selectOption('exclude');
+  await page.locator('.avatars .avatar').nth(2).click();
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: /car/i }).waitFor();
+  const before = await avatars(page, 3);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  const chosen = (): Promise<(string | null)[]> =>
+    page.locator('.avatars .avatar').evaluateAll((all) => all.map((one) => one.ariaPressed));
+  assert.deepEqual(await chosen(), ['false', 'false', 'true']);
+
+  await keptAt(page, 2);
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.deepEqual(await avatars(page, 3), before);
+  assert.deepEqual(await chosen(), ['false', 'false', 'true']);
+  assert.ok(await page.getByTestId('show-all').isChecked());
+  assert.deepEqual(await faults(page), []);
+  const project = await saved(page, 'save-project');
+
+  const fresh = await site.visit();
+  await drop(fresh.page, [{ name: project.name, mimeType: '', buffer: project.bytes }]);
+  assert.deepEqual(await avatars(fresh.page, 3), before);
+  await fresh.page.locator('.avatars .avatar').nth(1).click();
+  await fresh.page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'bust' }).waitFor();
+  assert.equal(await settled(fresh.page), 'ready', await shownError(fresh.page));
+  assert.equal(await fresh.page.locator('#segment-rows select').first().inputValue(), 'exclude');
+  assert.deepEqual([...complaints, ...fresh.complaints], []);
 });

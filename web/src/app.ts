@@ -108,12 +108,13 @@ const live = new Live(session, viewer);
 recordControls(session, live, history);
 const opener = new Opener(session, stack, edits, viewer?.renderer);
 const { png: exportPng, layers } = exportedPaint(session, stack, edits, opener, png);
-if (viewer && paint)
-  opener.takesDrop = setUpWardrobe({ session, viewer, stack, paint, png: exportPng, samples: () => opener.samples });
+const wardrobe =
+  viewer && paint && setUpWardrobe({ session, viewer, stack, paint, png: exportPng, samples: () => opener.samples });
+if (wardrobe) opener.takesDrop = (files) => wardrobe.take(files);
 const linked = { session, layers, live, viewer };
 const exportPanel = new ExportPanel(linked, exportPng);
 stack.on('change', () => exportPanel.refresh());
-const restoreWork = beginProjects({ session, stack, edits, history, away, opener, painter, live, viewer });
+const restoreWork = beginProjects({ session, stack, edits, history, away, opener, painter, live, viewer, wardrobe });
 keepOffline(session);
 offerGuide(session);
 

@@ -1,8 +1,9 @@
 import type { Session } from '../scene/session';
-import { listOf, numberOf } from './checks';
+import { damaged, listOf, numberOf } from './checks';
 import type { Contribution } from './project';
 
 const kMostRuns = 1_000_000;
+const kMostTriangles = 2 ** 26;
 
 /** What the user marked to stay bare. */
 export function barePart(session: Session): Contribution {
@@ -11,8 +12,8 @@ export function barePart(session: Session): Contribution {
     isWork: true,
     save: () => session.bare && runsOf(session.bare),
     read(saved) {
-      const runs = listOf(saved, kMostRuns, 'marks');
-      return { shown: () => session.setBare(marksOf(runs, session.shown!.target.mesh.indices.length / 3)) };
+      const marks = marksOf(saved);
+      return { shown: () => session.keepBare(session.shown!.target, marks) };
     },
   };
 }
@@ -20,7 +21,7 @@ export function barePart(session: Session): Contribution {
 const kRuns = new WeakMap<Uint8Array, number[]>();
 
 /** Marks as lengths of runs: of triangles without, then with marks, and so on. */
-function runsOf(marks: Uint8Array): number[] {
+export function runsOf(marks: Uint8Array): number[] {
   let runs = kRuns.get(marks);
   if (runs) return runs;
   kRuns.set(marks, (runs = []));
@@ -33,14 +34,16 @@ function runsOf(marks: Uint8Array): number[] {
   return runs;
 }
 
-/** The marks that runs tell of. @param count Of triangles. */
-function marksOf(runs: readonly unknown[], count: number): Uint8Array {
+/** The marks that saved runs tell of. */
+export function marksOf(saved: unknown): Uint8Array {
+  const runs = listOf(saved, kMostRuns, 'marks').map((run) => Math.floor(numberOf(run, 0, kMostTriangles, 0)));
+  const count = runs.reduce((sum, run) => sum + run, 0);
+  if (count > kMostTriangles) damaged('it has too many marks');
   const marks = new Uint8Array(count);
   let from = 0;
   runs.forEach((run, at) => {
-    const to = from + numberOf(run, 0, count - from, 0);
-    marks.fill(at % 2, from, to);
-    from = to;
+    marks.fill(at % 2, from, from + run);
+    from += run;
   });
   return marks;
 }

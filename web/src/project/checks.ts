@@ -1,5 +1,7 @@
 /** Checks of values from a file that anybody may have written. */
 
+import type { Locks } from '../scene/session';
+
 /** @throws Error that the project is damaged. */
 export function damaged(what: string): never {
   throw new Error(`the project is damaged: ${what}`);
@@ -24,3 +26,11 @@ export const numberOf = (value: unknown, least: number, most: number, otherwise:
 
 /** One of some values, or the first of them. */
 export const oneOf = <T>(value: unknown, all: readonly T[]): T => (all.includes(value as T) ? (value as T) : all[0]!);
+
+/** Overrides of parts; others than there are do no harm. */
+export const locksOf = (value: unknown): Locks =>
+  Object.fromEntries(
+    Object.entries(objectOf(value, 'overrides')).flatMap(([key, lock]) =>
+      /^\d{1,9}$/.test(key) ? [[key, oneOf(lock, ['auto', 'keep', 'exclude', 'always'])]] : [],
+    ),
+  );

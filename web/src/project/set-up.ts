@@ -3,6 +3,7 @@ import type { Live } from '../live/live-panel';
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';
 import type { Viewer } from '../view/viewer';
+import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { barePart } from './bare-part';
 import { readProject, writeProject } from './container';
 import { Keeper, type Offer } from './keeper';
@@ -10,13 +11,15 @@ import { type LayersOfPage, layersPart } from './layers-part';
 import { Project } from './project';
 import { scenePart } from './scene-part';
 import { settingsParts } from './settings-parts';
+import { wardrobePart } from './wardrobe-part';
 
 /** What projects are made of. */
 export interface ProjectOfPage extends LayersOfPage {
   history: History;
   live: Live;
-  /** Undefined without WebGL. */
+  /** Undefined without WebGL, as is the wardrobe. */
   viewer: Viewer | undefined;
+  wardrobe: WardrobeOfPage | undefined;
 }
 
 /** Keeps the page's work in the browser, and saves and opens it as a file. */
@@ -31,11 +34,12 @@ export interface Projects {
 }
 
 export function setUpProjects(page: ProjectOfPage): Projects {
-  const { session, stack, painter, history, live, viewer } = page;
+  const { session, stack, painter, history, live, viewer, wardrobe } = page;
   const project = new Project(session, scenePart(session, page.opener, viewer?.renderer));
   project.add(layersPart(page));
   for (const part of settingsParts(session, live, viewer)) project.add(part);
   project.add(barePart(session));
+  if (wardrobe) project.add(wardrobePart(wardrobe));
   const keeper = new Keeper(project, session, history, {
     offer: showOffer,
     note: (text) => void (element('kept-note', HTMLElement).textContent = text),
@@ -44,6 +48,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   for (const event of ['zones', 'rules', 'view', 'paint'] as const) session.on(event, touch);
   for (const event of ['change', 'select'] as const) stack.on(event, touch);
   painter?.on('painted', touch);
+  if (wardrobe) wardrobe.onChange = touch;
 
   const open = async (file: File): Promise<void> => {
     try {

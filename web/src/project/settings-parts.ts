@@ -5,7 +5,7 @@ import type { Locks, Session } from '../scene/session';
 import { kLightNames } from '../view/light';
 import { kModes } from '../view/view';
 import type { Viewer } from '../view/viewer';
-import { listOf, numberOf, objectOf, oneOf, textOf } from './checks';
+import { listOf, locksOf, numberOf, objectOf, oneOf, textOf } from './checks';
 import type { Contribution } from './project';
 
 const kMostMorphs = 10_000;
@@ -36,9 +36,7 @@ export function settingsParts(session: Session, live: Live, viewer: Viewer | und
       isWork: true,
       save: () => session.locks,
       read(saved) {
-        const locks = Object.entries(objectOf(saved, 'overrides')).flatMap(([key, lock]) =>
-          /^\d{1,9}$/.test(key) ? [[key, oneOf(lock, ['auto', 'keep', 'exclude', 'always'])]] : [],
-        );
+        const locks = Object.entries(locksOf(saved));
         const known = (): Locks => {
           const count = session.shown!.projection.segmentStats.length;
           return Object.fromEntries(locks.filter(([key]) => Number(key) < count));

@@ -232,11 +232,15 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Sets which triangles of the shown target stay bare; takes effect at once. */
   setBare(marks: Uint8Array | undefined): void {
-    const [file] = this.#shown?.target.files ?? [];
-    if (!file) return;
+    if (this.#shown) this.keepBare(this.#shown.target, marks);
+  }
+
+  /** Sets the same of any model; marks for another number of triangles are ignored. */
+  keepBare({ files: [file], mesh }: Model, marks: Uint8Array | undefined): void {
+    if (!file || (marks && marks.length !== mesh.indices.length / 3)) return;
     if (marks?.includes(1)) this.#bare.set(file, marks);
     else this.#bare.delete(file);
-    this.#classify();
+    if (file === this.#shown?.target.files[0]) this.#classify();
   }
 
   /** Whether the target is deformed. */

@@ -3,6 +3,7 @@ import type { Model } from '../scene/load-model';
 import type { Sample } from '../scene/samples';
 import type { Locks } from '../scene/session';
 import type { SplitProjection } from '../scene/transfer-messages';
+import type { KeptAvatar } from './kept';
 import type { Beside } from './side-by-side';
 
 /** The greatest number of avatars. */
@@ -18,6 +19,8 @@ export interface Entry {
   /** Absent if the cage of the model on the stage is to be fitted. */
   cage?: (() => Promise<Model>) | undefined;
   sample?: Sample | undefined;
+  /** If it is of a project. */
+  kept?: KeptAvatar | undefined;
 }
 
 /** A model beside the one on the stage. */
@@ -46,5 +49,7 @@ export interface Avatar {
   takesPaint: boolean;
   /** What is being done to it, for people. */
   doing: string;
+  /** As a project has it, until it was read. */
+  kept: KeptAvatar | undefined;
   standing: Standing | undefined;
 }

@@ -3,6 +3,7 @@ import { modelsAmong } from '../scene/files';
 import { loadModel, type Model } from '../scene/load-model';
 import { fetchFile, type Sample } from '../scene/samples';
 import { type Entry, nameOf } from './avatar';
+import type { KeptAvatar } from './kept';
 
 /** A sample as an avatar. */
 export function sampleEntry(sample: Sample, renderer: WebGLRenderer): Entry {
@@ -11,6 +12,17 @@ export function sampleEntry(sample: Sample, renderer: WebGLRenderer): Entry {
     sample,
   });
   return { name: sample.title, sample, target: () => model(sample.target), cage: () => model(sample.cage) };
+}
+
+/** An avatar of a project. */
+export function keptEntry(kept: KeptAvatar, samples: readonly Sample[], renderer: WebGLRenderer): Entry {
+  const model = async ({ files: [file, ...rest], sample: name }: NonNullable<KeptAvatar['cage']>): Promise<Model> => {
+    const sample = samples.find((one) => one.name === name);
+    return { ...(await loadModel(file!, renderer, rest)), ...(sample && { sample }) };
+  };
+  const { name, cage } = kept;
+  const sample = samples.find((one) => one.name === kept.sample);
+  return { name, sample, kept, target: () => model(kept), cage: cage && (() => model(cage)) };
 }
 
 /**

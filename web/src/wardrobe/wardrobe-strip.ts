@@ -1,8 +1,9 @@
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';
 import { type Avatar, kMostAvatars } from './avatar';
-import { entriesOf, sampleEntry } from './entries';
+import { entriesOf, keptEntry, sampleEntry } from './entries';
 import { exportAll } from './export-all';
+import type { KeptWardrobe } from './kept';
 import type { Surroundings } from './set-up-wardrobe';
 import { Wardrobe } from './wardrobe';
 
@@ -55,7 +56,10 @@ export class WardrobeStrip {
       this.add(files);
     });
     this.#listSamples();
-    this.#wardrobe.on('change', () => this.#show());
+    this.#wardrobe.on('change', () => {
+      this.#show();
+      surroundings.onChange();
+    });
     this.#pickOnStage();
     this.#show();
   }
@@ -80,6 +84,21 @@ export class WardrobeStrip {
   /** Only the model on the stage is shown from now on. */
   close(): void {
     this.#all.checked = this.#wardrobe.showsAll = false;
+  }
+
+  /** What a project has of it. */
+  get kept(): KeptWardrobe {
+    return this.#wardrobe.kept;
+  }
+
+  /** Brings the avatars of a project back. */
+  restore({ at, all, avatars }: KeptWardrobe): void {
+    const { samples, viewer } = this.#surroundings;
+    this.#wardrobe.restore(
+      avatars.map((avatar) => keptEntry(avatar, samples(), viewer.renderer)),
+      at,
+    );
+    if (this.#all.checked !== all) this.#all.click();
   }
 
   #addAll(entries: Parameters<Wardrobe['add']>[0], instead?: Avatar): void {
@@ -111,6 +130,8 @@ export class WardrobeStrip {
       const card = this.#cards.get(avatar) ?? this.#makeCard(avatar);
       fillCard(card, avatar, avatar === active, avatars.length > 1);
     }
+    const cards = avatars.map((avatar) => this.#cards.get(avatar)!);
+    if (cards.some((card, at) => card !== this.#list.children[at])) this.#list.replaceChildren(...cards);
     const ready = avatars.filter(({ files, doing }) => files.length > 0 && doing === '');
     const taking = ready.filter(({ takesPaint }) => takesPaint);
     const note = element('wardrobe-note', HTMLElement);

@@ -13,6 +13,7 @@ import { pick } from '../view/pick';
 import type { Viewer } from '../view/viewer';
 import { type Avatar, type Entry, kMostAvatars, nameOf } from './avatar';
 import { fitLike } from './fit-like';
+import type { KeptAvatar, KeptWardrobe } from './kept';
 import type { Surroundings } from './set-up-wardrobe';
 import { measure, SideBySide } from './side-by-side';
 
@@ -91,7 +92,9 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   async add(entries: readonly Entry[], instead?: Avatar): Promise<void> {
     const left = entries.slice(Math.max(0, kMostAvatars - this.#avatars.length + (instead ? 1 : 0)));
     const added = entries.slice(0, entries.length - left.length).map((entry) => {
-      const avatar = { ...this.#make('Waiting'), name: entry.name, sample: entry.sample };
+      const { name, sample, kept } = entry;
+      const { follows = false, locks = {} } = kept ?? {};
+      const avatar = { ...this.#make('Waiting'), name, sample, kept, follows, locks };
       this.#avatars.push(avatar);
       return { entry, avatar };
     });
@@ -113,6 +116,39 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
         }
       });
     await this.#work;
+    // What was done meanwhile has cleared it.
+    if (left.length > 0) showError(troubles.join(' '));
+  }
+
+  /** What a project has of it. */
+  get kept(): KeptWardrobe {
+    const avatars = this.#avatars.filter(({ files, kept }) => files.length > 0 || kept);
+    return {
+      at: avatars.indexOf(this.#active),
+      all: this.#showsAll,
+      avatars: avatars.filter((avatar) => avatar !== this.#active).map((avatar) => avatar.kept ?? this.#keep(avatar)),
+    };
+  }
+
+  #keep({ name, sample, files, cage, follows, locks }: Avatar): KeptAvatar {
+    return {
+      name,
+      sample: sample?.name,
+      files,
+      cage: cage && { files: cage.files, sample: cage.sample?.name },
+      follows,
+      locks,
+      bare: this.#session.bareOf(files),
+    };
+  }
+
+  /** Puts the avatars of a project beside the one on the stage, in place of the others. @param at The place of that one. */
+  restore(entries: readonly Entry[], at: number): void {
+    for (const avatar of [...this.#avatars]) if (avatar !== this.#active) this.remove(avatar);
+    void this.add(entries);
+    this.#avatars.splice(this.#avatars.indexOf(this.#active), 1);
+    this.#avatars.splice(at, 0, this.#active);
+    this.#arrange();
   }
 
   /** Takes an avatar out and frees its memory; the last one stays. */
@@ -180,6 +216,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
       paintable: undefined,
       takesPaint: false,
       doing,
+      kept: undefined,
       standing: undefined,
     };
   }
@@ -268,8 +305,10 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     const model = await target();
     if (!this.#avatars.includes(avatar)) return disposeModel(model);
     try {
-      avatar.files = model.files;
       avatar.cage = await cage?.();
+      this.#session.keepBare(model, avatar.kept?.bare ?? this.#session.bareOf(model.files));
+      avatar.files = model.files;
+      avatar.kept = undefined;
     } catch (error) {
       disposeModel(model);
       throw error;
