@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
-import { difference, look, modelArea } from '../support/picture';
+import { difference, frames, look, modelArea } from '../support/picture';
 import {
   drop,
   glb,
@@ -173,6 +173,42 @@ test('a VRM opens from its front; buttons and keys show front, side and the whol
   assert.ok(difference(side, await look(page, area)) < 0.01, 'as large as it fits');
   await page.locator('#view').press('1');
   assert.ok(difference(straight, await look(page, area)) < 0.002);
+});
+
+test('the wheel brings near what is under the pointer; the right button and Shift with arrow keys move the view', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 700 } });
+  await open(page, [figure()]);
+  await page.locator('#view').press('1');
+  for (let i = 0; i < 4; i++) await page.locator('#view').press('-');
+  const crown = async (): Promise<{ x: number; y: number }> => {
+    const { left, right, top } = await seenModel(page);
+    return { x: (left + right) / 2, y: top };
+  };
+  const before = await crown();
+  assert.ok(before.y > 60);
+  await page.mouse.move(before.x, before.y + 4);
+  for (let i = 0; i < 8; i++) {
+    await page.mouse.wheel(0, -120);
+    await frames(page, 2);
+  }
+  const near = await crown();
+  assert.ok(Math.abs(near.y - before.y) < 15, `the head stays under the pointer: from ${before.y} to ${near.y}`);
+
+  await page.mouse.move(before.x, before.y + 4);
+  await page.mouse.down({ button: 'right' });
+  await page.mouse.move(before.x, before.y + 104, { steps: 5 });
+  await page.mouse.up({ button: 'right' });
+  await frames(page, 40); // the glide ends
+  const lower = await crown();
+  assert.ok(lower.y > near.y + 70, `from ${near.y} to ${lower.y}`);
+  await page.locator('#view').press('Shift+ArrowUp');
+  await frames(page, 40); // the glide ends
+  assert.ok((await crown()).y > lower.y + 5, 'the eye moves up, so the model moves down');
+
+  await page.locator('#view').press('1');
+  for (let i = 0; i < 4; i++) await page.locator('#view').press('-');
+  assert.ok(Math.abs((await crown()).y - before.y) < 3, 'and all comes back');
+  assert.deepEqual(complaints, []);
 });
 
 test('a cage beside its model is moved into place from the stage, and the layers stay', async () => {

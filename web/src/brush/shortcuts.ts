@@ -9,6 +9,7 @@ const kKeys = [
   ['Ctrl Z, Ctrl Y', 'Undo, redo'],
   ['T, or Escape', 'Turn the model'],
   ['Arrow keys, + and −', 'Turn and zoom'],
+  ['Shift and arrow keys, or the right mouse button', 'Move the view'],
   ['1, 2, 0, Home', 'Front, side, fit, first view'],
   ['Space, held', 'Paint at the cross'],
   ['X', 'Explain'],

@@ -73,7 +73,8 @@ export class Studio {
    * @param place Where the model on the stage is, which casts the shadow; the origin by default.
    */
   follow(camera: Camera, place = kOrigin): void {
-    const turn = Math.atan2(camera.position.x, camera.position.z) - 0.6;
+    const { x, z } = camera.getWorldDirection(new Vector3());
+    const turn = Math.atan2(-x, -z) - 0.6;
     this.#key.position.set(3 * Math.sin(turn), 4.6, 3 * Math.cos(turn)).add(place);
     this.#key.target.position.copy(place);
     this.#key.target.updateMatrixWorld();

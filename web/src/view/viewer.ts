@@ -47,6 +47,8 @@ const kTurnSeconds = 12; // of a whole turn of the turntable
 const kPicturePixels = 2; // of a saved picture, per pixel of the page
 const kKeyStep = MathUtils.degToRad(6);
 const kKeyNearer = 1 / 1.1; // of the distance
+const kKeyMove = 40; // pixels
+const kMiddle = new Vector3(); // of the model
 
 /** Somebody to take a picture of. */
 export interface Sitter {
@@ -123,7 +125,8 @@ export class Viewer {
     this.#controls.enableDamping = true;
     this.#controls.dampingFactor = 0.12;
     this.#controls.autoRotateSpeed = 60 / kTurnSeconds;
-    this.#controls.enablePan = false;
+    this.#controls.zoomToCursor = true;
+    this.#controls.maxTargetRadius = 1; // inside the model
     this.#controls.minDistance = 0.8;
     this.#controls.maxDistance = kFar;
     this.#controls.maxPolarAngle = MathUtils.degToRad(150);
@@ -257,6 +260,7 @@ export class Viewer {
     if (crowd) this.#studio.scene.add(crowd.object);
     this.#studio.showFloor(!crowd);
     this.#controls.maxDistance = crowd ? kFarthest : kFar;
+    this.#controls.enablePan = this.#controls.zoomToCursor = !crowd;
     this.#far = this.#fullDistance;
     if (isOther || !this.#moved) this.home();
     else this.redraw();
@@ -397,29 +401,35 @@ export class Viewer {
   /** Resets the camera to show the whole model. */
   home(): void {
     this.#moved = false;
-    this.#look({ phi: kHome.phi, theta: this.#front + kHome.theta, radius: this.#fullDistance });
+    this.#look({ phi: kHome.phi, theta: this.#front + kHome.theta, radius: this.#fullDistance }, kMiddle);
   }
 
   /** Shows the whole model from its front or its side, or as large as it fits from where the camera is. */
   face(side: 'front' | 'side' | 'fit'): void {
     this.#markMoved();
-    const angle = new Spherical().setFromVector3(this.#camera.position);
+    const angle = this.#orbit;
     if (side !== 'fit') angle.set(1, kLevel, this.#front + (side === 'side' ? Math.PI / 2 : 0));
     const radius = fittingDistance(this.#free, kFieldOfView, this.#pointsFrom(angle), angle, true);
-    this.#look({ phi: angle.phi, theta: angle.theta, radius });
+    this.#look({ phi: angle.phi, theta: angle.theta, radius }, kMiddle);
   }
 
   /** The camera angle chosen by the user; undefined by default. */
   get angle(): Angle | undefined {
     if (!this.#moved) return undefined;
-    const { radius, phi, theta } = new Spherical().setFromVector3(this.#camera.position);
+    const { radius, phi, theta } = this.#orbit;
     return { turn: MathUtils.radToDeg(theta), tilt: MathUtils.radToDeg(phi), near: this.#fullDistance / radius };
   }
 
   /** Sets the camera angle, within the limits of the controls. */
   lookFrom({ turn, tilt, near }: Angle): void {
     this.#markMoved();
-    this.#look({ radius: this.#fullDistance / near, phi: MathUtils.degToRad(tilt), theta: MathUtils.degToRad(turn) });
+    const [phi, theta] = [MathUtils.degToRad(tilt), MathUtils.degToRad(turn)];
+    this.#look({ radius: this.#fullDistance / near, phi, theta }, kMiddle);
+  }
+
+  /** Where the camera is, from what it looks at. */
+  get #orbit(): Spherical {
+    return new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#controls.target));
   }
 
   /** The distance at which the whole model is visible. */
@@ -438,7 +448,7 @@ export class Viewer {
     const { stage } = this.#studio;
     stage.position.copy(this.#place0);
     if (!this.#crowd) return;
-    const { radius, theta } = new Spherical().setFromVector3(this.#camera.position);
+    const { radius, theta } = this.#orbit;
     const near = Math.min(kNear, this.#far / 2);
     const share = MathUtils.smoothstep(radius, near, 0.9 * this.#far);
     const middle = this.#crowd.middle(theta).multiplyScalar(-share);
@@ -478,9 +488,13 @@ export class Viewer {
     this.home();
   }
 
-  #look({ radius, phi, theta }: Pick<Spherical, 'radius' | 'phi' | 'theta'>): void {
-    this.#camera.position.setFromSphericalCoords(radius, phi, theta);
-    this.#withoutDamping(() => this.#controls.update());
+  /** @param target What is looked at, in the studio. */
+  #look({ radius, phi, theta }: Pick<Spherical, 'radius' | 'phi' | 'theta'>, target = this.#controls.target): void {
+    this.#withoutDamping(() => {
+      this.#controls.target.copy(target);
+      this.#camera.position.setFromSphericalCoords(radius, phi, theta).add(target);
+      this.#controls.update();
+    });
   }
 
   /** Sets whether one finger or the main button turns the model; two fingers always do. */
@@ -507,12 +521,16 @@ export class Viewer {
       '+': () => this.#controls.dollyIn(kKeyNearer),
       '=': () => this.#controls.dollyIn(kKeyNearer),
       '-': () => this.#controls.dollyOut(kKeyNearer),
+      'Shift ArrowLeft': () => this.#controls.pan(kKeyMove, 0),
+      'Shift ArrowRight': () => this.#controls.pan(-kKeyMove, 0),
+      'Shift ArrowUp': () => this.#controls.pan(0, kKeyMove),
+      'Shift ArrowDown': () => this.#controls.pan(0, -kKeyMove),
       Home: () => this.home(),
       '0': () => this.face('fit'),
       '1': () => this.face('front'),
       '2': () => this.face('side'),
     };
-    const action = actions[event.key];
+    const action = actions[event.shiftKey && event.key.startsWith('Arrow') ? `Shift ${event.key}` : event.key];
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     this.#markMoved();
@@ -533,7 +551,7 @@ export class Viewer {
     this.#far = this.#fullDistance;
     // Such as when a phone hides its address bar: keep the user's angle and magnification.
     if (this.#moved) {
-      const { radius, phi, theta } = new Spherical().setFromVector3(this.#camera.position);
+      const { radius, phi, theta } = this.#orbit;
       this.#look({ radius: (radius * this.#far) / far, phi, theta });
     } else if (before !== this.#camera.aspect) this.home();
     // Resizing cleared the canvas: draw now to avoid flicker.
@@ -567,7 +585,7 @@ export class Viewer {
       if (this.#drawn > 0) this.#swayed += Math.min(kLongestFrame, Math.max(0, now - this.#drawn) / 1000);
       this.#drawn = now;
       const phase = Math.sin(this.#swayed * ((2 * Math.PI) / kSwaySeconds));
-      const { radius, phi } = new Spherical().setFromVector3(this.#camera.position);
+      const { radius, phi } = this.#orbit;
       this.#look({ radius, phi, theta: this.#front + kHome.theta - kSway * phase });
     }
     if (this.#mixer) {
