@@ -79,8 +79,14 @@ async function work(page: Page): Promise<void> {
   await page.getByLabel('Own background').check();
 }
 
+/** Keeps the status at which the picture of the first sample was taken away. */
+const kWatchPoster = `new MutationObserver((changes) => {
+  if (changes.some(({ removedNodes }) => [...removedNodes].some(({ id }) => id === 'poster')))
+    window.posterLeft = document.querySelector('[data-testid=status]').textContent
+}).observe(document, { childList: true, subtree: true })`;
+
 test('a reload in the middle of a painting brings everything back, files included; starting over can be taken back', async () => {
-  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } }, kWatchPoster);
   await work(page);
   await kept(page);
   const before = await state(page);
@@ -89,6 +95,7 @@ test('a reload in the middle of a painting brings everything back, files include
   const line = page.getByTestId('kept');
   await line.filter({ hasText: 'Your last work is back.' }).waitFor();
   assert.deepEqual(await state(page), before);
+  assert.notEqual(await page.evaluate('posterLeft'), 'ready', 'the picture of the sample does not lie over the work');
   assert.equal(await page.getByTestId('undo').isDisabled(), true);
   assert.deepEqual(await faults(page), []);
 

@@ -33,7 +33,7 @@ import { putAwayLayers } from './scene/put-away-layers';
 import { fetchAhead, loadSamples } from './scene/samples';
 import { Session } from './scene/session';
 import { ExactBorders } from './view/exact-borders';
-import { fadePoster } from './view/poster';
+import { fadePoster, removeOtherPoster } from './view/poster';
 import { showModel } from './view/show-model';
 import { setUpStageButtons } from './view/stage-buttons';
 import { Tools } from './view/tool-rail';
@@ -61,6 +61,7 @@ function painted(): Promise<unknown> {
 const samples = loadSamples();
 // Start early; errors are reported where the results are awaited.
 for (const early of [samples.then(([first]) => fetchAhead(first!)), init()]) early.catch(() => {});
+removeOtherPoster();
 await painted();
 
 const session = new Session();

@@ -1,22 +1,24 @@
 import { readLink } from '../export/link';
-import { element } from '../platform/page';
+import { flags } from '../project/flags';
 import type { Session } from '../scene/session';
 import type { Viewer } from './viewer';
 
 const kFade = 300; // milliseconds
 
-/**
- * Fades the poster image, a static picture of the first sample, once the 3D view is drawn. Without WebGL it stays as long as
- * that sample is open.
- */
-export function fadePoster(session: Session, viewer: Viewer | undefined): void {
-  const poster = element('poster', HTMLImageElement);
+const find = (): HTMLImageElement | null => document.querySelector('#poster');
+
+/** Removes the poster image, a static picture of the first sample, if a link or the work that is kept opens something else. */
+export function removeOtherPoster(): void {
+  const poster = find();
   const linked = readLink(location.hash);
-  // The link opens another sample.
-  if (linked && linked.sample !== poster.dataset.sample) {
-    poster.remove();
-    return;
-  }
+  const works = flags.get('work') && flags.get('start') !== 'over';
+  if (linked ? linked.sample !== poster?.dataset.sample : works) poster?.remove();
+}
+
+/** Fades the poster image once the 3D view is drawn. Without WebGL it stays as long as the first sample is open. */
+export function fadePoster(session: Session, viewer: Viewer | undefined): void {
+  const poster = find();
+  if (!poster) return;
   if (!viewer)
     return void session.on('transfer', ({ target }) => (poster.hidden = target.sample?.name !== poster.dataset.sample));
   const end = session.on('progress', async ({ state }) => {
