@@ -249,6 +249,17 @@ test('a cage beside its model is moved into place from the stage, and the layers
   assert.deepEqual(complaints, []);
 });
 
+test('on a desk too, colour and size are beside the tools while one paints', async () => {
+  const { page } = await site.visit({ viewport: { width: 1440, height: 900 } });
+  const quick = page.locator('#quick-paint');
+  assert.ok(await quick.isHidden());
+  await page.locator('#tools input[data-key=b]').check({ force: true });
+  const [rail, box] = [(await page.locator('#tools').boundingBox())!, (await quick.boundingBox())!];
+  assert.ok(box.x > rail.x + rail.width && box.x < rail.x + rail.width + 30, `it begins at ${box.x}`);
+  assert.ok(await page.locator('#angles').isVisible());
+  assert.deepEqual(await faults(page), []);
+});
+
 test('while one paints, colour, size, undo and redo are on the stage; a part that is clicked can be chosen for', async () => {
   const { page } = await site.visit({ viewport: { width: 390, height: 844 }, hasTouch: true });
   assert.ok(await page.locator('#quick-paint').isHidden());
