@@ -54,9 +54,11 @@ test('a model dropped alone: a cage is made, it is painted, and the model is sav
   const { page, complaints } = await site.visit();
   await drop(page, [head()]);
   await ready(page);
-  await page.getByTestId('stage-remedy').click();
+  await page.getByTestId('stage-remedy').press('Enter');
   await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
   await ready(page);
+  await page.getByTestId('stage-remedy').waitFor({ state: 'hidden' });
+  assert.equal(await page.evaluate(() => document.activeElement?.id), 'stage-verdict-text', 'the focus is not lost');
   assert.deepEqual(await faults(page), []);
   await page.locator('#tools input[data-key=b]').check({ force: true });
   await page.getByTestId('brush-color').fill('#12ff34');

@@ -52,7 +52,9 @@ export class StageVerdict {
     this.#text.textContent = texts[verdict];
     this.#card.textContent = verdict === 'unfit' ? 'does not fit' : verdict === '' ? 'not checked yet' : share;
     this.#box.dataset.verdict = this.#card.dataset.verdict = verdict;
+    const leaves = !this.#remedy && document.activeElement === this.#button;
     this.#button.hidden = !this.#remedy;
+    if (leaves) this.#text.focus();
     this.#button.textContent = this.#remedy?.title ?? '';
   }
 }
