@@ -187,10 +187,12 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     // What was marked on the model is not painted, whatever is chosen for its part.
     const marks = bare && parts ? parts.map((mark, t) => mark | bare[t]!) : (bare ?? parts);
     const cage = await engine.makeCage({ ...model, marks }, { ...chosen, ...options });
-    return {
-      cage,
-      note: `A cage of ${cage.indices.length / 3} triangles was made. Save it with the paint that you draw for it.`,
-    };
+    const { paint } = this.#session.shown!;
+    const next =
+      paint.file && !paint.sample
+        ? 'Save it with the paint that you draw for it.'
+        : 'The UV checker shows where paint lands: remove its layer to paint on the model as it is.';
+    return { cage, note: `A cage of ${cage.indices.length / 3} triangles was made. ${next}` };
   }
 
   async #move({ engine, model, old, options }: Context): Promise<Result> {
