@@ -4,7 +4,7 @@ import type { Session } from '../scene/session';
 import type { LightName } from '../view/light';
 import type { Viewer } from '../view/viewer';
 
-/** Connects what makes a picture of the model: light, background, turntable, saving. */
+/** Connects what makes a picture of the model: light, background, turntable, saving, the view in the room. */
 export function setUpPicture(session: Session, viewer: Viewer): void {
   const light = element('light', HTMLSelectElement);
   const own = element('own-background', HTMLInputElement);
@@ -30,5 +30,26 @@ export function setUpPicture(session: Session, viewer: Viewer): void {
       showError(`The picture could not be saved: ${(error as Error).message}`);
     }
   });
+  offerRoom(session, viewer);
   element('picture', HTMLElement).hidden = false;
+}
+
+/** Offers to show the model in the room, where the device can. */
+function offerRoom(session: Session, viewer: Viewer): void {
+  const button = element('show-room', HTMLButtonElement);
+  navigator.xr?.isSessionSupported('immersive-ar').then(
+    (can) => (button.hidden = !can),
+    () => {}, // it may be forbidden
+  );
+  button.addEventListener('click', async () => {
+    if (!session.shown) return;
+    try {
+      const { showInRoom } = await import('./room');
+      await showInRoom(viewer);
+    } catch (error) {
+      const { name, message } = error as Error;
+      const why = name === 'NotAllowedError' ? 'the browser was not allowed to use the camera' : message;
+      showError(`The model cannot be shown in your room: ${why.replace(/\.$/, '')}.`);
+    }
+  });
 }

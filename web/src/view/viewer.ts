@@ -60,6 +60,17 @@ export interface Sitter {
   look: Look;
 }
 
+/** What is on the stage, to be drawn elsewhere. */
+export interface Lent {
+  /** Scaled and moved to a diagonal of 2 about the origin. */
+  stage: Group;
+  model: Object3D;
+  /** Where it looks, as `frontOf`. */
+  front: number;
+  environment: Texture | null;
+  giveBack(): void;
+}
+
 /** Shows a target with its paint and its cage, and lets the user turn it. Draws only when something changed. */
 export class Viewer {
   /** The renderer; features may use it to render textures. Call `redraw` afterwards. */
@@ -99,6 +110,7 @@ export class Viewer {
   #crowd: Crowd | undefined;
   #mixer: AnimationMixer | undefined;
   #played = 0;
+  #isLent = false;
 
   /** @throws Error where the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement) {
@@ -379,6 +391,26 @@ export class Viewer {
     this.redraw();
   }
 
+  /** Lends what is on the stage, painted, to be drawn by `renderer`; nothing is drawn here until it is given back. */
+  lend(): Lent {
+    for (const prepare of this.#preparations) prepare();
+    const { stage, scene } = this.#studio;
+    this.#isLent = true;
+    this.renderer.setScissorTest(false);
+    this.renderer.shadowMap.needsUpdate = true;
+    this.#overlay?.show('result');
+    this.#cage?.show(false);
+    this.marks.visible = false;
+    stage.position.copy(this.#place0);
+    const giveBack = (): void => {
+      scene.add(stage);
+      this.marks.visible = true;
+      this.#isLent = false;
+      this.#resize();
+    };
+    return { stage, model: this.#model!.scene, front: this.#front, environment: scene.environment, giveBack };
+  }
+
   /** What is seen, without controls, as a PNG. @throws Error if the browser cannot encode it. */
   async picture(): Promise<Blob> {
     const ratio = this.renderer.getPixelRatio();
@@ -539,7 +571,7 @@ export class Viewer {
 
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas.parentElement!;
-    if (width === 0 || height === 0) return;
+    if (width === 0 || height === 0 || this.#isLent) return;
     const before = this.#camera.aspect;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
@@ -601,7 +633,7 @@ export class Viewer {
 
   #draw(): void {
     this.#stale = false;
-    if (!this.#model) return; // an empty scene is not worth drawing
+    if (!this.#model || this.#isLent) return; // an empty scene is not worth drawing
     for (const prepare of this.#preparations) prepare();
     const { mode, split, paint, cage } = this.#view;
     this.#shift();
