@@ -426,6 +426,28 @@ TEST_CASE("a triangle that spans hundreds of charts is cut at all of them", "[bo
   CHECK(elsewhere < 1e-3 * all);
 }
 
+TEST_CASE("borders that take too long to find are an error that says what to do", "[borders][errors]") {
+  // From the middle of a sphere, most of its triangles are about equally near.
+  const auto isHole = [](scenes::Point p) { return p[0] > 0.999f; };
+  const scenes::Mesh cage = scenes::without(scenes::ellipsoid({}, {1, 1, 1}, 64), isHole);
+  const scenes::Mesh target = scenes::box({}, {0.02f, 0.02f, 0.02f}, 2);
+  TransferOptions options = cutting(Seams::vertex);
+  options.steps.floor = Floor::none;
+  options.threshold = 0;
+  const auto [projection, zones] = transferred(cage.view(), target.view(), options);
+  const DecidedTarget decided{target.view(), zones.zones, projection.segments, zones.culledBy};
+  CutTarget cut;
+  const Status status = cutBorders(cage.view(), decided, options, testWorkspace(), cut);
+  CHECK(status.code == Code::bordersTooComplex);
+  CHECK(describe(status, cage.view(), target.view()) ==
+        "target has borders that are too complex to cut: " + std::to_string(target.triangleCount()) +
+            " triangles along " + std::to_string(status.at) +
+            " border edges of the cage; leave its triangles whole (borders: 'triangle'), or use a cage with fewer "
+            "holes and seams");
+  const scenes::Scene next = scenes::head(8);
+  CHECK(!cutOf(next.cage.view(), next.target.view(), cutting()).sources.empty());
+}
+
 TEST_CASE("defects of a target stay the same when it is cut", "[borders]") {
   scenes::Scene scene = scenes::head(8);
   scenes::Mesh& target = scene.target;

@@ -37,7 +37,9 @@ struct DecidedTarget {
 /// texture, and transfers to the cut target: step 10. Which segments are culled does not change. With
 /// `ProjectionMode::nearestVertex` nothing is cut.
 /// @param target   The result of a transfer with the same cage and options.
-/// @return As `transfer`; resultMismatch if the zones or segments do not belong to the mesh.
+/// @return As `transfer`; resultMismatch if the zones or segments do not belong to the mesh; bordersTooComplex if that
+/// takes more comparisons with triangles of the cage than 4,000,000, 20,000 for each triangle of the target and 100,000
+/// for each border edge of the cage.
 /// Cost: that of a transfer, and about twenty nearest-point searches per cut edge.
 Status cutBorders(const MeshView& cage, const DecidedTarget& target, const TransferOptions& options,
                   Workspace& workspace, CutTarget& out) noexcept;

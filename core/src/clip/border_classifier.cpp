@@ -42,7 +42,7 @@ double fastestChange(const CageTriangle& t) {
 
 }  // namespace
 
-BorderClassifier::BorderClassifier(const ClipCage& cage, BorderKind kind, Arena& arena) noexcept
+BorderClassifier::BorderClassifier(const ClipCage& cage, BorderKind kind, std::uint64_t limit, Arena& arena) noexcept
     : cage_(cage),
       charts_(kind == BorderKind::seams ? cage.charts : nullptr),
       diagonal_(cage.units.diagonal),
@@ -52,24 +52,26 @@ BorderClassifier::BorderClassifier(const ClipCage& cage, BorderKind kind, Arena&
       found_(arena.allocate<std::uint32_t>(cage.cage.count)),
       candidates_(arena.allocate<Candidate>(cage.cage.count)),
       lines_(cage.cage, cage.tree, cage.loops, arena),
-      clearances_(arena.allocate<double>(cage.mesh.positions.size() / 3)) {
+      clearances_(arena.allocate<double>(cage.mesh.positions.size() / 3)),
+      limit_(limit) {
   if (!arena.failed()) std::fill_n(clearances_, cage.mesh.positions.size() / 3, -1.0);
 }
 
 /// Finds the nearest of some cage triangles by the tie rule.
 const Candidate& BorderClassifier::nearestOf(const std::uint32_t* cageTriangles, std::uint32_t count, Vec3 p) noexcept {
-  std::uint32_t found = 0;
+  comparisons_ += count;
+  candidateCount_ = 0;
   double limit = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < count; ++i) {
     const CageTriangle& t = cage_.cage.triangles[cageTriangles[i]];
     // A triangle is no nearer than its plane.
     if (std::abs(dot(p - Vec3::from(t.a), t.normal.exact)) > limit) continue;
-    candidates_[found] = {cageTriangles[i], closestPointOf(t, p)};
-    if (candidates_[found].point.distance > limit) continue;
-    limit = std::min(limit, candidates_[found].point.distance + slack_);
-    ++found;
+    Candidate& candidate = candidates_[candidateCount_] = {cageTriangles[i], closestPointOf(t, p)};
+    if (candidate.point.distance > limit) continue;
+    limit = std::min(limit, candidate.point.distance + slack_);
+    ++candidateCount_;
   }
-  return cagecast::nearestOf(candidates_, found, diagonal_);
+  return cagecast::nearestOf(candidates_, candidateCount_, diagonal_);
 }
 
 /// Finds, in `found_`, the cage triangles that are farther from a point than the nearest one by up to `more`.
@@ -112,6 +114,7 @@ NearbyTriangles BorderClassifier::listNearby(Hull hull, double distance) noexcep
 
 NearbyTriangles BorderClassifier::narrow(NearbyTriangles nearby, Hull hull) noexcept {
   if (nearby.count <= 1) return nearby;
+  comparisons_ += nearby.count;
   const Vec3 centre = Ball(hull).centre;
   const std::uint32_t nearest = nearestOf(&listed_[nearby.first], nearby.count, centre).cageTriangle;
   // The distance to a triangle is a convex function. So, within the part, the distance to the cage is at most what is
@@ -119,12 +122,16 @@ NearbyTriangles BorderClassifier::narrow(NearbyTriangles nearby, Hull hull) noex
   double limits[kMaxCorners];
   for (std::size_t k = 0; k < hull.size(); ++k)
     limits[k] = closestPointOf(cage_.cage.triangles[nearest], hull[k]).distance + slack_;
-  // and the distance to any other triangle is at least its tangent at the centre.
+  // and the distance to any other triangle is at least its tangent at the centre. `nearestOf` left some of the closest
+  // points in `candidates_`, in this order.
   const auto first = static_cast<std::uint32_t>(listed_.size());
+  const Candidate* known = candidates_;
+  const Candidate* const lastKnown = candidates_ + candidateCount_;
   for (std::uint32_t i = 0; i < nearby.count; ++i) {
     const std::uint32_t cageTriangle = listed_[nearby.first + i];
     const CageTriangle& t = cage_.cage.triangles[cageTriangle];
-    const ClosestPoint place = closestPointOf(t, centre);
+    const bool isKnown = known < lastKnown && known->cageTriangle == cageTriangle;
+    const ClosestPoint place = isKnown ? known++->point : closestPointOf(t, centre);
     const Vec3 away = place.distance > slack_ ? 1 / place.distance * (centre - positionOf(t, place)) : Vec3{0, 0, 0};
     bool isNear = false;
     for (std::size_t k = 0; k < hull.size(); ++k)
@@ -150,18 +157,20 @@ bool BorderClassifier::isSurelyIn(std::uint32_t region, std::uint32_t cageTriang
                      : cage_.loops.areSurelyOn(t, cageTriangle, hull);
 }
 
-bool BorderClassifier::isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept {
+bool BorderClassifier::isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept {
   if (nearby.count == 0) return false;
   const std::uint32_t* begin = &listed_[nearby.first];
   const std::span<const std::uint32_t> all(begin, nearby.count);
   return std::all_of(all.begin(), all.end(), [&](std::uint32_t cageTriangle) {
+    ++comparisons_;
     return isSurelyIn(region, cageTriangle, hull) || std::any_of(all.begin(), all.end(), [&](std::uint32_t other) {
+             ++comparisons_;
              return other != cageTriangle && losesTie(cage_.cage, cageTriangle, other, hull, diagonal_);
            });
   });
 }
 
-bool BorderClassifier::isSurelyWhole(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept {
+bool BorderClassifier::isSurelyWhole(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept {
   if (!isSurelyIn(region, nearby, hull)) return false;
   if (charts_ == nullptr) return true;
   if (nearby.count > kMaxPairwise) return false;

@@ -49,7 +49,8 @@ struct NearbyTriangles {
 class BorderClassifier {
  public:
   /// Allocates its working memory from `arena`; check `arena.failed()` afterwards.
-  BorderClassifier(const ClipCage& cage, BorderKind kind, Arena& arena) noexcept;
+  /// @param limit  Of comparisons with triangles of the cage.
+  BorderClassifier(const ClipCage& cage, BorderKind kind, std::uint64_t limit, Arena& arena) noexcept;
 
   /// @param p  Scaled.
   BorderSample sample(Vec3 p) noexcept;
@@ -69,13 +70,15 @@ class BorderClassifier {
   /// Forgets what was listed after a call of `mark`.
   [[nodiscard]] std::size_t mark() const noexcept { return listed_.size(); }
   void rewind(std::size_t mark) noexcept { listed_.cut(mark); }
-  /// Whether memory ran out.
-  [[nodiscard]] bool failed() const noexcept { return listed_.failed(); }
+  /// Whether there were more comparisons than the limit.
+  [[nodiscard]] bool isOverLimit() const noexcept { return comparisons_ > limit_; }
+  /// Whether memory ran out, or there were too many comparisons.
+  [[nodiscard]] bool failed() const noexcept { return listed_.failed() || isOverLimit(); }
 
   /// Whether all points of a part are surely in a region. False if that is not known.
-  [[nodiscard]] bool isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept;
+  [[nodiscard]] bool isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept;
   /// Whether all points of a part are surely in a region, and no border within the region runs through it either.
-  [[nodiscard]] bool isSurelyWhole(std::uint32_t region, NearbyTriangles nearby, Hull hull) const noexcept;
+  [[nodiscard]] bool isSurelyWhole(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept;
 
   /// The radius of a ball around a point in which surely no other point has its closest point on a boundary loop. 0 for
   /// seams.
@@ -95,11 +98,14 @@ class BorderClassifier {
   double diagonal_;
   double slack_;  ///< A triangle farther than the nearest one by more than this is not the answer.
   ClosestPointSearch search_;
-  std::uint32_t* found_;  ///< 1 per cage triangle: the result of `findWithin`.
-  Candidate* candidates_;
+  std::uint32_t* found_;   ///< 1 per cage triangle: the result of `findWithin`.
+  Candidate* candidates_;  ///< Of the last call of `nearestOf`.
+  std::uint32_t candidateCount_ = 0;
   List<std::uint32_t> listed_;
   BoundaryLines lines_;
   double* clearances_;  ///< 1 per vertex of the cage: its distance to the nearest open edge; negative if unknown.
+  const std::uint64_t limit_;
+  std::uint64_t comparisons_ = 0;  ///< Of points or parts with triangles of the cage.
 };
 
 }  // namespace cagecast

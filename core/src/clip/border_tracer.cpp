@@ -45,7 +45,8 @@ const List<TrianglePoint>& BorderTracer::trace(const TrianglePoint (&corners)[3]
 /// @param nearby  Of a part that contains the border there.
 void BorderTracer::follow(const Wedge& wedge, NearbyTriangles nearby, Polar from, Polar to, int depth) noexcept {
   BorderClassifier& classifier = triangle_.classifier;
-  if (depth == 0 || length(wedge.at(to) - wedge.at(from)) <= triangle_.tolerances.straight) return;
+  if (depth == 0 || classifier.failed() || length(wedge.at(to) - wedge.at(from)) <= triangle_.tolerances.straight)
+    return;
   const std::size_t mark = classifier.mark();
   nearby = classifier.narrow(nearby, std::array{wedge.a.p, wedge.endOfRay(from.s), wedge.endOfRay(to.s)});
   double distance = 0;

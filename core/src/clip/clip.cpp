@@ -47,14 +47,13 @@ Status clip(const MeshView& cage, const DecidedTarget& decided, const TransferOp
     std::fill_n(takesPart, vertexCount, std::uint8_t{0});
   UvCharts charts;
   const bool hasSeams = options.seams == Seams::corner;
-  const bool isDone =
-      buildCageTree(scene.cage, scene.units, arena, scene.cageTree) &&
-      findHalfEdges(cage, scene.cage, arena, scene.halfEdges) &&
-      findBoundaryLoops(scene.cage, scene.halfEdges, arena, scene.loops) &&
-      findUvCharts(scene.cage, scene.halfEdges, arena, charts) &&
-      clipTarget({cage, scene.cage, scene.cageTree, scene.loops, hasSeams ? &charts : nullptr, scene.units},
-                 decided.mesh, takesPart, arena, out);
-  return isDone ? Status{} : kOutOfMemory;
+  const bool isReady = buildCageTree(scene.cage, scene.units, arena, scene.cageTree) &&
+                       findHalfEdges(cage, scene.cage, arena, scene.halfEdges) &&
+                       findBoundaryLoops(scene.cage, scene.halfEdges, arena, scene.loops) &&
+                       findUvCharts(scene.cage, scene.halfEdges, arena, charts);
+  if (!isReady) return kOutOfMemory;
+  return clipTarget({cage, scene.cage, scene.cageTree, scene.loops, hasSeams ? &charts : nullptr, scene.units},
+                    decided.mesh, takesPart, arena, out);
 }
 
 /// Brings the zones of the vertices and triangles in line with the cuts, along which a transfer alone would leave it to

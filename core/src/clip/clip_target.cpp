@@ -11,6 +11,42 @@
 namespace cagecast {
 namespace {
 
+/// How many comparisons with triangles of the cage a pass may take, and how many more for each triangle of the target
+/// and each border edge of the cage. Real models take a quarter of that at most, as do single triangles that are cut
+/// along thousands of edges.
+constexpr std::uint64_t kComparisons = 4'000'000;
+constexpr std::uint64_t kComparisonsPerTriangle = 20'000;
+constexpr std::uint64_t kComparisonsPerBorderEdge = 100'000;
+constexpr Status kOutOfMemory{Code::outOfMemory};
+
+/// The number of edges of the cage along which a pass cuts.
+std::uint32_t countBorderEdges(const ClipCage& cage, BorderKind kind) noexcept {
+  std::uint32_t count = 0;
+  for (std::uint32_t halfEdge = 0; halfEdge < 3 * cage.cage.count; ++halfEdge) {
+    const std::uint32_t element = 6 * (halfEdge / 3) + halfEdge % 3;
+    count += kind == BorderKind::loops ? cage.loops.loopOf[element] != BoundaryLoops::kNone
+                                       : cage.charts->nextHalfEdge[halfEdge] == halfEdge;
+  }
+  return count;
+}
+
+/// Classifies the places of one pass, within the limit of comparisons.
+struct PassClassifier {
+  std::uint32_t borderEdges;
+  BorderClassifier classifier;
+
+  PassClassifier(const ClipCage& cage, const MeshView& target, BorderKind kind, Arena& arena) noexcept
+      : borderEdges(countBorderEdges(cage, kind)), classifier(cage, kind, limit(target, borderEdges), arena) {}
+  static std::uint64_t limit(const MeshView& target, std::uint32_t borderEdges) noexcept {
+    return kComparisons + kComparisonsPerTriangle * (target.indices.size() / 3) +
+           kComparisonsPerBorderEdge * borderEdges;
+  }
+  /// Why a pass ended early.
+  [[nodiscard]] Status failure() const noexcept {
+    return classifier.isOverLimit() ? Status{Code::bordersTooComplex, Argument::target, borderEdges} : kOutOfMemory;
+  }
+};
+
 /// Lets vertices with equal positions take part if any of them does: their edges have to be cut alike.
 /// @param[in,out] takesPart  1 per vertex.
 /// @return false if memory ran out.
@@ -122,16 +158,17 @@ bool mergePass(const MeshView& target, const ClippedTriangles& pass, ClippedMesh
 }
 
 /// The first pass.
-/// @return false if memory ran out.
-bool clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
-                    ClippedMesh& out) noexcept {
+Status clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
+                      ClippedMesh& out) noexcept {
   const Arena::Scope scope(arena);
-  BorderClassifier classifier(cage, BorderKind::loops, arena);
+  PassClassifier own(cage, target, BorderKind::loops, arena);
   ClippedTriangles pass;
   const ClipInput input{target, static_cast<double>(cage.units.scale), cage.units.diagonal, takesPart};
-  if (arena.failed() || !cutTriangles(input, classifier, arena, pass) || !mergePass(target, pass, out) ||
-      !out.loopSides.reset(pass.onBorder.size()) || !out.areBeyond.reset(pass.regions.size())) {
-    return false;
+  if (arena.failed()) return kOutOfMemory;
+  if (!cutTriangles(input, own.classifier, arena, pass)) return own.failure();
+  if (!mergePass(target, pass, out) || !out.loopSides.reset(pass.onBorder.size()) ||
+      !out.areBeyond.reset(pass.regions.size())) {
+    return kOutOfMemory;
   }
   // A vertex is beyond a loop if one of its triangles is, unless a triangle that was cut has it and is not.
   std::fill(out.loopSides.begin(), out.loopSides.end(), LoopSide::covered);
@@ -149,33 +186,32 @@ bool clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::uin
   for (std::size_t v = 0; v < out.loopSides.size(); ++v) {
     if (pass.onBorder[v] != 0) out.loopSides[v] = LoopSide::onBorder;
   }
-  return true;
+  return {};
 }
 
 /// The second pass. What is beyond a loop is not painted, so its seams do not matter.
 /// @param[in,out] mesh  The result of the first pass.
-/// @return false if memory ran out.
-bool clipAlongSeams(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
-                    ClippedMesh& mesh) noexcept {
+Status clipAlongSeams(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
+                      ClippedMesh& mesh) noexcept {
   const std::size_t targetCount = target.positions.size() / 3;
   const std::size_t count = mesh.loopSides.size();
   const Arena::Scope scope(arena);
   auto* mayBePainted = arena.allocate<std::uint8_t>(count);
-  BorderClassifier classifier(cage, BorderKind::seams, arena);
-  if (arena.failed()) return false;
+  PassClassifier own(cage, target, BorderKind::seams, arena);
+  if (arena.failed()) return kOutOfMemory;
   for (std::size_t v = 0; v < count; ++v) {
     const auto takes = [&](std::size_t i) { return takesPart[mesh.sources[3 * (v - targetCount) + i]] != 0; };
     mayBePainted[v] = mesh.loopSides[v] != LoopSide::beyond &&
                       (v < targetCount ? takesPart[v] != 0 : takes(0) && takes(1) && takes(2));
   }
-  if (!joinEqualPositions(mesh.positions, arena, mayBePainted)) return false;
+  if (!joinEqualPositions(mesh.positions, arena, mayBePainted)) return kOutOfMemory;
   ClippedTriangles pass;
   const ClipInput input{
       {mesh.positions, mesh.indices}, static_cast<double>(cage.units.scale), cage.units.diagonal, mayBePainted};
-  if (!cutTriangles(input, classifier, arena, pass)) return false;
+  if (!cutTriangles(input, own.classifier, arena, pass)) return own.failure();
   Array<std::uint8_t> areBeyond;
   Array<LoopSide> sides;
-  if (!areBeyond.reset(pass.origins.size()) || !sides.reset(pass.onBorder.size())) return false;
+  if (!areBeyond.reset(pass.origins.size()) || !sides.reset(pass.onBorder.size())) return kOutOfMemory;
   for (std::size_t t = 0; t < areBeyond.size(); ++t) areBeyond[t] = mesh.areBeyond[pass.origins[t]];
   std::copy(mesh.loopSides.begin(), mesh.loopSides.end(), sides.begin());
   for (std::size_t v = count; v < sides.size(); ++v) {
@@ -185,19 +221,20 @@ bool clipAlongSeams(const ClipCage& cage, const MeshView& target, const std::uin
       if (pass.weights[i] > 0 && sides[v] == LoopSide::onBorder) sides[v] = mesh.loopSides[pass.sources[i]];
     }
   }
-  if (!mergePass(target, pass, mesh)) return false;
+  if (!mergePass(target, pass, mesh)) return kOutOfMemory;
   mesh.areBeyond = std::move(areBeyond);
   mesh.loopSides = std::move(sides);
-  return true;
+  return {};
 }
 
 }  // namespace
 
-bool clipTarget(const ClipCage& cage, const MeshView& target, std::uint8_t* takesPart, Arena& arena,
-                ClippedMesh& out) noexcept {
-  return joinEqualPositions(target.positions, arena, takesPart) &&
-         clipAlongLoops(cage, target, takesPart, arena, out) &&
-         (cage.charts == nullptr || clipAlongSeams(cage, target, takesPart, arena, out));
+Status clipTarget(const ClipCage& cage, const MeshView& target, std::uint8_t* takesPart, Arena& arena,
+                  ClippedMesh& out) noexcept {
+  if (!joinEqualPositions(target.positions, arena, takesPart)) return kOutOfMemory;
+  const Status status = clipAlongLoops(cage, target, takesPart, arena, out);
+  if (!status.ok() || cage.charts == nullptr) return status;
+  return clipAlongSeams(cage, target, takesPart, arena, out);
 }
 
 }  // namespace cagecast

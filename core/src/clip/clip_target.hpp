@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cagecast/status.hpp"
 #include "clip/border_classifier.hpp"
 
 namespace cagecast {
@@ -22,8 +23,8 @@ struct ClippedMesh {
 /// the loops along the seams.
 /// @param[in,out] takesPart  1 per vertex of the target: an edge is cut if both its ends have 1 here. Vertices with
 /// equal positions get the same value, 1 if any has it.
-/// @return false if memory ran out; `out` is of no use then.
-bool clipTarget(const ClipCage& cage, const MeshView& target, std::uint8_t* takesPart, Arena& arena,
-                ClippedMesh& out) noexcept;
+/// @return outOfMemory or bordersTooComplex; `out` is of no use then.
+Status clipTarget(const ClipCage& cage, const MeshView& target, std::uint8_t* takesPart, Arena& arena,
+                  ClippedMesh& out) noexcept;
 
 }  // namespace cagecast

@@ -60,6 +60,7 @@ void EdgeCrossings::search(const TrianglePoint& from, const TrianglePoint& to, L
 void EdgeCrossings::searchPart(Edge& edge, NearbyTriangles nearby, const EdgePoint& from,
                                const EdgePoint& to) noexcept {
   BorderClassifier& classifier = triangle_.classifier;
+  if (classifier.failed()) return;
   const double apart = (to.t - from.t) * edge.length;
   const bool isSeparated = classifier.separates(from.sample, to.sample);
   if (!isSeparated && apart <= triangle_.tolerances.feature) return;

@@ -15,9 +15,10 @@ bool EnclosedSearch::find(const List<Piece>& pieces, TrianglePoint& point) noexc
     addPart(pieces[i], {{corners[0], corners[1], corners[2]}, i, nearby});
   }
   bool isFound = false;
-  for (std::size_t next = 0; next < parts_.size() && left_ > 0 && !isFound && !failed() && !triangle_.failed();
-       ++next) {
-    --left_;
+  const std::size_t own = kOwnParts * pieces.size();
+  for (std::size_t next = 0; next < parts_.size() && !isFound && !failed() && !triangle_.failed(); ++next) {
+    if (next >= own && left_ == 0) break;
+    if (next >= own) --left_;
     const Part part = parts_[next];
     const Piece& piece = pieces[part.piece];
     TrianglePoint t[6] = {part.corners[0], part.corners[1], part.corners[2]};
@@ -56,10 +57,12 @@ std::uint32_t EnclosedSearch::clipToCore(const Piece& piece, const Part& part,
     Vec3 before[BorderClassifier::kMaxCorners];
     std::copy(core, core + count, before);
     const std::uint32_t beforeCount = std::exchange(count, 0);
+    double depths[BorderClassifier::kMaxCorners];
+    for (std::uint32_t i = 0; i < beforeCount; ++i) depths[i] = triangle_.depthInside(before[i], piece.corners, k) - 1;
     for (std::uint32_t i = 0; i < beforeCount; ++i) {
-      const Vec3 p = before[i], q = before[(i + 1) % beforeCount];
-      const double depthOfP = triangle_.depthInside(p, piece.corners, k) - 1;
-      const double depthOfQ = triangle_.depthInside(q, piece.corners, k) - 1;
+      const std::uint32_t next = (i + 1) % beforeCount;
+      const Vec3 p = before[i], q = before[next];
+      const double depthOfP = depths[i], depthOfQ = depths[next];
       if (depthOfP > 0) core[count++] = p;
       if ((depthOfP > 0) != (depthOfQ > 0)) core[count++] = p + depthOfP / (depthOfP - depthOfQ) * (q - p);
     }
@@ -71,7 +74,6 @@ std::uint32_t EnclosedSearch::clipToCore(const Piece& piece, const Part& part,
 /// near the whole part stay listed, for its own parts.
 bool EnclosedSearch::isSurelyInRegion(const Piece& piece, Part& part, Hull core) noexcept {
   BorderClassifier& classifier = triangle_.classifier;
-  if (classifier.isSurelyIn(piece.region, part.nearby, core)) return true;
   part.nearby = classifier.narrow(part.nearby, std::array{part.corners[0].p, part.corners[1].p, part.corners[2].p});
   if (classifier.isSurelyIn(piece.region, part.nearby, core)) return true;
   const std::size_t mark = classifier.mark();

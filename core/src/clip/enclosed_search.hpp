@@ -9,21 +9,24 @@ namespace cagecast {
 class EnclosedSearch {
  public:
   explicit EnclosedSearch(TargetTriangle& triangle) noexcept
-      : triangle_(triangle), left_(kBaseParts + kPartsPerTriangle * triangle.input.target.indices.size() / 3) {}
+      : triangle_(triangle), left_(kSharedParts + kSharedPartsPerTriangle * triangle.input.target.indices.size() / 3) {}
 
   /// Finds a point well inside one of some pieces that is not in the region of that piece.
   /// Cost: a piece is quartered until its parts surely lie in one region or are as small as the features that may be
   /// missed. Where neither is provable, that is some thousand parts for a large piece.
-  /// @return false if there is none, or none was found when the parts of the whole call were used up.
+  /// @return false if there is none, or none was found among the parts that may be searched.
   bool find(const List<Piece>& pieces, TrianglePoint& point) noexcept;
 
   [[nodiscard]] bool failed() const noexcept { return parts_.failed(); }
 
  private:
-  /// How many parts may be searched in a call, and how many more for each triangle of the target. A real car with bad
-  /// borders needs 300 per triangle; scenes that are made for it would need millions.
-  static constexpr std::size_t kBaseParts = 8192;
-  static constexpr std::size_t kPartsPerTriangle = 256;
+  /// How many parts are searched for each piece in any case: the piece, its quarters and theirs. So a region that is
+  /// missed is smaller than a quarter of the piece, whatever was searched before.
+  static constexpr std::size_t kOwnParts = 1 + 4 + 16;
+  /// How many more parts all searches of a pass share, and how many more for each triangle of the target. A real car
+  /// with many borders needs 26 per triangle.
+  static constexpr std::size_t kSharedParts = 8192;
+  static constexpr std::size_t kSharedPartsPerTriangle = 256;
 
   /// A part of a piece that has to be searched.
   struct Part {
@@ -39,7 +42,7 @@ class EnclosedSearch {
 
   TargetTriangle& triangle_;
   List<Part> parts_;
-  std::size_t left_;  ///< How many parts may still be searched.
+  std::size_t left_;  ///< Of the shared parts.
 };
 
 }  // namespace cagecast

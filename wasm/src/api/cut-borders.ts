@@ -44,7 +44,8 @@ export interface CutTarget {
  * @param result   What `transfer` returned for the same cage, target and options.
  * @param options  The options of the transfer. `locks` are ignored: the result already contains their effect. Triangles that a mask
  * decides are decided as a whole.
- * @throws {CagecastError} `resultMismatch` if the result does not belong to this target; else as `transfer` does.
+ * @throws {CagecastError} `resultMismatch` if the result does not belong to this target; `bordersTooComplex` if the cut takes more
+ * comparisons than its limit (docs/method.md, step 10): leave the triangles whole then; else as `transfer` does.
  *
  * @example
  * const result = transfer(cage, target);

@@ -33,5 +33,10 @@ export type CoreCode =
   | 'badOption'
   /** The given zones or segments do not belong to this target; `at` is the number of zones. */
   | 'resultMismatch'
+  /**
+   * Cutting borders takes more than its limit, which follows from the number of triangles and of border edges of the
+   * cage (`at`).
+   */
+  | 'bordersTooComplex'
   /** There is not enough memory for the call or its result; nothing was computed. */
   | 'outOfMemory';
