@@ -23,6 +23,9 @@ constexpr double kCageHitStart = -1e-5;  // A point this far outside the cage st
 // To how many sides a ray is turned: a ray that touches a corner hits it from a narrow wedge of them only.
 constexpr int kNudges = 16;
 
+// How far a ray that is turned is moved as well: a point on an edge of the cage is on either side of it.
+constexpr double kAside = 1e-7;
+
 // Sums of areas that differ by less than this share may differ only by the order of adding.
 constexpr double kSumNoise = 1e-12;
 
@@ -58,7 +61,9 @@ Sight look(const Scene& scene, const Options& options, Vec p, const ClosestPoint
 /// How far along the ray the cage is; infinity if the ray does not come to it.
 double cageDistance(const Scene& scene, const Sight& sight, const Ray& ray, const ClosestPoint& place) {
   const double height = planeDistance(*place.triangle, ray.origin);
-  if (place.inside() && height <= 0) return -height;
+  // A ray that was moved aside may start beyond an edge.
+  const bool isMoved = &ray != &sight.ray;
+  if (place.inside() && height <= 0 && !isMoved) return -height;
   double least = kInfinity;
   for (const Triangle* triangle : sight.cage) {
     const double t = hit(ray, *triangle);
@@ -90,14 +95,15 @@ unsigned bit(Zone zone) { return 1u << static_cast<unsigned>(zone); }
 bool single(unsigned zones) { return (zones & (zones - 1)) == 0; }
 
 /// The rays beside a ray.
-std::vector<Ray> nudged(const Ray& ray) {
+std::vector<Ray> nudged(const Scene& scene, const Ray& ray) {
   std::vector<Ray> rays;
   const Vec n = ray.direction;
   const Vec u = unit(cross(n, std::abs(n.x) < 0.9 ? Vec{1, 0, 0} : Vec{0, 1, 0}));
   const Vec v = cross(n, u);
   for (int k = 0; k < kNudges; ++k) {
     const double angle = 2 * std::numbers::pi * k / kNudges;
-    rays.push_back({ray.origin, n + (u * std::cos(angle) + v * std::sin(angle)) * kRayNudge});
+    const Vec side = u * std::cos(angle) + v * std::sin(angle);
+    rays.push_back({ray.origin + side * (kAside * scene.diag), n + side * kRayNudge});
   }
   return rays;
 }
@@ -116,7 +122,7 @@ Finding judge(const Scene& scene, const Options& options, const Sight& sight, co
   finding.nearby = bit(is.zone);
   finding.hidden = {is.isHidden, is.isHidden, is.isHidden};
   if (options.stability)
-    for (const Ray& ray : nudged(sight.ray)) {
+    for (const Ray& ray : nudged(scene, sight.ray)) {
       const Outcome beside = outcomeOf(scene, options, sight, ray, place);
       finding.nearby |= bit(beside.zone);
       finding.hidden.might = finding.hidden.might || beside.isHidden;
@@ -487,7 +493,7 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, Vec normal) {
     const bool is = isGood(ray);
     bool any = is, all = is;
     if (options.stability)
-      for (const Ray& turned : nudged(ray)) {
+      for (const Ray& turned : nudged(scene, ray)) {
         const bool other = isGood(turned);
         any = any || other;
         all = all && other;
