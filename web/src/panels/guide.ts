@@ -31,7 +31,7 @@ const kSteps: readonly Step[] = [
   },
   {
     title: 'Your own model',
-    text: 'Drop a GLB, glTF or VRM file anywhere on the page. Without a cage, the page makes one. It stays on your device until you save it.',
+    text: 'Drop a GLB, glTF or VRM file anywhere on the page. If it has no cage, choose Make a cage. It stays on your device until you save it.',
     about: '#target-file, #stage-save',
   },
 ];
