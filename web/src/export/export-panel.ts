@@ -2,6 +2,7 @@ import { download } from '../platform/download';
 import { announce, element, showError, showNotice } from '../platform/page';
 import type { Session } from '../scene/session';
 import { type Code, codeFor } from './code';
+import { endingOf } from './ending';
 import type { Baked, PaintInto } from './export-messages';
 import { type Linked, linkOf } from './links';
 import { zonesJson } from './zones';
@@ -104,7 +105,7 @@ export class ExportPanel {
       const { shown, rules, choices } = this.#session;
       const into = document.querySelector<HTMLInputElement>('#paint-into :checked')!.value as PaintInto;
       const { glb, baked } = await exportGlb({ ...shown!, rules, choices }, await this.#png(), into);
-      download(glb, `${stem}-painted.glb`);
+      download(glb, `${stem}-painted.${endingOf(shown!.target.name)}`);
       announce(`Model saved: ${(glb.size / 1e6).toFixed(1)} megabytes.`);
       showNotice('export-note', baked ? bakedNote(baked) : '');
     } catch (error) {

@@ -2,6 +2,7 @@ import { type Document, type JSONDocument, Logger, WebIO } from '@gltf-transform
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 import { type BakeReport, bake, cagecast, type ImageCodec } from 'cagecast/gltf';
 import { readGltfHead } from '../scene/gltf-file';
+import { avatarExtensions } from './avatar-extensions';
 import type { Baked, ExportReply, ExportRequest } from './export-messages';
 import { readPixels, writePng } from './texture/pixels';
 
@@ -25,7 +26,9 @@ async function paintModel({
   into,
   options,
 }: ExportRequest): Promise<Exclude<ExportReply, { message: string }>> {
-  const io = new WebIO().setLogger(new Logger(Logger.Verbosity.SILENT)).registerExtensions(ALL_EXTENSIONS);
+  const io = new WebIO()
+    .setLogger(new Logger(Logger.Verbosity.SILENT))
+    .registerExtensions([...ALL_EXTENSIONS, ...avatarExtensions]);
   const document = await read(io, files);
   let baked: Baked | undefined;
   if (into === 'overlay') await document.transform(cagecast({ ...options, cage, texture }));

@@ -1,3 +1,4 @@
+import { endingOf } from '../export/ending';
 import type { PaintInto } from '../export/export-messages';
 import { zip } from '../platform/zip';
 import { choicesOf, type Session } from '../scene/session';
@@ -36,7 +37,8 @@ export async function exportAll(
             : choicesOf(avatar.locks, avatar.standing?.projection, session.bareOf(avatar.files)),
       };
       const { glb } = await exportGlb(scene, png, into);
-      files.push({ name: freeName(avatar.sample?.name ?? nameOf(avatar.files[0]!.name), files), blob: glb });
+      const { name } = avatar.files[0]!;
+      files.push({ name: freeName(avatar.sample?.name ?? nameOf(name), endingOf(name), files), blob: glb });
     } catch (error) {
       troubles.push((error as Error).message);
     }
@@ -45,9 +47,9 @@ export async function exportAll(
   return { file: await zip(files), count: files.length, troubles };
 }
 
-function freeName(stem: string, files: readonly { name: string }[]): string {
+function freeName(stem: string, ending: string, files: readonly { name: string }[]): string {
   for (let number = 1; ; number++) {
-    const name = `${stem}${number > 1 ? `-${number}` : ''}-painted.glb`;
+    const name = `${stem}${number > 1 ? `-${number}` : ''}-painted.${ending}`;
     if (!files.some((file) => file.name === name)) return name;
   }
 }
