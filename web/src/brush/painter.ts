@@ -1,4 +1,4 @@
-import { readStraight } from 'cagecast/three/layers';
+import { type Layer, readStraight } from 'cagecast/three/layers';
 import {
   type Aim,
   type CageMesh,
@@ -56,6 +56,18 @@ export class Painter extends LayerPainter implements PointerView {
 
   override set size(size: PaintingSize) {
     this.#options.texels = size;
+  }
+
+  override addLayer(): Layer {
+    const layer = super.addLayer();
+    this.hideChecker();
+    return layer;
+  }
+
+  /** Hides the checker below the first paint: it was only a placeholder, and would be saved with the model. */
+  hideChecker(): void {
+    const { base } = this.#stack;
+    if (base?.sheet === this.#session.checker) this.#stack.restyle(base, { visible: false });
   }
 
   /** Number of triangles of the target. */

@@ -37,6 +37,7 @@ export class StickerTool implements PaintTool {
   readonly #painter: Painter;
   readonly #viewer: Viewer;
   readonly #options: PaintOptions;
+  readonly #edits: Layers['edits'];
   readonly #stickers: StickerPainter;
   readonly #frame: StickerFrame;
   #image: ImageBitmap | undefined;
@@ -49,6 +50,7 @@ export class StickerTool implements PaintTool {
     this.#painter = painter;
     this.#viewer = viewer;
     this.#options = options;
+    this.#edits = layers.edits;
     this.#stickers = new StickerPainter({ renderer: viewer.renderer, ...layers }, painter, paintingSizes[1]);
     this.#frame = new StickerFrame(viewer, {
       begin: () => this.#begin('turning a sticker'),
@@ -245,6 +247,10 @@ export class StickerTool implements PaintTool {
     const stayed = before.includes(sticker);
     const list = stayed ? before : this.#list();
     const isPlaced = this.#painter.telling(() => {
+      if (before.length === 0) {
+        this.#edits.begin(); // one step with the placing
+        this.#painter.hideChecker();
+      }
       this.#stickers.place(sheet, list, name);
       return true;
     });

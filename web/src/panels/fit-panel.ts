@@ -59,8 +59,17 @@ export class FitPanel {
     clearTimeout(this.#waiting);
     this.#client?.cancel();
     if (triangles <= kMost) this.#waiting = setTimeout(() => void this.#inspect(), kCalm);
-    else this.#show('', [text('p', 'This model is large; inspecting it takes a while.')]);
+    else this.#show('', [text('p', 'This model is large; inspecting it takes a while.')], this.#next);
     this.#button.hidden = triangles <= kMost;
+  }
+
+  /** What to do about a cage that is not inspected by itself. */
+  get #next(): Remedy {
+    return this.#maker.isOthers ? this.#making : { title: 'Check it', run: () => void this.#inspect() };
+  }
+
+  get #making(): Remedy {
+    return { title: 'Make a cage', run: () => this.#maker.make() };
   }
 
   async #inspect(): Promise<void> {
@@ -71,6 +80,7 @@ export class FitPanel {
     } = this.#session;
     if (!shown) return;
     this.#button.hidden = true;
+    this.#show('', [text('p', 'The cage is being inspected.')]);
     this.#client ??= new TransferClient();
     try {
       const { target, cage } = shown;
@@ -82,7 +92,8 @@ export class FitPanel {
       this.#write(await this.#client.ask('inspect', cage, target, { preset, threshold, locks, parts }));
     } catch (error) {
       if (error instanceof Superseded) return;
-      this.#show('', [text('p', `The cage could not be inspected: ${error instanceof Error ? error.message : error}`)]);
+      const reason = error instanceof Error ? error.message : error;
+      this.#show('', [text('p', `The cage could not be inspected: ${reason}`)], this.#next);
     }
   }
 
@@ -92,12 +103,13 @@ export class FitPanel {
     list.append(...findings.map((finding) => this.#item(finding, inspection)));
     const share = `${Math.round(100 * paintableShare(segments))} % of the visible surface can be painted.`;
     const remedies = findings.flatMap((finding) => this.#remedyFor(finding, inspection) ?? []);
-    const making = verdict === 'unfit' ? [{ title: 'Make a cage', run: () => this.#maker.make() }] : [];
+    const making = verdict === 'unfit' ? [this.#making] : [];
     // The cage of another model is not meant for this one.
     if (this.#maker.isOthers) remedies.unshift(...making);
     const content = [text('p', `${share} ${kVerdicts[verdict]}`), ...(findings.length > 0 ? [list] : [])];
     content.push(...making.map(buttonFor));
-    this.#show(verdict, content, remedies[0] ?? making[0]);
+    // What is good needs no remedy on the stage; the findings offer theirs.
+    this.#show(verdict, content, verdict === 'good' ? undefined : (remedies[0] ?? making[0]));
     this.#session.tellInspection(inspection);
   }
 

@@ -29,7 +29,7 @@ export class StageVerdict {
     session.on('zones', () => this.#write());
   }
 
-  /** @param remedy The first that can be done. */
+  /** @param remedy The first that can be done; without a verdict, only if the cage is not being inspected. */
   show(verdict: KnownVerdict, remedy?: Remedy): void {
     this.#verdict = verdict;
     this.#remedy = remedy;
@@ -42,8 +42,9 @@ export class StageVerdict {
     if (!shown || !classification) return;
     const share = `${Math.round(100 * paintableShare(classification.segmentStats))} % paintable`;
     const foreign = shown.cage.sample && shown.cage.sample !== shown.target.sample;
+    const unknown = this.#remedy ? 'The cage is not checked yet' : 'Checking the cage…';
     const texts: Record<KnownVerdict, string> = {
-      '': foreign ? 'The cage is another model’s' : 'Checking the cage…',
+      '': foreign ? 'The cage is another model’s' : unknown,
       good: share,
       usable: `${share}, with reservations`,
       unfit: 'The cage does not fit',

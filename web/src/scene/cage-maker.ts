@@ -191,7 +191,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     const next =
       paint.file && !paint.sample
         ? 'Save it with the paint that you draw for it.'
-        : 'The UV checker shows where paint lands: remove its layer to paint on the model as it is.';
+        : 'The UV checker shows where paint lands; it goes away with the first paint.';
     return { cage, note: `A cage of ${cage.indices.length / 3} triangles was made. ${next}` };
   }
 
