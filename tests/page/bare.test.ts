@@ -4,7 +4,7 @@ import { after, before, test } from 'node:test';
 import { NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
 import { faults } from '../support/axe';
-import { asset, middleOf, ready, worked } from '../support/cages';
+import { asset, middleOf, ready } from '../support/cages';
 import { difference, frames, look, modelArea } from '../support/picture';
 import { drop, glb, Site, shownCounts } from '../support/site';
 
@@ -41,6 +41,12 @@ async function openEdges(page: Page): Promise<number> {
 const markedCount = async (page: Page): Promise<number> =>
   Number(/^[\d,]+/.exec((await page.getByTestId('bare-count').textContent())!)?.[0].replace(',', '') ?? 0);
 
+/** Waits until the cage has followed the marks. */
+async function followed(page: Page): Promise<void> {
+  await page.waitForTimeout(1500); // longer than the page waits before it makes the cage again
+  await ready(page);
+}
+
 /** Waits until the browser keeps everything. */
 const kept = (page: Page): Promise<unknown> =>
   page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
@@ -67,7 +73,7 @@ test('marked spots stay bare, and the made cage has a hole there; marks are eras
   assert.ok(marked.culled > unmarked.culled + 20, `${unmarked.culled} points were culled, and ${marked.culled} are`);
   assert.ok(difference(plain, await look(page, area)) > 0.01, 'the marks are seen');
   assert.deepEqual(await faults(page), []);
-  await worked(page);
+  await followed(page);
   const open = await openEdges(page);
   assert.ok(open > closed + 3, `the cage had ${closed} open edges, and has ${open}`);
 
@@ -84,7 +90,7 @@ test('marked spots stay bare, and the made cage has a hole there; marks are eras
   assert.equal(await markedCount(page), count);
 
   // Explained where it is.
-  await worked(page);
+  await followed(page);
   await page.locator('#tools input[data-key=x]').check({ force: true });
   await page.mouse.click(x, y - 60);
   assert.match((await page.getByTestId('explain-text').textContent())!, /^Not painted: marked/);
@@ -112,7 +118,7 @@ test('spots are marked by a finger and by the keyboard; a second finger turns th
   await page.touchscreen.tap(x, y);
   const tapped = await markedCount(page);
   assert.ok(tapped > 0, `${tapped} triangles are marked`);
-  await worked(page);
+  await followed(page);
   const fingers = (type: string, ...points: [number, number][]): Promise<unknown> =>
     touch.send('Input.dispatchTouchEvent', {
       type: type as 'touchStart',
