@@ -126,6 +126,15 @@ describe('the worker', () => {
     assert.deepEqual((await second).zones, direct.transfer(scene.cage, scene.target).zones);
   });
 
+  test('cutting borders is cancelled at once, and later calls continue', async () => {
+    const result = direct.transfer(large.cage, large.target);
+    const controller = new AbortController();
+    const cut = failure(cutBorders(large.cage, large.target, result, { signal: controller.signal }));
+    setImmediate(() => controller.abort(new Error('never mind')));
+    assert.equal(((await cut) as Error).message, 'never mind');
+    assert.deepEqual((await transfer(scene.cage, scene.target)).zones, direct.transfer(scene.cage, scene.target).zones);
+  });
+
   test('a waiting call is cancelled, and the running one continues', async () => {
     const controller = new AbortController();
     const first = transfer(scene.cage, scene.target);
