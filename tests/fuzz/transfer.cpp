@@ -83,6 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   check(scene, result);
   require(transfer(scene.cage.view(), scene.target.view(), scene.options, workspace, again).ok());
   require(areEqual(result, again));
-  if (isNearGrid(scene.cage) && isNearGrid(scene.target) && hasSize(scene.target)) compareWithReference(scene, workspace);
+  if (isNearGrid(scene.cage) && isNearGrid(scene.target) && hasSize(scene.target))
+    compareWithReference(scene, workspace);
   return 0;
 }

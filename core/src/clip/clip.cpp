@@ -11,8 +11,6 @@
 namespace cagecast {
 namespace {
 
-constexpr Status kOutOfMemory{Code::outOfMemory};
-
 /// Finds the vertices that may be on a painted triangle: their segment is not culled, and one of their triangles is not
 /// occluded at all three corners.
 /// @param[out] takesPart  1 per vertex.

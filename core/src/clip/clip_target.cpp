@@ -17,7 +17,6 @@ namespace {
 constexpr std::uint64_t kComparisons = 4'000'000;
 constexpr std::uint64_t kComparisonsPerTriangle = 20'000;
 constexpr std::uint64_t kComparisonsPerBorderEdge = 100'000;
-constexpr Status kOutOfMemory{Code::outOfMemory};
 
 /// The number of edges of the cage along which a pass cuts.
 std::uint32_t countBorderEdges(const ClipCage& cage, BorderKind kind) noexcept {

@@ -5,6 +5,8 @@
 
 namespace cagecast {
 
+inline constexpr Status kOutOfMemory{Code::outOfMemory};
+
 /// Where a vertex of a clipped target lies with respect to the boundary loops.
 enum class LoopSide : std::uint8_t { covered, onBorder, beyond };
 
