@@ -54,10 +54,12 @@ test('a model dropped alone: a cage is made, it is painted, and the model is sav
   const { page, complaints } = await site.visit();
   await drop(page, [head()]);
   await ready(page);
-  await page.getByTestId('stage-remedy').press('Enter');
+  const remedy = page.getByTestId('stage-remedy');
+  await remedy.waitFor();
+  await remedy.press('Enter');
   await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
   await ready(page);
-  await page.getByTestId('stage-remedy').waitFor({ state: 'hidden' });
+  await remedy.waitFor({ state: 'hidden' });
   assert.equal(await page.evaluate(() => document.activeElement?.id), 'stage-verdict-text', 'the focus is not lost');
   assert.deepEqual(await faults(page), []);
   await page.locator('#tools input[data-key=b]').check({ force: true });
@@ -68,8 +70,8 @@ test('a model dropped alone: a cage is made, it is painted, and the model is sav
   await page.mouse.move(x + 20, y + 10, { steps: 3 });
   await page.mouse.up();
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByTestId('stage-save').click()]);
-  const document = await validModel(readFileSync(await download.path()));
-  const overlay = document
+  const saved = await validModel(readFileSync(await download.path()));
+  const overlay = saved
     .getRoot()
     .listMaterials()
     .find((material) => material.getName() === 'Cagecast overlay')!;

@@ -70,7 +70,7 @@ test('what a VRM says of its avatar is kept, with the indices that the written f
     return extensions;
   };
   assert.deepEqual(named(same), named(own));
-  assert.deepEqual(same.extensionsUsed, own.extensionsUsed.toSorted());
+  assert.deepEqual(same.extensionsUsed, own.extensionsUsed!.toSorted());
 
   const root = document.getRoot();
   for (const list of [root.listNodes(), root.listMeshes(), root.listMaterials(), root.listTextures()])

@@ -89,6 +89,7 @@ export class ExportPanel {
     );
     const texture = document.querySelector<HTMLInputElement>('#paint-into [value=texture]')!;
     texture.disabled = !textured;
+    element('no-texture', HTMLElement).hidden = textured;
     if (!textured) document.querySelector<HTMLInputElement>('#paint-into [value=overlay]')!.checked = true;
     showNotice('export-note', '');
   }

@@ -4,6 +4,7 @@ import { Emitter } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
 import { download } from '../platform/download';
 import { element } from '../platform/page';
+import { likelyTemplate } from './likely-template';
 import { loadModel, type Model } from './load-model';
 import type { Session } from './session';
 
@@ -66,7 +67,10 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const [file] = session.shown!.cage.files;
       download(file!, file!.name);
     });
+    let shown: Model | undefined;
     session.on('transfer', ({ target, cage }) => {
+      if (target !== shown) this.#template.value = likelyTemplate(target.mesh.positions);
+      shown = target;
       element('no-cage', HTMLElement).hidden = target.sample !== undefined;
       const isMade = made.has(cage.files[0]!);
       this.#save.hidden = !isMade;
