@@ -169,6 +169,7 @@ struct Arrays {
   std::vector<unsigned char> locks;
 
   [[nodiscard]] std::vector<unsigned> simplified(const std::vector<unsigned>& indices, std::size_t target) const {
+    if (target >= indices.size()) return indices;
     std::vector<unsigned> result(indices.size());
     constexpr float kAnyError = 1;  // The count decides.
     result.resize(meshopt_simplifyWithAttributes(result.data(), indices.data(), indices.size(), positions.data(),

@@ -110,9 +110,11 @@ Differences compare(const Result& reference, const TransferResult& product, cons
     // Slivers have areas that rounding makes; they are compared with what matters, the size of the target.
     const double slack = kAreaTolerance * expected.area + kLeastArea * diag * diag;
     const auto differs = [&](double a, double b) { return !(std::abs(a - b) <= slack); };
-    // Scores are ratios of areas; where what is asked is next to nothing they are huge, and rounding shows.
-    const auto differsAsRatio = [](double a, double b) {
-      return a != b && !(std::abs(a - b) <= kScoreTolerance * std::max({1.0, std::abs(a), std::abs(b)}));
+    // Scores are ratios of areas; where what is asked is next to nothing they are huge, and rounding shows, and where
+    // the areas themselves are next to nothing.
+    const double ratioTolerance = std::max(kScoreTolerance, slack / std::max(expected.exposedArea, slack));
+    const auto differsAsRatio = [&](double a, double b) {
+      return a != b && !(std::abs(a - b) <= ratioTolerance * std::max({1.0, std::abs(a), std::abs(b)}));
     };
     std::string differing;
     const auto check = [&](const char* name, bool isOther, double gotValue, double expectedValue) {
