@@ -1,8 +1,9 @@
 // Takes the README's pictures of the page: npm run pictures [-- name …]
 
 import { mkdir, writeFile } from 'node:fs/promises';
+import { type Accessor, NodeIO } from '@gltf-transform/core';
 import type { Page } from 'playwright-core';
-import { inRepository, Site, settled } from './site';
+import { drop, glb, inRepository, Site, settled, type Upload } from './site';
 
 const kFolder = inRepository('docs/pictures');
 const kModels = ['Lizard head', 'Human bust', 'Saloon car'];
@@ -47,6 +48,33 @@ async function first(site: Site): Promise<void> {
   await writeFile(`${kFolder}/first.webp`, Buffer.from(webp.split(',')[1]!, 'base64'));
 }
 
+/** Busts of other shapes. */
+async function busts(): Promise<Upload[]> {
+  const io = new NodeIO();
+  const shapes = { slim: [0.8, 1.05, 0.9], broad: [1.2, 1, 1.1], short: [1, 0.85, 1], tall: [0.95, 1.15, 1] };
+  return Promise.all(
+    Object.entries(shapes).map(async ([name, scale]) => {
+      const document = await io.read(inRepository('build/assets/human/target.glb'));
+      const primitives = document
+        .getRoot()
+        .listMeshes()
+        .flatMap((mesh) => mesh.listPrimitives());
+      const positions = new Set(primitives.map((primitive) => primitive.getAttribute('POSITION') as Accessor));
+      for (const one of positions) one.setArray(one.getArray()!.map((x, i) => x * scale[i % 3]!));
+      return glb(`${name}.glb`, Buffer.from(await io.writeBinary(document)));
+    }),
+  );
+}
+
+/** Shows one paint on busts of other shapes. */
+async function fillWardrobe(page: Page): Promise<void> {
+  await choose(page, 'Human bust');
+  await drop(page, await busts());
+  await page.getByRole('button', { name: 'Fit this cage to all' }).click();
+  await page.waitForFunction(() => !/no cage|Fitting|Waiting/.test(document.querySelector('.avatars')!.textContent!));
+  await page.locator('#view-mode input[value=result]').check({ force: true });
+}
+
 /** The whole page on two screens. */
 async function desktopAndPhone(site: Site): Promise<void> {
   const shots: string[] = [];
@@ -56,6 +84,7 @@ async function desktopAndPhone(site: Site): Promise<void> {
   ] as const) {
     const { page } = await site.visit({ viewport: { width, height }, deviceScaleFactor: 1, colorScheme });
     if (width < 600) await choose(page, 'Human bust');
+    else await fillWardrobe(page);
     await rest(page);
     shots.push(dataUri(await page.screenshot({ type: 'png' })));
   }
