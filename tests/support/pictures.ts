@@ -60,7 +60,7 @@ async function busts(): Promise<Upload[]> {
         .listMeshes()
         .flatMap((mesh) => mesh.listPrimitives());
       const positions = new Set(primitives.map((primitive) => primitive.getAttribute('POSITION') as Accessor));
-      for (const one of positions) one.setArray(one.getArray()!.map((x, i) => x * scale[i % 3]!));
+      for (const one of positions) one.setArray((one.getArray() as Float32Array).map((x, i) => x * scale[i % 3]!));
       return glb(`${name}.glb`, Buffer.from(await io.writeBinary(document)));
     }),
   );
