@@ -173,6 +173,9 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
     const TriangleMesh shell = cutHoles(hull, field);
     if (shell.empty()) return nothingToPaint;
     if (!simplify(shell, {settings.triangles, offset}, part(kHolesEnd, kSimplifyEnd), cage)) return cancelled;
+    if (cage.empty())
+      return {Problem::badModel,
+              "model is too thin for a cage of so few triangles: nothing is left of its hull; raise options.triangles"};
     const double depth = (1 - kMargin) * offset;
     if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
       return cancelled;
