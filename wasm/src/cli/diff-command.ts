@@ -114,7 +114,7 @@ function textOf({ changes, over }: Difference, tolerance: number): string {
     // What reads the same is for programs only.
     .filter(([, was, is, isOver]) => was !== is || isOver);
   if (rows.length === 0) return unchanged;
-  const count = `${integer(rows.length)} changes, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part more or less)`;
+  const count = `${counted(rows.length, 'change')}, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part more or less)`;
   return `${table([['', 'before', 'after', ''], ...rows])}\n${count}`;
 }
 
