@@ -14,8 +14,6 @@ namespace {
 
 /// Each try takes milliseconds.
 constexpr int kMostTries = 40;
-/// Holes that come about by joining stay holes if they are shorter than this share of the rim.
-constexpr double kLargestHole = 0.45;
 
 /// Cosine by which a chart faces along an axis, on the mean.
 constexpr double kFacing = 0.55;
@@ -112,7 +110,7 @@ void mergeCharts(const TriangleMesh& mesh, const MergeOptions& options, Ticker& 
       if (++tries > kMostTries || ticker.cancelled()) return;
       std::vector<Piece> pieces = joined(mesh, seams, a, b);
       if (pieces.size() == 1) {
-        Chart chart = flatten(cutToDisk(std::move(pieces[0]), kLargestHole, {}), ticker);
+        Chart chart = flatten(cutToDisk(std::move(pieces[0]), {}), ticker);
         if (fits(chart, options)) {
           charts[a] = std::move(chart);
           charts.erase(charts.begin() + b);

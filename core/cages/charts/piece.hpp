@@ -8,8 +8,6 @@
 
 namespace cagecast::cages {
 
-inline constexpr std::uint32_t kNone = 0xffffffffu;
-
 /// Half-edge 3t + i runs from corner i of triangle t to the next one.
 constexpr std::size_t nextInTriangle(std::size_t halfEdge) { return halfEdge % 3 == 2 ? halfEdge - 2 : halfEdge + 1; }
 inline std::uint32_t originOf(const TriangleMesh& mesh, std::size_t halfEdge) {

@@ -12,6 +12,8 @@ namespace cagecast::cages {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// Holes longer than this share of the longest boundary loop are joined with it by a seam.
+constexpr double kLargestHole = 0.45;
 
 std::vector<std::uint32_t> originsOf(const TriangleMesh& mesh, std::span<const std::uint32_t> walk) {
   std::vector<std::uint32_t> vertices;
@@ -132,7 +134,7 @@ Piece cutBetween(const Piece& piece, std::span<const std::uint32_t> starts, std:
   return cutOpen(piece, cut);
 }
 
-Piece cutToDisk(Piece piece, double largestHole, const SeamCost& cost) {
+Piece cutToDisk(Piece piece, const SeamCost& cost) {
   if (loopsOf(piece.mesh, findTwins(piece.mesh)).empty()) piece = open(piece, cost);
   const std::vector<std::uint32_t> twins = findTwins(piece.mesh);
   const auto loops = loopsOf(piece.mesh, twins);
@@ -140,7 +142,7 @@ Piece cutToDisk(Piece piece, double largestHole, const SeamCost& cost) {
     return cutHandles(piece, cost);
   if (loops.size() < 2) return piece;
   // Each cut changes the vertices, so loops are found anew.
-  const double least = largestHole * lengthOf(piece.mesh, loops[0]);
+  const double least = kLargestHole * lengthOf(piece.mesh, loops[0]);
   for (std::size_t i = 1; i < loops.size(); ++i) {
     const auto now = loopsOf(piece.mesh, findTwins(piece.mesh));
     if (now.size() < 2 || lengthOf(piece.mesh, now[1]) <= least) break;

@@ -25,8 +25,8 @@ EdgeDistances edgeDistances(const TriangleMesh& mesh, std::span<const std::uint3
 Piece cutBetween(const Piece& piece, std::span<const std::uint32_t> starts, std::span<const std::uint32_t> ends,
                  const SeamCost& cost);
 
-/// Cuts a connected piece until it is a disk with small holes: opens closed surfaces, cuts handles, and joins holes
-/// longer than `largestHole` times the longest boundary loop with it.
-Piece cutToDisk(Piece piece, double largestHole, const SeamCost& cost);
+/// Cuts a connected piece until it is a disk with small holes: opens closed surfaces, cuts handles, and joins larger
+/// holes with the longest boundary loop.
+Piece cutToDisk(Piece piece, const SeamCost& cost);
 
 }  // namespace cagecast::cages

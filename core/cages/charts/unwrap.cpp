@@ -27,8 +27,6 @@ constexpr double kJoinedEnergy = 4.2;
 constexpr double kLeastFill = 0.45;
 /// … and is no longer than this, as a share of the square root of the whole area.
 constexpr double kLongestChart = 1.25;
-/// Holes longer than this share of the rim are joined with it by a seam.
-constexpr double kLargestHole = 0.45;
 /// A head, two arms, two legs.
 constexpr std::size_t kMostLimbs = 5;
 /// Those of a spider.
@@ -136,7 +134,7 @@ std::uint32_t mostStretched(const Chart& chart) {
 
 /// Flattens a piece; where it is stretched too much, seams from there to the boundary help (Gu, Gortler, Hoppe 2002).
 Chart flattenWithSeams(Piece piece, Ticker& ticker) {
-  Chart chart = flatten(cutToDisk(std::move(piece), kLargestHole, {}), ticker);
+  Chart chart = flatten(cutToDisk(std::move(piece), {}), ticker);
   for (int i = 0; i < kMostSeams && chart.valid && chart.energy > kMostEnergy; ++i) {
     const std::uint32_t worst = mostStretched(chart);
     const TriangleMesh& mesh = chart.piece.mesh;
@@ -144,7 +142,7 @@ Chart flattenWithSeams(Piece piece, Ticker& ticker) {
     for (const auto& loop : loopsOf(mesh, findTwins(mesh)))
       for (const std::uint32_t h : loop)
         if (originOf(mesh, h) != worst) boundary.push_back(originOf(mesh, h));
-    Chart next = flatten(cutToDisk(cutBetween(chart.piece, {&worst, 1}, boundary, {}), kLargestHole, {}), ticker);
+    Chart next = flatten(cutToDisk(cutBetween(chart.piece, {&worst, 1}, boundary, {}), {}), ticker);
     if (!next.valid || next.energy > chart.energy) break;
     chart = std::move(next);
   }
@@ -211,7 +209,7 @@ bool Unwrapper::layOutHead(Piece piece) {
     const std::uint32_t first = furthest(piece.mesh, direction, side);
     // A seam at the throat keeps to the middle only.
     const SeamCost cost = middleCost(piece.mesh, start.up > 0 ? kFrontCost : 0);
-    Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), kLargestHole, {}), ticker_);
+    Chart chart = flatten(cutToDisk(cutBetween(piece, {&first, 1}, neck, cost), {}), ticker_);
     if (ticker_.cancelled()) return false;
     const double fault = start.reluctance * (chart.energy - 4);
     if (!chart.valid || (best.valid && fault >= least)) continue;

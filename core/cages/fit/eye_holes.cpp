@@ -30,8 +30,6 @@ constexpr double kBallSlack = 1.15;
 /// An eye of which fewer directions show anything is hidden.
 constexpr std::size_t kLeastSeen = 32;
 
-Vec3 unit(const Vec3& v) { return 1 / length(v) * v; }
-
 /// What is visible of an eye, seen along its axis.
 struct Opening {
   Vec3 middle{}, axis{}, across{}, up{};
@@ -112,7 +110,7 @@ Vec3 axisOf(const TriangleMesh& mesh, const std::vector<bool>& isEye, const Surf
   const std::vector<RayHit> hits = surface.trace(rays);
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (std::isinf(hits[i].distance)) sum = sum + normals[i];
-  return length(sum) > 0 ? unit(sum) : sum;
+  return unit(sum);
 }
 
 std::optional<Opening> openingOf(const EyedFigure& figure, const Surface& surface, const std::vector<bool>& isEye,

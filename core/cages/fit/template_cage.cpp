@@ -24,11 +24,6 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-Vec3 unit(const Vec3& v) {
-  const double size = length(v);
-  return size > 0 ? 1 / size * v : Vec3{0, 0, 0};
-}
-
 }  // namespace
 
 bool isOnSkin(const std::string& name) { return name.rfind("joint_", 0) != 0 && name.rfind("eye_centre", 0) != 0; }

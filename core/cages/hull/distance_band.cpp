@@ -8,7 +8,6 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
 /// Nodes or triangles between two calls of the callback: a few milliseconds of work.
 constexpr std::size_t kPerReport = 1 << 14;
 
@@ -63,7 +62,7 @@ struct BandPoint {
 template <class Feature>
 class Propagation {
  public:
-  Propagation(const std::vector<Feature>& features, const Grid& grid, double reach, DistanceBand& out)
+  Propagation(const std::vector<Feature>& features, const VoxelGrid& grid, double reach, DistanceBand& out)
       : features_(features), grid_(grid), out_(out), nearest_(grid.size(), kNone), queued_(grid.size(), 0) {
     out.reach = reach;
     out.distance.assign(grid.size(), static_cast<float>(reach));
@@ -111,7 +110,7 @@ class Propagation {
     std::uint32_t x, y, z;
   };
   const std::vector<Feature>& features_;
-  const Grid& grid_;
+  const VoxelGrid& grid_;
   DistanceBand& out_;
   std::vector<std::uint32_t> nearest_;
   std::vector<std::uint8_t> queued_;
@@ -121,7 +120,7 @@ class Propagation {
 /// Offers a triangle to the nodes about it. Large ones are cut up first: their boxes are mostly empty.
 class Splatter {
  public:
-  Splatter(Propagation<BandTriangle>& nodes, const Grid& grid) : nodes_(nodes), grid_(grid) {}
+  Splatter(Propagation<BandTriangle>& nodes, const VoxelGrid& grid) : nodes_(nodes), grid_(grid) {}
 
   void splat(const std::array<Vec3, 3>& corners, std::uint32_t feature, int depth = 0) {
     constexpr double kLargest = 6;  // In spacings: a compromise between boxes and pieces.
@@ -162,12 +161,12 @@ class Splatter {
   }
 
   Propagation<BandTriangle>& nodes_;
-  const Grid& grid_;
+  const VoxelGrid& grid_;
 };
 
 }  // namespace
 
-bool distanceToMesh(const TriangleMesh& mesh, const Grid& grid, double reach, const Progress& progress,
+bool distanceToMesh(const TriangleMesh& mesh, const VoxelGrid& grid, double reach, const Progress& progress,
                     DistanceBand& out) {
   std::vector<BandTriangle> features;
   features.reserve(mesh.triangles.size());
@@ -186,8 +185,8 @@ bool distanceToMesh(const TriangleMesh& mesh, const Grid& grid, double reach, co
   return nodes.run(progress, kSplatShare);
 }
 
-bool distanceToPoints(const std::vector<GridPoint>& points, const Grid& grid, double reach, const Progress& progress,
-                      DistanceBand& out) {
+bool distanceToPoints(const std::vector<GridPoint>& points, const VoxelGrid& grid, double reach,
+                      const Progress& progress, DistanceBand& out) {
   std::vector<BandPoint> features;
   features.reserve(points.size());
   for (const GridPoint& p : points) features.push_back({p.position});

@@ -19,7 +19,7 @@ struct DistanceBand {
 /// off by a few hundredths of the spacing where they meet.
 /// Cost: proportional to the nodes within reach and to the triangles.
 /// @return false if `progress` cancelled it.
-bool distanceToMesh(const TriangleMesh& mesh, const Grid& grid, double reach, const Progress& progress,
+bool distanceToMesh(const TriangleMesh& mesh, const VoxelGrid& grid, double reach, const Progress& progress,
                     DistanceBand& out);
 
 /// A point, and the node of the grid that is next to it.
@@ -30,7 +30,7 @@ struct GridPoint {
 
 /// The distance to the closest of some points.
 /// @return false if `progress` cancelled it.
-bool distanceToPoints(const std::vector<GridPoint>& points, const Grid& grid, double reach, const Progress& progress,
-                      DistanceBand& out);
+bool distanceToPoints(const std::vector<GridPoint>& points, const VoxelGrid& grid, double reach,
+                      const Progress& progress, DistanceBand& out);
 
 }  // namespace cagecast::cages

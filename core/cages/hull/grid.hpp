@@ -8,7 +8,7 @@
 namespace cagecast::cages {
 
 /// A regular grid of nodes, x running fastest.
-struct Grid {
+struct VoxelGrid {
   Vec3 origin{};       ///< Position of the first node.
   double spacing = 0;  ///< Between nodes, in the space of the model.
   std::uint32_t nx = 0, ny = 0, nz = 0;

@@ -32,10 +32,10 @@ double leastDilation(const TriangleMesh& mesh, std::uint32_t voxels) {
   return kSpaces * longestOf(boundsOf(mesh).size()) / (spacesFor(voxels) - 2 * kSpaces);  // The grid has room for it.
 }
 
-Grid gridAround(const TriangleMesh& mesh, double pad, std::uint32_t voxels) {
+VoxelGrid gridAround(const TriangleMesh& mesh, double pad, std::uint32_t voxels) {
   const Bounds bounds = boundsOf(mesh);
   const Vec3 size = bounds.size() + 2 * pad * Vec3{1, 1, 1};
-  Grid grid;
+  VoxelGrid grid;
   grid.spacing = longestOf(size) / spacesFor(voxels);
   const auto nodes = [&](double side) {
     return static_cast<std::uint32_t>(std::ceil(side / grid.spacing) + 2 * kBorder);
@@ -50,7 +50,7 @@ Grid gridAround(const TriangleMesh& mesh, double pad, std::uint32_t voxels) {
 
 /// Marks the nodes that a walk along the axes reaches from `start` through nodes that `open` accepts.
 template <class Open>
-std::size_t flood(const Grid& grid, std::size_t start, std::uint8_t mark, std::vector<std::uint8_t>& marks,
+std::size_t flood(const VoxelGrid& grid, std::size_t start, std::uint8_t mark, std::vector<std::uint8_t>& marks,
                   const Open& open) {
   std::vector<std::size_t> stack = {start};
   marks[start] = mark;
@@ -77,8 +77,8 @@ std::size_t flood(const Grid& grid, std::size_t start, std::uint8_t mark, std::v
 }
 
 /// Where the distance passes `level` between the nodes outside and the others.
-std::vector<GridPoint> outerBorder(const Grid& grid, const DistanceBand& band, const std::vector<std::uint8_t>& outside,
-                                   double level) {
+std::vector<GridPoint> outerBorder(const VoxelGrid& grid, const DistanceBand& band,
+                                   const std::vector<std::uint8_t>& outside, double level) {
   std::vector<GridPoint> points;
   const std::array<std::size_t, 3> steps = {1, grid.nx, std::size_t{grid.nx} * grid.ny};
   for (std::uint32_t z = 0; z + 1 < grid.nz; ++z)
@@ -101,7 +101,7 @@ std::vector<GridPoint> outerBorder(const Grid& grid, const DistanceBand& band, c
 
 /// Leaves one body of positive nodes without pockets in it.
 /// @return its share of all positive nodes.
-double keepLargest(const Grid& grid, std::vector<float>& values) {
+double keepLargest(const VoxelGrid& grid, std::vector<float>& values) {
   constexpr float kTiny = 1e-6f;  // In spacings: the vertices stay next to the node that changes its sign.
   const auto tiny = kTiny * static_cast<float>(grid.spacing);
   std::vector<std::uint8_t> reached(grid.size(), 0);
@@ -162,7 +162,7 @@ bool makeHull(const TriangleMesh& mesh, const HullOptions& options, const Progre
   const TriangleMesh closed = closeOpenings(mesh, 2 * options.closing);
   const double outwards = std::max({options.closing, options.offset, leastDilation(closed, options.voxels)});
   const double inwards = outwards - options.offset;
-  const Grid grid = gridAround(closed, outwards, options.voxels);
+  const VoxelGrid grid = gridAround(closed, outwards, options.voxels);
   // Beyond both levels by the diagonal of a cell, so that the nodes on either side of them have distances.
   const double beyond = 1.8 * grid.spacing;
   DistanceBand band;

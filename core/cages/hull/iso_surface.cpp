@@ -7,7 +7,6 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr std::uint32_t kNone = UINT32_MAX;
 /// Vertices keep this share of an edge away from its ends, so that no triangle is a sliver.
 constexpr double kFromEnds = 0.1;
 
@@ -86,7 +85,7 @@ CellPolygons polygonsOf(unsigned signs) {
 
 class Marcher {
  public:
-  Marcher(const Grid& grid, const std::vector<float>& values) : grid_(grid), values_(values) {
+  Marcher(const VoxelGrid& grid, const std::vector<float>& values) : grid_(grid), values_(values) {
     for (unsigned signs = 0; signs < 256; ++signs) table_[signs] = polygonsOf(signs);
     const std::size_t layer = std::size_t{grid.nx} * grid.ny;
     for (auto& half : vertices_)
@@ -154,7 +153,7 @@ class Marcher {
     return vertex;
   }
 
-  const Grid& grid_;
+  const VoxelGrid& grid_;
   const std::vector<float>& values_;
   std::array<CellPolygons, 256> table_;
   /// For the lower and the upper layer of nodes, and each axis: the vertex on the edge that starts there.
@@ -164,6 +163,6 @@ class Marcher {
 
 }  // namespace
 
-TriangleMesh isoSurface(const Grid& grid, const std::vector<float>& values) { return Marcher(grid, values).run(); }
+TriangleMesh isoSurface(const VoxelGrid& grid, const std::vector<float>& values) { return Marcher(grid, values).run(); }
 
 }  // namespace cagecast::cages

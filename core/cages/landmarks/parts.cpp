@@ -49,7 +49,6 @@ std::uint32_t findComponents(const TriangleMesh& mesh, std::vector<std::uint32_t
     parents[rootOf(parents, t[1])] = a;
     parents[rootOf(parents, t[2])] = a;
   }
-  constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> numbers(mesh.positions.size(), kNone);
   std::uint32_t count = 0;
   ofTriangle.clear();

@@ -33,7 +33,6 @@ TriangleMesh withoutSplinters(const TriangleMesh& mesh) {
 
 TriangleMesh cutHoles(const TriangleMesh& mesh, const std::vector<double>& field) {
   TriangleMesh out;
-  constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> kept(mesh.positions.size(), kNone);
   std::unordered_map<std::uint64_t, std::uint32_t> cuts;
   const auto keep = [&](std::uint32_t v) {

@@ -68,7 +68,6 @@ TriangleMesh weldExactly(const MeshView& mesh, std::vector<std::uint32_t>* verte
 
 TriangleMesh subset(const TriangleMesh& mesh, const std::vector<bool>& keepTriangle) {
   TriangleMesh out;
-  constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> newVertex(mesh.positions.size(), kNone);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (!keepTriangle[t]) continue;
@@ -96,7 +95,6 @@ std::vector<std::uint32_t> connectedPieces(const TriangleMesh& mesh, std::uint32
     parent[root(t[1])] = root(t[0]);
     parent[root(t[2])] = root(t[0]);
   }
-  constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> numbers(parent.size(), kNone), pieces;
   pieces.reserve(mesh.triangles.size());
   count = 0;

@@ -11,6 +11,15 @@ namespace cagecast::cages {
 
 using Triangle3 = std::array<std::uint32_t, 3>;
 
+/// No vertex, no triangle, no half-edge.
+inline constexpr std::uint32_t kNone = UINT32_MAX;
+
+/// A vector at unit length; zero stays zero.
+inline Vec3 unit(const Vec3& v) {
+  const double size = length(v);
+  return size > 0 ? 1 / size * v : Vec3{0, 0, 0};
+}
+
 /// A mesh that is being worked on, in double precision and in the space of the model.
 struct TriangleMesh {
   std::vector<Vec3> positions;
