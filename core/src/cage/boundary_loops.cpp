@@ -11,10 +11,10 @@ namespace {
 /// Points this close to an open edge, as a share of the diagonal, are on it, so that rounding does not decide.
 constexpr double kOnLoop = 1e-6;
 
-/// A triangle's corners, its edges as unit vectors and their lengths, and its outward normal.
+/// A triangle's corners, its edges as unit vectors and their lengths, its outward normal, and twice its area.
 struct Frame {
   Vec3 corners[3], edges[3], normal;
-  double lengths[3];
+  double lengths[3], doubleArea;
 
   explicit Frame(const CageTriangle& t) noexcept
       : corners{Vec3::from(t.a), Vec3::from(t.b), Vec3::from(t.c)}, normal(t.normal.exact) {
@@ -23,10 +23,15 @@ struct Frame {
       lengths[k] = length(edge);
       edges[k] = 1 / lengths[k] * edge;
     }
+    doubleArea = dot(corners[2] - corners[0], inward(0)) * lengths[0];
   }
   [[nodiscard]] Vec3 inward(std::uint32_t k) const noexcept { return cross(normal, edges[k]); }
   /// From corner k to the one before.
   [[nodiscard]] Vec3 back(std::uint32_t k) const noexcept { return -1 * edges[(k + 2) % 3]; }
+  /// How far from corner k along one of its edges a point is at a distance from the line of the other.
+  [[nodiscard]] double along(std::uint32_t k, double distance) const noexcept {
+    return distance * lengths[k] * lengths[(k + 2) % 3] / doubleArea;
+  }
 };
 
 /// The least distance of some points from another in a direction.
@@ -44,7 +49,7 @@ bool areBehind(Vec3 direction, Vec3 from, std::span<const Vec3> points) {
 /// Whether all points of a convex hull are closest to one edge or corner of a triangle that is on no loop, or to one of
 /// the edge's ends that is on none.
 /// @param loops  6, as in `BoundaryLoops::loopOf`.
-/// @param near   How far from the end of an edge that is on a loop points must be.
+/// @param near   How far from an edge that is on a loop, or an end of one, points must be.
 bool areClosestOffLoops(const Frame& frame, const std::uint32_t* loops, std::span<const Vec3> hull, double near) {
   constexpr std::uint32_t kNone = BoundaryLoops::kNone;
   for (std::uint32_t k = 0; k < 3; ++k) {
@@ -54,9 +59,9 @@ bool areClosestOffLoops(const Frame& frame, const std::uint32_t* loops, std::spa
     const bool areBehindBack = isOff && areBehind(frame.back(k), start, hull);
     if (areBehindBack && areBehind(frame.edges[k], start, hull)) return true;
     if (loops[k] != kNone || !areBehind(frame.inward(k), start, hull)) continue;
-    const bool areAtStart = areBehindBack || leastAlong(frame.edges[k], start, hull) >= near;
+    const bool areAtStart = areBehindBack || leastAlong(frame.edges[k], start, hull) >= frame.along(k, near);
     const bool areAtEnd = (loops[3 + next] == kNone && areBehind(frame.edges[next], end, hull)) ||
-                          leastAlong(-1 * frame.edges[k], end, hull) >= near;
+                          leastAlong(-1 * frame.edges[k], end, hull) >= frame.along(next, near);
     if (areAtStart && areAtEnd) return true;
   }
   return false;
@@ -100,8 +105,11 @@ bool BoundaryLoops::areSurelyOff(const CageTriangle& triangle, std::uint32_t cag
   if (!touches(cageTriangle)) return true;
   const std::uint32_t* loops = loopOf + std::size_t{6} * cageTriangle;
   const Frame frame(triangle);
-  const double doubleArea = dot(frame.corners[2] - frame.corners[0], frame.inward(0)) * frame.lengths[0];
   const double near = 2 * kOnLoop * diagonal;
+  // In so thin a triangle, all points may be that near to an edge.
+  for (const double length : frame.lengths) {
+    if (frame.doubleArea < near * length) return false;
+  }
   if (areClosestOffLoops(frame, loops, hull, near)) return true;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const Vec3 corner = frame.corners[k];
@@ -110,8 +118,7 @@ bool BoundaryLoops::areSurelyOff(const CageTriangle& triangle, std::uint32_t cag
     if (loops[3 + k] == kNone) continue;
     // and it is not closest to a corner if it is ahead of it along one of the two edges there. So far ahead, the edges
     // are far enough from each other for rounding not to matter.
-    const double enough = near * frame.lengths[k] * frame.lengths[(k + 2) % 3] / doubleArea;
-    if (doubleArea < 2 * enough * frame.lengths[(k + 1) % 3]) return false;
+    const double enough = frame.along(k, near);
     if (leastAlong(frame.edges[k], corner, hull) < enough && leastAlong(frame.back(k), corner, hull) < enough)
       return false;
   }
