@@ -228,6 +228,30 @@ TEST_CASE("corners get the reference's UVs where a chart meets itself along its 
   }
 }
 
+TEST_CASE("a target is cut where a chart meets itself along its cut, either way up", "[seams][borders]") {
+  const scenes::Mesh ball = scenes::rotated(scenes::ellipsoid({}, {1, 1, 1}, 14), {3, 1, -2, 1});
+  scenes::Mesh cage = tube(1.2f, 24, 12);
+  const bool isTurned = GENERATE(false, true);
+  for (std::size_t i = 0; i < cage.uvs.size() && isTurned; i += 2) std::swap(cage.uvs[i], cage.uvs[i + 1]);
+  const scenes::Mesh pieces = meshOf(ball.view(), cutOf(cage.view(), ball.view(), cutting()));
+  // The tube is open along x = -z, where x is positive.
+  std::size_t near = 0, across = 0;
+  for (std::size_t t = 0; t < pieces.triangleCount(); ++t) {
+    float low = 1, high = -1;
+    bool isNear = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const scenes::Point p = pieces.vertex(pieces.indices[3 * t + k]);
+      isNear = isNear && p[0] > 0.2f && p[2] < -0.2f;
+      low = std::min(low, p[0] + p[2]);
+      high = std::max(high, p[0] + p[2]);
+    }
+    near += isNear;
+    across += isNear && low < -1e-3f && high > 1e-3f;
+  }
+  CHECK(near > 100);
+  CHECK(across == 0);
+}
+
 TEST_CASE("corners get the reference's UVs in any cage", "[seams]") {
   const scenes::Mesh ball = scenes::ellipsoid({0.02f, -0.03f, 0.01f}, {1, 1, 0.9f}, 9);
   const scenes::Scene strewn = scenes::strewn(firstSeed(), 200);
