@@ -110,14 +110,19 @@ function runTests({ name, limit, build = 'plain' }, more = []) {
   return run('sh', ['-c', shell, programOf(build), '--abort', ...tests, ...more]);
 }
 
-const testNames = () => run(programOf('plain'), ['--list-test-names-only']).stdout.split('\n').filter(Boolean);
+/** What chooses a test by its name. Even within quotes, a comma would end it. */
+const filterOf = (test) => `"${test.replaceAll(',', '\\,')}"`;
+const testNames = (filter = []) =>
+  run(programOf('plain'), ['--list-test-names-only', ...filter])
+    .stdout.split('\n')
+    .filter(Boolean);
 
 /** Whether it is known to which stage each test belongs. */
 function areStagesWritten() {
   const files = kStages.slice(1).map(({ name }) => join(work, `${name}.txt`));
   if (!files.every((file) => existsSync(file))) return false;
   const known = new Set(files.flatMap((file) => readFileSync(file, 'utf8').split('\n')));
-  return testNames().every((test) => known.has(`"${test}"`));
+  return testNames().every((test) => known.has(filterOf(test)));
 }
 
 /** Runs all tests as they are, and notes which belong to which stage. */
@@ -131,7 +136,12 @@ function writeStages(stages) {
       const time = seconds.get(test) ?? 0;
       return time <= most && (build !== undefined || time > least);
     });
-    writeFileSync(join(work, `${name}.txt`), inStage.map((test) => `"${test}"\n`).join(''));
+    const file = join(work, `${name}.txt`);
+    writeFileSync(file, inStage.map((test) => `${filterOf(test)}\n`).join(''));
+    if (inStage.length > 0 && testNames(['-f', file]).length !== inStage.length) {
+      console.error(`${file} does not choose the tests that it names`);
+      process.exit(1);
+    }
     if (name !== 'golden') least = Math.max(least, most);
   }
   for (const stage of stages.filter(({ build }) => build !== undefined)) {
