@@ -167,6 +167,23 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
     found.otherSide += static_cast<std::size_t>(cut.cosmeticTriangles[t] != 0 ? seen[1] : std::min(seen[0], seen[1]));
   }
 
+  // No vertex is taken to be on the other side of a loop.
+  std::vector<std::uint8_t> isUsed(newCount, 0);
+  for (std::size_t i = 0; i < cut.indices.size(); ++i) isUsed[cut.indices[i]] |= takesPart[i / 3];
+  const auto isWellOn = [&](Vec p, bool side) {
+    for (const Vec away : {Vec{0, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})
+      if (sides.isBeyond(p + away * deep) != side) return false;
+    return true;
+  };
+  std::size_t otherZone = 0;
+  for (std::uint32_t v = 0; v < vertexCount; ++v) {
+    const Zone zone = cut.zones[v];
+    const bool isLost = result.zones.zones[v] == Zone::cosmetic && zone == Zone::uncovered;
+    const bool isLeft = isUsed[v] != 0 && zone == Zone::cosmetic;
+    otherZone += (isLost || isLeft) && isWellOn(reference::vertex(view, v), isLeft);
+  }
+  CHECK(otherZone == 0);
+
   // What is painted ends where the loops are projected to.
   std::map<std::pair<std::array<double, 3>, std::array<double, 3>>, std::array<std::int64_t, 2>> edges;
   for (std::size_t t = 0; t < triangleCount; ++t)
