@@ -11,18 +11,13 @@ import { type BakeReport, bake, cagecast as cagecastTransform, type ImageCodec }
 import { PNG } from 'pngjs';
 import { cagecast, unpackGlb, validate } from '../js/glb.js';
 import { islandAt, islandCage, texturedBox } from '../support/models';
+import { picture } from './reference.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-bake-'));
 const at = (name: string) => join(folder, name);
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
 const size = 96;
 
-/** A picture of a function of its pixels. */
-function picture(width: number, colorAt: (x: number, y: number) => readonly number[]): Image {
-  const data = new Uint8Array(4 * width * width);
-  for (let i = 0; i < width * width; ++i) data.set(colorAt(i % width, Math.floor(i / width)), 4 * i);
-  return { width, height: width, data };
-}
 const pngOf = ({ width, height, data }: Image): Buffer =>
   PNG.sync.write(Object.assign(new PNG({ width, height }), { data: Buffer.from(data) }));
 const own = picture(size, (x, y) => [10, 20, 200, (x * 7 + y * 3) % 256]);

@@ -9,6 +9,13 @@ export function randomNumbers(seed: number): () => number {
   };
 }
 
+/** A square picture of a function of its pixels. */
+export function picture(width: number, colorAt: (x: number, y: number) => readonly number[]): Image {
+  const data = new Uint8Array(4 * width * width);
+  for (let i = 0; i < width * width; ++i) data.set(colorAt(i % width, Math.floor(i / width)), 4 * i);
+  return { width, height: width, data };
+}
+
 /** A picture without sharp edges, opaque or not. */
 export function smoothImage(width: number, height: number, isOpaque = true): Image {
   const data = new Uint8Array(4 * width * height);

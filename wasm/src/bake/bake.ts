@@ -1,7 +1,7 @@
 import { show } from '../api/error.js';
 import { CagecastError, type Mesh, type TransferResult } from '../index.js';
 import type { Image } from './image.js';
-import { type Baked, checkFill, type FillOptions, fill, type Layout } from './layout.js';
+import { type Baked, checkFill, type FillOptions, fill, type Layout, paintedOnly } from './layout.js';
 
 /** The model: what `transfer` was given, with UVs of its own; positions are needed for normal maps only. */
 export type BakeTarget = Pick<Mesh, 'indices' | 'uvs'> & Partial<Pick<Mesh, 'positions'>>;
@@ -47,9 +47,9 @@ export function bake(target: BakeTarget, result: BakeResult, paint: Image, optio
 /**
  * The way back: what is painted on a model, as a texture in the cage's UVs, which paints any other model with this cage. What of
  * the cage lies over nothing that may be painted stays transparent, but for the gutter. Where parts of the model lie over each
- * other, the one nearest to the cage is seen.
+ * other, the one nearest to the cage is seen. Texels of the atlas that are not painted do not show at borders.
  *
- * Cost and errors as for `bake`.
+ * Cost and errors as for `bake`, and a third as much for each texel of the atlas.
  *
  * @param atlas  The model's own texture; it repeats.
  *
@@ -58,11 +58,13 @@ export function bake(target: BakeTarget, result: BakeResult, paint: Image, optio
  */
 export function cageTexture(target: BakeTarget, result: BakeResult, atlas: Image, options: BakeOptions = {}): Baked {
   const parts = partsOf('cageTexture', target, options);
-  const layouts = layoutsOf('cageTexture', target, result, options).map((layout, p) => {
+  const there = layoutsOf('cageTexture', target, result, options);
+  const image = paintedOnly('cageTexture', there, atlas, options);
+  const layouts = there.map((layout, p) => {
     const order = [...layout.painted.keys()].filter((t) => layout.painted[t] === 1);
     return reversed(layout, result.distances ? nearestFirst(order, target, result.distances, parts[p]!) : order);
   });
-  return fill('cageTexture', layouts, atlas, options);
+  return fill('cageTexture', layouts, image, options);
 }
 
 /** Triangles of a part by their mean distance from the cage. */

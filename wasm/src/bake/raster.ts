@@ -12,8 +12,8 @@ export type Kind = 'color' | 'data' | 'normal';
 const kFewestSamples = 2;
 const kMostSamples = 4;
 /**
- * If the image has fewer texels per texel than this, all samples of a texel take its middle: their mean would blur the image. They
- * are cubic, as bilinear ones blur too: a paint of fine stripes that went there and back differed by 3.3 of 255, and by 2.2 now.
+ * If the image has fewer texels per texel than this, a texel shows one place, as a mean would blur the image: its middle in the
+ * triangle that has most of it, or else the middle of what each triangle has. Samples are cubic, as bilinear ones blur too.
  */
 const kCoarse = 1.5;
 /** How cubic samples weigh the outer texels: −1/2 is the smoothest kernel, −1 the sharpest one in use. */
@@ -25,10 +25,10 @@ const kMostRepeats = 64;
 /** Where the corners of triangles are in a texture. */
 export type Corners = ArrayLike<number>;
 
-/** What a triangle shows. */
+/** What a painted triangle shows. */
 export interface Shown {
-  /** 6 numbers: the UVs of its corners in the image that is sampled. */
-  corners: Corners;
+  /** 6 numbers: the UVs of its corners in the image that is sampled. Undefined if only the mask is wanted. */
+  corners?: Corners | undefined;
   /** For normal maps, 4 numbers: the matrix, row by row, from the tangent space of the image to that of the texture. */
   turn?: readonly [number, number, number, number] | undefined;
 }
@@ -52,6 +52,8 @@ export class Raster {
   readonly #covered: Uint8Array;
   /** 1 per texel: how many of these are painted. */
   readonly #painted: Uint8Array;
+  /** 1 per texel: 1 if one triangle has most of it, whose colour it has. */
+  readonly #isSettled: Uint8Array;
   /** 1 per texel: the part that came first, counted from 1. */
   readonly #owners: Uint16Array;
   /** 1 per texel: samples that came second. */
@@ -66,9 +68,7 @@ export class Raster {
     across: new Float64Array(4),
     down: new Float64Array(4),
     columns: new Int32Array(4),
-    sums: new Float64Array(4),
-    lows: new Float64Array(4),
-    highs: new Float64Array(4),
+    rows: new Int32Array(4),
   };
   #refused = 0;
   #laid = 0;
@@ -97,6 +97,7 @@ export class Raster {
     this.colors = new Float32Array(4 * texels);
     this.#covered = new Uint8Array(texels);
     this.#painted = new Uint8Array(texels);
+    this.#isSettled = new Uint8Array(texels);
     this.#owners = new Uint16Array(texels);
     this.#second = new Uint8Array(texels);
   }
@@ -136,8 +137,8 @@ export class Raster {
       throw new CagecastError('badArgument', `a triangle extends over more than ${kMostRepeats} textures in UV space`);
     // UVs are linear on the triangle.
     let [u, ux, uy, v, vx, vy] = [0, 0, 0, 0, 0, 0];
-    if (shown) {
-      const { corners: c } = shown;
+    if (shown?.corners) {
+      const c = shown.corners;
       const [u1, u2, v1, v2] = [c[2]! - c[0]!, c[4]! - c[0]!, c[3]! - c[1]!, c[5]! - c[1]!];
       ux = (u1 * (y2 - y0) - u2 * (y1 - y0)) / area;
       uy = (u2 * (x1 - x0) - u1 * (x2 - x0)) / area;
@@ -160,16 +161,25 @@ export class Raster {
       for (let x = Math.floor(left / n); x < right / n; ++x) {
         const column = this.#columnOf(x);
         if (column < 0) continue;
-        let count = 0;
-        for (let k = 0; k < n; ++k)
-          count += Math.max(0, Math.min(rights[k]!, (x + 1) * n) - Math.max(lefts[k]!, x * n));
+        let [count, across, down] = [0, 0, 0];
+        for (let k = 0; k < n; ++k) {
+          const [first, stop] = [Math.max(lefts[k]!, x * n), Math.min(rights[k]!, (x + 1) * n)];
+          if (stop <= first) continue;
+          count += stop - first;
+          across += 0.5 * (stop - first) * (first + stop - 1);
+          down += (stop - first) * (y * n + k);
+        }
         if (count === 0) continue;
         const texel = row * this.width + column;
         const taken = this.#claim(texel, count, shown !== undefined, part);
-        if (!shown || taken === 0) continue;
+        if (!shown?.corners || taken === 0) continue;
         if (this.#isCoarse) {
-          const [sx, sy] = [(x + 0.5) * n - 0.5, (y + 0.5) * n - 0.5];
-          this.#addCubic(4 * texel, u + ux * sx + uy * sy, v + vx * sx + vy * sy, taken, shown.turn);
+          const isMost = 2 * count > n * n;
+          const times = this.#timesOf(texel, taken, isMost);
+          if (times === 0) continue;
+          const sx = isMost ? (x + 0.5) * n - 0.5 : across / count;
+          const sy = isMost ? (y + 0.5) * n - 0.5 : down / count;
+          this.#addCubic(4 * texel, u + ux * sx + uy * sy, v + vx * sx + vy * sy, times, shown.turn);
           continue;
         }
         for (let k = 0, left = taken; k < n && left > 0; ++k) {
@@ -199,6 +209,15 @@ export class Raster {
       this.#laid += taken;
     }
     return taken;
+  }
+
+  /** How many samples a triangle stands for. The one with most of a texel stands for all that are painted, which `finish` counts. */
+  #timesOf(texel: number, taken: number, isMost: boolean): number {
+    if (this.#isSettled[texel] === 1) return 0;
+    if (!isMost) return taken;
+    this.#isSettled[texel] = 1;
+    if (taken < this.#painted[texel]!) this.colors.fill(0, 4 * texel, 4 * texel + 4);
+    return 1;
   }
 
   /** Adds a bilinear sample of the image. @param times  How many samples it stands for. */
@@ -243,44 +262,57 @@ export class Raster {
    */
   #addCubic(to: number, u: number, v: number, times: number, turn: Shown['turn']): void {
     const { width, height, data } = this.#image;
-    const { across, down, columns, sums, lows, highs } = this.#cubic;
+    const { across, down, columns, rows } = this.#cubic;
+    const table = this.#table;
     const [x, y] = [u * width - 0.5, v * height - 0.5];
     const [column, row] = [Math.floor(x), Math.floor(y)];
     cubicWeights(x - column, across);
     cubicWeights(y - row, down);
-    for (let i = 0; i < 4; ++i) columns[i] = 4 * modulo(column - 1 + i, width);
-    sums.fill(0);
-    lows.fill(1);
-    highs.fill(0);
+    for (let i = 0; i < 4; ++i) {
+      columns[i] = 4 * modulo(column - 1 + i, width);
+      rows[i] = 4 * width * modulo(row - 1 + i, height);
+    }
+    let [red, green, blue, alpha] = [0, 0, 0, 0];
     for (let j = 0; j < 4; ++j) {
-      const first = 4 * width * modulo(row - 1 + j, height);
       for (let i = 0; i < 4; ++i) {
-        const at = first + columns[i]!;
-        const weight = across[i]! * down[j]!;
-        const isNear = (i === 1 || i === 2) && (j === 1 || j === 2);
-        const alpha = data[at + 3]! / 255;
-        for (let k = 0; k < 4; ++k) {
-          const value = k === 3 ? alpha : alpha * this.#table[data[at + k]!]!;
-          sums[k]! += weight * value;
-          if (!isNear) continue;
-          if (value < lows[k]!) lows[k] = value;
-          if (value > highs[k]!) highs[k] = value;
-        }
+        const at = rows[j]! + columns[i]!;
+        const weight = (across[i]! * down[j]! * data[at + 3]!) / 255;
+        red += weight * table[data[at]!]!;
+        green += weight * table[data[at + 1]!]!;
+        blue += weight * table[data[at + 2]!]!;
+        alpha += weight;
       }
     }
-    // From alpha to colours, none of which is more than alpha.
-    for (let k = 3; k >= 0; --k) {
-      if (k < 3 && highs[k]! > sums[3]!) highs[k] = sums[3]!;
-      sums[k] = Math.min(highs[k]!, Math.max(lows[k]!, sums[k]!));
-    }
-    for (let k = 0; k < 4; ++k) sums[k]! *= times;
+    const [a, b, c, d] = [
+      rows[1]! + columns[1]!,
+      rows[1]! + columns[2]!,
+      rows[2]! + columns[1]!,
+      rows[2]! + columns[2]!,
+    ];
+    const [wa, wb, wc, wd] = [data[a + 3]! / 255, data[b + 3]! / 255, data[c + 3]! / 255, data[d + 3]! / 255];
+    const held = (value: number, k: number): number =>
+      between(
+        value,
+        wa * table[data[a + k]!]!,
+        wb * table[data[b + k]!]!,
+        wc * table[data[c + k]!]!,
+        wd * table[data[d + k]!]!,
+      );
+    alpha = times * between(alpha, wa, wb, wc, wd);
+    // No colour is more than alpha.
+    red = Math.min(alpha, times * held(red, 0));
+    green = Math.min(alpha, times * held(green, 1));
+    blue = Math.min(alpha, times * held(blue, 2));
     if (turn) {
-      const half = 0.5 * sums[3]!;
-      const [right, up] = [sums[0]! - half, sums[1]! - half];
-      sums[0] = turn[0] * right + turn[1] * up + half;
-      sums[1] = turn[2] * right + turn[3] * up + half;
+      const [right, up] = [red - 0.5 * alpha, green - 0.5 * alpha];
+      red = turn[0] * right + turn[1] * up + 0.5 * alpha;
+      green = turn[2] * right + turn[3] * up + 0.5 * alpha;
     }
-    for (let k = 0; k < 4; ++k) this.colors[to + k]! += sums[k]!;
+    const colors = this.colors;
+    colors[to]! += red;
+    colors[to + 1]! += green;
+    colors[to + 2]! += blue;
+    colors[to + 3]! += alpha;
   }
 
   /**
@@ -292,15 +324,20 @@ export class Raster {
     const mask = new Uint8Array(covered.length);
     for (let texel = 0; texel < covered.length; ++texel) {
       if (painted[texel] === 0) continue;
-      const share = 1 / covered[texel]!;
-      mask[texel] = Math.round(255 * share * painted[texel]!);
-      for (let at = 4 * texel; at < 4 * texel + 4; ++at) colors[at]! *= share;
+      const share = painted[texel]! / covered[texel]!;
+      mask[texel] = Math.round(255 * share);
+      const scale = this.#isSettled[texel] === 1 ? share : 1 / covered[texel]!;
+      for (let at = 4 * texel; at < 4 * texel + 4; ++at) colors[at]! *= scale;
     }
     const { width, height } = this;
     fillGutter({ width, height, columnOf: this.#columnOf, rowOf: this.#rowOf, colors, covered }, gutter);
     return mask;
   }
 }
+
+/** A value, or the nearest one that is not beyond four others. */
+const between = (value: number, a: number, b: number, c: number, d: number): number =>
+  Math.min(Math.max(a, b, c, d), Math.max(Math.min(a, b, c, d), value));
 
 /** The weights of four texels in a row, for a place between the two in the middle: Keys' cubic convolution. */
 function cubicWeights(t: number, out: Float64Array): void {
@@ -330,7 +367,8 @@ function spanOf(edges: readonly number[], y: number, k: number, lefts: Float64Ar
 
 const modulo = (a: number, b: number): number => a - b * Math.floor(a / b);
 
-function placer(size: number, wrap: Wrap): Place {
+/** Where the texels of a row or column are that goes on. */
+export function placer(size: number, wrap: Wrap = 'repeat'): Place {
   if (wrap === 'repeat') return (place) => (place >= 0 && place < size ? place : modulo(place, size));
   if (wrap === 'clamp') return (place) => (place >= 0 && place < size ? place : -1);
   return (place) => {
