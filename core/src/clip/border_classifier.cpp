@@ -11,6 +11,9 @@ namespace {
 
 /// Parts with more cage triangles nearby than this are not tested for smeared texture: all pairs are compared.
 constexpr std::uint32_t kMaxPairwise = 8;
+/// Where more cage triangles than this are near a part, none is left out for losing a tie: all pairs are compared here
+/// too, and fans of more triangles are rare.
+constexpr std::size_t kMaxTied = 128;
 
 /// The centroid of a part's corners, and the radius of the ball around it that contains them.
 struct Ball {
@@ -60,18 +63,18 @@ BorderClassifier::BorderClassifier(const ClipCage& cage, BorderKind kind, std::u
 /// Finds the nearest of some cage triangles by the tie rule.
 const Candidate& BorderClassifier::nearestOf(const std::uint32_t* cageTriangles, std::uint32_t count, Vec3 p) noexcept {
   comparisons_ += count;
-  candidateCount_ = 0;
+  std::uint32_t candidateCount = 0;
   double limit = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < count; ++i) {
     const CageTriangle& t = cage_.cage.triangles[cageTriangles[i]];
     // A triangle is no nearer than its plane.
     if (std::abs(dot(p - Vec3::from(t.a), t.normal.exact)) > limit) continue;
-    Candidate& candidate = candidates_[candidateCount_] = {cageTriangles[i], closestPointOf(t, p)};
+    Candidate& candidate = candidates_[candidateCount] = {cageTriangles[i], closestPointOf(t, p)};
     if (candidate.point.distance > limit) continue;
     limit = std::min(limit, candidate.point.distance + slack_);
-    ++candidateCount_;
+    ++candidateCount;
   }
-  return cagecast::nearestOf(candidates_, candidateCount_, diagonal_);
+  return cagecast::nearestOf(candidates_, candidateCount, diagonal_);
 }
 
 /// Finds, in `found_`, the cage triangles that are farther from a point than the nearest one by up to `more`.
@@ -114,31 +117,50 @@ NearbyTriangles BorderClassifier::listNearby(Hull hull, double distance) noexcep
 
 NearbyTriangles BorderClassifier::narrow(NearbyTriangles nearby, Hull hull) noexcept {
   if (nearby.count <= 1) return nearby;
-  comparisons_ += nearby.count;
+  comparisons_ += std::uint64_t{2} * nearby.count;  // With the centre, and with the corners.
   const Vec3 centre = Ball(hull).centre;
-  const std::uint32_t nearest = nearestOf(&listed_[nearby.first], nearby.count, centre).cageTriangle;
+  for (std::uint32_t i = 0; i < nearby.count; ++i) {
+    const std::uint32_t cageTriangle = listed_[nearby.first + i];
+    candidates_[i] = {cageTriangle, closestPointOf(cage_.cage.triangles[cageTriangle], centre)};
+  }
+  const std::uint32_t nearest = cagecast::nearestOf(candidates_, nearby.count, diagonal_).cageTriangle;
   // The distance to a triangle is a convex function. So, within the part, the distance to the cage is at most what is
   // interpolated between the corners' distances to one triangle,
   double limits[kMaxCorners];
   for (std::size_t k = 0; k < hull.size(); ++k)
     limits[k] = closestPointOf(cage_.cage.triangles[nearest], hull[k]).distance + slack_;
-  // and the distance to any other triangle is at least its tangent at the centre. `nearestOf` left some of the closest
-  // points in `candidates_`, in this order.
+  // and the distance to any other triangle is at least its tangent at the centre.
+  const auto isFar = [&](const Candidate& candidate) {
+    const auto& [cageTriangle, place] = candidate;
+    const Vec3 offset = centre - positionOf(cage_.cage.triangles[cageTriangle], place);
+    const Vec3 away = place.distance > slack_ ? 1 / place.distance * offset : Vec3{0, 0, 0};
+    for (std::size_t k = 0; k < hull.size(); ++k) {
+      if (place.distance + dot(away, hull[k] - centre) <= limits[k]) return false;
+    }
+    return true;
+  };
+  const std::span<const Candidate> near(candidates_, std::remove_if(candidates_, candidates_ + nearby.count, isFar));
   const auto first = static_cast<std::uint32_t>(listed_.size());
-  const Candidate* known = candidates_;
-  const Candidate* const lastKnown = candidates_ + candidateCount_;
-  for (std::uint32_t i = 0; i < nearby.count; ++i) {
-    const std::uint32_t cageTriangle = listed_[nearby.first + i];
-    const CageTriangle& t = cage_.cage.triangles[cageTriangle];
-    const bool isKnown = known < lastKnown && known->cageTriangle == cageTriangle;
-    const ClosestPoint place = isKnown ? known++->point : closestPointOf(t, centre);
-    const Vec3 away = place.distance > slack_ ? 1 / place.distance * (centre - positionOf(t, place)) : Vec3{0, 0, 0};
-    bool isNear = false;
-    for (std::size_t k = 0; k < hull.size(); ++k)
-      isNear = isNear || place.distance + dot(away, hull[k] - centre) <= limits[k];
-    if (isNear) listed_.add(cageTriangle);
+  for (const Candidate& candidate : near) {
+    if (!losesTie(candidate, near, hull)) listed_.add(candidate.cageTriangle);
   }
   return failed() ? nearby : NearbyTriangles{first, static_cast<std::uint32_t>(listed_.size()) - first};
+}
+
+/// Whether a triangle surely loses to one of those near a part, at all points of the part.
+/// @param loser,near  With their closest points to the part's centroid.
+bool BorderClassifier::losesTie(const Candidate& loser, std::span<const Candidate> near, Hull hull) noexcept {
+  if (loser.point.inside || near.size() > kMaxTied) return false;
+  return std::any_of(near.begin(), near.end(), [&](const Candidate& other) {
+    // At the centroid, too, the winner is as near, and its plane as far. Most pairs are told apart by that.
+    if (other.point.distance > loser.point.distance + slack_ ||
+        std::abs(other.point.height) < std::abs(loser.point.height)) {
+      return false;
+    }
+    ++comparisons_;
+    return other.cageTriangle != loser.cageTriangle &&
+           cagecast::losesTie(cage_.cage, loser.cageTriangle, other.cageTriangle, hull, diagonal_);
+  });
 }
 
 bool BorderClassifier::separates(const BorderSample& a, const BorderSample& b) const noexcept {
@@ -160,13 +182,9 @@ bool BorderClassifier::isSurelyIn(std::uint32_t region, std::uint32_t cageTriang
 bool BorderClassifier::isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept {
   if (nearby.count == 0) return false;
   const std::uint32_t* begin = &listed_[nearby.first];
-  const std::span<const std::uint32_t> all(begin, nearby.count);
-  return std::all_of(all.begin(), all.end(), [&](std::uint32_t cageTriangle) {
+  return std::all_of(begin, begin + nearby.count, [&](std::uint32_t cageTriangle) {
     ++comparisons_;
-    return isSurelyIn(region, cageTriangle, hull) || std::any_of(all.begin(), all.end(), [&](std::uint32_t other) {
-             ++comparisons_;
-             return other != cageTriangle && losesTie(cage_.cage, cageTriangle, other, hull, diagonal_);
-           });
+    return isSurelyIn(region, cageTriangle, hull);
   });
 }
 

@@ -61,7 +61,7 @@ class BorderClassifier {
   /// Lists what is near a part of the target.
   /// @param distance  An upper bound of the distance between the part's centroid and the cage; the tighter the faster.
   NearbyTriangles listNearby(Hull hull, double distance) noexcept;
-  /// Lists what is near a smaller part.
+  /// Lists what is near a smaller part, without what surely loses a tie there.
   NearbyTriangles narrow(NearbyTriangles nearby, Hull hull) noexcept;
   /// The greatest number of corners of a part: a triangle that was clipped three times, each of which adds half as many
   /// corners at most, even if rounding makes it less than convex.
@@ -91,6 +91,7 @@ class BorderClassifier {
   [[nodiscard]] bool isSurelyIn(std::uint32_t region, std::uint32_t cageTriangle, Hull hull) const noexcept;
   std::uint32_t findWithin(Vec3 p, double more, double distance) noexcept;
   const Candidate& nearestOf(const std::uint32_t* cageTriangles, std::uint32_t count, Vec3 p) noexcept;
+  [[nodiscard]] bool losesTie(const Candidate& loser, std::span<const Candidate> near, Hull hull) noexcept;
   [[nodiscard]] BorderSample classify(const Candidate& nearest) const noexcept;
 
   const ClipCage cage_;
@@ -99,8 +100,7 @@ class BorderClassifier {
   double slack_;  ///< A triangle farther than the nearest one by more than this is not the answer.
   ClosestPointSearch search_;
   std::uint32_t* found_;   ///< 1 per cage triangle: the result of `findWithin`.
-  Candidate* candidates_;  ///< Of the last call of `nearestOf`.
-  std::uint32_t candidateCount_ = 0;
+  Candidate* candidates_;  ///< 1 per cage triangle: what is being compared.
   List<std::uint32_t> listed_;
   BoundaryLines lines_;
   double* clearances_;  ///< 1 per vertex of the cage: its distance to the nearest open edge; negative if unknown.

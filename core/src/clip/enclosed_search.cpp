@@ -1,7 +1,6 @@
 #include "clip/enclosed_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace cagecast {
@@ -33,15 +32,19 @@ bool EnclosedSearch::find(const List<Piece>& pieces, TrianglePoint& point) noexc
   return isFound;
 }
 
-/// Queues a part, unless what is well inside the piece of it is surely in the piece's region.
+/// Queues a part, unless its core, which is what is well inside the piece of it, is surely in the piece's region.
+/// Nothing else of the part and of its quarters counts, so only what is near the core stays listed for them.
 void EnclosedSearch::addPart(const Piece& piece, Part part) noexcept {
   if (longestEdge(part.corners) <= triangle_.tolerances.feature) return;
-  Vec3 core[BorderClassifier::kMaxCorners];
-  const std::uint32_t count = clipToCore(piece, part, core);
+  Vec3 corners[BorderClassifier::kMaxCorners];
+  const std::uint32_t count = clipToCore(piece, part, corners);
   if (count == 0) return;
-  const std::size_t mark = triangle_.classifier.mark();
-  if (isSurelyInRegion(piece, part, Hull(core, count))) {
-    triangle_.classifier.rewind(mark);
+  BorderClassifier& classifier = triangle_.classifier;
+  const Hull core(corners, count);
+  const std::size_t mark = classifier.mark();
+  part.nearby = classifier.narrow(part.nearby, core);
+  if (classifier.isSurelyIn(piece.region, part.nearby, core)) {
+    classifier.rewind(mark);
   } else {
     parts_.add(part);
   }
@@ -68,18 +71,6 @@ std::uint32_t EnclosedSearch::clipToCore(const Piece& piece, const Part& part,
     }
   }
   return count;
-}
-
-/// Tries to prove that the core of a part lies in the region of its piece, with ever fewer cage triangles nearby. Those
-/// near the whole part stay listed, for its own parts.
-bool EnclosedSearch::isSurelyInRegion(const Piece& piece, Part& part, Hull core) noexcept {
-  BorderClassifier& classifier = triangle_.classifier;
-  part.nearby = classifier.narrow(part.nearby, std::array{part.corners[0].p, part.corners[1].p, part.corners[2].p});
-  if (classifier.isSurelyIn(piece.region, part.nearby, core)) return true;
-  const std::size_t mark = classifier.mark();
-  const bool isSure = classifier.isSurelyIn(piece.region, classifier.narrow(part.nearby, core), core);
-  classifier.rewind(mark);
-  return isSure;
 }
 
 }  // namespace cagecast

@@ -32,11 +32,10 @@ class EnclosedSearch {
   struct Part {
     TrianglePoint corners[3];
     std::uint32_t piece;
-    NearbyTriangles nearby;
+    NearbyTriangles nearby;  ///< Of what is well inside the piece.
   };
 
   void addPart(const Piece& piece, Part part) noexcept;
-  [[nodiscard]] bool isSurelyInRegion(const Piece& piece, Part& part, Hull core) noexcept;
   [[nodiscard]] std::uint32_t clipToCore(const Piece& piece, const Part& part,
                                          Vec3 (&core)[BorderClassifier::kMaxCorners]) const noexcept;
 
