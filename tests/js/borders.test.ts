@@ -117,8 +117,8 @@ function straightness(cage: Mesh, mesh: Mesh, painted: Uint8Array, diagonal: num
           .clone()
           .addScaledVector(along, r * diagonal * Math.cos(angle))
           .addScaledVector(across, r * diagonal * Math.sin(angle));
-      return [1.25e-4, 2.5e-4, 5e-4, 1e-3].flatMap((r) =>
-        Array.from({ length: 8 }, (_, n) => at(r, (n * Math.PI) / 4)),
+      return Array.from({ length: 20 }, (_, n) => (n + 1) * 5e-5).flatMap((r) =>
+        Array.from({ length: 32 }, (_, n) => at(r, (n * Math.PI) / 16)),
       );
     });
     return [middle, ...around];

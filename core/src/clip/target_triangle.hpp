@@ -39,11 +39,13 @@ struct ClipTolerances {
   double straight = 2.5e-4;  ///< How far a border may be from the cut that follows it.
   double found = 1e-7;       ///< How exactly a point on a border is found.
   double snap = 1e-5;        ///< A border this close to a vertex is moved there, so that no triangle gets thinner.
+  double removed = 5e-5;     ///< How far a border may move in all where vertices on it are removed.
   /// A polygon no wider than this is not divided around its centre: its parts would get ever thinner.
   double thin = 1e-4;
 
   [[nodiscard]] ClipTolerances scaledBy(double diagonal) const noexcept {
-    return {feature * diagonal, straight * diagonal, found * diagonal, snap * diagonal, thin * diagonal};
+    return {feature * diagonal, straight * diagonal, found * diagonal,
+            snap * diagonal,    removed * diagonal,  thin * diagonal};
   }
 };
 

@@ -8,6 +8,7 @@
 #include "clip/edge_crossings.hpp"
 #include "clip/enclosed_search.hpp"
 #include "clip/piece_builder.hpp"
+#include "clip/piece_merger.hpp"
 
 namespace cagecast {
 namespace {
@@ -39,6 +40,7 @@ class TriangleCutter {
         crossings_(triangle_, arena),
         tracer_(triangle_),
         builder_(triangle_),
+        merger_(triangle_),
         enclosed_(triangle_) {}
 
   void cutAll() noexcept {
@@ -47,8 +49,8 @@ class TriangleCutter {
   }
 
   [[nodiscard]] bool failed() const noexcept {
-    return triangle_.failed() || crossings_.failed() || tracer_.failed() || builder_.failed() || enclosed_.failed() ||
-           spokes_.failed() || polygons_.failed();
+    return triangle_.failed() || crossings_.failed() || tracer_.failed() || builder_.failed() || merger_.failed() ||
+           enclosed_.failed() || spokes_.failed() || polygons_.failed();
   }
 
  private:
@@ -75,7 +77,9 @@ class TriangleCutter {
     const Vec3 normal = cross(corners[1].p - corners[0].p, corners[2].p - corners[0].p);
     if (std::all_of(corners, corners + 3, takesPart) && dot(normal, normal) > 0) {
       divisions_ = kMaxDivisions;
+      merger_.start();
       divide(0, polygons_.size());
+      if (!failed()) merger_.merge();
     } else {
       // Only what its neighbors need: the vertices on its edges.
       addUndivided(0, polygons_.size());
@@ -308,6 +312,11 @@ class TriangleCutter {
   void cutOffCorner(const TrianglePoint (&corners)[3], const TrianglePoint& from, const TrianglePoint& to) noexcept {
     const auto& [a, b, c] = corners;
     const List<TrianglePoint>& line = tracer_.trace(corners, from, to);
+    if (a.sample.region == b.sample.region) {
+      merger_.keep(from.vertex);
+      merger_.keep(to.vertex);
+      for (std::size_t i = 0; i < line.size(); ++i) merger_.keep(line[i].vertex);
+    }
     builder_.startPolygon();
     builder_.addCorner(a);
     builder_.addCorner(from);
@@ -356,6 +365,7 @@ class TriangleCutter {
   EdgeCrossings crossings_;
   BorderTracer tracer_;
   PieceBuilder builder_;
+  PieceMerger merger_;
   EnclosedSearch enclosed_;
   List<PolygonCorner> polygons_;
   List<CrossingRange> spokes_;  ///< Of lines between the corners and the centre of a polygon.
