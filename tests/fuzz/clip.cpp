@@ -10,6 +10,39 @@
 using namespace cagecast;
 using fuzz::require;
 
+namespace {
+
+/// A vertex's weights of the second and the third corner of a target triangle.
+struct Weights {
+  double v = 0, w = 0;
+};
+
+/// The area of the pieces of each target triangle, as a share of its own.
+std::vector<double> areasOfPieces(const MeshView& target, const CutTarget& cut) {
+  std::vector<double> areas(target.indices.size() / 3);
+  const std::size_t vertices = target.positions.size() / 3;
+  for (std::size_t t = 0; t < cut.origins.size(); ++t) {
+    const std::uint32_t* corners = target.indices.data() + std::size_t{3} * cut.origins[t];
+    Weights at[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto add = [&, &weights = at[k]](std::uint32_t source, double weight) {
+        if (source == corners[1]) weights.v += weight;
+        if (source == corners[2]) weights.w += weight;
+      };
+      const std::uint32_t vertex = cut.indices[3 * t + k];
+      if (vertex < vertices) add(vertex, 1);
+      for (std::size_t i = 0; i < 3 && vertex >= vertices; ++i) {
+        const std::size_t n = 3 * (vertex - vertices) + i;
+        add(cut.sources[n], static_cast<double>(cut.weights[n]));
+      }
+    }
+    areas[cut.origins[t]] += (at[1].v - at[0].v) * (at[2].w - at[0].w) - (at[1].w - at[0].w) * (at[2].v - at[0].v);
+  }
+  return areas;
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Input input(data, size);
   const fuzz::Scene scene(input);
@@ -36,5 +69,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const float uv : cut.uvs) require(std::isfinite(uv));
   require(std::is_sorted(cut.origins.begin(), cut.origins.end()));
   for (const std::uint32_t triangle : cut.origins) require(3 * std::size_t{triangle} < scene.target.indices.size());
+  const std::vector<double> areas = areasOfPieces(target.mesh, cut);
+  for (std::size_t t = 0; t < areas.size(); ++t) {
+    const std::uint32_t* corners = target.mesh.indices.data() + 3 * t;
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    require(std::abs(areas[t] - 1) < 1e-5);
+  }
   return 0;
 }
