@@ -151,7 +151,7 @@ std::uint32_t PieceMerger::findNeighbor(std::uint32_t vertex) noexcept {
   return best;
 }
 
-/// Moves a vertex to a neighbor. The triangles between the two get three times the same corner.
+/// Moves a vertex to a neighbor. The triangles between the two are taken away: their corners become `kNoVertex`.
 void PieceMerger::move(std::uint32_t vertex, std::uint32_t to) noexcept {
   List<std::uint32_t>& indices = triangle_.out.indices;
   for (std::size_t i = 0; i < around_.size(); ++i) {

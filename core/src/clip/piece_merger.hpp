@@ -8,8 +8,8 @@ namespace cagecast {
 /// Makes the pieces of a target triangle fewer: removes vertices inside it that no border needs.
 ///
 /// A vertex is removed by moving it to a neighbor, which takes the triangles between the two away. It may go if all
-/// around it is one region, or if it lies on the border of two regions that is straight there. No triangle gets thinner
-/// than those that it replaces.
+/// around it is one region, or if it lies between two regions and the border is straight there. No triangle gets
+/// thinner than the thinnest around the vertex was.
 class PieceMerger {
  public:
   explicit PieceMerger(TargetTriangle& triangle) noexcept : triangle_(triangle) {}
