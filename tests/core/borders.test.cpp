@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "checks.hpp"
@@ -346,6 +347,35 @@ TEST_CASE("nothing is cut where only vertices of the cage count", "[borders]") {
   TransferOptions options = cutting();
   options.steps.projection = ProjectionMode::nearestVertex;
   CHECK(cutOf(scene.cage.view(), scene.target.view(), options).sources.empty());
+}
+
+TEST_CASE("needles at the poles of a cage leave no corner without UVs", "[borders][seams]") {
+  // Sines of π are not 0: the triangles at the poles are some 1e-17 wide. Of the cage some are left out: those whose
+  // bits are set.
+  const auto ball = [](float radius, int rings, int sectors, std::size_t holes) {
+    scenes::Mesh mesh;
+    for (int j = 0; j <= rings; ++j)
+      for (int i = 0; i <= sectors; ++i) {
+        const double down = std::numbers::pi * j / rings, around = 2 * std::numbers::pi * i / sectors;
+        const auto at = [&](double x) { return static_cast<float>(static_cast<double>(radius) * x); };
+        mesh.addVertex(
+            {at(std::sin(down) * std::cos(around)), at(std::cos(down)), at(std::sin(down) * std::sin(around))},
+            static_cast<float>(i) / static_cast<float>(sectors), static_cast<float>(j) / static_cast<float>(rings));
+      }
+    const auto row = static_cast<std::uint32_t>(sectors) + 1;
+    for (std::uint32_t a = 0; a + row + 1 < mesh.vertexCount(); ++a) {
+      if ((holes >> (2 * a % 31) & 1) == 0) mesh.addTriangle(a, a + row + 1, a + row);
+      if ((holes >> (2 * a % 31 + 1) & 1) == 0) mesh.addTriangle(a, a + 1, a + row + 1);
+    }
+    return mesh;
+  };
+  TransferOptions options = cutting();
+  options.threshold = 0;
+  const scenes::Mesh target = ball(1, 2, 6, 0);
+  for (const std::size_t holes : {135271568u, 805315905u, 12621048u, 152076548u}) {
+    const CutTarget cut = cutOf(ball(1.1f, 3, 7, holes).view(), target.view(), options);
+    CHECK(std::all_of(cut.cornerUvs.begin(), cut.cornerUvs.end(), [](float uv) { return uv >= 0 && uv <= 1; }));
+  }
 }
 
 TEST_CASE("a result of another target is refused", "[borders]") {

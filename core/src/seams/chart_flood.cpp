@@ -182,7 +182,8 @@ void ChartFlood::flood(const Group& group, double reach) noexcept {
     const FlatTriangles<1>& triangle = triangles_[t];
     const simd::f32x4 squared = squaredDistances(triangle, x[0], y[0], z[0]);
     const float toCentre = simd::lane<0>(squared);
-    bool isWithin = toCentre <= surelyWithin;
+    // The centre lies on its own triangle, even if that is a needle, whose distance in floats is arbitrary.
+    bool isWithin = toCentre <= surelyWithin || t == group.cageTriangle;
     if (!isWithin && toCentre <= perhapsWithin)
       isWithin = closestPointOnTriangle(cage_.triangles[t], group.centre).distance <= reach;
     if (!isWithin) {
