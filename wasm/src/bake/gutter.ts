@@ -9,18 +9,18 @@ interface Sheet {
   rowOf: Place;
   /** 4 per texel. */
   colors: Float32Array;
-  /** 1 per texel: 0 if nothing lies there. */
-  covered: Uint8Array;
 }
 
 /**
  * Fills a gutter around what is covered, ring by ring: each texel is the mean of its neighbours in the rings before, so that
  * filtering and mipmaps mix no other colour in.
- * @param rings  Its width in texels.
+ * @param covered  1 per texel: 0 if nothing lies there; not 0 for the gutter, afterwards.
+ * @param rings    The width of the gutter in texels.
  */
-export function fillGutter(sheet: Sheet, rings: number): void {
-  const { covered, colors } = sheet;
+export function fillGutter(sheet: Sheet, covered: Uint8Array, rings: number): void {
+  const { colors } = sheet;
   const near = new Int32Array(8);
+  const sums = new Float64Array(4);
   const found = new Uint8Array(covered.length);
   let ring = new Int32Array(covered.length);
   let count = 0;
@@ -42,21 +42,14 @@ export function fillGutter(sheet: Sheet, rings: number): void {
   for (let step = 0; step < rings && count > 0; ++step) {
     for (let i = 0; i < count; ++i) {
       const neighbours = neighboursOf(sheet, ring[i]!, near);
-      let [r, g, b, a, inner] = [0, 0, 0, 0, 0];
-      for (let k = 0; k < neighbours; ++k) {
-        if (covered[near[k]!] === 0) continue;
-        const at = 4 * near[k]!;
-        r += colors[at]!;
-        g += colors[at + 1]!;
-        b += colors[at + 2]!;
-        a += colors[at + 3]!;
+      let inner = 0;
+      sums.fill(0);
+      for (let n = 0; n < neighbours; ++n) {
+        if (covered[near[n]!] === 0) continue;
+        for (let k = 0; k < 4; ++k) sums[k]! += colors[4 * near[n]! + k]!;
         ++inner;
       }
-      const to = 4 * ring[i]!;
-      colors[to] = r / inner;
-      colors[to + 1] = g / inner;
-      colors[to + 2] = b / inner;
-      colors[to + 3] = a / inner;
+      for (let k = 0; k < 4; ++k) colors[4 * ring[i]! + k] = sums[k]! / inner;
     }
     for (let i = 0; i < count; ++i) covered[ring[i]!] = 1;
     let end = 0;

@@ -1,7 +1,7 @@
 import { CagecastError } from '../index.js';
 import { fillGutter } from './gutter.js';
-import { checkImage, checkSize, colorByte, type Image, linearOf, shareOf } from './image.js';
-import { type Corners, type Kind, placer, Raster, type Wrap } from './raster.js';
+import { checkImage, checkSize, colorByte, type Image, linearOf } from './image.js';
+import { type Corners, type Kind, Raster, type Wrap } from './raster.js';
 
 /** Triangles that lie in two textures: in the one that is filled, and in the image that fills it. */
 export interface Layout {
@@ -100,14 +100,13 @@ export function fill(fn: string, layouts: readonly Layout[], image: Image, optio
   const { width, height, gutter, kind, wraps } = checkFill(fn, options);
   checkImage(fn, 'image', image);
   const raster = new Raster({ width, height }, wraps, image, densityOf(layouts, width * height, image), kind);
-  const [to, from] = [new Float64Array(6), new Float64Array(6)];
   for (const way of [1, -1]) {
     layouts.forEach((layout, part) => {
       for (let t = 0; t < layout.painted.length; ++t) {
-        read(layout.to, t, to);
+        const to = cornersOf(layout.to, t);
         if (Math.sign(areaOf(to)) !== way) continue;
         const isPainted = layout.painted[t] === 1;
-        if (isPainted) read(layout.from, t, from);
+        const from = cornersOf(layout.from, t);
         const turn =
           isPainted && kind === 'normal' ? turnOf(layout.positions!.subarray(9 * t, 9 * t + 9), from, to) : undefined;
         try {
@@ -145,32 +144,24 @@ export function fill(fn: string, layouts: readonly Layout[], image: Image, optio
 export function paintedOnly(fn: string, layouts: readonly Layout[], image: Image, options?: FillOptions): Image {
   const { kind } = checkFill(fn, options);
   const { width, height } = checkImage(fn, 'image', image);
-  if (isPattern(layouts)) return image;
+  let laid = 0;
+  for (const { to } of layouts) {
+    for (let at = 0; at < to.length; at += 6) laid += Math.abs(areaOf(to, at));
+    if (laid > kMostLayers || to.some((place) => Math.abs(place) > kFarthest)) return image;
+  }
   const raster = new Raster({ width, height }, ['repeat', 'repeat'], image, 1, kind);
-  const corners = new Float64Array(6);
   // What is painted comes first: it may share its texels.
   for (const isPainted of [1, 0]) {
     for (const { to, painted } of layouts) {
       for (let t = 0; t < painted.length; ++t) {
-        if (painted[t] !== isPainted) continue;
-        read(to, t, corners);
-        raster.draw(corners, isPainted === 1 ? {} : undefined, 0);
+        if (painted[t] === isPainted) raster.draw(cornersOf(to, t), isPainted ? {} : undefined, 0);
       }
     }
   }
+  // Texels that are painted completely give their colours to those beside them, and stay as they are.
   const whole = raster.finish(0).map((share) => Number(share === 255));
   const data = new Uint8ClampedArray(image.data);
-  return { width, height, data: spread(raster, kind, whole, data) };
-}
-
-/** Fills texels beside those that are whole, and leaves the others as they are. */
-function spread(
-  { colors, width, height }: Raster,
-  kind: Kind,
-  whole: Uint8Array,
-  data: Uint8ClampedArray<ArrayBuffer>,
-) {
-  const table = kind === 'color' ? linearOf : shareOf;
+  const { colors, table } = raster;
   for (let texel = 0; texel < whole.length; ++texel) {
     if (whole[texel] === 0) continue;
     const at = 4 * texel;
@@ -179,24 +170,15 @@ function spread(
     colors[at + 3] = alpha;
   }
   const covered = whole.slice();
-  fillGutter({ width, height, columnOf: placer(width), rowOf: placer(height), colors, covered }, kBorder);
+  fillGutter(raster, covered, kBorder);
   for (let texel = 0; texel < covered.length; ++texel) {
     if (whole[texel] === 1) colors[4 * texel + 3] = 0;
     else if (covered[texel] === 1) data[4 * texel + 3] = 0;
   }
-  return bytesOf(colors, kind, data);
+  return { width, height, data: bytesOf(colors, kind, data) };
 }
 
-/** Whether an image repeats on triangles so often that it has no borders. */
-function isPattern(layouts: readonly Layout[]): boolean {
-  let laid = 0;
-  for (const { to } of layouts) for (let at = 0; at < to.length; at += 6) laid += Math.abs(areaOf(to, at));
-  return laid > kMostLayers || layouts.some(({ to }) => to.some((place) => Math.abs(place) > kFarthest));
-}
-
-function read(corners: Layout['to'], triangle: number, out: Float64Array): void {
-  for (let k = 0; k < 6; ++k) out[k] = corners[6 * triangle + k]!;
-}
+const cornersOf = (uvs: Layout['to'], triangle: number): Corners => uvs.subarray(6 * triangle, 6 * triangle + 6);
 
 /** Signed area, as a share of the texture; negative if mirrored. */
 export const areaOf = (uvs: Corners, at = 0): number =>

@@ -43,9 +43,11 @@ export class Raster {
   readonly #image: Image;
   readonly #samples: number;
   readonly #isCoarse: boolean;
-  readonly #columnOf: Place;
-  readonly #rowOf: Place;
-  readonly #table: Float32Array;
+  /** Where columns and rows are that lie beyond the border. */
+  readonly columnOf: Place;
+  readonly rowOf: Place;
+  /** What a byte of the image stands for. */
+  readonly table: Float32Array;
   /** 4 per texel: premultiplied RGBA, linear; sums over samples, and means once finished. */
   readonly colors: Float32Array;
   /** 1 per texel: how many of its samples are covered. */
@@ -68,7 +70,9 @@ export class Raster {
     across: new Float64Array(4),
     down: new Float64Array(4),
     columns: new Int32Array(4),
-    rows: new Int32Array(4),
+    sums: new Float64Array(4),
+    lows: new Float64Array(4),
+    highs: new Float64Array(4),
   };
   #refused = 0;
   #laid = 0;
@@ -90,9 +94,9 @@ export class Raster {
     this.#image = image;
     this.#samples = Math.max(kFewestSamples, Math.min(kMostSamples, Math.ceil(density)));
     this.#isCoarse = density < kCoarse;
-    this.#columnOf = placer(width, wraps[0]);
-    this.#rowOf = placer(height, wraps[1]);
-    this.#table = kind === 'color' ? linearOf : shareOf;
+    this.columnOf = placer(width, wraps[0]);
+    this.rowOf = placer(height, wraps[1]);
+    this.table = kind === 'color' ? linearOf : shareOf;
     const texels = width * height;
     this.colors = new Float32Array(4 * texels);
     this.#covered = new Uint8Array(texels);
@@ -150,7 +154,7 @@ export class Raster {
     const edges = [x0, y0, x1, y1, x1, y1, x2, y2, x2, y2, x0, y0];
     const [lefts, rights] = [this.#lefts, this.#rights];
     for (let y = Math.floor(top / n); y < end / n; ++y) {
-      const row = this.#rowOf(y);
+      const row = this.rowOf(y);
       if (row < 0) continue;
       let [left, right] = [Infinity, -Infinity];
       for (let k = 0; k < n; ++k) {
@@ -159,7 +163,7 @@ export class Raster {
         right = Math.max(right, rights[k]!);
       }
       for (let x = Math.floor(left / n); x < right / n; ++x) {
-        const column = this.#columnOf(x);
+        const column = this.columnOf(x);
         if (column < 0) continue;
         let [count, across, down] = [0, 0, 0];
         for (let k = 0; k < n; ++k) {
@@ -186,7 +190,7 @@ export class Raster {
           const stop = Math.min(rights[k]!, (x + 1) * n);
           for (let sx = Math.max(lefts[k]!, x * n); sx < stop && left > 0; ++sx, --left) {
             const sy = y * n + k;
-            this.#addSample(4 * texel, u + ux * sx + uy * sy, v + vx * sx + vy * sy, 1, shown.turn);
+            this.#addSample(4 * texel, u + ux * sx + uy * sy, v + vx * sx + vy * sy, shown.turn);
           }
         }
       }
@@ -220,8 +224,8 @@ export class Raster {
     return 1;
   }
 
-  /** Adds a bilinear sample of the image. @param times  How many samples it stands for. */
-  #addSample(to: number, u: number, v: number, times: number, turn: Shown['turn']): void {
+  /** Adds a bilinear sample of the image. */
+  #addSample(to: number, u: number, v: number, turn: Shown['turn']): void {
     const { width, height, data } = this.#image;
     const [x, y] = [u * width - 0.5, v * height - 0.5];
     const [column, row] = [Math.floor(x), Math.floor(y)];
@@ -231,15 +235,14 @@ export class Raster {
     const c1 = isInner ? column + 1 : modulo(column + 1, width);
     const r0 = width * (isInner ? row : modulo(row, height));
     const r1 = isInner ? r0 + width : width * modulo(row + 1, height);
-    const share = times / 255;
     const [a, b, c, d] = [4 * (r0 + c0), 4 * (r0 + c1), 4 * (r1 + c0), 4 * (r1 + c1)];
-    const wa = share * (1 - right) * (1 - down) * data[a + 3]!;
-    const wb = share * right * (1 - down) * data[b + 3]!;
-    const wc = share * (1 - right) * down * data[c + 3]!;
-    const wd = share * right * down * data[d + 3]!;
+    const wa = ((1 - right) * (1 - down) * data[a + 3]!) / 255;
+    const wb = (right * (1 - down) * data[b + 3]!) / 255;
+    const wc = ((1 - right) * down * data[c + 3]!) / 255;
+    const wd = (right * down * data[d + 3]!) / 255;
     const alpha = wa + wb + wc + wd;
     if (alpha === 0) return;
-    const [table, colors] = [this.#table, this.colors];
+    const [table, colors] = [this.table, this.colors];
     let red = wa * table[data[a]!]! + wb * table[data[b]!]! + wc * table[data[c]!]! + wd * table[data[d]!]!;
     let green =
       wa * table[data[a + 1]!]! + wb * table[data[b + 1]!]! + wc * table[data[c + 1]!]! + wd * table[data[d + 1]!]!;
@@ -262,57 +265,44 @@ export class Raster {
    */
   #addCubic(to: number, u: number, v: number, times: number, turn: Shown['turn']): void {
     const { width, height, data } = this.#image;
-    const { across, down, columns, rows } = this.#cubic;
-    const table = this.#table;
+    const { across, down, columns, sums, lows, highs } = this.#cubic;
     const [x, y] = [u * width - 0.5, v * height - 0.5];
     const [column, row] = [Math.floor(x), Math.floor(y)];
     cubicWeights(x - column, across);
     cubicWeights(y - row, down);
-    for (let i = 0; i < 4; ++i) {
-      columns[i] = 4 * modulo(column - 1 + i, width);
-      rows[i] = 4 * width * modulo(row - 1 + i, height);
-    }
-    let [red, green, blue, alpha] = [0, 0, 0, 0];
+    for (let i = 0; i < 4; ++i) columns[i] = 4 * modulo(column - 1 + i, width);
+    sums.fill(0);
+    lows.fill(1);
+    highs.fill(0);
     for (let j = 0; j < 4; ++j) {
+      const first = 4 * width * modulo(row - 1 + j, height);
       for (let i = 0; i < 4; ++i) {
-        const at = rows[j]! + columns[i]!;
-        const weight = (across[i]! * down[j]! * data[at + 3]!) / 255;
-        red += weight * table[data[at]!]!;
-        green += weight * table[data[at + 1]!]!;
-        blue += weight * table[data[at + 2]!]!;
-        alpha += weight;
+        const at = first + columns[i]!;
+        const weight = across[i]! * down[j]!;
+        const isNear = (i === 1 || i === 2) && (j === 1 || j === 2);
+        const alpha = data[at + 3]! / 255;
+        for (let k = 0; k < 4; ++k) {
+          const value = k === 3 ? alpha : alpha * this.table[data[at + k]!]!;
+          sums[k]! += weight * value;
+          if (!isNear) continue;
+          if (value < lows[k]!) lows[k] = value;
+          if (value > highs[k]!) highs[k] = value;
+        }
       }
     }
-    const [a, b, c, d] = [
-      rows[1]! + columns[1]!,
-      rows[1]! + columns[2]!,
-      rows[2]! + columns[1]!,
-      rows[2]! + columns[2]!,
-    ];
-    const [wa, wb, wc, wd] = [data[a + 3]! / 255, data[b + 3]! / 255, data[c + 3]! / 255, data[d + 3]! / 255];
-    const held = (value: number, k: number): number =>
-      between(
-        value,
-        wa * table[data[a + k]!]!,
-        wb * table[data[b + k]!]!,
-        wc * table[data[c + k]!]!,
-        wd * table[data[d + k]!]!,
-      );
-    alpha = times * between(alpha, wa, wb, wc, wd);
-    // No colour is more than alpha.
-    red = Math.min(alpha, times * held(red, 0));
-    green = Math.min(alpha, times * held(green, 1));
-    blue = Math.min(alpha, times * held(blue, 2));
-    if (turn) {
-      const [right, up] = [red - 0.5 * alpha, green - 0.5 * alpha];
-      red = turn[0] * right + turn[1] * up + 0.5 * alpha;
-      green = turn[2] * right + turn[3] * up + 0.5 * alpha;
+    // From alpha to colours, none of which is more than alpha.
+    for (let k = 3; k >= 0; --k) {
+      if (k < 3 && highs[k]! > sums[3]!) highs[k] = sums[3]!;
+      sums[k] = Math.min(highs[k]!, Math.max(lows[k]!, sums[k]!));
     }
-    const colors = this.colors;
-    colors[to]! += red;
-    colors[to + 1]! += green;
-    colors[to + 2]! += blue;
-    colors[to + 3]! += alpha;
+    for (let k = 0; k < 4; ++k) sums[k]! *= times;
+    if (turn) {
+      const half = 0.5 * sums[3]!;
+      const [right, up] = [sums[0]! - half, sums[1]! - half];
+      sums[0] = turn[0] * right + turn[1] * up + half;
+      sums[1] = turn[2] * right + turn[3] * up + half;
+    }
+    for (let k = 0; k < 4; ++k) this.colors[to + k]! += sums[k]!;
   }
 
   /**
@@ -329,15 +319,10 @@ export class Raster {
       const scale = this.#isSettled[texel] === 1 ? share : 1 / covered[texel]!;
       for (let at = 4 * texel; at < 4 * texel + 4; ++at) colors[at]! *= scale;
     }
-    const { width, height } = this;
-    fillGutter({ width, height, columnOf: this.#columnOf, rowOf: this.#rowOf, colors, covered }, gutter);
+    fillGutter(this, covered, gutter);
     return mask;
   }
 }
-
-/** A value, or the nearest one that is not beyond four others. */
-const between = (value: number, a: number, b: number, c: number, d: number): number =>
-  Math.min(Math.max(a, b, c, d), Math.max(Math.min(a, b, c, d), value));
 
 /** The weights of four texels in a row, for a place between the two in the middle: Keys' cubic convolution. */
 function cubicWeights(t: number, out: Float64Array): void {
@@ -367,8 +352,7 @@ function spanOf(edges: readonly number[], y: number, k: number, lefts: Float64Ar
 
 const modulo = (a: number, b: number): number => a - b * Math.floor(a / b);
 
-/** Where the texels of a row or column are that goes on. */
-export function placer(size: number, wrap: Wrap = 'repeat'): Place {
+function placer(size: number, wrap: Wrap): Place {
   if (wrap === 'repeat') return (place) => (place >= 0 && place < size ? place : modulo(place, size));
   if (wrap === 'clamp') return (place) => (place >= 0 && place < size ? place : -1);
   return (place) => {
