@@ -125,6 +125,8 @@ std::uint32_t PieceMerger::findNeighbor(std::uint32_t vertex) noexcept {
   double thinnest = triangle_.input.diagonal;
   for (std::size_t i = 0; i < n; ++i) {
     thinnest = std::min(thinnest, height(vertex, around_[i].from, around_[i].to));
+    // Beside a border within one region, larger pieces might get the texture of its other side.
+    if (isInside(around_[i].from) && vertices_[around_[i].from - firstVertex_].stays) return kNoVertex;
     if (regions[around_[(i + n - 1) % n].triangle] == regions[around_[i].triangle]) continue;
     if (borders < 2) ends[borders] = around_[i].from;
     ++borders;
