@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -86,15 +88,45 @@ struct Mesh {
     if (input.flag())
       for (std::uint32_t i = 0; i < vertices; ++i) groups.push_back(input.below(3));
   }
+  /// A ball of rings and sectors, some of whose triangles are missing. Those at its poles are needles: the sine of π as
+  /// a float is not 0.
+  static Mesh ball(Input& input, bool hasUvs) {
+    const std::uint32_t rings = 2 + input.below(4), sectors = 3 + input.below(6), row = sectors + 1;
+    const float radius = 1 + input.share();
+    Mesh out;
+    for (std::uint32_t i = 0; i <= rings; ++i)
+      for (std::uint32_t j = 0; j <= sectors; ++j) {
+        const double u = static_cast<double>(j) / sectors, v = static_cast<double>(i) / rings;
+        const double polar = std::numbers::pi * v, around = 2 * std::numbers::pi * u;
+        for (const double at :
+             {std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around)})
+          out.positions.push_back(radius * static_cast<float>(at));
+        if (hasUvs) out.uvs.insert(out.uvs.end(), {static_cast<float>(u), static_cast<float>(v)});
+      }
+    for (std::uint32_t i = 0; i < rings; ++i)
+      for (std::uint32_t j = 0; j < sectors; ++j) {
+        const std::uint32_t missing = input.below(4), at = i * row + j;
+        if ((missing & 1) == 0) out.indices.insert(out.indices.end(), {at, at + 1, at + row});
+        if ((missing & 2) == 0) out.indices.insert(out.indices.end(), {at + 1, at + row + 1, at + row});
+      }
+    return out;
+  }
   [[nodiscard]] MeshView view() const { return {positions, indices, uvs, groups}; }
+
+ private:
+  Mesh() = default;
 };
 
-/// A cage, a target and options.
+/// A cage, a target and options. Either mesh may be a ball instead.
 struct Scene {
   Mesh cage, target;
   TransferOptions options;
 
-  explicit Scene(Input& input) : cage(input, true), target(input, false), options(input.options()) {}
+  explicit Scene(Input& input) : cage(input, true), target(input, false), options(input.options()) {
+    const std::uint8_t balls = input.byte();
+    if ((balls & 1) != 0) cage = Mesh::ball(input, true);
+    if ((balls & 2) != 0) target = Mesh::ball(input, false);
+  }
 };
 
 }  // namespace cagecast::fuzz
