@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -70,6 +70,38 @@ test('masks are paths from the folder of the file; flags about masks replace the
   set({ alwaysMask: 'gone.png' });
   assert.match(cagecast('transfer', ada, ...cage).stderr, new RegExp(`${at('gone.png')}: no such file`));
   assert.match(cagecast('transfer', ada, ...cage, '--never-mask', at('other.png')).stderr, /other\.png: no such file/);
+});
+
+test('a file that was found may be a stranger’s: it is a regular file, and its masks are regular files beside it', () => {
+  const refused = (message: RegExp, ...flags: string[]) => {
+    for (const command of ['transfer', 'inspect']) {
+      const { status, stdout, stderr } = cagecast(command, ada, ...cage, ...flags);
+      assert.deepEqual([status, stdout], [1, '']);
+      assert.match(stderr, message);
+    }
+  };
+  const inHeads = at('assets/heads/cagecast.config.json');
+  spawnSync('mkfifo', [inHeads, at('assets/heads/pipe.png')]);
+  refused(/heads\/cagecast\.config\.json: is a device or a pipe, not a file\n$/);
+  assert.equal(cagecast('inspect', ada, ...cage, '--no-config').status, 0);
+  rmSync(inHeads);
+  const outside = /cage\.glb: is outside the folder of the file that refers to it; --allow-outside permits it\n$/;
+  for (const neverMask of ['../../cage.glb', at('cage.glb')]) {
+    set({ neverMask }, inHeads);
+    refused(outside);
+    refused(/cage\.glb: is not a PNG/, '--allow-outside');
+    // Who names the file knows what it says.
+    refused(/cage\.glb: is not a PNG/, '--config', inHeads);
+  }
+  symlinkSync(at('cage.glb'), at('assets/heads/linked.png'));
+  set({ alwaysMask: 'linked.png' }, inHeads);
+  refused(/linked\.png: is outside the folder/);
+  set({ alwaysMask: 'pipe.png' }, inHeads);
+  refused(/pipe\.png: is a device or a pipe, not a file/);
+  set({ neverMask: at('cage.glb') }, inHeads);
+  const batch = cagecast('batch', ada, ...cage, '--report', at('{name}.json'));
+  assert.deepEqual([batch.status, /cage\.glb: is outside the folder/.test(batch.stdout)], [1, true]);
+  for (const name of ['cagecast.config.json', 'linked.png', 'pipe.png']) rmSync(at('assets/heads', name));
 });
 
 test('a batch takes the settings of each of its targets; a line of a manifest wins over them', () => {

@@ -117,7 +117,7 @@ Examples:
       settled: settler(command, flags),
       reading: readingOf(flags),
     };
-    const jobs = manifest === undefined ? jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
+    const jobs = manifest === undefined ? await jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
     const write = (line: string) => process.stdout.write(line);
     const summary = await batchCommand(
       { jobs, results, resume, failOn, workers },

@@ -24,24 +24,26 @@ export interface Job {
 /** What jobs have in common, from the command line and configuration files. */
 export interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Settled> {
   cage?: string | undefined;
-  settled: (target: string) => Settled;
+  settled: (target: string) => Promise<Settled>;
 }
 
 /** The jobs for the files that patterns name. @throws {InputError} for a pattern without files. */
-export function jobsOfPatterns(patterns: readonly string[], defaults: JobDefaults): Job[] {
+export async function jobsOfPatterns(patterns: readonly string[], defaults: JobDefaults): Promise<Job[]> {
   const targets = patterns.flatMap((pattern) => {
     const found = filesOf(pattern);
     if (found.length === 0) throw new InputError('no file has such a name').in(pattern);
     return found;
   });
   return refuseClashes(
-    [...new Set(targets)].map((target) => {
-      try {
-        return jobOf({ ...defaults, target, ...defaults.settled(target) });
-      } catch (error) {
-        return failedJob(target, target, defaults, error);
-      }
-    }),
+    await Promise.all(
+      [...new Set(targets)].map(async (target) => {
+        try {
+          return jobOf({ ...defaults, target, ...(await defaults.settled(target)) });
+        } catch (error) {
+          return failedJob(target, target, defaults, error);
+        }
+      }),
+    ),
   );
 }
 
@@ -59,15 +61,17 @@ export async function jobsOfManifest(path: string, defaults: JobDefaults): Promi
   const folder = path === standard ? '.' : dirname(path);
   const lines = text.split('\n').map((line, i) => ({ line: line.trim(), place: `line ${i + 1} of ${path}` }));
   return refuseClashes(
-    lines
-      .filter(({ line }) => line !== '')
-      .map(({ line, place }) => {
-        try {
-          return jobOf({ ...defaults, ...jobLine(line, folder, defaults) });
-        } catch (error) {
-          return failedJob(targetOf(line, folder) ?? place, place, defaults, error);
-        }
-      }),
+    await Promise.all(
+      lines
+        .filter(({ line }) => line !== '')
+        .map(async ({ line, place }) => {
+          try {
+            return jobOf({ ...defaults, ...(await jobLine(line, folder, defaults)) });
+          } catch (error) {
+            return failedJob(targetOf(line, folder) ?? place, place, defaults, error);
+          }
+        }),
+    ),
   );
 }
 
@@ -98,7 +102,7 @@ const noSettings: Settled = {
 };
 
 /** A line of a manifest: its settings win over flags. @throws {InputError} that names the member. */
-function jobLine(line: string, folder: string, { settled }: JobDefaults): JobNames & Settled {
+async function jobLine(line: string, folder: string, { settled }: JobDefaults): Promise<JobNames & Settled> {
   const given = parseObject(line);
   refuseUnknown(given, [...paths, 'regions', 'uvBounds', ...settingNames]);
   for (const name of paths)
@@ -116,8 +120,8 @@ function jobLine(line: string, folder: string, { settled }: JobDefaults): JobNam
     ...(uvBounds === undefined ? [] : [['uvBounds', uvBounds]]),
     ...(regions === undefined ? [] : [['regions', regionsOf(regions, inFolder)]]),
   ]) as Partial<JobNames> & { target: string };
-  const common = settled(own.target);
-  const { borders, compress, preset, keep, exclude, masks = common.rules.masks, single } = settingsOf(given, folder);
+  const common = await settled(own.target);
+  const { borders, compress, preset, keep, exclude, masks, single } = settingsOf(given, folder);
   const { rules } = common;
   return {
     ...own,
@@ -128,7 +132,7 @@ function jobLine(line: string, folder: string, { settled }: JobDefaults): JobNam
       preset: preset ?? rules.preset,
       keep: keep ?? rules.keep,
       exclude: exclude ?? rules.exclude,
-      ...(masks && { masks }),
+      ...(masks && { masks, maskFolder: undefined }),
       single: { ...rules.single, ...single },
     },
   };

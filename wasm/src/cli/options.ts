@@ -26,6 +26,8 @@ export interface Rules {
   /** Those of both that may match nothing. */
   optional?: string[];
   masks?: MaskFiles;
+  /** Where files of masks have to be, if that is not left to whoever names them. */
+  maskFolder?: string | undefined;
   /** The configuration file that some of it comes from. */
   config?: string;
 }

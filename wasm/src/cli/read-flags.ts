@@ -12,7 +12,10 @@ export interface ReadFlags {
 export function addReadFlags(command: Command): Command {
   const limits = Object.entries(defaultLimits).map(([name, value]) => `${name} ${value.toLocaleString('en')}`);
   return command
-    .option('--allow-outside', 'read also files outside the folder of a glTF that refers to them')
+    .option(
+      '--allow-outside',
+      'read also files outside the folder of a glTF or a found cagecast.config.json that refers to them',
+    )
     .addOption(
       new Option(
         '--limit <NAME=VALUE>',

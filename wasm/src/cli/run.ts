@@ -73,12 +73,12 @@ export async function run(
 /** The masks of a target. @throws {InputError} that names the file at fault. */
 async function readMasks(
   { file, extracted }: ReadModel,
-  { masks }: Rules,
+  { masks, maskFolder }: Rules,
   reading: ReadOptions,
 ): Promise<Masks | undefined> {
   if (!masks) return undefined;
   const [never, always] = await Promise.all(
-    [masks.never, masks.always].map((path) => (path === undefined ? undefined : readImage(path, reading))),
+    [masks.never, masks.always].map((path) => (path === undefined ? undefined : readImage(path, reading, maskFolder))),
   );
   try {
     const images = never || always ? { never, always } : undefined;

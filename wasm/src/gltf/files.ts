@@ -61,8 +61,11 @@ function readDataUri(name: string, uri: string): Uint8Array {
   return Buffer.from(bytes, /;\s*base64\s*$/i.test(kind!) ? 'base64' : 'latin1');
 }
 
-/** Reads a regular file. What the path leads to must be in the folder, too, after links. */
-function readBeside(path: string, folder: string, { limits, allowOutside }: ReadOptions): Promise<Uint8Array> {
+/**
+ * Reads a regular file. What the path leads to must be in the folder, too, after links.
+ * @throws {InputError} with a message that does not name the file.
+ */
+export function readBeside(path: string, folder: string, { limits, allowOutside }: ReadOptions): Promise<Uint8Array> {
   return reading(async () => {
     const refuseOutside = (to: string, from: string) => {
       const way = relative(from, to);

@@ -93,7 +93,7 @@ Examples:
           back,
           part,
           size,
-          ...settler(command, flags)(target),
+          ...(await settler(command, flags)(target)),
           reading: readingOf(flags),
         },
         progress,

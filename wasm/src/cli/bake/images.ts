@@ -1,13 +1,19 @@
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
-import { type ReadOptions, readBytes } from '../../gltf/files.js';
+import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
 import { imageIsWhole, imageType } from '../../gltf/image.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 
-/** Reads an image file. @throws {InputError} that names the file. */
-export async function readImage(path: string, { limits }: ReadOptions): Promise<Image> {
+/**
+ * Reads an image file.
+ * @param folder  Where it has to be, as a regular file, unless files outside may be read. Default: anywhere, and pipes too.
+ * @throws {InputError} that names the file.
+ */
+export async function readImage(path: string, reading: ReadOptions, folder?: string): Promise<Image> {
   try {
-    return await decodeImage(await readBytes(path, limits));
+    return await decodeImage(
+      await (folder === undefined ? readBytes(path, reading.limits) : readBeside(path, folder, reading)),
+    );
   } catch (error) {
     throw error instanceof InputError ? error.in(path) : error;
   }

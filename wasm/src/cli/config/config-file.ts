@@ -1,7 +1,7 @@
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync } from 'node:fs';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
-import { reasons, standard } from '../../gltf/files.js';
-import { firstLine, InputError } from '../../gltf/input-error.js';
+import { type ReadOptions, readBeside, readBytes, standard } from '../../gltf/files.js';
+import { InputError } from '../../gltf/input-error.js';
 import { matcher } from '../options.js';
 import { isObject, parseObject, refuseUnknown, type Settings, settingNames, settingsOf } from './settings.js';
 
@@ -19,17 +19,21 @@ interface ConfigFile {
 export interface ConfigSettings extends Settings {
   /** The file. */
   path: string;
+  /** Where masks have to be, if nobody named the file: like a model, it may be a stranger's. */
+  maskFolder?: string;
 }
 
 /** Finds the configuration files of targets, and reads each once. */
 export class Configuration {
   readonly #given: string | false | undefined;
-  readonly #byPath = new Map<string, ConfigFile>();
+  readonly #reading: ReadOptions;
+  readonly #byPath = new Map<string, Promise<ConfigFile>>();
   readonly #byFolder = new Map<string, string | undefined>();
 
   /** @param given  The file for all targets; `false` for none; by default, the nearest from the folder of a target upwards. */
-  constructor(given?: string | false) {
+  constructor(given: string | false | undefined, reading: ReadOptions) {
     this.#given = given;
+    this.#reading = reading;
   }
 
   /**
@@ -37,11 +41,11 @@ export class Configuration {
    * holds for all; their lists of names are joined.
    * @throws {InputError} that names the file, the member and its value.
    */
-  settingsFor(target: string): ConfigSettings | undefined {
+  async settingsFor(target: string): Promise<ConfigSettings | undefined> {
     if (this.#given === false) return undefined;
     const path = this.#given ?? this.#find(resolve(target === standard ? '.' : dirname(target)));
     if (path === undefined) return undefined;
-    const file = this.#read(path);
+    const file = await this.#read(path);
     const name = basename(target);
     const own = file.characters.filter(({ matches }) => matches(name) || matches(basename(name, extname(name))));
     const all = [file.common, ...own.map(({ settings }) => settings)];
@@ -52,6 +56,7 @@ export class Configuration {
       keep: joined('keep'),
       exclude: joined('exclude'),
       path: file.path,
+      ...(this.#given === undefined && { maskFolder: dirname(path) }),
     } as ConfigSettings;
   }
 
@@ -64,28 +69,25 @@ export class Configuration {
     return this.#byFolder.get(folder);
   }
 
-  #read(path: string): ConfigFile {
-    const known = this.#byPath.get(path) ?? readConfig(path);
+  #read(path: string): Promise<ConfigFile> {
+    const known = this.#byPath.get(path) ?? this.#readNew(path);
     this.#byPath.set(path, known);
     return known;
   }
-}
 
-function readConfig(path: string): ConfigFile {
-  const shown = relative('.', path).startsWith('..') ? path : relative('.', path);
-  try {
-    return { path: shown, ...parseConfig(readText(path), dirname(path)) };
-  } catch (error) {
-    throw error instanceof InputError ? error.in(shown) : error;
-  }
-}
-
-function readText(path: string): string {
-  try {
-    return readFileSync(path, 'utf8');
-  } catch (error) {
-    const reason = reasons[(error as NodeJS.ErrnoException).code ?? ''];
-    throw new InputError(reason ?? `cannot be read (${firstLine(error)})`, { cause: error });
+  async #readNew(path: string): Promise<ConfigFile> {
+    const shown = relative('.', path).startsWith('..') ? path : relative('.', path);
+    const folder = dirname(path);
+    try {
+      // The file itself may be a link to anywhere.
+      const bytes =
+        this.#given === undefined
+          ? await readBeside(path, folder, { ...this.#reading, allowOutside: true })
+          : await readBytes(path, this.#reading.limits);
+      return { path: shown, ...parseConfig(new TextDecoder().decode(bytes), folder) };
+    } catch (error) {
+      throw error instanceof InputError ? error.in(shown) : error;
+    }
   }
 }
 

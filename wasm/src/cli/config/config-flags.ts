@@ -1,5 +1,6 @@
 import type { Command } from 'commander';
 import { type RuleFlags, type Rules, rulesOf } from '../options.js';
+import { type ReadFlags, readingOf } from '../read-flags.js';
 import { Configuration, configName } from './config-file.js';
 import type { Settings } from './settings.js';
 
@@ -28,20 +29,18 @@ export const addConfigFlags = (command: Command): Command =>
  */
 export function settler(
   command: Command,
-  flags: RuleFlags & ConfigFlags & Partial<Pick<Settled, 'borders' | 'compress'>>,
-): (target: string) => Settled {
-  const files = new Configuration(flags.config);
+  flags: RuleFlags & ReadFlags & ConfigFlags & Partial<Pick<Settled, 'borders' | 'compress'>>,
+): (target: string) => Promise<Settled> {
+  const files = new Configuration(flags.config, readingOf(flags));
   const own = rulesOf(flags);
   const { borders = 'triangle', compress = 'keep' } = flags;
   const isGiven = (name: string) => command.getOptionValueSource(name) === 'cli';
-  return (target) => {
-    const found = files.settingsFor(target);
+  return async (target) => {
+    const found = await files.settingsFor(target);
     if (found === undefined) return { rules: own, borders, compress };
     const pick = <Value>(name: string, value: Value, other: Value | undefined) =>
       isGiven(name) ? value : (other ?? value);
-    const { path, single } = found;
-    // Flags about masks replace all of those in the file.
-    const masks = own.masks ?? found.masks;
+    const { path, single, masks, maskFolder } = found;
     const [keep, exclude] = [pick('keep', own.keep, found.keep), pick('exclude', own.exclude, found.exclude)];
     return {
       rules: {
@@ -49,8 +48,8 @@ export function settler(
         single: { ...single, ...own.single },
         keep,
         exclude,
-        ...(own.masks && { masks: own.masks }),
-        ...(masks && { masks }),
+        // Flags about masks replace all of those in the file.
+        ...(own.masks ? { masks: own.masks } : masks && { masks, maskFolder }),
         config: path,
         // A file speaks of many models, and not each of them has every part.
         optional: [...(isGiven('keep') ? [] : keep), ...(isGiven('exclude') ? [] : exclude)],

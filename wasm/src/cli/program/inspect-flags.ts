@@ -35,7 +35,7 @@ Examples:
           uvBounds,
           referenceCage,
           html,
-          rules: settler(command, flags)(target).rules,
+          rules: (await settler(command, flags)(target)).rules,
           reading: readingOf(flags),
         },
         progress,

@@ -93,7 +93,7 @@ Examples:
             regions,
             output,
             report,
-            ...settler(command, flags)(target),
+            ...(await settler(command, flags)(target)),
             reading: readingOf(flags),
           },
           progress,
