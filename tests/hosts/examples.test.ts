@@ -8,6 +8,7 @@ import { PNG } from 'pngjs';
 import { build } from 'vite';
 import { validate } from '../js/glb.js';
 import { launchChromium } from '../support/chromium.js';
+import { GlbMaker, tetrahedron } from '../support/glb.js';
 import { hostTools, installPacked, run, serve } from './install.js';
 
 const user = installPacked();
@@ -240,13 +241,22 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
   });
 
   test('shows what is wrong, by attribute and address; the last change wins', async () => {
-    const wrong: Record<string, [string, RegExp]> = {
-      target: ['missing.glb', /^error target: http.*missing\.glb: 404/],
-      cage: ['paint-tiger.png', /^error cage: http.*paint-tiger\.png cannot be read/],
-      paint: ['cage.glb', /^error paint: http.*cage\.glb is not a picture/],
-      feather: ['wide', /^error cagecast\/three: options\.feather is NaN/],
-    };
-    for (const [name, [value, message]] of Object.entries(wrong)) {
+    const many = new GlbMaker();
+    const mesh = many.mesh(tetrahedron());
+    for (let n = 0; n < 2000; ++n) many.node({ mesh });
+    writeFileSync(join(user, 'out/web-component/many.glb'), many.finish());
+    const wrong: [string, string, RegExp][] = [
+      ['target', 'missing.glb', /^error target: http.*missing\.glb: 404/],
+      [
+        'target',
+        'many.glb',
+        /^error target: http.*many\.glb cannot be read \(.* 2000 places .*; the limit "instances" is 1,000\)$/,
+      ],
+      ['cage', 'paint-tiger.png', /^error cage: http.*paint-tiger\.png cannot be read/],
+      ['paint', 'cage.glb', /^error paint: http.*cage\.glb is not a picture/],
+      ['feather', 'wide', /^error cagecast\/three: options\.feather is NaN/],
+    ];
+    for (const [name, value, message] of wrong) {
       const before = await page.evaluate<string | null>(`viewer.getAttribute("${name}")`);
       const said = await page.evaluate<string>(`viewer.setAttribute("${name}", "${value}"); next()`);
       assert.match(said, message);

@@ -1,5 +1,6 @@
 import { type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from 'three';
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { checkGltf } from '../gltf/check-file.js';
 
 /** Fetches a file. @throws Error that names the attribute and the address. */
 async function fetchFile(attribute: string, address: string, signal: AbortSignal): Promise<Response> {
@@ -21,9 +22,24 @@ export async function loadModel(
 ): Promise<GLTF> {
   const response = await fetchFile(attribute, address, signal);
   const bytes = await response.arrayBuffer();
-  return loader.parseAsync(bytes, new URL('.', response.url).href).catch((cause: unknown) => {
+  try {
+    checkCost(new Uint8Array(bytes));
+    return await loader.parseAsync(bytes, new URL('.', response.url).href);
+  } catch (cause) {
     throw new Error(`${attribute}: ${response.url} cannot be read (${(cause as Error).message})`, { cause });
-  });
+  }
+}
+
+/** Refuses a file that the loader, which trusts it, would take all memory for. @throws Error without the file's name. */
+function checkCost(bytes: Uint8Array): void {
+  const isGlb = new TextDecoder().decode(bytes.subarray(0, 4)) === 'glTF';
+  // How large the other files of a .gltf are is not known before they are fetched.
+  const limits = isGlb ? {} : { expansion: Infinity };
+  try {
+    checkGltf(bytes, { limits });
+  } catch (error) {
+    throw new Error((error as Error).message.replace(/^checkGltf: /, ''), { cause: error });
+  }
 }
 
 /** Loads a picture as a texture as glTF has them. @throws Error that names the attribute and the address. */
