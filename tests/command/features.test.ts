@@ -88,6 +88,10 @@ test('--json and --quiet work on every command; help is a command', () => {
   assert.ok(['good', 'usable', 'unfit'].includes((JSON.parse(made.stdout) as { verdict: string }).verdict));
   assert.match(ok('help'), /Usage: cagecast/);
   assert.match(ok('help', 'transfer'), /--compress/);
+  assert.match(
+    ok('help', 'transfer').replace(/\s+/g, ' '),
+    /as covered; a share of the target's diagonal, 0 to 1; default: 0\.0025, or 0 with --preset paper/,
+  );
 });
 
 test('diff shows what changed between two reports, and exits 4 over the limit', () => {

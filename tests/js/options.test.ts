@@ -52,7 +52,7 @@ describe('an option is one line in options.def', () => {
   test('the command has a flag for it, with its text', () => {
     const [, flag] = /(\{[^{}]*name: 'extraReach'[^{}]*\})/.exec(read('wasm/src/generated/options.ts'))!;
     assert.match(flag!, /flag: '--extra-reach'/);
-    assert.match(flag!, /range: \[0, 0\.75\]/);
+    assert.match(flag!, /range: \[0, 0\.75\],\s+standard: 0\.5,\s+paper: 0\.25,/);
     assert.match(flag!, /text: 'How far a new option reaches, for a test\.'/);
   });
 

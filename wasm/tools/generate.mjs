@@ -59,9 +59,10 @@ function makeOptions(options) {
   const literal = (text) => (text.includes("'") ? (text.includes('"') ? `\`${text}\`` : `"${text}"`) : `'${text}'`);
   const flag = (option) => {
     const range = `[${option.range.map(quoted).join(', ')}]`;
+    const [standard, paper] = [quoted(option.standard), quoted(option.paper)];
     const text = literal(option.text);
     const inline = `    text: ${text},`;
-    return `  {\n    name: '${option.name}',\n    flag: '${flagOf(option)}',\n    kind: '${option.kind}',\n    range: ${range},\n${
+    return `  {\n    name: '${option.name}',\n    flag: '${flagOf(option)}',\n    kind: '${option.kind}',\n    range: ${range},\n    standard: ${standard},\n    paper: ${paper},\n${
       inline.length > 120 ? `    text: ${text},\n` : `${inline}\n`
     }  },\n`;
   };
@@ -195,11 +196,12 @@ const files = {
   'wasm/src/generated/codes.ts': makeCodes(readCodes(root)),
   'wasm/src/generated/zone.ts': makeZones(readZones(root)),
   'docs/options.md': makePage(options),
-  // A test's tree has no command.
-  ...(existsSync(join(root, 'wasm/src/cli/program')) && { 'docs/cli.md': await makeCommandPage() }),
+  // Made last, as it depends on the first of these. A test's tree has no command.
+  ...(existsSync(join(root, 'wasm/src/cli/program')) && { 'docs/cli.md': makeCommandPage }),
 };
 let stale = 0;
-for (const [name, text] of Object.entries(files)) {
+for (const [name, made] of Object.entries(files)) {
+  const text = typeof made === 'function' ? await made() : made;
   const path = join(root, name);
   if (existsSync(path) && readFileSync(path, 'utf8') === text) continue;
   if (values.check) {

@@ -53,16 +53,12 @@ export function addRuleFlags(command: Command): Command {
       .choices(['default', 'paper'])
       .default('default'),
   );
-  for (const { flag, kind, range, text } of optionFlags) {
-    // Words in commander's help begin in lower case and end without a full stop.
-    const help = `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`;
+  for (const option of optionFlags) {
+    const { flag, kind, range } = option;
     command.addOption(
       kind === 'choice'
-        ? new Option(`${flag} <HOW>`, help).choices(range)
-        : new Option(
-            `${flag} <SHARE>`,
-            kind === 'length' ? `${help}; a share of the target's diagonal` : help,
-          ).argParser(numberWithin(range[0], range[1])),
+        ? new Option(`${flag} <HOW>`, helpOf(option)).choices(range)
+        : new Option(`${flag} <SHARE>`, helpOf(option)).argParser(numberWithin(range[0], range[1])),
     );
   }
   return command
@@ -85,6 +81,16 @@ export function addRuleFlags(command: Command): Command {
       '--mask-colors <ATTRIBUTE>',
       'never paint red vertices, always green ones; by an attribute such as COLOR_0',
     );
+}
+
+/** What a flag does, its range and its defaults. Words in commander's help begin in lower case and end without a full stop. */
+function helpOf({ kind, range, standard, paper, text }: (typeof optionFlags)[number]): string {
+  const limits = range[1] === Infinity ? `at least ${range[0]}` : `${range[0]} to ${range[1]}`;
+  return [
+    `${text[0]!.toLowerCase()}${text.slice(1).replace(/\.$/, '')}`,
+    ...(kind === 'choice' ? [] : [kind === 'length' ? `a share of the target's diagonal, ${limits}` : limits]),
+    `default: ${standard}${standard === paper ? '' : `, or ${paper} with --preset paper`}`,
+  ].join('; ');
 }
 
 /** Returns a parser for a number within two others. */

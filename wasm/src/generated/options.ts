@@ -148,6 +148,8 @@ export const optionFlags = [
     flag: '--threshold',
     kind: 'share',
     range: [0, 1],
+    standard: 0.5,
+    paper: 0.5,
     text: 'A segment is painted only if at least this share of its exposed area is covered by the cage.',
   },
   {
@@ -155,6 +157,8 @@ export const optionFlags = [
     flag: '--seams',
     kind: 'choice',
     range: ['vertex', 'corner'],
+    standard: 'corner',
+    paper: 'vertex',
     text: 'Whether UVs are given per vertex only, or also per triangle corner, so that no triangle stretches across a seam of the texture.',
   },
   {
@@ -162,6 +166,8 @@ export const optionFlags = [
     flag: '--weld-tolerance',
     kind: 'length',
     range: [0, 0.01],
+    standard: 0,
+    paper: 0,
     text: 'Vertices closer together than this count as one point.',
   },
   {
@@ -169,6 +175,8 @@ export const optionFlags = [
     flag: '--occlusion-reach',
     kind: 'length',
     range: [0, Infinity],
+    standard: 0.03,
+    paper: Infinity,
     text: 'How far beyond the cage the target can still occlude a point.',
   },
   {
@@ -176,6 +184,8 @@ export const optionFlags = [
     flag: '--poke-through',
     kind: 'length',
     range: [0, 1],
+    standard: 0.0025,
+    paper: 0,
     text: 'How far a point may poke out of the cage and still count as covered.',
   },
   {
@@ -183,6 +193,8 @@ export const optionFlags = [
     flag: '--min-covered',
     kind: 'share',
     range: [0, 1],
+    standard: 0.2,
+    paper: 0.2,
     text: 'A segment is painted only if at least this share of its whole area counts as covered. In preset default its covered area counts less where it lies deep under the cage, and is multiplied by its coverage; steps.minOfAll is an alternative. Ignored in preset paper, where steps.floor is none.',
   },
 ] as const;
