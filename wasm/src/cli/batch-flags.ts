@@ -53,7 +53,7 @@ export function addBatchCommand(program: Command, progress: Progress): void {
     .description('transfer to many files, in threads; print a line of JSON for each')
     .option(
       '--manifest <JOBS.jsonl>',
-      'a JSON object per line: target, cage, referenceCage, uvBounds, texture, regions, output, report, and options; - for the standard input',
+      'a JSON object per line: target, cage, referenceCage, uvBounds, texture, regions, output, report, and any setting of cagecast.config.json by its name (threshold, exclude, borders, …); - for the standard input',
     )
     .option('--cage <CAGE>', 'the cage of jobs that name none; auto makes one for each target')
     .option('--texture <PAINT>', 'the texture of jobs that name none')
@@ -87,7 +87,8 @@ export function addBatchCommand(program: Command, progress: Progress): void {
 A line of a manifest, with paths relative to the manifest:
   {"target": "head.glb", "cage": "cage.glb", "output": "out/head.glb", "threshold": 0.3, "exclude": ["eye*"]}
 A line that is printed: target, output, status (done, failed or skipped), ms, counts, and error, verdict and findings (codes) if there are.
-With --results, a job that was done before gets a line only where the last line about its target is of another job.
+With --resume, a skipped job adds no line to --results, unless the last line about its target is from another job (another
+cage, say).
 A job that fails does not stop the others, and leaves what an earlier run wrote. Files are complete or not there, even if the
 batch is killed; folders that are missing are made. {name} and {dir} are for -o and --report only: cages and textures that
 differ need a manifest.

@@ -27,14 +27,14 @@ export interface ProjectStage {
 /** Options that `classify` reads. */
 export interface ClassifyStage {
   /**
-   * A segment is painted only if at least this share of its exposed area is covered by the cage. 0 to 1. Default:
-   * `0.5`.
+   * A segment (a connected part of the model) is painted only if the cage covers at least this share of its exposed
+   * area (which no other surface hides). 0 to 1. Default: `0.5`.
    */
   threshold?: number | undefined;
   /**
-   * A segment is painted only if at least this share of its whole area counts as covered. In preset default its covered
-   * area counts less where it lies deep under the cage, and is multiplied by its coverage; steps.minOfAll is an
-   * alternative. Ignored in preset paper, where steps.floor is none. 0 to 1. Default: `0.2`.
+   * A segment (a connected part of the model) is painted only if the cage covers at least this share of its whole area;
+   * what lies deep under the cage counts less. A large segment that is clearly covered where it is exposed is painted
+   * anyway. No effect with the preset paper. 0 to 1. Default: `0.2`.
    */
   minCovered?: number | undefined;
 }
@@ -86,8 +86,9 @@ export interface ProjectSteps {
 /** Switches for single steps in `classify`, for measuring them. */
 export interface ClassifySteps {
   /**
-   * Step 5: what a segment needs besides the threshold: nothing, enough covered area, or enough depth-weighted area.
-   * `none`, `area`, or `depth`. Default: `depth`; in the preset `paper`: `none`.
+   * Step 5: what a segment needs besides the threshold: nothing, so that minCovered has no effect; enough covered area;
+   * or enough depth-weighted area, multiplied by the segment's coverage. `none`, `area`, or `depth`. Default: `depth`;
+   * in the preset `paper`: `none`.
    */
   floor?: 'none' | 'area' | 'depth' | undefined;
   /**
@@ -150,7 +151,7 @@ export const optionFlags = [
     range: [0, 1],
     standard: 0.5,
     paper: 0.5,
-    text: 'A segment is painted only if at least this share of its exposed area is covered by the cage.',
+    text: 'A segment (a connected part of the model) is painted only if the cage covers at least this share of its exposed area (which no other surface hides).',
   },
   {
     name: 'seams',
@@ -195,6 +196,6 @@ export const optionFlags = [
     range: [0, 1],
     standard: 0.2,
     paper: 0.2,
-    text: 'A segment is painted only if at least this share of its whole area counts as covered. In preset default its covered area counts less where it lies deep under the cage, and is multiplied by its coverage; steps.minOfAll is an alternative. Ignored in preset paper, where steps.floor is none.',
+    text: 'A segment (a connected part of the model) is painted only if the cage covers at least this share of its whole area; what lies deep under the cage counts less. A large segment that is clearly covered where it is exposed is painted anyway. No effect with the preset paper.',
   },
 ] as const;

@@ -19,7 +19,7 @@ export const addCageAreaFlags = (command: Command): Command =>
     )
     .option(
       '--reference-cage <CAGE>',
-      'a whole cage: triangles of --cage whose UVs it lacks count as cut away, as by a hole',
+      'another version of the cage. A triangle of --cage whose place in the UVs is empty in this file is left out, as if --cage had a hole there',
     );
 
 /** Adds the flag for further cages. */

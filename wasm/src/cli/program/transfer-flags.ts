@@ -15,7 +15,7 @@ import { addCommonFlags, type CommonFlags } from './common-flags.js';
 /** Adds the command that transfers to a file. */
 export function addTransferCommand(program: Command, progress: Progress): void {
   addRegionFlag(addCommonFlags(program.command('transfer')))
-    .description('write TARGET with a new UV set and the attribute _NCZ, otherwise unchanged')
+    .description('write TARGET with a new UV set and the attribute _NCZ (Non-Cosmetic Zone), otherwise unchanged')
     .option(
       '--texture <PAINT>',
       "PNG, JPEG, WebP or KTX2 in the cage's UV space, shown as an overlay on the triangles that may be painted; <UDIM> in its name stands for the number of each tile",
