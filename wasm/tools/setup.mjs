@@ -1,7 +1,7 @@
 // Installs what the project needs and this machine lacks: Debian packages by apt, npm packages by the lock file.
 // Uses nothing but Node, because it is the first thing that runs. A second run finds everything there and says nothing.
 //
-//   node wasm/tools/setup.mjs assets | start | lint | test | bench | docs | catalogue
+//   node wasm/tools/setup.mjs assets | start | format | lint | test | clang | bench | pictures | docs | catalogue
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -9,13 +9,21 @@ import { existsSync, lstatSync, readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
-const kOldestNode = [20, 19]; // as Vite asks for; the package itself runs on 20.16
+/** As Vite asks for: the least minor version of each major one that has such; the package itself runs on 20.16. */
+const kOldestNode = { 20: 19, 22: 12 };
+const kNodes = '20.19, or 22.12 and newer';
 
 const command = (name) => () => spawnSync('sh', ['-c', `command -v ${name}`]).status === 0;
 const header = (path) => () =>
   ['/usr/include', '/usr/local/include', '/opt/homebrew/include', '/usr/include/eigen3'].some((folder) =>
     existsSync(`${folder}/${path}`),
   );
+
+function linksFuzzTarget() {
+  const input = 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }';
+  const args = ['-fsanitize=fuzzer,address,undefined', '-x', 'c++', '-', '-o', '/dev/null'];
+  return spawnSync('clang++', args, { input }).status === 0;
+}
 
 /** What is needed beyond Node: how to see that it is there, and the Debian package that brings it. */
 const kNeeds = {
@@ -37,6 +45,10 @@ const kNeeds = {
   doxygen: { what: 'Doxygen 1.9', there: command('doxygen') },
   'redis-server': { what: 'Redis 6.2 or newer (redis-server)', there: command('redis-server') },
   'clang-tidy': { what: 'clang-tidy 14', there: command('clang-tidy') },
+  clang: { what: 'Clang 14 or newer (clang++)', there: command('clang++') },
+  'libclang-rt-dev': { what: "Clang's sanitizers and libFuzzer", there: linksFuzzTarget },
+  lld: { what: 'LLD (ld.lld)', there: command('ld.lld') },
+  llvm: { what: 'LLVM (llvm-profdata, llvm-cov)', there: command('llvm-profdata') },
 };
 const kPage = ['emscripten', 'cmake', 'ninja-build', 'libnanoflann-dev', 'libeigen3-dev'];
 // clang-tidy reads the sources as they are compiled, so it needs what they need.
@@ -55,9 +67,12 @@ const kTests = [
 const kPurposes = {
   assets: [],
   start: kPage,
+  format: ['clang-format'],
   lint: kLint,
   test: kTests,
+  clang: [...kTests, 'clang', 'libclang-rt-dev', 'lld', 'llvm'],
   bench: [...kTests, 'libembree-dev', 'qemu-user', 'g++-aarch64-linux-gnu'],
+  pictures: [...kPage, 'chromium'],
   docs: ['doxygen'],
   catalogue: ['redis-server'],
 };
@@ -70,7 +85,7 @@ function fail(message) {
 /** @param {string} version  As `node --version` prints it. */
 function isNewEnough(version) {
   const [major, minor] = version.replace('v', '').split('.').map(Number);
-  return major > kOldestNode[0] || (major === kOldestNode[0] && minor >= kOldestNode[1]);
+  return major > 22 || minor >= (kOldestNode[major] ?? Infinity);
 }
 
 function installSystemPackages(names) {
@@ -97,7 +112,7 @@ function installSystemPackages(names) {
   const node = spawnSync('node', ['--version'], { encoding: 'utf8' }).stdout?.trim() ?? 'none';
   if (!isNewEnough(node))
     fail(
-      `The node in your PATH is now ${node}, from a Debian package; Cagecast needs ${kOldestNode.join('.')} or newer. Put yours before it, in /usr/local/bin say, and run this again.`,
+      `The node in your PATH is now ${node}, from a Debian package; Cagecast needs ${kNodes}. Put yours before it, in /usr/local/bin say, and run this again.`,
     );
 }
 
@@ -125,8 +140,7 @@ function installNpmPackages(folder = '', args = ['ci']) {
 
 const purpose = process.argv[2];
 if (!(purpose in kPurposes)) fail(`usage: node wasm/tools/setup.mjs ${Object.keys(kPurposes).join(' | ')}`);
-if (!isNewEnough(process.version))
-  fail(`Cagecast needs Node ${kOldestNode.join('.')} or newer; this is ${process.versions.node}.`);
+if (!isNewEnough(process.version)) fail(`Cagecast needs Node ${kNodes}; this is ${process.versions.node}.`);
 installSystemPackages(kPurposes[purpose]);
 installNpmPackages();
 if (purpose === 'test') installNpmPackages('tests/hosts/', ['install', '--no-save']);
