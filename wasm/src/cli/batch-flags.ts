@@ -118,7 +118,8 @@ Examples:
       settled: settler(command, flags),
       reading: readingOf(flags),
     };
-    const jobs = manifest === undefined ? await jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
+    const jobs =
+      manifest === undefined ? await jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
     const write = (line: string) => process.stdout.write(line);
     const summary = await batchCommand(
       { jobs, results, resume, failOn, workers },
