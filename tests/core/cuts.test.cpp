@@ -5,8 +5,8 @@
 
 #include "cuts.hpp"
 
-// What holds for every cut mesh, tested on triangles and their edges. `borders.test.cpp` tests points and
-// lengths.
+// What holds for every cut mesh, tested on triangles and their edges, and cuts of one large triangle below a fine cage.
+// `borders.test.cpp` tests points and lengths.
 using namespace cagecast;
 
 namespace {
@@ -56,7 +56,123 @@ std::vector<std::uint32_t> stopsOn(const scenes::Mesh& target, const CutTarget& 
   return result;
 }
 
+/// The corner of a quad of a flat cage: the quad's column and row, and its own.
+struct SheetCorner {
+  int i, j, column, row;
+};
+
+/// A flat cage of `quads` × `quads` quads, somewhat larger than the triangle below it, whose UVs are made quad by quad.
+template <typename MakeUv>
+scenes::Mesh sheet(int quads, float from, float to, MakeUv makeUv) {
+  scenes::Mesh cage;
+  const float step = (to - from) / static_cast<float>(quads);
+  for (int j = 0; j < quads; ++j)
+    for (int i = 0; i < quads; ++i) {
+      const auto add = [&](int column, int row) {
+        const float x = from + step * static_cast<float>(column), y = from + step * static_cast<float>(row);
+        const std::array<float, 2> uv = makeUv(SheetCorner{i, j, column, row});
+        return cage.addVertex({x, y, 0.1f}, 0.1f + 0.3f * (x + 0.2f) + uv[0], 0.1f + 0.3f * (y + 0.2f) + uv[1]);
+      };
+      const std::uint32_t a = add(i, j), b = add(i + 1, j), c = add(i + 1, j + 1), d = add(i, j + 1);
+      cage.addTriangle(a, b, c);
+      cage.addTriangle(a, c, d);
+    }
+  return cage;
+}
+
+scenes::Mesh oneTriangle() {
+  scenes::Mesh mesh;
+  mesh.addVertex({0, 0, 0});
+  mesh.addVertex({1, 0, 0});
+  mesh.addVertex({0, 1, 0});
+  mesh.addTriangle(0, 1, 2);
+  return mesh;
+}
+
+/// Cuts at whatever the cage has.
+TransferOptions cuttingAll() {
+  TransferOptions options = cutting();
+  options.threshold = 0;
+  options.steps.floor = Floor::none;
+  return options;
+}
+
+/// A slit from the lower edge of a sheet up to a row, that opens to the right and closes within some columns.
+float slit(SheetCorner at, int column, int row, int columns, float width) {
+  if (at.i < column || at.column >= column + columns || at.row >= row) return 0;
+  return width * static_cast<float>((row - at.row) * (column + columns - at.column)) /
+         static_cast<float>(row * columns);
+}
+
 }  // namespace
+
+TEST_CASE("an island is cut out also where a slit ends in the same triangle", "[borders]") {
+  const auto uvOf = [](SheetCorner at) {
+    const bool isIsland = at.i >= 14 && at.i < 16 && at.j >= 8 && at.j < 10;
+    return std::array{slit(at, 10, 11, 6, 0.12f) + (isIsland ? 0.5f : 0), 0.0f};
+  };
+  const scenes::Mesh cage = sheet(28, -0.2f, 1.2f, uvOf), target = oneTriangle();
+  const CutTarget cut = cutOf(cage.view(), target.view(), cuttingAll());
+  const scenes::Mesh mesh = meshOf(target.view(), cut);
+  double ofIsland = 0;
+  for (std::size_t t = 0; t < cut.origins.size(); ++t) {
+    const float* uvs = cut.cornerUvs.data() + 6 * t;
+    if (std::min({uvs[0], uvs[2], uvs[4]}) > 0.6f) ofIsland += length(areaOf(mesh.view(), t));
+  }
+  CHECK(ofIsland == Approx(0.01).epsilon(0.05));
+}
+
+TEST_CASE("dozens of islands of a fine cage are not too complex for one triangle", "[borders]") {
+  const auto uvOf = [](SheetCorner at) {
+    const bool isIsland = at.i % 2 == 1 && at.j == 3;
+    return std::array{isIsland ? 1 + 0.1f * static_cast<float>((7 * at.i + 39) % 97) : 0, 0.0f};
+  };
+  const scenes::Mesh cage = sheet(60, -0.05f, 1.05f, uvOf), target = oneTriangle();
+  CHECK(cutOf(cage.view(), target.view(), cuttingAll()).origins.size() > 300);
+}
+
+TEST_CASE("what is given up for a finer division keeps no vertex from being removed", "[borders]") {
+  scenes::Random random(9);
+  std::vector<std::uint8_t> islands(56 * 56);
+  for (int n = 0; n < 56 * 56; ++n) {
+    const int i = n % 56, j = n / 56;
+    const bool isChosen = random.below(100) < 5;
+    islands[static_cast<std::size_t>(n)] = isChosen && (i < 18 || i > 22) && i % 2 == 1 && j % 2 == 1;
+  }
+  const auto uvOf = [&](SheetCorner at) {
+    const bool isIsland = islands[static_cast<std::size_t>(56 * at.j + at.i)] != 0;
+    return std::array{slit(at, 20, 44, 30, 0.2f) + (isIsland ? 1.5f : 0), 0.0f};
+  };
+  const scenes::Mesh cage = sheet(56, -0.2f, 1.2f, uvOf), target = oneTriangle();
+  // 272 with vertices that were kept for pieces that are not there.
+  CHECK(cutOf(cage.view(), target.view(), cuttingAll()).origins.size() <= 250);
+}
+
+TEST_CASE("a tolerance for welding does not join the new vertices of a cut", "[borders]") {
+  const scenes::Scene scene = scenes::head(8);
+  TransferOptions options = cutting();
+  const CutTarget exact = cutOf(scene.cage.view(), scene.target.view(), options);
+  options.weldTolerance = 1e-3f;
+  const CutTarget welded = cutOf(scene.cage.view(), scene.target.view(), options);
+  REQUIRE(welded.cornerUvs.size() == exact.cornerUvs.size());
+  float most = 0;
+  for (std::size_t i = 0; i < exact.cornerUvs.size(); ++i)
+    most = std::max(most, std::abs(welded.cornerUvs[i] - exact.cornerUvs[i]));
+  CHECK(most < 0.01f);
+  CHECK(std::equal(exact.cosmeticTriangles.begin(), exact.cosmeticTriangles.end(), welded.cosmeticTriangles.begin()));
+}
+
+TEST_CASE("triangles without area do not change what a cut leaves unpainted", "[borders]") {
+  const scenes::Scene scene = scenes::head(16);
+  scenes::Mesh strips = scene.target;
+  // As strips leave behind.
+  for (std::size_t i = 0; i < scene.target.indices.size(); i += 3)
+    strips.addTriangle(scene.target.indices[i], scene.target.indices[i + 1], scene.target.indices[i]);
+  const TransferOptions options = cutting(Seams::vertex);
+  const CutTarget cut = cutOf(scene.cage.view(), scene.target.view(), options);
+  const CutTarget other = cutOf(scene.cage.view(), strips.view(), options);
+  CHECK(std::equal(cut.zones.begin(), cut.zones.begin() + scene.target.vertexCount(), other.zones.begin()));
+}
 
 TEST_CASE("an edge is cut alike for all triangles on it, and pieces fit without a gap", "[borders]") {
   eachCut(10, [](const scenes::Scene& scene, const TransferOptions&, const CutTarget& cut, const scenes::Mesh& mesh) {

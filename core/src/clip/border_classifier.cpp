@@ -126,16 +126,16 @@ NearbyTriangles BorderClassifier::narrow(NearbyTriangles nearby, Hull hull) noex
   const std::uint32_t nearest = cagecast::nearestOf(candidates_, nearby.count, diagonal_).cageTriangle;
   // The distance to a triangle is a convex function. So, within the part, the distance to the cage is at most what is
   // interpolated between the corners' distances to one triangle,
-  double limits[kMaxCorners];
-  for (std::size_t k = 0; k < hull.size(); ++k)
-    limits[k] = closestPointOf(cage_.cage.triangles[nearest], hull[k]).distance + slack_;
+  limits_.cut(0);
+  for (const Vec3 corner : hull) limits_.add(closestPointOf(cage_.cage.triangles[nearest], corner).distance + slack_);
+  if (failed()) return nearby;
   // and the distance to any other triangle is at least its tangent at the centre.
   const auto isFar = [&](const Candidate& candidate) {
     const auto& [cageTriangle, place] = candidate;
     const Vec3 offset = centre - positionOf(cage_.cage.triangles[cageTriangle], place);
     const Vec3 away = place.distance > slack_ ? 1 / place.distance * offset : Vec3{0, 0, 0};
     for (std::size_t k = 0; k < hull.size(); ++k) {
-      if (place.distance + dot(away, hull[k] - centre) <= limits[k]) return false;
+      if (place.distance + dot(away, hull[k] - centre) <= limits_[k]) return false;
     }
     return true;
   };

@@ -63,9 +63,6 @@ class BorderClassifier {
   NearbyTriangles listNearby(Hull hull, double distance) noexcept;
   /// Lists what is near a smaller part, without what surely loses a tie there.
   NearbyTriangles narrow(NearbyTriangles nearby, Hull hull) noexcept;
-  /// The greatest number of corners of a part: a triangle that was clipped three times, each of which adds half as many
-  /// corners at most, even if rounding makes it less than convex.
-  static constexpr std::size_t kMaxCorners = 9;
 
   /// Forgets what was listed after a call of `mark`.
   [[nodiscard]] std::size_t mark() const noexcept { return listed_.size(); }
@@ -73,7 +70,7 @@ class BorderClassifier {
   /// Whether there were more comparisons than the limit.
   [[nodiscard]] bool isOverLimit() const noexcept { return comparisons_ > limit_; }
   /// Whether memory ran out, or there were too many comparisons.
-  [[nodiscard]] bool failed() const noexcept { return listed_.failed() || isOverLimit(); }
+  [[nodiscard]] bool failed() const noexcept { return listed_.failed() || limits_.failed() || isOverLimit(); }
 
   /// Whether all points of a part are surely in a region. False if that is not known.
   [[nodiscard]] bool isSurelyIn(std::uint32_t region, NearbyTriangles nearby, Hull hull) noexcept;
@@ -101,6 +98,7 @@ class BorderClassifier {
   ClosestPointSearch search_;
   std::uint32_t* found_;   ///< 1 per cage triangle: the result of `findWithin`.
   Candidate* candidates_;  ///< 1 per cage triangle: what is being compared.
+  List<double> limits_;    ///< 1 per corner of the part that is being narrowed.
   List<std::uint32_t> listed_;
   BoundaryLines lines_;
   double* clearances_;  ///< 1 per vertex of the cage: its distance to the nearest open edge; negative if unknown.

@@ -102,12 +102,14 @@ Status cutBorders(const MeshView& cage, const DecidedTarget& decided, const Tran
   for (std::uint32_t s = 0; s < segmentCount; ++s)
     locks[s] = {s, decided.culledBy[s] != CulledBy::none ? Lock::exclude : Lock::keep};
 
-  Projection again;
-  if (const Status status = project(cage, {cut.positions, cut.indices, {}, groups}, options, workspace, again);
-      !status.ok())
-    return status;
   TransferOptions locked = options;
   locked.steps.twins = false;
+  // New vertices are as close as 1e-7 to each other, also across a border: those are not one.
+  locked.weldTolerance = 0;
+  Projection again;
+  if (const Status status = project(cage, {cut.positions, cut.indices, {}, groups}, locked, workspace, again);
+      !status.ok())
+    return status;
   locked.locks = {locks, {}};
   Zones zones;
   const ProjectionView view{again.zones, segments, stats, again.recovery, {}};

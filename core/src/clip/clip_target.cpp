@@ -156,6 +156,13 @@ bool mergePass(const MeshView& target, const ClippedTriangles& pass, ClippedMesh
   return true;
 }
 
+/// Whether a triangle has an area; without, it is not cut, and is on all sides of what is cut beside it.
+bool hasArea(const MeshView& mesh, const std::uint32_t* corners) noexcept {
+  const auto at = [&](int k) { return Vec3::from(mesh.positions.data() + std::size_t{3} * corners[k]); };
+  const Vec3 normal = cross(at(1) - at(0), at(2) - at(0));
+  return dot(normal, normal) > 0;
+}
+
 /// The first pass.
 Status clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::uint8_t* takesPart, Arena& arena,
                       ClippedMesh& out) noexcept {
@@ -178,8 +185,9 @@ Status clipAlongLoops(const ClipCage& cage, const MeshView& target, const std::u
   }
   for (std::size_t t = 0; t < pass.regions.size(); ++t) {
     const std::uint32_t* corners = target.indices.data() + std::size_t{3} * pass.origins[t];
-    const bool isPart = std::all_of(corners, corners + 3, [&](std::uint32_t v) { return takesPart[v] != 0; });
-    for (std::size_t i = 3 * t; i < 3 * t + 3 && isPart && pass.regions[t] == 0; ++i)
+    const bool wasCut = std::all_of(corners, corners + 3, [&](std::uint32_t v) { return takesPart[v] != 0; }) &&
+                        hasArea(target, corners);
+    for (std::size_t i = 3 * t; i < 3 * t + 3 && wasCut && pass.regions[t] == 0; ++i)
       out.loopSides[pass.indices[i]] = LoopSide::covered;
   }
   for (std::size_t v = 0; v < out.loopSides.size(); ++v) {

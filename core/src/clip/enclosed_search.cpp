@@ -36,7 +36,7 @@ bool EnclosedSearch::find(const List<Piece>& pieces, TrianglePoint& point) noexc
 /// Nothing else of the part and of its quarters counts, so only what is near the core stays listed for them.
 void EnclosedSearch::addPart(const Piece& piece, Part part) noexcept {
   if (longestEdge(part.corners) <= triangle_.tolerances.feature) return;
-  Vec3 corners[BorderClassifier::kMaxCorners];
+  Vec3 corners[kMaxCorners];
   const std::uint32_t count = clipToCore(piece, part, corners);
   if (count == 0) return;
   BorderClassifier& classifier = triangle_.classifier;
@@ -53,14 +53,14 @@ void EnclosedSearch::addPart(const Piece& piece, Part part) noexcept {
 /// Clips a part of a piece to what is well inside the piece.
 /// @return The number of corners; 0 if nothing is left.
 std::uint32_t EnclosedSearch::clipToCore(const Piece& piece, const Part& part,
-                                         Vec3 (&core)[BorderClassifier::kMaxCorners]) const noexcept {
+                                         Vec3 (&core)[kMaxCorners]) const noexcept {
   std::uint32_t count = 3;
   for (int k = 0; k < 3; ++k) core[k] = part.corners[k].p;
   for (int k = 0; k < 3; ++k) {
-    Vec3 before[BorderClassifier::kMaxCorners];
+    Vec3 before[kMaxCorners];
     std::copy(core, core + count, before);
     const std::uint32_t beforeCount = std::exchange(count, 0);
-    double depths[BorderClassifier::kMaxCorners];
+    double depths[kMaxCorners];
     for (std::uint32_t i = 0; i < beforeCount; ++i) depths[i] = triangle_.depthInside(before[i], piece.corners, k) - 1;
     for (std::uint32_t i = 0; i < beforeCount; ++i) {
       const std::uint32_t next = (i + 1) % beforeCount;

@@ -28,6 +28,10 @@ class EnclosedSearch {
   static constexpr std::size_t kSharedParts = 8192;
   static constexpr std::size_t kSharedPartsPerTriangle = 256;
 
+  /// The greatest number of corners of a core: a triangle that was clipped three times, each of which adds half as many
+  /// corners at most, even if rounding makes it less than convex.
+  static constexpr std::size_t kMaxCorners = 9;
+
   /// A part of a piece that has to be searched.
   struct Part {
     TrianglePoint corners[3];
@@ -37,7 +41,7 @@ class EnclosedSearch {
 
   void addPart(const Piece& piece, Part part) noexcept;
   [[nodiscard]] std::uint32_t clipToCore(const Piece& piece, const Part& part,
-                                         Vec3 (&core)[BorderClassifier::kMaxCorners]) const noexcept;
+                                         Vec3 (&core)[kMaxCorners]) const noexcept;
 
   TargetTriangle& triangle_;
   List<Part> parts_;

@@ -1,7 +1,6 @@
 #include "clip/triangle_cutter.hpp"
 
 #include <algorithm>
-#include <array>
 #include <initializer_list>
 
 #include "clip/border_tracer.hpp"
@@ -16,7 +15,7 @@ namespace {
 /// How often a triangle is divided around a point inside, at most,
 constexpr int kMaxDivisions = 2048;
 /// and how deep these divisions are nested.
-constexpr int kMaxNesting = 128;
+constexpr int kMaxNesting = 48;
 /// Areas below this, as shares of the triangle's, count as none.
 constexpr double kFlat = 1e-12;
 
@@ -50,7 +49,7 @@ class TriangleCutter {
 
   [[nodiscard]] bool failed() const noexcept {
     return triangle_.failed() || crossings_.failed() || tracer_.failed() || builder_.failed() || merger_.failed() ||
-           enclosed_.failed() || spokes_.failed() || polygons_.failed();
+           enclosed_.failed() || spokes_.failed() || polygons_.failed() || hull_.failed();
   }
 
  private:
@@ -115,12 +114,15 @@ class TriangleCutter {
   /// Cuts a convex polygon, and removes it from `polygons_`.
   void divide(std::size_t first, std::size_t count) noexcept {
     const NearbyTriangles before = triangle_.nearbyIfListed();
-    if (count == 3 && !failed()) {
-      const auto corner = [&](std::size_t i) { return polygons_[first + i].point.p; };
-      triangle_.narrow(std::array{corner(0), corner(1), corner(2)});
-      divideTriangle(first);
+    hull_.cut(0);
+    for (std::size_t i = first; i < first + count; ++i) hull_.add(polygons_[i].point.p);
+    if (!failed()) {
+      triangle_.narrow({&hull_[0], count});
+      if (count == 3)
+        divideTriangle(first);
+      else
+        divideAcross(first, count);
     }
-    if (count > 3 && !failed()) divideAcross(first, count);
     polygons_.cut(first);
     triangle_.restore(before);
   }
@@ -194,10 +196,12 @@ class TriangleCutter {
   /// Cuts a triangle, and divides it instead if that misses something inside.
   void divideTriangle(std::size_t first) noexcept {
     const std::size_t vertices = triangle_.out.onBorder.size(), triangles = triangle_.out.origins.size();
+    const std::size_t kept = merger_.mark();
     const PolygonCorner corners[3] = {polygons_[first], polygons_[first + 1], polygons_[first + 2]};
     TrianglePoint missed{};
     if (cutSimple(corners, missed) || !mayDivideAround()) return;
     forget(vertices, triangles);
+    merger_.rewind(kept);
     divideAround(first, 3, missed);
   }
 
@@ -263,7 +267,7 @@ class TriangleCutter {
       const std::uint32_t l = (k + 1) % 3, m = (k + 2) % 3;
       if (crossed == 1 && polygon[k].isCrossed) {
         cutToCorner({corners[k], corners[l], corners[m]}, polygon[k].border);
-        return true;
+        return !enclosed_.find(builder_.pieces(), missed);
       }
       if (crossed == 2 && !polygon[l].isCrossed) {
         cutOffCorner({corners[k], corners[l], corners[m]}, polygon[k].border, polygon[m].border);
@@ -368,6 +372,7 @@ class TriangleCutter {
   PieceMerger merger_;
   EnclosedSearch enclosed_;
   List<PolygonCorner> polygons_;
+  List<Vec3> hull_;             ///< The corners of the polygon at hand.
   List<CrossingRange> spokes_;  ///< Of lines between the corners and the centre of a polygon.
   int divisions_ = 0;           ///< How often the triangle may still be divided around a point.
   int depth_ = 0;               ///< How deep the part at hand is nested in such divisions.
