@@ -341,6 +341,28 @@ describe('applyTransfer', () => {
     assert.ok(!geometry.hasAttribute('_cagecast_paint') && geometry.hasAttribute('uv1'));
   });
 
+  for (const shows of ['texture', 'material'] as const) {
+    test(`triangles in another order and UVs changed by others leave later updates right (${shows})`, () => {
+      const mesh = () => meshOf(scene.target);
+      const options = shows === 'texture' ? { texture: new Texture() } : { material: new MeshStandardMaterial() };
+      const [plain, sorted] = [mesh(), mesh()];
+      const [first, second] = [plain, sorted].map((target) => applyTransfer(target, meshOf(scene.cage), options));
+      const bytes = serialize(second!);
+      // As three-mesh-bvh does, in place.
+      const { array } = sorted.geometry.index!;
+      const triangles = Array.from({ length: array.length / 3 }, (_, t) => [...array.subarray(3 * t, 3 * t + 3)]);
+      array.set(triangles.reverse().flat());
+      attribute(sorted.geometry, 'uv1').fill(0.5);
+      assert.deepEqual(serialize(second!), bytes);
+      const decided = classify(project(scene.cage, { ...scene.target, groups: undefined }), { threshold: 1 });
+      for (const one of [first!, second!]) one.update(decided);
+      for (const one of [first!, second!]) one.update(one.result);
+      if (shows === 'texture')
+        assert.deepEqual(attribute(sorted.geometry, '_cagecast_paint'), attribute(plain.geometry, '_cagecast_paint'));
+      else assert.deepEqual(second!.overlays[0]!.geometry.index!.array, first!.overlays[0]!.geometry.index!.array);
+    });
+  }
+
   test('painted materials keep one hidden class, so that a renderer reads them as fast as others', () => {
     setFlagsFromString('--allow-natives-syntax');
     const isAlike = new Function('a', 'b', 'return %HaveSameMap(a, b)') as (a: object, b: object) => boolean;

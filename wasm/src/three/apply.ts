@@ -98,7 +98,7 @@ export function* apply(
   parts.forEach(({ geometry }, p) => {
     if (remades[p]) replace(geometry, remades[p]!);
     const { split } = prepared.parts[p]!;
-    geometry.setAttribute(`uv${channel}`, new BufferAttribute(split.uvs, 2));
+    geometry.setAttribute(`uv${channel}`, new BufferAttribute(split.uvs.slice(), 2));
     geometry.setAttribute(zoneAttribute, new BufferAttribute(new Float32Array(split.sources.length), 1));
     givenChannels.set(geometry, channel);
     paintings.set(geometry, painting);

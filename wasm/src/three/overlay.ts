@@ -91,13 +91,14 @@ export function makeOverlay(part: Part, base: Mesh, material: Material): Mesh {
   return overlay;
 }
 
-/** Makes an overlay draw the triangles of its base for which `cosmetic` is 1; one without any leaves its base. */
-export function showTriangles(overlay: Mesh, base: Mesh, cosmetic: Uint8Array): void {
-  const { index } = base.geometry;
+/**
+ * Makes an overlay draw the triangles of its base for which `cosmetic` is 1; one without any leaves its base.
+ * @param indices  The triangles in the order of `cosmetic`, which that of the base's own index may no longer be.
+ */
+export function showTriangles(overlay: Mesh, base: Mesh, indices: Uint32Array, cosmetic: Uint8Array): void {
   const corners = new Uint32Array(3 * cosmetic.reduce((sum, one) => sum + one, 0));
   let filled = 0;
-  for (let i = 0; i < 3 * cosmetic.length; ++i)
-    if (cosmetic[Math.floor(i / 3)] === 1) corners[filled++] = index ? index.getX(i) : i;
+  for (let i = 0; i < 3 * cosmetic.length; ++i) if (cosmetic[Math.floor(i / 3)] === 1) corners[filled++] = indices[i]!;
   overlay.geometry = shareVertices(base.geometry, new BufferAttribute(corners, 1));
   if (filled === 0) overlay.removeFromParent();
   else if (overlay.parent !== base) base.add(overlay);

@@ -132,7 +132,7 @@ export function showMaterial(shown: ShownPart, material: Material): void {
   const { mesh } = shown.part;
   if (!mesh) return;
   shown.overlay ??= makeOverlay(shown.part, mesh, material);
-  showTriangles(shown.overlay, mesh, shown.cosmetic);
+  showTriangles(shown.overlay, mesh, shown.split.indices, shown.cosmetic);
 }
 
 /**
@@ -153,8 +153,10 @@ export function showPaint(shown: ShownPart, painting: Painting, copies: Map<Mate
       mesh,
       paintOn(overlayMaterial(materials[isBlind.indexOf(true)]!), painting, true),
     );
-  if (shown.overlay)
-    showTriangles(shown.overlay, mesh, needsOverlay ? blindTriangles(shown, isBlind) : new Uint8Array(0));
+  if (shown.overlay) {
+    const triangles = needsOverlay ? blindTriangles(shown, isBlind) : new Uint8Array(0);
+    showTriangles(shown.overlay, mesh, shown.split.indices, triangles);
+  }
   if (!hasPaint) return [];
   const painted = materials.map((material, m) => {
     if (isBlind[m]) return material;

@@ -66,7 +66,9 @@ export function* remake(
     }
     morphs.set(name, all);
   }
-  return { attributes, morphs, indices: split.indices, ...movedRanges(geometry, pieces?.origins, firstTriangle) };
+  // A copy, because three-mesh-bvh reorders the index of a geometry, while what is kept is in the order of the verdicts.
+  const indices = split.indices.slice();
+  return { attributes, morphs, indices, ...movedRanges(geometry, pieces?.origins, firstTriangle) };
 }
 
 /** Replaces what a geometry has, and has its GPU buffers made again. */
