@@ -18,6 +18,7 @@ import {
   InterleavedBuffer,
   InterleavedBufferAttribute,
   Matrix4,
+  MeshNormalMaterial,
   MeshStandardMaterial,
   Quaternion,
   Skeleton,
@@ -463,6 +464,20 @@ describe('applyTransfer', () => {
     dispose();
     assert.deepEqual(freed, []);
     assert.equal(target.children.length, 0);
+  });
+
+  test('another texture reaches the overlay on a material that cannot be painted', () => {
+    const target = new ThreeMesh(geometryOf(scene.target), new MeshNormalMaterial());
+    const [red, green] = [new Texture(), new Texture()];
+    const { overlays, setTexture } = applyTransfer(target, meshOf(scene.cage), { texture: red });
+    const shader = { uniforms: {} as Record<string, { value: unknown }>, vertexShader: '', fragmentShader: '' };
+    (overlays[0]!.material as MeshStandardMaterial).onBeforeCompile(shader as never, undefined as never);
+    assert.equal(shader.uniforms['cagecastMap']!.value, red);
+    for (const texture of [green, undefined, red]) {
+      setTexture(texture);
+      assert.equal(overlays[0]!.parent, texture ? target : null);
+      if (texture) assert.equal(shader.uniforms['cagecastMap']!.value, texture);
+    }
   });
 
   test('a UV set that a model has of its own stays, also when it is transferred again', () => {

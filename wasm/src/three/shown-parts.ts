@@ -147,12 +147,11 @@ export function showPaint(shown: ShownPart, painting: Painting, copies: Map<Mate
   const materials = [mesh.material].flat();
   const isBlind = materials.map((material) => !canBePainted(material));
   const needsOverlay = hasPaint && isBlind.includes(true);
-  if (needsOverlay && !shown.overlay)
-    shown.overlay = makeOverlay(
-      shown.part,
-      mesh,
-      paintOn(overlayMaterial(materials[isBlind.indexOf(true)]!), painting, true),
-    );
+  if (needsOverlay) {
+    shown.overlay ??= makeOverlay(shown.part, mesh, overlayMaterial(materials[isBlind.indexOf(true)]!));
+    // Each time, for the texture may be another.
+    shown.overlay.material = paintOn(shown.overlay.material as Material, painting, true);
+  }
   if (shown.overlay) {
     const triangles = needsOverlay ? blindTriangles(shown, isBlind) : new Uint8Array(0);
     showTriangles(shown.overlay, mesh, shown.split.indices, triangles);
