@@ -301,7 +301,10 @@ export const layerScenes: Record<string, () => unknown> = {
       send('pointerup', ...to, rest);
     };
     Object.assign(painter.brush, { size: 0.08, hardness: 1 });
-    drag([24, 32], [40, 32]);
+    send('pointerdown', 24, 32);
+    send('pointermove', 40, 32);
+    const during = pixelAt(look(), 32, 32)[1]!;
+    send('pointerup', 40, 32);
     const stroke = [24, 32, 40].map((x) => pixelAt(look(), x, 32)[1]!);
     const whole = filled(painter).texels;
     const captured = seen;
@@ -341,7 +344,7 @@ export const layerScenes: Record<string, () => unknown> = {
     canvas.setPointerCapture = setPointerCapture;
     canvas.remove();
     painter.dispose();
-    return { stroke, whole, pen, captured, beside, erased, sticker, two, fingers, rest: left2 };
+    return { during, stroke, whole, pen, captured, beside, erased, sticker, two, fingers, rest: left2 };
   },
 
   /** What a painter needs of the renderer stays as it was. */

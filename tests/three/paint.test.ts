@@ -406,6 +406,7 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
 
   test('pointers paint, erase and place stickers; beside the model they are left to others', async () => {
     const seen = await run<{
+      during: number;
       stroke: number[];
       whole: number;
       pen: number;
@@ -417,6 +418,7 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
       fingers: number[];
       rest: number;
     }>('pointers');
+    assert.ok(seen.during < 40, `${seen.during} while the pointer is down`);
     for (const green of seen.stroke) assert.ok(green < 40, seen.stroke.join());
     assert.ok(seen.pen > 0 && seen.pen < 0.6 * seen.whole, `${seen.pen} of ${seen.whole}`);
     assert.deepEqual([seen.captured, seen.beside, seen.erased], [0, 1, true]);

@@ -49,7 +49,7 @@ export class Layers extends Emitter<{
     this.composite = new Composite(size);
     this.stack.on('change', (layers) => {
       this.composite.set(layers);
-      this.emit('change', undefined);
+      this.announce();
     });
     renderer.domElement.addEventListener('webglcontextrestored', this.#restored);
   }
@@ -131,6 +131,11 @@ export class Layers extends Emitter<{
   /** Announces that a part of the texture has changed, or that a stroke is in progress. For painters. */
   touch(...change: Parameters<Composite['touch']>): void {
     this.composite.touch(...change);
+    this.announce();
+  }
+
+  /** Tells that the texture will change. For painters that have told `composite` what changed. */
+  announce(): void {
     this.emit('change', undefined);
   }
 

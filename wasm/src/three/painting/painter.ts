@@ -92,7 +92,7 @@ export class Painter {
     if (size !== undefined) this.#painter.size = size;
     const mesh: CageMesh = { positions: Float32Array.from(positions), indices, uvs: Float32Array.from(uvs) };
     this.#painter.setCage(mesh);
-    this.#painter.on('change', () => this.layers.touch([]));
+    this.#painter.on('change', () => this.layers.announce());
     for (const model of this.#models) model.setTexture(this.layers.texture);
     this.layers.renderer.domElement.addEventListener('webglcontextrestored', this.#restored);
   }
