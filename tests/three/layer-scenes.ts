@@ -122,6 +122,19 @@ export const layerScenes: Record<string, () => unknown> = {
     return { styles, all, moved, undone, fewer, back, count, width, errors };
   },
 
+  /** A layer whose options are there, but undefined. */
+  undefinedStyle() {
+    const layers = createLayers({ renderer, size: 256 });
+    const none = { opacity: undefined, tint: undefined, blend: undefined, visible: undefined } as object;
+    const layer = layers.add(flat(0xdd3311), none);
+    const added = texelOf(layers.toImageData(16));
+    layers.set(layer, { opacity: 0.5 });
+    layers.set(layer, { ...none, tint: '#ff0000' });
+    const { opacity, tint, blend, visible } = layers.list[0]!;
+    layers.dispose();
+    return { added, style: { opacity, tint, blend, visible } };
+  },
+
   /** One stack on two models, beside the same colour as a texture; a texture that changes. */
   stackOnModels() {
     const layers = createLayers({ renderer });

@@ -322,6 +322,13 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
     seen.errors.forEach((message, i) => assert.match(message, expected[i]!));
   });
 
+  test('an option that is undefined is as one that is not there', async () => {
+    assert.deepEqual(await run('undefinedStyle'), {
+      added: [0xdd, 0x33, 0x11, 255],
+      style: { opacity: 0.5, tint: '#ff0000', blend: 'normal', visible: true },
+    });
+  });
+
   test('one stack is shown on several models as a texture would be, and drawn again only after a change', async () => {
     const { apart, hidden, idle, changed } = await run<{
       apart: number[];

@@ -30,8 +30,8 @@ export interface Style {
 /** The style of a layer by default. */
 export const plainStyle: Style = { opacity: 1, tint: '#ffffff', blend: 'normal', visible: true };
 
-/** @throws {CagecastError} `badOption` that names the field and its value. */
-export function checkStyle(style: Partial<Style>): void {
+/** The fields of a style that are not undefined. @throws {CagecastError} `badOption` that names the field and its value. */
+export function readStyle(style: Partial<Style>): Partial<Style> {
   const check = (fits: boolean, name: string, value: unknown, what: string): void => {
     if (!fits)
       throw new CagecastError('badOption', `cagecast/three/layers: ${name} is ${describe(value)}, not ${what}`);
@@ -41,6 +41,8 @@ export function checkStyle(style: Partial<Style>): void {
   check(/^#[0-9a-f]{6}$/i.test(tint), 'tint', tint, 'a colour such as #ff8800');
   check(blendModes.includes(blend), 'blend', blend, `one of ${blendModes.join(', ')}`);
   check(typeof visible === 'boolean', 'visible', visible, 'true or false');
+  // Spread, undefined would take the place of a value.
+  return Object.fromEntries(Object.entries(style).filter(([, value]) => value !== undefined));
 }
 
 const describe = (value: unknown): string =>

@@ -1,6 +1,6 @@
 import { CagecastError } from '../../index.js';
 import { Emitter } from './emitter.js';
-import { checkStyle, checkTexture, difference, type Layer, plainStyle, type Sheet, type Style } from './layer.js';
+import { checkTexture, difference, type Layer, plainStyle, readStyle, type Sheet, type Style } from './layer.js';
 
 /** The greatest number of layers. */
 export const maxLayers = 16;
@@ -111,8 +111,8 @@ export class LayerStack extends Emitter<StackEvents> {
 
   /** Changes a layer's style. */
   restyle(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
-    checkStyle(style);
-    this.#replace({ ...this.#layers[this.#placeOf(layer)]!, ...style });
+    const change = readStyle(style);
+    this.#replace({ ...this.#layers[this.#placeOf(layer)]!, ...change });
   }
 
   select(layer: Layer | undefined): void {
@@ -128,8 +128,7 @@ export class LayerStack extends Emitter<StackEvents> {
 
   #make(name: string, sheet: Sheet, style: Partial<Style>, place: number): Layer {
     checkTexture(sheet?.texture, `the texture of "${name}"`);
-    checkStyle(style);
-    const layer = { id: ++this.#lastId, name, sheet, ...plainStyle, ...style };
+    const layer = { id: ++this.#lastId, name, sheet, ...plainStyle, ...readStyle(style) };
     this.#set([...this.#layers.slice(0, place), layer, ...this.#layers.slice(place)]);
     return layer;
   }
