@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -137,6 +137,31 @@ test('a batch that cannot be right does not begin', () => {
     assert.match(stderr, message);
     assert.match(stderr, /^cagecast: [^\n]+\n$/);
   }
+});
+
+test('results that cannot be written end the batch at once; their folder is made', () => {
+  mkdirSync(at('some'));
+  for (let i = 0; i < 12; ++i) writeFileSync(at('some', `${i}.glb`), target);
+  const batch = (results: string, out: string) =>
+    spawnSync(
+      process.execPath,
+      [
+        ...['dist/cli.js', 'batch', at('some/*.glb'), '--cage', at('cage.glb'), '--workers', '2'],
+        ...['-o', at(out, '{name}.glb'), '--results', results],
+      ],
+      { encoding: 'utf8', timeout: 60_000 },
+    );
+  const refused = batch(at('some'), 'refused');
+  assert.deepEqual([refused.status, refused.stdout, existsSync(at('refused'))], [1, '', false]);
+  assert.match(refused.stderr, /^cagecast: [^\n]*some: cannot be written [^\n]*\n$/);
+  if (existsSync('/dev/full')) {
+    const full = batch('/dev/full', 'full');
+    assert.equal(full.status, 1);
+    assert.match(full.stderr, /^cagecast: \/dev\/full: cannot be written [^\n]*\n$/);
+    assert.ok(readdirSync(at('full')).length < 9, 'no thread goes on with what is waiting');
+  }
+  batch(at('made/for/results.jsonl'), 'made');
+  assert.equal(linesOf(readFileSync(at('made/for/results.jsonl'), 'utf8')).length, 12);
 });
 
 test('--resume does again what another job has overwritten since, and the last line about a target is true', () => {

@@ -1,4 +1,4 @@
-import { appendFileSync, existsSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { appendFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { basename, dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -57,6 +57,7 @@ export async function batchCommand(
   progress: Progress,
 ): Promise<BatchSummary> {
   const began = performance.now();
+  if (results !== undefined) openResults(results);
   const before = resume ? readResults(results!) : noResults();
   const configs = [...new Set(jobs.flatMap(({ command }) => command.rules.config ?? []))];
   const summary: BatchSummary = { jobs: jobs.length, done: 0, failed: 0, skipped: 0, misfits: 0, configs, seconds: 0 };
@@ -90,16 +91,20 @@ export async function batchCommand(
 /** Runs jobs in a thread, one after another, until none is waiting. A thread that dies is replaced. */
 async function work(waiting: Job[], take: (job: Job, outcome: Outcome) => void): Promise<void> {
   let worker: Worker | undefined;
-  for (let job = waiting.shift(); job; job = waiting.shift()) {
-    worker ??= new Worker(fileURLToPath(import.meta.url), { argv: [] });
-    const outcome = await ask(worker, job.command);
-    if (outcome === undefined) worker = undefined;
-    take(
-      job,
-      outcome ?? { status: 'failed', ms: 0, error: `${job.command.target}: its thread died, as if out of memory` },
-    );
+  try {
+    for (let job = waiting.shift(); job; job = waiting.shift()) {
+      worker ??= new Worker(fileURLToPath(import.meta.url), { argv: [] });
+      const outcome = await ask(worker, job.command);
+      if (outcome === undefined) worker = undefined;
+      take(
+        job,
+        outcome ?? { status: 'failed', ms: 0, error: `${job.command.target}: its thread died, as if out of memory` },
+      );
+    }
+  } finally {
+    waiting.length = 0; // If a line could not be taken, the other threads end, too.
+    await worker?.terminate();
   }
-  await worker?.terminate();
 }
 
 /** The answer of a worker; `undefined` if it died. */
@@ -148,6 +153,12 @@ function readResults(path: string): EarlierResults {
   }
   if (text !== '' && !text.endsWith('\n')) append(path, '\n');
   return { lines, writers, last };
+}
+
+/** Finds out before the first job whether results can be written. Makes their folder. */
+function openResults(path: string): void {
+  attempt(path, 'written', () => mkdirSync(dirname(path), { recursive: true }));
+  append(path, '');
 }
 
 const append = (path: string, text: string): void => attempt(path, 'written', () => appendFileSync(path, text));
