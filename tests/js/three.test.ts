@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { before, describe, test } from 'node:test';
 import { setFlagsFromString } from 'node:v8';
 import { CagecastError, classify, init, type Mesh, project, type TransferResult, transfer, Zone } from 'cagecast';
-import { applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
+import { type ApplyOptions, applyTransfer, applyTransferAsync, deserialize, extract, serialize } from 'cagecast/three';
 import { terminate } from 'cagecast/worker';
 import {
   BatchedMesh,
@@ -42,6 +42,10 @@ const geometryOf = ({ positions, indices, uvs }: Mesh): BufferGeometry => {
 const meshOf = (mesh: Mesh): ThreeMesh<BufferGeometry, MeshStandardMaterial> =>
   new ThreeMesh(geometryOf(mesh), new MeshStandardMaterial({ roughness: 0.3 }));
 const attribute = (geometry: BufferGeometry, name: string) => geometry.getAttribute(name).array as Float32Array;
+const geometries = (mesh: ThreeMesh) => ({
+  ...Object.fromEntries(Object.entries(mesh.geometry.attributes).map(([name, { array }]) => [name, array])),
+  index: mesh.geometry.index!.array,
+});
 
 describe('extract', () => {
   test('a geometry, a mesh and a scene give the arrays that transfer takes', () => {
@@ -676,10 +680,6 @@ describe('applyTransfer', () => {
 
 describe('saved transfers', () => {
   const texture = new Texture();
-  const geometries = (mesh: ThreeMesh) => ({
-    ...Object.fromEntries(Object.entries(mesh.geometry.attributes).map(([name, { array }]) => [name, array])),
-    index: mesh.geometry.index!.array,
-  });
 
   for (const borders of ['triangle', 'cut'] as const) {
     test(`give the same geometry and the same result, without a cage (borders: ${borders})`, () => {
@@ -772,6 +772,61 @@ describe('applyTransferAsync', () => {
     const work = applyTransferAsync(target, meshOf(scene.cage), { texture: new Texture() });
     target.geometry = geometryOf(scene.target);
     await assert.rejects(work, /was changed meanwhile/);
+    terminate();
+  });
+
+  for (const [name, during] of Object.entries<ApplyOptions>({
+    'splits vertices': { texture: new Texture() },
+    'cuts triangles': { borders: 'cut' },
+  })) {
+    test(`a transfer meanwhile that ${name} makes it an error, and stays as it is`, async () => {
+      const [target, other] = [meshOf(scene.target), meshOf(scene.target)];
+      const work = applyTransferAsync(target, meshOf(scene.cage), {
+        texture: new Texture(),
+        onProgress: (_, stage) => stage === 'geometry' && applyTransfer(target, meshOf(scene.cage), during),
+      });
+      await assert.rejects(work, { code: 'badArgument', message: /was changed meanwhile/ });
+      applyTransfer(other, meshOf(scene.cage), during);
+      assert.deepEqual(geometries(target), geometries(other));
+      terminate();
+    });
+  }
+
+  for (const borders of ['triangle', 'cut'] as const) {
+    test(`models that share a geometry may be painted at the same time (borders: ${borders})`, async () => {
+      const options = { texture: new Texture(), borders };
+      const [first, alone] = [meshOf(scene.target), meshOf(scene.target)];
+      const second = first.clone();
+      await Promise.all([first, second].map((target) => applyTransferAsync(target, meshOf(scene.cage), options)));
+      applyTransfer(alone, meshOf(scene.cage), options);
+      assert.notEqual(first.geometry, second.geometry);
+      for (const { geometry } of [first, second])
+        for (const [name, array] of Object.entries(geometries(alone)))
+          assert.deepEqual(name === 'index' ? geometry.index!.array : attribute(geometry, name), array);
+      terminate();
+    });
+  }
+
+  test('attributes that are added while others are copied make it an error', async () => {
+    const target = meshOf(scene.target);
+    const { geometry } = target;
+    const heat = new BufferAttribute(new Float32Array(geometry.getAttribute('position').count), 1);
+    const values = heat.array;
+    let isFirst = true;
+    Object.defineProperty(heat, 'array', {
+      get() {
+        if (isFirst) {
+          isFirst = false;
+          applyTransfer(target, meshOf(scene.cage), { seams: 'vertex', channel: 2 });
+        }
+        return values;
+      },
+    });
+    geometry.setAttribute('heat', heat);
+    const work = applyTransferAsync(target, meshOf(scene.cage), { texture: new Texture() });
+    await assert.rejects(work, { code: 'badArgument', message: /was changed meanwhile/ });
+    assert.ok(geometry.hasAttribute('uv2') && !geometry.hasAttribute('uv1'));
+    for (const one of Object.values(geometry.attributes)) assert.equal(one.count, heat.count);
     terminate();
   });
 });

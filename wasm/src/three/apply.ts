@@ -1,4 +1,4 @@
-import { BufferAttribute, type BufferGeometry, type Material, type Mesh, type Texture } from 'three';
+import { BufferAttribute, BufferGeometry, type Material, type Mesh, type Texture } from 'three';
 import { CagecastError, type Classification } from '../index.js';
 import type { PartRange, Prepared } from '../parts/prepare.js';
 import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
@@ -36,25 +36,46 @@ function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
   return free;
 }
 
+/** Whether a mesh that is not of the target shows what an earlier transfer made of a geometry. */
+function isShownElsewhere(geometry: BufferGeometry, parts: readonly Part[]): boolean {
+  const others = [...(paintings.get(geometry)?.meshes ?? [])];
+  return others.some((other) => other.geometry === geometry && parts.every(({ mesh }) => mesh !== other));
+}
+
 /**
  * Gives every part a geometry of its own: meshes that share one get copies, within the target and where a mesh elsewhere shows what
  * an earlier transfer made of it.
+ * @param sources  What is copied, for each part.
  */
-function ownGeometries(parts: readonly Part[]): void {
+function ownGeometries(parts: readonly Part[], sources: readonly BufferGeometry[]): void {
   const taken = new Set<BufferGeometry>();
-  const meshes = new Set(parts.map(({ mesh }) => mesh));
-  for (const part of parts) {
+  for (const [p, part] of parts.entries()) {
     const { mesh, geometry } = part;
-    const others = [...(paintings.get(geometry)?.meshes ?? [])];
-    const isShownElsewhere = others.some((other) => other.geometry === geometry && !meshes.has(other));
-    if (mesh && (taken.has(geometry) || isShownElsewhere)) {
-      mesh.geometry = part.geometry = geometry.clone();
+    if (mesh && (taken.has(geometry) || isShownElsewhere(geometry, parts))) {
+      mesh.geometry = part.geometry = sources[p]!.clone();
       const channel = givenChannels.get(geometry);
       if (channel) givenChannels.set(part.geometry, channel);
     }
     taken.add(part.geometry);
   }
 }
+
+/** Holds what a geometry has now: transfers give it other attributes, but do not change these. */
+function stateOf(geometry: BufferGeometry): BufferGeometry {
+  const { name, userData, attributes, morphAttributes, morphTargetsRelative, index, groups, drawRange } = geometry;
+  const held = { name, userData, morphTargetsRelative, index, groups };
+  return Object.assign(new BufferGeometry(), held, {
+    attributes: { ...attributes },
+    morphAttributes: { ...morphAttributes },
+    drawRange: { ...drawRange },
+  });
+}
+
+/** The state of geometries when they are extracted, for `apply`. */
+export const statesOf = ({ parts }: Extracted): BufferGeometry[] => parts.map(({ geometry }) => stateOf(geometry));
+
+const hasOthers = (geometry: BufferGeometry, state: BufferGeometry): boolean =>
+  geometry.attributes['position'] !== state.attributes['position'] || geometry.index !== state.index;
 
 /** Node materials are for `WebGPURenderer`, which would show an overlay of ours without its paint. */
 function checkMaterials(parts: readonly Part[]): void {
@@ -73,21 +94,28 @@ function checkMaterials(parts: readonly Part[]): void {
  */
 export function* apply(
   { mesh: arrays, parts }: Extracted,
+  extracted: readonly BufferGeometry[],
   prepared: Prepared,
   options: ApplyOptions,
 ): Generator<void, Applied> {
   const channel = options.channel ?? freeChannel(parts);
   if (options.texture && !options.material) checkMaterials(parts);
-  const geometries = parts.map(({ geometry }) => geometry);
+  const states = parts.map(({ geometry }, p) =>
+    hasOthers(geometry, extracted[p]!) ? extracted[p]! : stateOf(geometry),
+  );
   const remades: (Remade | undefined)[] = [];
   for (const [p, part] of parts.entries())
-    remades.push(yield* remake(part.geometry, prepared.parts[p]!, part.firstTriangle));
-  parts.forEach((part, p) => {
-    if ((part.mesh?.geometry ?? part.geometry) !== geometries[p])
-      throw new CagecastError('badArgument', `cagecast/three: the geometry of "${part.name}" was changed meanwhile`);
+    remades.push(yield* remake(states[p]!, prepared.parts[p]!, part.firstTriangle));
+  const sources = parts.map(({ name, mesh, geometry }, p) => {
+    const isLate = (attribute: string) => remades[p] && !remades[p].attributes.has(attribute);
+    const isChanged = hasOthers(geometry, states[p]!) || Object.keys(geometry.attributes).some(isLate);
+    // The transfer of a mesh elsewhere may change the geometry: this one gets a copy of what it was.
+    if ((mesh && mesh.geometry !== geometry) || (isChanged && !(mesh && isShownElsewhere(geometry, parts))))
+      throw new CagecastError('badArgument', `cagecast/three: the geometry of "${name}" was changed meanwhile`);
+    return isChanged ? states[p]! : geometry;
   });
 
-  ownGeometries(parts);
+  ownGeometries(parts, sources);
   const painting = makePainting({
     texture: options.texture,
     opacity: options.opacity ?? 1,

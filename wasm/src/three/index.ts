@@ -10,7 +10,7 @@ import { type CutPart, decideAgain } from '../parts/cut-part.js';
 import { type PartRange, type Prepared, type PrepareInput, prepare } from '../parts/prepare.js';
 import type { SplitPart } from '../parts/split-part.js';
 import { prepareParts } from '../worker/index.js';
-import { apply, rangesOf } from './apply.js';
+import { apply, rangesOf, statesOf } from './apply.js';
 import { type Calling, nextTask, share } from './async.js';
 import { cutGeometry } from './cut.js';
 import { type Extracted, extract, type Part, placeOf } from './extract.js';
@@ -93,7 +93,7 @@ export function applyTransfer(
 ): Applied {
   const call = read('applyTransfer', target, cage, options);
   const prepared = call.saved ?? prepare(call.input);
-  const applied = atOnce(apply(call.extracted, prepared, options));
+  const applied = atOnce(apply(call.extracted, call.states, prepared, options));
   return remember(applied, () => ({ key: call.key(), prepared }));
 }
 
@@ -102,7 +102,8 @@ export function applyTransfer(
  * thread, copying attributes and morph targets, is done in tasks of some milliseconds. Nothing of the model is changed before the
  * last of them. `init` is not needed. The first frame after it uploads what has changed, which three.js does in one task.
  * @param options  And `signal`, which cancels the call, and `onProgress(share, stage)`.
- * @throws {CagecastError} as `applyTransfer`, and `unsupported` if the worker cannot start.
+ * @throws {CagecastError} as `applyTransfer`; `badArgument` if a geometry was changed meanwhile, as by another transfer; and
+ * `unsupported` if the worker cannot start.
  */
 export async function applyTransferAsync(
   target: Object3D | BufferGeometry,
@@ -116,13 +117,14 @@ export async function applyTransferAsync(
   onProgress?.(0.05, 'transfer');
   const prepared = call.saved ?? (await prepareParts(call.input, { signal }));
   onProgress?.(0.7, 'geometry');
-  const applied = await share(apply(call.extracted, prepared, options), signal);
+  const applied = await share(apply(call.extracted, call.states, prepared, options), signal);
   onProgress?.(1, 'done');
   return remember(applied, () => ({ key: call.key(), prepared }));
 }
 
 interface Call {
   extracted: Extracted;
+  states: BufferGeometry[];
   /** What was prepared earlier. */
   saved: Prepared | undefined;
   input: PrepareInput;
@@ -145,6 +147,7 @@ function read(
   if (result) checkResult(result, extracted);
   return {
     extracted,
+    states: statesOf(extracted),
     saved: saved && checkSaved(saved, extracted),
     input: {
       cage: around,
