@@ -203,6 +203,23 @@ test('--resume does again what another job has overwritten since, and the last l
   assert.deepEqual([last().status, last().target], ['skipped', at('in/0.glb')]);
 });
 
+test('what looks like a placeholder or a pattern of replacement in the name of a target stands as it is', () => {
+  mkdirSync(at('odd'));
+  const names = ['a$$b.glb', 'a$&b.glb', 'a{dir}b.glb', 'a{name}b.glb'];
+  for (const name of names) writeFileSync(at('odd', name), target);
+  const { stderr } = cagecast(
+    'batch',
+    at('odd/*.glb'),
+    '--cage',
+    at('cage.glb'),
+    '-o',
+    '{dir}/out/{name}.glb',
+    '--quiet',
+  );
+  assert.equal(stderr, '');
+  assert.deepEqual(readdirSync(at('odd/out')).sort(), names.sort());
+});
+
 test('settings that are wrong fail the jobs that they are for, and no other', () => {
   mkdirSync(at('one'));
   mkdirSync(at('two'));

@@ -156,8 +156,11 @@ function jobOf({ settled: _, ...given }: JobDefaults & JobNames & Settled): Job 
   const { target, cage, output, report } = given;
   if (cage === undefined)
     throw new InputError('has no cage; give one with --cage, or as "cage" in the manifest').in(target);
+  // In one pass and by a function: names may hold `{dir}`, or `$&`.
   const fill = (path: string | undefined) =>
-    path?.replaceAll('{name}', basename(target, extname(target))).replaceAll('{dir}', dirname(target));
+    path?.replace(/\{name\}|\{dir\}/g, (found) =>
+      found === '{dir}' ? dirname(target) : basename(target, extname(target)),
+    );
   const command: TransferCommand = { ...given, cage, output: fill(output), report: fill(report) };
   const read = readBy(command)
     .flatMap((path) => filesOf(tilePath(path, '*')))
