@@ -1372,6 +1372,9 @@ describe('the same mesh in other forms gives the same answer', () => {
     writeFileSync(at('head 50%.bin'), bin);
     writeFileSync(at('percent.gltf'), JSON.stringify(json));
     assert.deepEqual(answer(at('percent.gltf')), expected());
+    report(at('percent.gltf'), at('cage.glb'), '-o', at('percent.glb'));
+    const clash = cagecast('transfer', at('percent.gltf'), '--cage', at('cage.glb'), '-o', at('head 50%.gltf'));
+    assert.match(clash.stderr, /head 50%\.bin: would be overwritten, but is read by this command/);
   });
 
   test('an unknown extension of materials, though required, is accepted', () => {

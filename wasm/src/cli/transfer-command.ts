@@ -1,6 +1,7 @@
 import { basename, dirname, join } from 'node:path';
 import { dracoOf, meshoptView } from '../gltf/check.js';
 import { placeOf } from '../gltf/extract.js';
+import { localFile } from '../gltf/files.js';
 import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
 import { diagonal, zoneAttribute } from '../gltf/overlay.js';
@@ -164,8 +165,9 @@ function refuseInputs(
   files: { path: string }[],
 ): void {
   const { buffers = [], images = [] } = targetFile.json;
-  const uris = [...buffers, ...images].flatMap(({ uri }) => (uri === undefined || uri.startsWith('data:') ? [] : uri));
-  const beside = uris.map((uri) => join(dirname(target), decodeURIComponent(uri)));
+  const beside = [...buffers, ...images].flatMap(({ uri }) =>
+    uri === undefined ? [] : (localFile(uri, dirname(target)) ?? []),
+  );
   const read = [target, cage, ...(texture === undefined ? [] : [texture]), ...beside].map((path) => fileOf(path));
   const clash = files.find(({ path }) => read.includes(fileOf(path)));
   if (clash)

@@ -42,10 +42,10 @@ export async function readBytes(path: string, limits: ReadLimits = defaultLimits
  */
 export async function readUri(name: string, uri: string, folder: string, options: ReadOptions): Promise<Uint8Array> {
   if (/^data:/i.test(uri)) return readDataUri(name, uri);
-  if (/^[a-z][a-z0-9+.-]+:/i.test(uri))
-    throw new InputError(`${name} is at ${uri.slice(0, 60)}; only local files can be read`);
+  const path = localFile(uri, folder);
+  if (path === undefined) throw new InputError(`${name} is at ${uri.slice(0, 60)}; only local files can be read`);
   try {
-    return await readBeside(resolve(folder, decoded(uri)), folder, options);
+    return await readBeside(path, folder, options);
   } catch (error) {
     throw error instanceof InputError ? new InputError(`${name} is in ${uri.slice(0, 60)}: ${error.message}`) : error;
   }
@@ -147,6 +147,10 @@ async function reading<Result>(read: () => Promise<Result>): Promise<Result> {
     throw new InputError(reason ?? `cannot be read (${firstLine(error)})`, { cause: error });
   }
 }
+
+/** The file that a glTF in a folder refers to; none for a data URI or an address in the network. */
+export const localFile = (uri: string, folder: string): string | undefined =>
+  /^[a-z][a-z0-9+.-]+:/i.test(uri) ? undefined : resolve(folder, decoded(uri));
 
 /** The name of a file; as it stands, if it is not encoded as an address has to be. */
 function decoded(uri: string): string {
