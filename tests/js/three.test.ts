@@ -484,6 +484,42 @@ describe('applyTransfer', () => {
     }
   });
 
+  test('a later transfer takes away the overlays whose paint it replaces', () => {
+    const target = new ThreeMesh(geometryOf(scene.target), new MeshNormalMaterial());
+    const materials = [1, 2, 3].map(() => new MeshStandardMaterial());
+    const show = (options: ApplyOptions) => applyTransfer(target, meshOf(scene.cage), options);
+    show({ texture: new Texture() });
+    const painted = show({ texture: new Texture() });
+    assert.deepEqual(target.children, painted.overlays);
+    show({});
+    assert.deepEqual(target.children, painted.overlays);
+    show({ material: materials[0]! });
+    const other = show({ material: materials[1]! });
+    assert.deepEqual(target.children, other.overlays);
+    // Both can be seen if each has UVs of its own.
+    const beside = show({ material: materials[2]!, channel: 2 });
+    assert.deepEqual(target.children, [...other.overlays, ...beside.overlays]);
+    painted.dispose();
+    const { overlays } = show({ texture: new Texture() });
+    assert.deepEqual(target.children, overlays);
+  });
+
+  test('an update frees the triangles that an overlay had, but not what is of its base', () => {
+    const target = meshOf(scene.target);
+    const { overlays, update, result } = applyTransfer(target, meshOf(scene.cage), {
+      material: new MeshStandardMaterial(),
+    });
+    const { geometry } = overlays[0]!;
+    const copy = target.clone().children[0] as ThreeMesh;
+    const freed: string[][] = [];
+    geometry.addEventListener('dispose', () => freed.push(Object.keys(geometry.attributes)));
+    update(result);
+    assert.deepEqual(freed, [[]]);
+    // A copy of the model goes on showing them.
+    assert.equal(copy.geometry, geometry);
+    assert.equal(geometry.getAttribute('position'), target.geometry.getAttribute('position'));
+  });
+
   test('a UV set that a model has of its own stays, also when it is transferred again', () => {
     const target = meshOf(scene.target);
     const own = new BufferAttribute(new Float32Array((2 * scene.target.positions.length) / 3), 2);

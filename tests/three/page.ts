@@ -42,7 +42,7 @@ import {
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
 import { layerScenes } from './layer-scenes';
-import { ball, cage, camera, commandsOf, countOf, difference, draw, flat, halves, modelOf } from './scenes';
+import { ball, cage, camera, commandsOf, countOf, difference, draw, flat, halves, modelOf, renderer } from './scenes';
 
 const kPaint = 0xcc3311;
 const steps = new DataTexture(Uint8Array.from([90, 160, 255]), 3, 1, RedFormat);
@@ -304,6 +304,26 @@ const scenes: Record<string, () => unknown> = {
     seen['second'] = look();
     second.dispose();
     return seen;
+  },
+
+  /** How many geometries the GPU has more than at first: after one update, after some, and without the overlay. */
+  updatedOverlay() {
+    const model = modelOf(white());
+    const { result, update, dispose } = applyTransfer(model, cage(), { material: new MeshBasicMaterial() });
+    const count = () => {
+      draw(model);
+      return renderer.info.memory.geometries;
+    };
+    const first = count();
+    update(result);
+    const one = count();
+    for (let i = 0; i < 5; ++i) {
+      update(result);
+      count();
+    }
+    const some = count();
+    dispose();
+    return [one, some, count()].map((now) => now - first);
   },
 
   /** A soft border: the paint fades towards it, and is whole far from it. */

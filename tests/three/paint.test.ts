@@ -184,6 +184,10 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     assert.notDeepEqual(seen['moved'], seen['painted']);
   });
 
+  test('updates of an overlay leave nothing on the GPU', async () => {
+    assert.deepEqual(await run<number[]>('updatedOverlay'), [0, 0, -1]);
+  });
+
   test('a soft border fades inside the painted zone', async () => {
     const [hard, soft] = (await run<number[][]>('feather')) as [number[], number[]];
     const [first, last] = [hard.indexOf(255), hard.lastIndexOf(255)];

@@ -3,7 +3,7 @@ import { CagecastError, type Classification } from '../index.js';
 import type { PartRange, Prepared } from '../parts/prepare.js';
 import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
-import { removeOverlay } from './overlay.js';
+import { removeOverlay, removeOverlays } from './overlay.js';
 import { Place, paintAttribute } from './paint.js';
 import { canBePainted, makePainting, type Painting, paintOn, unpaint } from './painted-materials.js';
 import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
@@ -123,7 +123,10 @@ export function* apply(
     place: new Place(),
     meshes: new Set(parts.flatMap(({ mesh }) => mesh ?? [])),
   });
-  parts.forEach(({ geometry }, p) => {
+  parts.forEach(({ mesh, geometry }, p) => {
+    // Earlier overlays show paint, or UVs of a channel, that is overwritten here.
+    const isReplaced = options.material ? givenChannels.get(geometry) === channel : options.texture !== undefined;
+    if (mesh && isReplaced) removeOverlays(mesh);
     if (remades[p]) replace(geometry, remades[p]!);
     const { split } = prepared.parts[p]!;
     geometry.setAttribute(`uv${channel}`, new BufferAttribute(split.uvs.slice(), 2));

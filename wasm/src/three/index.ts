@@ -63,7 +63,8 @@ export {
  * The paint follows skins, morph targets, visibility, layers and copies of the model, because it is a part of its meshes. If several
  * meshes share a geometry, all but the first get a copy. If triangles at the same vertex need different UVs, copies of the vertex,
  * with all attributes and morph deltas, are added after the existing vertices. Cut borders add vertices that blend existing ones.
- * A material that already shows another paint on other meshes is copied. A later transfer of the same meshes replaces the paint.
+ * A material that already shows another paint on other meshes is copied. A later transfer of the same meshes replaces the paint and
+ * the overlays; overlays of materials stay beside those of materials whose UVs have another channel.
  *
  * A `ShaderMaterial` asks for paint by `#ifdef CAGECAST_PAINT`, within which `vec3 cagecastPaint(vec3 color)` returns a colour, in
  * linear light, with the paint on it. `WebGPURenderer` does not run such shaders: use the option `material` there.

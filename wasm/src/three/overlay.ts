@@ -99,19 +99,36 @@ export function showTriangles(overlay: Mesh, base: Mesh, indices: Uint32Array, c
   const corners = new Uint32Array(3 * cosmetic.reduce((sum, one) => sum + one, 0));
   let filled = 0;
   for (let i = 0; i < 3 * cosmetic.length; ++i) if (cosmetic[Math.floor(i / 3)] === 1) corners[filled++] = indices[i]!;
+  freeTriangles(overlay.geometry);
   overlay.geometry = shareVertices(base.geometry, new BufferAttribute(corners, 1));
   if (filled === 0) overlay.removeFromParent();
   else if (overlay.parent !== base) base.add(overlay);
 }
 
-/** Frees what an overlay has of its own, and takes it away. */
+/** Frees what the geometry of an overlay has of its own. It stays as it is, for copies of the overlay. */
+function freeTriangles(geometry: BufferGeometry): void {
+  const { attributes, morphAttributes } = geometry;
+  // Disposing a geometry frees the buffers of all its attributes, but these belong to the model.
+  Object.assign(geometry, { attributes: {}, morphAttributes: {} });
+  geometry.dispose();
+  Object.assign(geometry, { attributes, morphAttributes });
+}
+
+/** Frees what an overlay has of its own, and takes it away, also from copies of the model. */
 export function removeOverlay(overlay: Mesh): void {
   const { geometry } = overlay;
   overlay.removeFromParent();
-  // Disposing a geometry frees the buffers of all its attributes, but these belong to the model.
+  freeTriangles(geometry);
   for (const name of Object.keys(geometry.attributes)) geometry.deleteAttribute(name);
   geometry.morphAttributes = {};
-  geometry.dispose();
+}
+
+/** Takes away the overlays that earlier transfers have given to a mesh. */
+export function removeOverlays(base: Mesh): void {
+  for (const child of base.children.filter(({ userData }) => userData[overlayMark] === true)) {
+    child.removeFromParent();
+    freeTriangles((child as Mesh).geometry);
+  }
 }
 
 /** A material for paint on top of one that cannot be painted. */
