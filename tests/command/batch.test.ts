@@ -5,7 +5,8 @@ import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, 
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { cagecast, glbOf } from '../js/glb.js';
+import { pathToFileURL } from 'node:url';
+import { cagecast, glbOf, unpackGlb } from '../js/glb.js';
 import { head } from '../js/scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-batch-'));
@@ -201,6 +202,62 @@ test('--resume does again what another job has overwritten since, and the last l
   }
   assert.equal(batch().status, 0);
   assert.deepEqual([last().status, last().target], ['skipped', at('in/0.glb')]);
+});
+
+test('--resume minds what a glTF has beside it, as it is read and as it is written', () => {
+  mkdirSync(at('text'));
+  for (const [name, bytes] of [
+    ['head', target],
+    ['cage', glbOf(scene.cage)],
+  ] as const) {
+    const { json, bin } = unpackGlb(bytes);
+    json.buffers![0]!.uri = `${name}%20mesh.bin`;
+    writeFileSync(at('text', `${name}.gltf`), JSON.stringify(json));
+    writeFileSync(at('text', `${name} mesh.bin`), bin);
+  }
+  writeFileSync(at('text/wrong.gltf'), '{ "buffers": 1');
+  const names = [at('text/head.gltf'), at('text/wrong.gltf')];
+  const files = [
+    '--cage',
+    at('text/cage.gltf'),
+    '-o',
+    at('text/out/{name}.gltf'),
+    '--results',
+    at('text/results.jsonl'),
+  ];
+  const batch = () => cagecast('batch', ...names, ...files, '--resume').stderr.replace(/;.*\n/, '');
+  assert.equal(batch(), '2 jobs: 1 done, 1 failed');
+  assert.equal(batch(), '2 jobs: 0 done, 1 failed, 1 done before');
+  for (const read of ['head mesh.bin', 'cage mesh.bin']) {
+    writeFileSync(at('text', read), readFileSync(at('text', read)));
+    assert.equal(batch(), '2 jobs: 1 done, 1 failed', read);
+  }
+  assert.equal(batch(), '2 jobs: 0 done, 1 failed, 1 done before');
+  rmSync(at('text/out/head.bin'));
+  assert.equal(batch(), '2 jobs: 1 done, 1 failed');
+  assert.ok(existsSync(at('text/out/head.bin')));
+});
+
+test('a glTF gets its name after what it has beside it', () => {
+  const stopped = at('stop.mjs');
+  writeFileSync(
+    stopped,
+    `import fs from 'node:fs';
+    import { syncBuiltinESMExports } from 'node:module';
+    const { renameSync } = fs;
+    fs.renameSync = (...paths) => {
+      renameSync(...paths);
+      process.kill(process.pid, 'SIGKILL');
+    };
+    syncBuiltinESMExports();`,
+  );
+  mkdirSync(at('killed'));
+  spawnSync(process.execPath, [
+    ...['--import', pathToFileURL(stopped).href, 'dist/cli.js', 'transfer', at('in/0.glb')],
+    ...['--cage', at('cage.glb'), '-o', at('killed/head.gltf')],
+  ]);
+  const renamed = readdirSync(at('killed')).filter((name) => !name.endsWith('.tmp'));
+  assert.deepEqual(renamed, ['head.bin']);
 });
 
 test('what looks like a placeholder or a pattern of replacement in the name of a target stands as it is', () => {

@@ -3,6 +3,7 @@ import { existsSync, statSync } from 'node:fs';
 import { basename, dirname, extname, resolve } from 'node:path';
 import { readBytes, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
+import { filesBeside } from './beside.js';
 import type { Settled } from './config/config-flags.js';
 import { isObject, parseObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
 import { filesOf } from './glob.js';
@@ -164,15 +165,23 @@ function jobOf({ settled: _, ...given }: JobDefaults & JobNames & Settled): Job 
   const command: TransferCommand = { ...given, cage, output: fill(output), report: fill(report) };
   const read = readBy(command)
     .flatMap((path) => filesOf(tilePath(path, '*')))
-    .map((path) => {
-      const found = statSync(path, { throwIfNoEntry: false });
-      return [found?.size, found?.mtimeMs];
-    });
+    .flatMap((path) => [path, ...filesBeside(path, given.reading)])
+    .map(sizeAndTime);
   const key = createHash('sha256')
     .update(JSON.stringify([command, read]))
     .digest('hex')
     .slice(0, 16);
   return { command, key };
+}
+
+/** Of a file; neither if it cannot be looked up, which whatever opens it reports. */
+function sizeAndTime(path: string): (number | undefined)[] {
+  try {
+    const { size, mtimeMs } = statSync(path);
+    return [size, mtimeMs];
+  } catch {
+    return [undefined, undefined];
+  }
 }
 
 /** The files that a job reads, as they are named. */
@@ -209,5 +218,6 @@ function refuseClashes(jobs: Job[]): Job[] {
 export const writtenBy = ({ command: { output, report } }: Job): string[] =>
   [output, report].filter((path) => path !== undefined);
 
-/** Whether all that a job writes exists. */
-export const isWritten = (job: Job): boolean => writtenBy(job).every((path) => existsSync(path));
+/** Whether all that a job writes exists, with what a glTF has beside it. */
+export const isWritten = (job: Job): boolean =>
+  writtenBy(job).every((path) => [path, ...filesBeside(path)].every((file) => existsSync(file)));

@@ -4,9 +4,9 @@ import { reasons, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 
 /**
- * Writes all of the files or none: each is first written under a temporary name, and renamed once all are complete. Symbolic links
- * are followed, even to files that do not exist yet; a replaced file keeps its permissions. Pipes and devices such as /dev/null
- * are written to directly, the standard output for `-`.
+ * Writes all of the files or none: each is first written under a temporary name, and renamed once all are complete, the first one
+ * last, as it may refer to the others. Symbolic links are followed, even to files that do not exist yet; a replaced file keeps its
+ * permissions. Pipes and devices such as /dev/null are written to directly, the standard output for `-`.
  * @throws {InputError} that names the file that cannot be written.
  */
 export function writeFiles(files: readonly { path: string; data: Uint8Array | string }[]): void {
@@ -20,7 +20,7 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
     }
     for (const { path, data } of files.filter(({ path }) => isStream(path)))
       attempt(path, () => (path === standard ? process.stdout.write(data) : writeFileSync(path, data)));
-    for (const { path, temporary } of written) attempt(path, () => renameSync(temporary, placeOf(path)));
+    for (const { path, temporary } of written.reverse()) attempt(path, () => renameSync(temporary, placeOf(path)));
   } finally {
     for (const { temporary } of written) rmSync(temporary, { force: true });
   }

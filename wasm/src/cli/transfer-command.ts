@@ -1,7 +1,6 @@
 import { basename, dirname, join } from 'node:path';
 import { dracoOf, meshoptView } from '../gltf/check.js';
 import { placeOf } from '../gltf/extract.js';
-import { localFile } from '../gltf/files.js';
 import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
 import { diagonal, zoneAttribute } from '../gltf/overlay.js';
@@ -9,6 +8,7 @@ import { type Added, writeTransfer } from '../gltf/write.js';
 import type { CutTarget } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import type { Finding, Verdict } from '../inspect/index.js';
+import { filesNamedIn } from './beside.js';
 import { inspectionReport } from './inspect-command.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { placeOf as fileOf, writeFiles } from './output.js';
@@ -164,10 +164,7 @@ function refuseInputs(
   { targetFile }: Run,
   files: { path: string }[],
 ): void {
-  const { buffers = [], images = [] } = targetFile.json;
-  const beside = [...buffers, ...images].flatMap(({ uri }) =>
-    uri === undefined ? [] : (localFile(uri, dirname(target)) ?? []),
-  );
+  const beside = filesNamedIn(targetFile.json, dirname(target));
   const read = [target, cage, ...(texture === undefined ? [] : [texture]), ...beside].map((path) => fileOf(path));
   const clash = files.find(({ path }) => read.includes(fileOf(path)));
   if (clash)

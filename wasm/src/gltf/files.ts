@@ -68,8 +68,7 @@ function readDataUri(name: string, uri: string): Uint8Array {
 export function readBeside(path: string, folder: string, { limits, allowOutside }: ReadOptions): Promise<Uint8Array> {
   return reading(async () => {
     const refuseOutside = (to: string, from: string) => {
-      const way = relative(from, to);
-      if (!allowOutside && (way === '..' || /^\.\.[\\/]/.test(way) || isAbsolute(way)))
+      if (!allowOutside && isOutside(to, from))
         throw new InputError('is outside the folder of the file that refers to it; --allow-outside permits it');
     };
     refuseOutside(path, resolve(folder)); // before anything tells whether the file exists
@@ -84,6 +83,12 @@ export function readBeside(path: string, folder: string, { limits, allowOutside 
       await file.close();
     }
   });
+}
+
+/** Whether a path is not in a folder; links are not followed. */
+export function isOutside(path: string, folder: string): boolean {
+  const way = relative(folder, path);
+  return way === '..' || /^\.\.[\\/]/.test(way) || isAbsolute(way);
 }
 
 async function readStandardInput(limits: ReadLimits): Promise<Uint8Array> {
