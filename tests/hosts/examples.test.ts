@@ -240,6 +240,34 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.equal(await page.evaluate('steps'), 0);
   });
 
+  test('does not show a paint that comes after a later one', async () => {
+    const before = await picture();
+    const told = await page.evaluate<string[]>(
+      `(async () => {
+        const decode = globalThis.createImageBitmap;
+        let release;
+        const held = new Promise((done) => (release = done));
+        const begun = new Promise((begin) => {
+          globalThis.createImageBitmap = async (...given) => {
+            globalThis.createImageBitmap = decode;
+            begin();
+            await held;
+            return decode(...given);
+          };
+        });
+        viewer.setAttribute("paint", "paint-war-paint.png");
+        await begun;
+        viewer.setAttribute("paint", "paint-tiger.png");
+        await next();
+        release();
+        await new Promise((done) => setTimeout(done, 200));
+        return told;
+      })()`,
+    );
+    assert.deepEqual(told, ['load']);
+    assert.deepEqual(await picture(), before);
+  });
+
   test('shows what is wrong, by attribute and address; the last change wins', async () => {
     const many = new GlbMaker();
     const mesh = many.mesh(tetrahedron());

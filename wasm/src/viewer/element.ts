@@ -190,6 +190,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     try {
       this.#stage ??= new Stage(this.#canvas);
       await work(loading.signal);
+      loading.signal.throwIfAborted();
       this.#loading = undefined;
       this.#tell('load', undefined);
     } catch (error) {
@@ -243,6 +244,9 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   async #loadPaint(signal: AbortSignal): Promise<void> {
     const address = this.getAttribute('paint');
     const paint = address ? await loadPaint(address, signal) : undefined;
+    // What comes later has its own paint, and perhaps another model.
+    if (signal.aborted) paint?.dispose();
+    signal.throwIfAborted();
     const shown = this.#shown!;
     shown.applied?.setTexture(paint);
     shown.paint?.dispose();
