@@ -268,6 +268,24 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.deepEqual(await picture(), before);
   });
 
+  test('draws again after the graphics context was lost', async () => {
+    await page.evaluate(
+      `(async () => {
+        const canvas = part('canvas');
+        const extension = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+        // It cannot be restored before the event has ended.
+        const event = (name) => new Promise((done) => canvas.addEventListener(name, () => setTimeout(done), { once: true }));
+        const lost = event('webglcontextlost');
+        extension.loseContext();
+        await lost;
+        const restored = event('webglcontextrestored');
+        extension.restoreContext();
+        await restored;
+      })()`,
+    );
+    await seen(page);
+  });
+
   test('shows what is wrong, by attribute and address; the last change wins', async () => {
     const many = new GlbMaker();
     const mesh = many.mesh(tetrahedron());

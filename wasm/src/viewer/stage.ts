@@ -52,6 +52,7 @@ export class Stage {
     this.#controls.enablePan = false;
     this.#controls.addEventListener('change', this.draw);
     canvas.addEventListener('keydown', this.#onKey);
+    canvas.addEventListener('webglcontextrestored', this.draw);
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(canvas);
     this.#resize();
@@ -104,6 +105,7 @@ export class Stage {
   dispose(): void {
     cancelAnimationFrame(this.#frame);
     this.#canvas.removeEventListener('keydown', this.#onKey);
+    this.#canvas.removeEventListener('webglcontextrestored', this.draw);
     this.#sizes.disconnect();
     this.#controls.dispose();
     this.#renderer.dispose();
