@@ -254,6 +254,38 @@ export const layerScenes: Record<string, () => unknown> = {
     return { text, upright: ends(upright), turned: ends(turned) };
   },
 
+  /** Stickers of a canvas that is drawn anew, and of one picture before and after the graphics context was lost. */
+  async stickersAnew() {
+    const { painter, look, spots } = paintedBall();
+    const [at] = spots([32, 32]) as [StrokePoint];
+    const lay = (image: HTMLCanvasElement | ImageBitmap): string => {
+      painter.sticker({ image }, { at, size: 0.25 });
+      const [red = 0, , blue = 0] = pixelAt(look(), 32, 32);
+      painter.undo();
+      return red > 2 * blue ? 'red' : blue > 2 * red ? 'blue' : 'none';
+    };
+    const context = document.createElement('canvas').getContext('2d')!;
+    const canvas = ['#ff0000', '#0000ff'].map((color) => {
+      context.fillStyle = color;
+      context.fillRect(0, 0, 300, 150);
+      return lay(context.canvas);
+    });
+    const picture = await createImageBitmap(context.canvas);
+    const [before, again] = [lay(picture), lay(picture)];
+    // It cannot be restored before the event has ended.
+    const told = (name: string) =>
+      new Promise((done) => renderer.domElement.addEventListener(name, () => setTimeout(done), { once: true }));
+    const lost = told('webglcontextlost');
+    renderer.forceContextLoss();
+    await lost;
+    const restored = told('webglcontextrestored');
+    renderer.forceContextRestore();
+    await restored;
+    const after = lay(picture);
+    painter.dispose();
+    return { canvas, picture: [before, again, after] };
+  },
+
   /** A model that was moved, turned and posed since it was painted. */
   posed() {
     const geometry = ball();

@@ -72,9 +72,13 @@ export class Painter {
   readonly #painter: LayerPainter;
   readonly #models: readonly Applied[];
   readonly #sheet = new StickerSheet();
+  /** What is on the sheet, unless that may have changed since. */
   #drawn: unknown;
   readonly #stops = new Set<() => void>();
-  readonly #restored = (): void => this.#painter.restore();
+  readonly #restored = (): void => {
+    this.#sheet.dispose(); // its texture is empty; it is drawn again when it is needed
+    this.#painter.restore();
+  };
 
   constructor({ layers, renderer, texture, applied, cage, size }: PainterOptions) {
     this.#models = [applied].flat();
@@ -237,9 +241,8 @@ export class Painter {
 
   #beginSticker(picture: StickerPicture, { opacity = kSticker.opacity }: Partial<StickerPlace>): void {
     checkShare('opacity', opacity);
-    const key =
-      'text' in picture ? JSON.stringify([picture.text, picture.color, picture.font, picture.outline]) : picture.image;
-    if (key !== this.#drawn) this.#sheet.draw(picture);
+    const key = keyOf(picture);
+    if (key === undefined || key !== this.#drawn) this.#sheet.draw(picture);
     this.#drawn = key;
     this.#painter.begin('sticker', { color: '#000000', opacity, hardness: 1, erases: false });
   }
@@ -274,6 +277,12 @@ export class Painter {
       throw new CagecastError('badArgument', `cagecast/three/paint: a point is (${x}, ${y}), not a UV`);
     return this.#painter.cageTexels?.at(x, y);
   }
+}
+
+/** What is equal for equal pictures; undefined for a canvas or an element, as that may show something else by now. */
+function keyOf(picture: StickerPicture): unknown {
+  if ('text' in picture) return JSON.stringify([picture.text, picture.color, picture.font, picture.outline]);
+  return picture.image instanceof ImageBitmap ? picture.image : undefined;
 }
 
 /** @throws {CagecastError} `badOption` that names the field and its value. */
