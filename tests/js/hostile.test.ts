@@ -152,6 +152,27 @@ describe('a file that demands too much', () => {
     }
   });
 
+  test('zones that are not in the file are as many as the positions, and overlays are counted by themselves', () => {
+    const zones = (count: number) =>
+      changed(({ accessors = [], meshes = [] }) => {
+        accessors.push({ componentType: 5121, type: 'SCALAR', count });
+        meshes[0]!.primitives[0]!.attributes['_NCZ'] = accessors.length - 1;
+      });
+    const { count } = unpackGlb(whole).json.accessors![0]!;
+    checkGltf(zones(count), { limits: { implied: 0 } });
+    assert.throws(() => checkGltf(imply(0, count), { limits: { implied: 0 } }), /limit "implied"/);
+    const painted = (overlays: number) =>
+      changed((json) => {
+        const [base] = json.meshes![0]!.primitives;
+        const overlay = { ...base!, extras: { cagecastOverlay: true } };
+        json.meshes![0]!.primitives.push(...Array.from({ length: overlays }, () => overlay));
+        json.nodes = Array.from({ length: 600 }, () => ({ mesh: 0 }));
+        json.scenes![0]!.nodes = [...json.nodes.keys()];
+      });
+    checkGltf(painted(1));
+    assert.throws(() => checkGltf(painted(2)), /are in 1200 places/);
+  });
+
   test('what stays within the limits is read, and limits can be set', () => {
     for (const bytes of [imply(0, 1000), imply(2, 3000), instances(1000), nested(900)]) checkGltf(bytes);
     checkGltf(instances(1001), { limits: { instances: 2000 } });

@@ -1,6 +1,7 @@
 import type { GLTF } from '@gltf-transform/core';
 import { bytesOf, dracoOf, meshoptView } from './check.js';
 import { InputError } from './input-error.js';
+import { isOverlay } from './overlay.js';
 import { hasTriangles } from './pieces.js';
 
 /** What reading a glTF file may cost. A few bytes can otherwise demand all memory and hours. */
@@ -11,7 +12,7 @@ export interface ReadLimits {
   nesting: number;
   /** How often the scene shows the same positions: nodes that share a mesh, primitives that share an accessor. Default: 1000 */
   instances: number;
-  /** Elements of attributes and indices that are not in the file: those without bytes are zero. Default: 1,000,000 */
+  /** Elements of attributes and indices that are not in the file: those without bytes are zero. Not counted beside positions that are in the file. Default: 1,000,000 */
   implied: number;
   /** How many times larger than its files the data may become when it is decoded, from 32 MiB on. Default: 100 */
   expansion: number;
@@ -84,16 +85,18 @@ function checkNodeDepth({ nodes = [] }: GLTF.IGLTF, limits: ReadLimits): void {
 function checkInstances({ accessors = [], meshes = [], nodes = [] }: GLTF.IGLTF, limits: ReadLimits): number {
   const nodesOf = new Map<number, number>();
   for (const { mesh } of nodes) if (mesh !== undefined) nodesOf.set(mesh, (nodesOf.get(mesh) ?? 0) + 1);
-  const uses = new Map<number, number>();
+  // Overlays show the positions of their bases once more, so they are counted by themselves.
+  const [uses, overlaid] = [new Map<number, number>(), new Map<number, number>()];
   let bytes = 0;
   for (const [mesh, count] of nodesOf) {
-    for (const { attributes, indices, mode = 4 } of meshes[mesh]!.primitives) {
+    for (const { attributes, indices, mode = 4, extras } of meshes[mesh]!.primitives) {
       const positions = attributes['POSITION'];
       if (positions === undefined || !hasTriangles(mode)) continue;
-      const all = (uses.get(positions) ?? 0) + count;
+      const counts = isOverlay(extras) ? overlaid : uses;
+      const all = (counts.get(positions) ?? 0) + count;
       if (all > limits.instances)
         throw exceeds(`the positions of meshes[${mesh}] are in ${all} places of the scene`, 'instances', limits);
-      uses.set(positions, all);
+      counts.set(positions, all);
       const vertices = accessors[positions]!.count;
       bytes += count * (12 * vertices + 4 * (indices === undefined ? vertices : accessors[indices]!.count));
     }
@@ -107,8 +110,11 @@ function checkImplied({ accessors = [], meshes = [] }: GLTF.IGLTF, limits: ReadL
     primitives.forEach((primitive, p) => {
       if (dracoOf(primitive)) return; // its accessors have no bytes: they are in the compressed data
       const place = `meshes[${m}].primitives[${p}]`;
+      const positions = accessors[primitive.attributes['POSITION']!];
+      const inFile = positions?.bufferView === undefined ? 0 : positions.count;
+      // Beside positions that are in the file, zeros cost in proportion to it; `expansion` counts them.
       for (const [semantic, accessor] of Object.entries(primitive.attributes))
-        used.set(accessor, `${place}.attributes.${semantic}`);
+        if (accessors[accessor]!.count > inFile) used.set(accessor, `${place}.attributes.${semantic}`);
       if (primitive.indices !== undefined) used.set(primitive.indices, `${place}.indices`);
     }),
   );
