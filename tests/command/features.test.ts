@@ -131,6 +131,27 @@ test('diff shows what changed between two reports, and exits 4 over the limit', 
   assert.match(worse.stdout, /verdict +(good|usable) +unfit +over/);
   // A report of the same by another command: shares differ in digits that nobody sees.
   assert.equal(ok('diff', at('a.json'), at('same.json')), 'nothing changed\n');
+  const region = (cosmetic: number) => {
+    const counts = { cosmetic, occluded: 10 - cosmetic, uncovered: 0, culled: 0 };
+    return {
+      cage: 'c.glb',
+      texture: 'c.png',
+      uvSet: null,
+      zones: '_NCZ_2',
+      counts,
+      triangles: { total: 10, cosmetic },
+    };
+  };
+  for (const [name, regions] of Object.entries({ none: [], five: [region(5)], two: [region(2)] })) {
+    const report = JSON.parse(readFileSync(at('a.json'), 'utf8')) as object;
+    writeFileSync(at(`regions-${name}.json`), JSON.stringify({ ...report, regions }));
+  }
+  const regions = cagecast('diff', at('regions-five.json'), at('regions-two.json'));
+  assert.equal(regions.status, 4);
+  assert.match(regions.stdout, /region 1: triangles painted +50\.0 % +20\.0 % +over/);
+  assert.match(regions.stdout, /region 1: vertices occluded +50\.0 % +80\.0 % +over/);
+  assert.match(cagecast('diff', at('regions-five.json'), at('regions-none.json')).stdout, /region 1 +there +– +over/);
+  assert.equal(ok('diff', at('same.json'), at('regions-five.json')), 'nothing changed\n');
   const wrong = cagecast('diff', at('a.json'), at('target.glb'));
   assert.deepEqual([wrong.status, wrong.stdout], [1, '']);
   assert.match(wrong.stderr, /^cagecast: .*target\.glb: is not JSON/);

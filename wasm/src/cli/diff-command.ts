@@ -94,6 +94,8 @@ async function reportsIn(folder: string): Promise<string[]> {
 
 async function diffReports({ before, after, tolerance }: DiffCommand): Promise<Difference> {
   const [old, now] = [await readReport(before), await readReport(after)];
+  // Reports of `inspect` are about one cage.
+  if (!old.regions || !now.regions) for (const report of [old, now]) delete report.regions;
   const changes = [...compare(measuresOf(old), measuresOf(now), tolerance), ...compareVerdicts(old, now)].filter(
     (change) => change.before !== change.after,
   );
@@ -114,7 +116,7 @@ function textOf({ changes, over }: Difference, tolerance: number): string {
     // What reads the same is for programs only.
     .filter(([, was, is, isOver]) => was !== is || isOver);
   if (rows.length === 0) return unchanged;
-  const count = `${counted(rows.length, 'change')}, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part more or less)`;
+  const count = `${counted(rows.length, 'change')}, ${integer(over)} over the limit (${percent(tolerance)} of a share or of a length, a worse verdict, a part or a region more or less)`;
   return `${table([['', 'before', 'after', ''], ...rows])}\n${count}`;
 }
 
@@ -147,7 +149,7 @@ type Measures = Map<string, { kind: 'share' | 'ratio' | 'number' | 'part'; value
 
 /** What a report says, by name. */
 function measuresOf(report: AnyReport): Measures {
-  const { areas, coverage, target, triangles, stretch, segments, parts, placement, uv, holes } = report;
+  const { areas, coverage, target, triangles, stretch, segments, parts, placement, uv, holes, regions } = report;
   const all: Measures = new Map();
   const share = (name: string, value: number | undefined) => {
     if (value !== undefined && Number.isFinite(value)) all.set(name, { kind: 'share', value });
@@ -162,6 +164,13 @@ function measuresOf(report: AnyReport): Measures {
     all.set(`part ${part}`, { kind: 'part', value: 1 });
     share(`part ${part}: covered`, exposed > 0 ? covered / exposed : undefined);
     share(`part ${part}: culled`, area > 0 ? culled / area : undefined);
+  }
+  for (const [r, { counts, triangles }] of (regions ?? []).entries()) {
+    const region = `region ${r + 1}`;
+    all.set(region, { kind: 'part', value: 1 });
+    share(`${region}: triangles painted`, triangles.cosmetic / (triangles.total || 1));
+    for (const zone of zoneNames)
+      share(`${region}: vertices ${zone}`, counts[zone] / (sum(zoneNames.map((one) => counts[one])) || 1));
   }
   share('painted area stretched more than twice', stretch?.overTwice);
   // By the size of the target, which may have another unit.

@@ -13,7 +13,7 @@ export function addDiffCommand(program: Command): void {
       .argument('<AFTER>', 'another; in a folder, reports of the same names are compared'),
   )
     .description(
-      'show what changed between two reports: zones, coverage of parts, stretch, distances, borders, verdict',
+      'show what changed between two reports: zones, coverage of parts, regions, stretch, distances, borders, verdict',
     )
     .addOption(
       new Option('--tolerance <SHARE>', 'how much a share, or the stretch of the texture, may change')
@@ -24,7 +24,7 @@ export function addDiffCommand(program: Command): void {
       'after',
       `
 Exit codes: 0 nothing changed by more than the tolerance, 1 a file cannot be used, 2 wrong usage, 4 a share changed by
-more, the verdict is worse, a part is new or gone, or a report is gone.
+more, the verdict is worse, a part or a region is new or gone, or a report is gone.
 
 Examples:
   cagecast diff approved/head.json build/head.json --tolerance 0.005
