@@ -10,7 +10,7 @@ import { init, type TransferResult, transfer } from 'cagecast';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder, MeshoptEncoder } from 'meshoptimizer';
 import { PNG } from 'pngjs';
-import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../js/glb.js';
+import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from '../js/glb.js';
 import { ball, head } from '../js/scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-lean-'));
@@ -153,6 +153,36 @@ describe('files stay lean', () => {
     const [primitive] = document.getRoot().listMeshes()[0]!.listPrimitives();
     assert.equal(primitive!.getAttribute('TEXCOORD_1')!.getArray()!.constructor, Uint16Array);
     assert.equal(primitive!.getAttribute('_NCZ')!.getArray()!.constructor, Uint8Array);
+  });
+
+  test('views and accessors to which an unknown extension may refer keep their numbers', () => {
+    const { json, bin } = unpackGlb(readFileSync(at('target.glb')));
+    const view = () => json.bufferViews!.push({ buffer: 0, byteOffset: bin.length, byteLength: 4 }) - 1;
+    const [values, bufferView] = [view(), view()];
+    const indices = json.accessors!.push({ bufferView, componentType: 5126, count: 1, type: 'SCALAR' }) - 1;
+    const extension = { propertyTables: [{ properties: { p: { values } } }], outline: { indices } };
+    json.extensionsUsed = [...(json.extensionsUsed ?? []), 'EXT_structural_metadata'];
+    json.extensions = { ...json.extensions, EXT_structural_metadata: extension };
+    const all = Buffer.concat([bin, new Uint8Array(Float32Array.of(42).buffer)]);
+    json.buffers![0]!.byteLength = all.length;
+    writeFileSync(at('metadata.glb'), packGlb({ json, bin: all }));
+    const { status, stderr } = cagecast(
+      ...[
+        'transfer',
+        at('metadata.glb'),
+        '--cage',
+        at('cage.glb'),
+        '--compress',
+        'draco',
+        '-o',
+        at('metadata-out.glb'),
+      ],
+    );
+    assert.deepEqual([status, stderr], [0, '']);
+    const out = unpackGlb(readFileSync(at('metadata-out.glb')));
+    assert.deepEqual(out.json.extensions!['EXT_structural_metadata'], extension);
+    assert.equal(out.json.accessors![indices]!.bufferView, bufferView);
+    assert.equal(Buffer.from(out.bin).readFloatLE(out.json.bufferViews![values]!.byteOffset), 42);
   });
 
   test('what shares a view with something that is replaced stays, without it', async () => {

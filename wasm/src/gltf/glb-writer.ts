@@ -10,7 +10,7 @@ import { subtract } from './output/ranges.js';
 import type { Paint } from './overlay.js';
 import { sparseElements } from './primitive-group.js';
 import type { GltfFile } from './read.js';
-import { drop, eachAccessor, eachView, numbersOf } from './references.js';
+import { drop, eachAccessor, eachView, hasUnknownReferences, numbersOf } from './references.js';
 
 const arrayBuffer = 34962;
 const elementArrayBuffer = 34963;
@@ -310,12 +310,13 @@ export class GlbWriter {
     }
   }
 
-  /** Drops accessors and views that nothing refers to any more; those to which nothing did before stay. */
+  /** Drops accessors and views that nothing refers to any more; those to which nothing did before stay, or all old ones if unknown extensions may refer to them. */
   #dropUnused(): GLTF.IBufferView[] {
     const { json } = this;
     const before = this.#before;
     const accessors = numbersOf(eachAccessor, json);
-    const isOld = (used: Set<number>, count: number) => (n: number) => n < count && !used.has(n);
+    const keepsOld = hasUnknownReferences(json); // also their numbers, as only added ones are dropped then
+    const isOld = (used: Set<number>, count: number) => (n: number) => n < count && (keepsOld || !used.has(n));
     const wasUnused = isOld(before.accessors, before.accessorCount);
     drop(
       json.accessors ?? [],
