@@ -35,7 +35,10 @@ export function addTransferCommand(program: Command, progress: Progress): void {
         .default('triangle'),
     )
     .addOption(
-      new Option('--compress <HOW>', 'how the geometry of OUT is compressed; keep: as in TARGET')
+      new Option(
+        '--compress <HOW>',
+        'how the painted meshes of OUT are compressed; keep: as in TARGET; animations and skins stay as they are',
+      )
         .choices(forms)
         .default('keep'),
     )
