@@ -288,6 +288,25 @@ describe('fitCage', () => {
     for (const name of missing) assert.ok(!(name in landmarks), name);
   });
 
+  test('finds no landmarks that are not finite, however the model is turned', async () => {
+    for (const [y, z] of [
+      [1, 1],
+      [1, -1],
+      [-1, 1],
+      [-1, -1],
+    ] as const) {
+      for (const swaps of [false, true]) {
+        const positions = model.positions.map((x, i) => {
+          if (i % 3 === 0) return x;
+          const other = model.positions[i % 3 === 1 ? i + 1 : i - 1]!;
+          return (i % 3 === 1 ? y : z) * (swaps ? other : x);
+        });
+        const { landmarks } = await findLandmarks({ ...model, positions });
+        for (const [name, at] of Object.entries(landmarks)) assert.ok(at.every(Number.isFinite), name);
+      }
+    }
+  });
+
   test('is less certain of the crown of a head that is taller than others, and asks for it', async () => {
     const { landmarks, confidence } = await findLandmarks(model);
     const [low, top] = [landmarks['glabella']![1], landmarks['crown']![1]];

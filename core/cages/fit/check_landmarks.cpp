@@ -10,6 +10,8 @@ namespace {
 
 /// Two landmarks that are closer than this share of the diagonal are on one spot.
 constexpr double kOneSpot = 1e-3;
+/// A landmark of a model is at most this far outside its box, in diagonals.
+constexpr double kMostOutside = 0.2;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, is a mistake.
 constexpr double kMostOff = 0.15;
 /// Two that are off by more than this share of the diagonal together may have been exchanged.
@@ -20,6 +22,8 @@ std::string text(const char* format, double value) {
   std::snprintf(buffer, sizeof buffer, format, value);
   return buffer;
 }
+
+bool isJoint(const std::string& name) { return name.rfind("joint_", 0) == 0; }
 
 std::string mirrorName(const std::string& name) {
   for (const auto& [end, other] : {std::pair<std::string, std::string>{"_left", "_right"}, {"_right", "_left"}})
@@ -40,7 +44,7 @@ std::string exchangedPair(const std::vector<Landmark>& from, const std::vector<L
   std::vector<std::size_t> mirror(from.size());
   std::size_t sides = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (from[i].name.rfind("joint_", 0) == 0) return {};
+    if (isJoint(from[i].name)) return {};
     const std::string name = mirrorName(from[i].name);
     mirror[i] = i;
     for (std::size_t j = 0; j < from.size(); ++j)
@@ -69,16 +73,22 @@ std::string exchangedPair(const std::vector<Landmark>& from, const std::vector<L
 
 }  // namespace
 
-Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, double size, Problem problem) {
+Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, const Bounds& box,
+                          Problem problem) {
+  const double size = box.diagonal();
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& a = landmarks[i];
     for (const float x : a.position)
       if (!std::isfinite(x)) return {problem, std::string(name) + ": " + a.name + " is not a finite position"};
+    const double outside = box.distance(positionOf(a)) / size;
+    if (outside > kMostOutside)
+      return {problem, std::string(name) + ": " + a.name + " is " + text("%.3g", outside) +
+                           " diagonals outside the box of its model; it has to be in its unit and axes"};
     for (std::size_t j = 0; j < i; ++j) {
       const Landmark& b = landmarks[j];
       if (a.name == b.name) return {problem, std::string(name) + ": " + a.name + " is there twice"};
       // Joints of a rig may coincide.
-      if (isOnSkin(a.name) && isOnSkin(b.name) && length(positionOf(a) - positionOf(b)) < kOneSpot * size)
+      if (!isJoint(a.name) && !isJoint(b.name) && length(positionOf(a) - positionOf(b)) < kOneSpot * size)
         return {problem, std::string(name) + ": " + b.name + " and " + a.name + " are on one spot; each needs its own"};
     }
   }
@@ -89,7 +99,7 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
                        const std::vector<bool>& given, double diagonal) {
   std::vector<Vec3> a, b;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (!isOnSkin(from[i].name) && from[i].name.rfind("joint_", 0) == 0) continue;
+    if (isJoint(from[i].name)) continue;
     a.push_back(positionOf(from[i]));
     b.push_back(positionOf(to[i]));
   }
@@ -105,7 +115,7 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
   std::size_t pairs = 0;
   std::string pairName;
   for (std::size_t i = 0, k = 0; i < from.size(); ++i) {
-    if (from[i].name.rfind("joint_", 0) == 0) continue;
+    if (isJoint(from[i].name)) continue;
     const Landmark* other = findLandmark(to, mirrorName(to[i].name));
     if (other != nullptr) {
       ++pairs;
@@ -119,7 +129,7 @@ Outcome checkAgreement(const std::vector<Landmark>& from, const std::vector<Land
   if (const std::string name = exchangedPair(from, to, given, diagonal); !name.empty()) return otherSide(name);
   // One at a time: where the others put it.
   for (std::size_t skip = 0, i = 0; i < from.size() && a.size() > 3; ++i) {
-    if (from[i].name.rfind("joint_", 0) == 0) continue;
+    if (isJoint(from[i].name)) continue;
     const std::size_t at = skip++;
     if (!given[i]) continue;
     std::vector<Vec3> p = a, q = b;

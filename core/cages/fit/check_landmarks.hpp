@@ -5,13 +5,14 @@
 
 #include "fit/template_cage.hpp"
 #include "fit/warp.hpp"
+#include "mesh/bounds.hpp"
 
 namespace cagecast::cages {
 
-/// Checks a list of landmarks by itself: finite, named, no name twice, no two on one spot.
+/// Checks a list of landmarks by itself: finite, named, near its model, no name twice, no two on one spot.
 /// @param name  What to call the list: "landmarks".
-/// @param size  The size of the model, by which spots are told apart.
-Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, double size, Problem problem);
+/// @param box   Of the model.
+Outcome checkLandmarkList(const std::vector<Landmark>& landmarks, const char* name, const Bounds& box, Problem problem);
 
 /// Checks that landmarks of a model are where those of a template can be after turning and scaling.
 /// @param from,to  In the same order.

@@ -263,11 +263,11 @@ Outcome fitCage(const Template& from, const Model& model, const FitOptions& opti
   if (from.landmarks.size() < kLeastLandmarks)
     return {Problem::badTemplate, "template: it has " + std::to_string(from.landmarks.size()) +
                                       " landmarks; at least " + std::to_string(kLeastLandmarks) + " are needed"};
-  const double cageSize = diagonalOf(weldExactly(from.cage)), modelSize = diagonalOf(weldExactly(model.mesh));
-  if (Outcome outcome = checkLandmarkList(from.landmarks, "template.landmarks", cageSize, Problem::badTemplate);
+  if (Outcome outcome =
+          checkLandmarkList(from.landmarks, "template.landmarks", boundsOf(from.cage), Problem::badTemplate);
       !outcome.ok())
     return outcome;
-  if (Outcome outcome = checkLandmarkList(options.landmarks, "landmarks", modelSize, Problem::badLandmarks);
+  if (Outcome outcome = checkLandmarkList(options.landmarks, "landmarks", boundsOf(model.mesh), Problem::badLandmarks);
       !outcome.ok())
     return outcome;
   return Fit(from, model, options, progress).run(out);

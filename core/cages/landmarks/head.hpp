@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +37,9 @@ struct Head {
   std::vector<Spot> spots = {};
   std::optional<MouthLine> mouth = {};
 
+  /// Does nothing if the place is not finite: where a figure is turned, curves may have no value.
   void add(std::string name, const Vec3& position, double confidence) {
+    if (!std::isfinite(position.x + position.y + position.z)) return;
     spots.push_back({std::move(name), position, confidence});
   }
   [[nodiscard]] const Spot* find(std::string_view name) const {

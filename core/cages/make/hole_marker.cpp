@@ -28,15 +28,65 @@ constexpr double kOcclusionReach = 0.03;
 constexpr int kWidening = 2;
 /// Samples along the longest edge of a triangle at most.
 constexpr double kMostSteps = 64;
+/// Samples of all needles together, about: there may be thousands of them side by side.
+constexpr double kNeedleSamples = 100'000;
 /// Points or rays between two calls of the callback: a few milliseconds of work.
 constexpr std::size_t kBatch = 4096;
+
+/// A triangle as its longest edge and its third corner.
+struct OnLongestEdge {
+  Vec3 start, along, toThird;
+
+  OnLongestEdge(const TriangleMesh& mesh, const Triangle3& triangle) {
+    const auto at = [&](std::size_t k) { return mesh.positions[triangle[k % 3]]; };
+    std::size_t longest = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (length(at(k + 1) - at(k)) > length(at(longest + 1) - at(longest))) longest = k;
+    start = at(longest);
+    along = at(longest + 1) - start;
+    toThird = at(longest + 2) - start;
+  }
+  /// Samples along the edge, about `spacing` apart.
+  [[nodiscard]] double steps(double spacing) const {
+    return std::clamp(std::ceil(length(along) / spacing), 1.0, kMostSteps);
+  }
+  /// Whether one row of samples does.
+  [[nodiscard]] bool isNeedle(double spacing) const {
+    return length(cross(along, toThird)) < kNeedleWidth * spacing * length(along) && length(along) > spacing;
+  }
+  static constexpr double kNeedleWidth = 0.25;
+};
+
+/// The spacing of samples along needles, so that all of them together do not get too many.
+double needleSpacing(const MarkedMesh& model, double spacing) {
+  double samples = 0;
+  for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {
+    if (!model.isMarked[t]) continue;
+    const OnLongestEdge needle(*model.mesh, model.mesh->triangles[t]);
+    if (needle.isNeedle(spacing)) samples += needle.steps(spacing);
+  }
+  return spacing * std::max(1.0, samples / kNeedleSamples);
+}
 
 /// Points all over the marked triangles, about `spacing` apart, with the triangles that they are on.
 void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& samples,
                   std::vector<std::uint32_t>& triangles) {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const double alongNeedles = needleSpacing(model, spacing);
   for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {
     if (!model.isMarked[t]) continue;
     const Triangle3& triangle = model.mesh->triangles[t];
+    if (const OnLongestEdge needle(*model.mesh, triangle); needle.isNeedle(spacing)) {
+      const double steps = needle.steps(alongNeedles);
+      // Needles side by side have their samples in different places.
+      double shift = kGoldenRatio * t;
+      shift -= std::floor(shift);
+      for (double i = 0; i < steps; ++i) {
+        samples.push_back(needle.start + 1.0 / 3 * needle.toThird + 2.0 / 3 * (i + shift) / steps * needle.along);
+        triangles.push_back(t);
+      }
+      continue;
+    }
     const Vec3 a = model.mesh->positions[triangle[0]];
     const Vec3 ab = model.mesh->positions[triangle[1]] - a, ac = model.mesh->positions[triangle[2]] - a;
     const double longest = std::max({length(ab), length(ac), length(ac - ab)});

@@ -159,7 +159,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   if (!makeHull(mesh, settings.hull, part(0, kHullEnd), hull, &share)) return cancelled;
   if (share < kLeastShare)
     return {Problem::badModel,
-            "model is in pieces that lie too far apart for one cage: make one for each, or raise options.closing"};
+            "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing"};
   if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
 
   const Surface surface(mesh);
@@ -175,7 +175,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
     if (!simplify(shell, {settings.triangles, offset}, part(kHolesEnd, kSimplifyEnd), cage)) return cancelled;
     if (cage.empty())
       return {Problem::badModel,
-              "model is too thin for a cage of so few triangles: nothing is left of its hull; raise options.triangles"};
+              "model is too thin for a cage of so few triangles: nothing is left of its hull; allow more triangles"};
     const double depth = (1 - kMargin) * offset;
     if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
       return cancelled;

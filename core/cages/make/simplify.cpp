@@ -25,7 +25,8 @@ constexpr double kLoopError = 0.04;
 /// Triangles of a fin, at most.
 constexpr std::uint32_t kFinTriangles = 8;
 
-/// Indices from which on one call does the rest: a few tens of milliseconds.
+/// Indices from which on one call does the rest, if they are twice as many as it is to leave: a few tens of
+/// milliseconds.
 constexpr std::size_t kLastStep = std::size_t{3} * 15000;
 
 double distanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -197,9 +198,10 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
 
   // In steps, to be able to stop in between. The last one is left enough to choose from.
   const auto all = static_cast<float>(indices.size());
-  while (indices.size() > kLastStep) {
+  const std::size_t lastStep = std::max(kLastStep, std::size_t{6} * triangles);
+  while (indices.size() > lastStep) {
     if (progress && !progress(1 - static_cast<float>(indices.size()) / all, "simplify")) return false;
-    std::vector<unsigned> fewer = arrays.simplified(indices, std::max(indices.size() / 9 * 3, kLastStep));
+    std::vector<unsigned> fewer = arrays.simplified(indices, std::max(indices.size() / 9 * 3, lastStep));
     const bool isStuck = fewer.size() == indices.size();
     indices.swap(fewer);
     if (isStuck) break;

@@ -245,6 +245,16 @@ TEST_CASE("landmarks that contradict are named", "[cages][fit]") {
     heads.landmarks[1].position = good[0].position;
     CHECK(messageOf() == "landmarks: nose_tip and chin are on one spot; each needs its own");
   }
+  SECTION("both eyes on one spot") {
+    heads.landmarks[9].position = good[8].position;
+    CHECK(messageOf() == "landmarks: eye_centre_left and eye_centre_right are on one spot; each needs its own");
+  }
+  SECTION("in another unit") {
+    for (Landmark& landmark : heads.landmarks)
+      for (float& x : landmark.position) x *= 100;
+    CHECK(messageOf().find(" diagonals outside the box of its model; it has to be in its unit and axes") !=
+          std::string::npos);
+  }
   SECTION("not finite") {
     heads.landmarks[0].position[1] = NAN;
     CHECK(messageOf() == "landmarks: nose_tip is not a finite position");

@@ -108,6 +108,36 @@ TEST_CASE("a cage has about as many triangles as asked for", "[cages][make]") {
   }
 }
 
+TEST_CASE("many triangles that are asked for are left", "[cages][make]") {
+  TriangleMesh simple;
+  REQUIRE(simplify(sphere({0, 0, 0}, 1, 200), {20000, 0.01}, {}, simple));
+  CHECK(simple.triangles.size() > 19000);
+  CHECK(simple.triangles.size() <= 20000);
+}
+
+TEST_CASE("a part of thousands of needles gets the hole of the same part of few", "[cages][make]") {
+  const auto holesWith = [](std::uint32_t sides) {
+    OwnedModel model;
+    model.add("body", sphere({0, 0, 0}, 1));
+    TriangleMesh tube;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const double around = 2 * 3.14159265358979 * i / sides;
+      for (const double x : {-0.45, 0.45})
+        tube.positions.push_back({x, 0.95 + 0.12 * std::cos(around), 0.12 * std::sin(around)});
+    }
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const std::uint32_t a = 2 * i, b = a + 1, c = 2 * ((i + 1) % sides), d = c + 1;
+      tube.triangles.push_back({a, c, b});
+      tube.triangles.push_back({b, c, d});
+    }
+    model.add("window", tube);
+    const TriangleMesh cage = meshOf(made(model.model()));
+    REQUIRE(boundaryLoops(cage).size() == 1);
+    return middleOf(cage, boundaryLoops(cage)[0]);
+  };
+  CHECK(length(holesWith(16) - holesWith(4000)) < 0.05);
+}
+
 TEST_CASE("a cage does not depend on the model's unit, place or winding", "[cages][make]") {
   OwnedModel model = head();
   const std::size_t loops = boundaryLoops(meshOf(made(model.model()))).size();
@@ -217,7 +247,7 @@ TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]")
   CHECK(faultOf(model.model(), options) == "model has nothing to paint: all that is seen of it is excluded");
   model.add("second head", sphere({4, 0, 0}, 1));
   CHECK(faultOf(model.model()) ==
-        "model is in pieces that lie too far apart for one cage: make one for each, or raise options.closing");
+        "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing");
   CHECK(faultOf({}) == "model has no vertices");
   const OwnedModel one = head();
   options = {};
