@@ -89,6 +89,16 @@ describe('reuse', () => {
     });
   }
 
+  test('masks go by the indices of the call, even if the new result is written over them', () => {
+    const { cage, target } = smallest();
+    const masks = { vertices: Int8Array.of(0, 0, -1) };
+    const reuse = transfer(cage, target);
+    // As many vertices as corners: one of the arrays can serve as both.
+    reuse.segments.set(target.indices);
+    const again = transfer(cage, { ...target, indices: reuse.segments }, { masks, reuse });
+    assert.deepEqual(again.cosmeticTriangles, transfer(cage, target, { masks }).cosmeticTriangles);
+  });
+
   test('reusing one result for many scenes and options gives the same results as new ones', () => {
     const scenes = [
       one,

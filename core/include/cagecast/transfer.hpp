@@ -53,7 +53,7 @@ Status project(const MeshView& cage, const MeshView& target, const TransferOptio
 /// @param projection  `Projection::view()` of a projection with any options.
 /// @param indices     The indices of the target, 3 per triangle.
 /// @return badOption or outOfMemory.
-/// Cost: linear.
+/// Cost: linear, and for each lock of a group once through all segments.
 Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices,
                 const TransferOptions& options, Zones& out) noexcept;
 

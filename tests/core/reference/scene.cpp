@@ -25,7 +25,7 @@ Points weld(const MeshView& target, double tolerance, bool groups) {
   if (tolerance > 0) {
     for (std::uint32_t v = 0; v < count; ++v)
       for (std::uint32_t w = 0; w < v; ++w)
-        if (group(v) == group(w) && length(vertex(target, v) - vertex(target, w)) <= tolerance) sets.join(v, w);
+        if (group(v) == group(w) && length(vertex(target, v) - vertex(target, w)) < tolerance) sets.join(v, w);
   }
   Points points;
   for (std::uint32_t v = 0; v < count; ++v) {

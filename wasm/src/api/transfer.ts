@@ -25,8 +25,10 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & R
   const [cageMesh, targetMesh] = [checkMesh('transfer', 'cage', cage), checkMesh('transfer', 'target', target)];
   const { positions, indices } = targetMesh;
   checkMaskLengths('transfer', masks, positions.length / 3, indices.length / 3);
+  // An earlier result may share the array of indices, which masks need after it is overwritten.
+  const corners = masks && options?.reuse ? indices.slice() : indices;
   const result = callCore('transfer', ({ workspace }) => workspace.transfer(cageMesh, targetMesh, core, locks), arrays);
-  applyMasks(masks, indices, result, core.steps['partialTriangles'] === true);
+  applyMasks(masks, corners, result, core.steps['partialTriangles'] === true);
   return handOver(result, options?.reuse);
 }
 
