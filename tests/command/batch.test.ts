@@ -260,7 +260,7 @@ test('a glTF gets its name after what it has beside it', () => {
   assert.deepEqual(renamed, ['head.bin']);
 });
 
-test('what looks like a placeholder or a pattern of replacement in the name of a target stands as it is', () => {
+test('a target whose name holds {dir} or $& gives its outputs that very name', () => {
   mkdirSync(at('odd'));
   const names = ['a$$b.glb', 'a$&b.glb', 'a{dir}b.glb', 'a{name}b.glb'];
   for (const name of names) writeFileSync(at('odd', name), target);

@@ -28,6 +28,8 @@ constexpr double kOcclusionReach = 0.03;
 constexpr int kWidening = 2;
 /// Samples along the longest edge of a triangle at most.
 constexpr double kMostSteps = 64;
+/// A needle is a triangle narrower than this share of the spacing of samples: one row of them does.
+constexpr double kNeedleWidth = 0.25;
 /// Samples of all needles together, about: there may be thousands of them side by side.
 constexpr double kNeedleSamples = 100'000;
 /// Points or rays between two calls of the callback: a few milliseconds of work.
@@ -50,11 +52,9 @@ struct OnLongestEdge {
   [[nodiscard]] double steps(double spacing) const {
     return std::clamp(std::ceil(length(along) / spacing), 1.0, kMostSteps);
   }
-  /// Whether one row of samples does.
   [[nodiscard]] bool isNeedle(double spacing) const {
     return length(cross(along, toThird)) < kNeedleWidth * spacing * length(along) && length(along) > spacing;
   }
-  static constexpr double kNeedleWidth = 0.25;
 };
 
 /// The spacing of samples along needles, so that all of them together do not get too many.
@@ -71,6 +71,7 @@ double needleSpacing(const MarkedMesh& model, double spacing) {
 /// Points all over the marked triangles, about `spacing` apart, with the triangles that they are on.
 void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& samples,
                   std::vector<std::uint32_t>& triangles) {
+  // Multiples of it, modulo 1, are spread evenly, however many there are.
   constexpr double kGoldenRatio = 0.6180339887498949;
   const double alongNeedles = needleSpacing(model, spacing);
   for (std::uint32_t t = 0; t < model.isMarked.size(); ++t) {

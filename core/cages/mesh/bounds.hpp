@@ -21,7 +21,7 @@ struct Bounds {
   [[nodiscard]] Vec3 size() const { return empty() ? Vec3{0, 0, 0} : high - low; }
   [[nodiscard]] Vec3 middle() const { return 0.5 * (low + high); }
   [[nodiscard]] double diagonal() const { return length(size()); }
-  /// 0 inside.
+  /// How far a point is from the box; 0 inside.
   [[nodiscard]] double distance(const Vec3& p) const {
     const auto outside = [](double x, double from, double to) { return std::max({from - x, x - to, 0.0}); };
     return length(Vec3{outside(p.x, low.x, high.x), outside(p.y, low.y, high.y), outside(p.z, low.z, high.z)});

@@ -310,7 +310,10 @@ export class GlbWriter {
     }
   }
 
-  /** Drops accessors and views that nothing refers to any more; those to which nothing did before stay, or all old ones if unknown extensions may refer to them. */
+  /**
+   * Drops accessors and views that nothing refers to any more. Those to which nothing referred before stay, and all old ones do if
+   * extensions that are not known here may refer to them.
+   */
   #dropUnused(): GLTF.IBufferView[] {
     const { json } = this;
     const before = this.#before;

@@ -12,7 +12,10 @@ export interface ReadLimits {
   nesting: number;
   /** How often the scene shows the same positions: nodes that share a mesh, primitives that share an accessor. Default: 1000 */
   instances: number;
-  /** Elements of attributes and indices that are not in the file: those without bytes are zero. Not counted beside positions that are in the file. Default: 1,000,000 */
+  /**
+   * Elements of attributes and indices that are not in the file: those without bytes are zero. Attributes of a primitive whose
+   * positions are in the file are not counted. Default: 1,000,000
+   */
   implied: number;
   /** How many times larger than its files the data may become when it is decoded, from 32 MiB on. Default: 100 */
   expansion: number;
