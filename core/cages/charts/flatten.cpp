@@ -13,7 +13,7 @@ namespace {
 
 /// What the triangles that fill a hole count: enough to keep its shape, too little to bend what is around it.
 constexpr double kFillWeight = 0.05;
-constexpr int kSteps = 60;
+constexpr int kFlattenSteps = 60;
 /// A step that gains less than this share is the last.
 constexpr double kLeastGain = 2e-4;
 /// After so many steps overlaps are looked for; an overlap then turns the run back to its last good state.
@@ -135,10 +135,10 @@ Chart flatten(Piece piece, Ticker& ticker) {
   for (std::size_t t = real; t < rest.weights.size(); ++t) rest.weights[t] *= kFillWeight;
   Slim slim(mesh, std::move(rest));
   std::vector<Uv> uvs = chart.uvs;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kFlattenSteps; ++i) {
     if (!ticker.work(mesh.triangles.size())) return chart;
     const double gain = slim.step(uvs);
-    const bool last = gain < kLeastGain || i + 1 == kSteps;
+    const bool last = gain < kLeastGain || i + 1 == kFlattenSteps;
     if (last || i % kStepsBetweenChecks == kStepsBetweenChecks - 1) {
       if (countOverlaps(uvs, chart.piece.mesh.triangles, 1) > 0) break;
       chart.uvs = uvs;

@@ -14,7 +14,7 @@ namespace cagecast::cages {
 namespace {
 
 /// Vertices that mean distances are taken to.
-constexpr std::size_t kSamples = 48;
+constexpr std::size_t kThicknessSamples = 48;
 /// Peaks lower than this share of the whole range of mean distances are no limbs.
 constexpr double kLeastPeak = 0.14;
 /// The loop that cuts off a limb may lie this far up the limb, as a share of its length, …
@@ -36,7 +36,7 @@ std::vector<double> meanDistances(const TriangleMesh& mesh) {
   std::vector<double> nearest(mesh.positions.size(), std::numeric_limits<double>::infinity());
   std::vector<std::size_t> sampleOf(mesh.positions.size());
   std::uint32_t at = 0;
-  for (std::size_t i = 0; i < std::min(kSamples, mesh.positions.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kThicknessSamples, mesh.positions.size()); ++i) {
     distances.push_back(edgeDistances(mesh, {&at, 1}, {}).distance);
     for (std::uint32_t v = 0; v < nearest.size(); ++v)
       if (distances[i][v] < nearest[v]) {

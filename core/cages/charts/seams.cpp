@@ -11,7 +11,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
 /// Holes longer than this share of the longest boundary loop are joined with it by a seam.
 constexpr double kLargestHole = 0.45;
 
@@ -25,7 +25,7 @@ std::uint32_t furthest(const EdgeDistances& from) {
   std::uint32_t best = 0;
   double most = -1;
   for (std::uint32_t v = 0; v < from.distance.size(); ++v)
-    if (from.distance[v] < kInfinite && from.distance[v] > most) most = from.distance[best = v];
+    if (from.distance[v] < kUnreached && from.distance[v] > most) most = from.distance[best = v];
   return best;
 }
 
@@ -95,7 +95,7 @@ EdgeDistances edgeDistances(const TriangleMesh& mesh, std::span<const std::uint3
     leaving[endOf(mesh, h)].emplace_back(originOf(mesh, h), h);
   }
   EdgeDistances out;
-  out.distance.assign(mesh.positions.size(), kInfinite);
+  out.distance.assign(mesh.positions.size(), kUnreached);
   out.cameBy.assign(mesh.positions.size(), kNone);
   using Entry = std::pair<double, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;

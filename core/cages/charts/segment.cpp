@@ -18,7 +18,7 @@ namespace {
 /// A border between sides costs as much as facing wrong by 1 (0 right, 1 square to it) on a strip this share of the
 /// size of the mesh wide.
 constexpr double kBorderWidth = 0.06;
-constexpr int kSweeps = 4;
+constexpr int kSegmentSweeps = 4;
 constexpr double kLeastSide = 0.04;
 constexpr std::size_t kMostSides = 8;
 
@@ -149,7 +149,7 @@ std::vector<std::uint32_t> sidesOf(const Piece& piece, const UnwrapOptions& opti
     for (std::size_t k = 0; k < 6; ++k) price[t][k] = area - (k % 2 == 0 ? 1 : -1) * dot(n, axes[k / 2]);
     labels[t] = static_cast<std::uint32_t>(std::min_element(price[t].begin(), price[t].end()) - price[t].begin());
   }
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kSegmentSweeps; ++sweep) {
     bool changed = false;
     for (std::uint32_t label = 0; label < 6; ++label) changed = expand(mesh, price, label, labels) || changed;
     if (!changed) break;

@@ -9,7 +9,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr int kSmoothings = 4;
+constexpr int kWeightSmoothings = 4;
 /// Bones are at least this thick where weights are computed, in diagonals, so that weights stay finite.
 constexpr double kThickness = 1e-3;
 /// How far a bone at the end of a limb reaches, in lengths of the one before it.
@@ -155,7 +155,7 @@ Vec3 bend(const Vec3& point, const std::vector<Bone>& bones) {
 std::vector<Vec3> bend(const TemplateCage& cage, const std::vector<Bone>& bones) {
   std::vector<std::vector<double>> weights;
   for (const Vec3& p : cage.mesh.positions) weights.push_back(weightsAt(p, bones, kThickness * cage.diagonal));
-  for (int round = 0; round < kSmoothings; ++round) {
+  for (int round = 0; round < kWeightSmoothings; ++round) {
     std::vector<std::vector<double>> next = weights;
     for (std::size_t v = 0; v < weights.size(); ++v)
       for (const std::uint32_t u : cage.neighbours[v])

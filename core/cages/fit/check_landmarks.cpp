@@ -8,8 +8,6 @@ namespace cagecast::cages {
 
 namespace {
 
-/// Two landmarks that are closer than this share of the diagonal are on one spot.
-constexpr double kOneSpot = 1e-3;
 /// A landmark of a model is at most this far outside its box, in diagonals.
 constexpr double kMostOutside = 0.2;
 /// A landmark that is off by more than this share of the diagonal, after the others are aligned, is a mistake.

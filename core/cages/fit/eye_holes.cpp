@@ -31,7 +31,7 @@ constexpr double kBallSlack = 1.15;
 constexpr std::size_t kLeastSeen = 32;
 
 /// What is visible of an eye, seen along its axis.
-struct Opening {
+struct EyeOpening {
   Vec3 middle{}, axis{}, across{}, up{};
   std::vector<double> contour;  ///< Distances from `middle`, from `across` to `up`.
   std::vector<HoleContent::Cover> covers;
@@ -113,9 +113,9 @@ Vec3 axisOf(const TriangleMesh& mesh, const std::vector<bool>& isEye, const Surf
   return unit(sum);
 }
 
-std::optional<Opening> openingOf(const EyedFigure& figure, const Surface& surface, const std::vector<bool>& isEye,
-                                 double diagonal) {
-  Opening opening;
+std::optional<EyeOpening> openingOf(const EyedFigure& figure, const Surface& surface, const std::vector<bool>& isEye,
+                                    double diagonal) {
+  EyeOpening opening;
   opening.axis = axisOf(figure.mesh, isEye, surface, diagonal);
   if (!(length(opening.axis) > 0)) return std::nullopt;
   Bounds box;
@@ -199,7 +199,7 @@ Flat spreadOf(const std::vector<Flat>& points, Flat& middle) {
 /// Adds the pieces of a mesh around an eye that are neither the eye nor skin.
 /// @param isEye  Per triangle; may be empty.
 void addCovers(const TriangleMesh& mesh, const std::vector<std::uint32_t>& components, const std::vector<bool>& isEye,
-               Opening& opening) {
+               EyeOpening& opening) {
   std::vector<HoleContent::Cover>& covers = opening.covers;
   const double radius = *std::max_element(opening.contour.begin(), opening.contour.end());
   std::uint32_t count = 0;
@@ -229,7 +229,7 @@ void addCovers(const TriangleMesh& mesh, const std::vector<std::uint32_t>& compo
 }
 
 /// What a hole has to show, and the triangles around it.
-HoleContent contentOf(const TemplateCage& cage, const std::vector<std::uint32_t>& loop, const Opening& opening,
+HoleContent contentOf(const TemplateCage& cage, const std::vector<std::uint32_t>& loop, const EyeOpening& opening,
                       const std::vector<Vec3>& positions) {
   HoleContent content{opening.contour, opening.covers, {}};
   for (const Triangle3& t : cage.mesh.triangles) {
@@ -247,8 +247,8 @@ HoleContent contentOf(const TemplateCage& cage, const std::vector<std::uint32_t>
 }
 
 /// Moves the border of a hole to where it shows an eye.
-void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const Opening& opening, const Surface& surface,
-            std::vector<Vec3>& positions) {
+void drawTo(const TemplateCage& cage, std::vector<std::uint32_t> loop, const EyeOpening& opening,
+            const Surface& surface, std::vector<Vec3>& positions) {
   double around = 0;
   std::vector<Flat> border;
   border.reserve(loop.size());
@@ -308,7 +308,7 @@ std::vector<Vec3> fitEyeHoles(const TemplateCage& cage, const EyedFigure& figure
     if (hole < 0) continue;
     const std::vector<bool> isEye = eyeAt(figure, *there[side], *there[1 - side], cage.diagonal);
     if (std::find(isEye.begin(), isEye.end(), true) == isEye.end()) continue;
-    std::optional<Opening> opening = openingOf(figure, surface, isEye, cage.diagonal);
+    std::optional<EyeOpening> opening = openingOf(figure, surface, isEye, cage.diagonal);
     if (!opening) continue;
     addCovers(figure.mesh, figure.components, isEye, *opening);
     addCovers(figure.covers, figure.coverComponents, {}, *opening);

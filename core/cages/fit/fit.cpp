@@ -25,18 +25,16 @@ namespace cagecast::cages {
 namespace {
 
 /// Lengths in diagonals of the template's cage.
-struct Settings {
+struct FitSettings {
   double closing;
   std::uint32_t voxels;
   int passes;  ///< Of drawing the cage onto the hull, each from where the last one ended: bodies differ more.
   TightenOptions tighten;
 };
-constexpr Settings kHead{0.022, 80, 1, {.reach = 0.06, .sliding = 0.5, .stiffest = 30, .softest = 1}};
-constexpr Settings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .stiffest = 30, .softest = 1}};
+constexpr FitSettings kHead{0.022, 80, 1, {.reach = 0.06, .sliding = 0.5, .stiffest = 30, .softest = 1}};
+constexpr FitSettings kBody{0.010, 200, 2, {.reach = 0.02, .sliding = 0.05, .stiffest = 30, .softest = 1}};
 /// The hull is at least this far off, in diagonals: templates whose landmarks lie on the cage.
 constexpr double kLeastOffset = 0.003;
-/// Anchors that are closer than this share of the diagonal count once.
-constexpr double kOneSpot = 1e-3;
 constexpr std::size_t kLeastLandmarks = 4;
 /// Of a face, these do to begin with.
 constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip", "lip_lower", "chin"};
@@ -44,7 +42,7 @@ constexpr std::array kFirstFive{"eye_centre_left", "eye_centre_right", "nose_tip
 constexpr std::size_t kMostNames = 12;
 
 /// Shares of the work, for progress.
-constexpr double kLandmarksEnd = 0.3, kHullEnd = 0.6, kTightenEnd = 0.85;
+constexpr double kLandmarksEnd = 0.3, kTightenStart = 0.6, kTightenEnd = 0.85;
 
 /// What is known of both models.
 struct Pairs {
@@ -206,7 +204,7 @@ Outcome Fit::run(FittedCage& out) {
     pairs_.to[i].position = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
   }
   bones_ = bonesOf(pairs_.from, pairs_.to);
-  const Settings& settings = bones_.empty() ? kHead : kBody;
+  const FitSettings& settings = bones_.empty() ? kHead : kBody;
   cage.offset = std::max(cage.offset, kLeastOffset * cage.diagonal);
   readTarget();
   if (skin_.empty())
@@ -221,7 +219,7 @@ Outcome Fit::run(FittedCage& out) {
   const bool done = makeHull(
       figure_.mesh, {settings.closing * cage.diagonal, cage.offset, settings.voxels},
       [&](float share, const char*) {
-        return tell(kLandmarksEnd + static_cast<double>(share) * (kHullEnd - kLandmarksEnd), "hull");
+        return tell(kLandmarksEnd + static_cast<double>(share) * (kTightenStart - kLandmarksEnd), "hull");
       },
       hull);
   if (!done || hull.empty()) return cancelled;
@@ -229,7 +227,7 @@ Outcome Fit::run(FittedCage& out) {
   for (int pass = 0; pass < settings.passes; ++pass) {
     if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);
     positions = tighten(cage, positions, hull, settings.tighten, [&](double share) {
-      return tell(kHullEnd + (pass + share) / settings.passes * (kTightenEnd - kHullEnd), "fit");
+      return tell(kTightenStart + (pass + share) / settings.passes * (kTightenEnd - kTightenStart), "fit");
     });
     if (positions.empty()) return cancelled;
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 /// What must be free is free this much farther out: paint must not reach it. At 1.06 the transfer painted 3 % of it.
-constexpr double kMargin = 1.12;
+constexpr double kOutlineMargin = 1.12;
 /// What else is free should be less than this share of what must be free.
 constexpr double kMostSpill = 0.38;
 /// What a share of what must be free costs if it is covered; as a margin; or if it is free but need not be.
@@ -127,7 +127,7 @@ class Search {
       const double r = reach(directions_[d], kTurn * static_cast<double>(d) / static_cast<double>(directions_.size()));
       const double wanted = contour_[d] * contour_[d];
       covered += std::max(0.0, wanted - r * r) / area_;
-      margin += std::max(0.0, kMargin * kMargin * wanted - std::max(r * r, wanted)) / area_;
+      margin += std::max(0.0, kOutlineMargin * kOutlineMargin * wanted - std::max(r * r, wanted)) / area_;
       spill += std::max(0.0, r * r - wanted) / area_;
     }
     std::vector<double> pieces(pieceAreas_.size());
@@ -179,7 +179,7 @@ std::vector<Flat> fitOutline(std::vector<Flat> corners, const HoleContent& conte
     if (gap < kLeastGap) polar[i].angle = polar[0].angle + kTurn * static_cast<double>(i) / static_cast<double>(count);
     const auto directions = static_cast<double>(content.contour.size());
     const auto d = static_cast<std::size_t>(wrapped(polar[i].angle) / kTurn * directions) % content.contour.size();
-    polar[i].distance = kMargin * content.contour[d];
+    polar[i].distance = kOutlineMargin * content.contour[d];
   }
   return Search(std::move(polar), content).run();
 }

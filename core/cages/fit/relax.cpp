@@ -19,10 +19,10 @@ constexpr double kThin = 18 * std::numbers::pi / 180, kThinShare = 0.9;
 /// of neighbours; in the last one those on tracks leave them.
 constexpr int kStages = 3, kRoundsPerStage = 10;
 constexpr int kRings[kStages] = {0, 1, 1};
-constexpr int kSweeps = 10;
+constexpr int kRelaxSweeps = 10;
 /// Then single vertices are tried at places around, this far off at first, in lengths of their longest edge.
 constexpr int kSearchRounds = 10;
-constexpr double kFirstStep = 0.1;
+constexpr double kFirstSearchStep = 0.1;
 
 std::vector<double> smallestAngles(const TriangleMesh& mesh) {
   std::vector<double> angles;
@@ -57,7 +57,7 @@ void restoreShape(const TemplateCage& cage, const std::vector<bool>& moves, cons
     }
     maps[v] = fitSimilarity(from, to);
   }
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
+  for (int sweep = 0; sweep < kRelaxSweeps; ++sweep)
     for (std::size_t v = 0; v < positions.size(); ++v) {
       if (!moves[v]) continue;
       Vec3 sum{0, 0, 0};
@@ -119,7 +119,7 @@ void searchAround(const TemplateCage& cage, const std::vector<bool>& foldedBefor
   for (const std::uint32_t u : cage.neighbours[vertex]) size = std::max(size, length(positions[u] - start));
   const int before = around.foldsWith(start);
   int least = before;
-  for (double step = kFirstStep; step < 1 && least == before; step *= 2)
+  for (double step = kFirstSearchStep; step < 1 && least == before; step *= 2)
     for (const double x : {-1.0, 0.0, 1.0})
       for (const double y : {-1.0, 0.0, 1.0})
         for (const double z : {-1.0, 0.0, 1.0}) {

@@ -10,7 +10,7 @@ namespace cagecast::cages {
 namespace {
 
 constexpr int kPerSide = 4;          ///< Anchors from front to back on each side of a rim.
-constexpr double kStep = 0.005;      ///< Distance of samples along a rim, in diagonals.
+constexpr double kRimStep = 0.005;   ///< Distance of samples along a rim, in diagonals.
 constexpr double kSmoothing = 0.03;  ///< Ragged rims are smoothed over this share of their length.
 /// How many samples a rim has, about, at most: smoothing them takes the square of it. Necks have 200 to 400. There
 /// would be millions where landmarks that are close together make the target huge in the template's space.
@@ -147,7 +147,7 @@ std::vector<Anchor> rimAnchors(const TemplateCage& cage, const TriangleMesh& tar
   const auto loops = boundaryLoops(target);
   const int rim = rimOf(target, loops, cage.diagonal);
   if (!axes.known || cage.rim < 0 || rim < 0) return anchors;
-  const double step = kStep * cage.diagonal;
+  const double step = kRimStep * cage.diagonal;
   const Rim from = sample(cage.mesh, cage.loops[static_cast<std::size_t>(cage.rim)], step, axes.up);
   const Rim to = sample(target, loops[static_cast<std::size_t>(rim)], step, axes.up);
   const std::vector<Vec3> a = stations(from, axes), b = stations(to, axes);

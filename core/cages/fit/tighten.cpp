@@ -10,7 +10,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr int kRounds = 9;
+constexpr int kTightenRounds = 9;
 /// Cosine of the angle between cage and hull beyond which a closest point is not the right one: 60 degrees.
 constexpr double kLeastAgreement = 0.5;
 
@@ -50,8 +50,8 @@ std::vector<Vec3> tighten(const TemplateCage& cage, const std::vector<Vec3>& res
   Solver solver(cage);
   TriangleMesh current{rest, cage.mesh.triangles};
   std::vector<Vec3> points(samples.size());
-  for (int round = 0; round < kRounds; ++round) {
-    const double share = static_cast<double>(round) / (kRounds - 1);
+  for (int round = 0; round < kTightenRounds; ++round) {
+    const double share = static_cast<double>(round) / (kTightenRounds - 1);
     if (!step(share)) return {};
     const double reach = options.reach * cage.diagonal * std::pow(3.0, -share);
     for (std::size_t i = 0; i < samples.size(); ++i) points[i] = blend(current.positions, samples[i]);

@@ -14,7 +14,7 @@ namespace {
 /// Resistance of the affine part to everything but a translation: few landmarks say little about it.
 constexpr double kAffineRidge = 0.05;
 /// Distance, as a share of the size, within which the spline has no kink at a point.
-constexpr double kRounding = 0.025;
+constexpr double kKernelRounding = 0.025;
 /// Distance, as a share of the size, below which points count alike in the similarity of a place.
 constexpr double kNear = 0.03;
 
@@ -22,7 +22,7 @@ Eigen::Vector3d eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
 Vec3 vec3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// A multiquadric: conditionally negative definite, so that the system has one solution.
-double kernel(double distance) { return -std::sqrt(distance * distance + kRounding * kRounding); }
+double kernel(double distance) { return -std::sqrt(distance * distance + kKernelRounding * kKernelRounding); }
 
 Vec3 meanOf(std::span<const Vec3> points, std::span<const double> weights = {}) {
   Vec3 sum{0, 0, 0};

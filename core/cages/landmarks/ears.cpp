@@ -7,7 +7,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr double kStep = 0.004;
+constexpr double kEarStep = 0.004;
 /// Ears are narrower than this, from front to back; the head behind them is wider.
 constexpr double kWidest = 0.125;
 /// An ear stands out from the head by more than this, and ends where it does by less than a share of its own most, or
@@ -19,7 +19,7 @@ constexpr double kHigh = 0.17, kMostEnds = 0.5;
 /// How far each place stands out from the head, seen from a side: the height over what a line segment of the width
 /// `kWidest` can reach from inside (a morphological top-hat, along each row).
 std::vector<double> standingOut(const HeightMap& map) {
-  const int half = static_cast<int>(std::lround(0.5 * kWidest / kStep));
+  const int half = static_cast<int>(std::lround(0.5 * kWidest / kEarStep));
   std::vector<double> out(map.heights.size());
   for (int row = 0; row < map.grid.rows; ++row) {
     std::vector<double> least(static_cast<std::size_t>(map.grid.columns));
@@ -102,12 +102,12 @@ struct Ear {
 /// @param side  1: the left ear, -1: the right one.
 std::optional<Ear> findEar(const Head& head, double side, double bottom) {
   const View view{{0, 0, 1}, {0, 1, 0}, {side, 0, 0}};
-  const Grid grid = Grid::over(-0.52, 0.1, bottom, 0.3, kStep);
+  const Grid grid = Grid::over(-0.52, 0.1, bottom, 0.3, kEarStep);
   const HeightMap map = look(head.surface, view, grid, 1.0);
   const std::vector<Place> places = earArea(map);
   if (places.empty()) return std::nullopt;
   Ear ear;
-  ear.area = kStep * kStep * static_cast<double>(places.size());
+  ear.area = kEarStep * kEarStep * static_cast<double>(places.size());
   const auto point = [&](const Place& place) {
     return view.point(grid.a(place.first), grid.b(place.second), map.at(place.first, place.second));
   };

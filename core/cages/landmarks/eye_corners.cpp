@@ -6,12 +6,12 @@
 namespace cagecast::cages {
 
 void findEyeCorners(Head& head, const Surface& all, const std::vector<bool>& isEye) {
-  constexpr double kStep = 0.002;
+  constexpr double kCornerStep = 0.002;
   const double reach = 1.3 * head.eyes.radius;
   for (const int i : {0, 1}) {
     const Vec3& eye = head.eyes.centres[static_cast<std::size_t>(i)];
     const double side = i == 0 ? 1 : -1;
-    const Grid grid = Grid::over(eye.x - reach, eye.x + reach, eye.y - reach, eye.y + reach, kStep);
+    const Grid grid = Grid::over(eye.x - reach, eye.x + reach, eye.y - reach, eye.y + reach, kCornerStep);
     const HeightMap map = look(all, kFrontView, grid, 0.6);
     int first = -1, last = -1;
     std::vector<double> middles(static_cast<std::size_t>(grid.columns)), lowest(middles.size());
@@ -35,7 +35,7 @@ void findEyeCorners(Head& head, const Surface& all, const std::vector<bool>& isE
     }
     const int inner = side > 0 ? first : last, outer = side > 0 ? last : first;
     // Eyes that stand out freely have no corners.
-    const double disc = std::acos(-1.0) * head.eyes.radius * head.eyes.radius / (kStep * kStep);
+    const double disc = std::acos(-1.0) * head.eyes.radius * head.eyes.radius / (kCornerStep * kCornerStep);
     if (first < 0 || first == last || area > 0.85 * disc) continue;
     // The lids meet behind what is seen, about beside the middle of the front half of the eyeball. A visible end far
     // from there is that of an eye that is no ball.

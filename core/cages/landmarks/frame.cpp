@@ -14,16 +14,16 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr std::size_t kSamples = 600;
+constexpr std::size_t kSymmetrySamples = 600;
 constexpr int kHeadings = 24;           ///< Steps of 7.5 degrees: the refinement converges from twice that.
 constexpr int kRefined = 3;             ///< How many planes are refined.
 constexpr double kSameHeading = 0.985;  ///< Cosine of 10 degrees.
 constexpr int kIterations = 40;
 /// Planes that are so much worse than the best one, and off by more than a share of the diagonal, are none.
-constexpr double kFarOff = 1.6, kRounding = 0.002;
+constexpr double kFarOff = 1.6, kPlaneRounding = 0.002;
 constexpr double kOverstep = 0.7;
 constexpr double kFirstTurn = 0.07, kLastTurn = 0.004;  ///< Radians.
-constexpr double kSettled = 0.998;  ///< Iterations end when the residual is this share of the last one or more.
+constexpr double kLeastProgress = 0.998;  ///< Iterations end when the residual is this share of the last one or more.
 /// Of the mirrored points, the share closest to the surface that counts: a parting or a broken ear may be one-sided.
 constexpr double kTrusted = 0.8;
 /// A heading off the file's own axes must be this much better: a round head has a mirror plane anywhere.
@@ -87,7 +87,7 @@ TriangleMesh coarse(const TriangleMesh& mesh) {
 class Mirror {
  public:
   Mirror(const TriangleMesh& mesh, const Surface& surface)
-      : surface_(surface), points_(samplePoints(mesh, kSamples)), diagonal_(diagonalOf(mesh)) {
+      : surface_(surface), points_(samplePoints(mesh, kSymmetrySamples)), diagonal_(diagonalOf(mesh)) {
     sortByPlace(points_, diagonal_);
     for (const Vec3& p : points_) middle_ = middle_ + 1 / static_cast<double>(points_.size()) * p;
   }
@@ -149,7 +149,7 @@ MirrorPlane refined(const Mirror& mirror, MirrorPlane plane) {
   best.residual = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kIterations; ++i) {
     const MirrorPlane next = mirror.improved(plane);
-    const bool settled = plane.residual > kSettled * best.residual;
+    const bool settled = plane.residual > kLeastProgress * best.residual;
     if (plane.residual < best.residual) best = plane;
     if (settled) break;
     // Closest points on round surfaces pull by less than what is wanted: go further.
@@ -231,7 +231,7 @@ std::vector<MirrorPlane> findMirrorPlanes(const TriangleMesh& fine) {
       *same = plane;
   }
   const double least = std::min_element(out.begin(), out.end(), better)->residual;
-  std::erase_if(out, [&](const MirrorPlane& plane) { return plane.residual > kFarOff * least + kRounding; });
+  std::erase_if(out, [&](const MirrorPlane& plane) { return plane.residual > kFarOff * least + kPlaneRounding; });
   // A round head has a mirror plane anywhere: then the file's own axes count.
   const auto rank = [&](const MirrorPlane& plane) {
     return plane.residual * (std::abs(plane.left.x) > kSameHeading ? kAxisPreference : 1);

@@ -9,7 +9,7 @@ namespace cagecast::cages {
 namespace {
 
 // Lengths are shares of the frame's unit, which is about the diagonal of head and neck.
-constexpr double kStep = 0.004;
+constexpr double kEyeStep = 0.004;
 /// From the tip of the nose to the back of the head.
 constexpr double kHeadDepth = 0.54;
 
@@ -91,8 +91,8 @@ Found searchBalls(const HeightMap& map, double noseY, double rootY) {
   Found best;
   for (const double radius : {0.03, 0.036, 0.043, 0.052}) {
     const BallVotes votes = voteForBalls(map, radius);
-    for (double y = std::max(rootY - kBelow, noseY + 0.03); y <= rootY + kAbove; y += kStep)
-      for (double x = kInner; x <= kOuter; x += kStep) {
+    for (double y = std::max(rootY - kBelow, noseY + 0.03); y <= rootY + kAbove; y += kEyeStep)
+      for (double x = kInner; x <= kOuter; x += kEyeStep) {
         const double count = std::min(votes.density.near(x, y), votes.density.near(-x, y));
         if (count <= best.votes) continue;
         best = {x, y, 0.5 * (votes.depth.near(x, y) + votes.depth.near(-x, y)), radius, count};
@@ -118,25 +118,25 @@ std::optional<Eyes> findFusedEyes(const Figure& figure, const MirrorPlane& plane
     const TriangleMesh local = frame.toLocal(within(skin, frame.origin, 0.6 * frame.unit));
     if (local.empty()) continue;
     const Surface surface(local);
-    const Grid grid = Grid::over(-0.2, 0.2, -0.3, 0.2, kStep);
+    const Grid grid = Grid::over(-0.2, 0.2, -0.3, 0.2, kEyeStep);
     const HeightMap map = blurred(closed(look(surface, kFrontView, grid, 0.7), 0.008), 0.004);
     // From the top down: a chin may stand out more than a nose.
     double standsOut = 0;
-    for (double y = kTop; y > kBottom; y -= kStep) standsOut = std::max(standsOut, ridge(map, y));
+    for (double y = kTop; y > kBottom; y -= kEyeStep) standsOut = std::max(standsOut, ridge(map, y));
     if (standsOut <= most) continue;
     most = standsOut;
     best.reset();
     double noseY = kTop;
-    while (ridge(map, noseY) < 0.5 * standsOut) noseY -= kStep;
-    while (ridge(map, noseY - kStep) > ridge(map, noseY)) noseY -= kStep;
+    while (ridge(map, noseY) < 0.5 * standsOut) noseY -= kEyeStep;
+    while (ridge(map, noseY - kEyeStep) > ridge(map, noseY)) noseY -= kEyeStep;
     // A ridge may be highest at its root: the tip is where the profile is foremost before it falls back.
-    for (double y = noseY; y > -0.25 && map.near(0, y) > map.near(0, noseY) - 0.012; y -= kStep)
+    for (double y = noseY; y > -0.25 && map.near(0, y) > map.near(0, noseY) - 0.012; y -= kEyeStep)
       if (map.near(0, y) > map.near(0, noseY)) noseY = y;
     // The nose's root: the hollow over its tip. Eyes are beside it; without it they could be anywhere.
     constexpr double kRises = 0.0006;  ///< By so much the brow comes out again above it.
     const double rootEnd = noseY + 0.17;
     double rootY = noseY + 0.04, y = rootY;
-    for (; y < rootEnd && map.near(0, y) < map.near(0, rootY) + kRises; y += kStep)
+    for (; y < rootEnd && map.near(0, y) < map.near(0, rootY) + kRises; y += kEyeStep)
       if (map.near(0, y) < map.near(0, rootY)) rootY = y;
     if (y >= rootEnd) continue;
     const Found found = searchBalls(map, noseY, rootY);

@@ -46,7 +46,7 @@ bool belongsToEye(const Eyes& eyes, std::size_t triangle) {
 /// Components that only the front sees: teeth and tongues, which are no part of the skin if the mouth is open.
 std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
   constexpr double kSmall = 0.1;  ///< Share of the figure's triangles.
-  constexpr std::size_t kSamples = 24;
+  constexpr std::size_t kPartSamples = 24;
   std::vector<std::vector<Triangle3>> parts(figure.componentCount);
   for (std::size_t t = 0; t < figure.components.size(); ++t)
     parts[figure.components[t]].push_back(figure.mesh.triangles[t]);
@@ -58,7 +58,7 @@ std::vector<bool> insideMouth(const Figure& figure, const Eyes& eyes) {
     const auto size = static_cast<double>(parts[c].size());
     if (size > kSmall * static_cast<double>(figure.components.size())) continue;
     std::vector<SurfaceRay> rays;
-    for (const Vec3& p : samplePoints(compact(figure.mesh, parts[c]), kSamples))
+    for (const Vec3& p : samplePoints(compact(figure.mesh, parts[c]), kPartSamples))
       for (const Vec3& direction : {eyes.left, -1 * eyes.left, up, -1 * eyes.front})
         rays.push_back({p + clear * direction, direction});
     const std::vector<RayHit> hits = surface.trace(rays);

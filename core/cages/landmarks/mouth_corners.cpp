@@ -8,7 +8,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr double kStep = 0.003;
+constexpr double kMouthStep = 0.003;
 constexpr double kBlur = 0.002;
 /// Half the width of the crease that closed lips make.
 constexpr double kCrease = 0.008;
@@ -28,9 +28,9 @@ std::optional<Vec3> follow(const HeightMap& map, double start, double side) {
   double y = start, typical = 0;
   Vec3 end{0, start, 0};
   int weak = 0;
-  for (double x = 0; x < kLongest; x += kStep) {
+  for (double x = 0; x < kLongest; x += kMouthStep) {
     double best = -1, bestY = y;
-    for (double d = -kClimb; d <= kClimb + 1e-9; d += kStep) {
+    for (double d = -kClimb; d <= kClimb + 1e-9; d += kMouthStep) {
       const double value = depth(x, y + d, kCrease) - 0.02 * std::abs(d);
       if (value > best) {
         best = value;
@@ -53,7 +53,7 @@ std::array<std::optional<Vec3>, 2> gapEnds(const HeightMap& map, double top, dou
   constexpr double kBehind = 0.012;
   const Grid& grid = map.grid;
   // A morphological closing along the columns, by a segment that is longer than the gap.
-  const int half = static_cast<int>(std::ceil(0.5 * (1.15 * (top - bottom) + 0.01) / kStep));
+  const int half = static_cast<int>(std::ceil(0.5 * (1.15 * (top - bottom) + 0.01) / kMouthStep));
   const auto extreme = [&](const std::vector<double>& heights, bool greatest) {
     std::vector<double> out(heights.size());
     for (int column = 0; column < grid.columns; ++column)
@@ -92,7 +92,7 @@ std::array<std::optional<Vec3>, 2> gapEnds(const HeightMap& map, double top, dou
       rows += row;
       ++count;
     }
-    const double x = grid.a(columns[i]) + (i == 0 ? kStep : -kStep), y = grid.b0 + grid.step * rows / count;
+    const double x = grid.a(columns[i]) + (i == 0 ? kMouthStep : -kMouthStep), y = grid.b0 + grid.step * rows / count;
     const double z = map.near(x, y);
     if (std::isfinite(z) && std::abs(x) > 0.02 && std::abs(x) < 0.14) out[i] = Vec3{x, y, z};
   }
@@ -106,7 +106,7 @@ void findMouthCorners(Head& head) {
   constexpr double kGaping = 0.025;
   constexpr double kAround = 0.08;
   const MouthLine& line = *head.mouth;
-  const Grid grid = Grid::over(-0.18, 0.18, line.bottom - kAround, line.top + kAround, kStep);
+  const Grid grid = Grid::over(-0.18, 0.18, line.bottom - kAround, line.top + kAround, kMouthStep);
   const HeightMap map = look(head.surface, kFrontView, grid, 0.6);
   std::array<std::optional<Vec3>, 2> ends;
   if (line.top - line.bottom > kGaping) {

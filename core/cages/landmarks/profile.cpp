@@ -8,7 +8,7 @@ namespace cagecast::cages {
 namespace {
 
 // Lengths are shares of the frame's unit, which is about the diagonal of head and neck.
-constexpr double kStep = 0.002;
+constexpr double kProfileStep = 0.002;
 constexpr double kFine = 0.003;    ///< Blur that keeps lips apart.
 constexpr double kMedium = 0.006;  ///< For nose and chin.
 constexpr double kFold = 0.012;    ///< Half the width of the folds above and below the lips.
@@ -34,7 +34,7 @@ std::optional<double> noseTip(const Profile& profile) {
   const auto height = [&](double y) {
     return std::cos(profile.tilt) * profile.medium.at(y) + std::sin(profile.tilt) * y;
   };
-  for (double y = kTop; y > kBottom; y -= kStep) {
+  for (double y = kTop; y > kBottom; y -= kProfileStep) {
     if (!std::isfinite(height(y))) break;
     if (height(y) > height(best)) best = y;
     if (height(y) < height(best) - kFall) return best;
@@ -47,7 +47,7 @@ double nasion(const Profile& profile, double nose, double& confidence) {
   constexpr double kHigh = 0.055, kLow = -0.05;
   const double low = std::max(kLow, nose + 0.03);
   const auto deepest = profile.fine.greatest(low, kHigh, [&](double y) { return -profile.fine.at(y); });
-  if (deepest && *deepest > low + 2 * kStep && *deepest < kHigh - 2 * kStep) {
+  if (deepest && *deepest > low + 2 * kProfileStep && *deepest < kHigh - 2 * kProfileStep) {
     confidence = 0.85;
     return *deepest;
   }
@@ -67,7 +67,7 @@ std::optional<double> glabella(const Profile& profile, double nasionY, double& c
     return std::cos(profile.tilt) * profile.medium.at(y) + std::sin(profile.tilt) * y;
   };
   double best = nasionY;
-  for (double y = nasionY; y < nasionY + kReach; y += kStep) {
+  for (double y = nasionY; y < nasionY + kReach; y += kProfileStep) {
     if (height(y) > height(best)) best = y;
     if (height(y) < height(best) - 0.001) break;
   }
@@ -81,8 +81,8 @@ std::optional<double> glabella(const Profile& profile, double nasionY, double& c
 double firstFold(const Profile& profile, double top, double bottom) {
   constexpr double kLeast = 0.0025;  ///< How hollow a fold is.
   const auto hollow = [&](double y) { return profile.fine.hollow(y, kFold); };
-  for (double y = top; y > bottom; y -= kStep)
-    if (hollow(y) > kLeast && hollow(y) >= hollow(y + kStep) && hollow(y) > hollow(y - kStep)) return y;
+  for (double y = top; y > bottom; y -= kProfileStep)
+    if (hollow(y) > kLeast && hollow(y) >= hollow(y + kProfileStep) && hollow(y) > hollow(y - kProfileStep)) return y;
   return profile.fine.greatest(0.5 * (top + bottom), top, hollow).value_or(0.5 * (top + bottom));
 }
 
@@ -97,10 +97,10 @@ std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
     return std::isnan(value) || value > kOpen ? kOpen : value;
   };
   double deepest = 0;
-  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) deepest = std::max(deepest, depth(y));
+  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kProfileStep) deepest = std::max(deepest, depth(y));
   MouthLine out;
   const double enough = std::max(kLeast, 0.4 * deepest);
-  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kStep) {
+  for (double y = subnasale - kNear; y > subnasale - kFar; y -= kProfileStep) {
     if (depth(y) > out.depth) out = {y, y, y, depth(y)};
     if (out.depth > enough && depth(y) < 0.5 * out.depth) break;
   }
@@ -112,14 +112,14 @@ std::optional<MouthLine> mouth(const Profile& profile, double subnasale) {
   };
   const double reach = out.depth < kOpen ? 0.03 : 0.09;
   double above = -1, below = -1;
-  for (double d = kStep; d <= reach; d += kStep) {
+  for (double d = kProfileStep; d <= reach; d += kProfileStep) {
     if (out.top + d < subnasale) above = std::max(above, height(out.top + d));
     below = std::max(below, height(out.bottom - d));
   }
   const double level = 0.5 * out.depth;
   const double end = out.bottom - reach;
-  while (out.top < subnasale && height(out.top) < above - level) out.top += kStep;
-  while (out.bottom > end && height(out.bottom) < below - level) out.bottom -= kStep;
+  while (out.top < subnasale && height(out.top) < above - level) out.top += kProfileStep;
+  while (out.bottom > end && height(out.bottom) < below - level) out.bottom -= kProfileStep;
   return out;
 }
 
@@ -137,8 +137,8 @@ double lips(Head& head, const Profile& profile, double subnasale, const MouthLin
   const auto turn = [&](double y) { return profile.facing(profile.fine, y, 0.004); };
   const double from = lip - 0.008;
   double edge = profile.fine.greatest(foldY, from, [&](double y) { return -turn(y); }).value_or(foldY);
-  for (double y = from; y > edge; y -= kStep)
-    if (turn(y) < kTurned && turn(y - kStep) < kTurned) edge = y;
+  for (double y = from; y > edge; y -= kProfileStep)
+    if (turn(y) < kTurned && turn(y - kProfileStep) < kTurned) edge = y;
   head.add("lip_lower", profile.point(edge), clear - 0.1);
   return foldY;
 }
@@ -147,7 +147,7 @@ double lips(Head& head, const Profile& profile, double subnasale, const MouthLin
 double chin(const Profile& profile, double fold) {
   constexpr double kTurned = -0.38;  ///< Radians: beyond a chin's front, before its underside.
   constexpr double kReach = 0.1;
-  for (double y = fold - 0.006; y > fold - kReach; y -= kStep)
+  for (double y = fold - 0.006; y > fold - kReach; y -= kProfileStep)
     if (profile.facing(profile.medium, y, 0.008) < kTurned && profile.facing(profile.medium, y - 0.01, 0.008) < kTurned)
       return y;
   return profile.medium.highest(fold - 0.05, fold, profile.tilt).value_or(fold - 0.03);
@@ -157,10 +157,10 @@ double chin(const Profile& profile, double fold) {
 std::optional<Vec3> menton(const Head& head, const Vec3& chin, double noseToChin) {
   constexpr double kDepth = 0.6;  ///< Of the height from nose to chin.
   const double wanted = kDepth * noseToChin;
-  const Grid grid = Grid::over(-kStep, kStep, chin.z - 0.2, chin.z + 0.02, kStep);
+  const Grid grid = Grid::over(-kProfileStep, kProfileStep, chin.z - 0.2, chin.z + 0.02, kProfileStep);
   const HeightMap map = look(head.surface, kBottomView, grid, -(chin.y - 0.11));
   const Curve under = Curve::along(map).blurred(kMedium);
-  for (double z = chin.z; z > chin.z - 0.18; z -= kStep) {
+  for (double z = chin.z; z > chin.z - 0.18; z -= kProfileStep) {
     const double y = -under.at(z);
     if (!std::isfinite(y) || y > chin.y + 0.01) continue;
     if (std::hypot(y - chin.y, z - chin.z) >= wanted) return Vec3{0, y, z};
@@ -171,7 +171,7 @@ std::optional<Vec3> menton(const Head& head, const Vec3& chin, double noseToChin
 }  // namespace
 
 bool findProfile(Head& head) {
-  const Grid grid = Grid::over(-2 * kStep, 2 * kStep, -0.5, 0.32, kStep);
+  const Grid grid = Grid::over(-2 * kProfileStep, 2 * kProfileStep, -0.5, 0.32, kProfileStep);
   const Curve sharp = Curve::along(look(head.surface, kFrontView, grid, 0.6));
   Profile profile{sharp, sharp.blurred(kFine), sharp.blurred(kMedium)};
   auto nose = noseTip(profile);

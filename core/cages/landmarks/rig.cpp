@@ -10,12 +10,12 @@ namespace {
 
 enum Naming : std::size_t { kVrm, kMixamo, kRoblox, kNamings };
 
-struct Bone {
+struct RigBone {
   std::string_view landmark;
   std::array<std::string_view, kNamings> names;
 };
 
-constexpr Bone kBones[] = {
+constexpr RigBone kBones[] = {
 #define BONE(landmark, vrm, mixamo, roblox) {landmark, {vrm, mixamo, roblox}},
 #include "landmarks/bones.def"
 #undef BONE
@@ -63,7 +63,7 @@ std::string replaced(std::string_view pattern, char what, std::string_view with)
 /// Calls `visit(landmark, bone, side)` for each joint of each side.
 template <typename Visit>
 void forEachJoint(Visit visit) {
-  for (const Bone& bone : kBones) {
+  for (const RigBone& bone : kBones) {
     const bool paired = bone.landmark.back() == '*';
     for (const std::string_view side : {std::string_view("left"), std::string_view("right")}) {
       visit("joint_" + replaced(bone.landmark, '*', "_" + std::string(side)), bone, side);
@@ -82,7 +82,7 @@ const Landmark* Rig::find(std::string_view landmark) const {
 
 std::vector<std::string> jointLandmarks() {
   std::vector<std::string> out;
-  forEachJoint([&](const std::string& landmark, const Bone&, std::string_view) { out.push_back(landmark); });
+  forEachJoint([&](const std::string& landmark, const RigBone&, std::string_view) { out.push_back(landmark); });
   return out;
 }
 
@@ -96,7 +96,7 @@ Rig recogniseRig(const std::vector<Joint>& joints) {
     anyMixamo = anyMixamo || mixamo;
   }
   std::array<std::vector<Landmark>, kNamings> found;
-  forEachJoint([&](const std::string& landmark, const Bone& bone, std::string_view side) {
+  forEachJoint([&](const std::string& landmark, const RigBone& bone, std::string_view side) {
     for (std::size_t naming = 0; naming < kNamings; ++naming) {
       const std::string wanted = plain(replaced(bone.names[naming], '#', side));
       const auto at = std::find(names.begin(), names.end(), wanted);

@@ -9,7 +9,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr double kStep = 0.004;
+constexpr double kSkullStep = 0.004;
 /// Blur against partings and coarse triangles: skulls are round.
 constexpr double kRound = 0.015;
 
@@ -29,15 +29,15 @@ void findSkull(Head& head) {
   const double browZ = brow->position.z;  // Adding a spot may move the others.
   // The back of the head: the rearmost place of the midline, level with the face or above.
   constexpr double kLowest = -0.1, kHighest = 0.3;
-  const Grid backGrid = Grid::over(-kStep, kStep, -0.4, kHighest + 0.05, kStep);
+  const Grid backGrid = Grid::over(-kSkullStep, kSkullStep, -0.4, kHighest + 0.05, kSkullStep);
   const Curve back = Curve::along(look(head.surface, kBackView, backGrid, 1.0)).blurred(kRound);
   const auto rearmost = back.highest(kLowest, kHighest);
   if (!rearmost) return;
   // Skulls are flat there: the middle between where they are a little less far back is steadier.
   constexpr double kFlat = 0.012;
   double low = *rearmost, high = *rearmost;
-  while (back.at(low) > back.at(*rearmost) - kFlat) low -= kStep;
-  while (back.at(high) > back.at(*rearmost) - kFlat) high += kStep;
+  while (back.at(low) > back.at(*rearmost) - kFlat) low -= kSkullStep;
+  while (back.at(high) > back.at(*rearmost) - kFlat) high += kSkullStep;
   const double rear = 0.5 * (low + high);
   const Vec3 occiput{0, rear, -back.at(rear)};
   const bool inside = low > kLowest - 0.1 && high < kHighest;
@@ -45,7 +45,7 @@ void findSkull(Head& head) {
   // The crown: above the middle of the head's length. The highest place itself moves far with little, for skulls are
   // flat there.
   const double middle = 0.5 * (browZ + occiput.z);
-  const Grid topGrid = Grid::over(-kStep, kStep, middle - 0.1, middle + 0.1, kStep);
+  const Grid topGrid = Grid::over(-kSkullStep, kSkullStep, middle - 0.1, middle + 0.1, kSkullStep);
   const Curve top = Curve::along(look(head.surface, kTopView, topGrid, 1.0)).blurred(kRound);
   const double height = top.at(middle);
   if (!std::isfinite(height)) return;
@@ -53,7 +53,7 @@ void findSkull(Head& head) {
   head.add("crown", {0, height, middle}, 0.65 * sure);
   // The forehead is between brow and crown, as a share of the height over the eyes.
   constexpr double kForehead = 0.61;
-  const Grid frontGrid = Grid::over(-kStep, kStep, 0.05, 0.35, kStep);
+  const Grid frontGrid = Grid::over(-kSkullStep, kSkullStep, 0.05, 0.35, kSkullStep);
   const Curve front = Curve::along(look(head.surface, kFrontView, frontGrid, 1.0)).blurred(kRound);
   const double forehead = front.at(kForehead * height);
   if (std::isfinite(forehead)) head.add("forehead", {0, kForehead * height, forehead}, 0.55 * sure);

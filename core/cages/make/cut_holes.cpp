@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBorderValue = 0.4;
 /// The border keeps this share of an edge away from its ends, so that no triangle is a sliver.
-constexpr double kFromEnds = 0.15;
+constexpr double kCutFromEnds = 0.15;
 /// Pieces that the cuts leave are dropped if they have less than this share of the area: gums between two teeth.
 constexpr double kLeastPiece = 0.01;
 
@@ -48,7 +48,7 @@ TriangleMesh cutHoles(const TriangleMesh& mesh, const std::vector<double>& field
     if (isNew) {
       const std::uint32_t from = std::min(a, b), to = std::max(a, b);
       const double share =
-          std::clamp((kBorderValue - field[from]) / (field[to] - field[from]), kFromEnds, 1 - kFromEnds);
+          std::clamp((kBorderValue - field[from]) / (field[to] - field[from]), kCutFromEnds, 1 - kCutFromEnds);
       out.positions.push_back(mesh.positions[from] + share * (mesh.positions[to] - mesh.positions[from]));
     }
     return found->second;

@@ -9,7 +9,7 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr int kRounds = 16;
+constexpr int kEncloseRounds = 16;
 /// Of the angle between a point's normal and the cage's: 70 degrees.
 constexpr double kLeastCosine = 0.34;
 
@@ -21,8 +21,8 @@ bool enclose(const std::vector<OuterPoint>& points, double limit, const Progress
   for (const OuterPoint& point : points) positions.push_back(point.position);
   std::vector<double> left(mesh.positions.size(), limit);
   const OpenBorder border(mesh);
-  for (int round = 0; round < kRounds; ++round) {
-    if (progress && !progress(static_cast<float>(round) / kRounds, "enclose")) return false;
+  for (int round = 0; round < kEncloseRounds; ++round) {
+    if (progress && !progress(static_cast<float>(round) / kEncloseRounds, "enclose")) return false;
     const std::vector<Vec3> normals = vertexNormals(mesh);
     std::vector<double> push(mesh.positions.size(), 0);
     const std::vector<SurfacePoint> closest = Surface(mesh).closest(positions);

@@ -9,7 +9,7 @@ namespace cagecast::cages {
 namespace {
 
 /// Each averages a vertex with its neighbours: details of about two edges go.
-constexpr int kSmoothings = 6;
+constexpr int kFieldSmoothings = 6;
 /// What a ray meets at more than so many times the distance to the nearest part is seen through a gap, such as teeth
 /// between lips, and does not count.
 constexpr double kStraightBelow = 1.5;
@@ -27,7 +27,7 @@ constexpr double kOcclusionReach = 0.03;
 /// By how much its hole is widened, in edges.
 constexpr int kWidening = 2;
 /// Samples along the longest edge of a triangle at most.
-constexpr double kMostSteps = 64;
+constexpr double kMostSamplesPerEdge = 64;
 /// A needle is a triangle narrower than this share of the spacing of samples: one row of them does.
 constexpr double kNeedleWidth = 0.25;
 /// Samples of all needles together, about: there may be thousands of them side by side.
@@ -50,7 +50,7 @@ struct OnLongestEdge {
   }
   /// Samples along the edge, about `spacing` apart.
   [[nodiscard]] double steps(double spacing) const {
-    return std::clamp(std::ceil(length(along) / spacing), 1.0, kMostSteps);
+    return std::clamp(std::ceil(length(along) / spacing), 1.0, kMostSamplesPerEdge);
   }
   [[nodiscard]] bool isNeedle(double spacing) const {
     return length(cross(along, toThird)) < kNeedleWidth * spacing * length(along) && length(along) > spacing;
@@ -91,7 +91,7 @@ void sampleMarked(const MarkedMesh& model, double spacing, std::vector<Vec3>& sa
     const Vec3 a = model.mesh->positions[triangle[0]];
     const Vec3 ab = model.mesh->positions[triangle[1]] - a, ac = model.mesh->positions[triangle[2]] - a;
     const double longest = std::max({length(ab), length(ac), length(ac - ab)});
-    const double steps = std::clamp(std::ceil(longest / spacing), 1.0, kMostSteps);
+    const double steps = std::clamp(std::ceil(longest / spacing), 1.0, kMostSamplesPerEdge);
     for (double i = 0; i < steps; ++i)
       for (double j = 0; i + j < steps; ++j) {
         samples.push_back(a + (i + 1.0 / 3) / steps * ab + (j + 1.0 / 3) / steps * ac);
@@ -261,7 +261,7 @@ std::vector<double> HoleMarker::field() const {
   std::vector<bool> marks = this->marks();
   closeGaps(neighbours, marks);
   std::vector<double> field(marks.begin(), marks.end());
-  for (int i = 0; i < kSmoothings; ++i) smooth(neighbours, field);
+  for (int i = 0; i < kFieldSmoothings; ++i) smooth(neighbours, field);
   restoreVanished(neighbours, marks, field);
   return field;
 }

@@ -33,7 +33,7 @@ constexpr double kNeckExtension = 2;
 /// How far below the hull a part may lie and still be seen through it, in offsets.
 constexpr double kVisibleDepth = 1.4;
 /// The model stays this share of the offset behind the cage.
-constexpr double kMargin = 0.4;
+constexpr double kDepthMargin = 0.4;
 /// How far a vertex of the cage may be moved outwards, in offsets.
 constexpr double kFarthestPush = 4;
 /// Of the volume of all pieces of the hull, the least that the largest one must have.
@@ -45,11 +45,11 @@ constexpr std::size_t kEnclosedPoints = 20000;
 
 /// Limits of options, unless they are 0. Lengths are shares of the diagonal.
 constexpr auto kLeastLength = static_cast<double>(0.0005f), kMostLength = static_cast<double>(0.2f);
-constexpr double kLeastVoxels = 16, kMostVoxels = 400;
+constexpr double kLeastGivenVoxels = 16, kMostGivenVoxels = 400;
 constexpr double kLeastTriangles = 50, kMostTriangles = 20000;
 
 /// What options come to for a model, in its space.
-struct Settings {
+struct MakeSettings {
   Kind kind = Kind::prop;
   HullOptions hull;
   std::uint32_t triangles = 0;
@@ -63,7 +63,7 @@ Outcome checkOptions(const MakeOptions& options) {
   for (const auto& [name, value, least, most] :
        {Range{"closing", static_cast<double>(options.closing), kLeastLength, kMostLength},
         Range{"offset", static_cast<double>(options.offset), kLeastLength, kMostLength},
-        Range{"voxels", static_cast<double>(options.voxels), kLeastVoxels, kMostVoxels},
+        Range{"voxels", static_cast<double>(options.voxels), kLeastGivenVoxels, kMostGivenVoxels},
         Range{"triangles", static_cast<double>(options.triangles), kLeastTriangles, kMostTriangles}}) {
     if (value == 0) continue;  // By kind.
     if (Outcome outcome = checkOption(name, value, least, most); !outcome.ok()) return outcome;
@@ -71,8 +71,8 @@ Outcome checkOptions(const MakeOptions& options) {
   return {};
 }
 
-Settings settingsFor(const Model& model, const MakeOptions& options, double diagonal) {
-  Settings settings;
+MakeSettings settingsFor(const Model& model, const MakeOptions& options, double diagonal) {
+  MakeSettings settings;
   settings.kind = options.kind == Kind::automatic ? kindOf(model) : options.kind;
   const bool isBody = settings.kind == Kind::body;
   const auto closing = static_cast<double>(options.closing), offset = static_cast<double>(options.offset);
@@ -144,7 +144,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   };
   std::vector<std::uint32_t> triangleOf;
   TriangleMesh mesh = weldExactly(model.mesh, nullptr, &triangleOf);
-  const Settings settings = settingsFor(model, options, diagonalOf(mesh));
+  const MakeSettings settings = settingsFor(model, options, diagonalOf(mesh));
   const double offset = settings.hull.offset;
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
@@ -176,7 +176,7 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
     if (cage.empty())
       return {Problem::badModel,
               "model is too thin for a cage of so few triangles: nothing is left of its hull; allow more triangles"};
-    const double depth = (1 - kMargin) * offset;
+    const double depth = (1 - kDepthMargin) * offset;
     if (!enclose(pointsToEnclose(hull, field, depth), kFarthestPush * offset, part(kSimplifyEnd, kEncloseEnd), cage))
       return cancelled;
     if (!marker.widen(cage)) break;

@@ -27,7 +27,7 @@ constexpr std::uint32_t kFinTriangles = 8;
 
 /// Indices from which on one call does the rest, if they are twice as many as it is to leave: a few tens of
 /// milliseconds.
-constexpr std::size_t kLastStep = std::size_t{3} * 15000;
+constexpr std::size_t kLastStepIndices = std::size_t{3} * 15000;
 
 double distanceToChord(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 chord = b - a;
@@ -198,7 +198,7 @@ bool simplify(const TriangleMesh& mesh, const SimplifyOptions& options, const Pr
 
   // In steps, to be able to stop in between. The last one is left enough to choose from.
   const auto all = static_cast<float>(indices.size());
-  const std::size_t lastStep = std::max(kLastStep, std::size_t{6} * triangles);
+  const std::size_t lastStep = std::max(kLastStepIndices, std::size_t{6} * triangles);
   while (indices.size() > lastStep) {
     if (progress && !progress(1 - static_cast<float>(indices.size()) / all, "simplify")) return false;
     std::vector<unsigned> fewer = arrays.simplified(indices, std::max(indices.size() / 9 * 3, lastStep));

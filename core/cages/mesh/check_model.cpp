@@ -13,7 +13,7 @@ namespace cagecast::cages {
 namespace {
 
 /// A mesh needs a triangle that is higher than this share of its diagonal.
-constexpr double kLeastHeight = 1e-6;
+constexpr double kLeastModelHeight = 1e-6;
 
 /// Farthest a coordinate may be from the origin, in diagonals of the mesh: what `Surface` can take.
 constexpr double kMaxProportion = 1e6;
@@ -68,7 +68,7 @@ std::string extentOf(const MeshView& mesh, const std::string& name) {
     return length(cagecast::Vec3::from(corner(j)) - cagecast::Vec3::from(corner(i)));
   };
   // Its height counts by the size of the mesh: the searches scale that to 1, and take floats.
-  const double least = kLeastHeight * length(high - low);
+  const double least = kLeastModelHeight * length(high - low);
   bool hasArea = false;
   for (std::size_t i = 0; i < mesh.indices.size() && !hasArea; i += 3) {
     const double longest = std::max({edge(i, i + 1), edge(i + 1, i + 2), edge(i + 2, i)});

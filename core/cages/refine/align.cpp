@@ -9,11 +9,11 @@ namespace cagecast::cages {
 
 namespace {
 
-constexpr int kMostSteps = 60;
+constexpr int kAlignSteps = 60;
 /// Share of the scale that is left after a step: slow, so that gaps far from the usual one are heard first.
-constexpr double kTightening = 0.8;
+constexpr double kAlignTightening = 0.8;
 /// A step that moves the cage by less than this, as a share of the diagonal, may be the last one.
-constexpr double kSettled = 2e-5;
+constexpr double kAlignSettled = 2e-5;
 /// Resistance to motions that hardly change the gaps, such as turning a ball, as a share of the weight of all spots.
 constexpr double kResistance = 5e-4;
 
@@ -92,11 +92,11 @@ bool alignCage(const Target& target, std::span<const CageSpot> spots, const Alig
   Placement placement = placementOf(target, gaps);
   Alignment alignment(cage, gaps, placement.offset, limits.growth);
   RobustScale scale(limits.reach * target.diagonal, target.diagonal);
-  for (int step = 0; step < kMostSteps; ++step) {
-    if (progress && !progress(static_cast<float>(step) / kMostSteps, "align")) return false;
-    scale.tighten(placement.spread, kTightening);
+  for (int step = 0; step < kAlignSteps; ++step) {
+    if (progress && !progress(static_cast<float>(step) / kAlignSteps, "align")) return false;
+    scale.tighten(placement.spread, kAlignTightening);
     const double moved = alignment.step(gaps, scale, cage);
-    if (std::isinf(moved) || (moved < kSettled * target.diagonal && scale.settled())) break;
+    if (std::isinf(moved) || (moved < kAlignSettled * target.diagonal && scale.settled())) break;
     gaps = measureGaps(target, cage, spots);
     placement = placementOf(target, gaps);
   }

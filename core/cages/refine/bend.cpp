@@ -12,11 +12,11 @@ namespace {
 using SparseMatrix = Eigen::SparseMatrix<double>;
 using Triplet = Eigen::Triplet<double>;
 
-constexpr int kMostSteps = 12;
+constexpr int kBendSteps = 12;
 /// Share of the scale that is left after a step. The cage lies about right already.
-constexpr double kTightening = 0.6;
+constexpr double kBendTightening = 0.6;
 /// A step that moves no vertex by more than this share of the diagonal is the last one.
-constexpr double kSettled = 1e-4;
+constexpr double kBendSettled = 1e-4;
 /// The cage may be bent in waves of this length, as a share of the diagonal: a limb, but not a nose.
 constexpr double kWave = 0.3;
 /// Resistance to motion as such, as a share of the weight of the gaps: holds what no gap says anything about.
@@ -133,10 +133,10 @@ class Bending {
 
   /// Moves the corners of triangles that were turned over, which are slivers, all the same way.
   void unfold(TriangleMesh& cage) const {
-    constexpr int kMostRounds = 30;
+    constexpr int kUnfoldRounds = 30;
     const TriangleMesh before{start_, cage.triangles};
     bool isFolded = true;
-    for (int round = 0; round < kMostRounds && isFolded; ++round) {
+    for (int round = 0; round < kUnfoldRounds && isFolded; ++round) {
       isFolded = false;
       for (const Triangle3& t : cage.triangles) {
         if (dot(areaNormal(cage, t), areaNormal(before, t)) > 0) continue;
@@ -167,18 +167,18 @@ bool bendCage(const Target& target, std::span<const CageSpot> spots, double reac
   RobustScale scale(reach * target.diagonal, target.diagonal);
   double least = INFINITY;
   std::vector<Vec3> best = cage.positions;
-  for (int step = 0; step < kMostSteps; ++step) {
-    if (progress && !progress(static_cast<float>(step) / kMostSteps, "bend")) return false;
+  for (int step = 0; step < kBendSteps; ++step) {
+    if (progress && !progress(static_cast<float>(step) / kBendSteps, "bend")) return false;
     const std::vector<Gap> gaps = measureGaps(target, cage, spots);
     const Placement placement = placementOf(target, gaps);
-    scale.tighten(placement.spread, kTightening);
+    scale.tighten(placement.spread, kBendTightening);
     if (placement.unevenness < least) {
       least = placement.unevenness;
       best = cage.positions;
     } else if (scale.settled()) {
       break;
     }
-    if (bending.step(gaps, scale, placement.offset, cage) < kSettled * target.diagonal) break;
+    if (bending.step(gaps, scale, placement.offset, cage) < kBendSettled * target.diagonal) break;
   }
   cage.positions = best;
   bending.unfold(cage);

@@ -13,7 +13,7 @@ namespace {
 
 /// Cosine of the largest angle between the normals of cage and target at which they count as facing the same way: 73
 /// degrees, because a coarse cage cuts corners.
-constexpr double kFacing = 0.3;
+constexpr double kGapFacing = 0.3;
 /// Spots closer to the target than this share of the diagonal lie on it: there, the gap grows along the normal.
 constexpr double kTouching = 1e-7;
 /// How far inside the target a spot counts as sunk, as a share of the diagonal: `pokeThrough` of the transfer.
@@ -96,7 +96,7 @@ std::vector<Gap> measureGaps(const Target& target, const TriangleMesh& cage, std
     gap.spot = points[i];
     const Vec3 outward = areaNormal(cage, cage.triangles[spots[i].triangle]);
     const Vec3& normal = target.normals[nearest[i].triangle];
-    gap.facing = dot(outward, normal) > kFacing * length(outward);
+    gap.facing = dot(outward, normal) > kGapFacing * length(outward);
     const Vec3 across = points[i] - nearest[i].position;
     const double distance = length(across);
     const double sign = dot(across, outward) < 0 ? -1 : 1;
