@@ -59,7 +59,7 @@ class Sides {
   reference::Scene scene_;
 };
 
-struct Found {
+struct FoundBorders {
   std::size_t added = 0;      ///< Triangles that there were not before.
   std::size_t onRim = 0;      ///< Places on painted borders that were looked at,
   double mostOff = 0;         ///< and how far the farthest is from a projected loop, as a share of the diagonal.
@@ -68,7 +68,8 @@ struct Found {
 };
 
 /// Checks everything that holds for a cut target, and measures what is asked of it.
-Found checkCut(const std::string& name, const MeshView& cage, const MeshView& target, const TransferOptions& options) {
+FoundBorders checkCut(const std::string& name, const MeshView& cage, const MeshView& target,
+                      const TransferOptions& options) {
   INFO(name);
   const TransferResult result = transferred(cage, target, options);
   const CutTarget cut = cutOf(cage, target, options, result);
@@ -131,7 +132,7 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
   CHECK(openLength(view) <= openLength(before) * (1 + 1e-5));
 
   // Every triangle that is painted, or could be, lies on one side.
-  Found found;
+  FoundBorders found;
   found.added = triangleCount - target.indices.size() / 3;
   std::vector<std::uint8_t> takesPart(triangleCount, 0);
   for (std::size_t t = 0; t < triangleCount; ++t) {
@@ -234,7 +235,7 @@ Found checkCut(const std::string& name, const MeshView& cage, const MeshView& ta
 TEST_CASE("cut borders follow the projected loops on heads", "[borders]") {
   for (const int cells : {8, 16}) {
     const scenes::Scene scene = scenes::head(cells);
-    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), cutting());
+    const FoundBorders found = checkCut(scene.name, scene.cage.view(), scene.target.view(), cutting());
     CHECK(found.onRim > 100);
     CHECK(found.mostOff <= kTolerance);
     CHECK(found.otherSide == 0);
@@ -247,7 +248,7 @@ TEST_CASE("cut borders follow the projected loops on real models", "[borders][as
     const gltf::Model target = readAsset(folder / "target.glb"), cage = readAsset(folder / "cage.glb");
     for (const Seams seams : {Seams::vertex, Seams::corner}) {
       const std::string name = folder.filename().string() + (seams == Seams::corner ? ", seams too" : "");
-      const Found found = checkCut(name, cage.view(), target.view(), cutting(seams));
+      const FoundBorders found = checkCut(name, cage.view(), target.view(), cutting(seams));
       std::cout << name << ": " << found.added << " triangles more, borders at most " << found.mostOff
                 << " of the diagonal off\n";
       CHECK(found.mostOff <= kTolerance);
@@ -264,7 +265,7 @@ TEST_CASE("cut borders follow the projected loops of strewn triangles", "[border
     TransferOptions options = cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner);
     options.steps.floor = Floor::none;
     options.threshold = 0;
-    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(), options);
+    const FoundBorders found = checkCut(scene.name, scene.cage.view(), scene.target.view(), options);
     CHECK(found.mostOff <= kTolerance);
     CHECK(found.otherSide == 0);
   }
@@ -274,8 +275,8 @@ TEST_CASE("cut borders follow the projected loops of patchwork", "[borders]") {
   for (std::uint64_t seed = firstSeed(); seed < firstSeed() + 12; ++seed) {
     const scenes::Scene scene = scenes::patchwork(seed);
     INFO("CAGECAST_SEED=" << seed);
-    const Found found = checkCut(scene.name, scene.cage.view(), scene.target.view(),
-                                 cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner));
+    const FoundBorders found = checkCut(scene.name, scene.cage.view(), scene.target.view(),
+                                        cutting(seed % 2 == 0 ? Seams::vertex : Seams::corner));
     CHECK(found.mostOff <= kTolerance);
     CHECK(found.otherSide == 0);
   }
@@ -294,7 +295,7 @@ TEST_CASE("cut borders follow the projected loops in triangles larger than the h
   for (const std::array<int, 4> turn : {std::array{1, 0, 0, 0}, {3, 1, -2, 1}}) {
     const scenes::Mesh c = scenes::rotated(cage, turn), t = scenes::rotated(target, turn);
     TransferOptions options = cutting(Seams::vertex);
-    const Found found = checkCut("windows", c.view(), t.view(), options);
+    const FoundBorders found = checkCut("windows", c.view(), t.view(), options);
     CHECK(found.onRim >= 40);
     CHECK(found.mostOff <= kTolerance);
     CHECK(found.otherSide == 0);
@@ -526,7 +527,7 @@ TEST_CASE("defects of a target stay the same when it is cut", "[borders]") {
     for (float& x : target.positions)
       if (x == 0) x = -0.0f;
   }
-  const Found found = checkCut("wrong", scene.cage.view(), target.view(), cutting());
+  const FoundBorders found = checkCut("wrong", scene.cage.view(), target.view(), cutting());
   CHECK(found.otherSide == 0);
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <cstdlib>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 
 /// What several tests ask.
 namespace cagecast {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// Of all tests: so that each of them also tests whether a call finds anything of the one before.
 inline Workspace& testWorkspace() {

@@ -9,8 +9,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
 struct Case {
   scenes::Mesh cage = scenes::box({}, {2, 2, 2}, 1), target = scenes::box({}, {1, 1, 1}, 1);
   TransferOptions options = TransferOptions::paper();

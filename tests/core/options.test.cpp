@@ -10,8 +10,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
 /// An option of options.def that is a number.
 struct NumberOption {
   Option option;

@@ -8,13 +8,12 @@
 #include <random>
 
 #include "hull/hull.hpp"
+#include "shapes.hpp"
 
 using namespace cagecast;
 using namespace cagecast::cages;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979;
 
 /// A grid of quads, closed round in one or both directions, at places given by two shares.
 template <typename Place>
@@ -100,7 +99,7 @@ TriangleMesh figure() {
   return hull;
 }
 
-double distanceToEdge(const Uv& p, const Uv& a, const Uv& b) {
+double distanceToEdge(const cages::Uv& p, const cages::Uv& a, const cages::Uv& b) {
   const double x = b[0] - a[0], y = b[1] - a[1], size = x * x + y * y;
   const double along = size > 0 ? std::clamp(((p[0] - a[0]) * x + (p[1] - a[1]) * y) / size, 0.0, 1.0) : 0;
   return std::hypot(p[0] - a[0] - along * x, p[1] - a[1] - along * y);
@@ -147,7 +146,7 @@ LayoutFaults checked(const TriangleMesh& mesh, Kind kind, Layout& layout) {
 
 TEST_CASE("faults of a layout are found", "[cages][charts]") {
   const TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-  std::vector<Uv> uvs{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  std::vector<cages::Uv> uvs{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   LayoutFaults faults = layoutFaults(square.positions, uvs, square.triangles);
   CHECK(faults.charts == 1);
   CHECK(faults.overlaps + faults.flips + faults.outside == 0);

@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,8 +13,6 @@ using namespace cagecast;
 using namespace cagecast::cages;
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Mesh {
   std::vector<float> positions, uvs;

@@ -11,13 +11,15 @@
 /// Small models for the tests of cages.
 namespace cagecast::cages {
 
+constexpr double kPi = std::numbers::pi;
+
 /// A sphere of rings from pole to pole; `from` > 0 leaves out the rings about the upper pole.
 inline TriangleMesh sphere(Vec3 centre, double radius, std::uint32_t rings = 24, std::uint32_t from = 0) {
   TriangleMesh mesh;
   const std::uint32_t around = 2 * rings;
   for (std::uint32_t i = from; i <= rings; ++i)
     for (std::uint32_t j = 0; j < around; ++j) {
-      const double theta = std::numbers::pi * i / rings, phi = 2 * std::numbers::pi * j / around;
+      const double theta = kPi * i / rings, phi = 2 * kPi * j / around;
       const double r = i == 0 || i == rings ? 0 : std::sin(theta);
       mesh.positions.push_back(centre + radius * Vec3{r * std::cos(phi), std::cos(theta), r * std::sin(phi)});
     }

@@ -5,12 +5,13 @@
 #include <utility>
 
 namespace cagecast::scenes {
-namespace {
 
 float distance(Point a, Point b) {
   const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
   return std::sqrt(x * x + y * y + z * z);
 }
+
+namespace {
 
 /// The point on a unit cube's surface for a place (0..1 each way) on one of its six faces.
 Point onCube(int face, float u, float v) {

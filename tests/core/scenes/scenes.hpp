@@ -13,6 +13,8 @@ namespace cagecast::scenes {
 
 using Point = std::array<float, 3>;
 
+float distance(Point a, Point b);
+
 /// A mesh that owns its arrays. All of them stay consistent: 2 UVs and 1 group per vertex.
 struct Mesh {
   std::vector<float> positions;

@@ -7,11 +7,6 @@
 namespace cagecast::scenes {
 namespace {
 
-float distance(Point a, Point b) {
-  const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-  return std::sqrt(x * x + y * y + z * z);
-}
-
 /// The same triangles over no more vertices than they need.
 Mesh trimmed(const Mesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffff;

@@ -51,7 +51,6 @@ export async function checkTidy(root) {
     '--log-level=WARNING',
     '-DCAGECAST_TESTS=OFF',
     '-DCAGECAST_BENCH=OFF',
-    '-DCMAKE_UNITY_BUILD=ON',
   ];
   execFileSync('cmake', ['--preset', 'release', '-B', build, ...settings], { cwd: root, stdio: 'ignore' });
   const commands = JSON.parse(readFileSync(join(build, 'compile_commands.json'), 'utf8'));
