@@ -2,20 +2,22 @@ import { execFileSync } from 'node:child_process';
 import { type Browser, chromium } from 'playwright-core';
 
 /**
- * What no test needs. The two of the address bar are pages of their own that each new window loads: 400 requests, and 6 of the 15
- * seconds of processor time that Chromium 156 takes until a first page is seen. The others are those that Playwright switches off; of
- * two such lists Chromium heeds the last.
+ * The list below the address bar: two pages of their own that each new window loads, with 400 requests. Together they are 6 of the 15
+ * seconds of processor time that Chromium 156 takes until a first page is seen.
  */
-const kDisabledFeatures = [
-  ...['WebUIOmniboxPopup', 'WebUIOmniboxAimPopup'],
-  ...[
-    'AimEnabled',
-    'AvoidUnnecessaryBeforeUnloadCheckSync',
-    'DestroyProfileOnBrowserClose',
-    'HttpsUpgrades',
-    'LensOverlay',
-  ],
-  ...['MediaRouter', 'NetworkTimeServiceQuerying', 'OptimizationHints', 'PaintHolding', 'PreconnectToSearch'],
+const kAddressBar = ['WebUIOmniboxPopup', 'WebUIOmniboxAimPopup'];
+/** Features that Playwright switches off. Chromium heeds only the last list of such features, so ours has to repeat them. */
+const kOffByPlaywright = [
+  'AimEnabled',
+  'AvoidUnnecessaryBeforeUnloadCheckSync',
+  'DestroyProfileOnBrowserClose',
+  'HttpsUpgrades',
+  'LensOverlay',
+  'MediaRouter',
+  'NetworkTimeServiceQuerying',
+  'OptimizationHints',
+  'PaintHolding',
+  'PreconnectToSearch',
   'ThirdPartyStoragePartitioning',
 ];
 /** No background traffic, no first-run behaviour. */
@@ -26,7 +28,7 @@ const kQuiet = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
-  `--disable-features=${kDisabledFeatures.join(',')}`,
+  `--disable-features=${[...kAddressBar, ...kOffByPlaywright].join(',')}`,
 ];
 /** Software rendering. */
 const kDrawing = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'];

@@ -39,8 +39,8 @@ struct Frame {
 };
 
 Frame frameOf(const std::vector<Uv>& uvs) {
-  constexpr double kHuge = std::numeric_limits<double>::infinity();
-  Frame frame{{kHuge, kHuge}, {-kHuge, -kHuge}};
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  Frame frame{{kUnbounded, kUnbounded}, {-kUnbounded, -kUnbounded}};
   for (const Uv& uv : uvs)
     for (std::size_t k = 0; k < 2; ++k) {
       frame.low[k] = std::min(frame.low[k], uv[k]);

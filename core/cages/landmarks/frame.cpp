@@ -23,7 +23,7 @@ constexpr int kIterations = 40;
 constexpr double kFarOff = 1.6, kPlaneRounding = 0.002;
 constexpr double kOverstep = 0.7;
 constexpr double kFirstTurn = 0.07, kLastTurn = 0.004;  ///< Radians.
-constexpr double kLeastProgress = 0.998;  ///< Iterations end when the residual is this share of the last one or more.
+constexpr double kNoProgress = 0.998;  ///< Iterations end when the residual is this share of the last one or more.
 /// Of the mirrored points, the share closest to the surface that counts: a parting or a broken ear may be one-sided.
 constexpr double kTrusted = 0.8;
 /// A heading off the file's own axes must be this much better: a round head has a mirror plane anywhere.
@@ -149,7 +149,7 @@ MirrorPlane refined(const Mirror& mirror, MirrorPlane plane) {
   best.residual = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kIterations; ++i) {
     const MirrorPlane next = mirror.improved(plane);
-    const bool settled = plane.residual > kLeastProgress * best.residual;
+    const bool settled = plane.residual > kNoProgress * best.residual;
     if (plane.residual < best.residual) best = plane;
     if (settled) break;
     // Closest points on round surfaces pull by less than what is wanted: go further.
