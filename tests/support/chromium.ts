@@ -6,11 +6,13 @@ import { type Browser, chromium } from 'playwright-core';
  * seconds of processor time that Chromium 156 takes until a first page is seen.
  */
 const kAddressBar = ['WebUIOmniboxPopup', 'WebUIOmniboxAimPopup'];
-/** Features that Playwright switches off. Chromium heeds only the last list of such features, so ours has to repeat them. */
+/** Features that Playwright switches off, but for those of Windows and Edge. Chromium heeds only the last list of such features, so ours has to repeat them. */
 const kOffByPlaywright = [
   'AimEnabled',
+  'AvoidCorsURLLoaderRestartOnRedirect',
   'AvoidUnnecessaryBeforeUnloadCheckSync',
   'DestroyProfileOnBrowserClose',
+  'HttpsFirstBalancedModeAutoEnable',
   'HttpsUpgrades',
   'LensOverlay',
   'MediaRouter',
