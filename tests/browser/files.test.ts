@@ -160,6 +160,28 @@ test('a sample can be chosen again after own files, with the same result', async
   assert.ok(difference(picture, await look(page, area)) < 0.002);
 });
 
+test('a model is drawn by the programs of the one before, if it is of the same kind', async () => {
+  const { page } = await fresh();
+  await page.evaluate(() => {
+    const { linkProgram } = WebGL2RenderingContext.prototype;
+    WebGL2RenderingContext.prototype.linkProgram = function (program) {
+      document.body.dataset['linked'] = String(Number(document.body.dataset['linked'] ?? 0) + 1);
+      linkProgram.call(this, program);
+    };
+  });
+  const area = await modelArea(page);
+  const show = async (sample: string): Promise<[linked: number, picture: PNG]> => {
+    await page.getByTestId('sample-select').selectOption(sample);
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    const picture = await look(page, area);
+    return [Number(await page.evaluate(() => document.body.dataset['linked'] ?? 0)), picture];
+  };
+  const [few, human] = await show('human');
+  const [none, other] = await show('human-misaligned');
+  assert.ok(difference(human, other) > 0.01, 'another paint is seen');
+  assert.equal(none - few, 0);
+});
+
 test('of two dropped models with neutral names the simpler one is the cage, and they can be swapped', async () => {
   const { page } = await fresh();
   const target = { ...read(path.join(kLizard, 'target.glb')), name: 'b.glb' };

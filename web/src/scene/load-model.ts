@@ -2,6 +2,7 @@ import { checkGltf } from 'cagecast/gltf';
 import type { LoadedGltf } from 'cagecast/three';
 import { type AnimationClip, Group, LoadingManager, Mesh, type Object3D, type WebGLRenderer } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { disposeAfterFrame } from '../platform/programs';
 import { type ExtractedMesh, extractMesh } from './extract-mesh';
 import { readGltfHead } from './gltf-file';
 import { damageOf } from './image-damage';
@@ -83,10 +84,10 @@ export async function loadModel(
 export function disposeModel({ mesh }: Model): void {
   for (const primitive of mesh.primitives) {
     primitive.mesh.geometry.dispose();
-    for (const material of [primitive.mesh.material].flat()) {
+    const materials = [primitive.mesh.material].flat();
+    for (const material of materials)
       for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
-      material.dispose();
-    }
+    disposeAfterFrame(materials);
   }
 }
 

@@ -1,4 +1,5 @@
 import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, WireframeGeometry } from 'three';
+import { disposeAfterFrame } from '../platform/programs';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 
 /** The cage as a wireframe; faint where the target is in front of it. */
@@ -30,7 +31,6 @@ export class CageLines {
   dispose(): void {
     this.object.removeFromParent();
     this.#lines.dispose();
-    this.#front.dispose();
-    this.#behind.dispose();
+    disposeAfterFrame([this.#front, this.#behind]);
   }
 }

@@ -1,4 +1,5 @@
 import { BufferAttribute, DoubleSide, type Mesh, MeshBasicMaterial } from 'three';
+import { disposeAfterFrame } from '../platform/programs';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 import { detachShared, overlayMesh, shareVertices } from './overlay-geometry';
 import { onSurface } from './overlay-materials';
@@ -39,7 +40,6 @@ export class Highlight {
       mesh.removeFromParent();
       mesh.geometry.dispose();
     }
-    this.#front.dispose();
-    this.#behind.dispose();
+    disposeAfterFrame([this.#front, this.#behind]);
   }
 }

@@ -11,6 +11,7 @@ import {
   SRGBColorSpace,
   type Texture,
 } from 'three';
+import { disposeAfterFrame } from '../platform/programs';
 import { type Primitive, reverseWinding } from '../scene/extract-mesh';
 import type { Look } from './overlay';
 import {
@@ -210,7 +211,7 @@ export class PrimitiveOverlay {
       mesh.removeFromParent();
       mesh.geometry.dispose();
     }
-    for (const material of [
+    disposeAfterFrame([
       this.#paint,
       this.#nothing,
       this.#clay,
@@ -218,7 +219,6 @@ export class PrimitiveOverlay {
       this.#vertexColors,
       ...this.#zoneMaterials,
       ...this.#hidden,
-    ])
-      material.dispose();
+    ]);
   }
 }
