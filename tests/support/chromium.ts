@@ -33,11 +33,13 @@ const kQuiet = [
   `--disable-features=${[...kAddressBar, ...kOffByPlaywright].join(',')}`,
 ];
 /**
- * WebGL by the processor. The page is put together without it: shaders for that, made anew for every page, are a quarter of the processor
- * time of tests.
+ * Software rendering. Pages are composited without WebGL's renderer, which would compile shaders anew for each page: a quarter of the
+ * processor time of these tests.
  */
 const kDrawing = [
-  ...['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+  '--ignore-gpu-blocklist',
   '--disable-gpu-compositing',
 ];
 

@@ -17,7 +17,7 @@ const kNoAntialiasing = `
   }`;
 /** The guide is offered at first visits only. */
 const kSecondVisit = `try { localStorage.setItem('cagecast-guide', 'seen') } catch {}`;
-/** What Playwright logs when service workers are blocked, and Chromium when it fetches what WebGL drew, to put the page together. */
+/** Logged by Playwright when service workers are blocked, and by Chromium when it reads back what WebGL drew, to composite the page. */
 const kExpected = /^Service Worker registration blocked by Playwright$|GPU stall due to ReadPixels/;
 
 /** A file inside the repository. */

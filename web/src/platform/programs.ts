@@ -1,10 +1,10 @@
 import type { Material } from 'three';
 
 /**
- * Frees materials once the next frame is drawn. A program for the graphics processor lives as long as a material that uses it; so what
- * replaces them, such as the next model, can use their programs. Linking its own would take tenths of a second.
+ * Frees materials once the next frame is drawn. three.js deletes a shader program with the last material that uses it; freed later,
+ * they hand their programs on to what replaces them, such as the next model. Linking new ones takes tenths of a second.
  */
 export function disposeAfterFrame(materials: readonly Material[]): void {
-  // Frames are drawn in such a callback: one that was requested by now comes before the second of these.
+  // The viewer draws in such a callback too: a frame that was requested by now is drawn before the second of these.
   requestAnimationFrame(() => requestAnimationFrame(() => materials.forEach((material) => material.dispose())));
 }
