@@ -64,14 +64,18 @@ async function lint() {
 async function buildNative(withTests) {
   const only = ['--target', 'cagecast_reference', 'cagecast_bench', 'cagecast_count_instructions'];
   await mustRun('cmake', ['--preset', 'release', '-Wno-dev', '--log-level=WARNING'], { atOnce: true });
-  await mustRun('cmake', ['--build', '--preset', 'release', ...(withTests ? [] : only)], { atOnce: true });
+  const jobs = ['--parallel', String(availableParallelism())];
+  await mustRun('cmake', ['--build', '--preset', 'release', ...jobs, ...(withTests ? [] : only)], { atOnce: true });
 }
 
 /** The package, its twin without SIMD that tests compare it with, and the sample models. */
 async function buildPackage() {
-  await mustRun('npm', ['run', '--silent', 'assets'], { atOnce: true });
-  await mustRun('npm', ['run', '--silent', 'build'], { atOnce: true });
-  await mustRun(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], { atOnce: true });
+  // The native build runs at the same time. More compilers than cores would take more processor time in all.
+  const jobs = String(Math.max(1, Math.floor(availableParallelism() / 2)));
+  const options = { env: { CMAKE_BUILD_PARALLEL_LEVEL: jobs }, atOnce: true };
+  await mustRun('npm', ['run', '--silent', 'assets'], options);
+  await mustRun('npm', ['run', '--silent', 'build'], options);
+  await mustRun(process.execPath, ['wasm/tools/build.mjs', '--preset', 'wasm-scalar'], options);
 }
 
 async function testCore() {
