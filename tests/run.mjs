@@ -70,7 +70,7 @@ async function buildNative(withTests) {
 
 /** The package, its twin without SIMD that tests compare it with, and the sample models. */
 async function buildPackage() {
-  // The native build runs at the same time. More compilers than cores would take more processor time in all.
+  // The native build runs at the same time, with a compiler for each core: each one more makes all of them slower.
   const jobs = String(Math.max(1, Math.floor(availableParallelism() / 2)));
   const options = { env: { CMAKE_BUILD_PARALLEL_LEVEL: jobs }, atOnce: true };
   await mustRun('npm', ['run', '--silent', 'assets'], options);
