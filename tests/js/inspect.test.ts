@@ -124,6 +124,35 @@ describe('a cage out of place', () => {
     assert.equal(codes(look({ positions: moved(([x, y, z]) => [x + 50, y, z]) }))[0], 'cageElsewhere');
   });
 
+  test('a ground that is part of the target is named, and that it makes lengths too coarse', () => {
+    const onGround = (half: number): Whole => {
+      const first = target.positions.length / 3;
+      const [low, high] = [-half * diagonal, half * diagonal];
+      const ground = [low, low, low, high, low, low, high, low, high, low, low, high];
+      return {
+        ...target,
+        positions: Float32Array.of(...target.positions, ...ground),
+        indices: Uint32Array.of(...target.indices, first, first + 2, first + 1, first, first + 3, first + 2),
+        uvs: new Float32Array((2 * (target.positions.length + 12)) / 3),
+        groups: Uint32Array.of(...target.groups, 7, 7, 7, 7),
+      };
+    };
+    const named = [...parts, { name: 'Ground', firstVertex: target.positions.length / 3, vertexCount: 4 }];
+    const look = (half: number) => inspect(cage, onGround(half), { parts: named });
+    assert.ok(!codes(look(1)).includes('targetTooLarge'));
+    for (const [half, verdict] of [
+      [15, 'usable'],
+      [60, 'unfit'],
+    ] as const) {
+      const { findings, ...found } = look(half);
+      assert.equal(found.verdict, verdict, JSON.stringify(findings));
+      assert.ok(!codes({ findings }).includes('cageElsewhere'));
+      const { sentence, places } = findings.find(({ code }) => code === 'targetTooLarge')!;
+      assert.match(sentence, /^The target is \d+ times as large as what is painted of it; "Ground" is farthest away$/);
+      assert.deepEqual(places, [{ segment: 3, group: 7, part: 'Ground' }]);
+    }
+  });
+
   test('the verdict does not depend on the unit', () => {
     for (const scale of [1e-3, 1e3]) {
       const by = (mesh: Whole) => ({ ...mesh, positions: mesh.positions.map((x) => scale * x) });

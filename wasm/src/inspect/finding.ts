@@ -36,6 +36,7 @@ export type FindingCode =
   | 'cageTooSmall'
   | 'targetPokesOut'
   | 'cageTooFar'
+  | 'targetTooLarge'
   | 'cageInsideTarget'
   // How it faces, and its surface.
   | 'normalsInward'

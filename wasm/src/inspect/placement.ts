@@ -1,6 +1,6 @@
 import { type Finding, percent } from './finding.js';
 import { type Box, boxOf, cross, minus, pointAt, quantiles, type Vector } from './geometry.js';
-import type { Scene } from './scene.js';
+import { partsOf, type Scene } from './scene.js';
 
 /** How far outside the cage a vertex may lie, as a share of the diagonal, before it counts as poking through. */
 const pokeThrough = 0.0025;
@@ -23,6 +23,10 @@ const leastServed = 0.3;
 const allServed = 0.95;
 /** How close the target must be beneath such a triangle, as a share of the diagonal. */
 const close = 0.04;
+/** A target that is so many times as large as what is painted of it has something in it that is not part of the model. */
+const tooLarge = 10;
+/** A cage is unfit if the target is so many times as large. */
+const farTooLarge = 100;
 
 /** How the target lies relative to the cage. Lengths are shares of the target's diagonal. */
 export interface Placement {
@@ -56,7 +60,7 @@ export function placementOf(scene: Scene): Placement {
       ++vertices;
       area += areas[v]!;
     }
-    const over = sides.loops[v]! < 0;
+    const over = sides.areUnder[v] === 1;
     if (over && sides.signed[v]! <= 0 && sides.signed[v]! > -close * diagonal)
       within[result.triangles[v]!]! += areas[v]!;
     if (result.zones[v] === 1 || areas[v] === 0) continue;
@@ -192,7 +196,35 @@ function solve(matrix: Float64Array[]): number[] {
 
 const centreOf = ({ min, max }: Box): Vector => [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2];
 
-/** A cage that is misplaced, too small or too far away. */
+/** A target with a ground or the like in it, by whose size all lengths are measured. */
+function checkSize({ cage, target, diagonal, parts, result }: Scene): Finding[] {
+  const { zones, segments } = result;
+  const painted = boxOf(
+    target.positions,
+    target.indices.filter((v) => zones[v] === 0),
+  );
+  const times = diagonal / painted.diagonal;
+  const isCageFilled = painted.diagonal > boxOf(cage.positions, cage.indices).diagonal / 2;
+  if (!isCageFilled || !(times >= tooLarge)) return [];
+  const middle = centreOf(painted);
+  const away = (v: number): number => Math.hypot(...minus(pointAt(target.positions, v), middle));
+  const farthest = zones.reduce((far, _, v) => (away(v) > away(far) ? v : far), 0);
+  const group = target.groups?.[farthest] ?? 0;
+  const part = parts[partsOf(parts, zones.length)[farthest]!]?.name ?? '';
+  return [
+    {
+      code: 'targetTooLarge',
+      weight: times / farTooLarge,
+      sentence: `The target is ${Math.round(times)} times as large as what is painted of it; "${part}" is farthest away`,
+      advice:
+        'Leave out what is around the model, such as a ground: lengths are measured by the size of the target, so what is small beside it is judged too coarsely.',
+      numbers: { times },
+      places: [{ segment: segments[farthest]!, group, part }],
+    },
+  ];
+}
+
+/** A cage that is misplaced, too small or too far away, and a target that is too large. */
 export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
   const { targetBox, diagonal } = scene;
   const cageBox = boxOf(scene.cage.positions, scene.cage.indices);
@@ -213,8 +245,8 @@ export function checkPlacement(scene: Scene, placement: Placement): Finding[] {
     ];
   }
   const { outside, beneath } = placement;
-  const findings: Finding[] = [];
-  if (beneath.share < leastBeneath) {
+  const findings = checkSize(scene);
+  if (beneath.share < leastBeneath && findings.length === 0) {
     findings.push({
       code: 'cageElsewhere',
       weight: 50,

@@ -33,6 +33,8 @@ export interface Sides {
   signed: Float64Array;
   /** The loop of open edges on which the nearest point of the cage lies, so that the cage says nothing about the vertex; else -1. */
   loops: Int32Array;
+  /** 1 per vertex that is under the cage: its nearest point is on no such loop, and no farther away than the cage is large. */
+  areUnder: Uint8Array;
 }
 
 /** Prepares the input of the checks. */
@@ -84,7 +86,8 @@ function sidesOf(
     if (touched.length === 2)
       loops[v] = loopOfEdge.get(edgeKey(place[corners[touched[0]!]!]!, place[corners[touched[1]!]!]!)) ?? -1;
   }
-  return { signed, loops };
+  const most = boxOf(mesh.positions, mesh.indices).diagonal;
+  return { signed, loops, areUnder: Uint8Array.from(loops, (loop, v) => Number(loop < 0 && distances[v]! <= most)) };
 }
 
 /** The part of each vertex. */

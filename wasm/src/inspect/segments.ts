@@ -71,7 +71,7 @@ export function checkSegments(scene: Scene, segments: readonly Segment[]): Findi
 function checkLeft({ threshold, areas, sides, result }: Scene, numbered: readonly Numbered[]): Finding[] {
   let [cosmetic, over, cut] = [0, 0, 0];
   for (let v = 0; v < areas.length; ++v) {
-    if (result.zones[v] === 1 || sides.loops[v]! >= 0) continue;
+    if (result.zones[v] === 1 || sides.areUnder[v] === 0) continue;
     over += areas[v]!;
     if (result.zones[v] === 0) cosmetic += areas[v]!;
     if (result.zones[v] === 3) cut += areas[v]!;
