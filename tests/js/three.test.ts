@@ -309,7 +309,7 @@ describe('applyTransfer', () => {
         const vertices = [...corners.subarray(3 * t, 3 * t + 3)];
         assert.equal(vertices.every((v) => paint.getZ(v) === 0) ? 1 : 0, one, `triangle ${t}`);
         for (const v of vertices)
-          assert.deepEqual([paint.getX(v), paint.getY(v), paint.getW(v)], [uv.getX(v), uv.getY(v), 1]);
+          assert.deepEqual([paint.getX(v), paint.getY(v), paint.getW(v)], [uv.getX(v), uv.getY(v), 2]);
       });
     };
     assertPainted(result.cosmeticTriangles);
@@ -335,8 +335,9 @@ describe('applyTransfer', () => {
     assert.ok(!Object.hasOwn(material, 'onBeforeCompile'));
     update(result);
     assert.ok(Object.hasOwn(material, 'onBeforeCompile'));
+    // Without a texture it stays ready for one, whose shader is compiled already.
     setTexture(undefined);
-    assert.ok(!Object.hasOwn(material, 'onBeforeCompile'));
+    assert.ok(Object.hasOwn(material, 'onBeforeCompile'));
     setTexture(new Texture());
     setOpacity(0.5);
     assert.throws(() => setOpacity(2), /setOpacity: 2 is not a number from 0 to 1/);
@@ -433,11 +434,11 @@ describe('applyTransfer', () => {
       const [a, b] = [corners[i]!, corners[i + 1]!];
       if (bare.has(a)) {
         ++atBorder;
-        assert.equal(paint.getW(a), 1);
+        assert.equal(paint.getW(a), 2);
       }
-      if (paint.getW(a) > 1.05) ++inside;
+      if (paint.getW(a) > 2.05) ++inside;
       const [d, e] = [paint.getW(a), paint.getW(b)];
-      if (Math.min(d, e) < 1.1) assert.ok(Math.abs(d - e) * size <= place(a).distanceTo(place(b)) + 1e-5);
+      if (Math.min(d, e) < 2.1) assert.ok(Math.abs(d - e) * size <= place(a).distanceTo(place(b)) + 1e-5);
     }
     assert.ok(atBorder > 10 && inside > 10, `${atBorder}, ${inside}`);
   });

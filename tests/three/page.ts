@@ -43,6 +43,7 @@ import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
 import { layerScenes } from './layer-scenes';
 import { ball, cage, camera, commandsOf, countOf, difference, draw, flat, halves, modelOf, renderer } from './scenes';
+import { sharingScenes, videoScenes } from './sharing-scenes';
 
 const kPaint = 0xcc3311;
 const steps = new DataTexture(Uint8Array.from([90, 160, 255]), 3, 1, RedFormat);
@@ -512,7 +513,11 @@ Object.assign(globalThis, {
   /** Runs a scene. @returns what it returned, or its error. */
   run: async (name: string): Promise<unknown> => {
     try {
-      return await (scenes[name] ?? asyncScenes[name] ?? layerScenes[name])!();
+      return await (scenes[name] ??
+        asyncScenes[name] ??
+        layerScenes[name] ??
+        sharingScenes[name] ??
+        videoScenes[name])!();
     } catch (error) {
       return { error: String((error as Error).stack ?? error) };
     }

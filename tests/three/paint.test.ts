@@ -208,6 +208,80 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     assert.ok(left > 100 && right > 100, `${left}, ${right}`);
   });
 
+  test('where its material is shared, a mesh that is not painted stays as it was', async () => {
+    const { body, both, left } = await run<{ body: number; both: number[][]; left: number[][] }>('sharedMaterial');
+    assert.equal(body, 0);
+    assert.ok(both[0]![0]! > 100 && both[0]![1] === 0 && both[1]![1]! > 100 && both[1]![0] === 0, JSON.stringify(both));
+    assert.deepEqual(left, [both[0], [0, 0, 0]]);
+  });
+
+  test('materials that share their uniforms have paint of their own, and no other uniforms than before', async () => {
+    const { frames, names } = await run<{ frames: number[][][]; names: string[] }>('sharedUniforms');
+    const [r, g, b, black] = [
+      [255, 0, 0],
+      [0, 255, 0],
+      [0, 0, 255],
+      [0, 0, 0],
+    ];
+    assert.deepEqual(frames, [
+      [r, g],
+      [r, g],
+      [b, g],
+      [black, black],
+    ]);
+    assert.deepEqual(names, ['light']);
+  });
+
+  test('hooks of others stay, wherever they are', async () => {
+    assert.deepEqual(await run('hooks'), {
+      own: true,
+      wrapping: [
+        [true, true],
+        [false, true],
+        [true, true],
+      ],
+      replaced: true,
+    });
+  });
+
+  test('a transfer that was replaced changes nothing any more', async () => {
+    const [green, bare] = [
+      [false, true, false],
+      [false, false, false],
+    ];
+    assert.deepEqual(await run('replaced'), [green, green, bare, green]);
+  });
+
+  test('paint that comes and goes leaves nothing on the GPU', async () => {
+    for (const [what, counts] of Object.entries(await run<Record<string, number[]>>('leaks')))
+      assert.deepEqual(new Set(counts).size, 1, `${what}: ${counts}`);
+  });
+
+  test('skinned meshes are targets by themselves, and picked where their bones have moved them', async () => {
+    const { counts, picks } = await run<{ counts: number[]; picks: boolean[] }>('bones');
+    assert.ok(counts[0]! > 100 && counts[1] === counts[0], counts.join());
+    assert.deepEqual(picks, [true, false, true]);
+  });
+
+  test('attributes of instances stay as they are', async () => {
+    assert.deepEqual(await run('instanceAttributes'), [
+      { split: true, ids: 2, last: 1 },
+      { split: true, ids: 500, last: 499 },
+    ]);
+  });
+
+  test('where a ray meets nothing, nothing is painted; a list of materials may have a gap', async () => {
+    assert.deepEqual(await run('nothing'), { canUndo: true, red: true });
+  });
+
+  test('a video as a layer looks as it does as paint', async () => {
+    const { alone, layered } = await run<{ alone: number[]; layered: number[] }>('video');
+    for (const [k, value] of alone.entries()) {
+      assert.ok(Math.abs(value - 128) <= 3, alone.join());
+      assert.ok(Math.abs(layered[k]! - value) <= 2, `${layered} ${alone}`);
+    }
+  });
+
   test('in the background: the same result in short tasks; cancelled, nothing is changed', async (context) => {
     const { sync, background, split, same, shares, refused, untouched } = await run<{
       sync: { longest: number; total: number };

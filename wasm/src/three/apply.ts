@@ -15,6 +15,9 @@ const givenChannels = new WeakMap<BufferGeometry, 1 | 2 | 3>();
 /** The paintings that geometries were made for. */
 const paintings = new WeakMap<BufferGeometry, Painting>();
 
+/** The paintings whose paint geometries show. */
+const shownPaintings = new WeakMap<BufferGeometry, Painting>();
+
 export const rangesOf = ({ parts }: Extracted): PartRange[] =>
   parts.map(({ firstVertex, vertexCount, firstTriangle, triangleCount, matrix }) => ({
     firstVertex,
@@ -202,6 +205,7 @@ class Shown implements Applied {
     if (!(opacity >= 0 && opacity <= 1))
       throw new CagecastError('badArgument', `cagecast/three: setOpacity: ${opacity} is not a number from 0 to 1`);
     this.#painting.opacity = opacity;
+    this.#painting.place.refresh(this.#painting);
   };
 
   readonly paint = (material: Material): boolean => {
@@ -225,24 +229,35 @@ class Shown implements Applied {
     const hasChanged = this.#culled.map((culled, s) => Number(now.segmentStats[s]!.culled !== culled));
     const isOther = new Uint8Array(segments.length);
     if (hasChanged.includes(1)) for (let v = 0; v < segments.length; ++v) isOther[v] = hasChanged[segments[v]!]!;
-    for (const one of this.#shown) writeZones(one, now, isOther, this.#target.indices);
+    for (const one of this.#current) writeZones(one, now, isOther, this.#target.indices);
     this.#hasPaint = false;
     this.#show();
   }
 
+  /** The parts on which no later transfer shows its paint. */
+  get #current(): ShownPart[] {
+    const { number } = this.#painting;
+    return this.#shown.filter(({ part }) => !((shownPaintings.get(part.geometry)?.number ?? 0) > number));
+  }
+
   #show(): void {
     if (this.#isDisposed) return;
-    const { texture, feather } = this.#painting;
+    const { texture, feather, place } = this.#painting;
     if (this.#material) {
       for (const one of this.#shown) showMaterial(one, this.#material);
       return;
     }
+    const shown = this.#current;
     if (texture && !this.#hasPaint) {
-      writePaint(this.#shown, feather, feather > 0 ? diagonal(this.#target.positions) : 1);
+      writePaint(shown, feather, feather > 0 ? diagonal(this.#target.positions) : 1);
+      for (const { part } of shown) shownPaintings.set(part.geometry, this.#painting);
       this.#hasPaint = true;
     }
-    const painted = new Set(this.#shown.flatMap((one) => showPaint(one, this.#painting, this.#copies)));
-    if (texture) for (const material of this.#added) painted.add(paintOn(material, this.#painting));
+    place.refresh(this.#painting);
+    // Materials without paint for now stay ready for it: to make them what they were, and again, would compile their shaders twice.
+    const paints = texture !== undefined || this.#painted.size > 0;
+    const painted = new Set(shown.flatMap((one) => showPaint(one, this.#painting, this.#copies, paints)));
+    if (paints && shown.length > 0) for (const material of this.#added) painted.add(paintOn(material, this.#painting));
     for (const material of this.#painted) if (!painted.has(material)) unpaint(material, this.#painting);
     this.#painted = painted;
   }
@@ -258,8 +273,9 @@ class Shown implements Applied {
     for (const one of this.#shown) {
       const { overlay, part } = one;
       const geometry = part.mesh?.geometry ?? part.geometry;
-      if (paintings.get(part.geometry) === this.#painting) {
-        paintings.delete(part.geometry);
+      if (paintings.get(part.geometry) === this.#painting) paintings.delete(part.geometry);
+      if (shownPaintings.get(part.geometry) === this.#painting) {
+        shownPaintings.delete(part.geometry);
         geometry.deleteAttribute(paintAttribute);
       }
       if (!overlay) continue;

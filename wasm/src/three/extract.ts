@@ -1,6 +1,7 @@
 import {
   type BufferAttribute,
   type BufferGeometry,
+  type InstancedBufferAttribute,
   type InstancedMesh,
   type InterleavedBufferAttribute,
   Matrix4,
@@ -84,7 +85,8 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
     const morphs = Object.entries(geometry.morphAttributes).flatMap(([of, attributes]) =>
       attributes!.map((attribute): [string, { count: number }] => [`deltas of ${of}`, attribute]),
     );
-    for (const [of, { count }] of [...Object.entries(geometry.attributes), ...morphs]) {
+    const attributes = Object.entries(geometry.attributes).filter(([, attribute]) => !isOfInstances(attribute));
+    for (const [of, { count }] of [...attributes, ...morphs]) {
       if (count < vertexCount) throw wrong(argument, name, `has ${count} ${of} for ${vertexCount} vertices`);
     }
     const last = parts.at(-1);
@@ -105,6 +107,9 @@ function listParts(object: Object3D | BufferGeometry, argument: string): Part[] 
   }
   object.updateWorldMatrix(true, true);
   object.traverse((child) => {
+    // Its bones may be elsewhere in the scene.
+    if (isSkinned(child as ThreeMesh))
+      for (const bone of (child as SkinnedMesh).skeleton?.bones ?? []) bone.updateWorldMatrix(true, false);
     if (!isMesh(child) || child.userData[overlayMark] === true || child.geometry.userData[overlayMark] === true) return;
     const name = child.name || child.parent?.name || `mesh ${parts.length}`;
     if (!isInstanced(child) || child.count > 0) add(name, child, child.geometry, placeOf(child).clone());
@@ -167,6 +172,11 @@ const isGeometry = (object: Object3D | BufferGeometry): object is BufferGeometry
 const isObject = (object: Object3D): boolean => object?.isObject3D === true;
 export const isSkinned = (mesh: ThreeMesh): mesh is SkinnedMesh => (mesh as SkinnedMesh).isSkinnedMesh === true;
 export const isInstanced = (mesh: ThreeMesh): mesh is InstancedMesh => (mesh as InstancedMesh).isInstancedMesh === true;
+/** Whether an attribute has a value for each instance, not for each vertex. */
+export const isOfInstances = (attribute: object): boolean =>
+  (attribute as InstancedBufferAttribute).isInstancedBufferAttribute === true ||
+  ((attribute as InterleavedBufferAttribute).data as { isInstancedInterleavedBuffer?: true } | undefined)
+    ?.isInstancedInterleavedBuffer === true;
 const isMesh = (object: Object3D): object is ThreeMesh => (object as ThreeMesh).isMesh === true;
 
 /** Describes a value of the wrong type, for messages. */

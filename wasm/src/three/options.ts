@@ -39,7 +39,10 @@ export interface ApplyOptions extends TransferOptions {
   borders?: Borders | undefined;
 }
 
-/** What was added to a scene. */
+/**
+ * What was added to a scene. Where a later transfer shows its paint on the same meshes, the methods change nothing but what is left of
+ * the earlier one.
+ */
 export interface Applied {
   /** The result for the original vertices of the target. */
   result: TransferResult;

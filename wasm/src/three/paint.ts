@@ -3,8 +3,9 @@ import { Matrix3, type Texture, type WebGLProgramParametersWithUniforms } from '
 type Shader = Pick<WebGLProgramParametersWithUniforms, 'vertexShader' | 'fragmentShader' | 'uniforms'>;
 
 /**
- * What each vertex tells the shader: the UV of the paint; 0, or 1 if no triangle at it is painted; and 1 plus its distance from the
- * border of the paint along the surface. Without the attribute WebGL reads 0, which means no paint.
+ * What each vertex tells the shader: the UV of the paint; 0, or 1 if no triangle at it is painted; and 2 plus its distance from the
+ * border of the paint along the surface. Where another mesh with the material lacks the attribute, WebGL reads (0, 0, 0, 1), which
+ * means no paint, too.
  */
 export const paintAttribute = '_cagecast_paint';
 
@@ -35,7 +36,7 @@ vec4 cagecastTexel() {
   vec3 linear = mix(pow((texel.rgb + 0.055) / 1.055, vec3(2.4)), texel.rgb / 12.92, vec3(lessThanEqual(texel.rgb, vec3(0.04045))));
   texel.rgb = mix(texel.rgb, linear, step(abs(amount.z - 1.0), 0.5));
   texel.rgb /= amount.z > 1.5 ? max(texel.a, 1e-4) : 1.0;
-  float inside = vCagecastPaint.w - 1.0;
+  float inside = vCagecastPaint.w - 2.0;
   float border = amount.y > 0.0 ? smoothstep(0.0, amount.y, inside) : step(-0.5, inside);
   texel.a *= amount.x * border * step(abs(vCagecastPaint.z), 1e-6);
   return texel;
@@ -82,10 +83,11 @@ export function setUniforms({ cagecastMap, cagecastPlace }: PaintUniforms, paint
 }
 
 /**
- * Adds paint to a shader of three.js, before its includes are resolved.
+ * Adds paint to a shader of three.js, before its includes are resolved; nothing if it has paint already.
  * @param alone  Whether the paint is all that the material shows, with the opacity of the material; else it is mixed into its colour.
  */
 export function addPaint(shader: Shader, uniforms: PaintUniforms, alone: boolean): void {
+  if (shader.vertexShader.includes(kVertex)) return;
   Object.assign(shader.uniforms, uniforms);
   shader.vertexShader =
     kVertex + shader.vertexShader.replace(kMain, (main) => `${main}\n  vCagecastPaint = ${paintAttribute};\n`);

@@ -3,16 +3,21 @@ import { addPaint, type Paint, type PaintUniforms, paintUniforms, setUniforms, t
 
 /** What is painted, and the meshes that show it. */
 export interface Painting extends Paint {
+  /** Greater than those of all paintings before it, which it replaces where it is shown. */
+  number: number;
   meshes: ReadonlySet<ThreeMesh>;
   /** What its materials call for each mesh. One function for all of them, which engines call faster than one for each. */
   refresh: Material['onBeforeRender'];
 }
 
+let paintingCount = 0;
+
 /** Makes a painting that is brought up to date once in each frame. */
-export function makePainting(paint: Omit<Painting, 'refresh'>): Painting {
+export function makePainting(paint: Omit<Painting, 'refresh' | 'number'>): Painting {
   let [last, lastFrame]: [unknown, number] = [undefined, -1];
   const painting: Painting = {
     ...paint,
+    number: ++paintingCount,
     refresh(renderer) {
       const { frame } = renderer.info.render;
       if (frame === lastFrame && renderer === last) return;
@@ -27,16 +32,17 @@ export function makePainting(paint: Omit<Painting, 'refresh'>): Painting {
 /** What was changed about a material. The record of a material is kept for ever: programs that were compiled refer to it. */
 interface Patch {
   painting: Painting | undefined;
-  /** How often it was patched. Part of the program's key, as a program of an earlier time lacks the uniforms. */
-  times: number;
   uniforms: PaintUniforms;
   /** The hooks that the material has of its own. */
-  own: Partial<Pick<Material, (typeof kHooks)[number]>>;
+  own: Partial<Hooks>;
+  /** Those that it was given. Others may have wrapped them since. */
+  given: Partial<Hooks>;
   /** Whether neither the material nor its class does anything before it is rendered. */
   isQuiet: boolean;
 }
 
 const kHooks = ['onBeforeCompile', 'customProgramCacheKey', 'onBeforeRender'] as const;
+type Hooks = Pick<Material, (typeof kHooks)[number]>;
 
 const patches = new WeakMap<Material, Patch>();
 
@@ -75,11 +81,12 @@ const uses = (meshes: ReadonlySet<ThreeMesh>, material: Material): ThreeMesh[] =
   [...meshes].filter((mesh) => [mesh.material].flat().includes(material));
 
 function patch(material: Material, painting: Painting, alone: boolean): void {
-  const record: Patch = patches.get(material) ?? {
+  const known = patches.get(material);
+  const record: Patch = known ?? {
     painting: undefined,
-    times: 0,
     uniforms: paintUniforms(),
     own: {},
+    given: {},
     isQuiet: true,
   };
   patches.set(material, record);
@@ -87,47 +94,53 @@ function patch(material: Material, painting: Painting, alone: boolean): void {
   record.painting = painting;
   setUniforms(record.uniforms, painting);
   if (isPatched) {
-    if (record.isQuiet) material.onBeforeRender = painting.refresh;
+    if (record.isQuiet && material.onBeforeRender === record.given.onBeforeRender)
+      material.onBeforeRender = record.given.onBeforeRender = painting.refresh;
     return;
   }
+  // A program that was compiled when it was painted before has the same key, but its uniforms may be gone.
+  if (known) material.dispose();
 
   const { onBeforeCompile, customProgramCacheKey, onBeforeRender } = material;
   record.own = Object.fromEntries(
     kHooks.flatMap((name) => (Object.hasOwn(material, name) ? [[name, material[name]]] : [])),
   );
-  const times = ++record.times;
-  // By default the key is the text of `onBeforeCompile`, which must be that of the material's own. An object that inherits from the
-  // material would do, but V8 gives every prototype a hidden class of its own, and all that reads materials becomes slower.
-  const before = new Proxy(material, {
-    get: (_, name) => (name === 'onBeforeCompile' ? onBeforeCompile : Reflect.get(material, name)),
-  });
-  material.customProgramCacheKey = () =>
-    `${customProgramCacheKey.call(before)}|cagecast ${times}${alone ? ' alone' : ''}`;
-  material.onBeforeCompile = (shader, renderer) => {
-    onBeforeCompile.call(material, shader, renderer);
-    addPaint(shader, record.uniforms, alone);
-  };
   record.isQuiet = onBeforeRender === Material.prototype.onBeforeRender;
-  material.onBeforeRender = record.isQuiet
-    ? painting.refresh
-    : (...args) => {
-        onBeforeRender.apply(material, args);
-        record.painting?.refresh.apply(material, args);
-      };
+  // Where others have wrapped them, these are called when the material is not painted any more, too.
+  record.given = {
+    customProgramCacheKey() {
+      const key = customProgramCacheKey.call(material);
+      // By default the key is the text of `onBeforeCompile`, which is not the material's own by now.
+      return record.painting ? `${key}|${onBeforeCompile}|cagecast${alone ? ' alone' : ''}` : key;
+    },
+    onBeforeCompile: (shader, renderer) => {
+      onBeforeCompile.call(material, shader, renderer);
+      if (!record.painting) return;
+      // The uniforms of a `ShaderMaterial` are its owner's, who may have given them to several.
+      if ('isShaderMaterial' in material) shader.uniforms = Object.create(shader.uniforms);
+      addPaint(shader, record.uniforms, alone);
+    },
+    onBeforeRender: record.isQuiet
+      ? painting.refresh
+      : (...args) => {
+          onBeforeRender.apply(material, args);
+          record.painting?.refresh.apply(material, args);
+        },
+  };
+  Object.assign(material, record.given);
   material.needsUpdate = true;
 }
 
-/** Makes a material what it was, unless it shows another painting by now. */
+/** Makes a material what it was, unless it shows another painting by now. Hooks that others have wrapped since stay theirs. */
 export function unpaint(material: Material, painting: Painting): void {
   const record = patches.get(material);
   if (record?.painting !== painting) return;
   record.painting = undefined;
   setUniforms(record.uniforms, undefined);
-  const { uniforms } = material as Partial<ShaderMaterial>;
   for (const name of kHooks) {
+    if (material[name] !== record.given[name]) continue;
     if (record.own[name]) Object.assign(material, { [name]: record.own[name] });
     else delete (material as Partial<Material>)[name];
   }
-  if (uniforms) for (const name of Object.keys(record.uniforms)) delete uniforms[name];
   material.needsUpdate = true;
 }

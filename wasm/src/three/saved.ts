@@ -52,7 +52,7 @@ export function checkSaved({ key, prepared }: Saved, target: Extracted): Prepare
   if (!key.startsWith(`${targetKey(target)}-`))
     throw new CagecastError(
       'badArgument',
-      'cagecast/three: options.saved is of another target, or of an older state of it',
+      'cagecast/three: options.saved is of another target, or of an older state of it; one that a transfer has split has to be loaded again',
     );
   return prepared;
 }

@@ -74,7 +74,7 @@ export function writePaint(parts: readonly ShownPart[], reach: number, diagonal:
       values[4 * v] = split.uvs[2 * v]!;
       values[4 * v + 1] = split.uvs[2 * v + 1]!;
       values[4 * v + 2] = 1 - isPainted[v]!;
-      values[4 * v + 3] = 1 + (distances ? distances[p]![v]! / diagonal : 0);
+      values[4 * v + 3] = 2 + (distances ? distances[p]![v]! / diagonal : 0);
     }
     attribute.needsUpdate = true;
     if (attribute !== known) geometry.setAttribute(paintAttribute, attribute);
@@ -137,16 +137,23 @@ export function showMaterial(shown: ShownPart, material: Material): void {
 
 /**
  * Paints the materials of a part, and lays an overlay over those that cannot be painted.
- * @param copies     Copies that were made of materials, by the material; more may be added.
+ * @param copies  Copies that were made of materials, by the material; more may be added.
+ * @param paints  Whether materials are painted. Those that are without a texture show it as soon as there is one.
  * @returns the materials that are painted, which are none if no triangle is.
  */
-export function showPaint(shown: ShownPart, painting: Painting, copies: Map<Material, Material>): Material[] {
+export function showPaint(
+  shown: ShownPart,
+  painting: Painting,
+  copies: Map<Material, Material>,
+  paints: boolean,
+): Material[] {
   const { mesh } = shown.part;
   if (!mesh) return [];
-  const hasPaint = painting.texture !== undefined && shown.cosmetic.includes(1);
-  const materials = [mesh.material].flat();
-  const isBlind = materials.map((material) => !canBePainted(material));
-  const needsOverlay = hasPaint && isBlind.includes(true);
+  const hasPaint = paints && shown.cosmetic.includes(1);
+  // Three.js draws nothing where a list of materials has a gap.
+  const materials: (Material | undefined)[] = [mesh.material].flat();
+  const isBlind = materials.map((material) => material !== undefined && !canBePainted(material));
+  const needsOverlay = hasPaint && painting.texture !== undefined && isBlind.includes(true);
   if (needsOverlay) {
     shown.overlay ??= makeOverlay(shown.part, mesh, overlayMaterial(materials[isBlind.indexOf(true)]!));
     // Each time, for the texture may be another.
@@ -158,15 +165,15 @@ export function showPaint(shown: ShownPart, painting: Painting, copies: Map<Mate
   }
   if (!hasPaint) return [];
   const painted = materials.map((material, m) => {
-    if (isBlind[m]) return material;
+    if (!material || isBlind[m]) return material;
     const one = paintOn(copies.get(material) ?? material, painting);
     if (one !== material) copies.set(material, one);
     return one;
   });
   if (Array.isArray(mesh.material))
-    mesh.material = painted.every((one, m) => one === materials[m]) ? mesh.material : painted;
+    mesh.material = painted.every((one, m) => one === materials[m]) ? mesh.material : (painted as Material[]);
   else mesh.material = painted[0]!;
-  return painted.filter((_, m) => !isBlind[m]);
+  return painted.filter((one, m): one is Material => one !== undefined && !isBlind[m]);
 }
 
 /** Which of the painted triangles have a material that cannot be painted. */

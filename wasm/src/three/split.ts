@@ -7,6 +7,7 @@ import {
 } from 'three';
 import { type AttributeArray, type Blends, blendInto, blendSkin, noBlends, type Rule, ruleOf } from '../parts/blend.js';
 import type { PreparedPart } from '../parts/prepare.js';
+import { isOfInstances } from './extract.js';
 
 export type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
@@ -54,7 +55,8 @@ export function* remake(
   };
   const attributes = new Map<string, BufferAttribute>();
   for (const [name, attribute] of Object.entries(geometry.attributes)) {
-    attributes.set(name, extend(attribute as Attribute, name, false));
+    const extended = isOfInstances(attribute) ? attribute : extend(attribute as Attribute, name, false);
+    attributes.set(name, extended as BufferAttribute);
     yield;
   }
   const morphs = new Map<string, BufferAttribute[]>();

@@ -1,6 +1,6 @@
 import { MeshStandardMaterial, type Texture } from 'three';
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
-import { init, type Preset } from '../index.js';
+import { CagecastError, init, type Preset } from '../index.js';
 import type { Inspection } from '../inspect/index.js';
 import {
   type Applied,
@@ -60,6 +60,8 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   #canvas: HTMLCanvasElement;
   readonly #poster: HTMLImageElement;
   readonly #error: HTMLElement;
+  /** Whether the error that is shown is about the opacity. */
+  #hasBadOpacity = false;
   #stage: Stage | undefined;
   #shown: Shown | undefined;
   /** Ends the loading under way. */
@@ -162,7 +164,9 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     if (changed.has('opacity')) this.#setOpacity();
     // A paint alone needs no other transfer; but one under way is begun anew.
     const isOther = changed.has('paint') && (this.#loading !== undefined || !this.#shown);
-    if (isOther || changed.has('check') || kOfTransfer.some((name) => changed.has(name)))
+    // What could not be loaded may have failed for its opacity.
+    const isAgain = changed.has('opacity') && !this.#loading && !this.#shown;
+    if (isOther || isAgain || changed.has('check') || kOfTransfer.some((name) => changed.has(name)))
       void this.#load((signal) => this.#loadAll(signal));
     else if (changed.has('paint')) void this.#load((signal) => this.#loadPaint(signal));
   }
@@ -171,8 +175,11 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     try {
       this.#shown?.applied?.setOpacity(this.#options().opacity ?? 1);
       this.#stage?.draw();
+      if (this.#hasBadOpacity) this.#error.hidden = true;
+      this.#hasBadOpacity = false;
     } catch (error) {
       this.#fail(error);
+      this.#hasBadOpacity = true;
     }
   }
 
@@ -255,7 +262,13 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   }
 
   #options(): ApplyOptions {
-    const number = (name: string) => (this.hasAttribute(name) ? Number(this.getAttribute(name)) : undefined);
+    const number = (name: string) => {
+      const given = this.getAttribute(name);
+      if (given === null) return undefined;
+      if (given.trim() === '' || Number.isNaN(Number(given)))
+        throw new CagecastError('badOption', `cagecast-viewer: ${name} is "${given}", not a number`);
+      return Number(given);
+    };
     const text = <T extends string>(name: string) => (this.getAttribute(name) as T | null) ?? undefined;
     const all = {
       opacity: number('opacity'),

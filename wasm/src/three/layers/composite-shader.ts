@@ -1,35 +1,45 @@
 import { kErased } from '../gpu/index.js';
 
-/** How each layer is sampled, from the lowest, which of them carries a stroke (-1 for none), and whether they lie on others. */
+/** How layers are read. */
 export interface Recipe {
+  /** How each layer is sampled, from the lowest. */
   takes: readonly ('whole' | 'spread')[];
+  /** Which of them carries a stroke; -1 for none. */
   stroke: number;
+  /** Whether they lie on others. */
   hasBelow: boolean;
+  /** Whether one of them is a video, which the GPU does not decode. */
+  hasVideo: boolean;
 }
 
 // All four are separable blend modes of “Compositing and Blending Level 1” (W3C), in linear light, with colours
 // multiplied by alpha: layer·(1 − α below) + below·(1 − α layer) + α layer·α below·B, where B is, of the colours proper,
 // normal: layer, multiply: layer·below, screen: layer + below − layer·below, add: min(1, layer + below).
 const kFunctions = /* glsl */ `
-vec4 texel(sampler2D sheet, ivec2 at, bool isPremultiplied) {
+// How colours are stored: 0 straight, 1 premultiplied, 2 straight and in sRGB.
+vec4 texel(sampler2D sheet, ivec2 at, int stored) {
   vec4 found = texelFetch(sheet, at, 0);
-  return isPremultiplied ? found : vec4(found.rgb * found.a, found.a);
+#ifdef HAS_VIDEO
+  vec3 linear = mix(pow((found.rgb + 0.055) / 1.055, vec3(2.4)), found.rgb / 12.92, vec3(lessThanEqual(found.rgb, vec3(0.04045))));
+  if (stored == 2) found.rgb = linear;
+#endif
+  return stored == 1 ? found : vec4(found.rgb * found.a, found.a);
 }
 
-vec4 whole(sampler2D sheet, bool isPremultiplied) {
-  return texel(sheet, ivec2(gl_FragCoord.xy), isPremultiplied);
+vec4 whole(sampler2D sheet, int stored) {
+  return texel(sheet, ivec2(gl_FragCoord.xy), stored);
 }
 
 // For a sheet of another size: bilinear, with premultiplied colours, so that transparent texels add no colour.
-vec4 spread(sampler2D sheet, bool isPremultiplied) {
+vec4 spread(sampler2D sheet, int stored) {
   ivec2 sides = textureSize(sheet, 0);
   vec2 at = gl_FragCoord.xy / float(size) * vec2(sides) - 0.5;
   ivec2 least = (ivec2(floor(at)) + sides) % sides;
   ivec2 most = (least + 1) % sides;
   vec2 share = fract(at);
   return mix(
-    mix(texel(sheet, least, isPremultiplied), texel(sheet, ivec2(most.x, least.y), isPremultiplied), share.x),
-    mix(texel(sheet, ivec2(least.x, most.y), isPremultiplied), texel(sheet, most, isPremultiplied), share.x),
+    mix(texel(sheet, least, stored), texel(sheet, ivec2(most.x, least.y), stored), share.x),
+    mix(texel(sheet, ivec2(least.x, most.y), stored), texel(sheet, most, stored), share.x),
     share.y
   );
 }
@@ -44,22 +54,22 @@ vec4 join(vec4 layer, vec4 below, int blend) {
 `;
 
 /** A shader for exactly these layers: software renderers execute every branch, taken or not. */
-export function fragmentShader({ takes, stroke, hasBelow }: Recipe): string {
+export function fragmentShader({ takes, stroke, hasBelow, hasVideo }: Recipe): string {
   const most = Math.max(1, takes.length);
-  const soak = (take: string): string => `soak = strokeOpacity * ${take}(stroke, true);
+  const soak = (take: string): string => `soak = strokeOpacity * ${take}(stroke, 1);
   layer = strokeErases ? erased(layer, soak.a) : layer * (1.0 - soak.a) + soak;`;
   const steps = takes.map(
     (take, index) => /* glsl */ `
-  layer = ${take}(sheets[${index}], premultiplied[${index}]);
+  layer = ${take}(sheets[${index}], stored[${index}]);
   ${index === stroke ? soak(take) : ''}
   layer *= vec4(tints[${index}].rgb, 1.0) * tints[${index}].a;
   color = join(layer, color, blends[${index}]);`,
   );
-  return /* glsl */ `
+  return /* glsl */ `${hasVideo ? '#define HAS_VIDEO' : ''}
 uniform sampler2D sheets[${most}];
 uniform vec4 tints[${most}]; // and the opacity
 uniform int blends[${most}];
-uniform bool premultiplied[${most}];
+uniform int stored[${most}];
 uniform sampler2D stroke;
 uniform sampler2D below;
 uniform float strokeOpacity;

@@ -17,6 +17,7 @@ import { blendModes, type Layer, type Sheet } from './layer.js';
 /** Layers that one pass draws, as there may be only 16 textures in a shader. The stack has at most twice as many. */
 const kMostAtOnce = 8;
 const kLeastSize = 1024; // texels per side
+const kVideo = 2; // how its colours are stored, in the shader
 /** The greatest number of texels per side of a composite. */
 export const maxCompositeSize = 2048;
 
@@ -50,7 +51,7 @@ export class Composite {
     sheets: { value: [] as (Texture | null)[] },
     tints: { value: Array.from({ length: kMostAtOnce }, () => new Vector4()) },
     blends: { value: new Array<number>(kMostAtOnce).fill(0) },
-    premultiplied: { value: new Array<boolean>(kMostAtOnce).fill(false) },
+    stored: { value: new Array<number>(kMostAtOnce).fill(0) },
     stroke: { value: null as Texture | null },
     below: { value: null as Texture | null },
     strokeOpacity: { value: 1 },
@@ -154,7 +155,8 @@ export class Composite {
   ): void {
     this.#fill(layers, hasBelow);
     const takes = layers.map(({ sheet }) => (isSquare(sheet.texture, target.width) ? 'whole' : 'spread'));
-    const recipe = { takes, stroke: layers.findIndex(({ sheet }) => sheet === this.#strokeSheet), hasBelow };
+    const stroke = layers.findIndex(({ sheet }) => sheet === this.#strokeSheet);
+    const recipe = { takes, stroke, hasBelow, hasVideo: this.#uniforms.stored.value.includes(kVideo) };
     const key = JSON.stringify(recipe);
     let pass = this.#passes.get(key);
     if (!pass) this.#passes.set(key, (pass = new Pass(fragmentShader(recipe), this.#uniforms)));
@@ -162,15 +164,17 @@ export class Composite {
   }
 
   #fill(layers: readonly Layer[], hasBelow: boolean): void {
-    const { sheets, tints, blends, premultiplied, stroke, below, strokeOpacity, strokeErases, size } = this.#uniforms;
+    const { sheets, tints, blends, stored, stroke, below, strokeOpacity, strokeErases, size } = this.#uniforms;
     // Set all entries: a stale one could be the texture that is drawn to, which WebGL forbids.
     sheets.value = Array.from({ length: kMostAtOnce }, (_, index) => layers[index]?.sheet.texture ?? null);
     below.value = hasBelow ? this.#below!.texture : null;
+    stored.value.fill(0);
     layers.forEach(({ sheet, tint, opacity, blend }, index) => {
       const { r, g, b } = new Color(tint);
       tints.value[index]!.set(r, g, b, opacity);
       blends.value[index] = blendModes.indexOf(blend);
-      premultiplied.value[index] = sheet.premultiplied ?? false;
+      const { isVideoTexture, colorSpace } = sheet.texture as Texture & { isVideoTexture?: true };
+      stored.value[index] = sheet.premultiplied ? 1 : isVideoTexture && colorSpace === SRGBColorSpace ? kVideo : 0;
     });
     stroke.value = this.#stroke?.texture ?? null;
     strokeOpacity.value = this.#stroke?.opacity ?? 0;

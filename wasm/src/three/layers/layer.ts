@@ -13,6 +13,8 @@ export interface Sheet {
   readonly premultiplied?: boolean;
   /** URL of a thumbnail, for lists. */
   readonly picture?: string;
+  /** Frees its GPU memory, if that is not the caller's. */
+  dispose?(): void;
   /** Bytes of memory besides the texture, which count in the undo history. */
   readonly bytes?: number;
 }

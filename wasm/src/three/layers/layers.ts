@@ -69,7 +69,7 @@ export class Layers extends Emitter<{
 
   /**
    * Adds a layer.
-   * @param texture  In the cage's UV space; its `colorSpace` counts, its `flipY` must be false. One whose `needsUpdate` is set later,
+   * @param texture  In the cage's UV space; its `colorSpace` counts, its `flipY` must be false, its offset, repeat and rotation do not count. One whose `needsUpdate` is set later,
    *                 such as a canvas, is drawn again by `update`. It is not disposed of with the layer.
    * @throws {CagecastError} `badArgument` for the 17th layer or if it is not a texture, `badOption` that names an option and its value.
    */
@@ -153,8 +153,9 @@ export class Layers extends Emitter<{
     return readStraight(this.renderer, this.texture, size);
   }
 
-  /** Frees the GPU memory of the texture. Those that were added are the caller's. */
+  /** Frees the GPU memory of the texture and of what was painted. Textures that were added are the caller's. */
   dispose(): void {
+    for (const { sheet } of this.list) sheet.dispose?.();
     this.renderer.domElement.removeEventListener('webglcontextrestored', this.#restored);
     this.composite.dispose();
   }

@@ -33,8 +33,8 @@ export type StrokePoint = (Spot | { x: number; y: number }) & { pressure?: numbe
 
 /** Where a sticker lies, and how. */
 export interface StickerPlace {
-  /** A spot of a model, or a UV of the cage. */
-  at: Spot | { x: number; y: number };
+  /** A spot of a model, or a UV of the cage. Undefined, as `pick` returns it beside the models, is no place: nothing is laid. */
+  at: Spot | { x: number; y: number } | undefined;
   /** Its longer side, as a share of the diagonal of the cage. Default: 0.2. */
   size?: number | undefined;
   /** Radians, clockwise as seen. Default: 0. */
@@ -124,15 +124,16 @@ export class Painter {
 
   /**
    * Paints a stroke along the cage through some points, as one undo step.
-   * @param style  What differs from `brush`.
+   * @param points  Undefined, as `pick` returns it beside the models, ends a line; the next point begins another.
+   * @param style   What differs from `brush`.
    * @throws {CagecastError} `badOption` that names a field and its value, `badArgument` if there is no room for a layer.
    */
-  stroke(points: readonly StrokePoint[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
+  stroke(points: readonly (StrokePoint | undefined)[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
     this.#stroke(points, { ...this.brush, ...style, erases: false });
   }
 
   /** Erases along some points what was painted, as `stroke` paints: what that has left, it takes away. The texture stays. */
-  erase(points: readonly StrokePoint[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
+  erase(points: readonly (StrokePoint | undefined)[], style: Partial<Omit<BrushStyle, 'erases'>> = {}): void {
     if (this.#painter.hasPainting) this.#stroke(points, { ...this.brush, ...style, erases: true });
   }
 
@@ -255,14 +256,14 @@ export class Painter {
     this.#painter.stick(surface, this.#sheet, { size: size * diagonal, angle, mirrored }, up);
   }
 
-  #stroke(points: readonly StrokePoint[], style: BrushStyle): void {
+  #stroke(points: readonly (StrokePoint | undefined)[], style: BrushStyle): void {
     checkBrush(style);
     const texels = this.#painter.cageTexels!;
     const stroke = new Stroke(texels, { radius: (style.size / 2) * texels.diagonal, mirror: style.mirror });
     this.#painter.begin(style.erases ? 'erasing' : 'stroke', style);
     try {
       for (const point of points)
-        this.#painter.extend(stroke.to(this.#surfaceAt(point), Infinity, point.pressure ?? 1));
+        this.#painter.extend(stroke.to(this.#surfaceAt(point), Infinity, point?.pressure ?? 1));
     } catch (error) {
       this.#painter.cancel();
       throw error;
@@ -270,7 +271,10 @@ export class Painter {
     this.#painter.end();
   }
 
-  #surfaceAt(point: Spot | { x: number; y: number }): SurfacePoint | undefined {
+  #surfaceAt(point: Spot | { x: number; y: number } | undefined): SurfacePoint | undefined {
+    if (point === undefined) return undefined;
+    if (typeof point !== 'object' || point === null)
+      throw new CagecastError('badArgument', `cagecast/three/paint: a point is ${point}, not a spot or a UV`);
     if ('toCage' in point) return point.surface;
     const { x, y } = point;
     if (!(Number.isFinite(x) && Number.isFinite(y)))

@@ -7,6 +7,7 @@ import {
   type Mesh,
   type Raycaster,
   type SkinnedMesh,
+  Sphere,
   Triangle,
   Vector2,
   Vector3,
@@ -39,11 +40,21 @@ export function pickSpot(
   for (const { parts, channel } of models) {
     for (const part of parts) {
       if (!part.mesh || !isShown(part.mesh)) continue;
-      const [hit] = raycaster.intersectObject(part.mesh, false);
+      const hit = hitOf(part.mesh, raycaster);
       if (hit?.face && (!nearest || hit.distance < nearest.hit.distance)) nearest = { part, channel, hit };
     }
   }
   return nearest && spotOf(nearest.part, nearest.hit, nearest.channel, texels);
+}
+
+/** Where a ray meets a mesh first. Three.js tests bounds before, which it keeps of an earlier pose of a skinned mesh: none here. */
+function hitOf(mesh: Mesh, raycaster: Raycaster): Intersection | undefined {
+  const { boundingSphere, boundingBox } = mesh as SkinnedMesh;
+  const isSkinned = (mesh as SkinnedMesh).isSkinnedMesh === true;
+  if (isSkinned) Object.assign(mesh, { boundingSphere: new Sphere(new Vector3(), Infinity), boundingBox: null });
+  const [hit] = raycaster.intersectObject(mesh, false);
+  if (isSkinned) Object.assign(mesh, { boundingSphere, boundingBox });
+  return hit;
 }
 
 /** Rays hit what is hidden, too. */
