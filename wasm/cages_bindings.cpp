@@ -43,7 +43,7 @@ val ending(const Outcome& outcome) {
   return out;
 }
 
-const Outcome kOutOfMemory{Problem::badModel, "not enough memory for this target"};
+const Outcome kOutOfMemory{Problem::outOfMemory, "not enough memory for this model"};
 
 /// A model, copied from JavaScript.
 struct ModelArrays {
@@ -157,7 +157,8 @@ EMSCRIPTEN_BINDINGS(cagecast_cages) {
       .value("badTemplate", Problem::badTemplate)
       .value("badLandmarks", Problem::badLandmarks)
       .value("badOption", Problem::badOptions)
-      .value("aborted", Problem::cancelled);
+      .value("aborted", Problem::cancelled)
+      .value("outOfMemory", Problem::outOfMemory);
 
   value_array<Position>("Position")
       .element(emscripten::index<0>())

@@ -217,6 +217,20 @@ describe('makeCage', () => {
     }
   });
 
+  test('a model that does not fit is outOfMemory, and the next call works', async () => {
+    // 2.4 GB of zeros that are never touched: more than a WebAssembly memory can hold.
+    const huge = { positions: new Float32Array(6e8), indices: new Uint32Array([0, 1, 2]) };
+    const cage = await makeCage(head(), options);
+    for (const [fn, call] of [
+      ['makeCage', () => sync.makeCage(huge)],
+      ['fitCage', () => sync.fitCage(cage, huge)],
+      ['findLandmarks', () => sync.findLandmarks(huge)],
+      ['refineCage', () => sync.refineCage(cage, huge)],
+    ] as const)
+      assert.throws(call, { code: 'outOfMemory', message: `${fn}: not enough memory for this model` });
+    assert.deepEqual(sync.makeCage(head(), options), cage);
+  });
+
   test('terminate cancels waiting calls', async () => {
     const calls = [makeCage(head(), options), makeCage(head(), options)].map((call) => failure(() => call));
     terminate();

@@ -222,7 +222,8 @@ Outcome Fit::run(FittedCage& out) {
         return tell(kLandmarksEnd + static_cast<double>(share) * (kTightenStart - kLandmarksEnd), "hull");
       },
       hull);
-  if (!done || hull.empty()) return cancelled;
+  if (!done) return cancelled;
+  if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
   std::vector<Vec3> positions = start(cage, anchors);
   for (int pass = 0; pass < settings.passes; ++pass) {
     if (pass > 0) relax(cage, std::vector<Vec3>(positions.size(), Vec3{0, 0, 0}), positions);

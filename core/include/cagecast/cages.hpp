@@ -91,6 +91,7 @@ enum class Problem : std::uint8_t {
   badLandmarks,  ///< Contradicting, unknown, too few, or not on the model.
   badOptions,
   cancelled,
+  outOfMemory,  ///< Of the bindings alone: copies of the arguments do not fit. The library throws `std::bad_alloc`.
 };
 
 /// How a call ended. Unless `ok()`, nothing in its output is valid.

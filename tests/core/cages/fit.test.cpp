@@ -102,6 +102,27 @@ double diagonalOfView(const MeshView& view) { return diagonalOf(weldExactly(view
 
 }  // namespace
 
+TEST_CASE("a model that encloses no volume is told as such, by a fit as by making a cage", "[cages][fit]") {
+  // A strip between two layers of the grid, and a template as thin.
+  HeadMesh strip;
+  strip.positions = {-0.2f, -1, 0, 0.2f, -1, 0, 0.2f, 1.1f, 0, -0.2f, 1.1f, 0};
+  strip.indices = {0, 1, 2, 0, 2, 3};
+  Heads heads;
+  heads.cage = headMesh(kOwn, 24, 14, 0.001);
+  for (std::size_t i = 0; i < heads.cage.positions.size(); ++i)
+    heads.cage.positions[i] *= i % 3 == 0 ? 0.2f : i % 3 == 2 ? 0.001f : 1;
+  heads.landmarks = headLandmarks(kOwn);
+  std::erase_if(heads.landmarks, [](const Landmark& landmark) { return landmark.name == "occiput"; });
+  for (Landmark& landmark : heads.landmarks) {
+    landmark.position[0] *= 0.2f;
+    landmark.position[2] *= 0.001f;
+  }
+  const Template from{heads.cage.view(), heads.landmarks};
+  const Outcome outcome = fitCage(from, {strip.view()}, heads.options(), {}, heads.out);
+  CHECK(outcome.problem == Problem::badModel);
+  CHECK(outcome.message == "model is too thin for a hull: it encloses no volume");
+}
+
 TEST_CASE("a cage that is fitted to its own model stays where it is", "[cages][fit]") {
   Heads heads;
   heads.landmarks = headLandmarks(kOwn);
