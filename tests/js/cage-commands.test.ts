@@ -73,6 +73,26 @@ describe('cagecast make', () => {
     assert.ok(triangles > 200 && triangles < 400, `${triangles}`);
   });
 
+  test('--kind and --closing are those of the model', () => {
+    const { status, stderr } = cagecast(
+      ...['make', at('head.glb'), '--kind', 'prop', '--closing', '0.03', '--triangles', '300', '-o', at('kind.glb')],
+    );
+    assert.equal(status, 0, stderr);
+    assert.equal(unpackGlb(readFileSync(at('kind.glb'))).json.nodes![0]!.extras!['kind'], 'prop');
+    // Two balls are one model if the gap between them may be bridged.
+    const two = new GlbMaker();
+    for (const x of [0, 3.4]) two.node({ name: 'ball', mesh: two.mesh(ball([x, 0, 0], () => 1, 12, 24)) });
+    write('two.glb', two.finish());
+    const apart = cagecast('make', at('two.glb'), '-o', at('apart.glb'));
+    assert.equal(apart.status, 1, apart.stdout);
+    assert.match(
+      apart.stderr,
+      /two\.glb: is in pieces that lie too far apart for one cage: .*, or raise --closing of cagecast make\n$/,
+    );
+    const bridged = cagecast('make', at('two.glb'), '--closing', '0.15', '-o', at('bridged.glb'));
+    assert.equal(bridged.status, 0, bridged.stderr);
+  });
+
   test('exits 3 and still writes the cage if it is unfit', () => {
     // Everything is to be left out: nothing may be painted.
     const { status, stdout, stderr } = cagecast('make', at('plain.glb'), '--exclude', 'only', '-o', at('unfit.glb'));
@@ -97,6 +117,9 @@ describe('cagecast make', () => {
       [['make', at('head.glb')], 2, /required option '-o, --output <CAGE\.glb>' not specified/],
       [['make', at('head.glb'), '-o', at('cage.obj')], 2, /Its name must end in \.glb/],
       [['make', at('head.glb'), '-o', out, '--triangles', '7'], 2, /not a whole number within 50\.\.20000/],
+      [['make', at('head.glb'), '-o', out, '--closing', '0.3'], 2, /It is not a number within 0\.0005\.\.0\.2/],
+      [['make', at('head.glb'), '-o', out, '--closing', ''], 2, /It is not a number within 0\.0005\.\.0\.2/],
+      [['make', at('head.glb'), '-o', out, '--kind', 'hand'], 2, /Allowed choices are automatic, head, body, prop/],
       [['make', at('head.glb'), '-o', out, '--html', at('page.txt')], 2, /Its name must end in \.html/],
       [['make', at('head.glb'), '-o', at('head.glb')], 2, /head\.glb would overwrite another file of this command/],
       [['make', at('missing.glb'), '-o', out], 1, /missing\.glb: no such file/],

@@ -2,7 +2,7 @@ import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { cageGlb } from '../cages/glb.js';
 import { templateNames } from '../cages/template-names.js';
-import type { Cage, Fit, Landmarks } from '../cages/types.js';
+import type { Cage, Fit, Kind, Landmarks } from '../cages/types.js';
 import { templateOf } from '../gltf/cage-file.js';
 import { type ReadOptions, readBytes } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
@@ -32,6 +32,9 @@ export interface MakeCommand extends CageOutput {
   /** Patterns of names that replace the default ones; empty for these. */
   exclude: string[];
   triangles?: number | undefined;
+  kind: Kind;
+  /** A share of the model's diagonal. */
+  closing?: number | undefined;
 }
 
 /** The arguments of `cagecast fit`. */
@@ -65,10 +68,10 @@ const rules: Rules = { preset: 'default', single: {}, keep: [], exclude: [] };
  * @throws {InputError} that names the file at fault; then no file is written.
  */
 export async function makeCommand(command: MakeCommand, progress: Progress): Promise<CageVerdict> {
-  const { target, exclude, triangles, reading } = command;
+  const { target, exclude, triangles, kind, closing, reading } = command;
   const model = await readModel(target, reading, progress);
   await checkExclusions(exclude, model);
-  const options = { ...(exclude.length > 0 && { exclude }), ...(triangles !== undefined && { triangles }) };
+  const options = { ...(exclude.length > 0 && { exclude }), triangles, kind, closing };
   const cage = await makeCageFor(model, options, progress);
   return finish(command, model, { ...cage, landmarks: await landmarksOf(model, progress) }, progress);
 }

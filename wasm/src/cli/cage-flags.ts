@@ -1,5 +1,6 @@
 import { type Command, InvalidArgumentError, Option } from 'commander';
 import { type CageVerdict, type FitCommand, fitCommand, type MakeCommand, makeCommand } from './cage-command.js';
+import { numberWithin } from './options.js';
 import { addPrintFlags, type PrintFlags, print } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
@@ -7,6 +8,9 @@ import { endingIn, refuseOverwriting, unfit } from './usage.js';
 
 /** The fewest and the most triangles that a cage can be asked to have. */
 const triangleRange = [50, 20_000] as const;
+
+/** The least and the most that gaps can be closed by, as a share of the diagonal. */
+const closingRange = [0.0005, 0.2] as const;
 
 const output = (command: Command): Command =>
   addPrintFlags(addReadFlags(command))
@@ -49,6 +53,17 @@ export function addCageCommands(program: Command, progress: Progress): void {
     .description('make a cage for TARGET: a hull with holes over what is not painted, and UVs; print a verdict')
     .addOption(exclusion())
     .addOption(new Option('--triangles <N>', 'triangles of the cage, about (default: by kind)').argParser(triangles))
+    .addOption(
+      new Option('--kind <KIND>', 'what TARGET is, which decides how tight the cage is and where its seams are')
+        .choices(['automatic', 'head', 'body', 'prop'])
+        .default('automatic'),
+    )
+    .addOption(
+      new Option(
+        '--closing <SHARE>',
+        `bridge gaps narrower than twice this share of TARGET's diagonal; ${closingRange[0]} to ${closingRange[1]} (default: by kind)`,
+      ).argParser(numberWithin(...closingRange)),
+    )
     .addHelpText(
       'after',
       `

@@ -65,7 +65,7 @@ async function calling<Result>(
     return call((share, stage) => progress.share(`${what}: ${stage}`, share));
   } catch (error) {
     if (!(error instanceof CagecastError)) throw error;
-    const text = error.message.replace(/^\w+: /, '');
+    const text = error.message.replace(/^\w+: /, '').replace('the option closing', '--closing of cagecast make');
     const [head = '', name = ''] = /^(?:the )?(model|template|landmarks)(?:\.| (?=is|has)|: )/.exec(text) ?? [];
     const file = files[name];
     throw new InputError(file === undefined ? text : text.slice(head.length), { cause: error }).in(
