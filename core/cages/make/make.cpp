@@ -4,7 +4,6 @@
 
 #include "cagecast/cages.hpp"
 #include "charts/unwrap.hpp"
-#include "hull/hull.hpp"
 #include "landmarks/eyes.hpp"
 #include "landmarks/frame.hpp"
 #include "landmarks/parts.hpp"
@@ -13,6 +12,7 @@
 #include "make/hole_marker.hpp"
 #include "make/neck.hpp"
 #include "make/simplify.hpp"
+#include "make/wrap.hpp"
 #include "mesh/check_model.hpp"
 #include "mesh/kind.hpp"
 #include "mesh/part_names.hpp"
@@ -36,8 +36,6 @@ constexpr double kVisibleDepth = 1.4;
 constexpr double kDepthMargin = 0.4;
 /// How far a vertex of the cage may be moved outwards, in offsets.
 constexpr double kFarthestPush = 4;
-/// Of the volume of all pieces of the hull, the least that the largest one must have.
-constexpr double kLeastShare = 0.7;
 /// How often the cage is made, with wider holes where it covers too much.
 constexpr int kAttempts = 3;
 /// Points of the hull that the cage is moved past, about.
@@ -155,12 +153,8 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint;
   isMarked.resize(mesh.triangles.size(), false);
   TriangleMesh hull;
-  double share = 1;
-  if (!makeHull(mesh, settings.hull, part(0, kHullEnd), hull, &share)) return cancelled;
-  if (share < kLeastShare)
-    return {Problem::badModel,
-            "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing"};
-  if (hull.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
+  const WrapOptions wrapping{settings.hull, options.closing == 0};
+  if (Outcome outcome = wrap(mesh, isMarked, wrapping, part(0, kHullEnd), hull); !outcome.ok()) return outcome;
 
   const Surface surface(mesh);
   const MarkedMesh marked{&mesh, &surface, std::move(isMarked)};

@@ -245,6 +245,49 @@ TEST_CASE("a made cage knows the kind of its model", "[cages][make]") {
   CHECK(made(model.model(), options).kind == Kind::prop);
 }
 
+TEST_CASE("pieces that lie a little too far apart are bridged, all of them or none", "[cages][make]") {
+  // A figure of boxes, as robots are.
+  const auto robot = [](double gap) {
+    OwnedModel model;
+    const auto add = [&](const char* name, Vec3 low, Vec3 high) {
+      TriangleMesh box = sphere({0, 0, 0}, 1, 12);
+      for (Vec3& p : box.positions) {
+        const double most = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        const Vec3 q = 0.5 / most * p;
+        p = 0.5 * (low + high) + Vec3{q.x * (high.x - low.x), q.y * (high.y - low.y), q.z * (high.z - low.z)};
+      }
+      model.add(name, box);
+    };
+    add("torso", {-0.25, 0.8, -0.15}, {0.25, 1.4, 0.15});
+    add("head", {-0.15, 1.4 + gap, -0.15}, {0.15, 1.7 + gap, 0.15});
+    for (const double side : {-1.0, 1.0}) {
+      const auto between = [&](double from, double to, double low, double high, double deep) {
+        add("limb", {std::min(side * from, side * to), low, -deep}, {std::max(side * from, side * to), high, deep});
+      };
+      between(0.25 + gap, 0.4 + gap, 0.8, 1.4, 0.075);
+      between(0.05, 0.23, 0, 0.82, 0.1);
+    }
+    return model;
+  };
+  const OwnedModel near = robot(0.06);
+  const Cage cage = made(near.model());
+  CHECK(cage.kind == Kind::body);
+  const Surface surface(meshOf(cage));
+  const auto isInside = [&](const Vec3& p) { return surface.closest(p).height < 0; };
+  for (const Vec3& middle : {Vec3{0, 1.1, 0}, {0, 1.6, 0}, {0.4, 1.1, 0}, {-0.4, 1.1, 0}, {0.14, 0.4, 0}})
+    CHECK(isInside(middle));
+  const std::string apart =
+      "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing";
+  CHECK(faultOf(robot(0.2).model()) == apart);
+  MakeOptions options;
+  options.closing = 0.008f;
+  CHECK(faultOf(near.model(), options) == apart);
+  // What is not painted may be left out.
+  options.exclude = {"head", "limb"};
+  const Cage torso = made(near.model(), options);
+  CHECK(Surface(meshOf(torso)).closest(Vec3{0, 1.1, 0}).height < 0);
+}
+
 TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]") {
   OwnedModel model = head();
   MakeOptions options;

@@ -1,0 +1,62 @@
+#include "make/wrap.hpp"
+
+#include "landmarks/frame.hpp"
+#include "mesh/surface.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+/// Points on the model that are looked for in its hull.
+constexpr std::size_t kLookedFor = 4000;
+/// Of the outer area that is to be painted, a hull should not leave out more than this: a hand is 1 % of a figure, a
+/// head 8 %. Area tells it, for heads and limbs have little volume.
+constexpr double kLostAtBest = 0.03;
+/// More than this is no odd piece, such as what floats about a scan: no cage without it is of use.
+constexpr double kLostAtMost = 0.1;
+/// How much wider the gaps are that are bridged if too much is left out.
+constexpr double kWider = 2.5;
+
+/// The share of the outer unmarked area that is outside the hull.
+double lostShare(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const HullOptions& options,
+                 const TriangleMesh& hull) {
+  std::vector<bool> isPainted = isMarked;
+  isPainted.flip();
+  const std::vector<Vec3> points = samplePoints(subset(mesh, isPainted), kLookedFor);
+  const double rounding = diagonalOf(mesh) / options.voxels;
+  std::size_t lost = 0, kept = 0;
+  for (const SurfacePoint& point : Surface(hull).closest(points)) {
+    if (point.height > 0 && point.distance > rounding)
+      ++lost;
+    else if (point.distance < options.closing + options.offset + rounding)
+      ++kept;  // What is deeper is inside the model.
+  }
+  return lost == 0 ? 0 : static_cast<double>(lost) / static_cast<double>(lost + kept);
+}
+
+}  // namespace
+
+Outcome wrap(const TriangleMesh& mesh, const std::vector<bool>& isMarked, const WrapOptions& options,
+             const Progress& progress, TriangleMesh& out) {
+  Outcome cancelled{Problem::cancelled, "cancelled"};
+  double share = 1;  // Of the volume: less than 1 if there are pieces.
+  if (!makeHull(mesh, options.hull, progress, out, &share)) return cancelled;
+  if (out.empty()) return {Problem::badModel, "model is too thin for a hull: it encloses no volume"};
+  if (share == 1) return {};
+  const double lost = lostShare(mesh, isMarked, options.hull, out);
+  if (lost > kLostAtBest && options.mayWiden) {
+    HullOptions wider = options.hull;
+    wider.closing *= kWider;
+    TriangleMesh hull;
+    if (!makeHull(mesh, wider, progress, hull)) return cancelled;
+    if (!hull.empty() && lostShare(mesh, isMarked, wider, hull) <= kLostAtBest) {
+      out = std::move(hull);
+      return {};
+    }
+  }
+  if (lost <= kLostAtMost) return {};
+  return {Problem::badModel,
+          "model is in pieces that lie too far apart for one cage: make one for each, or raise the option closing"};
+}
+
+}  // namespace cagecast::cages
