@@ -10,11 +10,11 @@
 #include "make/cut_holes.hpp"
 #include "make/enclose.hpp"
 #include "make/hole_marker.hpp"
+#include "make/kind.hpp"
 #include "make/neck.hpp"
 #include "make/simplify.hpp"
 #include "make/wrap.hpp"
 #include "mesh/check_model.hpp"
-#include "mesh/kind.hpp"
 #include "mesh/part_names.hpp"
 #include "mesh/surface.hpp"
 
@@ -96,14 +96,26 @@ std::vector<bool> marksOf(const Model& model, const MakeOptions& options,
 
 /// Marks the eyes of a head or a figure by their shape: two loose pieces.
 /// @param[in,out] isMarked  Per triangle of the model without those that have no area.
-void markLooseEyes(const Model& model, std::vector<bool>& isMarked) {
+/// @return whether there are any.
+bool markLooseEyes(const Model& model, std::vector<bool>& isMarked) {
   const Figure figure = readFigure(model);
+  if (figure.componentCount < 3) return false;  // Two eyes, and what they are eyes of.
   for (const MirrorPlane& plane : findMirrorPlanes(figure.mesh)) {
     const std::optional<Eyes> eyes = findLooseEyes(figure, plane);
     if (!eyes || eyes->triangles.size() != isMarked.size()) continue;
     isMarked = eyes->triangles;
-    return;
+    return true;
   }
+  return false;
+}
+
+/// Marks eyes where neither names nor marks tell what must not be painted. What has eyes is a head, if it may be one.
+void lookForEyes(const Model& model, const MakeOptions& options, Kind& kind, std::vector<bool>& isMarked) {
+  if (options.exclude.empty() || std::find(isMarked.begin(), isMarked.end(), true) != isMarked.end()) return;
+  if (kind != Kind::prop)
+    markLooseEyes(model, isMarked);
+  else if (options.kind == Kind::automatic && isCompactProp(model) && markLooseEyes(model, isMarked))
+    kind = Kind::head;
 }
 
 /// Points below the hull, but in front of the model, which the cage must not fall behind.
@@ -142,13 +154,12 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   };
   std::vector<std::uint32_t> triangleOf;
   TriangleMesh mesh = weldExactly(model.mesh, nullptr, &triangleOf);
-  const MakeSettings settings = settingsFor(model, options, diagonalOf(mesh));
+  MakeSettings settings = settingsFor(model, options, diagonalOf(mesh));
   const double offset = settings.hull.offset;
+  std::vector<bool> isMarked = marksOf(model, options, triangleOf);
+  lookForEyes(model, options, settings.kind, isMarked);
   std::vector<Neck> necks;
   if (settings.kind == Kind::head) necks = extendNecks(kNeckExtension * offset, mesh);
-  std::vector<bool> isMarked = marksOf(model, options, triangleOf);
-  const bool hasFace = settings.kind != Kind::prop && !options.exclude.empty();
-  if (hasFace && std::find(isMarked.begin(), isMarked.end(), true) == isMarked.end()) markLooseEyes(model, isMarked);
   Outcome nothingToPaint{Problem::badModel, "model has nothing to paint: all that is seen of it is excluded"};
   if (std::find(isMarked.begin(), isMarked.end(), false) == isMarked.end()) return nothingToPaint;
   isMarked.resize(mesh.triangles.size(), false);
@@ -177,7 +188,10 @@ Outcome makeCage(const Model& model, const MakeOptions& options, const Progress&
   }
   Layout layout;
   UnwrapOptions unwrapOptions;
+  const Stance stance = stanceOf(model);
   unwrapOptions.kind = settings.kind;
+  unwrapOptions.up = stance.up;
+  unwrapOptions.front = stance.front;
   if (!unwrap(cage, unwrapOptions, part(kEncloseEnd, 1), layout)) return cancelled;
   if (progress && !part(1, 1)(1, "unwrap")) return cancelled;
   store(layout, settings.kind, out);

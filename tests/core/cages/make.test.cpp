@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "cagecast/cages.hpp"
+#include "make/kind.hpp"
 #include "make/simplify.hpp"
-#include "mesh/kind.hpp"
 #include "mesh/surface.hpp"
 #include "shapes.hpp"
 
@@ -310,6 +310,61 @@ TEST_CASE("what no cage can be made for is said in a sentence", "[cages][make]")
   options = {};
   options.triangles = 3;
   CHECK(faultOf(one.model(), options) == "options.triangles = 3 is not within 50..20000");
+}
+
+TEST_CASE("a thing as compact as a head is one if it has eyes", "[cages][make]") {
+  const auto bust = [](double eyesAt) {
+    OwnedModel out;
+    out.add("mesh", sphere({0, 0, 0}, 1, 24));
+    for (const double x : {-0.35, 0.35}) out.add("mesh", sphere({x, 0.2, eyesAt}, 0.2, 12));
+    return out;
+  };
+  const OwnedModel closed = bust(0.8);
+  CHECK(kindOf(closed.model()) == Kind::prop);
+  const Cage cage = made(closed.model());
+  CHECK(cage.kind == Kind::head);
+  const TriangleMesh mesh = meshOf(cage);
+  CHECK(boundaryLoops(mesh).size() == 2);
+  for (const double x : {-0.35, 0.35}) CHECK(hasHoleAt(mesh, {x, 0.2, 1}, 0.2));
+  // Without eyes, or where names or a person say what is what, it is what it was.
+  CHECK(made(bust(0).model()).kind == Kind::prop);
+  MakeOptions options;
+  options.exclude = {};
+  CHECK(made(closed.model(), options).kind == Kind::prop);
+  options.kind = Kind::prop;
+  options.exclude = defaultExclusions();
+  CHECK(boundaryLoops(meshOf(made(closed.model(), options))).empty());
+}
+
+TEST_CASE("bones say what is up", "[cages][make]") {
+  OwnedModel figure;
+  TriangleMesh person = sphere({0, 0, 0}, 1);
+  for (Vec3& p : person.positions) p = {0.4 * p.x, p.y, 0.15 * p.z};
+  figure.add("figure", person);
+  Model rigged = figure.model();
+  const auto add = [&](const char* name, float x, float y) { rigged.joints.push_back({name, {x, y, 0}, -1}); };
+  add("hips", 0, 0);
+  add("neck", 0, 0.7f);
+  add("head", 0, 0.8f);
+  for (const float side : {-1.0f, 1.0f}) {
+    add(side < 0 ? "rightUpperLeg" : "leftUpperLeg", 0.1f * side, 0);
+    add(side < 0 ? "rightLowerLeg" : "leftLowerLeg", 0.1f * side, -0.4f);
+    add(side < 0 ? "rightFoot" : "leftFoot", 0.1f * side, -0.9f);
+  }
+  CHECK(kindOf(rigged) == Kind::body);
+  // The same with z up, as Blender has it, and with x up.
+  for (int turn = 0; turn < 2; ++turn) {
+    for (std::size_t i = 0; i < figure.positions.size(); i += 3)
+      std::rotate(&figure.positions[i], &figure.positions[i + 2], &figure.positions[i] + 3);
+    for (Joint& joint : rigged.joints)
+      std::rotate(joint.position.begin(), joint.position.begin() + 2, joint.position.end());
+    rigged.mesh.positions = figure.positions;
+    CHECK(kindOf(rigged) == Kind::body);
+  }
+  // On all fours, the head is not where the feet are not.
+  for (Joint& joint : rigged.joints)
+    if (joint.name.ends_with("Foot")) joint.position = {0, 0.3f, 0};
+  CHECK(kindOf(rigged) != Kind::body);
 }
 
 TEST_CASE("the kind of a model is seen from its proportions, parts and joints", "[cages][make]") {

@@ -1,0 +1,116 @@
+#include "make/kind.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "landmarks/rig.hpp"
+#include "mesh/bounds.hpp"
+#include "mesh/part_names.hpp"
+
+namespace cagecast::cages {
+
+namespace {
+
+bool hasParts(const Model& model, std::initializer_list<std::string_view> patterns) {
+  return std::any_of(model.parts.begin(), model.parts.end(), [&](const std::string& name) {
+    return std::any_of(patterns.begin(), patterns.end(),
+                       [&](std::string_view pattern) { return matchesName(name, pattern); });
+  });
+}
+
+/// Whether a leg's joint is inside the box: the legs of a rig may belong to a body that is not there.
+bool hasLegs(const Model& model, const Bounds& box) {
+  const Vec3 margin = 0.05 * box.size();
+  const Vec3 low = box.low - margin, high = box.high + margin;
+  return std::any_of(model.joints.begin(), model.joints.end(), [&](const Joint& joint) {
+    const Vec3 p = Vec3::from(joint.position.data());
+    const bool isInside =
+        p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+    if (!isInside) return false;
+    for (const std::string_view pattern : {"*leg*", "*thigh*", "*foot*", "*calf*", "*shin*"})
+      if (matchesName(joint.name, pattern)) return true;
+    return false;
+  });
+}
+
+/// Whether an open border as wide as a neck is at the bottom of a mesh.
+bool isOpenBelow(const MeshView& mesh, const Bounds& box) {
+  const TriangleMesh welded = weldExactly(mesh);
+  const Vec3 size = box.size();
+  const double across = std::min(size.x, size.z);
+  for (const auto& loop : boundaryLoops(welded)) {
+    const Bounds border = boundsOf(welded, loop);
+    const bool isWide = border.size().x > 0.3 * across && border.size().z > 0.3 * across;
+    if (isWide && border.high.y < box.low.y + 0.35 * size.y) return true;
+  }
+  return false;
+}
+
+/// The axis of the file that a direction is closest to.
+Vec3 axisOf(const Vec3& direction) {
+  const double x = std::abs(direction.x), y = std::abs(direction.y), z = std::abs(direction.z);
+  if (y >= x && y >= z) return {0, std::copysign(1.0, direction.y), 0};
+  return x >= z ? Vec3{std::copysign(1.0, direction.x), 0, 0} : Vec3{0, 0, std::copysign(1.0, direction.z)};
+}
+
+/// What a model looks like as far as its kind is concerned.
+struct Look {
+  double width = 0, height = 0, depth = 0;
+  double slender = 0;  ///< Height by depth. Chibi figures are 2.2 times as tall as deep; heads with a neck 1.8 times.
+  bool isCompact = false, isCar = false, isLegged = false;
+};
+
+Look lookOf(const Model& model) {
+  const Bounds box = boundsOf(model.mesh);
+  const auto [up, front] = stanceOf(model);
+  const Vec3 size = box.size(), side = cross(up, front);
+  const auto along = [&](const Vec3& axis) { return std::abs(dot(axis, size)); };
+  Look look{along(side), along(up), along(front)};
+  look.slender = look.height / std::max(look.depth, 1e-9 * look.height);
+  look.isCompact =
+      look.slender > 0.6 && look.slender < 2.2 && look.width < 2.2 * look.height && look.width > 0.3 * look.height;
+  look.isCar = hasParts(model, {"*wheel*", "*tyre*", "*tire*", "window*", "windscreen*", "windshield*"});
+  look.isLegged = hasLegs(model, box);
+  return look;
+}
+
+}  // namespace
+
+Stance stanceOf(const Model& model) {
+  const Rig rig = recogniseRig(model.joints);
+  const auto at = [&](const char* name) -> const Landmark* { return rig.find(name); };
+  const Landmark *hips = at("joint_hips"), *head = at("joint_head"), *neck = at("joint_neck");
+  const Landmark *left = at("joint_ankle_left"), *right = at("joint_ankle_right");
+  if (head == nullptr) head = neck;
+  if (hips == nullptr || head == nullptr || left == nullptr || right == nullptr) return {};
+  const Vec3 trunk = unit(toVec3(head->position) - toVec3(hips->position));
+  const Vec3 feet = 0.5 * (toVec3(left->position) + toVec3(right->position));
+  const Vec3 legs = unit(toVec3(hips->position) - feet);
+  constexpr double kStraight = 0.8;  // The cosine of 37°: who sits or is on all fours does not stand.
+  if (dot(trunk, legs) < kStraight) return {};
+  Stance stance;
+  stance.up = axisOf(trunk);
+  if (stance.up.y != 0) return {};
+  const Vec3 apart = toVec3(left->position) - toVec3(right->position);
+  const Vec3 side = axisOf(apart - dot(apart, stance.up) * stance.up);
+  stance.front = cross(side, stance.up);
+  return length(stance.front) > 0.5 ? stance : Stance{};
+}
+
+Kind kindOf(const Model& model) {
+  const Look look = lookOf(model);
+  if (look.isLegged) return look.slender > 1.5 ? Kind::body : Kind::prop;  // On all fours, seams are those of props.
+  const bool hasFace = hasParts(model, {"eye", "eyes", "*eyeball*", "teeth", "*tongue*", "*lash*", "*lashes"});
+  if (look.isCompact && !look.isCar && (hasFace || isOpenBelow(model.mesh, boundsOf(model.mesh)))) return Kind::head;
+  // Arms reach far to the sides in a T-pose, and less in an A-pose.
+  const double span = look.width / look.height;
+  if (look.slender > 2.8 && span > 0.2 && !look.isCar && (hasFace || span > 0.3)) return Kind::body;
+  return hasFace && !look.isCar && look.depth < 2.5 * look.height ? Kind::head : Kind::prop;
+}
+
+bool isCompactProp(const Model& model) {
+  const Look look = lookOf(model);
+  return look.isCompact && !look.isCar && !look.isLegged && kindOf(model) == Kind::prop;
+}
+
+}  // namespace cagecast::cages
