@@ -4,8 +4,9 @@ import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
 import { head, middleOf, ready, worked } from '../support/cages';
+import { GlbMaker, tetrahedron } from '../support/glb';
 import { validModel } from '../support/saved';
-import { drop, Site, shownParts } from '../support/site';
+import { drop, glb, Site, shownError, shownParts } from '../support/site';
 
 let site: Site;
 before(async () => void (site = await Site.open()));
@@ -47,6 +48,36 @@ test('a cage is made with the chosen number of triangles and parts, again when t
   assert.ok(first < 300, `${first} triangles`);
   const now = await cover();
   assert.ok(before < 50 && now > 90, `the eye was covered to ${before} %, and is to ${now} %`);
+  assert.deepEqual(complaints, []);
+});
+
+test('what the page says of a made cage that is poor, or that cannot be made, can be done there', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await page.getByTestId('make-options').locator('summary').click();
+  // So close and so coarse that the model is outside.
+  await page.locator('#make-offset').fill('1');
+  await page.locator('#make-triangles').fill('1');
+  await page.getByTestId('make-cage').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  await page.locator('#stage-verdict[data-verdict=unfit]').waitFor();
+  assert.ok((await page.locator('#fit-findings li').count()) > 0);
+  assert.equal(await page.getByRole('button', { name: /move the cage/i }).count(), 0, 'it is where it belongs');
+  assert.ok(await page.getByTestId('stage-remedy').isHidden(), 'the same cage again is no remedy');
+
+  // What would have to be typed elsewhere is told in words of the page.
+  const maker = new GlbMaker();
+  for (const x of [0, 9]) maker.node({ name: 'rock', translation: [x, 0, 0], mesh: maker.mesh(tetrahedron()) });
+  await drop(page, [glb('rocks.glb', maker.finish())]);
+  await ready(page);
+  await page.getByTestId('make-cage').click();
+  await page.getByTestId('error').waitFor();
+  assert.match(
+    await shownError(page),
+    /rocks\.glb: model is in pieces that lie too far apart for one cage: open each as a model of its own, or switch off/,
+  );
   assert.deepEqual(complaints, []);
 });
 

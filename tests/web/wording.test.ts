@@ -15,6 +15,10 @@ test('findings are told in the words of the page: parts, no flags, no functions'
       'less than the threshold of 0.5, but a lock excludes it',
       'less than the threshold of 0.5, but you chose to exclude it',
     ],
+    [
+      'is in pieces that lie too far apart for one cage: make one for each, or raise the option closing',
+      'is in pieces that lie too far apart for one cage: open each as a model of its own, or switch off those that are not painted, in the options of Make a cage',
+    ],
     ['Move it by about (0, 1), or call refineCage of cagecast/cages.', 'Move it by about (0, 1).'],
   ] as const)
     assert.equal(forPeople(text), told);

@@ -103,7 +103,7 @@ export class FitPanel {
     list.append(...findings.map((finding) => this.#item(finding, inspection)));
     const share = `${Math.round(100 * paintableShare(segments))} % of the visible surface can be painted.`;
     const remedies = findings.flatMap((finding) => this.#remedyFor(finding, inspection) ?? []);
-    const making = verdict === 'unfit' ? [this.#making] : [];
+    const making = verdict === 'unfit' && !this.#maker.isFresh ? [this.#making] : [];
     // The cage of another model is not meant for this one.
     if (this.#maker.isOthers) remedies.unshift(...making);
     const content = [text('p', `${share} ${kVerdicts[verdict]}`), ...(findings.length > 0 ? [list] : [])];
@@ -122,7 +122,7 @@ export class FitPanel {
   /** What can be done about a finding with one click. */
   #remedyFor({ code }: Finding, { inward }: Inspection): Remedy | undefined {
     // A cage that was moved in vain would be moved in vain again.
-    if (kMovable.includes(code) && !this.#maker.refusedToMove)
+    if (kMovable.includes(code) && !this.#maker.refusedToMove && !this.#maker.isFresh)
       return { title: 'Move the cage', run: () => this.#maker.move() };
     return code === 'normalsInward'
       ? { title: 'Turn its triangles', run: () => this.#maker.flip(inward.triangles) }

@@ -6,6 +6,10 @@ export function forPeople(text: string): string {
       /, or call refineCage of cagecast\/cages|; if it is scaled, refineCage of cagecast\/cages scales it back/g,
       '',
     )
+    .replace(
+      /: make one for each, or raise the option closing/,
+      ': open each as a model of its own, or switch off those that are not painted, in the options of Make a cage',
+    )
     .replace(/\bsegment(s?)\b/g, 'part$1')
     .replace(/\ba lock excludes\b/g, 'you chose to exclude')
     .replace(/\block some of them\b/, 'keep or exclude some of them')

@@ -2,6 +2,7 @@ import type { Cage, CageModel, Fit, Landmarks, MakeOptions, TemplateName } from 
 import { cageModel } from 'cagecast/three';
 import { Emitter } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
+import { forPeople } from '../panels/wording';
 import { download } from '../platform/download';
 import { element } from '../platform/page';
 import { likelyTemplate } from './likely-template';
@@ -33,6 +34,9 @@ export const kLeastLandmarks = 4;
 
 /** The files of cages that were made here: for which target, and from which fit. */
 const made = new WeakMap<File, { target: File; fitting: Fitting | undefined }>();
+
+/** Those of them that were made from the model, and not altered since: where they are is where they belong. */
+const fresh = new WeakSet<File>();
 
 /** A landmark's name for people: "ear_lobe_left" is the left ear lobe. */
 export const readable = (landmark: string): string =>
@@ -106,6 +110,11 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
     return own !== undefined && !own.fitting && !this.isOthers;
   }
 
+  /** Whether the current cage is as it was made for the current target: neither moving it nor making it again changes it. */
+  get isFresh(): boolean {
+    return this.isMade && fresh.has(this.#session.shown!.cage.files[0]!);
+  }
+
   /** Makes a cage for the current target. */
   make(): Promise<void> {
     return this.#run('Making a cage', this.#make);
@@ -171,16 +180,17 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const result = await work.call(this, { engine, model: cageModel(read.loaded), old, options });
       if (abort.signal.aborted) return;
       if (!result) return done();
-      const { cage, note, fitting } = result;
+      const { cage, note, fitting, isNew } = result;
       const name = cage.uvs === old.uvs ? current.name : target.name;
       const file = new File([engine.cageGlb(cage)], name.replace(/(-cage)?(\.\w+)?$/, '-cage.glb'));
       made.set(file, { target: target.files[0]!, fitting });
+      if (isNew) fresh.add(file);
       this.#note.textContent = note;
       done();
       this.#session.want({ cage: loadModel(file, this.#renderer) });
     } catch (error) {
       if (abort.signal.aborted) return;
-      const message = (error as Error).message.replace(/^\w+: /, '');
+      const message = forPeople((error as Error).message.replace(/^\w+: /, ''));
       this.#session.fail(new Error(`${target.name}: ${message}`, { cause: error }));
     }
   }
@@ -196,7 +206,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       paint.file && !paint.sample
         ? 'Save it with the paint that you draw for it.'
         : 'The UV checker shows where paint lands; it goes away with the first paint.';
-    return { cage, note: `A cage of ${cage.indices.length / 3} triangles was made. ${next}` };
+    return { cage, note: `A cage of ${cage.indices.length / 3} triangles was made. ${next}`, isNew: true };
   }
 
   async #move({ engine, model, old, options }: Context): Promise<Result> {
@@ -210,7 +220,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       this.#unmoved.add(current);
       this.#session.setRules({}); // its remedies are no longer offered
       throw new Error(
-        `the cage ${current.name} cannot be moved into place: it was made for another model. Make a cage`,
+        `the cage ${current.name} cannot be moved into place: no place was found where it fits better. Make a cage`,
       );
     }
     return { cage: { ...cage, uvs: old.uvs }, note: 'The cage was moved into place. Save it if it is right.' };
@@ -283,4 +293,6 @@ interface Result {
   note: string;
   /** If it is a fit. */
   fitting?: Fitting;
+  /** Whether it was made from the model alone. */
+  isNew?: boolean;
 }
