@@ -322,6 +322,9 @@ test('what cannot be baked is one clear error', () => {
       /triangle 0 of "target": a triangle extends over more than 64 textures/,
     ],
     [() => cageTexture({ indices: mesh.indices }, result, paint), /^cageTexture: target has no UVs/],
+    [() => cageTexture(null as unknown as typeof mesh, result, paint), /^cageTexture: target is null/],
+    [() => cageTexture({} as typeof mesh, result, paint), /^cageTexture: target\.indices is undefined/],
+    [() => cageTexture(mesh, result, paint, null as unknown as object), /^cageTexture: options is null/],
   ];
   for (const size of [0, 1e5, NaN, 2.5, -1])
     cases.push([

@@ -124,6 +124,13 @@ test('a manifest has a job per line, with options of its own; a wrong line is a 
 
 test('a batch that cannot be right does not begin', () => {
   const cage = ['--cage', at('cage.glb')];
+  // The second target's buffer is named as what the first job would write beside its output.
+  mkdirSync(at('beside'));
+  const { json, bin } = unpackGlb(target);
+  json.buffers![0]!.uri = '0.bin';
+  writeFileSync(at('beside/second.gltf'), JSON.stringify(json));
+  writeFileSync(at('beside/0.bin'), bin);
+  writeFileSync(at('beside/0.glb'), target);
   const cases: [string[], number, RegExp][] = [
     [['batch'], 2, /give either TARGETS or --manifest/],
     [['batch', at('in/*.glb')], 2, /TARGETS need --cage/],
@@ -131,6 +138,11 @@ test('a batch that cannot be right does not begin', () => {
     [['batch', at('in/*.gltf'), ...cage], 1, /in\/\*\.gltf: no file has such a name/],
     [['batch', at('in/*.glb'), ...cage, '-o', at('same.glb')], 1, /same\.glb: is written for .* and .*; use \{name\}/],
     [['batch', at('in/*.glb'), ...cage, '-o', at('in/{name}.glb')], 1, /: is read and written by this batch/],
+    [
+      ['batch', at('beside/0.glb'), at('beside/second.gltf'), ...cage, '-o', at('beside/{name}.gltf')],
+      1,
+      /0\.gltf: is written beside a file of its name that this batch reads/,
+    ],
   ];
   for (const [args, code, message] of cases) {
     const { status, stdout, stderr } = cagecast(...args);

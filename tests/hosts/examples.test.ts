@@ -240,6 +240,29 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.equal(await page.evaluate('steps'), 0);
   });
 
+  test('tells of an opacity that is no number until it is one', async () => {
+    const before = await picture();
+    const error = () => page.evaluate<string>('part(".error").hidden ? "" : part(".error").textContent');
+    assert.equal(
+      await page.evaluate('viewer.setAttribute("opacity", "abc"); next()'),
+      'error cagecast-viewer: opacity is "abc", not a number',
+    );
+    assert.equal(await error(), 'cagecast-viewer: opacity is "abc", not a number');
+    await page.evaluate('viewer.setAttribute("opacity", "1")');
+    assert.equal(await error(), '');
+    assert.deepEqual(await picture(), before);
+    await page.evaluate('viewer.removeAttribute("opacity")');
+  });
+
+  test('exports what is shown, not what cannot be loaded', async () => {
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    const exported = () => bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))');
+    const before = await exported();
+    assert.match(await page.evaluate('viewer.setAttribute("target", "none.glb"); next()'), /^error .*none\.glb/);
+    assert.deepEqual(await exported(), before);
+    assert.equal(await page.evaluate(`viewer.setAttribute("target", ${JSON.stringify(target)}); next()`), 'load');
+  });
+
   test('does not show a paint that comes after a later one', async () => {
     const before = await picture();
     const told = await page.evaluate<string[]>(

@@ -1377,6 +1377,28 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.match(clash.stderr, /head 50%\.bin: would be overwritten, but is read by this command/);
   });
 
+  test('files beside the cage and masks are not overwritten either, nor one output by another', () => {
+    const { json, bin } = unpackGlb(glbOf(scene.cage));
+    json.buffers![0]!.uri = 'painted.bin';
+    writeFileSync(at('painted.bin'), bin);
+    writeFileSync(at('around.gltf'), JSON.stringify(json));
+    const refused = (...args: string[]) => {
+      const { status, stderr } = cagecast('transfer', at('target.glb'), ...args);
+      assert.equal(status, 1, stderr);
+      return stderr;
+    };
+    assert.match(
+      refused('--cage', at('around.gltf'), '-o', at('painted.gltf')),
+      /painted\.bin: would be overwritten, but is read by this command/,
+    );
+    assert.deepEqual(readFileSync(at('painted.bin')), Buffer.from(bin));
+    assert.match(
+      refused('--cage', at('cage.glb'), '-o', at('twice.gltf'), '--report', at('twice.bin')),
+      /twice\.bin: would be written twice by this command/,
+    );
+    assert.ok(!existsSync(at('twice.gltf')) && !existsSync(at('twice.bin')));
+  });
+
   test('an unknown extension of materials, though required, is accepted', () => {
     const path = made('required', (maker) => {
       maker.node({ mesh: maker.mesh(scene.target) });

@@ -144,10 +144,10 @@ describe('a cage out of place', () => {
       [15, 'usable'],
       [60, 'unfit'],
     ] as const) {
-      const { findings, ...found } = look(half);
-      assert.equal(found.verdict, verdict, JSON.stringify(findings));
-      assert.ok(!codes({ findings }).includes('cageElsewhere'));
-      const { sentence, places } = findings.find(({ code }) => code === 'targetTooLarge')!;
+      const inspection = look(half);
+      assert.equal(inspection.verdict, verdict, JSON.stringify(inspection.findings));
+      assert.ok(!codes(inspection).includes('cageElsewhere'));
+      const { sentence, places } = find(inspection, 'targetTooLarge');
       assert.match(sentence, /^The target is \d+ times as large as what is painted of it; "Ground" is farthest away$/);
       assert.deepEqual(places, [{ segment: 3, group: 7, part: 'Ground' }]);
     }

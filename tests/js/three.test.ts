@@ -750,6 +750,14 @@ describe('saved transfers', () => {
     assert.equal(keyOf(scene.target, scene.cage, { texture, opacity: 0.5 }), keys[0]);
   });
 
+  test('bytes in a Buffer of Node are read as well, and copied', () => {
+    const bytes = serialize(applyTransfer(meshOf(scene.target), meshOf(scene.cage)));
+    const large = Buffer.concat([Buffer.alloc(5), bytes]);
+    const read = deserialize(large.subarray(5));
+    large.fill(255);
+    assert.deepEqual(read, deserialize(bytes));
+  });
+
   test('of another target, damaged ones and others are errors', () => {
     const bytes = serialize(applyTransfer(meshOf(scene.target), meshOf(scene.cage)));
     const other = meshOf({ ...scene.target, positions: scene.target.positions.map((x) => 0.999 * x) });

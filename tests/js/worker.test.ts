@@ -91,6 +91,17 @@ describe('the worker', () => {
     assert.ok(error instanceof CagecastError, String(error));
   });
 
+  test('many calls that cannot be sent are refused one after the other, and the next one works', async () => {
+    const unsendable = { ...scene.target, extra: () => 0 } as unknown as typeof scene.target;
+    const [first, ...others] = [scene.target, ...Array<typeof unsendable>(6000).fill(unsendable)].map((target) =>
+      transfer(scene.cage, target),
+    );
+    assert.ok((await first)!.zones.length > 0);
+    for (const error of await Promise.all(others.map(failure)))
+      assert.ok(error instanceof CagecastError && error.code === 'badArgument', String(error));
+    assert.ok((await transfer(scene.cage, scene.target)).zones.length > 0);
+  });
+
   test('errors keep their class, code and message', async () => {
     const error = await failure(transfer(scene.cage, { ...scene.target, indices: new Uint32Array([0, 1, 99999]) }));
     assert.ok(error instanceof CagecastError);

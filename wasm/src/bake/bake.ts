@@ -57,8 +57,8 @@ export function bake(target: BakeTarget, result: BakeResult, paint: Image, optio
  * const moved = bake(other, transfer(cage, other), cageTexture(head, transfer(cage, head), headTexture));
  */
 export function cageTexture(target: BakeTarget, result: BakeResult, atlas: Image, options: BakeOptions = {}): Baked {
-  const parts = partsOf('cageTexture', target, options);
   const there = layoutsOf('cageTexture', target, result, options);
+  const parts = partsOf('cageTexture', target, options);
   const image = paintedOnly('cageTexture', there, atlas, options);
   const layouts = there.map((layout, p) => {
     const order = [...layout.painted.keys()].filter((t) => layout.painted[t] === 1);

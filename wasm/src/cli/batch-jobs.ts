@@ -3,13 +3,12 @@ import { existsSync, statSync } from 'node:fs';
 import { basename, dirname, extname, resolve } from 'node:path';
 import { readBytes, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
-import { filesBeside } from './beside.js';
+import { filesBeside, filesReadBy } from './beside.js';
 import type { Settled } from './config/config-flags.js';
 import { isObject, parseObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
 import { areBounds, boundsText } from './paint/cage-area.js';
-import { tilePath } from './paint/read-paint.js';
 import { autoCage } from './run.js';
 import type { Region, TransferCommand } from './transfer-command.js';
 
@@ -163,10 +162,7 @@ function jobOf({ settled: _, ...given }: JobDefaults & JobNames & Settled): Job 
       found === '{dir}' ? dirname(target) : basename(target, extname(target)),
     );
   const command: TransferCommand = { ...given, cage, output: fill(output), report: fill(report) };
-  const read = readBy(command)
-    .flatMap((path) => filesOf(tilePath(path, '*')))
-    .flatMap((path) => [path, ...filesBeside(path, given.reading)])
-    .map(sizeAndTime);
+  const read = filesReadBy(command).map(sizeAndTime);
   const key = createHash('sha256')
     .update(JSON.stringify([command, read]))
     .digest('hex')
@@ -184,21 +180,14 @@ function sizeAndTime(path: string): (number | undefined)[] {
   }
 }
 
-/** The files that a job reads, as they are named. */
-const readBy = ({ target, cage, referenceCage, texture, rules, regions = [] }: TransferCommand): string[] =>
-  [
-    target,
-    cage,
-    referenceCage,
-    texture,
-    rules.masks?.never,
-    rules.masks?.always,
-    ...regions.flatMap((region) => [region.cage, region.texture]),
-  ].filter((path) => path !== undefined);
-
 /** @throws {InputError} if two jobs write the same file, or one writes what another reads. */
 function refuseClashes(jobs: Job[]): Job[] {
-  const read = new Set(jobs.flatMap(({ command }) => readBy(command).map((path) => placeOf(path))));
+  const read = new Set(jobs.flatMap(({ command }) => filesReadBy(command).map((path) => placeOf(path))));
+  // What a `.gltf` has beside it is named after it.
+  const kBeside = /(\.bin|-image\d+\.\w+)$/;
+  const readBeside = new Set(
+    [...read].filter((place) => kBeside.test(place)).map((place) => place.replace(kBeside, '.gltf')),
+  );
   const written = new Map<string, string>();
   for (const { command, error } of jobs) {
     for (const path of error === undefined ? [command.output, command.report] : []) {
@@ -207,6 +196,8 @@ function refuseClashes(jobs: Job[]): Job[] {
       const other = written.get(place);
       if (other !== undefined)
         throw new InputError(`is written for ${other} and ${command.target}; use {name} or {dir} in its path`).in(path);
+      if (path === command.output && readBeside.has(place))
+        throw new InputError('is written beside a file of its name that this batch reads').in(path);
       if (read.has(place)) throw new InputError('is read and written by this batch').in(path);
       written.set(place, command.target);
     }

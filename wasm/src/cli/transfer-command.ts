@@ -8,7 +8,7 @@ import { type Added, writeTransfer } from '../gltf/write.js';
 import type { CutTarget } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import type { Finding, Verdict } from '../inspect/index.js';
-import { filesNamedIn } from './beside.js';
+import { filesNamedIn, filesReadBy } from './beside.js';
 import { inspectionReport } from './inspect-command.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { placeOf as fileOf, writeFiles } from './output.js';
@@ -73,10 +73,10 @@ export async function transferCommand(
   if (output !== undefined) {
     const { data, beside } = last.written!;
     const others = beside.map(({ name, data }) => ({ path: join(dirname(output), name), data }));
-    refuseInputs(command, first.done, others);
     files.push({ path: output, data }, ...others);
   }
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
+  refuseOverwriting(command, first.done, files);
   writeFiles(files);
   return { text: summary(command, report), report, done: first.done };
 }
@@ -158,17 +158,20 @@ function compressionOf({ targetFile: { json } }: Run): Form | undefined {
 const finalForm = ({ compress }: TransferCommand, first: Run): Form =>
   compress === 'keep' ? (compressionOf(first) ?? 'keep') : compress;
 
-/** @throws {InputError} if a file beside the output would overwrite one that is read. */
-function refuseInputs(
-  { target, cage, texture }: TransferCommand,
-  { targetFile }: Run,
-  files: { path: string }[],
-): void {
-  const beside = filesNamedIn(targetFile.json, dirname(target));
-  const read = [target, cage, ...(texture === undefined ? [] : [texture]), ...beside].map((path) => fileOf(path));
-  const clash = files.find(({ path }) => read.includes(fileOf(path)));
-  if (clash)
-    throw new InputError('would be overwritten, but is read by this command; choose another output').in(clash.path);
+/** @throws {InputError} if a file would overwrite one that is read, or another one that is written. */
+function refuseOverwriting(command: TransferCommand, { targetFile, cageFile }: Run, files: { path: string }[]): void {
+  const beside = [
+    ...filesNamedIn(targetFile.json, dirname(command.target)),
+    ...filesNamedIn(cageFile.json, dirname(command.cage)),
+  ];
+  const read = new Set([...filesReadBy(command), ...beside].map((path) => fileOf(path)));
+  const written = files.map(({ path }) => fileOf(path));
+  for (const [i, { path }] of files.entries()) {
+    if (read.has(written[i]!))
+      throw new InputError('would be overwritten, but is read by this command; choose another output').in(path);
+    if (written.indexOf(written[i]!) !== i)
+      throw new InputError('would be written twice by this command; choose another output').in(path);
+  }
 }
 
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */

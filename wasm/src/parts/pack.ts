@@ -40,7 +40,7 @@ export function pack(data: unknown): Uint8Array<ArrayBuffer> {
 
 /** What `pack` packed. Arrays are views of one copy of the bytes. @throws {CagecastError} `badArgument` if it did not, or not all. */
 export function unpack(bytes: Uint8Array): unknown {
-  const own = bytes.slice();
+  const own = new Uint8Array(bytes); // `slice` of Node's Buffer is no copy.
   const [magic, version, length, sum] = own.length >= 16 ? new Uint32Array(own.buffer, 0, 4) : [];
   if (magic !== kMagic) throw refused(`is nothing that serialize wrote (${own.length} bytes)`);
   if (version !== kVersion) throw refused(`has version ${version} of the format; this one reads version ${kVersion}`);

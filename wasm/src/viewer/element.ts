@@ -32,6 +32,8 @@ const kStyle = `
 
 /** What is shown. */
 interface Shown {
+  /** Of the model. */
+  address: string;
   gltf: GLTF;
   applied: Applied | undefined;
   paint: Texture | undefined;
@@ -115,8 +117,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
    * @throws Error if nothing is shown yet.
    */
   async exportGlb(): Promise<ArrayBuffer> {
-    const { applied, paint } = this.#get('exportGlb');
-    const address = this.getAttribute('target')!;
+    const { address, applied, paint } = this.#get('exportGlb');
     const [{ GLTFExporter }, { scene, animations }] = await Promise.all([
       import('three/addons/exporters/GLTFExporter.js'),
       loadModel(this.loader, 'target', address, new AbortController().signal),
@@ -187,13 +188,13 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   async #load(work: (signal: AbortSignal) => Promise<void>): Promise<void> {
     this.#loading?.abort();
     this.#loading = undefined;
+    this.#error.hidden = true;
     if (!this.getAttribute('target')) {
       this.#drop();
       return;
     }
     const loading = new AbortController();
     this.#loading = loading;
-    this.#error.hidden = true;
     try {
       this.#stage ??= new Stage(this.#canvas);
       await work(loading.signal);
@@ -231,7 +232,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     if (signal.aborted) disposeModel(gltf.scene);
     signal.throwIfAborted();
     this.#drop();
-    this.#shown = { gltf, applied, paint: texture };
+    this.#shown = { address: target!, gltf, applied, paint: texture };
     this.#poster.hidden = true;
     this.#stage!.show(gltf.scene, this.#orbit());
     this.#setOpacity(); // It may have changed since.

@@ -78,29 +78,40 @@ export class WorkerQueue {
     }
   }
 
-  /** Hands the first job to the worker. */
+  /** Hands the first job that can be sent to the worker. */
   #next(): void {
-    const job = this.#jobs[0];
-    if (job === undefined) {
-      this.#thread?.setBusy(false);
-      return;
+    for (let job = this.#jobs[0]; job; job = this.#jobs[0]) {
+      const error = this.#send(job);
+      if (!error) return;
+      this.#take(job).reject(error);
     }
-    const { fn } = job.request;
+    this.#thread?.setBusy(false);
+  }
+
+  /** Hands a job to the worker. @returns why that cannot be, if so. */
+  #send({ request, move }: Job): CagecastError | undefined {
     try {
       this.#thread ??= this.#start();
     } catch (cause) {
-      const message = `${fn}: this host cannot start the worker (${String(cause)})`;
-      this.#finish(job, new CagecastError('unsupported', message, 0, { cause }));
-      return;
+      const message = `${request.fn}: this host cannot start the worker (${String(cause)})`;
+      return new CagecastError('unsupported', message, 0, { cause });
     }
     try {
       this.#thread.setBusy(true);
-      this.#thread.post(job.request, job.move ? buffersOf(job.request.args) : []);
+      this.#thread.post(request, move ? buffersOf(request.args) : []);
+      return undefined;
     } catch (cause) {
       // An argument cannot be sent, such as a function or an array that was transferred before.
-      const message = `${fn}: the arguments cannot be sent to the worker (${String(cause)})`;
-      this.#finish(job, new CagecastError('badArgument', message, 0, { cause }));
+      const message = `${request.fn}: the arguments cannot be sent to the worker (${String(cause)})`;
+      return new CagecastError('badArgument', message, 0, { cause });
     }
+  }
+
+  /** Takes the first job out of the queue. */
+  #take(job: Job): Job {
+    this.#jobs.shift();
+    job.settle();
+    return job;
   }
 
   #start(): Thread {
@@ -149,10 +160,9 @@ export class WorkerQueue {
   }
 
   #finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
-    this.#jobs.shift();
-    job.settle();
-    if (error) job.reject(error);
-    else job.resolve(result);
+    const { reject, resolve } = this.#take(job);
+    if (error) reject(error);
+    else resolve(result);
     this.#next();
   }
 
