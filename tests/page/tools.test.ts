@@ -202,6 +202,52 @@ test('the eraser takes away all that the brush left, with its soft edge, and sti
   assert.deepEqual(complaints, []);
 });
 
+test('the eraser works on what lies under it: a sticker elsewhere stays one, and where nothing is, that is said', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 500 } });
+  const area = await openBall(page);
+  const path = [
+    [0.45, 0.6],
+    [0.55, 0.6],
+  ] as const;
+  await choose(page, 'Brush');
+  await set(page, { 'brush-color': kGreenPaint, 'brush-size': '40', 'brush-hardness': '100' });
+  await drag(page, area, ...path);
+  await choose(page, 'Sticker');
+  await set(page, { 'brush-size': '60' });
+  const sticker = at(area, 0.5, 0.35);
+  await page.mouse.click(sticker.x, sticker.y);
+  assert.deepEqual(await names(page), ['Stickers 1', 'Painting 1']);
+  const both = filled(await savedTexture(page));
+  await choose(page, 'Erase');
+  await drag(page, area, [0.42, 0.68], ...path); // it begins beside the paint
+  const rest = filled(await savedTexture(page));
+  await page.getByRole('checkbox', { name: 'Show Painting 1' }).uncheck({ force: true });
+  assert.equal(rest, filled(await savedTexture(page)), `of ${both} texels only those of the sticker are left`);
+  await page.getByRole('checkbox', { name: 'Show Painting 1' }).check({ force: true });
+  const fine = page.getByTestId('painting-fine');
+  assert.equal(await fine.isChecked(), false);
+
+  await drag(page, area, [0.45, 0.75], [0.55, 0.75]);
+  assert.match(await shownError(page), /nothing to erase/i);
+  assert.equal(rest, filled(await savedTexture(page)));
+  await choose(page, 'Sticker');
+  await page.mouse.click(sticker.x, sticker.y);
+  assert.ok(await page.locator('.sticker-bar').isVisible(), 'it is a sticker still');
+  assert.deepEqual(await names(page), ['Stickers 1', 'Painting 1']);
+
+  // Stickers that are erased become paint, but the brush goes on as it was.
+  await choose(page, 'Erase');
+  await set(page, { 'brush-size': '30' });
+  await drag(page, area, [0.5, 0.5], [0.5, 0.35]);
+  assert.equal(await shownError(page), '');
+  assert.ok(filled(await savedTexture(page)) < rest);
+  assert.equal(await fine.isChecked(), false);
+  await choose(page, 'Brush');
+  await drag(page, area, ...path);
+  assert.equal(await page.locator('.layer [aria-pressed=true] .name').textContent(), 'Painting 1');
+  assert.deepEqual(complaints, []);
+});
+
 test('a click fills the whole part; its colour is taken by the eyedropper and stays among the swatches', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 640 } });
   const area = await openBall(page);

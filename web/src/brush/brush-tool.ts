@@ -14,7 +14,6 @@ export class BrushTool implements Tool {
     private readonly options: PaintOptions,
     private readonly ring: Ring,
     private readonly erases: boolean,
-    private readonly prepare?: () => void,
   ) {
     this.#stroke = new PointerStroke(painter, painter);
   }
@@ -23,7 +22,6 @@ export class BrushTool implements Tool {
     const { color, opacity, hardness, mirror, size } = this.options;
     const style = { color, opacity, hardness, mirror, size, erases: this.erases };
     const aim = this.painter.aimOf(spot);
-    if (aim?.surface) this.prepare?.();
     return this.painter.telling(() => this.#stroke.begin(aim, position, style));
   }
 

@@ -1,10 +1,10 @@
-import { StickersSheet } from 'cagecast/three/paint';
 import { element, showError } from '../platform/page';
 import { readImage } from '../scene/paint';
 import type { Session } from '../scene/session';
 import type { RailTool, Tools } from '../view/tool-rail';
 import type { Viewer } from '../view/viewer';
 import { BrushTool } from './brush-tool';
+import { EraserTool } from './eraser-tool';
 import { Eyedropper } from './eyedropper';
 import { FillTool } from './fill-tool';
 import { type PaintTool, paintByKeys } from './keys';
@@ -36,13 +36,14 @@ export function setUpPainting(session: Session, viewer: Viewer, tools: Tools, la
   const eyedropper = new Eyedropper(painter, viewer, layers.composite, options);
   const swatches = new Swatches(options);
   painter.on('painted', () => swatches.use(options.color));
-  const eraser = new BrushTool(painter, options, ring, true, () => {
+  const eraser = new EraserTool(
+    new BrushTool(painter, options, ring, true),
+    painter,
+    options,
+    layers.stack,
     // Stickers that are to be erased become paint first.
-    const { sheet } = layers.stack.selected ?? {};
-    if (!(sheet instanceof StickersSheet) || sheet.fixed) return;
-    sticker.fix(sheet);
-    options.texels = sheet.size;
-  });
+    (sheet) => sticker.fix(sheet),
+  );
   const chosen: Record<Kind, PaintTool> = {
     brush: eyedropper.before(new BrushTool(painter, options, ring, false)),
     eraser,
