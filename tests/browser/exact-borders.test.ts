@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
+import { readFileSync } from 'node:fs';
 import { mkdtemp, readFile, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
@@ -10,7 +11,17 @@ import { cancelOnceShown, kSlowWorker } from '../support/cancel';
 import { ball, islandCage, islandPaint } from '../support/models';
 import { difference, look, modelArea, shareOfHue } from '../support/picture';
 import { primitivesOf, saved, validModel } from '../support/saved';
-import { drop, inRepository, Site, setThreshold, settled, shownCounts, shownError, type Visit } from '../support/site';
+import {
+  drop,
+  glb,
+  inRepository,
+  Site,
+  setThreshold,
+  settled,
+  shownCounts,
+  shownError,
+  type Visit,
+} from '../support/site';
 
 const lizard = (name: string): string => inRepository('build/assets/lizard', name);
 
@@ -207,3 +218,33 @@ for (const [name, options] of Object.entries({ mirrored: { mirrored: true }, 'sk
     assert.deepEqual(complaints, []);
   });
 }
+
+test('what is marked to stay bare is bare with exact borders too', async () => {
+  const { page, complaints } = await site.visit();
+  const file = (name: string) =>
+    glb(`scan-${name}.glb`, readFileSync(inRepository('build/assets/human-fused', `${name}.glb`)));
+  await drop(page, [file('target'), file('cage')]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await chooseMode(page, 'result');
+  await page.getByTestId('exact-borders').check();
+  await cut(page);
+  const area = await modelArea(page);
+  const before = await look(page, area);
+  await page.getByTestId('make-options').locator('summary').click();
+  await page.getByTestId('bare-brush').click();
+  await page.getByTestId('bare-size').fill('90');
+  const [x, y] = [area.x + area.width / 2, area.y + area.height / 2];
+  await page.mouse.move(x - 25, y - 20);
+  await page.mouse.down();
+  await page.mouse.move(x + 25, y - 20, { steps: 2 });
+  await page.mouse.up();
+  await page.locator('#bare-count', { hasText: 'stay bare' }).waitFor();
+  await page.locator('#tools input[data-key=t]').check({ force: true }); // without the tool, its marks are not drawn
+  await cut(page);
+  const marked = await look(page, area);
+  assert.ok(difference(before, marked) > 0.01, `${difference(before, marked)} of the picture has changed`);
+  await page.getByTestId('undo').click();
+  await cut(page);
+  assert.ok(difference(before, await look(page, area)) < 0.0005, 'undone, it is as it was');
+  assert.deepEqual(complaints, []);
+});

@@ -1,10 +1,12 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { faults } from '../support/axe';
 import { head, middleOf, ready, worked } from '../support/cages';
 import { GlbMaker, tetrahedron } from '../support/glb';
+import { names, rows } from '../support/layers';
 import { validModel } from '../support/saved';
 import { drop, glb, Site, shownError, shownParts } from '../support/site';
 
@@ -110,5 +112,60 @@ test('a model dropped alone: a cage is made, it is painted, and the model is sav
   let painted = 0;
   for (let i = 0; i < data.length; i += 4) if (data[i]! < 40 && data[i + 1]! > 240 && data[i + 2]! < 70) painted++;
   assert.ok(painted > 100, `${painted} texels have the colour of the brush`);
+  assert.deepEqual(complaints, []);
+});
+
+async function stroke(page: Page): Promise<void> {
+  await page.locator('#tools input[data-key=b]').check({ force: true });
+  const { x, y } = await middleOf(page);
+  await page.mouse.move(x - 20, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 20, y + 10, { steps: 3 });
+  await page.mouse.up();
+}
+
+test('paint for earlier cages is kept put away, however often the cage is made again, and over a reload', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await page.getByTestId('make-options').locator('summary').click();
+  await page.getByTestId('make-cage').click();
+  await page.locator('#cage-note', { hasText: 'was made' }).waitFor();
+  await ready(page);
+  /** The layers, those that are hidden in brackets, and what is offered. */
+  const state = async (): Promise<string[]> => {
+    const shown = await rows(page)
+      .locator('input[name=visible]')
+      .evaluateAll((boxes) => boxes.map((box) => (box as HTMLInputElement).checked));
+    const offer = page.getByTestId('put-away');
+    const layers = (await names(page)).map((name, i) => (shown[i] ? name : `(${name})`));
+    return [...layers, (await offer.isVisible()) ? (await offer.locator('p').textContent())! : 'nothing'];
+  };
+  const makeWith = async (triangles: string): Promise<void> => {
+    await page.locator('#make-triangles').fill(triangles);
+    await worked(page);
+  };
+  await stroke(page);
+  assert.deepEqual(await state(), ['Painting 1', '(UV checker)', 'nothing']);
+  await makeWith('8');
+  assert.deepEqual(await state(), ['UV checker', 'One layer of an earlier cage put away.']);
+  await makeWith('9');
+  assert.deepEqual(await state(), ['UV checker', 'One layer of an earlier cage put away.']);
+  await stroke(page);
+  await makeWith('10');
+  assert.deepEqual(await state(), ['UV checker', '2 layers of earlier cages put away.']);
+  await page.getByTestId('undo').click();
+  assert.deepEqual(await state(), ['Painting 1', '(UV checker)', 'One layer of an earlier cage put away.']);
+  await page.getByTestId('redo').click();
+  assert.deepEqual(await state(), ['UV checker', '2 layers of earlier cages put away.']);
+
+  await page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  await ready(page);
+  assert.deepEqual(await state(), ['UV checker', '2 layers of earlier cages put away.']);
+  assert.ok(await page.getByTestId('save-cage').isVisible(), 'the cage that was made can still be saved');
+  await page.getByRole('button', { name: 'Bring back' }).click();
+  assert.deepEqual(await state(), ['Painting 1', 'Painting 1', '(UV checker)', 'nothing']);
   assert.deepEqual(complaints, []);
 });

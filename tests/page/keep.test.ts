@@ -263,3 +263,98 @@ test('where there is no room, that is said once, and leaving asks', async () => 
     .waitFor();
   assert.match((await page.getByTestId('share-link').textContent())!, /without your layers/);
 });
+
+/** The names of the files of each kept work; those that the browser no longer has are missing. */
+async function keptFiles(page: Page): Promise<string[]> {
+  const works = await page.evaluate<string[]>(`new Promise((done) => {
+    indexedDB.open('cagecast').onsuccess = ({ target: { result } }) => {
+      const transaction = result.transaction(['works', 'files']);
+      const [works, files] = ['works', 'files'].map((name) => transaction.objectStore(name).getAll());
+      const keys = transaction.objectStore('files').getAllKeys();
+      const nameOf = (key) => files.result[keys.result.indexOf(key)]?.name ?? 'missing';
+      transaction.oncomplete = () => {
+        result.close();
+        done(works.result.map((work) => work.files.map(nameOf).sort().join(' ')));
+      };
+    };
+  })`);
+  return works.sort();
+}
+
+test('the works of open tabs are kept however many there are, and a work whose files were dropped is kept whole again', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
+  const filesOf = (name: string): string => `${name}-cage.glb ${name}.glb`;
+  const waitFor = async (page: Page, ...wanted: string[]): Promise<void> => {
+    for (const end = Date.now() + 20_000; ; await page.waitForTimeout(200)) {
+      const found = await keptFiles(page);
+      if (wanted.map(filesOf).join() === found.join()) return;
+      if (Date.now() > end) assert.deepEqual(found, wanted.map(filesOf));
+    }
+  };
+  const all = ['a', 'b', 'c', 'd'];
+  const others: Page[] = [];
+  for (const [at, name] of all.entries()) {
+    const tab = at === 0 ? page : await page.context().newPage();
+    if (at > 0) {
+      others.push(tab);
+      await tab.goto(site.url);
+      assert.equal(await settled(tab), 'ready', await shownError(tab));
+    }
+    await drop(tab, [glb(`${name}.glb`, asset('target.glb')), glb(`${name}-cage.glb`, asset('cage.glb'))]);
+    assert.equal(await settled(tab), 'ready', await shownError(tab));
+    await waitFor(tab, ...all.slice(0, at + 1));
+  }
+  for (const tab of others) await tab.close();
+  await page.bringToFront();
+  await page.getByTestId('threshold').fill('0.6');
+  await waitFor(page, 'a', 'c', 'd');
+
+  await page.evaluate(`new Promise((done) => {
+    indexedDB.open('cagecast').onsuccess = ({ target: { result } }) => {
+      const transaction = result.transaction(['works', 'files'], 'readwrite');
+      for (const name of ['works', 'files']) transaction.objectStore(name).clear();
+      transaction.oncomplete = () => { result.close(); done(); };
+    };
+  })`);
+  await page.getByTestId('threshold').fill('0.7');
+  await waitFor(page, 'a');
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(await page.locator('#target-name').textContent(), 'a.glb');
+  assert.equal(await page.getByTestId('threshold').inputValue(), '0.7');
+  assert.deepEqual(complaints, []);
+});
+
+/** Delays transfers by `window.delay` milliseconds. */
+const kSlowTransfers = `
+  const { postMessage } = Worker.prototype;
+  Worker.prototype.postMessage = function (message, ...rest) {
+    const post = () => postMessage.call(this, message, ...rest);
+    if (message?.task === 'project' && window.delay) setTimeout(post, window.delay);
+    else post();
+  }`;
+
+test('a project that takes long to open leaves the work before it as it was', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } }, kSlowTransfers);
+  const preset = page.getByTestId('preset');
+  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await preset.selectOption('paper');
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  const { name, bytes } = await saved(page, 'save-project');
+  await preset.selectOption('default');
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.getByTestId('threshold').fill('0.7');
+  await kept(page);
+  await page.evaluate('window.delay = 3000'); // longer than the page waits before it keeps what was changed
+  await drop(page, [project(name, bytes)]);
+  const line = page.getByTestId('kept');
+  await line.filter({ hasText: 'put aside' }).waitFor();
+  assert.equal(await preset.inputValue(), 'paper');
+  await page.getByRole('button', { name: 'Bring it back' }).click();
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.equal(await preset.inputValue(), 'default');
+  assert.equal(await page.getByTestId('threshold').inputValue(), '0.7');
+  assert.deepEqual(complaints, []);
+});

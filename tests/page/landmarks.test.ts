@@ -3,6 +3,7 @@ import { after, before, test } from 'node:test';
 import { faults } from '../support/axe';
 import { drag, fitted, head, placeOf, ready, savedCage, worked } from '../support/cages';
 import { difference, look, modelArea } from '../support/picture';
+import { saved } from '../support/saved';
 import { drop, Site } from '../support/site';
 
 let site: Site;
@@ -111,4 +112,55 @@ test('with the keyboard alone: a model is opened, a template fitted, a landmark 
   const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Enter')]);
   assert.equal(download.suggestedFilename(), 'bust-painted.glb');
   assert.deepEqual(complaints, []);
+});
+
+test('a fit and the landmarks of the user are there after a reload, and in the project file; the cage can still be saved', async () => {
+  const { page, complaints } = await site.visit();
+  await drop(page, [head()]);
+  await ready(page);
+  await fitted(page);
+  await drag(page, 'mouth_corner_left', 0, 12);
+  await worked(page);
+  const before = await savedCage(page);
+  await page.waitForFunction(() => dispatchEvent(new Event('beforeunload', { cancelable: true })));
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  await ready(page);
+  assert.deepEqual(await savedCage(page), before);
+  await page.getByTestId('landmarks').waitFor();
+  assert.ok(await page.locator('#landmark-spots').isHidden(), 'no tool is taken up by itself');
+  await page.locator('#landmark-show').click();
+  const labels = (of: typeof page) =>
+    Promise.all(
+      ['mouth_corner_left', 'mouth_corner_right', 'nose_tip'].map((name) =>
+        of.locator(`[data-landmark=${name}]`).getAttribute('aria-label'),
+      ),
+    );
+  const wanted = ['left mouth corner, placed by you', 'right mouth corner, placed by you', 'nose tip, found'];
+  assert.deepEqual(await labels(page), wanted);
+  const { name, bytes } = await saved(page, 'save-project');
+
+  const fresh = await site.visit();
+  await drop(fresh.page, [{ name, mimeType: '', buffer: bytes }]);
+  await fresh.page.locator('#target-name', { hasText: 'bust.glb' }).waitFor();
+  await ready(fresh.page);
+  await fresh.page.getByTestId('landmarks').waitFor();
+  assert.deepEqual(await labels(fresh.page), wanted);
+  await fresh.page.locator('#landmark-reset').click();
+  await worked(fresh.page);
+  assert.notDeepEqual(await savedCage(fresh.page), before, 'it is fitted again, without them');
+
+  // One that somebody has changed by hand.
+  const length = bytes.readUInt32LE(12);
+  const text = bytes.subarray(16, 16 + length).toString();
+  const changed = Buffer.from(text.replace('"template":"human-head"', '"template":"no-template"'));
+  assert.notEqual(changed.toString(), text);
+  const heading = Buffer.from(bytes.subarray(0, 16));
+  heading.writeUInt32LE(changed.length, 12);
+  const buffer = Buffer.concat([heading, changed, bytes.subarray(16 + length)]);
+  await drop(fresh.page, [{ name: 'x.cagecast', mimeType: '', buffer }]);
+  await fresh.page
+    .locator('#error', { hasText: 'x.cagecast: the project is damaged: it has an unknown template' })
+    .waitFor();
+  assert.deepEqual([...complaints, ...fresh.complaints], []);
 });

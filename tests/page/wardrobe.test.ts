@@ -127,6 +127,12 @@ test('figures dropped together get the template of the first; a stroke is on all
       'there is paint',
     );
   }
+  await page.locator('.avatars .avatar').nth(1).click();
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'two' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.ok(await page.getByTestId('save-cage').isVisible(), 'the cage that was fitted to it can be saved');
+  await page.getByTestId('landmarks').waitFor();
+  assert.equal(await page.locator('#tools input[data-key=b]').isChecked(), true, 'the brush stays in the hand');
   assert.equal(await shownError(page), '');
   assert.deepEqual(complaints, []);
 });
@@ -211,4 +217,50 @@ test('the avatars are back after a reload, with their cages, overrides and order
   assert.equal(await settled(fresh.page), 'ready', await shownError(fresh.page));
   assert.equal(await fresh.page.locator('#segment-rows select').first().inputValue(), 'exclude');
   assert.deepEqual([...complaints, ...fresh.complaints], []);
+});
+
+test('an avatar that leaves the stage, and one that is just being painted, follow the preset', async () => {
+  const { page, complaints } = await site.visit(
+    {},
+    `const { postMessage } = Worker.prototype;
+    Object.assign(window, { asked: [], delay: 0 });
+    Worker.prototype.postMessage = function (message, ...rest) {
+      const post = () => postMessage.call(this, message, ...rest);
+      if (message?.task !== 'project') return post();
+      window.asked.push(message.options.preset);
+      if (window.delay > 0) setTimeout(post, window.delay);
+      else post();
+    }`,
+  );
+  /** Waits until so many transfers have been asked for, by a preset, since the last time. */
+  const asked = async (preset: string, count: number): Promise<void> => {
+    const wanted = JSON.stringify(Array.from({ length: count }, () => preset));
+    await page.waitForFunction(`JSON.stringify(window.asked) === '${wanted}'`);
+    await page.waitForTimeout(1000);
+    assert.equal(await page.evaluate('JSON.stringify(window.asked)'), wanted);
+    await page.evaluate('window.asked = []');
+  };
+  const model = (name: string): Upload => glb(`${name}.glb`, asset('lizard', 'target.glb'));
+  const cage = glb('cage.glb', asset('lizard', 'cage.glb'));
+  await drop(page, [model('one'), model('two'), cage]);
+  await avatars(page, 2);
+  await page.locator('.avatars .avatar').nth(1).click();
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'two' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.waitForTimeout(1000);
+  await page.evaluate('window.asked = []');
+  await page.getByTestId('preset').selectOption('paper');
+  await asked('paper', 2); // of both
+  await page.locator('.avatars .avatar').nth(0).click();
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'one' }).waitFor();
+  await asked('paper', 2); // of the one that comes, and of the other, which stood beside it when that was default
+
+  await page.evaluate('window.delay = 3000');
+  await drop(page, [model('three'), cage]);
+  await asked('paper', 1);
+  await page.evaluate('window.delay = 0');
+  await page.getByTestId('preset').selectOption('default');
+  await asked('default', 3);
+  assert.equal(await shownError(page), '');
+  assert.deepEqual(complaints, []);
 });

@@ -117,7 +117,8 @@ export class LandmarkEditor {
     this.#size = box.getSize(new Vector3()).length();
     box.getCenter(this.#middle);
     this.#write();
-    if (isNew) this.#tools.choose(this.#offer);
+    // What was brought back takes no other tool out of the hand.
+    if (isNew && fitting === this.#maker.latest) this.#tools.choose(this.#offer);
     if (this.#tools.chosen === this.#offer && Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
     this.#viewer.redraw();
   }

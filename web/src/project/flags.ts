@@ -29,8 +29,12 @@ export const flags = {
   },
 };
 
+const kLock = 'cagecast ';
+/** Ends the hold of slots that this tab holds. */
+const releases = new Map<string, () => void>();
+
 /**
- * Holds a slot until the tab is closed or reloaded, so that no other tab stores its work there.
+ * Holds a slot until it is let go, or the tab is closed or reloaded, so that no other tab stores its work there.
  * @param patience Milliseconds to wait for a tab that holds it.
  * @returns Whether it is held; true where browsers cannot tell.
  */
@@ -40,10 +44,22 @@ export function holdSlot(slot: string, patience: number): Promise<boolean> {
   return new Promise((done) => {
     const options = patience > 0 ? { signal: AbortSignal.timeout(patience) } : { ifAvailable: true };
     locks
-      .request(`cagecast ${slot}`, options, (lock) => {
+      .request(kLock + slot, options, (lock) => {
         done(lock !== null);
-        return lock && new Promise(() => {});
+        return lock && new Promise<void>((release) => releases.set(slot, release));
       })
       .catch(() => done(false));
   });
+}
+
+/** Lets a slot go that this tab holds. */
+export function letGoOf(slot: string): void {
+  releases.get(slot)?.();
+  releases.delete(slot);
+}
+
+/** The slots that tabs hold; none where browsers cannot tell. */
+export async function heldSlots(): Promise<Set<string>> {
+  const { held = [] } = (await navigator.locks?.query()) ?? {};
+  return new Set(held.flatMap(({ name = '' }) => (name.startsWith(kLock) ? [name.slice(kLock.length)] : [])));
 }

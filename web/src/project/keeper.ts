@@ -3,8 +3,8 @@ import { readLink } from '../export/link';
 import { showError } from '../platform/page';
 import type { Session } from '../scene/session';
 import { filesIn, kVersion } from './container';
-import { flags, holdSlot } from './flags';
-import type { Project, Snapshot } from './project';
+import { flags, heldSlots, holdSlot, letGoOf } from './flags';
+import type { Files, Project, Snapshot } from './project';
 import { Store, type Work } from './store';
 
 // Milliseconds: work is stored when people pause, and at the latest after a while.
@@ -38,8 +38,8 @@ export class Keeper {
   readonly #view: KeeperView;
   #store: Store | undefined;
   #slot = newSlot();
-  /** Keys of the files of this slot that are stored. */
-  #stored = new Set<string>();
+  /** The slot before this one. */
+  #aside: string | undefined;
   /** What was stored last: all of it, and the work. */
   #kept: { all: string; work: string } | undefined;
   /** The work of the page as it opened. */
@@ -47,6 +47,8 @@ export class Keeper {
   #timer: ReturnType<typeof setTimeout> | undefined;
   #since: number | undefined;
   #saving: Promise<void> | undefined;
+  /** How many states are being opened. */
+  #opening = 0;
   #told = false;
 
   constructor(project: Project, session: Session, history: History, view: KeeperView) {
@@ -96,13 +98,31 @@ export class Keeper {
     location.replace(location.pathname + location.search);
   }
 
-  /** The state is that of a project that was just opened: the work before it stays in its slot. */
-  leaveSlot(): void {
+  /** Opens a project. The work before it stays in its slot, as it was. @returns and @throws like `Project.open`. */
+  async open(parts: Record<string, unknown>, files: Files): Promise<boolean> {
+    await this.save();
+    if (!(await this.#open(parts, files))) return false;
+    this.#leaveSlot();
+    return true;
+  }
+
+  /** Opens a state. Nothing is stored meanwhile: it would be the models that are shown with settings of those to come. */
+  async #open(parts: Record<string, unknown>, files: Files): Promise<boolean> {
+    this.#opening++;
+    try {
+      await this.#saving;
+      return await this.#project.open(parts, files);
+    } finally {
+      this.#opening--;
+      this.#touch();
+    }
+  }
+
+  #leaveSlot(): void {
     const before = this.#kept && this.#slot;
-    this.#slot = newSlot();
+    this.#moveTo(newSlot());
     void holdSlot(this.#slot, 0);
     this.#kept = this.#first = undefined;
-    this.#stored.clear();
     this.#touch();
     if (!before) return;
     const back = async (): Promise<void> => {
@@ -115,11 +135,20 @@ export class Keeper {
     });
   }
 
+  /** Goes on in another slot. Only the last one is still held, so that the works of others give way to newer ones. */
+  #moveTo(slot: string): void {
+    if (slot === this.#slot) return;
+    if (this.#aside && this.#aside !== slot) letGoOf(this.#aside);
+    this.#aside = this.#slot;
+    this.#slot = slot;
+  }
+
   /** Stores the state now, if it is work. */
   async save(): Promise<void> {
     clearTimeout(this.#timer);
     await this.#saving;
     this.#since = undefined;
+    if (this.#opening > 0) return;
     const snapshot = this.#project.snapshot();
     if (!snapshot || !this.#store || !this.#isWork(snapshot)) return;
     // A stroke that is being drawn is stored when it ends.
@@ -149,10 +178,9 @@ export class Keeper {
         this.#project.know(file, key);
         found.set(key, file);
       }
-      if (!(await this.#project.open(work.parts, filesIn(found)))) return false;
-      this.#slot = work.slot;
+      if (!(await this.#open(work.parts, filesIn(found)))) return false;
+      this.#moveTo(work.slot);
       flags.set('slot', work.slot);
-      this.#stored = new Set(found.keys());
       const { parts, work: now } = this.#project.snapshot()!;
       this.#kept = { all: JSON.stringify(parts), work: now };
       const run = (): void => void this.startOver();
@@ -186,12 +214,14 @@ export class Keeper {
 
   async #put({ parts, work, files }: Snapshot, store: Store): Promise<void> {
     try {
-      const added = new Map<string, Blob>();
-      for (const [key, make] of files) if (!this.#stored.has(key)) added.set(key, await make());
-      const at = Date.now();
       const { hash: fragment } = location;
-      await store.put({ slot: this.#slot, at, fragment, version: kVersion, parts, files: [...files.keys()] }, added);
-      this.#stored = new Set(files.keys());
+      const kept = { slot: this.#slot, fragment, version: kVersion, parts, files: [...files.keys()] };
+      const added = new Map<string, Blob>();
+      do {
+        const stored = await store.keys();
+        for (const [key, make] of files) if (!stored.has(key) && !added.has(key)) added.set(key, await make());
+        // Again if another tab has dropped files meanwhile.
+      } while (!(await store.put({ ...kept, at: Date.now() }, added, await heldSlots())));
       this.#kept = { all: JSON.stringify(parts), work };
       flags.set('work', 'kept');
       flags.set('slot', this.#slot);

@@ -5,6 +5,7 @@ import { announce, element, showError } from '../platform/page';
 import type { Viewer } from '../view/viewer';
 import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { barePart } from './bare-part';
+import { cagePart } from './cage-part';
 import { readProject, writeProject } from './container';
 import { Keeper, type Offer } from './keeper';
 import { type LayersOfPage, layersPart } from './layers-part';
@@ -39,6 +40,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
   project.add(layersPart(page));
   for (const part of settingsParts(session, live, viewer)) project.add(part);
   project.add(barePart(session));
+  project.add(cagePart(session, wardrobe));
   if (wardrobe) project.add(wardrobePart(wardrobe));
   const keeper = new Keeper(project, session, history, {
     offer: showOffer,
@@ -52,11 +54,8 @@ export function setUpProjects(page: ProjectOfPage): Projects {
 
   const open = async (file: File): Promise<void> => {
     try {
-      await keeper.save();
       const { parts, files } = await readProject(file);
-      if (!(await project.open(parts, files))) return;
-      announce(`${file.name} is open.`);
-      keeper.leaveSlot();
+      if (await keeper.open(parts, files)) announce(`${file.name} is open.`);
     } catch (error) {
       session.fail(new Error(`${file.name}: ${(error as Error).message}`, { cause: error }));
     }

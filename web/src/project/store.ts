@@ -1,7 +1,7 @@
 const kName = 'cagecast';
 /** Of the database; another page with a newer one refuses this one. */
 const kVersion = 1;
-const kMostWorks = 3;
+const kMostWorks = 3; // beside those of open tabs
 
 /** A saved state of the page. */
 export interface Work {
@@ -42,32 +42,47 @@ export class Store {
     return all.toSorted((a, b) => b.at - a.at);
   }
 
+  /** Keys of all files. */
+  async keys(): Promise<Set<IDBValidKey>> {
+    return new Set(await resultOf(this.#database.transaction('files').objectStore('files').getAllKeys()));
+  }
+
   async file(key: string): Promise<Blob | undefined> {
     return resultOf(this.#database.transaction('files').objectStore('files').get(key));
   }
 
-  /** Saves a work with its new files, all or nothing, and drops what is no longer needed: old works and their files. */
-  async put(work: Work, files: ReadonlyMap<string, Blob>): Promise<void> {
+  /**
+   * Saves a work with its new files, all or nothing, and drops what is no longer needed: old works and their files.
+   * @param open Slots whose works are not dropped.
+   * @returns False, and nothing is saved, if another of its files is not there any more.
+   */
+  async put(work: Work, files: ReadonlyMap<string, Blob>, open: ReadonlySet<string>): Promise<boolean> {
     const transaction = this.#database.transaction(['works', 'files'], 'readwrite');
     let failure: unknown;
-    const done = new Promise<void>((resolve, reject) => {
-      transaction.oncomplete = () => resolve();
-      transaction.onabort = () => reject(transaction.error ?? failure);
+    let isWhole = true;
+    const done = new Promise<boolean>((resolve, reject) => {
+      transaction.oncomplete = () => resolve(true);
+      transaction.onabort = () => (isWhole ? reject(transaction.error ?? failure) : resolve(false));
     });
     try {
       const [worksOf, filesOf] = [transaction.objectStore('works'), transaction.objectStore('files')];
       for (const [key, file] of files) filesOf.put(file, key);
       worksOf.put(work);
-      const all = (await resultOf(worksOf.getAll())) as Work[];
-      const kept = all.toSorted((a, b) => b.at - a.at).slice(0, kMostWorks);
-      for (const { slot } of all) if (!kept.some((one) => one.slot === slot)) worksOf.delete(slot);
-      const used = new Set(kept.flatMap((one) => one.files));
-      for (const key of await resultOf(filesOf.getAllKeys())) if (!used.has(key as string)) filesOf.delete(key);
+      const keys = await resultOf(filesOf.getAllKeys());
+      isWhole = work.files.every((key) => keys.includes(key));
+      if (!isWhole) transaction.abort();
+      else {
+        const all = ((await resultOf(worksOf.getAll())) as Work[]).toSorted((a, b) => b.at - a.at);
+        const kept = all.filter(({ slot }, at) => at < kMostWorks || open.has(slot));
+        for (const one of all) if (!kept.includes(one)) worksOf.delete(one.slot);
+        const used = new Set<IDBValidKey>(kept.flatMap((one) => one.files));
+        for (const key of keys) if (!used.has(key)) filesOf.delete(key);
+      }
     } catch (error) {
       failure = error;
       if (transaction.error === null) transaction.abort();
     }
-    await done;
+    return done;
   }
 }
 

@@ -32,8 +32,20 @@ export interface Fitting extends Omit<Fit, 'cage'> {
 /** A fit needs so many landmarks. */
 export const kLeastLandmarks = 4;
 
-/** The files of cages that were made here: for which target, and from which fit. */
-const made = new WeakMap<File, { target: File; fitting: Fitting | undefined }>();
+/** How a cage was made here: for which target, and from which fit. */
+export interface Made {
+  target: File;
+  fitting: Fitting | undefined;
+}
+
+/** By the files of the cages. */
+const made = new WeakMap<File, Made>();
+
+/** How a cage was made; undefined if it was not made here. */
+export const madeOf = (cage: File): Made | undefined => made.get(cage);
+
+/** Notes how a cage was made. */
+export const noteMade = (cage: File, how: Made): unknown => made.set(cage, how);
 
 /** Those of them that were made from the model, and not altered since: where they are is where they belong. */
 const fresh = new WeakSet<File>();
@@ -59,6 +71,8 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
   readonly #unmoved = new WeakSet<Model>();
   /** What the user chose for cages that are made: options, and parts that are not painted. */
   choices: ((model: CageModel) => { options: MakeOptions; marks?: Uint8Array }) | undefined;
+  /** What the last fit that was asked for here came to. */
+  latest: Fitting | undefined;
 
   /** @param renderer Undefined without WebGL. */
   constructor(session: Session, renderer: WebGLRenderer | undefined) {
@@ -76,9 +90,9 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       if (target !== shown) this.#template.value = likelyTemplate(target.mesh.positions);
       shown = target;
       element('no-cage', HTMLElement).hidden = target.sample !== undefined;
-      const isMade = made.has(cage.files[0]!);
-      this.#save.hidden = !isMade;
-      if (!isMade) this.#note.textContent = '';
+      // Of several files, saving the first would not do.
+      this.#save.hidden = cage.sample !== undefined || cage.files.length > 1;
+      if (!made.has(cage.files[0]!)) this.#note.textContent = '';
       this.#missing.textContent = '';
       this.emit('fitting', this.isOthers ? undefined : made.get(cage.files[0]!)?.fitting);
     });
@@ -185,6 +199,7 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const file = new File([engine.cageGlb(cage)], name.replace(/(-cage)?(\.\w+)?$/, '-cage.glb'));
       made.set(file, { target: target.files[0]!, fitting });
       if (isNew) fresh.add(file);
+      this.latest = fitting;
       this.#note.textContent = note;
       done();
       this.#session.want({ cage: loadModel(file, this.#renderer) });
@@ -244,7 +259,8 @@ export class CageMaker extends Emitter<{ fitting: Fitting | undefined }> {
       const missing = names.filter((known) => !used[known]);
       this.#missing.textContent = '';
       this.#note.textContent = `Of ${kLeastLandmarks} landmarks that are needed, ${count} were found: place more on the model.`;
-      this.emit('fitting', { ...found, template: name, given, used, missing });
+      this.latest = { ...found, template: name, given, used, missing };
+      this.emit('fitting', this.latest);
       return undefined;
     }
   }

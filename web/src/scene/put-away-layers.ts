@@ -1,52 +1,69 @@
-import type { Edits, Layer, LayerStack } from 'cagecast/three/layers';
+import { type Edits, type Layer, type LayerStack, maxLayers } from 'cagecast/three/layers';
 import { element, showError } from '../platform/page';
 import type { Model } from './load-model';
 import { haveSameUvs } from './same-uvs';
 import type { Session } from './session';
 
-/** Layers that were painted for another cage. */
+/** Layers that were painted for other cages. */
 export interface PutAway {
   readonly layers: readonly Layer[];
-  /** Offers others. */
+  /** Offers others instead. */
   show(layers: readonly Layer[]): void;
 }
 
-/** Puts the layers away that were painted for another cage, and offers them again. They stay where a cage has the same UVs. */
+/**
+ * Puts the layers away that were painted for another cage, and offers them again until they are brought back. They stay where a
+ * cage has the same UVs.
+ */
 export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits): PutAway {
   const offer = element('put-away', HTMLElement);
   let last: Model | undefined;
   let away: readonly Layer[] = [];
+  // Undoing brings them back too, and redoing puts them away again.
+  const offered = (): Layer[] => away.filter(({ id }) => stack.layers.every((layer) => layer.id !== id));
+  const write = (): void => {
+    const { length } = offered();
+    offer.hidden = length === 0;
+    const count = length === 1 ? 'One layer of an earlier cage' : `${length} layers of earlier cages`;
+    offer.querySelector('p')!.textContent = `${count} put away.`;
+  };
   const show = (layers: readonly Layer[]): void => {
     away = layers;
-    offer.hidden = layers.length === 0;
-    const count = layers.length === 1 ? 'One layer' : `${layers.length} layers`;
-    offer.querySelector('p')!.textContent = `${count} of the last cage put away.`;
+    write();
+  };
+  const restyleChecker = (visible: boolean): void => {
+    const { base } = stack;
+    if (base?.sheet === session.checker) stack.restyle(base, { visible });
   };
   session.on('transfer', ({ cage }) => {
     const before = last;
     last = cage;
     if (!before || haveSameUvs(before, cage)) return;
     const old = stack.layers.filter(({ id }) => id !== stack.base?.id);
-    if (old.length > 0)
-      edits.do('putting layers away', () => {
-        for (const { id } of old) stack.remove(id);
-      });
-    show(old);
+    // Nothing else is to be seen now.
+    if (old.length === 0) return restyleChecker(true);
+    const kept = [...offered(), ...old].slice(-maxLayers);
+    edits.do('putting layers away', () => {
+      for (const { id } of old) stack.remove(id);
+      restyleChecker(true);
+    });
+    show(kept);
   });
-  // Undoing brings them back too.
-  stack.on('change', (layers) => {
-    if (away.some(({ id }) => layers.some((layer) => layer.id === id))) show([]);
-  });
+  stack.on('change', write);
   element('bring-back', HTMLButtonElement).addEventListener('click', () => {
     try {
-      edits.do('bringing layers back', () => stack.change([], away));
+      edits.do('bringing layers back', () => {
+        stack.change([], offered());
+        restyleChecker(false);
+      });
+      show([]);
     } catch (error) {
       showError((error as Error).message);
     }
   });
   return {
     get layers() {
-      return away;
+      return offered();
     },
     show,
   };

@@ -14,6 +14,8 @@ interface Basis {
   culled: string;
   /** The segments that are painted whatever hides them. */
   always: string;
+  /** What the user marked to stay bare. */
+  bare: Uint8Array | undefined;
 }
 
 /**
@@ -43,7 +45,7 @@ export class ExactBorders {
   }
 
   #follow(classification: Classification): void {
-    const { shown, rules, locks } = this.#session;
+    const { shown, rules, locks, bare } = this.#session;
     const wanted =
       rules.borders === 'cut'
         ? {
@@ -52,9 +54,10 @@ export class ExactBorders {
             always: Object.keys(locks)
               .filter((segment) => locks[Number(segment)] === 'always')
               .join(),
+            bare,
           }
         : undefined;
-    const keys = ['projection', 'culled', 'always'] as const;
+    const keys = ['projection', 'culled', 'always', 'bare'] as const;
     if (keys.every((key) => wanted?.[key] === this.#basis?.[key])) return;
     this.#clear();
     if (!wanted) return;

@@ -1,6 +1,6 @@
-import type { Cage, CageModel, Template } from 'cagecast/cages';
+import type { Cage, CageModel, Template, TemplateName } from 'cagecast/cages';
 import { cageModel } from 'cagecast/three';
-import { placeAround } from '../scene/cage-maker';
+import { type Fitting, noteMade, placeAround } from '../scene/cage-maker';
 import type { Model } from '../scene/load-model';
 import { haveSameUvs } from '../scene/same-uvs';
 
@@ -20,18 +20,25 @@ interface Progress {
 export async function fitLike(cage: Model, model: Model, progress: Progress): Promise<File> {
   const engine = await import('cagecast/cages');
   const target = cageModel(model.loaded);
-  const template = await templateOf(cage, engine);
-  const fitted = template
-    ? (await engine.fitCage(template, target, undefined, progress)).cage
-    : await bend(cage, target, engine, progress);
-  return new File([engine.cageGlb(fitted)], model.name.replace(/(\.\w+)?$/, '-cage.glb'));
+  const found = await templateOf(cage, engine);
+  const fileOf = (fitted: Cage): File =>
+    new File([engine.cageGlb(fitted)], model.name.replace(/(\.\w+)?$/, '-cage.glb'));
+  if (!found) return fileOf(await bend(cage, target, engine, progress));
+  const { cage: fitted, ...fit } = await engine.fitCage(found.template, target, undefined, progress);
+  const fitting: Fitting = { ...fit, template: found.name, given: {} };
+  const file = fileOf(fitted);
+  noteMade(file, { target: model.files[0]!, fitting });
+  return file;
 }
 
 /** The template that a cage was made from; undefined if it is none. */
-async function templateOf(cage: Model, engine: typeof import('cagecast/cages')): Promise<Template | undefined> {
+async function templateOf(
+  cage: Model,
+  engine: typeof import('cagecast/cages'),
+): Promise<{ name: TemplateName; template: Template } | undefined> {
   for (const name of engine.templateNames) {
     const template = await engine.loadTemplate(name);
-    if (haveSameUvs(cage, { mesh: template as Template & { indices: Uint32Array } })) return template;
+    if (haveSameUvs(cage, { mesh: template as Template & { indices: Uint32Array } })) return { name, template };
   }
   return undefined;
 }

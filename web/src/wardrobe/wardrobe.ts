@@ -286,7 +286,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   /** Makes an avatar that was on the stage stand beside it. */
   #stand(avatar: Avatar): void {
     if (avatar.standing) {
-      this.#classify(avatar);
+      this.#update(avatar);
       return;
     }
     this.#queue(avatar, async () => {
@@ -366,7 +366,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     const overlay = projection && new Overlay(model.mesh, projection, this.#paint);
     avatar.takesPaint = cage !== undefined && haveSameUvs(cage, this.#session.shown!.cage);
     avatar.standing = { holder, overlay, model, projection, wide, high, takesPaint: avatar.takesPaint };
-    this.#classify(avatar);
+    this.#update(avatar);
     this.#arrange();
     this.#pictureLater([avatar]);
     await this.#inspect(avatar);
@@ -408,21 +408,27 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
   }
 
   #onRules(): void {
-    for (const avatar of this.#avatars) {
-      if (avatar === this.#active || !avatar.standing?.projection) continue;
-      if (avatar.standing.projection.preset === this.#session.rules.preset) this.#classify(avatar);
-      else
-        this.#queue(avatar, async () => {
-          const { model } = avatar.standing ?? {};
-          if (!model || !avatar.cage) return;
-          const { preset } = this.#session.rules;
-          const projection = await this.#client.ask('project', avatar.cage, model, { preset });
-          if (!avatar.standing) return;
-          avatar.standing.projection = projection;
-          avatar.standing.overlay?.setProjection(projection);
-          this.#classify(avatar);
-        });
-    }
+    for (const avatar of this.#avatars) if (avatar !== this.#active) this.#update(avatar);
+  }
+
+  /** Makes what stands beside the stage follow the rules: the threshold at once, another preset by another transfer. */
+  #update(avatar: Avatar): void {
+    const isOutdated = (): boolean => {
+      const { projection } = avatar.standing ?? {};
+      return projection !== undefined && projection.preset !== this.#session.rules.preset;
+    };
+    this.#classify(avatar);
+    if (!isOutdated()) return;
+    this.#queue(avatar, async () => {
+      const { cage, standing } = avatar;
+      if (!cage || !standing || avatar === this.#active || !isOutdated()) return;
+      const { preset } = this.#session.rules;
+      const projection = await this.#client.ask('project', cage, standing.model, { preset });
+      if (avatar.standing !== standing) return;
+      standing.projection = projection;
+      standing.overlay?.setProjection(projection);
+      this.#update(avatar);
+    });
   }
 
   /** Frees what stands beside the stage. */

@@ -1,0 +1,81 @@
+import type { Landmarks, TemplateName } from 'cagecast/cages';
+import { element } from '../platform/page';
+import { type Fitting, madeOf, noteMade } from '../scene/cage-maker';
+import type { Session } from '../scene/session';
+import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
+import { damaged, listOf, numberOf, objectOf, textOf } from './checks';
+import type { Contribution } from './project';
+
+const kMostCages = 100;
+const kMostLandmarks = 1000;
+const kFarthest = 1e9; // of a landmark
+const kName = /^[a-z][a-z0-9_]{0,60}$/; // of a landmark
+
+/** How the cages were made that were made here, those of the wardrobe too. */
+export function cagePart(session: Session, wardrobe: WardrobeOfPage | undefined): Contribution {
+  return {
+    name: 'cages',
+    isWork: true,
+    save(keep) {
+      const { target, cage } = session.shown!;
+      const others = wardrobe?.kept.avatars ?? [];
+      const pairs = [{ files: target.files, cage }, ...others].flatMap(({ files, cage }) =>
+        files[0] && cage?.files[0] ? [{ target: files[0], cage: cage.files[0] }] : [],
+      );
+      const all = pairs.flatMap(({ target, cage }) => {
+        const own = madeOf(cage);
+        if (!own) return [];
+        // The model that it was made for may be gone.
+        return [{ cage: keep(cage), ...(own.target === target && { target: keep(target) }), fitting: own.fitting }];
+      });
+      return all.length > 0 ? all : undefined;
+    },
+    read(saved, files) {
+      const all = listOf(saved, kMostCages, 'cages').map((one) => {
+        const { cage, target, fitting } = objectOf(one, 'cage');
+        const file = files(cage);
+        // The cage itself stands for a model that is gone: it is no target.
+        const made = {
+          target: target === undefined ? file : files(target),
+          fitting: fitting === undefined ? undefined : fittingOf(fitting),
+        };
+        return { file, made };
+      });
+      return {
+        before() {
+          for (const { file, made } of all) noteMade(file, made);
+        },
+      };
+    },
+  };
+}
+
+function fittingOf(saved: unknown): Fitting {
+  const { template, given, used, confidence, missing } = objectOf(saved, 'fit');
+  const known = [...element('template-select', HTMLSelectElement).options].map(({ value }) => value);
+  if (!known.includes(template as string)) damaged('it has an unknown template');
+  return {
+    template: template as TemplateName,
+    given: landmarksOf(given),
+    used: landmarksOf(used),
+    confidence: Object.fromEntries(named(confidence).map(([name, value]) => [name, numberOf(value, 0, 1, 1)])),
+    missing: listOf(missing, kMostLandmarks, 'landmarks')
+      .map((name) => textOf(name, ''))
+      .filter((name) => kName.test(name)),
+  };
+}
+
+const named = (saved: unknown): [string, unknown][] =>
+  Object.entries(objectOf(saved, 'landmarks'))
+    .filter(([name]) => kName.test(name))
+    .slice(0, kMostLandmarks);
+
+const landmarksOf = (saved: unknown): Landmarks =>
+  Object.fromEntries(
+    named(saved).map(([name, at]) => {
+      const coordinate = (value: unknown): number =>
+        typeof value === 'number' && Math.abs(value) < kFarthest ? value : damaged('a landmark has no place');
+      const [x, y, z] = listOf(at, 3, 'coordinates');
+      return [name, [coordinate(x), coordinate(y), coordinate(z)]];
+    }),
+  );
