@@ -1,6 +1,7 @@
 import { basename, dirname, join } from 'node:path';
 import { dracoOf, meshoptView } from '../gltf/check.js';
 import { placeOf } from '../gltf/extract.js';
+import { standard } from '../gltf/files.js';
 import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
 import { diagonal, zoneAttribute } from '../gltf/overlay.js';
@@ -164,7 +165,8 @@ function refuseOverwriting(command: TransferCommand, { targetFile, cageFile }: R
     ...filesNamedIn(targetFile.json, dirname(command.target)),
     ...filesNamedIn(cageFile.json, dirname(command.cage)),
   ];
-  const read = new Set([...filesReadBy(command), ...beside].map((path) => fileOf(path)));
+  const paths = [...filesReadBy(command), ...beside].filter((path) => path !== standard);
+  const read = new Set(paths.map((path) => fileOf(path)));
   const written = files.map(({ path }) => fileOf(path));
   for (const [i, { path }] of files.entries()) {
     if (read.has(written[i]!))
