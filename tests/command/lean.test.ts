@@ -320,6 +320,33 @@ describe('files stay lean', () => {
     assertSamePicture(shown(document), await plainPicture(), 0.01);
   });
 
+  test('lines and small indices that share a view with triangles stay what they are with --compress meshopt', async () => {
+    const maker = new GlbMaker();
+    const attributes = { POSITION: maker.accessor(target.positions, 'VEC3') };
+    const lines = [
+      Uint32Array.of(0, 1, 1, 2, 2, 0), // as many as two triangles have
+      Uint16Array.of(3, 1, 8, 5),
+      Uint8Array.of(6, 2, 5, 0),
+    ];
+    const all = [Uint32Array.from(target.indices), ...lines];
+    const bufferView = maker.view(Buffer.concat(all.map(({ buffer }) => Buffer.from(buffer))), { target: 34963 });
+    let byteOffset = 0;
+    const primitives = all.map(({ length: count, byteLength, BYTES_PER_ELEMENT }, i) => {
+      const componentType = { 1: 5121, 2: 5123, 4: 5125 }[BYTES_PER_ELEMENT]!;
+      const accessor = { bufferView, byteOffset, componentType, count, type: 'SCALAR' } as GLTF.IAccessor;
+      byteOffset += byteLength;
+      return { attributes, indices: maker.json.accessors.push(accessor) - 1, ...(i > 0 && { mode: 1 as const }) };
+    });
+    maker.node({ mesh: maker.json.meshes.push({ primitives }) - 1 });
+    writeFileSync(at('lines.glb'), maker.finish());
+    const { document } = await written('lines.glb', '--compress', 'meshopt');
+    const kept = document.getRoot().listMeshes()[0]!.listPrimitives().slice(1);
+    assert.deepEqual(
+      kept.map((primitive) => primitive.getIndices()!.getArray()),
+      lines,
+    );
+  });
+
   test('a file that Draco compressed is compressed again, and shows the same', async () => {
     await converted('draco.glb', async (document) =>
       document.createExtension(KHRDracoMeshCompression).setRequired(true),

@@ -153,16 +153,19 @@ export class GlbWriter {
     return (this.json.bufferViews ??= []).push(added) - 1;
   }
 
-  /** Adds bytes of accessors, compressed if the file is. */
-  #addData(values: AttributeArray, target: number, byteStride?: number): number {
+  /**
+   * Adds bytes of accessors, compressed if the file is.
+   * @param mode  That of meshopt. `TRIANGLES` may turn triangles, so it is only for lists of them.
+   */
+  #addData(values: AttributeArray, mode: 'ATTRIBUTES' | 'TRIANGLES' | 'INDICES', byteStride?: number): number {
     const bytes = bytesOf(values);
+    const target = mode === 'ATTRIBUTES' ? arrayBuffer : elementArrayBuffer;
     const view = { target, ...(byteStride !== undefined && { byteStride }) };
     const name = this.#meshopt;
-    if (name === undefined || bytes.byteLength === 0) return this.addView(bytes, view);
-    const isIndices = target === elementArrayBuffer;
-    const stride = isIndices ? values.BYTES_PER_ELEMENT : byteStride!;
+    const stride = byteStride ?? values.BYTES_PER_ELEMENT;
+    // meshopt does not compress indices of one byte.
+    if (name === undefined || bytes.byteLength === 0 || stride === 1) return this.addView(bytes, view);
     const count = bytes.byteLength / stride;
-    const mode = isIndices ? 'TRIANGLES' : 'ATTRIBUTES';
     const packed = MeshoptEncoder.encodeGltfBuffer(bytes, count, stride, mode, 0);
     const { buffer, byteOffset } = this.#standIn(bytes.byteLength);
     const compressed = { buffer: 0, byteLength: packed.byteLength, byteStride: stride, count, mode };
@@ -207,7 +210,7 @@ export class GlbWriter {
   #addVertices(values: AttributeArray, size: number): number {
     const { aligned, byteStride } = align(values, size);
     const stride = byteStride ?? (this.#meshopt === undefined ? undefined : size * values.BYTES_PER_ELEMENT);
-    return this.#addData(aligned, arrayBuffer, stride);
+    return this.#addData(aligned, 'ATTRIBUTES', stride);
   }
 
   /** Stores some elements of an accessor; the others are 0. */
@@ -229,7 +232,7 @@ export class GlbWriter {
     // The largest value of a type is reserved.
     const values = vertexCount < 65536 ? Uint16Array.from(indices) : indices;
     const accessor = { componentType: componentTypeOf(values), count: indices.length, type: 'SCALAR' as const };
-    return this.#addAccessor({ ...accessor, bufferView: this.#addData(values, elementArrayBuffer) }, values, 1);
+    return this.#addAccessor({ ...accessor, bufferView: this.#addData(values, 'TRIANGLES') }, values, 1);
   }
 
   #addAccessor(accessor: Omit<GLTF.IAccessor, 'max' | 'min'>, values: AttributeArray, size: number): number {
@@ -288,6 +291,8 @@ export class GlbWriter {
     eachView(this.json, (owner, key) => references.set(owner[key]!, (references.get(owner[key]!) ?? 0) + 1));
     const primitives = (this.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
     const indices = new Set(primitives.flatMap((primitive) => primitive.indices ?? []));
+    const others = new Set(primitives.flatMap(({ mode = 4, indices }) => (mode === 4 ? [] : (indices ?? []))));
+    const isTriangles = (a: number) => !others.has(a) && accessors[a]!.count % 3 === 0;
     const isVertices = numbersOf(eachAccessor, {
       ...this.json,
       skins: [],
@@ -302,7 +307,7 @@ export class GlbWriter {
         const values = this.#decoded[a]!.getArray()!;
         delete accessors[a]!.byteOffset;
         accessors[a]!.bufferView = indices.has(a)
-          ? this.#addData(values, elementArrayBuffer)
+          ? this.#addData(values, isTriangles(a) ? 'TRIANGLES' : 'INDICES')
           : isVertices.has(a)
             ? this.#addVertices(values, this.#decoded[a]!.getElementSize())
             : this.addView(bytesOf(values)); // of a skin or an animation
