@@ -173,6 +173,47 @@ test('maps of normals and of roughness are added to materials that lack them, fl
   assert.equal(material.getOcclusionTexture(), material.getMetallicRoughnessTexture());
 });
 
+test('the occlusion of a model stays beside that of the paint: none, in its metallic-roughness texture, in one of its own', async () => {
+  const packed = picture(size, (x) => [x, 100, 50, 255]);
+  const apart = picture(size, (_, y) => [y, 0, 0, 255]);
+  const paint = picture(4, () => [200, 60, 90, 255]);
+  writeFileSync(at('orm.png'), pngOf(paint));
+  for (const occlusion of ['none', 'packed', 'apart']) {
+    const document = await io.read(at('box.glb'));
+    const [rough, dark] = [packed, apart].map((image) =>
+      document
+        .createTexture()
+        .setMimeType('image/png')
+        .setImage(new Uint8Array(pngOf(image))),
+    );
+    materialOf(document)
+      .setMetallicRoughnessTexture(rough!)
+      .setOcclusionTexture(occlusion === 'none' ? null : occlusion === 'packed' ? rough! : dark!)
+      .setOcclusionStrength(0.5);
+    if (occlusion !== 'apart') dark!.dispose();
+    writeFileSync(at('dark.glb'), await io.writeBinary(document));
+    const { status, stderr } = cagecast(
+      'bake',
+      at('dark.glb'),
+      at('cage.glb'),
+      '--orm',
+      at('orm.png'),
+      '-o',
+      at('orm.glb'),
+    );
+    assert.deepEqual([status, stderr], [0, '']);
+    assert.deepEqual(await validate(at('orm.glb')), []);
+    await baked(document, { paints: { orm: paint } });
+    for (const material of [document, await io.read(at('orm.glb'))].map(materialOf)) {
+      const [image, shown] = [material.getMetallicRoughnessTexture(), material.getOcclusionTexture()].map(imageOf);
+      assert.deepEqual(texel(image!, 16, 24), [200, 60, 90, 255], occlusion);
+      assert.deepEqual(texel(image!, 90, 2), [occlusion === 'none' ? 255 : 90, 100, 0, 255], occlusion);
+      assert.deepEqual([...shown!.data], [...(occlusion === 'apart' ? apart : image!).data], occlusion);
+      if (occlusion !== 'none') assert.equal(material.getOcclusionStrength(), 0.5);
+    }
+  }
+});
+
 test('two primitives with images of their own are painted each in its own; what cannot hold paint is told', async () => {
   const document = await io.read(at('box.glb'));
   const [mesh] = document.getRoot().listMeshes();

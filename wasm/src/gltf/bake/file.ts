@@ -93,6 +93,10 @@ export class FileModel implements BakeModel<number, number> {
     return [baseColorFactor[0]!, baseColorFactor[1]!, baseColorFactor[2]!];
   }
 
+  hasOcclusion(material: number): boolean {
+    return this.#material(material).occlusionTexture !== undefined;
+  }
+
   async imageOf(texture: number): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
     const { json, buffers, path, reading } = this.#file;
     const source = sourceOf(json.textures![texture]!);
@@ -114,13 +118,14 @@ export class FileModel implements BakeModel<number, number> {
     const before = json.textures![use.texture]!;
     const isOwn = infoOf(this.#material(materials[0]!), slot) !== undefined;
     const name = before.name ?? json.images?.[sourceOf(before) ?? -1]?.name ?? 'painted';
-    const number = writer.addTexture({ bytes: png, mimeType: 'image/png', name });
+    let number = writer.addTexture({ bytes: png, mimeType: 'image/png', name });
     const made = json.textures![number]!;
     if (before.sampler !== undefined) made.sampler = before.sampler;
     if (isOwn && this.#isOnlyFor(use.texture, materials, slot)) {
       // In its place, so that extensions with materials of their own, such as those of avatars, show it, too.
       const image = json.images!.pop()!;
       json.textures!.pop();
+      number = use.texture;
       const source = sourceOf(before)!;
       const isShared = json.textures!.some((other) => other !== before && sourceOf(other) === source);
       for (const extension of imageExtensions) delete before.extensions?.[extension];
@@ -136,8 +141,11 @@ export class FileModel implements BakeModel<number, number> {
             extension,
             json.textures!.some((texture) => texture.extensions?.[extension]),
           );
-    } else for (const material of materials) lay(this.#material(material), slot, number);
-    for (const material of materials) resetFactors(this.#material(material), slot);
+    }
+    for (const material of materials) {
+      lay(this.#material(material), slot, number);
+      resetFactors(this.#material(material), slot);
+    }
   }
 
   /** Whether the standard materials use a texture in no other way. */

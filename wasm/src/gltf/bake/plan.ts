@@ -44,6 +44,8 @@ export interface BakeModel<Material, Texture> {
   useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
   /** By what the values of the texture are multiplied. */
   factorOf(material: Material, slot: Slot): readonly [number, number, number];
+  /** Whether a texture shows occlusion: the metallic-roughness one, or one of its own. */
+  hasOcclusion(material: Material): boolean;
   imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined>;
   /** Gives materials a new texture in a slot, a PNG with the factor in it. @param use  Whose UVs and wrap modes it has. */
   replace(materials: readonly Material[], slot: Slot, png: Uint8Array, use: TextureUse<Texture>): void;
@@ -98,6 +100,8 @@ interface Sheet<Material, Texture> {
   use: TextureUse<Texture>;
   /** Whether the material has no texture in this slot yet. */
   isNew: boolean;
+  /** Whether the red of its texture meant nothing, and will be occlusion. */
+  redIsNew: boolean;
   factor: readonly [number, number, number];
   materials: Set<Material>;
   parts: Piece[];
@@ -164,8 +168,10 @@ function listSheets<Material, Texture>(
     }
     if (!numbers.has(use.texture)) numbers.set(use.texture, numbers.size);
     const factor = model.factorOf(material, slot);
-    const key = JSON.stringify([numbers.get(use.texture), own === undefined, factor, use.wraps]);
-    const sheet = sheets.get(key) ?? { slot, use, isNew: own === undefined, factor, materials: new Set(), parts: [] };
+    const isNew = own === undefined;
+    const redIsNew = slot === 'orm' && !model.hasOcclusion(material);
+    const key = JSON.stringify([numbers.get(use.texture), isNew, redIsNew, factor, use.wraps]);
+    const sheet = sheets.get(key) ?? { slot, use, isNew, redIsNew, factor, materials: new Set(), parts: [] };
     sheet.materials.add(material);
     sheet.parts.push(...parts);
     sheets.set(key, sheet);
@@ -200,7 +206,7 @@ async function bakeSheet<Material, Texture>(
 /** The image of a sheet, or what stands for it: a flat normal map, say. */
 async function baseOf<Material, Texture>(
   model: BakeModel<Material, Texture>,
-  { use, isNew, slot }: Sheet<Material, Texture>,
+  { use, isNew, redIsNew, slot }: Sheet<Material, Texture>,
   { codec, size }: BakeInput,
 ): Promise<Image | string> {
   if (isNew) {
@@ -220,6 +226,7 @@ async function baseOf<Material, Texture>(
   } catch (error) {
     return `its ${kinds[slot]} texture (${file.mimeType}) cannot be read: ${error instanceof Error ? error.message : error}`;
   }
+  if (redIsNew) image = { ...image, data: image.data.map((byte, i) => (i % 4 === 0 ? 255 : byte)) };
   if (size === undefined) return image;
   const scale = size / Math.max(image.width, image.height);
   return resize(image, Math.max(1, Math.round(scale * image.width)), Math.max(1, Math.round(scale * image.height)));

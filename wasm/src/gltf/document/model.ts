@@ -61,6 +61,10 @@ export class DocumentModel implements BakeModel<Material, Texture> {
     return [r, g, b];
   }
 
+  hasOcclusion(material: Material): boolean {
+    return material.getOcclusionTexture() !== null;
+  }
+
   async imageOf(texture: Texture): Promise<{ bytes: Uint8Array; mimeType: string } | undefined> {
     const bytes = texture.getImage();
     return bytes ? { bytes, mimeType: texture.getMimeType() } : undefined;
