@@ -79,6 +79,39 @@ test('- is the standard input and output; the summary goes beside it', () => {
   assert.deepEqual([twice.status, twice.stderr.toString()], [2, 'cagecast: only one file can be the standard input\n']);
 });
 
+test('a standard output that does not take all of it is one line and exit code 1', () => {
+  if (!existsSync('/dev/full')) return;
+  const transfer = ['transfer', at('target.glb'), ...cage];
+  const shell = (script: string, ...args: string[]) => {
+    const command = ['-c', script, at('cut'), process.execPath, 'dist/cli.js', ...args];
+    const { status, stderr } = spawnSync('bash', command, { encoding: 'utf8' });
+    return [status, stderr];
+  };
+  const line = (reason: string) => `cagecast: the standard output: cannot be written (${reason}, write)\n`;
+  for (const args of [[...transfer, '-o', '-'], [...transfer, '--json'], ['completion', 'bash'], ['help']]) {
+    const full = shell('"$@" > /dev/full', ...args);
+    assert.deepEqual(full, [1, line('ENOSPC: no space left on device')], args.join(' '));
+    const cut = shell('ulimit -f 1; "$@" > "$0"', ...args); // takes the first bytes
+    assert.deepEqual(cut, [1, line('EFBIG: file too large')], args.join(' '));
+  }
+  assert.equal(shell('"$@" > /dev/full', 'batch', at('target.glb'), ...cage)[0], 1);
+  assert.equal(shell('"$@" > /dev/full', ...transfer, '-o', '-', '--report', at('beside.json'))[0], 1);
+  assert.ok(!existsSync(at('beside.json')), 'all files are written, or none');
+});
+
+test('a reader that closes the pipe early changes neither the exit code nor what is written', () => {
+  const shell = (...args: string[]) => {
+    const command = ['-c', 'set -o pipefail; "$0" "$@" | true', process.execPath, 'dist/cli.js', ...args];
+    const { status, stderr } = spawnSync('bash', command, { encoding: 'utf8' });
+    return { status, stderr };
+  };
+  writeFileSync(at('far.glb'), glbOf({ ...target, positions: target.positions.map((x) => x + 9) }));
+  assert.deepEqual(shell('inspect', at('far.glb'), ...cage), { status: 3, stderr: '' });
+  const outputs = ['-o', at('read-{name}.glb'), '--workers', '1'];
+  assert.equal(shell('batch', at('target.glb'), at('far.glb'), ...cage, ...outputs).status, 0);
+  for (const name of ['read-target.glb', 'read-far.glb']) assert.ok(existsSync(at(name)), name);
+});
+
 test('--json and --quiet work on every command; help is a command', () => {
   const report = JSON.parse(ok('transfer', at('target.glb'), ...cage, '--json')) as { counts: object };
   const inspection = JSON.parse(ok('inspect', at('target.glb'), ...cage, '--json')) as { counts: object };

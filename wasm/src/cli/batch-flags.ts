@@ -5,6 +5,7 @@ import { jobsOfManifest, jobsOfPatterns } from './batch-jobs.js';
 import { addConfigFlags, type ConfigFlags, settler } from './config/config-flags.js';
 import { borderKinds } from './config/settings.js';
 import { addRuleFlags, type RuleFlags } from './options.js';
+import { writeStandard } from './output.js';
 import { addCageAreaFlags, addRegionFlag, type CageFlags } from './paint/paint-flags.js';
 import { addPrintFlags, type PrintFlags } from './print.js';
 import type { Progress } from './progress.js';
@@ -120,10 +121,9 @@ Examples:
     };
     const jobs =
       manifest === undefined ? await jobsOfPatterns(targets, defaults) : await jobsOfManifest(manifest, defaults);
-    const write = (line: string) => process.stdout.write(line);
     const summary = await batchCommand(
       { jobs, results, resume, failOn, workers },
-      flags.quiet ? () => {} : write,
+      flags.quiet ? () => {} : writeStandard,
       progress,
     );
     if (!flags.quiet) process.stderr.write(`${flags.json ? JSON.stringify(summary) : describeBatch(summary)}\n`);

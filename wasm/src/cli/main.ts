@@ -8,8 +8,12 @@ import { makeProgram } from './program/program.js';
 import { Progress } from './progress.js';
 import { unusable, wrongUsage } from './usage.js';
 
-// A reader that closes the pipe early, such as `head`, is not an error.
-process.stdout.on('error', (error: NodeJS.ErrnoException) => process.exit(error.code === 'EPIPE' ? 0 : unusable));
+// A reader that closes the pipe early, such as `head`, is not an error: what is left to be done is done.
+process.stdout.on('error', (error: NodeJS.ErrnoException) => {
+  if (error.code === 'EPIPE') return;
+  process.stderr.write(`cagecast: the standard output: cannot be written (${firstLine(error)})\n`);
+  process.exit(unusable);
+});
 
 /** Runs the command that the arguments say. */
 async function main(): Promise<void> {

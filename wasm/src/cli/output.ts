@@ -1,5 +1,17 @@
-import { chmodSync, lstatSync, readlinkSync, realpathSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import {
+  chmodSync,
+  fstatSync,
+  lstatSync,
+  readlinkSync,
+  realpathSync,
+  renameSync,
+  rmSync,
+  type Stats,
+  statSync,
+  writeFileSync,
+} from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
+import { isatty } from 'node:tty';
 import { reasons, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 
@@ -19,12 +31,25 @@ export function writeFiles(files: readonly { path: string; data: Uint8Array | st
       attempt(path, () => writeAs(place, temporary, data));
     }
     for (const { path, data } of files.filter(({ path }) => isStream(path)))
-      attempt(path, () => (path === standard ? process.stdout.write(data) : writeFileSync(path, data)));
+      if (path === standard) writeStandard(data);
+      else attempt(path, () => writeFileSync(path, data));
     for (const { path, temporary } of written.reverse()) attempt(path, () => renameSync(temporary, placeOf(path)));
   } finally {
     for (const { temporary } of written) rmSync(temporary, { force: true });
   }
 }
+
+/**
+ * Writes to the standard output.
+ * @throws {InputError} if it is a file or a device that does not take all of it. Errors of pipes are events of `process.stdout`.
+ */
+export function writeStandard(data: Uint8Array | string): void {
+  if (isatty(1) || isPipe(fstatSync(1))) process.stdout.write(data);
+  // Node's stream for files loses without an error what the disk has no room for.
+  else attempt('the standard output', () => writeFileSync(1, data));
+}
+
+const isPipe = (found: Stats): boolean => found.isFIFO() || found.isSocket();
 
 /** Writes a file under a temporary name, with the permissions of the file that it will replace, if there is one. */
 function writeAs(place: string, temporary: string, data: Uint8Array | string): void {

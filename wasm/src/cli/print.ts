@@ -1,5 +1,6 @@
 import type { Command } from 'commander';
 import { standard } from '../gltf/files.js';
+import { writeStandard } from './output.js';
 
 // What a terminal obeys instead of showing: control characters, and marks that turn the direction of text.
 const commands = /(?![\n\t])[\p{Cc}\p{Bidi_Control}]/gu;
@@ -43,5 +44,6 @@ export function print(
 ): void {
   if (quiet) return;
   const found = `${harmless(json ? JSON.stringify(report, null, 2) : text)}\n`;
-  (outputs.includes(standard) ? process.stderr : process.stdout).write(found);
+  if (outputs.includes(standard)) process.stderr.write(found);
+  else writeStandard(found);
 }

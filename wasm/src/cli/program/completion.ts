@@ -1,4 +1,5 @@
 import { type Command, InvalidArgumentError, type Option } from 'commander';
+import { writeStandard } from '../output.js';
 
 /** The shells for which there is completion. */
 export const shells = ['bash', 'zsh', 'fish'] as const;
@@ -137,6 +138,6 @@ zsh, in ~/.zshrc after compinit:   source <(cagecast completion zsh)
 fish:                              cagecast completion fish > ~/.config/fish/completions/cagecast.fish`,
     )
     .action((shell: Shell) => {
-      process.stdout.write(completion(program, shell));
+      writeStandard(completion(program, shell));
     });
 }

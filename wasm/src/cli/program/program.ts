@@ -2,6 +2,7 @@ import { Command } from 'commander';
 import { addBakeCommand } from '../bake/flags.js';
 import { addBatchCommand } from '../batch-flags.js';
 import { addCageCommands } from '../cage-flags.js';
+import { writeStandard } from '../output.js';
 import { oneLine } from '../print.js';
 import type { Progress } from '../progress.js';
 import { addCompletionCommand } from './completion.js';
@@ -20,6 +21,7 @@ export function makeProgram(progress: Progress): Command {
     .helpCommand('help [COMMAND]', 'print help for COMMAND')
     .exitOverride()
     .configureOutput({
+      writeOut: writeStandard,
       outputError: (text, write) =>
         write(
           `cagecast: ${oneLine(
