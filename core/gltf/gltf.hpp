@@ -31,7 +31,7 @@ struct Part {
 struct Model {
   std::vector<float> positions;        ///< 3 per vertex, world transforms applied.
   std::vector<std::uint32_t> indices;  ///< 3 per triangle; strips and fans are expanded.
-  std::vector<float> uvs;              ///< 2 per vertex (TEXCOORD_0); empty unless every part has them.
+  std::vector<float> uvs;              ///< 2 per vertex; empty unless every part has them.
   std::vector<std::uint32_t> groups;   ///< 1 per vertex: the number of its part.
   std::vector<Part> parts;             ///< In scene order, depth first.
 
@@ -43,7 +43,8 @@ struct Model {
 ///
 /// Takes sparse and quantised accessors (KHR_mesh_quantization) and buffers that are embedded, data URIs or files
 /// beside it. A mirrored node has its triangles turned round, so that they still face outward. A skinned mesh comes as
-/// it is stored, in the space of its node. Not understood: Draco and meshopt compression.
+/// it is stored, in the space of its node. UVs are of the set that the base colour texture names, of TEXCOORD_0 without
+/// a texture. Not understood: Draco and meshopt compression, KHR_texture_transform.
 Result read(const std::string& path, Model& out);
 
 /// Reads a .glb or .gltf file out of memory.

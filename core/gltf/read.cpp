@@ -80,9 +80,17 @@ float toFloat(double value) {
   return static_cast<float>(value);
 }
 
-int attributeOf(const tinygltf::Primitive& primitive, const char* name) {
+int attributeOf(const tinygltf::Primitive& primitive, const std::string& name) {
   const auto found = primitive.attributes.find(name);
   return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+/// The UV set by which the base colour texture of a primitive lies on it; the first if it has none.
+std::string uvSetOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive) {
+  if (primitive.material < 0) return "TEXCOORD_0";
+  const tinygltf::TextureInfo& texture =
+      model.materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness.baseColorTexture;
+  return "TEXCOORD_" + std::to_string(texture.index < 0 ? 0 : texture.texCoord);
 }
 
 /// A primitive in its place in the scene.
@@ -94,7 +102,8 @@ struct Instance {
 
 void append(const tinygltf::Model& model, const Instance& instance, Model& out, bool& haveUvs) {
   const auto& [primitive, where, name, world] = instance;
-  const int position = attributeOf(primitive, "POSITION"), texcoord = attributeOf(primitive, "TEXCOORD_0");
+  const std::string uvSet = uvSetOf(model, primitive);
+  const int position = attributeOf(primitive, "POSITION"), texcoord = attributeOf(primitive, uvSet);
   if (primitive.extensions.count(kCompressions[0].first) != 0 &&
       element(model.accessors, position, "accessors", where).bufferView < 0)
     failCompressed(kCompressions[0].first, kCompressions[0].second);
@@ -131,9 +140,9 @@ void append(const tinygltf::Model& model, const Instance& instance, Model& out, 
   out.groups.resize(firstVertex + vertexCount, part);
   haveUvs = haveUvs && texcoord >= 0;
   if (!haveUvs) return;
-  const std::vector<double> uvs = decode(model, texcoord, TINYGLTF_TYPE_VEC2, 2, where + ".TEXCOORD_0");
+  const std::vector<double> uvs = decode(model, texcoord, TINYGLTF_TYPE_VEC2, 2, where + "." + uvSet);
   if (uvs.size() != vertexCount * 2)
-    fail(where, ".TEXCOORD_0 has ", uvs.size() / 2, " elements for ", vertexCount, " vertices");
+    fail(where, ".", uvSet, " has ", uvs.size() / 2, " elements for ", vertexCount, " vertices");
   for (const double uv : uvs) out.uvs.push_back(toFloat(uv));
 }
 

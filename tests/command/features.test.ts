@@ -4,12 +4,13 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Document, NodeIO } from '@gltf-transform/core';
+import { Document, type GLTF, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS, KHRTextureTransform } from '@gltf-transform/extensions';
 import { init, transfer } from 'cagecast';
 import { cagecast as cagecastTransform } from 'cagecast/gltf';
 import draco from 'draco3dgltf';
 import { MeshoptDecoder } from 'meshoptimizer';
+import { PNG } from 'pngjs';
 import { cagecast, GlbMaker, glbOf, unpackGlb, validate } from '../js/glb.js';
 import { head } from '../js/scenes.js';
 
@@ -316,4 +317,55 @@ test('KHR_texture_transform on the cage is applied: scaled, rotated, moved; by t
   const own = await io.read(at('target.glb'));
   await own.transform(cagecastTransform({ cage: document, seams: 'vertex' }));
   near(uvsOf(own, 'TEXCOORD_1'), 'function');
+});
+
+test('the UVs of a cage are those of its base colour texture, the first ones without a texture', async () => {
+  const cageWith = (name: string, texture: object | undefined, sets = [0, 1]) => {
+    const maker = new GlbMaker();
+    const { positions, indices, uvs } = scene.cage;
+    const attributes: GLTF.IMeshPrimitive['attributes'] = { POSITION: maker.accessor(positions, 'VEC3') };
+    for (const set of sets)
+      attributes[`TEXCOORD_${set}`] = maker.accessor(set === 0 ? uvs!.map((x) => x / 2) : uvs!.slice(), 'VEC2');
+    const primitive = { attributes, indices: maker.accessor(Uint32Array.from(indices), 'SCALAR'), material: 0 };
+    maker.node({ mesh: maker.json.meshes.push({ primitives: [primitive] }) - 1, name: 'around' });
+    const image = PNG.sync.write(new PNG({ width: 1, height: 1 }));
+    maker.json.images = [{ uri: `data:image/png;base64,${image.toString('base64')}` }];
+    maker.json.textures = [{ source: 0 }];
+    maker.json.materials = [{ pbrMetallicRoughness: texture ? { baseColorTexture: { index: 0, ...texture } } : {} }];
+    writeFileSync(at(name), maker.finish());
+    return at(name);
+  };
+  for (const [name, texture, factor] of [
+    ['second.glb', { texCoord: 1 }, 1],
+    ['first.glb', {}, 0.5],
+    ['bare.glb', undefined, 0.5],
+  ] as const) {
+    const expected = transfer({ ...scene.cage, uvs: scene.cage.uvs!.map((x) => x * factor) }, target, {
+      seams: 'vertex',
+    }).uvs;
+    const path = cageWith(name, texture);
+    ok('transfer', at('target.glb'), '--cage', path, '--seams', 'vertex', '-o', at('second-out.glb'));
+    const written = uvsOf(await io.read(at('second-out.glb')), 'TEXCOORD_1').flat();
+    const first = written.slice(0, expected.length);
+    assert.ok(
+      first.every((x, i) => Math.abs(x - expected[i]!) < 1e-4),
+      name,
+    );
+    let found: Float32Array | undefined;
+    const document = await io.read(at('target.glb'));
+    const onResult = ({ uvs }: { uvs: Float32Array }) => void (found = uvs);
+    await document.transform(cagecastTransform({ cage: await io.read(path), seams: 'vertex', onResult }));
+    assert.deepEqual(found, expected, name);
+  }
+  const { status, stderr } = cagecast(
+    'transfer',
+    at('target.glb'),
+    '--cage',
+    cageWith('lacking.glb', { texCoord: 1 }, [0]),
+  );
+  assert.equal(status, 1);
+  assert.match(
+    stderr,
+    /lacking\.glb: meshes\[0\]\.primitives\[0\] \("around"\) has no TEXCOORD_1: the texture is drawn/,
+  );
 });

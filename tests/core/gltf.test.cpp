@@ -207,6 +207,21 @@ TEST_CASE("interleaved and offset accessors are read", "[gltf]") {
   CHECK(model.uvs == Floats{0.5f, 0.25f, 0.125f, 1, 0, 2});
 }
 
+TEST_CASE("UVs are those of the base colour texture, the first ones without a texture", "[gltf]") {
+  File file = triangle();
+  file.accessor(file.view<float>({1, 1, 1, 1, 1, 1, 1, 1, 1, 1}), kFloat, "VEC2", 5);
+  file.accessor(file.view<float>({2, 2, 2, 2, 2, 2, 2, 2, 2, 2}), kFloat, "VEC2", 5);
+  const auto withMaterial = [&](const std::string& members) {
+    file.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":2,"TEXCOORD_1":3},"indices":1,"material":0)";
+    file.extra = R"(,"textures":[{}],"materials":[{)" + members + "}]";
+    return readable(file.bytes()).uvs;
+  };
+  CHECK(withMaterial(R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1}})") == Floats(10, 2));
+  CHECK(withMaterial(R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}})") == Floats(10, 1));
+  CHECK(withMaterial(R"("emissiveTexture":{"index":0,"texCoord":1})") == Floats(10, 1));
+  CHECK(withMaterial(R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":2}})").empty());
+}
+
 TEST_CASE("sparse accessors are read, over values or over nothing", "[gltf]") {
   for (const bool over : {true, false}) {
     File file;

@@ -60,6 +60,24 @@ describe('extract', () => {
     assert.deepEqual(extract(new Group().add(meshOf(scene.target))).mesh, single);
   });
 
+  test('UVs are of the channel of the base colour texture, the first ones without a texture', () => {
+    const mesh = meshOf(scene.cage);
+    mesh.geometry.setAttribute(
+      'uv1',
+      new BufferAttribute(
+        scene.cage.uvs!.map((x) => x / 2),
+        2,
+      ),
+    );
+    assert.deepEqual(extract(mesh).mesh.uvs, scene.cage.uvs);
+    mesh.material.map = new Texture();
+    assert.deepEqual(extract(mesh).mesh.uvs, scene.cage.uvs);
+    mesh.material.map.channel = 1;
+    assert.deepEqual(extract(mesh).mesh.uvs, mesh.geometry.getAttribute('uv1').array);
+    mesh.material.map.channel = 2;
+    assert.equal(extract(mesh).mesh.uvs, undefined);
+  });
+
   test('meshes of a scene are joined and moved, with a group each; mirrored ones keep their outside', () => {
     const small = ball([0, 0, 0], () => 0.2, 6, 9);
     const left = meshOf(small);

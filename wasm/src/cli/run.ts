@@ -2,7 +2,7 @@ import { cageGlb } from '../cages/glb.js';
 import type { Cage } from '../cages/types.js';
 import { FileModel } from '../gltf/bake/file.js';
 import { masksOf } from '../gltf/bake/masks.js';
-import { type Extracted, extract, partOf, placeOf } from '../gltf/extract.js';
+import { type Extracted, extract, type Part, partOf, placeOf, uvLayout } from '../gltf/extract.js';
 import type { ReadOptions } from '../gltf/files.js';
 import { InputError } from '../gltf/input-error.js';
 import { type GltfFile, readGltf } from '../gltf/read.js';
@@ -131,12 +131,12 @@ export async function readModel(
 export function withUvs(model: ReadModel): ReadModel {
   const { file, extracted } = model;
   if (extracted.mesh.uvs !== undefined) return model;
-  const part =
-    extracted.parts.find(
-      ({ mesh, primitive }) => file.json.meshes![mesh]!.primitives[primitive]!.attributes['TEXCOORD_0'] === undefined,
-    ) ?? extracted.parts[0]!;
+  const setOf = (part: Part) => uvLayout(file.json, part).set;
+  const part = extracted.parts.find(
+    (one) => file.json.meshes![one.mesh]!.primitives[one.primitive]!.attributes[setOf(one)] === undefined,
+  )!;
   throw new InputError(
-    `${placeOf(part)} (${quoted(part.name)}) has no TEXCOORD_0: the texture is drawn in the cage's UVs`,
+    `${placeOf(part)} (${quoted(part.name)}) has no ${setOf(part)}: the texture is drawn in the cage's UVs`,
   ).in(file.path);
 }
 

@@ -27,7 +27,7 @@ export interface Part extends Piece {
 
 /** All triangles of a glTF's scene as arrays, and the parts that they come from. */
 export interface Extracted {
-  /** With one group per part; with UVs if every primitive has a first set. */
+  /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
@@ -224,7 +224,7 @@ function readTriangles(
 function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Array | undefined {
   const uvs = new Float32Array(2 * vertexCount);
   for (const part of parts) {
-    const { set, apply } = textureTransform(file.json, part);
+    const { set, transform } = uvLayout(file.json, part);
     const accessor = accessorOf(file, placeOf(part), part.mesh, part.primitive, set);
     if (accessor === undefined) return undefined;
     if (accessor.getElementSize() !== 2)
@@ -232,17 +232,19 @@ function readUvs(file: GltfFile, parts: Part[], vertexCount: number): Float32Arr
     if (accessor.getCount() !== part.vertexCount) {
       throw new InputError(`${placeOf(part)} has ${accessor.getCount()} ${set} for ${part.vertexCount} vertices`);
     }
-    uvs.set(apply(decodeFloats(accessor)), 2 * part.firstVertex);
+    const own = decodeFloats(accessor);
+    uvs.set(transform ? transformUvs(own, transform) : own, 2 * part.firstVertex);
   }
   return parts.length > 0 ? uvs : undefined;
 }
 
 /** How the base colour texture of a part is laid on it: by which UV set, and how its UVs are transformed. */
-function textureTransform({ meshes, materials = [] }: GLTF.IGLTF, { mesh, primitive }: Part) {
+export function uvLayout(
+  { meshes, materials = [] }: GLTF.IGLTF,
+  { mesh, primitive }: Part,
+): { set: string; transform: Partial<UvTransform> | undefined } {
   const material = materials[meshes![mesh]!.primitives[primitive]!.material ?? -1];
   const info = material?.pbrMetallicRoughness?.baseColorTexture;
   const transform = info?.extensions?.['KHR_texture_transform'] as Partial<UvTransform> | undefined;
-  if (transform === undefined) return { set: 'TEXCOORD_0', apply: (uvs: Float32Array) => uvs };
-  const set = `TEXCOORD_${transform.texCoord ?? info!.texCoord ?? 0}`;
-  return { set, apply: (uvs: Float32Array) => transformUvs(uvs, transform) };
+  return { set: `TEXCOORD_${transform?.texCoord ?? info?.texCoord ?? 0}`, transform };
 }

@@ -7,6 +7,7 @@ import {
   Matrix4,
   type Object3D,
   type SkinnedMesh,
+  type Texture,
   type Mesh as ThreeMesh,
 } from 'three';
 import { CagecastError, type Mesh } from '../index.js';
@@ -29,7 +30,7 @@ export interface Part {
 
 /** All triangles of a scene as arrays, and the parts that they come from. */
 export interface Extracted {
-  /** With UVs if every part has the attribute `uv`. */
+  /** With UVs if every part has those of its base colour texture, or the attribute `uv` without one. */
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: Part[];
@@ -245,11 +246,19 @@ function placeGroups(
   return Math.max(next, first + 1);
 }
 
+/** The attribute of UVs by which the base colour texture of a part lies on it; the first if it has none. */
+function uvNameOf({ mesh }: Part): string {
+  const maps = [mesh?.material].flat().map((material) => (material as { map?: Texture | null } | undefined)?.map);
+  const channel = maps.find((map) => map)?.channel ?? 0;
+  return channel === 0 ? 'uv' : `uv${channel}`;
+}
+
 function readUvs(parts: readonly Part[], vertices: number, argument: string): Float32Array | undefined {
-  if (parts.length === 0 || !parts.every(({ geometry }) => geometry.hasAttribute('uv'))) return undefined;
+  const found = parts.map((part) => part.geometry.getAttribute(uvNameOf(part)) as Attribute | undefined);
+  if (parts.length === 0 || found.includes(undefined)) return undefined;
   const uvs = new Float32Array(2 * vertices);
-  for (const { name, geometry, firstVertex, vertexCount } of parts) {
-    const uv = geometry.getAttribute('uv') as Attribute;
+  for (const [p, { name, firstVertex, vertexCount }] of parts.entries()) {
+    const uv = found[p]!;
     if (uv.count !== vertexCount || uv.itemSize !== 2)
       throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
     for (let v = 0; v < vertexCount; ++v) {

@@ -1,5 +1,13 @@
 import { placeOf } from 'cagecast/three';
-import { type BufferAttribute, type InterleavedBufferAttribute, Matrix4, Mesh, type Object3D, Vector3 } from 'three';
+import {
+  type BufferAttribute,
+  type InterleavedBufferAttribute,
+  Matrix4,
+  Mesh,
+  type Object3D,
+  type Texture,
+  Vector3,
+} from 'three';
 import { Pace } from '../platform/pace';
 
 /** One triangle mesh of the scene, and the ranges of its elements in the concatenated arrays. */
@@ -26,7 +34,7 @@ export interface ExtractedMesh {
   rest?: Float32Array;
   /** 3 per triangle, counter-clockwise seen from outside. */
   indices: Uint32Array;
-  /** 2 per vertex, from the first UV set; absent unless every primitive has one. */
+  /** 2 per vertex, of the set of the base colour texture, else of the first; absent unless every primitive has it. */
   uvs?: Float32Array;
   /** 1 per vertex: the index of its primitive. Only vertices of the same primitive are welded. */
   groups: Uint32Array;
@@ -73,7 +81,7 @@ export async function extractMesh(
     groups.fill(group, primitive.firstVertex, primitive.firstVertex + primitive.vertexCount);
   }
 
-  const hasUvs = primitives.every((primitive) => primitive.mesh.geometry.hasAttribute('uv'));
+  const hasUvs = primitives.every(({ mesh }) => mesh.geometry.hasAttribute(uvNameOf(mesh)));
   return { positions, indices, groups, primitives, ...(hasUvs && { uvs: copyUvs(primitives, vertexCount) }) };
 }
 
@@ -155,10 +163,16 @@ export function reverseWinding(indices: Uint32Array): void {
   }
 }
 
+/** The attribute of UVs by which the base colour texture of a mesh lies on it; the first if it has none. */
+function uvNameOf({ material }: Mesh): string {
+  const channel = (material as { map?: Texture | null }).map?.channel ?? 0;
+  return channel === 0 ? 'uv' : `uv${channel}`;
+}
+
 function copyUvs(primitives: Primitive[], vertexCount: number): Float32Array {
   const uvs = new Float32Array(2 * vertexCount);
   for (const { mesh, firstVertex } of primitives) {
-    const uv = mesh.geometry.attributes.uv as Attribute;
+    const uv = mesh.geometry.getAttribute(uvNameOf(mesh)) as Attribute;
     for (let i = 0; i < uv.count; i++) {
       uvs[2 * (firstVertex + i)] = uv.getX(i);
       uvs[2 * (firstVertex + i) + 1] = uv.getY(i);

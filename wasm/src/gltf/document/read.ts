@@ -33,7 +33,7 @@ export interface DocumentPart extends Piece {
 
 /** All triangles of a document's scene as arrays, and the parts that they come from. */
 export interface ExtractedDocument {
-  /** With one group per part; with UVs if every primitive has a first set. */
+  /** With one group per part; with UVs if every primitive has the set of its base colour texture, or the first without one. */
   mesh: Mesh & { indices: Uint32Array };
   /** In the order of their vertices. */
   parts: DocumentPart[];
@@ -65,13 +65,12 @@ export function extractDocument(document: Document): ExtractedDocument {
 }
 
 /** How the base colour texture of a primitive is laid on it: by which UV set, and how its UVs are transformed. */
-function uvLayout(primitive: Primitive): { set: string; transform?: UvTransform } {
+function uvLayout(primitive: Primitive): { set: string; transform?: Partial<UvTransform> } {
   const info = primitive.getMaterial()?.getBaseColorTextureInfo();
   const found = info?.getExtension('KHR_texture_transform') as KHRTransform | null | undefined;
-  if (!info || !found) return { set: 'TEXCOORD_0' };
-  const texCoord = found.getTexCoord() ?? info.getTexCoord();
-  const transform = { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale(), texCoord };
-  return { set: `TEXCOORD_${texCoord}`, transform };
+  const set = `TEXCOORD_${found?.getTexCoord() ?? info?.getTexCoord() ?? 0}`;
+  if (!found) return { set };
+  return { set, transform: { offset: found.getOffset(), rotation: found.getRotation(), scale: found.getScale() } };
 }
 
 /** The extension of glTF-Transform, which is no dependency. */
