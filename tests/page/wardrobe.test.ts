@@ -235,14 +235,20 @@ test('an avatar that leaves the stage, and one that is just being painted, follo
   /** Waits until so many transfers have been asked for, by a preset, since the last time. */
   const asked = async (preset: string, count: number): Promise<void> => {
     const wanted = JSON.stringify(Array.from({ length: count }, () => preset));
-    await page.waitForFunction(`JSON.stringify(window.asked) === '${wanted}'`);
+    await page.waitForFunction(
+      (wanted) => JSON.stringify((window as unknown as { asked: string[] }).asked) === wanted,
+      wanted,
+    );
     await page.waitForTimeout(1000);
     assert.equal(await page.evaluate('JSON.stringify(window.asked)'), wanted);
     await page.evaluate('window.asked = []');
   };
   const model = (name: string): Upload => glb(`${name}.glb`, asset('lizard', 'target.glb'));
   const cage = glb('cage.glb', asset('lizard', 'cage.glb'));
-  await drop(page, [model('one'), model('two'), cage]);
+  await drop(page, [model('one'), cage]);
+  await page.getByTestId('open-wardrobe').click();
+  await avatars(page, 1);
+  await drop(page, [model('two'), cage]);
   await avatars(page, 2);
   await page.locator('.avatars .avatar').nth(1).click();
   await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'two' }).waitFor();
