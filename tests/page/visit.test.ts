@@ -211,6 +211,34 @@ test('the wheel brings near what is under the pointer; the right button and Shif
   assert.deepEqual(complaints, []);
 });
 
+test('a verdict on the model before is not shown for the one that comes', async () => {
+  const { page, complaints } = await site.visit(
+    {},
+    // Holds the first verdict back until the next model is shown.
+    `const { set } = Object.getOwnPropertyDescriptor(Worker.prototype, 'onmessage');
+    Object.defineProperty(Worker.prototype, 'onmessage', {
+      set(handler) {
+        set.call(this, (event) => {
+          if (window.held || !event.data.answer?.verdict) return handler.call(this, event);
+          window.held = () => handler.call(this, event);
+          const observer = new MutationObserver(() => {
+            observer.disconnect();
+            window.held();
+          });
+          observer.observe(document.querySelector('#fit-findings'), { childList: true });
+        });
+      },
+    });`,
+  );
+  await page.waitForFunction(() => 'held' in window);
+  await open(page, [
+    glb('bust.glb', asset('human-misaligned', 'target.glb')),
+    glb('bust-cage.glb', asset('human-misaligned', 'cage.glb')),
+  ]);
+  assert.notEqual(await verdict(page), 'good');
+  assert.deepEqual(complaints, []);
+});
+
 test('a cage beside its model is moved into place from the stage, and the layers stay', async () => {
   const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
   await open(page, [

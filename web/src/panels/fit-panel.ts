@@ -47,7 +47,10 @@ export class FitPanel {
     this.#maker = maker;
     this.#stage = new StageVerdict(session);
     this.#viewer = viewer;
-    session.on('transfer', () => this.#show('', [text('p', kSoon)]));
+    session.on('transfer', () => {
+      this.#forget();
+      this.#show('', [text('p', kSoon)]);
+    });
     session.on('zones', () => this.#onChange());
     this.#button.addEventListener('click', () => void this.#inspect());
   }
@@ -56,11 +59,16 @@ export class FitPanel {
   #onChange(): void {
     const { target, cage } = this.#session.shown!;
     const triangles = (target.mesh.indices.length + cage.mesh.indices.length) / 3;
-    clearTimeout(this.#waiting);
-    this.#client?.cancel();
+    this.#forget();
     if (triangles <= kMost) this.#waiting = setTimeout(() => void this.#inspect(), kCalm);
     else this.#show('', [text('p', 'This model is large; inspecting it takes a while.')], this.#next);
     this.#button.hidden = triangles <= kMost;
+  }
+
+  /** Ends the inspection in progress: it is not of what is shown. */
+  #forget(): void {
+    clearTimeout(this.#waiting);
+    this.#client?.cancel();
   }
 
   /** What to do about a cage that is not inspected by itself. */
