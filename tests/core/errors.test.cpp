@@ -235,3 +235,31 @@ TEST_CASE("every code has a name of its own", "[errors]") {
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) CHECK(names[i] != names[j]);
 }
+
+TEST_CASE("a weld tolerance that nearly all vertices lie within is an error that says what to do", "[errors]") {
+  Case call;
+  call.options.weldTolerance = 0.01f;
+  // Of a box with a diagonal of more than 1, all of these lie within .01 of each other.
+  const auto addCrowd = [&](std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) call.target.addVertex({1e-6f * static_cast<float>(i), 0, 0});
+  };
+  const auto transferred = [&] {
+    TransferResult result;
+    return transfer(call.cage.view(), call.target.view(), call.options, testWorkspace(), result);
+  };
+  addCrowd(2001);
+  CHECK(transferred().ok());
+  addCrowd(10);
+  CHECK(transferred().ok());  // In the same places.
+  call.target = scenes::box({}, {1, 1, 1}, 1);
+  addCrowd(2050);
+  const Status status = transferred();
+  CHECK(status.code == Code::weldToleranceTooLarge);
+  CHECK(status.argument == Argument::options);
+  CHECK(status.option == Option::weldTolerance);
+  CHECK(call.text(status) ==
+        "options.weldTolerance = 0.01 is too large for target: its vertices have more than 2000 others so near, on "
+        "average; use a smaller one");
+  call.options.weldTolerance = 1e-5f;
+  CHECK(transferred().ok());
+}

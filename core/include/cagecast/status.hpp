@@ -22,8 +22,8 @@ struct [[nodiscard]] Status {
   Code code = Code::ok;
   Argument argument = Argument::none;  ///< The argument at fault.
   std::uint32_t at = 0;                ///< The element at fault; codes.def says what it counts.
-  Option option = Option::none;        ///< With `badOption`: the option at fault.
-  float value = 0;                     ///< With `badOption`: the given value; for a choice, its number.
+  Option option = Option::none;        ///< With an argument `options`: the option at fault.
+  float value = 0;                     ///< The value that was given for it; for a choice, its number.
   [[nodiscard]] constexpr bool ok() const noexcept { return code == Code::ok; }
 };
 

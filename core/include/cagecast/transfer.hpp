@@ -43,7 +43,7 @@ class Workspace {
 
 /// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 5′, 6, 7 and 9,
 /// and the twins of 5‴. The result does not depend on threshold, floor or locks.
-/// @return badOption, or any code about the meshes, or outOfMemory.
+/// @return badOption, or any code about the meshes, or weldToleranceTooLarge, or outOfMemory.
 /// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage.
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                Projection& out) noexcept;

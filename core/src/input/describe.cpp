@@ -71,6 +71,7 @@ std::string describeOption(const Status& status) {
 std::string valueOf(std::string_view name, const Status& status, const MeshView& mesh) {
   const auto vertices = mesh.positions.size() / 3;
   if (name == "mesh") return status.argument == Argument::cage ? "cage" : "target";
+  if (name == "value") return number(static_cast<double>(status.value));
   if (name == "at") return std::to_string(status.at);
   if (name == "missing") return mesh.positions.empty() ? "vertices" : "triangles";
   if (name == "vertices") return std::to_string(vertices);

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "cagecast/status.hpp"
+
 /// Searches among points, not surfaces: what nanoflann is made for.
 namespace cagecast {
 
@@ -9,10 +11,11 @@ namespace cagecast {
 /// position that is smallest in x, then y, then z. Joined points keep the order of their first members.
 /// @param[in,out] positions  x, y, z, 0 per point; on return those of the joined points.
 /// @param groups             1 per point.
+/// @param[in,out] count      The number of points; on return, how many are left.
 /// @param[out] joined        The joined point of each point.
-/// @return How many points are left; 0 if memory ran out.
-std::uint32_t mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t count, double radius,
-                        std::uint32_t* joined) noexcept;
+/// @return ok; weldToleranceTooLarge if points have more than 2000 others within the radius, on average; outOfMemory.
+Code mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t& count, double radius,
+               std::uint32_t* joined) noexcept;
 
 /// Finds the nearest of `sites` for each of `points`; of equally near ones the first.
 /// @param sites,points  x, y, z, 0 each.

@@ -211,7 +211,7 @@ void Points::split(Vec3 p, float* position, float* rest) noexcept {
   position[3] = 0;
 }
 
-bool weld(const MeshView& target, const Units& units, float tolerance, Arena& arena, Points& out) noexcept {
+Code weld(const MeshView& target, const Units& units, float tolerance, Arena& arena, Points& out) noexcept {
   const auto vertexCount = static_cast<std::uint32_t>(target.positions.size() / 3);
   const auto allTriangles = static_cast<std::uint32_t>(target.indices.size() / 3);
   auto* ofVertex = arena.allocate<std::uint32_t>(vertexCount);
@@ -229,7 +229,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
     auto* unsorted = arena.allocate<Placed>(vertexCount + kFew);
     auto* spare = arena.allocate<Placed>(vertexCount + kFew);
     auto* firstVertex = arena.allocate<std::uint32_t>(vertexCount);
-    if (arena.failed()) return false;
+    if (arena.failed()) return Code::outOfMemory;
     Placed* placed = sortAlongCurve(target, units, sites, unsorted, spare);
     pointCount = weldEqual(placed, vertexCount, sites, {firstVertex, places, ofVertex});
     for (std::uint32_t i = 0; i < pointCount; ++i) {
@@ -242,10 +242,9 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
     const Arena::Scope scope(arena);
     const std::uint32_t all = pointCount;
     auto* merged = arena.allocate<std::uint32_t>(all);
-    if (arena.failed()) return false;
+    if (arena.failed()) return Code::outOfMemory;
     const double radius = static_cast<double>(tolerance) * units.diagonal;
-    pointCount = mergeNear(positions, groups, all, radius, merged);
-    if (pointCount == 0) return false;
+    if (const Code code = mergeNear(positions, groups, pointCount, radius, merged); code != Code::ok) return code;
     // Joined points keep the order of their first members, and the places of these.
     for (std::uint32_t i = 0, next = 0; i < all; ++i) {
       if (merged[i] == next) places[next++] = places[i];
@@ -255,7 +254,7 @@ bool weld(const MeshView& target, const Units& units, float tolerance, Arena& ar
 
   const std::uint32_t kept = weldTriangles(target.indices, ofVertex, positions, triangles, doubleAreas);
   out = {pointCount, positions, places, ofVertex, kept, triangles, doubleAreas};
-  return true;
+  return Code::ok;
 }
 
 }  // namespace cagecast

@@ -4,6 +4,7 @@
 
 #include "base/arena.hpp"
 #include "cagecast/mesh.hpp"
+#include "cagecast/status.hpp"
 #include "geometry/vec3.hpp"
 #include "input/validate.hpp"
 
@@ -35,7 +36,7 @@ struct Points {
 /// Welds the vertices that have equal positions (−0 is 0) and equal groups into points, and drops triangles without
 /// area. With `tolerance` > 0 (a share of the diagonal), points of a group that are nearer than it become one as well,
 /// chains of them too, at the position that is smallest in x, then y, then z.
-/// @return false if memory ran out.
-bool weld(const MeshView& target, const Units& units, float tolerance, Arena& arena, Points& out) noexcept;
+/// @return ok, weldToleranceTooLarge, or outOfMemory.
+Code weld(const MeshView& target, const Units& units, float tolerance, Arena& arena, Points& out) noexcept;
 
 }  // namespace cagecast

@@ -9,8 +9,10 @@ Status Scene::load() noexcept {
   if (const Status status = checkMeshes(cageMesh, targetMesh, units); !status.ok()) return status;
   if (!gatherCage(cageMesh, units, arena, cage)) return {Code::outOfMemory};
   if (cage.count == 0) return {Code::noUsableCageTriangle, Argument::cage};
-  if (!weld(targetMesh, units, options.weldTolerance, arena, points)) return {Code::outOfMemory};
-  return {};
+  const float tolerance = options.weldTolerance;
+  const Code code = weld(targetMesh, units, tolerance, arena, points);
+  if (code == Code::weldToleranceTooLarge) return {code, Argument::options, 0, Option::weldTolerance, tolerance};
+  return {code};
 }
 
 void Scene::buildTrees() noexcept {

@@ -11,7 +11,7 @@ import { checkReuse, handOver, type Reuse } from './reuse.js';
  * @param cage     The mesh that the texture was drawn for; it must have UVs.
  * @param target   The mesh that receives the texture, in the same space and unit.
  * @param options  With `reuse`, an earlier result is overwritten and returned.
- * @throws {CagecastError} if a mesh or an option cannot be used, and `outOfMemory`.
+ * @throws {CagecastError} if a mesh or an option cannot be used, `weldToleranceTooLarge`, and `outOfMemory`.
  *
  * @example
  * await init();

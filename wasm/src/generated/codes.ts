@@ -38,5 +38,7 @@ export type CoreCode =
    * cage (`at`).
    */
   | 'bordersTooComplex'
+  /** More vertices of the target lie within `weldTolerance` of each other than the limit, an average of 2000. */
+  | 'weldToleranceTooLarge'
   /** There is not enough memory for the call or its result; nothing was computed. */
   | 'outOfMemory';
