@@ -315,6 +315,64 @@ TEST_CASE("a small part bare under a hole is culled, unless it is kept or anothe
   CHECK(copied(decided(options).culledBy) == std::vector{CulledBy::lock, none, hole});
 }
 
+TEST_CASE("a point overhangs a small hole by a share of the hole, not of the model", "[default]") {
+  // A hole whose loop measures 0.0417 of the diagonal: points in it may be 0.0071 from its edge, not 0.017.
+  const scenes::Mesh cage = scenes::without(scenes::box({}, {1, 1, 1}, 20), [](scenes::Point p) {
+    return p[0] > 0 && p[0] < 0.1f && p[1] > 0 && p[1] < 0.1f && p[2] > 0.9f;
+  });
+  scenes::Mesh target = scenes::box({}, {0.98f, 0.98f, 0.98f}, 1);
+  const auto addTriangle = [&](float x) {
+    const std::uint32_t first = target.addVertex({x, 0.05f, 0.99f});
+    target.addVertex({x - 0.02f, 0.04f, 0.99f});
+    target.addVertex({x - 0.02f, 0.06f, 0.99f});
+    target.addTriangle(first, first + 1, first + 2);
+    return first;
+  };
+  const std::uint32_t atEdge = addTriangle(0.006f), farther = addTriangle(0.012f);
+  requireSameAsReference("a small hole", cage.view(), target.view(), preset());
+  const TransferResult result = transferred(cage.view(), target.view(), preset());
+  const auto recoveryOf = [&](std::uint32_t v) { return result.projection.recovery[v]; };
+  CHECK(result.projection.zones[atEdge] == Zone::uncovered);
+  CHECK(recoveryOf(atEdge) == Recovery::always);
+  CHECK(recoveryOf(farther) >= Recovery::throughHole);
+}
+
+TEST_CASE("two parts of equal shape are twins, be they the largest", "[default]") {
+  scenes::Mesh target = scenes::box({}, {0.2f, 0.2f, 0.2f}, 1);
+  append(target, scenes::ellipsoid({1, 0, 0}, {0.3f, 0.3f, 0.3f}, 4));
+  append(target, scenes::ellipsoid({-1, 0, 0}, {0.3f, 0.3f, 0.3f}, 4));
+  const scenes::Mesh cage = scenes::box({}, {2, 2, 2}, 1);
+  const TransferResult result = transferred(cage.view(), target.view(), preset());
+  REQUIRE(result.projection.segmentStats.size() == 3);
+  CHECK(result.projection.segmentStats[0].twinOf == 0);
+  CHECK(result.projection.segmentStats[1].twinOf == 1);
+  CHECK(result.projection.segmentStats[2].twinOf == 1);
+}
+
+TEST_CASE("a corner behind something small is seen past it, be it the only one", "[default]") {
+  scenes::Mesh target;
+  const auto addTriangle = [&](scenes::Point at, float size) {
+    const std::uint32_t first = target.addVertex({at[0] - size, at[1] - size, at[2]});
+    target.addVertex({at[0] + size, at[1] - size, at[2]});
+    target.addVertex({at[0], at[1] + size, at[2]});
+    target.addTriangle(first, first + 1, first + 2);
+  };
+  addTriangle({0, 0, 1.5f}, 1);
+  addTriangle({-1, -1, 1.6f}, 0.04f);
+  const scenes::Mesh cage = scenes::box({}, {2, 2, 2}, 1);
+  requireSameAsReference("something small", cage.view(), target.view(), preset());
+  const TransferResult result = transferred(cage.view(), target.view(), preset());
+  CHECK(result.projection.zones[0] == Zone::occluded);
+  CHECK(result.zones.zones[0] == Zone::cosmetic);
+}
+
+TEST_CASE("the preset is the reference's in a cage that is a thousand times as large", "[default]") {
+  scenes::Mesh target = scenes::box({}, {1, 1, 1}, 4);
+  append(target, scenes::ellipsoid({3, 1, 0}, {0.5f, 1, 0.5f}, 4));
+  const scenes::Mesh cage = scenes::ellipsoid({100, 0, 0}, {4000, 3000, 3000}, 6);
+  requireSameAsReference("a large cage", cage.view(), target.view(), preset());
+}
+
 TEST_CASE("an excluded segment explains the hole it lies under, a kept one does not", "[default]") {
   const scenes::Scene scene = crowdedHead(16, 0);
   const TransferResult result = transferred(scene.cage.view(), scene.target.view(), preset());
