@@ -74,6 +74,11 @@ TEST_CASE("the box around a flat rectangle is flat, and turned to within an eigh
       const double off = kPi / 16;  // As far as a side may be from an axis of the box.
       const double most = 8 * 1 + (8 * 8 + 1 * 1) * std::cos(off) * std::sin(off);
       INFO("turned by " << i << " / 64 of a half turn");
+      for (int k = 0; k < 3; ++k) {
+        const double axis[3] = {static_cast<double>(box.axes[0][k]), static_cast<double>(box.axes[1][k]),
+                                static_cast<double>(box.axes[2][k])};
+        CHECK(length(Vec3{axis[0], axis[1], axis[2]}) == Approx(1));
+      }
       CHECK(sizeAlong(box, 2) < 1e-5);
       CHECK(sizeAlong(box, 0) * sizeAlong(box, 1) < 1.001 * most);
     }

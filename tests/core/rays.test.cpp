@@ -90,7 +90,7 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
   for (std::uint64_t round = 0; round < 600; ++round) {
     scenes::Random random(seed + round);
     INFO("seed " << seed + round);
-    const double reach = round % 2 == 0 ? 1 : 8;
+    const double reach = round % 2 == 0 ? 1 : 64;
     const double sizes[] = {1e-4, 1e-2, 0.3};
     const double size = reach * sizes[random.below(3)];
     const Vec3 centre = pointInCube(random, reach / 4);
@@ -112,7 +112,8 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
       const double shares[] = {0, 1e-4, numberIn(random, 0, 1)};
       const double beside[] = {0, 1e-8, 1e-7, 1e-6, 1e-5};
       const Vec3 towards = a + shares[random.below(3)] * (b - a) + pointInCube(random, reach * beside[random.below(5)]);
-      rays.add(towards + pointInCube(random, random.below(2) == 0 ? reach / 5 : 3 * size), towards);
+      const double away[] = {reach / 5, 3 * size, 1e-5 * reach};
+      rays.add(towards + pointInCube(random, away[random.below(3)]), towards);
     }
     for (const double from : {1e-5 * reach, -1e-5 * reach}) {
       const RayLeaf exact(leaf.tree, leafOf(0), leaf.size, 0);
