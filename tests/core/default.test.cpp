@@ -337,6 +337,13 @@ TEST_CASE("a point overhangs a small hole by a share of the hole, not of the mod
   CHECK(recoveryOf(farther) >= Recovery::throughHole);
 }
 
+TEST_CASE("the preset is the reference's where hundreds of triangles are in one cell of the curve", "[default]") {
+  scenes::Mesh target = scenes::box({}, {1, 1, 1}, 4);
+  append(target, scenes::ellipsoid({1.5f, 0.5f, 0.3f}, {0.004f, 0.004f, 0.003f}, 9));
+  append(target, scenes::box({0, 0, 2}, {0.5f, 0.5f, 0.5f}, 3));
+  requireSameAsReference("a crowded cell", scenes::ellipsoid({}, {5, 5, 5}, 5).view(), target.view(), preset());
+}
+
 TEST_CASE("two parts of equal shape are twins, be they the largest", "[default]") {
   scenes::Mesh target = scenes::box({}, {0.2f, 0.2f, 0.2f}, 1);
   append(target, scenes::ellipsoid({1, 0, 0}, {0.3f, 0.3f, 0.3f}, 4));

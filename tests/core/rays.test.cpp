@@ -1,4 +1,4 @@
-// The rays of a leaf: single precision finds what double precision decides, for triangles of any shape and size.
+// Rays and triangles: single precision finds what double precision decides, for triangles of any shape and size.
 
 #include <catch2/catch.hpp>
 
@@ -14,32 +14,38 @@ using namespace cagecast;
 
 namespace {
 
-/// Four triangles in a tree of one leaf.
-struct LeafOfFour {
+/// Triangles in a tree of one or two leaves, four in each.
+struct SmallTree {
   std::vector<float> positions;  ///< 4 per corner.
   std::vector<std::uint32_t> corners;
   Node node{};
   RayTree tree;
-  float size = 0;
 
   /// @param points  The corners of the triangles.
-  LeafOfFour(const std::vector<Vec3>& points, float reach) {
-    REQUIRE(points.size() == 12);
-    Box boxes[4] = {{}, Box::farAway(), Box::farAway(), Box::farAway()};
-    for (std::uint32_t i = 0; i < 12; ++i) {
+  SmallTree(const std::vector<Vec3>& points, float reach) {
+    REQUIRE((points.size() == 12 || points.size() == 24));
+    Box boxes[4] = {{}, {}, Box::farAway(), Box::farAway()};
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
       corners.push_back(i);
       const float at[4] = {static_cast<float>(points[i].x), static_cast<float>(points[i].y),
                            static_cast<float>(points[i].z), 0};
       positions.insert(positions.end(), at, at + 4);
-      boxes[0].grow(simd::load(positions.data() + std::size_t{4} * i));
+      boxes[i / 12].grow(simd::load(positions.data() + std::size_t{4} * i));
     }
-    boxes[0] = boxes[0].padded(Box::kPadding * reach);
+    for (std::size_t leaf = 0; leaf < 2; ++leaf) {
+      const bool isUsed = 12 * leaf < points.size();
+      boxes[leaf] = isUsed ? boxes[leaf].padded(Box::kPadding * reach) : Box::farAway();
+    }
     setBoxes(node, boxes);
     std::fill(node.child, node.child + 4, leafOf(0));
-    for (int k = 0; k < 3; ++k) size += node.high[k][0] - node.low[k][0];
+    node.child[1] = leafOf(4);
     tree = {&node, positions.data(), corners.data(), reach};
   }
   [[nodiscard]] Vec3 corner(std::uint32_t i) const { return Vec3::from(positions.data() + std::size_t{4} * i); }
+  /// Where a ray hits a triangle in double precision.
+  [[nodiscard]] double distance(std::uint32_t triangle, const Ray& ray) const {
+    return hitDistance(RayLeaf(tree, leafOf(triangle / 4 * 4), 0, 0), static_cast<int>(triangle % 4), ray);
+  }
 };
 
 double numberIn(scenes::Random& random, double low, double high) {
@@ -75,9 +81,9 @@ struct Hits {
   bool hit[RaySearch::kMostRays];
   std::vector<Ray> rays;
 
-  Hits(const LeafOfFour& leaf, const Rays& of, double from, RaySearch::Find find) : rays(of.rays) {
+  Hits(const SmallTree& tree, const Rays& of, double from, RaySearch::Find find) : rays(of.rays) {
     Arena arena;
-    RaySearch search(leaf.tree, from, arena);
+    RaySearch search(tree.tree, from, arena);
     search.search(rays.data(), static_cast<std::uint32_t>(rays.size()), hit, find);
   }
 };
@@ -95,7 +101,7 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
     const double size = reach * sizes[random.below(3)];
     const Vec3 centre = pointInCube(random, reach / 4);
     std::vector<Vec3> points;
-    for (int t = 0; t < 4; ++t) {
+    for (int t = 0; t < 8; ++t) {
       // A corner far from the other two, or not.
       const double narrow = random.below(2) == 0 ? 1 : 1e-3;
       const Vec3 near = centre + pointInCube(random, size);
@@ -104,11 +110,11 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
       points.push_back(near + pointInCube(random, narrow * size));
       std::rotate(points.end() - 3, points.end() - 3 + random.below(3), points.end());
     }
-    const LeafOfFour leaf(points, static_cast<float>(reach));
+    const SmallTree tree(points, static_cast<float>(reach));
     Rays rays(64);
     for (int i = 0; i < 64; ++i) {
-      const std::uint32_t t = random.below(4), k = random.below(3);
-      const Vec3 a = leaf.corner(3 * t + k), b = leaf.corner(3 * t + (k + 1) % 3);
+      const std::uint32_t t = random.below(8), k = random.below(3);
+      const Vec3 a = tree.corner(3 * t + k), b = tree.corner(3 * t + (k + 1) % 3);
       const double shares[] = {0, 1e-4, numberIn(random, 0, 1)};
       const double beside[] = {0, 1e-8, 1e-7, 1e-6, 1e-5};
       const Vec3 towards = a + shares[random.below(3)] * (b - a) + pointInCube(random, reach * beside[random.below(5)]);
@@ -116,12 +122,11 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
       rays.add(towards + pointInCube(random, away[random.below(3)]), towards);
     }
     for (const double from : {1e-5 * reach, -1e-5 * reach}) {
-      const RayLeaf exact(leaf.tree, leafOf(0), leaf.size, 0);
-      const Hits any(leaf, rays, from, RaySearch::Find::any), nearest(leaf, rays, from, RaySearch::Find::nearest);
+      const Hits any(tree, rays, from, RaySearch::Find::any), nearest(tree, rays, from, RaySearch::Find::nearest);
       for (std::size_t r = 0; r < rays.rays.size(); ++r) {
         double first = std::numeric_limits<double>::infinity();
-        for (int lane = 0; lane < 4; ++lane) {
-          const double distance = hitDistance(exact, lane, rays.rays[r]);
+        for (std::uint32_t t = 0; t < 8; ++t) {
+          const double distance = tree.distance(t, rays.rays[r]);
           if (distance > from) first = std::min(first, distance);
         }
         const bool isHit = std::isfinite(first);
@@ -140,13 +145,13 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
 TEST_CASE("a ray through the middle of a triangle hits it, however small, and one beside it does not", "[rays]") {
   for (const double size : {1.0, 1e-2, 1e-4, 1e-6}) {
     const Vec3 a{0, 0, 0}, b{size, 0, 0}, c{0, size, 0};
-    const LeafOfFour leaf({a, b, c, a, b, c, a, b, c, a, b, c}, 1);
+    const SmallTree tree({a, b, c, a, b, c, a, b, c, a, b, c}, 1);
     Rays rays(4);
     for (const double side : {1.0, -1.0}) {
       rays.add({0.1, 0.2, side * 0.5}, {size / 3, size / 3, 0});
       rays.add({0.1, 0.2, side * 0.5}, {size * 0.6, size * 0.6, 0});
     }
-    const Hits found(leaf, rays, 1e-5, RaySearch::Find::nearest);
+    const Hits found(tree, rays, 1e-5, RaySearch::Find::nearest);
     for (const std::size_t r : {0u, 2u}) {
       INFO("size " << size << ", ray " << r);
       CHECK(found.hit[r]);
@@ -157,18 +162,16 @@ TEST_CASE("a ray through the middle of a triangle hits it, however small, and on
 
 TEST_CASE("no ray passes between triangles that share an edge, from either side", "[rays]") {
   const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{1, 1, 0}, d{0, 1, 0};
-  const LeafOfFour leaf({a, b, c, a, c, d, a, b, c, a, c, d}, 2);
+  const SmallTree tree({a, b, c, a, c, d, a, b, c, a, c, d}, 2);
   Rays rays(18);
   for (const double side : {0.5, -0.5}) {
     for (int i = 0; i <= 8; ++i) rays.add({i / 8.0, i / 8.0, side}, {i / 8.0, i / 8.0, 0});
   }
-  const Hits found(leaf, rays, 1e-5, RaySearch::Find::any);
+  const Hits found(tree, rays, 1e-5, RaySearch::Find::any);
   for (std::size_t r = 0; r < rays.rays.size(); ++r) {
     INFO("ray " << r);
     CHECK(found.hit[r]);
-    for (const int lane : {0, 1}) {
-      const RayLeaf exact(leaf.tree, leafOf(0), leaf.size, 0);
-      CHECK(hitDistance(exact, lane, rays.rays[r]) == 0.5);
-    }
+    CHECK(tree.distance(0, rays.rays[r]) == 0.5);
+    CHECK(tree.distance(1, rays.rays[r]) == 0.5);
   }
 }
