@@ -248,9 +248,8 @@ function placeGroups(
 
 /** The attribute of UVs by which the base colour texture of a part lies on it; the first if it has none. */
 function uvNameOf({ mesh }: Part): string {
-  const maps = [mesh?.material].flat().map((material) => (material as { map?: Texture | null } | undefined)?.map);
-  const channel = maps.find((map) => map)?.channel ?? 0;
-  return channel === 0 ? 'uv' : `uv${channel}`;
+  const materials = [mesh?.material ?? []].flat() as { map?: Texture | null }[];
+  return `uv${materials.find(({ map }) => map)?.map?.channel || ''}`;
 }
 
 function readUvs(parts: readonly Part[], vertices: number, argument: string): Float32Array | undefined {

@@ -95,8 +95,8 @@ export function checkOptions(options: ApplyOptions & Calling): void {
   check(opacity >= 0 && opacity <= 1, '.opacity', opacity, 'a number from 0 to 1');
   check(feather >= 0 && feather <= 1, '.feather', feather, 'a number from 0 to 1');
   check(!saved || typeof saved.key === 'string', '.saved', saved, 'what deserialize returned');
-  check(signal === undefined || typeof signal?.throwIfAborted === 'function', '.signal', signal, 'an AbortSignal');
-  check(onProgress === undefined || typeof onProgress === 'function', '.onProgress', onProgress, 'a function');
+  check(!signal || !!signal.throwIfAborted, '.signal', signal, 'an AbortSignal');
+  check(!onProgress || typeof onProgress === 'function', '.onProgress', onProgress, 'a function');
 }
 
 /** The options of `transfer` among those of `applyTransfer`. */
