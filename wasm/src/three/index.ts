@@ -92,7 +92,6 @@ export function applyTransfer(
   cage: Object3D | BufferGeometry | undefined,
   options: ApplyOptions = {},
 ): Applied {
-  checkOptions(options);
   const call = read('applyTransfer', target, cage, options);
   const prepared = call.saved ?? prepare(call.input);
   const applied = atOnce(apply(call.extracted, call.states, prepared, options));
@@ -110,18 +109,16 @@ export function applyTransfer(
 export async function applyTransferAsync(
   target: Object3D | BufferGeometry,
   cage: Object3D | BufferGeometry | undefined,
-  options: ApplyOptions & Calling = {},
+  { signal, onProgress, ...options }: ApplyOptions & Calling = {},
 ): Promise<Applied> {
-  checkOptions(options);
-  const { signal, onProgress, ...rest } = options;
   signal?.throwIfAborted();
-  const call = read('applyTransferAsync', target, cage, rest);
+  const call = read('applyTransferAsync', target, cage, options);
   await nextTask();
   signal?.throwIfAborted();
   onProgress?.(0.05, 'transfer');
   const prepared = call.saved ?? (await prepareParts(call.input, { signal }));
   onProgress?.(0.7, 'geometry');
-  const applied = await share(apply(call.extracted, call.states, prepared, rest), signal);
+  const applied = await share(apply(call.extracted, call.states, prepared, options), signal);
   onProgress?.(1, 'done');
   return remember(applied, () => ({ key: call.key(), prepared }));
 }
@@ -141,6 +138,7 @@ function read(
   cage: Object3D | BufferGeometry | undefined,
   options: ApplyOptions,
 ): Call {
+  checkOptions(options);
   const cuts = isCut(fn, options.borders);
   const extracted = extract(target, 'target');
   const { saved, result } = options;

@@ -1,7 +1,6 @@
 import type { Material, Mesh, Texture } from 'three';
 import { CagecastError, type Classification, type TransferOptions, type TransferResult } from '../index.js';
 import type { Borders } from '../parts/borders-option.js';
-import type { Calling } from './async.js';
 import { nameOf, type Part } from './extract.js';
 import type { Saved } from './saved.js';
 
@@ -83,20 +82,18 @@ export interface Applied {
 }
 
 /** @throws {CagecastError} `badOption` that names the option and its value. */
-export function checkOptions(options: ApplyOptions & Calling): void {
+export function checkOptions(options: ApplyOptions): void {
   const check = (fits: boolean | undefined, name: string, value: unknown, what: string) => {
     if (!fits) throw new CagecastError('badOption', `cagecast/three: options${name} is ${nameOf(value)}, not ${what}`);
   };
   check(typeof options === 'object' && options !== null, '', options, 'an object');
-  const { texture, material, channel = 1, opacity = 1, feather = 0, saved, signal, onProgress } = options;
+  const { texture, material, channel = 1, opacity = 1, feather = 0, saved } = options;
   check(!texture || texture.isTexture, '.texture', texture, 'a Texture');
   check(!material || material.isMaterial, '.material', material, 'a Material');
   check([1, 2, 3].includes(channel), '.channel', channel, '1, 2 or 3');
   check(opacity >= 0 && opacity <= 1, '.opacity', opacity, 'a number from 0 to 1');
   check(feather >= 0 && feather <= 1, '.feather', feather, 'a number from 0 to 1');
   check(!saved || typeof saved.key === 'string', '.saved', saved, 'what deserialize returned');
-  check(!signal || !!signal.throwIfAborted, '.signal', signal, 'an AbortSignal');
-  check(!onProgress || typeof onProgress === 'function', '.onProgress', onProgress, 'a function');
 }
 
 /** The options of `transfer` among those of `applyTransfer`. */
