@@ -246,23 +246,24 @@ function placeGroups(
   return Math.max(next, first + 1);
 }
 
-/** The attribute of UVs by which the base colour texture of a part lies on it; the first if it has none. */
-function uvNameOf({ mesh }: Part): string {
-  const materials = [mesh?.material ?? []].flat() as { map?: Texture | null }[];
-  return `uv${materials.find(({ map }) => map)?.map?.channel || ''}`;
+/** The UVs by which the base colour texture of a part lies on it; the first if it has none. */
+function uvsOf({ geometry, mesh }: Part): Attribute | undefined {
+  const materials = [mesh?.material].flat() as ({ map?: Texture | null } | undefined)[];
+  return geometry.getAttribute(`uv${materials.find((one) => one?.map)?.map?.channel || ''}`);
 }
 
 function readUvs(parts: readonly Part[], vertices: number, argument: string): Float32Array | undefined {
-  const found = parts.map((part) => part.geometry.getAttribute(uvNameOf(part)) as Attribute | undefined);
-  if (parts.length === 0 || found.includes(undefined)) return undefined;
+  if (!parts.every(uvsOf)) return undefined;
   const uvs = new Float32Array(2 * vertices);
-  for (const [p, { name, firstVertex, vertexCount }] of parts.entries()) {
-    const uv = found[p]!;
+  let at = 0;
+  for (const part of parts) {
+    const { name, vertexCount } = part;
+    const uv = uvsOf(part)!;
     if (uv.count !== vertexCount || uv.itemSize !== 2)
       throw wrong(argument, name, `has ${uv.count} UVs of ${uv.itemSize} numbers, not ${vertexCount} of 2`);
     for (let v = 0; v < vertexCount; ++v) {
-      uvs[2 * (firstVertex + v)] = uv.getX(v);
-      uvs[2 * (firstVertex + v) + 1] = uv.getY(v);
+      uvs[at++] = uv.getX(v);
+      uvs[at++] = uv.getY(v);
     }
   }
   return uvs;
