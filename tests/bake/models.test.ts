@@ -332,6 +332,31 @@ test('masks by images and by colours keep paint away, and bring it back: documen
   assert.match(stderr, /box\.glb: no part has COLOR_0 of 3 or 4 numbers/);
 });
 
+test('baking a model that has an overlay of an earlier transfer takes it away: documents, files', async () => {
+  const [painted, out] = [at('overlaid.glb'), at('no-overlay.glb')];
+  const { status: made } = cagecast(
+    ...['transfer', at('box.glb'), '--cage', at('cage.glb'), '--texture', at('lean.png'), '-o', painted],
+  );
+  assert.equal(made, 0);
+  const overlaysOf = (document: Document) =>
+    document
+      .getRoot()
+      .listMeshes()
+      .flatMap((mesh) => mesh.listPrimitives().filter((primitive) => primitive.getExtras()['cagecastOverlay']));
+  const document = await io.read(painted);
+  assert.equal(overlaysOf(document).length, 1);
+  await baked(document);
+  const { status, stdout, stderr } = cagecast('bake', painted, at('cage.glb'), at('red.png'), '-o', out);
+  assert.deepEqual([status, stderr], [0, '']);
+  assert.match(stdout, /\ntook away 1 overlay of an earlier transfer$/m);
+  await validate(out);
+  for (const one of [document, await io.read(out)]) {
+    assert.equal(overlaysOf(one).length, 0);
+    assert.deepEqual([one.getRoot().listMaterials().length, one.getRoot().listTextures().length], [1, 1]);
+    assertPainted(imageOf(materialOf(one).getBaseColorTexture()));
+  }
+});
+
 test('overlapping UVs are told by the command', () => {
   const { status, stdout } = cagecast('bake', at('mirrored.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
   assert.equal(status, 0);

@@ -176,6 +176,40 @@ test('regions keep the compression of the file', async () => {
   }
 });
 
+for (const form of ['none', 'meshopt', 'draco'])
+  test(`painting again takes the place of the paint before (--compress ${form})`, async () => {
+    const region = ['--region', `${at('cage.glb')}=${at('other.png')}`];
+    const [once, twice] = [at(`once-${form}.glb`), at(`twice-${form}.glb`)];
+    const front = ['--cage', at('front.glb'), '--threshold', '0', '--min-covered', '0'];
+    ok('transfer', target, ...front, '--texture', at('paint.png'), ...region, '--compress', form, '-o', once);
+    assert.equal(overlaysOf(await io.read(once)).length, 2);
+    const text = ok('transfer', once, ...cage, '--texture', at('other.png'), '-o', twice);
+    assert.match(text, /; took away 2 overlays of an earlier transfer\n/);
+    const document = await io.read(twice);
+    assert.deepEqual(
+      overlaysOf(document).map(({ texture }) => texture),
+      ['other.png'],
+    );
+    const base = primitivesOf(document).find((primitive) => !primitive.getExtras()['cagecastOverlay'])!;
+    assert.deepEqual(
+      base
+        .listSemantics()
+        .filter((semantic) => /NCZ|TEXCOORD/.test(semantic))
+        .sort(),
+      ['TEXCOORD_0', '_NCZ'],
+    );
+    const { json } = unpackGlb(readFileSync(twice));
+    assert.deepEqual([json.materials!.length, json.textures!.length, json.images!.length], [1, 1, 1]);
+    assert.deepEqual(await validate(twice), []);
+    const bare = at(`bare-${form}.glb`);
+    ok('transfer', twice, ...cage, '-o', bare);
+    assert.equal(overlaysOf(await io.read(bare)).length, 0);
+    assert.deepEqual(
+      (['materials', 'textures', 'images'] as const).map((list) => unpackGlb(readFileSync(bare)).json[list]),
+      [undefined, undefined, undefined],
+    );
+  });
+
 test('with <UDIM> in its name, each tile of the cage shows its own texture', async () => {
   // The left half of the texture is tile 1001, the right one 1002 but for its upper quarter, which is above it.
   writeFileSync(at('tiled.glb'), glbOf(uvsMoved(scene.cage, (u, v) => [2 * u, v])));

@@ -271,17 +271,26 @@ describe('document.transform(cagecast(…))', () => {
     assert.deepEqual(await validate(at('skinned.glb')), []);
   });
 
-  test('applied again, it takes the model alone, without the overlay', async () => {
+  test('applied again, it takes the model alone, and its overlay and UVs take the place of those before', async () => {
     const document = await documentOf(glbOf(scene.target));
     const step = cagecastTransform({ cage: scene.cage, texture: paint });
     await document.transform(step);
     const first = primitives(document)[0]!;
     const [zones, vertices] = [first.getAttribute('_NCZ')!.getArray(), first.getAttribute('POSITION')!.getCount()];
+    const sets = first.listSemantics().filter((semantic) => semantic.startsWith('TEXCOORD'));
+    const lists = [document.getRoot().listMaterials().length, document.getRoot().listTextures().length];
     await document.transform(step);
     assert.deepEqual(
       primitives(document).map((primitive) => primitive.listSemantics().includes('_NCZ')),
-      [true, false, false],
+      [true, false],
     );
+    assert.deepEqual(
+      primitives(document)[0]!
+        .listSemantics()
+        .filter((semantic) => semantic.startsWith('TEXCOORD')),
+      sets,
+    );
+    assert.deepEqual([document.getRoot().listMaterials().length, document.getRoot().listTextures().length], lists);
     assert.deepEqual(
       [
         primitives(document)[0]!.getAttribute('_NCZ')!.getArray(),

@@ -24,6 +24,11 @@ export function integer(n: number): string {
   return n.toLocaleString('en');
 }
 
+/** What became of the overlays of an earlier transfer. */
+export function takenAway(overlays: number): string {
+  return `took away ${integer(overlays)} overlay${overlays === 1 ? '' : 's'} of an earlier transfer`;
+}
+
 /** Four significant digits. */
 export function short(n: number): string {
   return Number(n.toPrecision(4)).toString();

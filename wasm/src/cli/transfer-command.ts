@@ -17,7 +17,7 @@ import { isTiled, readPaint, readTiles } from './paint/read-paint.js';
 import { type Stretch, stretchOf } from './paint/stretch.js';
 import type { Progress } from './progress.js';
 import { cutTarget, type Models, type Run, readModel, run, type Sources } from './run.js';
-import { integer, percent, table } from './table.js';
+import { integer, percent, table, takenAway } from './table.js';
 import { type PerZone, perZone } from './zones.js';
 
 /** The arguments of `cagecast transfer`. */
@@ -54,7 +54,7 @@ export async function transferCommand(
 ): Promise<{ text: string; report: Report; done: Run }> {
   const { output, regions = [] } = command;
   const first = await transferRegion(command, command.texture, progress, { models, isLast: regions.length === 0 });
-  const report = makeReport(command, first.done, output === undefined ? undefined : first.written?.added, first.cut);
+  const report = makeReport(command, first.done, output === undefined ? undefined : first.written, first.cut);
   if (command.inspects) {
     const { verdict, findings } = inspectionReport(command, first.done);
     Object.assign(report, { verdict, findings });
@@ -141,6 +141,7 @@ async function transferRegion(
       // Draco changes the order of triangles, which says what is painted already.
       form: isLast ? finalOne : compressionOf(done) === undefined ? 'keep' : 'none',
       zones,
+      isFurther: before !== undefined,
       stem: isText ? basename(output).slice(0, -'.gltf'.length) : undefined,
     },
   ).catch((error: unknown) => {
@@ -228,6 +229,8 @@ export interface Report {
     splitVertices: number | null;
     cutTriangles: number | null;
   }[];
+  /** Overlays of an earlier transfer to the target, which are not in the output. */
+  replacedOverlays: number;
   /** Further cages with textures. All other fields are about the first cage. `triangles.cosmetic` are those that no cage before paints. */
   regions: {
     cage: string;
@@ -254,7 +257,7 @@ const trianglesOf = (cosmetic: Uint8Array): Report['triangles'] => ({
 function makeReport(
   command: TransferCommand,
   { target, cage, result }: Run,
-  added: Added[] | undefined,
+  written: { added: Added[]; replaced: number } | undefined,
   cut: CutTarget | undefined,
 ): Report {
   const { mesh, parts } = target;
@@ -308,11 +311,12 @@ function makeReport(
       vertices: part.vertexCount,
       triangles: part.triangleCount,
       counts: perZone(result.zones, undefined, part.firstVertex, part.firstVertex + part.vertexCount),
-      uvSet: added?.[p]?.uvSet ?? null,
-      overlayTriangles: added?.[p]?.overlayTriangles ?? 0,
-      splitVertices: added?.[p]?.splitVertices ?? null,
-      cutTriangles: added?.[p]?.cutTriangles ?? null,
+      uvSet: written?.added[p]?.uvSet ?? null,
+      overlayTriangles: written?.added[p]?.overlayTriangles ?? 0,
+      splitVertices: written?.added[p]?.splitVertices ?? null,
+      cutTriangles: written?.added[p]?.cutTriangles ?? null,
     })),
+    replacedOverlays: written?.replaced ?? 0,
     regions: [],
     timings: result.timings,
     peakBytes: result.peakBytes,
@@ -338,7 +342,7 @@ const sumOf = (flags: Uint8Array): number => flags.reduce((sum, one) => sum + on
 
 function summary(
   command: TransferCommand,
-  { target, counts, areas, triangles, cut, segments, parts, regions, timings, output }: Report,
+  { target, counts, areas, triangles, cut, segments, parts, replacedOverlays, regions, timings, output }: Report,
 ): string {
   const zones = ['cosmetic', 'occluded', 'uncovered', 'culled'] as const;
   const rows = [
@@ -354,7 +358,7 @@ function summary(
     `${integer(triangles.cosmetic)} of ${integer(triangles.total)} triangles may be painted${cut ? `; cut along borders, ${integer(cut.triangles.cosmetic)} of ${integer(cut.triangles.total)}` : ''}; ${timings.total.toFixed(1)} ms`,
     output === null
       ? ''
-      : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}`,
+      : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
     ...regions.map(
       ({ cage, texture, triangles: { cosmetic, total } }) =>
         `${cage}: ${integer(cosmetic)} of ${integer(total)} triangles more may be painted, by ${texture}`,

@@ -16,7 +16,7 @@ const arrayBuffer = 34962;
 const elementArrayBuffer = 34963;
 const clampToEdge = 33071;
 /** The extensions by which textures have images that are neither PNG nor JPEG. */
-const imageExtensions: Readonly<Record<string, string>> = {
+export const imageExtensions: Readonly<Record<string, string>> = {
   'image/webp': 'EXT_texture_webp',
   'image/ktx2': 'KHR_texture_basisu',
 };

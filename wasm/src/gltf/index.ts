@@ -57,7 +57,7 @@ export interface CagecastOptions extends TransferOptions, MaskSources {
  *
  * Every triangle primitive in the document's default scene gets a new `TEXCOORD` set and `_NCZ` (the `Zone`: 0 may be painted) and,
  * with a texture, an overlay primitive of its cosmetic triangles. Everything else stays unchanged; if several nodes share a mesh,
- * each gets a copy. Cut borders add vertices that blend existing ones, in all attributes, skin weights and morph deltas. If the
+ * each gets a copy. An earlier transfer to the document is replaced. Cut borders add vertices that blend existing ones, in all attributes, skin weights and morph deltas. If the
  * transform throws, the document is unchanged.
  * @throws {CagecastError} with the reason and the place, if target, cage, texture or options cannot be used.
  *

@@ -13,6 +13,13 @@ export const overlayMark = { cagecastOverlay: true } as const;
 export const isOverlay = (extras: object | undefined): boolean =>
   (extras as Partial<typeof overlayMark> | undefined)?.cagecastOverlay === true;
 
+/** Marks the UVs of a transfer in the `extras` of their accessor, so that the next one can replace them. */
+export const uvsMark = { cagecastUvs: true } as const;
+
+/** Whether an attribute, whose accessor has these extras, was added by a transfer. */
+export const isOfTransfer = (semantic: string, extras: object | undefined): boolean =>
+  /^_NCZ(_\d+)?$/.test(semantic) || (extras as Partial<typeof uvsMark> | undefined)?.cagecastUvs === true;
+
 /** The texture to show: an image file's bytes, in the cage's UVs. */
 export interface Paint {
   name: string;

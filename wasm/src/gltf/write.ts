@@ -5,6 +5,7 @@ import { blend, blendSkin, ruleOf } from '../parts/blend.js';
 import { gather } from '../parts/split-part.js';
 import { dracoOf } from './check.js';
 import { dracoExtension, markForDraco, packDraco, unmarkDraco } from './draco-write.js';
+import { takeAttributes, takeOverlays } from './earlier-transfer.js';
 import type { Extracted, Part } from './extract.js';
 import { type Form, GlbWriter } from './glb-writer.js';
 import type { NamedFile } from './output/pack.js';
@@ -18,6 +19,7 @@ import {
   overlayMark,
   type Paint,
   unlitExtension,
+  uvsMark,
   zoneAttribute,
 } from './overlay.js';
 import { type GroupMember, groupMember, type SharedVertices, shareVertices, storedUvs } from './primitive-group.js';
@@ -45,6 +47,8 @@ export interface Writing {
   form?: Form;
   /** The name of the attribute with the zones. Default: `_NCZ` */
   zones?: string;
+  /** Whether it adds to what another cage painted of the same target, instead of replacing it. Default: no */
+  isFurther?: boolean;
   /** Writes a glTF of text, whose file is named so, with files beside it. Default: a GLB */
   stem?: string | undefined;
 }
@@ -53,38 +57,41 @@ export interface Writing {
  * Writes the target with the result of a transfer: every primitive gets a new UV set and `_NCZ` and, with a texture, an overlay
  * primitive of its cosmetic triangles. All other contents of the file stay unchanged, including compression. If triangles at the
  * same vertex have different UVs, copies of the vertex with all its attributes are added after the existing vertices. New vertices
- * of a cut target are added in the same way, as blends of their sources. What is replaced is dropped from the file, and its
- * replacement has the same form: sparse, quantised, or compressed by meshopt or Draco. If several nodes share a mesh, each gets a copy.
- * @returns the bytes of the file, what belongs beside it, and what was added to each part.
+ * of a cut target are added in the same way, as blends of their sources. An earlier transfer is replaced. What is replaced is dropped
+ * from the file, and its replacement has the same form: sparse, quantised, or compressed by meshopt or Draco. If several nodes share
+ * a mesh, each gets a copy.
+ * @returns the bytes of the file, what belongs beside it, what was added to each part, and how many overlays were replaced.
  * @throws {InputError} if an image beside the target cannot be read.
  */
 export async function writeTransfer(
   file: GltfFile,
   { mesh, parts }: Extracted,
   result: Pick<TransferResult, 'uvs' | 'cornerUvs' | 'zones' | 'cosmeticTriangles'>,
-  { paints = [], cut, form = 'keep', zones = zoneAttribute, stem }: Writing = {},
-): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[] }> {
+  { paints = [], cut, form = 'keep', zones = zoneAttribute, isFurther = false, stem }: Writing = {},
+): Promise<{ data: Uint8Array; beside: NamedFile[]; added: Added[]; replaced: number }> {
   const writer = await GlbWriter.from(file, form);
   const { json } = writer;
   const meshOfNode = separateMeshes(json, parts);
+  const meshes = parts.map(({ node }) => json.meshes![meshOfNode.get(node)!]!);
+  const primitives = parts.map(({ primitive }, p) => meshes[p]!.primitives[primitive]!);
+  const replaced = isFurther ? 0 : takeOverlays(writer, meshes);
+  if (!isFurther) takeAttributes(writer, primitives);
   const painters = paints.map((paint) => new Painter(writer, paint));
 
   const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
-  const members = parts.map((part): Member => {
-    const { primitives } = json.meshes![meshOfNode.get(part.node)!]!;
+  const members = parts.map((part, p): Member => {
     const member = groupMember(part, result, pieces);
     const cutTriangles = member.cosmetic.length - part.triangleCount;
     const added = { uvSet: '', overlayTriangles: 0, splitVertices: 0, cutTriangles };
-    return { ...member, primitives, primitive: primitives[part.primitive]!, part, added };
+    return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };
   });
-  const primitives = members.map(({ primitive }) => primitive);
   if (form === 'draco') markForDraco(primitives);
   for (const group of groupsOf(members)) addToGroup(writer, file, group, { painters, form, zones });
   await packDraco(writer, file);
   const added = members.map((member) => member.added);
-  if (stem === undefined) return { data: writer.finish(), beside: [], added };
+  if (stem === undefined) return { data: writer.finish(), beside: [], added, replaced };
   const { text, beside } = writer.finishText(stem);
-  return { data: text, beside, added };
+  return { data: text, beside, added, replaced };
 }
 
 /** A part, and what it becomes. */
@@ -130,7 +137,10 @@ function addToGroup(
   const uvSet = freeUvSet((semantic) => first.attributes[semantic] !== undefined);
   const uvs = storedUvs(shared.uvs);
   const attributes = {
-    [uvSet]: writer.addAttribute(uvs, 2, uvs instanceof Uint16Array ? { normalized: true } : {}),
+    [uvSet]: writer.addAttribute(uvs, 2, {
+      ...(uvs instanceof Uint16Array && { normalized: true }),
+      extras: uvsMark,
+    }),
     [zones]: writer.addAttribute(shared.zones, 1, {}, true),
   };
   let copies = shared.sources.length - part.vertexCount - shared.blends.sources.length / 3;

@@ -1,6 +1,7 @@
 import { type Baked, cageTexture, fill, type Image, type Layout } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/file.js';
 import { type BakeReport, bakeModel, layoutsOf, type Paints, type TextureUse } from '../../gltf/bake/plan.js';
+import { takeOverlays } from '../../gltf/earlier-transfer.js';
 import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
@@ -10,7 +11,7 @@ import { writeFiles } from '../output.js';
 import type { Found } from '../print.js';
 import type { Progress } from '../progress.js';
 import { cutTarget, type Run, run, type Sources } from '../run.js';
-import { percent } from '../table.js';
+import { percent, takenAway } from '../table.js';
 import { decodeImage, encodePng, readImage } from './images.js';
 
 /** The arguments of `cagecast bake`. */
@@ -65,6 +66,10 @@ async function bakeFile(
   const writer = await GlbWriter.from(done.targetFile, 'keep').catch((error) => {
     throw inTarget(error, target);
   });
+  const overlays = takeOverlays(
+    writer,
+    done.target.parts.map(({ mesh }) => writer.json.meshes![mesh]!),
+  );
   const model = new FileModel(done.targetFile, done.target.parts, writer);
   const { report } = await bakeModel(model, {
     result: done.result,
@@ -82,7 +87,8 @@ async function bakeFile(
     ).in(target);
   }
   writeFiles([{ path: output, data: writer.finish() }]);
-  return { text: summary(output, report), report: { output, ...report } };
+  const text = summary(output, report) + (overlays > 0 ? `\n${takenAway(overlays)}` : '');
+  return { text, report: { output, ...report, replacedOverlays: overlays } };
 }
 
 function summary(output: string, { textures, left }: BakeReport): string {

@@ -61,7 +61,7 @@ export function addBakeCommand(program: Command, progress: Progress): void {
       'after',
       `
 A part is not painted if its material has no texture, or its UVs are not an unwrapping; the summary says which. Where UVs
-overlap, as those of mirrored halves do, the part that comes first has the texels.
+overlap, as those of mirrored halves do, the part that comes first has the texels. Overlays of an earlier transfer are taken away.
 
 Examples:
   cagecast bake head.glb cage.glb paint.png -o painted.glb

@@ -2,6 +2,7 @@ import type { Document } from '@gltf-transform/core';
 import { show } from '../../api/error.js';
 import { CagecastError, type Mesh, type TransferOptions } from '../../index.js';
 import { type Borders, isCut } from '../../parts/borders-option.js';
+import { takeOverlays } from '../document/earlier-transfer.js';
 import { transferDocument, within } from '../document/transfer.js';
 import { addTransfer } from '../document/write.js';
 import type { MaskSources } from './masks.js';
@@ -29,7 +30,8 @@ export interface BakeOptions extends TransferOptions, MaskSources {
 }
 
 /**
- * Makes a transform that bakes paints into the textures of a document's own materials, in their own UVs. Geometry stays as it is.
+ * Makes a transform that bakes paints into the textures of a document's own materials, in their own UVs. Geometry stays as it is, without
+ * overlays of an earlier transfer.
  *
  * A texture is copied if other materials use it differently. Its size and alpha stay; a base colour factor is baked in. A part is
  * not painted if its material has no texture, if the part has no UVs for it or vertex colours, or if its UVs are not an unwrapping;
@@ -66,6 +68,7 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
       codec: images,
       size,
     }).catch((error) => within('bake', 'target', () => raise(error)));
+    takeOverlays(target.parts);
     if (paint) {
       // What is baked is not shown twice.
       const triangles = target.parts.filter((part) => baked.has(part));

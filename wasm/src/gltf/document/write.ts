@@ -7,7 +7,6 @@ import type {
   Node,
   Primitive,
   PrimitiveTarget,
-  Property,
   Texture,
   TypedArray,
 } from '@gltf-transform/core';
@@ -23,9 +22,11 @@ import {
   overlayMark,
   type Paint,
   unlitExtension,
+  uvsMark,
   zoneAttribute,
 } from '../overlay.js';
 import { type GroupMember, groupMember, shareVertices, sparseElements, storedUvs } from '../primitive-group.js';
+import { disposeUnused, takeAttributes, takeOverlays } from './earlier-transfer.js';
 import type { DocumentPart, ExtractedDocument } from './read.js';
 
 /** A part, and what it becomes. */
@@ -37,7 +38,7 @@ interface Member extends GroupMember {
 /**
  * Adds the result of a transfer to a document, as the command does to a file: every primitive gets a new UV set and `_NCZ` and, with
  * a texture, an overlay primitive of its cosmetic triangles. New vertices at cut borders, and copies of vertices whose triangles
- * need different UVs, are added after the existing ones. If several nodes share a mesh, each gets a copy.
+ * need different UVs, are added after the existing ones. It replaces an earlier transfer. If several nodes share a mesh, each gets a copy.
  */
 export function addTransfer(
   document: Document,
@@ -46,8 +47,10 @@ export function addTransfer(
   paint?: Paint,
   cut?: CutTarget,
 ): void {
-  const painter = paint && new Painter(document, paint);
   const primitiveOf = separatePrimitives(document, parts);
+  takeOverlays(parts);
+  takeAttributes(primitiveOf);
+  const painter = paint && new Painter(document, paint);
   const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map(
     (part, p): Member => ({ ...groupMember(part, result, pieces), part, primitive: primitiveOf[p]! }),
@@ -97,10 +100,10 @@ function addToGroup(document: Document, members: readonly Member[], painter: Pai
       blends.sources.length > 0 ? blender(first, blends) : undefined,
     );
     members.forEach(({ primitive }, m) => primitive.setIndices(indices(shared.indices[m]!)).setMode(4)); // strips and fans have become lists
-    for (const accessor of new Set(before)) if (isUnused(accessor)) accessor.dispose();
+    new Set(before).forEach(disposeUnused);
   }
   const stored = storedUvs(shared.uvs);
-  const uvs = attribute(stored, 'VEC2', stored instanceof Uint16Array);
+  const uvs = attribute(stored, 'VEC2', stored instanceof Uint16Array).setExtras({ ...uvsMark });
   const zones = attribute(shared.zones, 'SCALAR').setSparse(isSparse(shared.zones, 1));
   const uvSet = freeUvSet((semantic) => first.getAttribute(semantic) !== null);
   members.forEach(({ primitive, part: { node }, cosmetic }, m) => {
@@ -165,14 +168,11 @@ function remakePrimitives(
       const own = target.clone();
       for (const semantic of own.listSemantics()) own.setAttribute(semantic, remake(own.getAttribute(semantic)!));
       primitive.removeTarget(target).addTarget(own);
-      if (isUnused(target)) target.dispose();
+      disposeUnused(target);
     }
   }
-  for (const accessor of made.keys()) if (isUnused(accessor)) accessor.dispose();
+  for (const accessor of made.keys()) disposeUnused(accessor);
 }
-
-const isUnused = (property: Property): boolean =>
-  property.listParents().every((parent) => parent.propertyType === 'Root');
 
 /**
  * Gives every node of the transfer a mesh and primitives of its own. Other nodes, such as those of other scenes, share an unchanged
