@@ -1018,7 +1018,7 @@ describe('what a target has is kept', () => {
     const [first, second] = [run(at('target.glb'), once), run(once, twice)];
     assert.deepEqual(
       [second.triangles, second.parts.length, second.parts[0]!.uvSet],
-      [first.triangles, first.parts.length, 'TEXCOORD_2'],
+      [first.triangles, first.parts.length, 'TEXCOORD_1'],
     );
     rmSync(once);
     rmSync(twice);
