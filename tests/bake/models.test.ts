@@ -4,7 +4,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { type Document, type Material, NodeIO } from '@gltf-transform/core';
-import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+import { ALL_EXTENSIONS, KHRMaterialsVariants } from '@gltf-transform/extensions';
 import { init } from 'cagecast';
 import type { Image } from 'cagecast/bake';
 import { type BakeReport, bake, cagecast as cagecastTransform, type ImageCodec } from 'cagecast/gltf';
@@ -355,6 +355,52 @@ test('baking a model that has an overlay of an earlier transfer takes it away: d
     assert.deepEqual([one.getRoot().listMaterials().length, one.getRoot().listTextures().length], [1, 1]);
     assertPainted(imageOf(materialOf(one).getBaseColorTexture()));
   }
+});
+
+test('materials of variants are painted as well, or it is told why not: documents, files', async () => {
+  const document = await io.read(at('box.glb'));
+  const [box] = document.getRoot().listMeshes()[0]!.listPrimitives();
+  const variants = document.createExtension(KHRMaterialsVariants);
+  const list = variants.createMappingList();
+  const texture = document
+    .createTexture('night')
+    .setMimeType('image/png')
+    .setImage(new Uint8Array(pngOf(own)));
+  const same = materialOf(document).getBaseColorTexture();
+  for (const [name, map] of [
+    ['night', texture],
+    ['glossy', same],
+    ['plain', null],
+  ] as const) {
+    const material = document.createMaterial(name).setBaseColorTexture(map).setRoughnessFactor(0);
+    list.addMapping(variants.createMapping().setMaterial(material).addVariant(variants.createVariant(name)));
+  }
+  box!.setExtension('KHR_materials_variants', list);
+  await io.write(at('variants.glb'), document);
+  const assertBaked = (painted: Document) => {
+    const [first, night, glossy, plain] = painted.getRoot().listMaterials();
+    for (const material of [first!, night!]) assertPainted(imageOf(material.getBaseColorTexture()));
+    assert.equal(glossy!.getBaseColorTexture(), first!.getBaseColorTexture());
+    assert.equal(plain!.getBaseColorTexture(), null);
+    assert.equal(painted.getRoot().listTextures().length, 2);
+  };
+  const report = await baked(document);
+  assertBaked(document);
+  assert.deepEqual(
+    report.textures.map(({ parts, overlap }) => [parts, overlap.texels < 0.001]),
+    [
+      [['box'], true],
+      [['box'], true],
+    ],
+  );
+  const reason = 'its material has no texture';
+  assert.deepEqual(report.left, [{ part: 'box', material: 'plain', reason }]);
+  const { status, stdout, stderr } = cagecast(
+    ...['bake', at('variants.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb')],
+  );
+  assert.deepEqual([status, stderr], [0, '']);
+  assert.ok(stdout.includes(`not painted: "box", with "plain" of its variants: ${reason}`), stdout);
+  assertBaked(await io.read(at('out.glb')));
 });
 
 test('overlapping UVs are told by the command', () => {

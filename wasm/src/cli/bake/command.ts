@@ -98,7 +98,10 @@ function summary(output: string, { textures, left }: BakeReport): string {
       ({ slot, parts, width, height, overlap }) =>
         `${slot}: ${width} × ${height}, on ${list(parts)}${overlapText(overlap)}`,
     ),
-    ...left.map(({ part, reason }) => `not painted: ${quoted(part)}: ${reason}`),
+    ...left.map(
+      ({ part, material, reason }) =>
+        `not painted: ${quoted(part)}${material === undefined ? '' : `, with ${quoted(material)} of its variants`}: ${reason}`,
+    ),
   ].join('\n');
 }
 

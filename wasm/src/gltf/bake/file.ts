@@ -49,6 +49,17 @@ export class FileModel implements BakeModel<number, number> {
     return material !== undefined && this.#json.materials?.[material] ? material : undefined;
   }
 
+  variantsOf(part: Part): number[] {
+    const { mappings = [] } = (this.#primitive(part).extensions?.['KHR_materials_variants'] ?? {}) as {
+      mappings?: { material: number }[];
+    };
+    return mappings.map(({ material }) => material).filter((material) => this.#json.materials?.[material]);
+  }
+
+  nameOf(material: number): string {
+    return this.#material(material).name ?? `materials[${material}]`;
+  }
+
   uvsOf(part: Part, set: string): Float32Array | undefined {
     const number = this.#primitive(part).attributes[set];
     const accessor = number === undefined ? undefined : this.#file.geometry.getRoot().listAccessors()[number];

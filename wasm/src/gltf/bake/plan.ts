@@ -35,6 +35,9 @@ export interface TextureUse<Texture> {
 export interface BakeModel<Material, Texture> {
   parts: readonly Piece[];
   materialOf(part: Piece): Material | undefined;
+  /** The materials that variants give a part instead of its own. */
+  variantsOf(part: Piece): Material[];
+  nameOf(material: Material): string;
   /** The values of a set of UVs, decoded. */
   uvsOf(part: Piece, set: string): Float32Array | undefined;
   /** The values of an attribute of colours, decoded, and how many a vertex has. */
@@ -69,8 +72,8 @@ export interface Paints {
 export interface BakeReport {
   /** The textures that have paint now: of which parts, and how their UVs overlap. */
   textures: { slot: Slot; parts: string[]; width: number; height: number; overlap: Baked['overlap'] }[];
-  /** The parts that should be painted but have no texture that can hold it, and why. */
-  left: { part: string; reason: string }[];
+  /** The parts that should be painted but have no texture that can hold it, and why; with a variant's material, if it is about that. */
+  left: { part: string; material?: string; reason: string }[];
 }
 
 /** What is baked. */
@@ -94,7 +97,13 @@ const kNewSide = 1024;
 
 const kinds: Record<Slot, string> = { color: 'base colour', normal: 'normal', orm: 'metallic-roughness' };
 
-/** A texture with a factor, the materials that use it so, and all their parts, painted or not. */
+/** A part, and its material or one that a variant gives it. */
+interface User<Material> {
+  part: Piece;
+  material: Material | undefined;
+}
+
+/** A texture with a factor, and the materials that use it so, with all their parts, painted or not. */
 interface Sheet<Material, Texture> {
   slot: Slot;
   use: TextureUse<Texture>;
@@ -103,8 +112,7 @@ interface Sheet<Material, Texture> {
   /** Whether the red of its texture meant nothing, and will be occlusion. */
   redIsNew: boolean;
   factor: readonly [number, number, number];
-  materials: Set<Material>;
-  parts: Piece[];
+  users: (User<Material> & { material: Material })[];
 }
 
 /** Bakes paints into the textures of a model; see `bake` of cagecast/gltf. @returns what was done, and the parts that are baked. */
@@ -120,37 +128,42 @@ export async function bakeModel<Material, Texture>(
   for (const slot of slots) {
     const paint = input.paints[slot];
     if (!paint) continue;
-    const refused = new Map<Piece, string>();
+    const refused = new Map<User<Material>, string>();
     for (const sheet of listSheets(model, slot, refused)) {
-      const painted = sheet.parts.filter(isPainted);
-      if (painted.length === 0) continue;
+      const painted = new Set(sheet.users.map(({ part }) => part).filter(isPainted));
+      if (painted.size === 0) continue;
       const done = await bakeSheet(model, sheet, paint, input);
       if (typeof done === 'string') {
-        for (const part of painted) refused.set(part, done);
+        for (const user of sheet.users) refused.set(user, done);
         continue;
       }
-      for (const part of sheet.parts) baked.add(part);
+      for (const { part, material } of sheet.users) if (material === model.materialOf(part)) baked.add(part);
       const { width, height, overlap } = done;
-      report.textures.push({ slot, parts: painted.map(({ name }) => name), width, height, overlap });
+      report.textures.push({ slot, parts: [...painted].map(({ name }) => name), width, height, overlap });
     }
-    for (const [part, reason] of refused) if (isPainted(part)) report.left.push({ part: part.name, reason });
+    for (const [{ part, material }, reason] of refused) {
+      if (!isPainted(part)) continue;
+      const ofVariant = material !== undefined && material !== model.materialOf(part);
+      report.left.push({ part: part.name, ...(ofVariant && { material: model.nameOf(material) }), reason });
+    }
   }
   return { report, baked };
 }
 
-/** The textures that can be painted. @param refused  Gets the other parts, and why not. */
+/** The textures that can be painted. @param refused  Gets what cannot be, and why. */
 function listSheets<Material, Texture>(
   model: BakeModel<Material, Texture>,
   slot: Slot,
-  refused: Map<Piece, string>,
+  refused: Map<User<Material>, string>,
 ): Sheet<Material, Texture>[] {
   const sheets = new Map<string, Sheet<Material, Texture>>();
   const numbers = new Map<Texture, number>();
   const users = new Map<Material, Piece[]>();
   for (const part of model.parts) {
-    const material = model.materialOf(part);
-    if (material === undefined) refused.set(part, 'it has no material');
-    else users.set(material, [...(users.get(material) ?? []), part]);
+    const own = model.materialOf(part);
+    if (own === undefined) refused.set({ part, material: own }, 'it has no material');
+    for (const material of new Set([...(own === undefined ? [] : [own]), ...model.variantsOf(part)]))
+      users.set(material, [...(users.get(material) ?? []), part]);
   }
   for (const [material, parts] of users) {
     const own = model.useOf(material, slot);
@@ -163,7 +176,7 @@ function listSheets<Material, Texture>(
           ? 'its vertices have colours'
           : undefined;
     if (reason !== undefined || !use) {
-      for (const part of parts) refused.set(part, reason!);
+      for (const part of parts) refused.set({ part, material }, reason!);
       continue;
     }
     if (!numbers.has(use.texture)) numbers.set(use.texture, numbers.size);
@@ -171,9 +184,8 @@ function listSheets<Material, Texture>(
     const isNew = own === undefined;
     const redIsNew = slot === 'orm' && !model.hasOcclusion(material);
     const key = JSON.stringify([numbers.get(use.texture), isNew, redIsNew, factor, use.wraps]);
-    const sheet = sheets.get(key) ?? { slot, use, isNew, redIsNew, factor, materials: new Set(), parts: [] };
-    sheet.materials.add(material);
-    sheet.parts.push(...parts);
+    const sheet = sheets.get(key) ?? { slot, use, isNew, redIsNew, factor, users: [] };
+    sheet.users.push(...parts.map((part) => ({ part, material })));
     sheets.set(key, sheet);
   }
   return [...sheets.values()];
@@ -189,18 +201,31 @@ async function bakeSheet<Material, Texture>(
   const { slot, use, factor } = sheet;
   const base = await baseOf(model, sheet, input);
   if (typeof base === 'string') return base;
-  const layouts = layoutsOf(model, sheet.parts, input, (part) => {
-    const [material] = [model.materialOf(part)!];
-    return model.useOf(material, slot) ?? model.useOf(material, 'color')!;
-  });
+  const layouts = sheetLayouts(model, sheet, input);
   const wrong = unusable(layouts, base.width * base.height);
   if (wrong) return wrong;
   const { width, height } = base;
   const baked = fill('bake', layouts, paint, { width, height, wrap: use.wraps, kind: kindOf[slot] });
   if (baked.overlap.lost > kMostLost) return 'most of its paint would lie in texels that others use';
   const image = layOver(base, baked, slot === 'normal' ? [1, 1, 1] : factor);
-  model.replace([...sheet.materials], slot, await input.codec.encode(image), use);
+  model.replace([...new Set(sheet.users.map(({ material }) => material))], slot, await input.codec.encode(image), use);
   return baked;
+}
+
+/** The triangles on a sheet; those of a part that several materials lay on it in the same way only once. */
+function sheetLayouts<Material, Texture>(
+  model: BakeModel<Material, Texture>,
+  { slot, users }: Sheet<Material, Texture>,
+  input: BakeInput,
+): Layout[] {
+  const known = new Set<string>();
+  return users.flatMap(({ part, material }) => {
+    const use = model.useOf(material, slot) ?? model.useOf(material, 'color')!;
+    const key = JSON.stringify([part.firstTriangle, use.set, use.transform]);
+    if (known.has(key)) return [];
+    known.add(key);
+    return layoutsOf(model, [part], input, () => use);
+  });
 }
 
 /** The image of a sheet, or what stands for it: a flat normal map, say. */

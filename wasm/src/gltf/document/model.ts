@@ -13,6 +13,11 @@ interface KHRTransform extends ExtensionProperty {
   getTexCoord(): number | null;
 }
 
+/** Another one. */
+interface MaterialMappings extends ExtensionProperty {
+  listMappings(): { getMaterial(): Material | null }[];
+}
+
 const wrapOf = (wrap: number): Wrap => (wrap === 33071 ? 'clamp' : wrap === 33648 ? 'mirror' : 'repeat');
 
 /** A document as baking sees it. */
@@ -27,6 +32,15 @@ export class DocumentModel implements BakeModel<Material, Texture> {
 
   materialOf(part: DocumentPart): Material | undefined {
     return part.primitive.getMaterial() ?? undefined;
+  }
+
+  variantsOf({ primitive }: DocumentPart): Material[] {
+    const mappings = primitive.getExtension('KHR_materials_variants') as MaterialMappings | null;
+    return mappings?.listMappings().flatMap((mapping) => mapping.getMaterial() ?? []) ?? [];
+  }
+
+  nameOf(material: Material): string {
+    return material.getName();
   }
 
   uvsOf({ primitive, vertexCount }: DocumentPart, set: string): Float32Array | undefined {
