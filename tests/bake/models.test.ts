@@ -403,6 +403,22 @@ test('materials of variants are painted as well, or it is told why not: document
   assertBaked(await io.read(at('out.glb')));
 });
 
+test('triangles without area are nothing to paint, whatever their number; surfaces without area in UVs are a palette', async () => {
+  const document = await io.read(at('box.glb'));
+  const [box] = document.getRoot().listMeshes()[0]!.listPrimitives();
+  const indices = box!.getIndices()!;
+  const all = [...indices.getArray()!];
+  indices.setArray(Uint16Array.from([...all, ...all.flatMap((v) => [v, v, v])]));
+  const { textures, left } = await baked(document);
+  assert.deepEqual([textures.length, left], [1, []]);
+  assertPainted(imageOf(materialOf(document).getBaseColorTexture()));
+
+  const palette = await io.read(at('box.glb'));
+  const uvs = palette.getRoot().listMeshes()[0]!.listPrimitives()[0]!.getAttribute('TEXCOORD_0')!;
+  uvs.setArray(new Float32Array(2 * uvs.getCount()).fill(0.4));
+  assert.match((await baked(palette)).left[0]!.reason, /is a palette/);
+});
+
 test('overlapping UVs are told by the command', () => {
   const { status, stdout } = cagecast('bake', at('mirrored.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
   assert.equal(status, 0);

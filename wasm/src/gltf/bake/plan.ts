@@ -86,8 +86,8 @@ export interface BakeInput {
   size?: number | undefined;
 }
 
-/** If more triangles than this have no area in the texture, it is a palette, which cannot hold paint. */
-const kMostFlat = 0.1; // of the painted triangles
+/** If more of the surface than this has no area in the texture, it is a palette, which cannot hold paint. */
+const kMostFlat = 0.1; // of the painted surface
 const kFlat = 0.01; // texels
 /** A texture that is repeated more often than this is a pattern; mirrored halves use it twice at most. */
 const kMostRepeats = 2.5;
@@ -290,18 +290,26 @@ export function layoutsOf<Material, Texture>(
 
 /** Why UVs are not an unwrapping, if so. */
 function unusable(layouts: readonly Layout[], texels: number): string | undefined {
-  let [laid, flat, count] = [0, 0, 0];
-  for (const { to, painted } of layouts) {
+  let [laid, flat, surface] = [0, 0, 0];
+  for (const { to, painted, positions } of layouts) {
     painted.forEach((isPainted, t) => {
       const area = Math.abs(areaOf(to, 6 * t));
       laid += area;
       if (!isPainted) return;
-      ++count;
-      if (area * texels < kFlat) ++flat;
+      const own = surfaceOf(positions!, 9 * t);
+      surface += own;
+      if (area * texels < kFlat) flat += own;
     });
   }
   if (laid > kMostRepeats) return 'its texture is a pattern that repeats';
-  return flat > kMostFlat * count ? 'its texture is a palette: most triangles have no area in it' : undefined;
+  return flat > kMostFlat * surface ? 'its texture is a palette: much of its surface has no area in it' : undefined;
+}
+
+/** Twice the area of a triangle in space. */
+function surfaceOf(positions: ArrayLike<number>, at: number): number {
+  const [a, b] = [3, 6].map((to) => [0, 1, 2].map((k) => positions[at + to + k]! - positions[at + k]!)) as number[][];
+  const across = (i: number, j: number) => a![i]! * b![j]! - a![j]! * b![i]!;
+  return Math.hypot(across(1, 2), across(2, 0), across(0, 1));
 }
 
 /** Checks paints. @throws {CagecastError} `badArgument` */
