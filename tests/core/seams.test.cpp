@@ -507,3 +507,22 @@ TEST_CASE("UVs of 0 and -0 are one place, where no seam runs", "[seams]") {
     CHECK(copied(result.projection.cornerUvs) == std::vector<float>{0.25f, 0.5f, 0.5f, 0.25f, 0.75f, 0.75f});
   }
 }
+
+TEST_CASE("UVs that are a hair apart are two places, between which a seam runs", "[seams]") {
+  // As before, with a corner whose UV differs by less than numbers near 1 can tell.
+  const float hair = 1e-9f;
+  for (const auto& [u, v] : {std::pair{hair, 0.0f}, {0.0f, hair}}) {
+    scenes::Mesh cage;
+    cage.addVertex({0, 0, 1}, 0, 0), cage.addVertex({4, 0, 1}, 1, 0), cage.addVertex({4, 4, 1}, 1, 1);
+    cage.addVertex({0, 0, 1}, u, v), cage.addVertex({4, 4, 1}, 1, 1), cage.addVertex({0, 4, 1}, 0, 1);
+    cage.addTriangle(0, 1, 2), cage.addTriangle(3, 4, 5);
+    // Its edges in the texture are long, or shorter than what counts as smeared.
+    for (const float size : {1.0f, 0.005f}) {
+      scenes::Mesh target;
+      target.addVertex({2 - 1.5f * size, 2, 0}), target.addVertex({2, 2 - size, 0});
+      target.addVertex({2 + size, 2 + 1.5f * size, 0});
+      target.addTriangle(0, 1, 2);
+      CHECK(compareCorners("a hair apart", cage.view(), target.view()).reprojected == 1);
+    }
+  }
+}
