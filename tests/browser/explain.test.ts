@@ -22,7 +22,7 @@ let site: Site;
 let visit: Visit;
 before(async () => {
   site = await Site.open();
-  visit = await site.visit({ viewport: { width: 760, height: 500 }, deviceScaleFactor: 1 });
+  visit = await site.visit({ viewport: { width: 960, height: 600 }, deviceScaleFactor: 1 });
 });
 after(() => site?.close());
 

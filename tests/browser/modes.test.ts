@@ -12,7 +12,7 @@ let site: Site;
 let visit: Visit;
 before(async () => {
   site = await Site.open();
-  visit = await site.visit({ viewport: { width: 700, height: 480 } });
+  visit = await site.visit({ viewport: { width: 900, height: 560 } });
 });
 after(() => site?.close());
 

@@ -10,13 +10,14 @@ export interface Area {
 }
 
 /**
- * The part of the view without controls; those that lie over it in small views are unseen from then on. Scrolls to the top: pictures
- * taken where half a pixel is scrolled away differ from all others.
+ * The part of the view where the model is; controls that lie over it in small views are unseen from then on. Scrolls to the top:
+ * pictures taken where half a pixel is scrolled away differ from all others.
  */
 export async function modelArea(page: Page): Promise<Area> {
   await page.evaluate(() => {
     document.querySelector('#quick-paint')?.setAttribute('style', 'visibility: hidden');
-    document.querySelector('.stage-head')?.setAttribute('style', 'opacity: 0'); // can still be used
+    for (const controls of document.querySelectorAll('.stage-head, .rail, .angles, .side, .legend'))
+      controls.setAttribute('style', 'opacity: 0'); // can still be used
     scrollTo({ top: 0, behavior: 'instant' });
   });
   const box = (await page.locator('#view').boundingBox())!;
