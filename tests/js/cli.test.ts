@@ -508,6 +508,11 @@ describe('input that cannot be used exits 1 with one line, and writes nothing', 
       [1, `cagecast: ${at('folder')}: cannot be written (is a folder)\n`],
     );
     assert.equal(readFileSync(kept, 'utf8'), 'before');
+    const third = cagecast('transfer', at('target.glb'), '--cage', at('cage.glb'), '-o', join(kept, 'never.glb'));
+    assert.deepEqual(
+      [third.status, third.stderr],
+      [1, `cagecast: ${join(kept, 'never.glb')}: cannot be written (its folder is a file)\n`],
+    );
     rmSync(kept);
     rmSync(at('folder'), { recursive: true });
     assert.ok(!readdirSync(folder).some((name) => name.endsWith('.tmp')));

@@ -89,12 +89,20 @@ function isStream(path: string): boolean {
   return found !== undefined && !found.isFile() && !found.isDirectory();
 }
 
+/** Errors of the system that mean something else than in reading. */
+const writingReasons: Readonly<Record<string, string>> = {
+  ENOENT: 'its folder does not exist',
+  ENOTDIR: 'its folder is a file',
+  EISDIR: 'is a folder',
+  EACCES: 'permission denied',
+};
+
 function attempt<Result>(path: string, write: () => Result): Result {
   try {
     return write();
   } catch (error) {
     const { code } = error as NodeJS.ErrnoException;
-    const reason = { ...reasons, ENOENT: 'its folder does not exist', EISDIR: 'is a folder' }[code ?? ''];
+    const reason = { ...reasons, ...writingReasons }[code ?? ''];
     throw new InputError(`cannot be written (${reason ?? firstLine(error)})`, { cause: error }).in(path);
   }
 }
