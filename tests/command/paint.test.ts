@@ -110,6 +110,24 @@ test('a glTF has its bytes and its images beside it, and is what the GLB is', as
   assert.match(clash.stderr, /my head-image0\.png: would be overwritten, but is read by this command/);
 });
 
+test('it is said where an overlay fills what a material cuts out', async () => {
+  const document = await io.read(target);
+  const cutOut = document.createMaterial('hair').setAlphaMode('MASK');
+  const [first, ...others] = primitivesOf(document);
+  first!.setMaterial(cutOut);
+  await io.write(at('hair.glb'), document);
+  const args = [at('hair.glb'), ...cage, '--texture', at('paint.png'), '-o', at('painted-hair.glb')];
+  const { parts } = JSON.parse(ok('transfer', ...args, '--json')) as Report;
+  assert.deepEqual(
+    parts.map(({ fillsCutOuts }) => fillsCutOuts),
+    [true, ...others.map(() => false)],
+  );
+  assert.match(
+    ok('transfer', ...args),
+    /\nthe overlay fills what the material cuts out of “[^”]+”; cagecast bake paints/,
+  );
+});
+
 test('a KTX2 texture is the file as it is; what glTF cannot hold is an error', async () => {
   const ktx2 = Buffer.from(ktx2Of(200, 30, 60));
   const texture = (name: string, bytes: Uint8Array) => {

@@ -216,7 +216,8 @@ export interface Report {
   /**
    * Every primitive of every node, in scene order. `uvSet` is the added attribute, `splitVertices` the number of vertices that were
    * added because corners at the same vertex have different UVs, and `cutTriangles` the number of triangles that were added by
-   * cutting borders; these three are `null` if no output was written.
+   * cutting borders; these three are `null` if no output was written. `fillsCutOuts` says whether the overlay paints over what the
+   * material cuts out by its alpha.
    */
   parts: {
     name: string;
@@ -226,6 +227,7 @@ export interface Report {
     counts: PerZone;
     uvSet: string | null;
     overlayTriangles: number;
+    fillsCutOuts: boolean;
     splitVertices: number | null;
     cutTriangles: number | null;
   }[];
@@ -313,6 +315,7 @@ function makeReport(
       counts: perZone(result.zones, undefined, part.firstVertex, part.firstVertex + part.vertexCount),
       uvSet: written?.added[p]?.uvSet ?? null,
       overlayTriangles: written?.added[p]?.overlayTriangles ?? 0,
+      fillsCutOuts: written?.added[p]?.fillsCutOuts ?? false,
       splitVertices: written?.added[p]?.splitVertices ?? null,
       cutTriangles: written?.added[p]?.cutTriangles ?? null,
     })),
@@ -352,6 +355,9 @@ function summary(
   const sets = [...new Set(parts.map((part) => part.uvSet))].join(', ');
   const splits = parts.reduce((sum, { splitVertices }) => sum + (splitVertices ?? 0), 0);
   const culled = segments.filter((segment) => segment.culled).length;
+  const filled = [...new Set(parts.filter(({ fillsCutOuts }) => fillsCutOuts).map(({ name }) => `“${name}”`))].join(
+    ', ',
+  );
   const lines = [
     `${command.target}: ${integer(target.vertices)} vertices, ${integer(target.triangles)} triangles, ${integer(segments.length)} segments (${integer(culled)} culled)`,
     table(rows),
@@ -359,6 +365,7 @@ function summary(
     output === null
       ? ''
       : `wrote ${output}: ${sets}, ${zoneAttribute}${command.texture === undefined ? '' : ', and an overlay with the texture'}${splits === 0 ? '' : `; ${integer(splits)} vertices split at seams of the texture`}${replacedOverlays === 0 ? '' : `; ${takenAway(replacedOverlays)}`}`,
+    filled && `the overlay fills what the material cuts out of ${filled}; cagecast bake paints only the rest`,
     ...regions.map(
       ({ cage, texture, triangles: { cosmetic, total } }) =>
         `${cage}: ${integer(cosmetic)} of ${integer(total)} triangles more may be painted, by ${texture}`,

@@ -31,6 +31,8 @@ export interface Added {
   uvSet: string;
   /** Triangles of the overlay; 0 if there is none. */
   overlayTriangles: number;
+  /** Whether the overlay lies on a material that cuts out what its texture's alpha says: it fills that. */
+  fillsCutOuts: boolean;
   /** Number of vertices added because corners at the same vertex have different UVs. */
   splitVertices: number;
   /** Number of triangles added by cutting. */
@@ -82,7 +84,7 @@ export async function writeTransfer(
   const members = parts.map((part, p): Member => {
     const member = groupMember(part, result, pieces);
     const cutTriangles = member.cosmetic.length - part.triangleCount;
-    const added = { uvSet: '', overlayTriangles: 0, splitVertices: 0, cutTriangles };
+    const added = { uvSet: '', overlayTriangles: 0, fillsCutOuts: false, splitVertices: 0, cutTriangles };
     return { ...member, primitives: meshes[p]!.primitives, primitive: primitives[p]!, part, added };
   });
   if (form === 'draco') markForDraco(primitives);
@@ -153,6 +155,7 @@ function addToGroup(
       if (corners.length === 0) continue;
       primitives.push(painter.overlay(primitive, corners, attributes[uvSet]!));
       added.overlayTriangles += corners.length / 3;
+      added.fillsCutOuts = writer.json.materials?.[primitive.material ?? -1]?.alphaMode === 'MASK';
     }
     added.uvSet = uvSet;
     added.splitVertices = copies;

@@ -53,7 +53,8 @@ _NCZ is 0 for a vertex that may be painted. Other values say why it must not be 
 If the triangles at a vertex need different UVs, copies of the vertex with all its attributes are added after the
 existing vertices; --seams vertex adds none. --borders cut also adds vertices, which blend existing ones. Draco changes
 the order of vertices.
-If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced.
+If TARGET was written by an earlier transfer, its UVs, zones and overlays are replaced. An overlay fills what a material
+cuts out by its alpha (alphaMode MASK), as between hairs; cagecast bake does not.
 Each --region adds UVs and zones of its own (_NCZ_1, …) to the same vertices. --uv-bounds and --reference-cage are about
 --cage alone. With <UDIM> in the name of a texture, each tile of the cage's UVs has its own: 1001, 1002 to its right,
 1011 above. A glTF gets OUT.bin and OUT-image0.png, … beside it. A mesh that is drawn as many instances
