@@ -157,7 +157,8 @@ struct State {
   std::vector<std::uint32_t> segments;
   std::vector<std::int32_t> loops;  // The open loop of the cage that the place is on, or -1.
   std::uint32_t segmentCount = 0;
-  std::vector<Verdict> passes;  // Per segment.
+  std::vector<Verdict> passes;   // Per segment.
+  std::vector<Verdict> covered;  // Per segment: whether any of it is.
 };
 
 // ------------------------------------------------------------------------------------------------------ 4', 5
@@ -365,6 +366,7 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
     stats[s].depthWeightedArea = is[s].depthWeighted;
     stats[s].twinOf = s;
     stats[s].score = scoreOf(options, is[s], all.is);
+    state.covered.push_back({is[s].covered > 0, best[s].covered > 0, worst[s].covered > 0});
   }
 
   // Copies that are in doubt are judged together, so that twins do not fall on either side by accident.
@@ -511,7 +513,7 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, const Outlook&
   return {seen.is || behind.is, seen.might || behind.might, seen.must || behind.must};
 }
 
-/// Step 6: the occluded points of passing segments that are seen from elsewhere. Begins at the loop of what is
+/// Step 6: the occluded points of passing, covered segments that are seen from elsewhere. Begins at the loop of what is
 /// occluded; a restored point brings its neighbours in, a rejected one does not.
 std::vector<Verdict> secondLook(const Scene& scene, const Options& options, const State& state) {
   const std::size_t count = scene.points.count();
@@ -540,7 +542,9 @@ std::vector<Verdict> secondLook(const Scene& scene, const Options& options, cons
       const std::uint32_t from = open.back();
       open.pop_back();
       for (const std::uint32_t p : neighbours[from]) {
-        if (!isOccluded(state.findings[p]) || result[p].*how || !(state.passes[state.segments[p]].*how)) continue;
+        const std::uint32_t s = state.segments[p];
+        if (!isOccluded(state.findings[p]) || result[p].*how) continue;
+        if (!(state.passes[s].*how) || !(state.covered[s].*how)) continue;
         if (!(isSeenFrom(p).*how)) continue;
         result[p].*how = true;
         open.push_back(p);

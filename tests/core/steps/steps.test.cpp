@@ -326,3 +326,34 @@ TEST_CASE("timings add up and memory is reported", "[transfer]") {
   CHECK(sum <= t.total * 1.001 + 0.01);
   CHECK(result.projection.peakBytes > scene.target.vertexCount() * 8);
 }
+
+TEST_CASE("occluded points of a part that the cage covers nowhere get no more rays", "[recheck]") {
+  // A shelf beside the cage, half of it under a roof. From there, rays to the side pass under the roof to the cage.
+  const auto shelf = [](float x) {
+    scenes::Mesh target;
+    for (const auto& [u, z] : {std::pair{0.0f, 0.0f}, {0.5f, 0.0f}, {0.75f, 0.0f}, {1.0f, 0.0f}, {0.45f, 0.2f}})
+      for (const float y : {-0.5f, 0.5f}) target.addVertex({x + u, z > 0 ? 2 * y : y, z}, 0, 0, 1);
+    for (const auto& [a, b] : {std::pair{0u, 2u}, {2u, 4u}, {4u, 6u}, {8u, 6u}}) {
+      target.addTriangle(a, b, a + 1);
+      target.addTriangle(b, b + 1, a + 1);
+    }
+    return target;
+  };
+  const scenes::Mesh cage = square(2, 1);
+  const LockEntry kept[] = {{1, Lock::keep}};
+  TransferOptions options;
+  options.steps.holes = false;
+  options.locks.groups = kept;
+  const auto isLeftUnder = [&](float x) {
+    const std::vector<int> zones = zonesOf(transferred(cage.view(), shelf(x).view(), options));
+    return std::vector(zones.begin() + 2, zones.begin() + 4) == std::vector{1, 1};
+  };
+  CHECK_FALSE(isLeftUnder(1.25f));
+  CHECK(isLeftUnder(2.25f));
+  // At a threshold of 0 and without a floor, such parts pass unlocked.
+  options = TransferOptions::paper();
+  options.threshold = 0;
+  options.steps.secondLook = true;
+  for (const float x : {1.25f, 2.25f})
+    CHECK(requireSameAsReference("a shelf", cage.view(), shelf(x).view(), options).unstable == 0);
+}
