@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "checks.hpp"
 
@@ -356,4 +357,47 @@ TEST_CASE("occluded points of a part that the cage covers nowhere get no more ra
   options.steps.secondLook = true;
   for (const float x : {1.25f, 2.25f})
     CHECK(requireSameAsReference("a shelf", cage.view(), shelf(x).view(), options).unstable == 0);
+}
+
+TEST_CASE("a sheet with two sides, between two others, is seen from where the reference sees it", "[recheck]") {
+  const scenes::Mesh cage = scenes::box({0, 0, 0.1f}, {5, 5, 1.2f}, 4);
+  TransferOptions onlyOnce;
+  onlyOnce.steps.secondLook = false;
+  std::size_t occluded = 0, left = 0;
+  for (int step = 1; step <= 12; ++step) {
+    scenes::Mesh target;
+    const auto addSheet = [&](float z, scenes::Point low, scenes::Point high, bool hasTwoSides) {
+      constexpr std::uint32_t kCells = 8;
+      const auto first = static_cast<std::uint32_t>(target.vertexCount());
+      const auto between = [](float from, float to, std::uint32_t i) {
+        return from + (to - from) * static_cast<float>(i) / kCells;
+      };
+      for (std::uint32_t i = 0; i <= kCells; ++i)
+        for (std::uint32_t j = 0; j <= kCells; ++j)
+          target.addVertex({between(low[0], high[0], i), between(low[1], high[1], j), z});
+      for (std::uint32_t i = 0; i < kCells; ++i)
+        for (std::uint32_t j = 0; j < kCells; ++j) {
+          const std::uint32_t a = first + i * (kCells + 1) + j, b = a + kCells + 1;
+          for (const auto& [p, q, r] : {std::tuple{a, b, a + 1}, {b, b + 1, a + 1}}) {
+            target.addTriangle(p, q, r);
+            if (hasTwoSides) target.addTriangle(p, r, q);
+          }
+        }
+    };
+    const float share = static_cast<float>(step) / 13;
+    addSheet(0, {-1.1f, -1}, {1.7f, 1}, true);
+    addSheet(share * 0.4f, {-3.1f, -3.2f}, {0.8f, 3.3f}, false);
+    addSheet((share - 1) * 0.3f, {-3.2f, -3.3f}, {0.83f, 3.1f}, false);
+    const auto countOccluded = [&](const TransferOptions& options) {
+      const std::vector<int> zones = zonesOf(transferred(cage.view(), target.view(), options));
+      return static_cast<std::size_t>(std::count(zones.begin(), zones.begin() + 81, 1));
+    };
+    occluded += countOccluded(onlyOnce);
+    left += countOccluded(TransferOptions{});
+    requireSameAsReference("sheets", cage.view(), target.view(), TransferOptions{});
+  }
+  // Of 12 · 81 points.
+  CHECK(occluded > 500);
+  CHECK(left > 50);
+  CHECK(left < 200);
 }
