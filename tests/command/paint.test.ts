@@ -117,7 +117,9 @@ test('it is said where an overlay fills what a material cuts out', async () => {
   first!.setMaterial(cutOut);
   await io.write(at('hair.glb'), document);
   const args = [at('hair.glb'), ...cage, '--texture', at('paint.png'), '-o', at('painted-hair.glb')];
-  const { parts } = JSON.parse(ok('transfer', ...args, '--json')) as Report;
+  const { parts } = JSON.parse(ok('transfer', ...args, '--json')) as {
+    parts: { fillsCutOuts: boolean }[];
+  };
   assert.deepEqual(
     parts.map(({ fillsCutOuts }) => fillsCutOuts),
     [true, ...others.map(() => false)],

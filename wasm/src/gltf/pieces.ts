@@ -49,6 +49,15 @@ export function joinPieces(pieces: readonly Piece[]): Mesh & { indices: Uint32Ar
   return { positions, indices, groups };
 }
 
+/** @throws {InputError} that names the first value of an attribute that is not a finite number. */
+export function requireFinite(place: string, semantic: string, values: Float32Array, size: number): void {
+  const bad = values.findIndex((value) => !Number.isFinite(value));
+  if (bad >= 0)
+    throw new InputError(
+      `${place}: ${semantic} of vertex ${Math.floor(bad / size)} has ${values[bad]}, which is not a finite number`,
+    );
+}
+
 /**
  * The positions of an accessor.
  * @param place  Its primitive, for messages.
@@ -58,11 +67,7 @@ export function decodePositions(place: string, accessor: Accessor): Float32Array
   if (accessor.getElementSize() !== 3)
     throw new InputError(`${place}.attributes.POSITION is ${accessor.getType()}, not VEC3`);
   const positions = decodeFloats(accessor);
-  const bad = positions.findIndex((value) => !Number.isFinite(value));
-  if (bad >= 0)
-    throw new InputError(
-      `${place}: POSITION of vertex ${Math.floor(bad / 3)} has ${positions[bad]}, which is not a finite number`,
-    );
+  requireFinite(place, 'POSITION', positions, 3);
   return positions;
 }
 

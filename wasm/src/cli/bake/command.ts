@@ -1,6 +1,6 @@
 import { type Baked, cageTexture, fill, type Image, type Layout } from '../../bake/index.js';
 import { FileModel } from '../../gltf/bake/file.js';
-import { type BakeReport, bakeModel, layoutsOf, type Paints, type TextureUse } from '../../gltf/bake/plan.js';
+import { type BakeReport, bakeModel, layoutOf, type Paints, type TextureUse } from '../../gltf/bake/plan.js';
 import { takeOverlays } from '../../gltf/earlier-transfer.js';
 import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
@@ -125,12 +125,9 @@ async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | und
     const { parts, texture } = oneTexture(model, done, command.part);
     const file = texture === undefined ? undefined : await model.imageOf(texture);
     const own = file && (back || size === undefined) ? await decodeImage(file.bytes) : undefined;
-    const layouts = layoutsOf(
-      model,
-      parts,
-      { result: done.result, cut: cut && { target: cut, ownCount: done.target.mesh.positions.length / 3 } },
-      (part) => useOf(model, part as Part),
-    );
+    const ownCount = done.target.mesh.positions.length / 3;
+    const found = { result: done.result, cut: cut && { target: cut, ownCount } };
+    const layouts = parts.map((part) => layoutOf(model, part, useOf(model, part), found));
     if (back && !own) throw new InputError('its painted parts have no texture to take the paint from');
     const wide = size ?? (back ? kSide : (own?.width ?? kSide));
     const high = size ?? (back ? kSide : (own?.height ?? kSide));

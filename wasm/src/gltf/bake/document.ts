@@ -68,7 +68,7 @@ export function bake(options: BakeOptions): (document: Document) => Promise<void
       codec: images,
       size,
     }).catch((error) => within('bake', 'target', () => raise(error)));
-    takeOverlays(target.parts);
+    takeOverlays(document, target.parts);
     if (paint) {
       // What is baked is not shown twice.
       const triangles = target.parts.filter((part) => baked.has(part));

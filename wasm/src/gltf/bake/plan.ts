@@ -12,8 +12,7 @@ import {
 import { CagecastError, type CutTarget, type TransferResult } from '../../index.js';
 import { blend } from '../../parts/blend.js';
 import { gather } from '../../parts/split-part.js';
-import { InputError } from '../input-error.js';
-import type { Piece } from '../pieces.js';
+import { type Piece, requireFinite } from '../pieces.js';
 import { groupMember } from '../primitive-group.js';
 import { transformUvs, type UvTransform } from '../uv-transform.js';
 
@@ -86,8 +85,8 @@ export interface BakeInput {
   size?: number | undefined;
 }
 
-/** If more of the surface than this has no area in the texture, it is a palette, which cannot hold paint. */
-const kMostFlat = 0.1; // of the painted surface
+/** If more of the paint than this has no area in the texture, it is a palette, which cannot hold paint. */
+const kMostFlat = 0.1; // of its area in the cage's UVs
 const kFlat = 0.01; // texels
 /** A texture that is repeated more often than this is a pattern; mirrored halves use it twice at most. */
 const kMostRepeats = 2.5;
@@ -105,6 +104,8 @@ interface User<Material> {
 
 /** A texture with a factor, and the materials that use it so, with all their parts, painted or not. */
 interface Sheet<Material, Texture> {
+  /** How the texture is used: whoever uses it in the same way shares its copy. */
+  key: string;
   slot: Slot;
   use: TextureUse<Texture>;
   /** Whether the material has no texture in this slot yet. */
@@ -142,9 +143,8 @@ export async function bakeModel<Material, Texture>(
       report.textures.push({ slot, parts: [...painted].map(({ name }) => name), width, height, overlap });
     }
     for (const [{ part, material }, reason] of refused) {
-      if (!isPainted(part)) continue;
-      const ofVariant = material !== undefined && material !== model.materialOf(part);
-      report.left.push({ part: part.name, ...(ofVariant && { material: model.nameOf(material) }), reason });
+      const ofVariant = material !== model.materialOf(part) && { material: model.nameOf(material!) };
+      if (isPainted(part)) report.left.push({ part: part.name, ...ofVariant, reason });
     }
   }
   return { report, baked };
@@ -156,15 +156,12 @@ function listSheets<Material, Texture>(
   slot: Slot,
   refused: Map<User<Material>, string>,
 ): Sheet<Material, Texture>[] {
-  const sheets = new Map<string, Sheet<Material, Texture>>();
-  const numbers = new Map<Texture, number>();
+  const sheets: Sheet<Material, Texture>[] = [];
   const users = new Map<Material, Piece[]>();
-  for (const part of model.parts) {
-    const own = model.materialOf(part);
-    if (own === undefined) refused.set({ part, material: own }, 'it has no material');
-    for (const material of new Set([...(own === undefined ? [] : [own]), ...model.variantsOf(part)]))
-      users.set(material, [...(users.get(material) ?? []), part]);
-  }
+  for (const part of model.parts)
+    for (const material of new Set([model.materialOf(part), ...model.variantsOf(part)]))
+      if (material === undefined) refused.set({ part, material }, 'it has no material');
+      else users.set(material, [...(users.get(material) ?? []), part]);
   for (const [material, parts] of users) {
     const own = model.useOf(material, slot);
     const use = own ?? (slot === 'color' ? undefined : model.useOf(material, 'color'));
@@ -179,16 +176,16 @@ function listSheets<Material, Texture>(
       for (const part of parts) refused.set({ part, material }, reason!);
       continue;
     }
-    if (!numbers.has(use.texture)) numbers.set(use.texture, numbers.size);
     const factor = model.factorOf(material, slot);
     const isNew = own === undefined;
     const redIsNew = slot === 'orm' && !model.hasOcclusion(material);
-    const key = JSON.stringify([numbers.get(use.texture), isNew, redIsNew, factor, use.wraps]);
-    const sheet = sheets.get(key) ?? { slot, use, isNew, redIsNew, factor, users: [] };
-    sheet.users.push(...parts.map((part) => ({ part, material })));
-    sheets.set(key, sheet);
+    const key = JSON.stringify([isNew, redIsNew, factor, use.wraps]);
+    const known = sheets.find((sheet) => sheet.key === key && sheet.use.texture === use.texture);
+    const sheet = known ?? { key, slot, use, isNew, redIsNew, factor, users: [] };
+    if (!known) sheets.push(sheet);
+    for (const part of parts) sheet.users.push({ part, material });
   }
-  return [...sheets.values()];
+  return sheets;
 }
 
 /** Paints the texture of a sheet. @returns what was baked, or why not. */
@@ -224,7 +221,7 @@ function sheetLayouts<Material, Texture>(
     const key = JSON.stringify([part.firstTriangle, use.set, use.transform]);
     if (known.has(key)) return [];
     known.add(key);
-    return layoutsOf(model, [part], input, () => use);
+    return layoutOf(model, part, use, input);
   });
 }
 
@@ -237,11 +234,7 @@ async function baseOf<Material, Texture>(
   if (isNew) {
     const side = size ?? kNewSide;
     const color = slot === 'normal' ? [128, 128, 255, 255] : [255, 255, 255, 255];
-    return {
-      width: side,
-      height: side,
-      data: Uint8ClampedArray.from({ length: 4 * side * side }, (_, i) => color[i % 4]!),
-    };
+    return { width: side, height: side, data: new Uint8ClampedArray(4 * side * side).map((_, i) => color[i % 4]!) };
   }
   const file = await model.imageOf(use.texture);
   if (!file) return 'its texture has no image';
@@ -257,59 +250,44 @@ async function baseOf<Material, Texture>(
   return resize(image, Math.max(1, Math.round(scale * image.width)), Math.max(1, Math.round(scale * image.height)));
 }
 
-/** The triangles of parts, cut where the result is, in the UVs of a texture and in the cage's. */
-export function layoutsOf<Material, Texture>(
+/** The triangles of a part, cut where the result is, in the UVs of a texture and in the cage's. */
+export function layoutOf<Material, Texture>(
   model: BakeModel<Material, Texture>,
-  parts: readonly Piece[],
+  part: Piece,
+  { set, transform }: Pick<TextureUse<Texture>, 'set' | 'transform'>,
   { result, cut }: Pick<BakeInput, 'result' | 'cut'>,
-  useOf: (part: Piece) => Pick<TextureUse<Texture>, 'set' | 'transform'>,
-): Layout[] {
-  return parts.map((part): Layout => {
-    const { split, cosmetic, blends } = groupMember(part, result, cut);
-    const { set, transform } = useOf(part);
-    const stored = model.uvsOf(part, set)!;
-    const bad = stored.findIndex((value) => !Number.isFinite(value));
-    if (bad >= 0)
-      throw new InputError(
-        `"${part.name}": ${set} of vertex ${Math.floor(bad / 2)} has ${stored[bad]}, which is not a finite number`,
-      );
-    const uvs = transform ? transformUvs(stored, transform) : stored;
-    const ofCorners = (values: Float32Array, size: number) => {
-      const all = gather(blend(values, size, blends), size, split.sources);
-      return gather(all, size, split.indices);
-    };
-    return {
-      name: part.name,
-      to: ofCorners(uvs, 2),
-      from: gather(split.uvs, 2, split.indices),
-      painted: cosmetic,
-      positions: ofCorners(part.localPositions, 3),
-    };
-  });
+): Layout {
+  const { split, cosmetic, blends } = groupMember(part, result, cut);
+  const stored = model.uvsOf(part, set)!;
+  requireFinite(`"${part.name}"`, set, stored, 2);
+  const ofCorners = (values: Float32Array, size: number) => {
+    const all = gather(blend(values, size, blends), size, split.sources);
+    return gather(all, size, split.indices);
+  };
+  return {
+    name: part.name,
+    to: ofCorners(transform ? transformUvs(stored, transform) : stored, 2),
+    from: gather(split.uvs, 2, split.indices),
+    painted: cosmetic,
+    positions: ofCorners(part.localPositions, 3),
+  };
 }
 
 /** Why UVs are not an unwrapping, if so. */
 function unusable(layouts: readonly Layout[], texels: number): string | undefined {
-  let [laid, flat, surface] = [0, 0, 0];
-  for (const { to, painted, positions } of layouts) {
+  let [laid, flat, drawn] = [0, 0, 0];
+  for (const { to, from, painted } of layouts) {
     painted.forEach((isPainted, t) => {
       const area = Math.abs(areaOf(to, 6 * t));
       laid += area;
       if (!isPainted) return;
-      const own = surfaceOf(positions!, 9 * t);
-      surface += own;
+      const own = Math.abs(areaOf(from, 6 * t));
+      drawn += own;
       if (area * texels < kFlat) flat += own;
     });
   }
   if (laid > kMostRepeats) return 'its texture is a pattern that repeats';
-  return flat > kMostFlat * surface ? 'its texture is a palette: much of its surface has no area in it' : undefined;
-}
-
-/** Twice the area of a triangle in space. */
-function surfaceOf(positions: ArrayLike<number>, at: number): number {
-  const [a, b] = [3, 6].map((to) => [0, 1, 2].map((k) => positions[at + to + k]! - positions[at + k]!)) as number[][];
-  const across = (i: number, j: number) => a![i]! * b![j]! - a![j]! * b![i]!;
-  return Math.hypot(across(1, 2), across(2, 0), across(0, 1));
+  return flat > kMostFlat * drawn ? 'its texture is a palette, without room for paint' : undefined;
 }
 
 /** Checks paints. @throws {CagecastError} `badArgument` */

@@ -48,8 +48,8 @@ export function addTransfer(
   cut?: CutTarget,
 ): void {
   const primitiveOf = separatePrimitives(document, parts);
-  takeOverlays(parts);
-  takeAttributes(primitiveOf);
+  takeOverlays(document, parts);
+  takeAttributes(document, primitiveOf);
   const painter = paint && new Painter(document, paint);
   const pieces = cut && { target: cut, ownCount: mesh.positions.length / 3 };
   const members = parts.map(
@@ -95,12 +95,13 @@ function addToGroup(document: Document, members: readonly Member[], painter: Pai
   if (shared.isNew) {
     const before = members.flatMap(({ primitive }) => primitive.getIndices() ?? []);
     remakePrimitives(
+      document,
       members.map(({ primitive }) => primitive),
       sources,
       blends.sources.length > 0 ? blender(first, blends) : undefined,
     );
     members.forEach(({ primitive }, m) => primitive.setIndices(indices(shared.indices[m]!)).setMode(4)); // strips and fans have become lists
-    new Set(before).forEach(disposeUnused);
+    for (const accessor of before) disposeUnused(document, accessor);
   }
   const stored = storedUvs(shared.uvs);
   const uvs = attribute(stored, 'VEC2', stored instanceof Uint16Array).setExtras({ ...uvsMark });
@@ -147,6 +148,7 @@ function blender(primitive: Primitive, blends: Blends): Extend {
  * nothing else uses are disposed.
  */
 function remakePrimitives(
+  document: Document,
   primitives: readonly Primitive[],
   sources: Uint32Array,
   extend: Extend = (accessor) => accessor.getArray()!,
@@ -168,10 +170,10 @@ function remakePrimitives(
       const own = target.clone();
       for (const semantic of own.listSemantics()) own.setAttribute(semantic, remake(own.getAttribute(semantic)!));
       primitive.removeTarget(target).addTarget(own);
-      disposeUnused(target);
+      disposeUnused(document, target);
     }
   }
-  for (const accessor of made.keys()) disposeUnused(accessor);
+  for (const accessor of made.keys()) disposeUnused(document, accessor);
 }
 
 /**
@@ -225,8 +227,8 @@ class Painter {
       .createPrimitive()
       .setIndices(indices)
       .setMaterial(this.#material(base.getMaterial()))
-      .setExtras({ ...overlayMark });
-    overlay.setAttribute('TEXCOORD_0', uvs);
+      .setExtras({ ...overlayMark })
+      .setAttribute('TEXCOORD_0', uvs);
     for (const semantic of base.listSemantics())
       if (isOverlaid(semantic)) overlay.setAttribute(semantic, base.getAttribute(semantic));
     for (const morph of base.listTargets()) {
@@ -277,11 +279,11 @@ class Painter {
     const material = this.#document
       .createMaterial('Cagecast overlay')
       .setAlphaMode('BLEND')
+      .setAlpha(finish.alpha)
       .setDoubleSided(finish.doubleSided)
       .setMetallicFactor(0)
       .setRoughnessFactor(finish.roughness)
       .setBaseColorTexture(this.#shown());
-    if (finish.alpha < 1) material.setAlpha(finish.alpha);
     if (unlit) material.setExtension(unlitExtension, unlit);
     this.#materials.set(key, material);
     return material;
