@@ -356,6 +356,25 @@ TEST_CASE("two parts of equal shape are twins, be they the largest", "[default]"
   CHECK(result.projection.segmentStats[2].twinOf == 1);
 }
 
+TEST_CASE("twins are found over seven kinds of other shape, not over eight", "[default]") {
+  const scenes::Mesh cage = scenes::box({}, {20, 20, 20}, 1);
+  for (const int others : {7, 8}) {
+    // Sheets of nearly equal area, each a little larger than the one before, and longer; the last is like the first.
+    scenes::Mesh target;
+    for (int i = 0; i <= others + 1; ++i) {
+      const float length = i > others ? 1.0f : 1 + 0.2f * static_cast<float>(i);
+      const float width = (1 + 1e-4f * static_cast<float>(i)) / length, z = static_cast<float>(i);
+      const std::uint32_t a = target.addVertex({0, 0, z}), b = target.addVertex({length, 0, z});
+      const std::uint32_t c = target.addVertex({length, width, z}), d = target.addVertex({0, width, z});
+      target.addTriangle(a, b, c), target.addTriangle(a, c, d);
+    }
+    const TransferResult result = transferred(cage.view(), target.view(), preset());
+    const auto last = static_cast<std::uint32_t>(others + 1);
+    INFO(others << " kinds between");
+    CHECK(result.projection.segmentStats[last].twinOf == (others == 7 ? 0 : last));
+  }
+}
+
 TEST_CASE("a corner behind something small is seen past it, be it the only one", "[default]") {
   scenes::Mesh target;
   const auto addTriangle = [&](scenes::Point at, float size) {

@@ -256,6 +256,7 @@ TEST_CASE("a weld tolerance that nearly all vertices lie within is an error that
   const Status status = transferred();
   CHECK(status.code == Code::weldToleranceTooLarge);
   CHECK(status.argument == Argument::options);
+  CHECK(status.at == 0);
   CHECK(status.option == Option::weldTolerance);
   CHECK(call.text(status) ==
         "options.weldTolerance = 0.01 is too large for target: its vertices have more than 2000 others so near, on "

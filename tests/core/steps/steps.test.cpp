@@ -401,3 +401,36 @@ TEST_CASE("a sheet with two sides, between two others, is seen from where the re
   CHECK(left > 50);
   CHECK(left < 200);
 }
+
+TEST_CASE("a part that faces neither to the cage nor away from it is seen on the side of its normals", "[recheck]") {
+  // An upright sheet beside a wall. A roof hides most of it from the cage above, and leaves one of its sides open.
+  const scenes::Mesh cage = scenes::box({}, {5, 5, 2}, 4);
+  TransferOptions options;
+  for (const bool isTurned : {false, true}) {
+    scenes::Mesh target;
+    const auto addRectangle = [&](scenes::Point a, scenes::Point b, scenes::Point c, scenes::Point d) {
+      const std::uint32_t i = target.addVertex(a), j = target.addVertex(b), k = target.addVertex(c);
+      const std::uint32_t l = target.addVertex(d);
+      target.addTriangle(i, j, k), target.addTriangle(i, k, l);
+    };
+    for (int i = 0; i < 8; ++i)
+      for (int j = 0; j < 4; ++j) {
+        const float y = 0.25f * static_cast<float>(i) - 1, z = 0.25f * static_cast<float>(j);
+        const scenes::Point a{0, y, z}, b{0, y + 0.25f, z}, c{0, y + 0.25f, z + 0.25f}, d{0, y, z + 0.25f};
+        if (isTurned) addRectangle(a, d, c, b);
+        if (!isTurned) addRectangle(a, b, c, d);
+      }
+    addRectangle({-0.5f, -3, 1.25f}, {0.5f, -3, 1.25f}, {0.5f, 0.6f, 1.25f}, {-0.5f, 0.6f, 1.25f});
+    addRectangle({-0.1f, -3, -1}, {-0.1f, -3, 1.25f}, {-0.1f, 3, 1.25f}, {-0.1f, 3, -1});
+    const auto occluded = [&](bool looksTwice) {
+      options.steps.secondLook = looksTwice;
+      const std::vector<int> zones = zonesOf(transferred(cage.view(), target.view(), options));
+      return std::count(zones.begin(), zones.begin() + 128, 1);
+    };
+    // The sheet's front looks away from the wall, or, turned, to it.
+    const auto once = occluded(false);
+    CHECK(once > 50);
+    CHECK(occluded(true) == (isTurned ? once : 0));
+    requireSameAsReference("an upright sheet", cage.view(), target.view(), options);
+  }
+}
