@@ -419,6 +419,49 @@ test('triangles without area are nothing to paint, whatever their number; surfac
   assert.match((await baked(palette)).left[0]!.reason, /is a palette/);
 });
 
+test('vertex colours hinder the paint unless all of them are white', async () => {
+  const coloured = async (colors: Float32Array | Uint8Array, type: 'VEC3' | 'VEC4', normalized: boolean) => {
+    const document = await io.read(at('box.glb'));
+    const [box] = document.getRoot().listMeshes()[0]!.listPrimitives();
+    const accessor = document.createAccessor().setType(type).setNormalized(normalized).setArray(colors);
+    box!.setAttribute('COLOR_0', accessor.setBuffer(document.getRoot().listBuffers()[0]!));
+    writeFileSync(at('coloured.glb'), await io.writeBinary(document));
+    return document;
+  };
+  const vertices = (await io.read(at('box.glb')))
+    .getRoot()
+    .listAccessors()
+    .find((a) => a.getType() === 'VEC3')!
+    .getCount();
+  const bake = () => cagecast('bake', at('coloured.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
+  const white = [
+    await coloured(
+      new Uint8Array(4 * vertices).map((_, i) => (i % 4 === 3 ? 128 : 255)),
+      'VEC4',
+      true,
+    ),
+    await coloured(new Float32Array(3 * vertices).fill(1), 'VEC3', false),
+  ];
+  for (const document of white) {
+    assert.deepEqual((await baked(document)).left, []);
+    assertPainted(imageOf(materialOf(document).getBaseColorTexture()));
+  }
+  assert.equal(bake().status, 0);
+  const tinted = await coloured(new Float32Array(3 * vertices).fill(1).fill(0.5, 7, 8), 'VEC3', false);
+  const reason = 'its vertices have colours';
+  assert.deepEqual((await baked(tinted)).left, [{ part: 'box', reason }]);
+  assert.match(bake().stderr, new RegExp(`coloured\\.glb: nothing can be baked: "box": ${reason}`));
+});
+
+test('what follows the end of a PNG is not part of it, as in viewers', async () => {
+  const padded = (png: Uint8Array) => Buffer.concat([png, Buffer.alloc(3)]);
+  writeFileSync(at('padded.glb'), (await texturedBox(padded(pngOf(own)))).buffer);
+  writeFileSync(at('padded.png'), padded(pngOf(red)));
+  const { status, stderr } = cagecast('bake', at('padded.glb'), at('cage.glb'), at('padded.png'), '-o', at('out.glb'));
+  assert.deepEqual([status, stderr], [0, '']);
+  assertPainted(imageOf(materialOf(await io.read(at('out.glb'))).getBaseColorTexture()));
+});
+
 test('overlapping UVs are told by the command', () => {
   const { status, stdout } = cagecast('bake', at('mirrored.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
   assert.equal(status, 0);

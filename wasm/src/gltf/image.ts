@@ -10,19 +10,21 @@ export function imageType(bytes: Uint8Array): 'image/png' | 'image/jpeg' | 'imag
 
 /** Whether an image file is complete, up to its closing chunk or marker, or its last level. */
 export function imageIsWhole(bytes: Uint8Array): boolean {
-  if (imageType(bytes) === 'image/png') {
-    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-    for (let at = 8; at + 12 <= bytes.byteLength; at += 12 + view.getUint32(at)) {
-      if (view.getUint32(at + 4) === 0x49454e44) return true; // "IEND"
-    }
-    return false;
-  }
+  if (imageType(bytes) === 'image/png') return pngLength(bytes) !== undefined;
   if (imageType(bytes) === 'image/webp')
     return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength).getUint32(4, true) + 8 <= bytes.byteLength;
   if (imageType(bytes) === 'image/ktx2') return ktx2IsWhole(bytes);
   // Cameras append data of their own after the end marker, so look for the last one.
   for (let at = bytes.byteLength - 2; at > 1; --at) if (bytes[at] === 0xff && bytes[at + 1] === 0xd9) return true;
   return false;
+}
+
+/** Where a PNG file ends, before what some programs put after it; undefined for a truncated one. */
+export function pngLength(bytes: Uint8Array): number | undefined {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  for (let at = 8; at + 12 <= bytes.byteLength; at += 12 + view.getUint32(at))
+    if (view.getUint32(at + 4) === 0x49454e44) return at + 12; // "IEND"
+  return undefined;
 }
 
 /** The bytes of a KTX2 file before the list of its levels, and those of an entry of the list. */

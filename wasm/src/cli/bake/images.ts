@@ -1,7 +1,7 @@
 import { PNG } from 'pngjs';
 import { type Image, mostTexels } from '../../bake/index.js';
 import { type ReadOptions, readBeside, readBytes } from '../../gltf/files.js';
-import { imageIsWhole, imageType } from '../../gltf/image.js';
+import { imageIsWhole, imageType, pngLength } from '../../gltf/image.js';
 import { firstLine, InputError } from '../../gltf/input-error.js';
 
 /**
@@ -49,7 +49,7 @@ function decodePng(bytes: Uint8Array): Image {
   if (width === 0 || height === 0 || width > mostTexels || height > mostTexels)
     throw new InputError(`has ${width} × ${height} pixels; both must be from 1 to ${mostTexels}`);
   try {
-    const { data } = PNG.sync.read(Buffer.from(bytes));
+    const { data } = PNG.sync.read(Buffer.from(bytes.subarray(0, pngLength(bytes))));
     return { width, height, data };
   } catch (error) {
     throw new InputError(`cannot be decoded (${firstLine(error)})`);

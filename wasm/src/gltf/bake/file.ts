@@ -74,10 +74,6 @@ export class FileModel implements BakeModel<number, number> {
     return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
   }
 
-  isTinted(part: Part): boolean {
-    return this.#primitive(part).attributes['COLOR_0'] !== undefined;
-  }
-
   useOf(material: number, slot: Slot): TextureUse<number> | undefined {
     const info = infoOf(this.#material(material), slot);
     if (!info) return undefined;

@@ -41,8 +41,6 @@ export interface BakeModel<Material, Texture> {
   uvsOf(part: Piece, set: string): Float32Array | undefined;
   /** The values of an attribute of colours, decoded, and how many a vertex has. */
   colorsOf(part: Piece, semantic: string): { values: Float32Array; size: number } | undefined;
-  /** Whether its vertices have colours, by which its texture is multiplied. */
-  isTinted(part: Piece): boolean;
   useOf(material: Material, slot: Slot): TextureUse<Texture> | undefined;
   /** By what the values of the texture are multiplied. */
   factorOf(material: Material, slot: Slot): readonly [number, number, number];
@@ -164,20 +162,20 @@ function listSheets<Material, Texture>(
       else users.set(material, [...(users.get(material) ?? []), part]);
   for (const [material, parts] of users) {
     const own = model.useOf(material, slot);
-    const use = own ?? (slot === 'color' ? undefined : model.useOf(material, 'color'));
+    const use = own ?? model.useOf(material, 'color');
     const reason = !use
       ? 'its material has no texture'
       : parts.some((part) => !model.uvsOf(part, use.set))
         ? `it has no ${use.set}, the UVs of its texture`
-        : slot === 'color' && parts.some((part) => model.isTinted(part))
+        : slot === 'color' && parts.some((part) => isTinted(model, part))
           ? 'its vertices have colours'
           : undefined;
-    if (reason !== undefined || !use) {
+    if (!use || reason) {
       for (const part of parts) refused.set({ part, material }, reason!);
       continue;
     }
     const factor = model.factorOf(material, slot);
-    const isNew = own === undefined;
+    const isNew = !own;
     const redIsNew = slot === 'orm' && !model.hasOcclusion(material);
     const key = JSON.stringify([isNew, redIsNew, factor, use.wraps]);
     const known = sheets.find((sheet) => sheet.key === key && sheet.use.texture === use.texture);
@@ -186,6 +184,12 @@ function listSheets<Material, Texture>(
     for (const part of parts) sheet.users.push({ part, material });
   }
   return sheets;
+}
+
+/** Whether its vertices have colours, by which its texture is multiplied. Many programs write white ones. */
+function isTinted<Material, Texture>(model: BakeModel<Material, Texture>, part: Piece): boolean | undefined {
+  const colors = model.colorsOf(part, 'COLOR_0');
+  return colors?.values.some((value, i) => i % colors.size < 3 && value !== 1);
 }
 
 /** Paints the texture of a sheet. @returns what was baked, or why not. */

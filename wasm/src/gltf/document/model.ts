@@ -53,10 +53,6 @@ export class DocumentModel implements BakeModel<Material, Texture> {
     return accessor ? { values: decodeFloats(accessor), size: accessor.getElementSize() } : undefined;
   }
 
-  isTinted({ primitive }: DocumentPart): boolean {
-    return primitive.getAttribute('COLOR_0') !== null;
-  }
-
   useOf(material: Material, slot: keyof Paints): TextureUse<Texture> | undefined {
     const [texture, info] = textureIn(material, slot);
     if (!texture || !info) return undefined;
