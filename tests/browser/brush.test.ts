@@ -320,6 +320,34 @@ test('strokes survive a lost graphics context', async () => {
   assert.equal(Buffer.compare((await savedTexture(page)).data, before.data), 0);
 });
 
+test('while the graphics are lost, that is said, and nothing empty is saved', async () => {
+  const { page } = visit;
+  const change = (to: 'loseContext' | 'restoreContext'): Promise<void> =>
+    page.evaluate(async (to) => {
+      const canvas = document.querySelector('canvas')!;
+      const holder = globalThis as { lost?: WEBGL_lose_context | null };
+      const extension = (holder.lost ??= canvas.getContext('webgl2')!.getExtension('WEBGL_lose_context'))!;
+      const event = to === 'loseContext' ? 'webglcontextlost' : 'webglcontextrestored';
+      const told = new Promise((done) => canvas.addEventListener(event, done, { once: true }));
+      extension[to]();
+      await told;
+      await new Promise((done) => setTimeout(done)); // not while it is being told
+    }, to);
+  await change('loseContext');
+  assert.match(await shownError(page), /^The browser has reset the graphics\. The picture comes back by itself/);
+  for (const id of ['save-texture', 'stage-save', 'save-picture']) {
+    let isSaved = false;
+    page.once('download', () => (isSaved = true));
+    await page.getByTestId(id).evaluate((button) => (button as HTMLElement).click());
+    await page.locator('#error', { hasText: 'the browser has reset the graphics; try again in a moment' }).waitFor();
+    await page.evaluate(() => (document.querySelector('#error')!.textContent = ''));
+    assert.equal(isSaved, false, id);
+  }
+  await change('restoreContext');
+  assert.equal(await shownError(page), '');
+  assert.ok(filled(await savedTexture(page)) > 0);
+});
+
 test('erasing without a painting shows a message', async () => {
   const { page } = visit;
   await openBall();
@@ -330,4 +358,7 @@ test('erasing without a painting shows a message', async () => {
     [0.5, 0.4],
   ]);
   assert.match(await shownError(page), /no painting to erase/);
+  await page.locator('#alert-close').focus();
+  await page.keyboard.press('Enter');
+  assert.equal(await page.evaluate(() => document.activeElement?.id), 'view');
 });

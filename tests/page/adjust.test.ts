@@ -105,7 +105,8 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
   await did('closing a hole');
   assert.deepEqual(await shownCounts(page), start, 'the hole is closed');
   await savedCage(page);
-  await page.locator('#adjust-done').click();
+  await page.locator('#adjust-done').press('Enter');
+  assert.equal(await page.evaluate(() => document.activeElement?.id), 'adjust-cage');
   assert.ok(await page.getByTestId('adjust').isHidden());
   assert.deepEqual(complaints, []);
 });

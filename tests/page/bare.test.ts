@@ -136,6 +136,18 @@ test('spots are marked by a finger and by the keyboard; a second finger turns th
   await page.keyboard.press('Enter');
   const more = await markedCount(page);
   assert.ok(more > tapped, `${more} are marked, not only ${tapped}`);
+  const covered = await page.locator('#tools label').evaluateAll((tools) =>
+    tools.flatMap((tool) => {
+      const { left, top, right, bottom } = tool.getBoundingClientRect();
+      const isHit = [top + 2, bottom - 2].every((y) => tool.contains(document.elementFromPoint((left + right) / 2, y)));
+      return isHit ? [] : [tool.textContent];
+    }),
+  );
+  assert.deepEqual(covered, [], 'all tools can be touched');
+  await page.getByTestId('bare-clear').focus();
+  await page.keyboard.press('Enter');
+  assert.equal(await markedCount(page), 0);
+  assert.equal(await page.evaluate(() => document.activeElement?.id), 'bare-center');
   assert.deepEqual(await faults(page), []);
   assert.deepEqual(complaints, []);
 });

@@ -181,6 +181,43 @@ test('saved state that is broken, old or crashes the page does not stop the page
   assert.deepEqual(await state(page), before);
 });
 
+test('own files that give way to a sample are put aside, and brought back when asked for', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
+  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await stroke(page);
+  await kept(page);
+  await page.getByTestId('threshold').fill('0.7'); // which is not stored yet
+  const before = await state(page);
+  const line = page.getByTestId('kept');
+  for (const open of [
+    () => page.getByTestId('sample-select').selectOption('car'),
+    () => page.evaluate(() => void (location.hash = '#sample=lizard')),
+  ]) {
+    await open();
+    await line.filter({ hasText: 'Your last work is put aside.' }).waitFor();
+    assert.equal(await settled(page), 'ready', await shownError(page));
+    await page.locator('.files .name', { hasText: 'bust' }).first().waitFor({ state: 'detached' });
+    await page.getByRole('button', { name: 'Bring it back' }).click();
+    await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+    assert.deepEqual(await state(page), before);
+  }
+  assert.deepEqual(complaints, []);
+});
+
+test('the work is back after a reload, too, when a link to it is in the address', async () => {
+  const { page, complaints } = await site.visit({ permissions: ['clipboard-read', 'clipboard-write'] });
+  await stroke(page);
+  await kept(page);
+  await page.getByTestId('share-link').click();
+  await page.locator('#copy-note', { hasText: 'copied' }).waitFor();
+  await page.waitForTimeout(2000); // until the page would keep what was changed
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.ok((await names(page)).includes('Painting 1'));
+  assert.deepEqual(complaints, []);
+});
+
 test('a project file holds everything; a damaged or hostile one is told in one sentence and changes nothing', async () => {
   const first = await site.visit({ viewport: { width: 900, height: 600 } });
   await work(first.page);

@@ -54,6 +54,11 @@ test('after a fit, landmarks can be dragged and moved by keys, in pairs; the fit
   for (let i = 0; i < 2; i++) await page.locator('[data-landmark=mouth_corner_left]').press('ArrowUp');
   await page.locator('#landmark-place').click();
   assert.match((await page.getByTestId('landmark-ask').textContent())!, /^Click on the model: nape\./);
+  const [ask, ...others] = await Promise.all(
+    ['#landmark-ask', '#shortcuts', '.stage-head'].map(async (what) => (await page.locator(what).boundingBox())!),
+  );
+  for (const { x, y, width, height } of others)
+    assert.ok(x + width <= ask!.x || x >= ask!.x + ask!.width || y + height <= ask!.y, 'it can be read');
   assert.deepEqual(await faults(page), []);
   const [ear, back, jaw] = [
     await placeOf(page, 'ear_lobe_left'),

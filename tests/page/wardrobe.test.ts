@@ -21,7 +21,8 @@ async function avatars(page: Page, count: number): Promise<string[]> {
   await page.waitForFunction(
     (count) => {
       const cards = [...document.querySelectorAll('.avatars .avatar')];
-      const isBusy = cards.some((card) => /Waiting|Reading|Fitting|Painting/.test(card.textContent!));
+      // Between its share and its verdict, a cage is inspected.
+      const isBusy = cards.some((card) => /Waiting|Reading|Fitting|Painting|, \d+ %$/.test(card.textContent!));
       return cards.length === count && !isBusy && cards.every((card) => card.querySelector('img')!.src !== '');
     },
     count,
@@ -160,17 +161,18 @@ test('twelve avatars are taken; the thirteenth is refused by name, and finds roo
   assert.deepEqual(complaints, []);
 });
 
-/** Waits until the browser keeps the wardrobe with the avatar at a place on the stage. */
-async function keptAt(page: Page, place: number): Promise<void> {
+/** Waits until the browser keeps the wardrobe so that an expression of it has a value. @param what  Of `wardrobe`. */
+async function keptAs(page: Page, what: string, value: unknown): Promise<void> {
   const read = `new Promise((done) => {
     indexedDB.open('cagecast').onsuccess = ({ target: { result } }) => {
       result.transaction('works').objectStore('works').getAll().onsuccess = (event) => {
         result.close();
-        done(event.target.result[0]?.parts.wardrobe.at);
+        const { wardrobe } = event.target.result[0]?.parts ?? {};
+        done(wardrobe && ${what});
       };
     };
   })`;
-  for (const end = Date.now() + 60_000; (await page.evaluate(read)) !== place; ) {
+  for (const end = Date.now() + 60_000; (await page.evaluate(read)) !== value; ) {
     assert.ok(Date.now() < end, 'it is not kept');
     await page.waitForTimeout(200);
   }
@@ -200,7 +202,7 @@ test('the avatars are back after a reload, with their cages, overrides and order
     page.locator('.avatars .avatar').evaluateAll((all) => all.map((one) => one.ariaPressed));
   assert.deepEqual(await chosen(), ['false', 'false', 'true']);
 
-  await keptAt(page, 2);
+  await keptAs(page, 'wardrobe.at', 2);
   await page.reload();
   await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
   assert.deepEqual(await avatars(page, 3), before);
@@ -219,19 +221,46 @@ test('the avatars are back after a reload, with their cages, overrides and order
   assert.deepEqual([...complaints, ...fresh.complaints], []);
 });
 
+/** Notes the presets of the transfers that are asked for, and lets each wait for `window.delay` milliseconds. */
+const kSlowTransfers = `const { postMessage } = Worker.prototype;
+Object.assign(window, { asked: [], delay: 0 });
+Worker.prototype.postMessage = function (message, ...rest) {
+  const post = () => postMessage.call(this, message, ...rest);
+  if (message?.task !== 'project') return post();
+  window.asked.push(message.options.preset);
+  if (window.delay > 0) setTimeout(post, window.delay);
+  else post();
+}`;
+
+test('avatars that still wait are back after a reload; of two that are chosen at once, the last one comes', async () => {
+  const { page, complaints } = await site.visit({}, kSlowTransfers);
+  await page.getByTestId('open-wardrobe').click();
+  await avatars(page, 1);
+  await page.evaluate('window.delay = 5000');
+  const names = ['one', 'two', 'three', 'four'];
+  const model = (name: string): Upload => glb(`${name}.glb`, asset('lizard', 'target.glb'));
+  await drop(page, [...names.map(model), glb('cage.glb', asset('lizard', 'cage.glb'))]);
+  await keptAs(page, 'wardrobe.avatars.length', 4);
+  assert.match((await page.locator('.avatars .avatar', { hasText: 'four' }).textContent())!, /Waiting/);
+  await page.reload();
+  await page.getByTestId('kept').filter({ hasText: 'Your last work is back.' }).waitFor();
+  const labels = await avatars(page, 5);
+  for (const [i, name] of names.entries())
+    assert.match(labels[i + 1]!, new RegExp(`^${name}, \\d+ % paintable, good$`));
+
+  const card = (at: number) => page.locator('.avatars .avatar').nth(at);
+  await page.evaluate(() => {
+    const cards = document.querySelectorAll<HTMLElement>('.avatars .avatar');
+    for (const at of [1, 2, 1, 0]) cards[at]!.click();
+  });
+  await page.waitForTimeout(3000);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  assert.equal(await card(0).getAttribute('aria-pressed'), 'true');
+  assert.deepEqual(complaints, []);
+});
+
 test('an avatar that leaves the stage, and one that is just being painted, follow the preset', async () => {
-  const { page, complaints } = await site.visit(
-    {},
-    `const { postMessage } = Worker.prototype;
-    Object.assign(window, { asked: [], delay: 0 });
-    Worker.prototype.postMessage = function (message, ...rest) {
-      const post = () => postMessage.call(this, message, ...rest);
-      if (message?.task !== 'project') return post();
-      window.asked.push(message.options.preset);
-      if (window.delay > 0) setTimeout(post, window.delay);
-      else post();
-    }`,
-  );
+  const { page, complaints } = await site.visit({}, kSlowTransfers);
   /** Waits until so many transfers have been asked for, by a preset, since the last time. */
   const asked = async (preset: string, count: number): Promise<void> => {
     const wanted = JSON.stringify(Array.from({ length: count }, () => preset));

@@ -56,9 +56,10 @@ export class BareBrush {
       tools.choose(tools.chosen === this.#offer ? undefined : this.#offer);
     });
     element('bare-center', HTMLButtonElement).addEventListener('click', () => this.#markCenter());
-    element('bare-clear', HTMLButtonElement).addEventListener('click', () =>
-      this.#set(undefined, 'clearing the marks'),
-    );
+    element('bare-clear', HTMLButtonElement).addEventListener('click', () => {
+      this.#set(undefined, 'clearing the marks');
+      element('bare-center', HTMLButtonElement).focus(); // this button is disabled now
+    });
     element('view', HTMLCanvasElement).addEventListener('keydown', ({ key }) => {
       if (key === 'Enter' && tools.chosen === this.#offer) this.#markCenter();
     });

@@ -91,7 +91,10 @@ export class CageAdjuster {
     viewer.beforeDraw(() => this.#follow());
     for (const input of element('adjust', HTMLElement).querySelectorAll('input'))
       input.addEventListener('change', () => this.#setMode(input.value as Mode));
-    element('adjust-done', HTMLButtonElement).addEventListener('click', () => tools.choose(undefined));
+    element('adjust-done', HTMLButtonElement).addEventListener('click', () => {
+      tools.choose(undefined);
+      element('adjust-cage', HTMLButtonElement).focus(); // this button is hidden now
+    });
     element('view', HTMLCanvasElement).addEventListener('keydown', ({ key }) => {
       if (key !== 'Enter' || tools.chosen !== this.#offer) return;
       const { x, y } = viewer.center;

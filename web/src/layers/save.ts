@@ -1,15 +1,17 @@
 import { type Composite, readStraight } from 'cagecast/three/layers';
 import type { WebGLRenderer } from 'three';
 import { download } from '../platform/download';
+import { requireGraphics } from '../platform/graphics';
 import { element, showError } from '../platform/page';
 import { pngOf } from '../platform/png';
 import type { Viewer } from '../view/viewer';
 
 /**
  * Encodes the composite of the layers as a PNG, in the cage's UV space.
- * @throws Error if the browser cannot encode it.
+ * @throws Error if the browser cannot draw or encode it.
  */
 async function compositePng(renderer: WebGLRenderer, composite: Composite): Promise<Blob> {
+  requireGraphics(renderer);
   composite.update(renderer);
   return pngOf(readStraight(renderer, composite.texture, composite.size));
 }

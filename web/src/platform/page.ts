@@ -35,4 +35,8 @@ export function showNotice(id: string, text: string): void {
   notice.hidden = text === '';
 }
 
-element('alert-close', HTMLButtonElement).addEventListener('click', clearError);
+element('alert-close', HTMLButtonElement).addEventListener('click', () => {
+  clearError();
+  // The button is gone, and with it the focus.
+  element('view', HTMLCanvasElement).focus({ preventScroll: true });
+});

@@ -41,7 +41,7 @@ export class Keeper {
   /** The slot before this one. */
   #aside: string | undefined;
   /** What was stored last: all of it, and the work. */
-  #kept: { all: string; work: string } | undefined;
+  #kept: { all: string; work: string; fragment: string } | undefined;
   /** The work of the page as it opened. */
   #first: string | undefined;
   #timer: ReturnType<typeof setTimeout> | undefined;
@@ -58,6 +58,8 @@ export class Keeper {
     this.#view = view;
     project.onTouch(() => this.#touch());
     document.addEventListener('visibilitychange', () => document.hidden && void this.save());
+    // A link that was copied is in the address bar; it is not another's, which would be opened instead of the work.
+    addEventListener('hashchange', () => this.#touch());
   }
 
   /** Whether nothing would be lost by leaving now. */
@@ -102,8 +104,23 @@ export class Keeper {
   async open(parts: Record<string, unknown>, files: Files): Promise<boolean> {
     await this.save();
     if (!(await this.#open(parts, files))) return false;
-    this.#leaveSlot();
+    this.#leaveSlot('The project is open, and your last work is put aside.');
     return true;
+  }
+
+  /** Stores the state as it is now, before something else takes its place, which is stored in another slot. */
+  async putAside(): Promise<void> {
+    if (this.#opening > 0) return; // what is opened knows its slot
+    const snapshot = this.#project.snapshot();
+    this.#opening++;
+    try {
+      clearTimeout(this.#timer);
+      await this.#saving;
+      if (snapshot && this.#store && this.#isWork(snapshot)) await this.#put(snapshot, this.#store);
+    } finally {
+      this.#opening--;
+    }
+    this.#leaveSlot('Your last work is put aside.');
   }
 
   /** Opens a state. Nothing is stored meanwhile: it would be the models that are shown with settings of those to come. */
@@ -118,7 +135,8 @@ export class Keeper {
     }
   }
 
-  #leaveSlot(): void {
+  /** Goes on in a new slot. @param text  What the visitor is told, who may bring back what was in the last one. */
+  #leaveSlot(text: string): void {
     const before = this.#kept && this.#slot;
     this.#moveTo(newSlot());
     void holdSlot(this.#slot, 0);
@@ -129,10 +147,7 @@ export class Keeper {
       const work = (await this.#store!.works()).find(({ slot }) => slot === before);
       if (work) await this.#show(work);
     };
-    this.#view.offer({
-      text: 'The project is open, and your last work is put aside.',
-      action: { title: 'Bring it back', run: () => void back() },
-    });
+    this.#view.offer({ text, action: { title: 'Bring it back', run: () => void back() } });
   }
 
   /** Goes on in another slot. Only the last one is still held, so that the works of others give way to newer ones. */
@@ -182,7 +197,7 @@ export class Keeper {
       this.#moveTo(work.slot);
       flags.set('slot', work.slot);
       const { parts, work: now } = this.#project.snapshot()!;
-      this.#kept = { all: JSON.stringify(parts), work: now };
+      this.#kept = { all: JSON.stringify(parts), work: now, fragment: work.fragment };
       const run = (): void => void this.startOver();
       this.#view.offer({ text: 'Your last work is back.', action: { title: 'Start over', run } });
       this.#view.note(kKept);
@@ -206,7 +221,7 @@ export class Keeper {
   }
 
   #isWork({ parts, work }: Snapshot): boolean {
-    if (this.#kept) return JSON.stringify(parts) !== this.#kept.all;
+    if (this.#kept) return JSON.stringify(parts) !== this.#kept.all || location.hash !== this.#kept.fragment;
     // What the page or a link opened is no work.
     if (!this.#project.isTouched && !this.#history.last) this.#first = work;
     return work !== this.#first;
@@ -222,7 +237,7 @@ export class Keeper {
         for (const [key, make] of files) if (!stored.has(key) && !added.has(key)) added.set(key, await make());
         // Again if another tab has dropped files meanwhile.
       } while (!(await store.put({ ...kept, at: Date.now() }, added, await heldSlots())));
-      this.#kept = { all: JSON.stringify(parts), work };
+      this.#kept = { all: JSON.stringify(parts), work, fragment };
       flags.set('work', 'kept');
       flags.set('slot', this.#slot);
       this.#view.note(kKept);

@@ -46,6 +46,7 @@ export function setUpProjects(page: ProjectOfPage): Projects {
     offer: showOffer,
     note: (text) => void (element('kept-note', HTMLElement).textContent = text),
   });
+  page.opener.onReplace = () => void keeper.putAside();
   const touch = (): void => project.touch();
   for (const event of ['zones', 'rules', 'view', 'paint'] as const) session.on(event, touch);
   for (const event of ['change', 'select'] as const) stack.on(event, touch);

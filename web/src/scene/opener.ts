@@ -25,6 +25,8 @@ export class Opener {
 
   /** Opens a saved project. */
   onProject: ((file: File) => void) | undefined;
+  /** Puts the user's own files aside, or a cage made for them, before a sample takes their place. */
+  onReplace: (() => void) | undefined;
 
   /** @param renderer Undefined without WebGL. */
   constructor(session: Session, stack: LayerStack, edits: Edits, renderer: WebGLRenderer | undefined) {
@@ -68,6 +70,7 @@ export class Opener {
   openSample(name: string, paint?: string, locks: Locks = {}): void {
     const sample = this.#samples.find((candidate) => candidate.name === name);
     if (!sample) return;
+    this.putAside();
     this.#select.value = name;
     this.#warnings = [];
     const { target, cage, paints } = sample;
@@ -81,6 +84,12 @@ export class Opener {
       locks,
       true,
     );
+  }
+
+  /** Call this before a sample's state replaces the one that is shown. */
+  putAside(): void {
+    const { shown } = this.#session;
+    if (shown && !(shown.target.sample && shown.cage.sample)) this.onReplace?.();
   }
 
   /** Loads a paint of any sample. @param name By `paintName`. @returns Undefined if there is none. */

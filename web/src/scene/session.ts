@@ -119,6 +119,7 @@ export class Session extends Emitter<SessionEvents> {
   /** The worker's latest projection. */
   #projected: SplitProjection | undefined;
   #classification: Classification | undefined;
+  #inspection: Inspection | undefined;
   #rules: Rules = { preset: 'default', threshold: 0.5, borders: 'triangle' };
   #locks: Locks = {};
   /** Locks of the requested target. */
@@ -270,7 +271,13 @@ export class Session extends Emitter<SessionEvents> {
 
   /** Tells what an inspection of the cage that is shown has found. */
   tellInspection(inspection: Inspection): void {
+    this.#inspection = inspection;
     this.emit('inspected', inspection);
+  }
+
+  /** What the last inspection of target and cage that are shown has found, if there was one. */
+  get inspection(): Inspection | undefined {
+    return this.#inspection;
   }
 
   /** Reports an error; the current scene stays. */
@@ -356,7 +363,7 @@ export class Session extends Emitter<SessionEvents> {
       this.#shown = { ...scene, projection };
       if (!same) {
         // The zones belong to the previous scene.
-        this.#classification = undefined;
+        this.#classification = this.#inspection = undefined;
         this.emit('transfer', this.#shown);
         await pace.rest();
         // Needed even if this run was superseded: the newer one builds on the current scene.

@@ -22,6 +22,8 @@ import {
   WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { requireGraphics } from '../platform/graphics';
+import { clearError, showError } from '../platform/page';
 import { disposeModel, type Model } from '../scene/load-model';
 import type { SplitProjection } from '../scene/transfer-messages';
 import { CageLines } from './cage-lines';
@@ -145,7 +147,15 @@ export class Viewer {
     this.#controls.addEventListener('change', () => this.redraw());
     this.#controls.addEventListener('start', () => this.#markMoved());
     canvas.addEventListener('keydown', (event) => this.#onKey(event));
-    canvas.addEventListener('webglcontextrestored', () => this.redraw());
+    canvas.addEventListener('webglcontextlost', () =>
+      showError(
+        'The browser has reset the graphics. The picture comes back by itself; if not, save the project and reload the page.',
+      ),
+    );
+    canvas.addEventListener('webglcontextrestored', () => {
+      clearError();
+      this.redraw();
+    });
     this.home();
     // Fires at once with the current size.
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement!);
@@ -411,8 +421,9 @@ export class Viewer {
     return { stage, model: this.#model!.scene, front: this.#front, environment: scene.environment, giveBack };
   }
 
-  /** What is seen, without controls, as a PNG. @throws Error if the browser cannot encode it. */
+  /** What is seen, without controls, as a PNG. @throws Error if the browser cannot draw or encode it. */
   async picture(): Promise<Blob> {
+    requireGraphics(this.renderer);
     const ratio = this.renderer.getPixelRatio();
     this.renderer.setPixelRatio(Math.max(ratio, kPicturePixels));
     this.#draw();

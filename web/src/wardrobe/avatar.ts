@@ -19,7 +19,7 @@ export interface Entry {
   /** Absent if the cage of the model on the stage is to be fitted. */
   cage?: (() => Promise<Model>) | undefined;
   sample?: Sample | undefined;
-  /** If it is of a project. */
+  /** What a project has of it until it was read; absent for samples. */
   kept?: KeptAvatar | undefined;
 }
 
@@ -49,7 +49,7 @@ export interface Avatar {
   takesPaint: boolean;
   /** What is being done to it, for people. */
   doing: string;
-  /** As a project has it, until it was read. */
+  /** As projects have it until it was read. */
   kept: KeptAvatar | undefined;
   standing: Standing | undefined;
 }

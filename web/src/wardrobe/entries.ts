@@ -32,14 +32,20 @@ export function keptEntry(kept: KeptAvatar, samples: readonly Sample[], renderer
 export function entriesOf(files: readonly File[], renderer: WebGLRenderer): Entry[] {
   const { cages, targets } = modelsAmong(files);
   const stem = ({ name }: File): string => nameOf(name).toLowerCase();
+  const others = files.filter((file) => !cages.includes(file) && !targets.includes(file));
   return targets.map((file) => {
     const cage =
       cages.find((other) => stem(other).replace(/[-_. ]*cage[-_. ]*/, '') === stem(file)) ??
       (cages.length === 1 ? cages[0] : undefined);
-    return {
+    const kept = {
       name: nameOf(file.name),
-      target: () => loadModel(file, renderer, files),
-      cage: cage && (() => loadModel(cage, renderer, files)),
+      sample: undefined,
+      files: [file, ...others],
+      cage: cage && { files: [cage, ...others], sample: undefined },
+      follows: false,
+      locks: {},
+      bare: undefined,
     };
+    return keptEntry(kept, [], renderer);
   });
 }

@@ -62,6 +62,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
       if (state === 'failed') this.#onFailure();
     });
     this.#onZones();
+    this.#active.verdict = session.inspection?.verdict ?? '';
   }
 
   get avatars(): readonly Avatar[] {
@@ -171,7 +172,7 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
 
   /** Puts an avatar on the stage. */
   activate(avatar: Avatar): void {
-    if (avatar === this.#active || avatar.files.length === 0) return;
+    if (avatar === (this.#wanted ?? this.#active) || avatar.files.length === 0) return;
     this.#wanted = avatar;
     this.#arrived();
     this.#arrival = new Promise((done) => (this.#arrived = done));
