@@ -362,3 +362,25 @@ test('erasing without a painting shows a message', async () => {
   await page.keyboard.press('Enter');
   assert.equal(await page.evaluate(() => document.activeElement?.id), 'view');
 });
+
+test('a stroke that goes on while another model comes stays with its cage', async () => {
+  const { page, complaints } = await site.visit({ viewport: kWindow });
+  await page.getByRole('radio', { name: 'Brush' }).check({ force: true });
+  const { x, y, width, height } = await modelArea(page);
+  const begin = async (): Promise<void> => {
+    await page.mouse.move(x + 0.5 * width, y + 0.4 * height);
+    await page.mouse.down();
+    await page.mouse.move(x + 0.55 * width, y + 0.45 * height, { steps: 4 });
+  };
+  await begin();
+  await page.mouse.up();
+  assert.ok((await names(page)).includes('Painting 1'));
+  await begin();
+  await drop(page, [await ball(), await islandCage(1)]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.mouse.move(x + 0.6 * width, y + 0.5 * height, { steps: 4 });
+  await page.mouse.up();
+  assert.deepEqual(await names(page), ['UV checker']);
+  assert.match((await page.getByTestId('put-away').textContent())!, /One layer of an earlier cage put away/);
+  assert.deepEqual(complaints, []);
+});

@@ -3,10 +3,11 @@ import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { cancelOnceShown, kSlowWorker } from '../support/cancel';
+import { glbOf, tetrahedron } from '../support/glb';
 import { filled, image, names, rows, savedTexture, texel } from '../support/layers';
 import { difference, look, modelArea } from '../support/picture';
 import { saved, validModel } from '../support/saved';
-import { Site, settled, shownError, type Upload, type Visit } from '../support/site';
+import { drop, glb, Site, settled, shownError, type Upload, type Visit } from '../support/site';
 
 let site: Site;
 let visit: Visit;
@@ -244,6 +245,24 @@ test('a seventeenth layer is refused with a message', async () => {
   await page.getByTestId('error').waitFor();
   assert.match(await shownError(page), /16 layers.*Remove one/);
   assert.equal((await names(page)).length, 16);
+  assert.deepEqual(complaints, []);
+});
+
+test('of more layers than there is room for, as many as possible are brought back', async () => {
+  const { page, complaints } = visit;
+  await drop(page, [glb('cage.glb', glbOf(tetrahedron(2), 'thing')), glb('target.glb', glbOf(tetrahedron(), 'thing'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.getByTestId('add-painting').click();
+  await page.getByTestId('sample-select').selectOption('car');
+  const offer = page.getByTestId('put-away');
+  await offer.filter({ hasText: '16 layers of earlier cages put away.' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.locator('#bring-back').click();
+  await offer.filter({ hasText: 'One layer of an earlier cage put away.' }).waitFor();
+  assert.equal((await names(page)).length, 16);
+  assert.equal(await shownError(page), '');
+  await page.locator('#bring-back').click();
+  assert.match(await shownError(page), /16 layers.*Remove one/);
   assert.deepEqual(complaints, []);
 });
 

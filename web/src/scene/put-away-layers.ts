@@ -39,6 +39,7 @@ export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits)
     const before = last;
     last = cage;
     if (!before || haveSameUvs(before, cage)) return;
+    edits.cancel(); // a stroke in progress is of the cage before
     const old = stack.layers.filter(({ id }) => id !== stack.base?.id);
     // Nothing else is to be seen now.
     if (old.length === 0) return restyleChecker(true);
@@ -51,12 +52,14 @@ export function putAwayLayers(session: Session, stack: LayerStack, edits: Edits)
   });
   stack.on('change', write);
   element('bring-back', HTMLButtonElement).addEventListener('click', () => {
+    // As many as there is room for; without any, the stack says so.
+    const some = offered().slice(0, Math.max(1, maxLayers - stack.layers.length));
     try {
       edits.do('bringing layers back', () => {
-        stack.change([], offered());
+        stack.change([], some);
         restyleChecker(false);
       });
-      show([]);
+      show(offered());
     } catch (error) {
       showError((error as Error).message);
     }
