@@ -29,6 +29,11 @@ TEST_CASE("arrays of an arena are aligned and do not overlap", "[arena]") {
   }
 }
 
+TEST_CASE("an arena has room for many large arrays in a first call", "[arena]") {
+  Arena arena;
+  for (int i = 0; i < 200; ++i) REQUIRE(arena.allocate<char>(std::size_t{1} << 16) != nullptr);
+}
+
 TEST_CASE("once memory has run out, an arena gives none until it is restarted", "[arena]") {
   Arena arena(std::size_t{1} << 17);
   CHECK(arena.allocate<char>(std::size_t{1} << 20) == nullptr);

@@ -73,7 +73,8 @@ class Arena {
  private:
   static constexpr std::size_t kAlign = 16;
   static constexpr std::size_t kMinBlock = std::size_t{1} << 16;
-  static constexpr std::size_t kMaxBlocks = 64;
+  /// In a first call each array of `kMinBlock` and more is a block of its own: soups of triangles needed up to 71.
+  static constexpr std::size_t kMaxBlocks = 256;
   struct Block {
     std::byte* data;
     std::size_t size;
