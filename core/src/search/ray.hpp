@@ -20,6 +20,8 @@ struct Ray {
       rest[axis] = restOfIt[axis];
     }
   }
+  /// Whether the origin needs no `rest`.
+  [[nodiscard]] bool isAtPosition() const noexcept { return rest[0] == 0 && rest[1] == 0 && rest[2] == 0; }
   [[nodiscard]] double origin(std::uint32_t axis) const noexcept {
     return static_cast<double>(position[axis]) + static_cast<double>(rest[axis]);
   }

@@ -32,11 +32,10 @@ constexpr float kOriginRounding = 0x1p-19f;
 constexpr float kShearRounding = 0x1p-18f;
 
 /// The rounding error of a distance times the sum of the edge functions has two terms. The first is three times the
-/// error of an edge function, times a corner's depth along the ray, at most R, times the stretch of the shear, less
-/// than
-/// 2. This is the factor:
+/// error of an edge function, times the depth of a corner along the ray, which is at most R, times the stretch of the
+/// shear, which is below 2. This is the factor, rounded up:
 constexpr float kDistanceRounding = 8.0f;
-/// The second, for the depths themselves, is some 2^-21 of R times that sum.
+/// The second, for the depths themselves, is some 2^-21 of R times that sum. This is the factor, rounded up:
 constexpr float kDepthRounding = 0x1p-19f;
 
 /// The most that the edge functions of a ray through a leaf's box add up to, in squares of the box's size.

@@ -19,13 +19,13 @@ struct alignas(16) FloatRay {
   float scaleZ;
   float origin[3];     ///< z, x, y in the order of `axis`.
   std::uint32_t axis;  ///< Which axis of space serves as z.
+  float leastDepth;    ///< Hits of at most this `HitEstimate::depth` do not count.
 };
 
 /// Where hits begin to count, for tests in single precision.
 struct HitLimits {
   float loose;   ///< Hits beyond this may count.
   float strict;  ///< Hits beyond this count.
-  float zero;    ///< 0 if a hit at distance 0 does not count, else negative.
 };
 
 /// The distance that `hitDistance` returns if there is no hit.
@@ -49,7 +49,7 @@ struct HitEstimate {
   simd::f32x4 x[3], y[3], z[3];  ///< From the corners to the ray's origin, sheared: z is along the ray.
   simd::f32x4 least, most;       ///< Of the three edge functions.
   simd::f32x4 sum;               ///< Of the edge functions.
-  simd::f32x4 depth;             ///< The sum of the edge functions times z. Exactly 0 at the ray's origin.
+  simd::f32x4 depth;             ///< The sum of the edge functions times z. Exactly 0 if a corner is the origin.
   simd::f32x4 distance;          ///< The hit's distance times the size of `sum`, to avoid a division.
 };
 
@@ -85,14 +85,12 @@ inline HitEstimate estimateHits(const RayLeaf& leaf, const FloatRay& ray) noexce
 }
 
 /// The triangles that the ray may hit, a bit each.
-inline unsigned possibleHits(const RayLeaf& leaf, const HitEstimate& of, float zero) noexcept {
+inline unsigned possibleHits(const RayLeaf& leaf, const HitEstimate& of, float leastDepth) noexcept {
   using simd::splat;
   // The edge functions have the same sign, or are 0: none is negative, or none is positive.
   const simd::mask4 isThrough = simd::min(splat(0) - of.least, of.most) <= splat(leaf.edgeRounding);
   const simd::mask4 isBeyond = splat(leaf.leastDistance) <= of.distance;
-  // `isBeyond` cannot exclude hits at distance 0, because `loose` is smaller than the rounding error. Many triangles
-  // touch the ray's origin, but for them the depth is exactly 0.
-  return simd::bits(isThrough & isBeyond & (splat(zero) < simd::abs(of.depth)));
+  return simd::bits(isThrough & isBeyond & (splat(leastDepth) < simd::abs(of.depth)));
 }
 
 /// Which of four triangles a ray hits, a bit each.

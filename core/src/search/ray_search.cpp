@@ -29,8 +29,7 @@ RaySearch::RaySearch(const RayTree& tree, double from, Arena& arena) noexcept
     : tree_(tree),
       from_(from),
       boxFrom_(static_cast<float>(from)),
-      limits_{static_cast<float>(from > 0 ? from / 2 : from * 2), static_cast<float>(from > 0 ? from * 2 : from / 2),
-              from > 0 ? 0.0f : -1.0f},
+      limits_{static_cast<float>(from > 0 ? from / 2 : from * 2), static_cast<float>(from > 0 ? from * 2 : from / 2)},
       floatRays_(arena.allocate<FloatRay>(kMostRays)),
       lists_(arena.allocate<std::uint16_t>(kListRoom)) {}
 
@@ -55,6 +54,9 @@ void RaySearch::search(Ray* rays, std::uint32_t count, bool* hit, Find find) noe
     to.scaleZ = direction.scaleZ;
     to.axis = direction.z;
     for (std::uint32_t k = 0; k < 3; ++k) to.origin[k] = ray.position[kAxes[direction.z + k]];
+    // Many triangles touch a ray's origin. `loose` is too small, next to rounding errors, to tell that they are hit
+    // before the first distance that counts; but if that origin is a float, their depth is exactly 0.
+    to.leastDepth = from_ > 0 && ray.isAtPosition() ? 0.0f : -1.0f;
     hit[i] = false;
     list[i] = static_cast<std::uint16_t>(i);
   }
@@ -145,7 +147,6 @@ void RaySearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
   const RayLeaf leaf(tree_, node.child[child], side(0) + side(1) + side(2), limits_.loose);
   const FloatRay* const floatRays = floatRays_;
   const float soonest = limits_.loose;
-  const float zero = limits_.zero;
   // The list becomes one of the rays that may hit something, each with its possible hits in the lowest four bits.
   // Without a branch, which could not be predicted: a ray without possible hits is overwritten by the next.
   static_assert(kMostRays <= 1u << 12);
@@ -154,7 +155,7 @@ void RaySearch::testLeaf(const Node& node, int child, std::uint16_t* rays, std::
     const std::uint16_t ray = rays[i];
     const FloatRay& floatRay = floatRays[ray];
     if (floatRay.end < soonest) continue;
-    const unsigned possible = possibleHits(leaf, estimateHits(leaf, floatRay), zero);
+    const unsigned possible = possibleHits(leaf, estimateHits(leaf, floatRay), floatRay.leastDepth);
     rays[left] = static_cast<std::uint16_t>(unsigned{ray} << 4 | possible);
     left += possible != 0;
   }
