@@ -29,7 +29,7 @@ void findZones(const Scene& scene, PointData& data, Timings& times) {
   timed(times.covered, [&] { markUncovered(scene, data); });
 }
 
-/// Steps 4, 5′ and 5‴: the segments, their areas and twins.
+/// Steps 4, 5′ and 5″: the segments, their areas and twins.
 void measureSegments(const Scene& scene, PointData& data, Array<SegmentStats>& stats) {
   const Steps& steps = scene.options.steps;
   const bool isFiltered = steps.projection == ProjectionMode::nearestPoint;

@@ -105,6 +105,18 @@ TEST_CASE("every number in options.def is accepted within its range only, by the
   }
 }
 
+TEST_CASE("a lock that is none of the three is an error", "[options]") {
+  const TwoGroups call;
+  const std::vector<LockEntry> locks{{1, Lock::keep}, {0, static_cast<Lock>(3)}};
+  const std::vector<LockEntry> ofGroups{{7, static_cast<Lock>(200)}};
+  const Status bySegment = call.transfer({locks, {}}).first;
+  CHECK(bySegment.code == Code::badOption);
+  CHECK(bySegment.option == Option::segmentLocks);
+  CHECK(call.text(bySegment) == "options.locks.segments[0] = 3 is not one of (automatic, keep, exclude)");
+  CHECK(call.text(call.transfer({{}, ofGroups}).first) ==
+        "options.locks.groups[7] = 200 is not one of (automatic, keep, exclude)");
+}
+
 TEST_CASE("the sentence about an option names its value and its range", "[options]") {
   Call call;
   call.options.threshold = 2;

@@ -32,7 +32,7 @@ struct Timings {
   double project = 0;     ///< Step 1: the nearest point of the cage for every point of the target.
   double occluded = 0;    ///< Step 2: self-intersection.
   double covered = 0;     ///< Step 3: cage intersection.
-  double segments = 0;    ///< Steps 4, 5′ and 5‴: connected components, their areas and twins.
+  double segments = 0;    ///< Steps 4, 5′ and 5″: connected components, their areas and twins.
   double secondLook = 0;  ///< Step 6: more rays from occluded points.
   double holes = 0;       ///< Step 7: uncovered points and the holes over them.
   double seams = 0;       ///< Step 9: UVs per triangle corner.

@@ -24,7 +24,7 @@ struct SplitVertices {
 /// @param cornerUvs    2 per index, as in `Projection::cornerUvs`.
 /// @param vertexCount  Number of vertices of the mesh.
 /// @return indicesNotTriples, tooLarge or indexOutOfRange, for the target; cornerUvCountMismatch if there are not 2 UV
-/// floats per index; outOfMemory.
+/// floats per index; outOfMemory. `describe` takes a target with these indices and the mesh's positions.
 /// Cost: linear.
 Status splitVertices(std::span<const std::uint32_t> indices, std::span<const float> cornerUvs,
                      std::uint32_t vertexCount, SplitVertices& out) noexcept;

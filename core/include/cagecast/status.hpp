@@ -35,7 +35,7 @@ const char* optionName(Option option) noexcept;
 
 /// One sentence for people that names the argument, the element, its value and the limit:
 /// `target.indices[17] = 912 is out of range (900 vertices)`.
-/// @param cage,target  The meshes of the call that returned `status`; they may be empty if it had none.
+/// @param cage,target  The meshes of the call that returned `status`. Of what they lack, the sentence gives no value.
 std::string describe(const Status& status, const MeshView& cage, const MeshView& target);
 
 }  // namespace cagecast

@@ -42,17 +42,19 @@ class Workspace {
 };
 
 /// Finds, for every vertex of the target, its UV and whether it is occluded or uncovered: steps 1 to 4, 5′, 6, 7 and 9,
-/// and the twins of 5‴. The result does not depend on threshold, floor or locks.
+/// and the twins of 5″. The result does not depend on threshold, floor or locks.
 /// @return badOption, or any code about the meshes, or weldToleranceTooLarge, or outOfMemory.
 /// Cost: O((V + N + M) log(N + M)) for V vertices and N triangles of the target and M triangles of the cage.
 Status project(const MeshView& cage, const MeshView& target, const TransferOptions& options, Workspace& workspace,
                Projection& out) noexcept;
 
-/// Decides which segments are culled, and so the zone of every vertex: steps 5, 5″, 5‴ and 8.
+/// Decides which segments are culled, and so the zone of every vertex: steps 5, 5″, 5‴ and 8, and which holes of
+/// step 7 are explained.
 /// Takes microseconds for small targets; call it again for another threshold or other locks.
 /// @param projection  `Projection::view()` of a projection with any options.
 /// @param indices     The indices of the target, 3 per triangle.
-/// @return badOption or outOfMemory.
+/// @return badOption; indicesNotTriples, indexOutOfRange or resultMismatch if the projection is not whole, or not of a
+/// target with these indices; outOfMemory.
 /// Cost: linear, and for each lock of a group once through all segments.
 Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices,
                 const TransferOptions& options, Zones& out) noexcept;

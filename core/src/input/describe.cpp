@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,8 @@ constexpr const char* kSentences[] = {
 #define CAGECAST_CODE(name, text, sentence) sentence,
 #include "cagecast/codes.def"
 };
+
+constexpr const char* kLockNames = "(automatic, keep, exclude)";
 
 /// A number with seven significant digits, spelled as in JavaScript. printf would add 8 KB to the WebAssembly module.
 std::string number(double value) {
@@ -52,14 +55,18 @@ std::string number(double value) {
   return sign + text;
 }
 
+std::string spelled(float value) { return number(static_cast<double>(value)); }
+std::string spelled(std::uint32_t value) { return std::to_string(value); }
+
 std::string describeOption(const Status& status) {
   const std::string name = std::string("options.") + optionName(status.option);
   if (status.option == Option::segmentLocks || status.option == Option::groupLocks) {
-    const bool isGroup = status.option == Option::groupLocks;
-    return name + "[" + std::to_string(status.at) + "] is given, but there is no " +
-           (isGroup ? "segment of group " : "segment ") + std::to_string(status.at);
+    const std::string at = std::to_string(status.at);
+    if (status.value != 0) return name + "[" + at + "] = " + spelled(status.value) + " is not one of " + kLockNames;
+    return name + "[" + at + "] is given, but there is no " +
+           (status.option == Option::groupLocks ? "segment of group " : "segment ") + at;
   }
-  const std::string given = name + " = " + number(static_cast<double>(status.value));
+  const std::string given = name + " = " + spelled(status.value);
   const OptionEntry* entry = findOption(status.option);
   if (entry == nullptr) return "options are not valid";
   if (entry->names != nullptr) return given + " is not one of " + entry->names;
@@ -67,23 +74,31 @@ std::string describeOption(const Status& status) {
   return given + " is not within " + number(entry->low) + ".." + number(entry->high);
 }
 
-/// The value that a name in braces stands for in a sentence.
+/// " = " and the number at a place of an array; nothing if the array was not given.
+template <typename Number>
+std::string equals(std::span<const Number> values, std::size_t at) {
+  return at < values.size() ? " = " + spelled(values[at]) : "";
+}
+
+/// What a name in braces stands for in a sentence.
 std::string valueOf(std::string_view name, const Status& status, const MeshView& mesh) {
   const auto vertices = mesh.positions.size() / 3;
   if (name == "mesh") return status.argument == Argument::cage ? "cage" : "target";
-  if (name == "value") return number(static_cast<double>(status.value));
+  if (name == "value") return spelled(status.value);
   if (name == "at") return std::to_string(status.at);
   if (name == "missing") return mesh.positions.empty() ? "vertices" : "triangles";
   if (name == "vertices") return std::to_string(vertices);
+  if (name == "for vertices") return vertices > 0 ? " for " + std::to_string(vertices) + " vertices" : "";
+  if (name == "of vertices") return vertices > 0 ? " (" + std::to_string(vertices) + " vertices)" : "";
   if (name == "triangles") return std::to_string(mesh.indices.size() / 3);
   if (name == "positions") return std::to_string(mesh.positions.size());
   if (name == "indices") return std::to_string(mesh.indices.size());
   if (name == "uvs") return std::to_string(mesh.uvs.size());
   if (name == "groups") return std::to_string(mesh.groups.size());
-  if (name == "index at") return std::to_string(mesh.indices[status.at]);
+  if (name == "index at") return equals(mesh.indices, status.at);
   if (name == "most vertices") return std::to_string(kMaxVertices);
   if (name == "most triangles") return std::to_string(kMaxTriangles);
-  return number(static_cast<double>((name == "uv at" ? mesh.uvs : mesh.positions)[status.at]));
+  return equals(name == "uv at" ? mesh.uvs : mesh.positions, status.at);
 }
 
 /// The sentence of a status, with names in braces.

@@ -1,4 +1,4 @@
-// The only file that is compiled with exceptions: nanoflann and the containers it fills throw when memory runs out.
+// The only file of the core that handles exceptions: nanoflann and std::vector throw when memory runs out.
 #include "input/merge_near.hpp"
 
 #include <nanoflann.hpp>
@@ -27,8 +27,8 @@ struct Cloud {
   std::size_t count;
 
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return count; }
-  [[nodiscard]] float kdtree_get_pt(std::size_t point, std::size_t axis) const {
-    return positions[kStride * point + axis];
+  [[nodiscard]] double kdtree_get_pt(std::size_t point, std::size_t axis) const {
+    return static_cast<double>(positions[kStride * point + axis]);
   }
   template <typename Box>
   bool kdtree_get_bbox(Box&) const {
@@ -36,19 +36,31 @@ struct Cloud {
   }
 };
 
-/// Distances are summed in double, so that equal means equal.
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud, double>, Cloud, 3, std::uint32_t>;
+/// In double precision: as floats, differences of coordinates would be rounded, and points that are not equally near
+/// would seem to be.
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
-/// Keeps the nearest site, of equally near ones the first. (nanoflann's own set keeps the one it meets first.)
-class FirstNearest {
+/// What a search finds is kept by a class like these two: newer versions of nanoflann also call `sort` at its end.
+class Found {
  public:
+  using DistanceType = double;
   [[nodiscard]] std::size_t size() const { return 1; }
   [[nodiscard]] bool full() const { return true; }
-  /// Just beyond the best, so that its equals are shown too.
-  [[nodiscard]] double worstDist() const {
-    return std::nextafter(squaredDistance_, std::numeric_limits<double>::infinity());
-  }
+  void sort() {}
+};
+
+template <typename Result>
+void search(const Tree& tree, const float* position, Result& result) {
+  const double at[] = {static_cast<double>(position[0]), static_cast<double>(position[1]),
+                       static_cast<double>(position[2])};
+  tree.findNeighbors(result, at, {});
+}
+
+/// Keeps the nearest site, of equally near ones the first. (nanoflann's own set keeps the one it meets first.)
+class FirstNearest : public Found {
+ public:
+  /// Beyond the best by more than rounding, so that its equals are shown too.
+  [[nodiscard]] double worstDist() const { return squaredDistance_ * (1 + 1e-12); }
   bool addPoint(double squaredDistance, std::uint32_t site) {
     if (squaredDistance < squaredDistance_ || (squaredDistance == squaredDistance_ && site < site_)) {
       squaredDistance_ = squaredDistance;
@@ -64,16 +76,14 @@ class FirstNearest {
 };
 
 /// Joins all points of a group within a radius of one of them.
-class JoinNear {
+class JoinNear : public Found {
  public:
   JoinNear(UnionFind& sets, const std::uint32_t* groups, double squaredRadius, std::uint64_t mostVisits)
       : sets_(sets), groups_(groups), squaredRadius_(squaredRadius), mostVisits_(mostVisits) {}
   void around(std::uint32_t point) { point_ = point; }
   [[nodiscard]] bool isOverLimit() const { return visits_ > mostVisits_; }
 
-  [[nodiscard]] std::size_t size() const { return 1; }
-  [[nodiscard]] bool full() const { return true; }
-  [[nodiscard]] double worstDist() const { return squaredRadius_; }
+  [[nodiscard]] double worstDist() const { return squaredRadius_ * (1 + 1e-12); }
   bool addPoint(double squaredDistance, std::uint32_t other) {
     if (squaredDistance < squaredRadius_ && groups_[other] == groups_[point_]) sets_.join(point_, other);
     return ++visits_ <= mostVisits_;
@@ -100,7 +110,7 @@ Code mergeNear(float* positions, const std::uint32_t* groups, std::uint32_t& cou
     JoinNear near(sets, groups, radius * radius, (kMostNear + 1) * count);  // Each meets itself, too.
     for (std::uint32_t i = 0; i < count; ++i) {
       near.around(i);
-      tree.findNeighbors(near, positions + kStride * i, nanoflann::SearchParams());
+      search(tree, positions + kStride * i, near);
       if (near.isOverLimit()) return Code::weldToleranceTooLarge;
     }
     std::uint32_t joinedCount = 0;
@@ -130,7 +140,7 @@ bool nearestSites(const float* sites, std::uint32_t siteCount, const float* poin
     const Tree tree(3, cloud);
     for (std::uint32_t i = 0; i < pointCount; ++i) {
       FirstNearest found;
-      tree.findNeighbors(found, points + kStride * i, nanoflann::SearchParams());
+      search(tree, points + kStride * i, found);
       nearest[i] = found.site();
     }
     return true;

@@ -89,6 +89,11 @@ Status resolveLocks(const Locks& locks, std::span<const SegmentStats> stats, Arr
   const bool isAny = !locks.segments.empty() || !locks.groups.empty();
   if (!out.reset(isAny ? stats.size() : 0)) return {Code::outOfMemory};
   std::fill(out.begin(), out.end(), Lock::automatic);
+  for (const Option option : {Option::groupLocks, Option::segmentLocks}) {
+    for (const auto& [id, lock] : option == Option::groupLocks ? locks.groups : locks.segments) {
+      if (lock > Lock::exclude) return {Code::badOption, Argument::options, id, option, static_cast<float>(lock)};
+    }
+  }
   for (const auto& [group, lock] : locks.groups) {
     bool isKnown = false;
     for (std::size_t s = 0; s < stats.size(); ++s) {

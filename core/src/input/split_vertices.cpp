@@ -17,7 +17,7 @@ Status splitVertices(std::span<const std::uint32_t> indices, std::span<const flo
   const auto stray = std::find_if(indices.begin(), indices.end(), [=](std::uint32_t v) { return v >= vertexCount; });
   if (stray != indices.end()) return fault(Code::indexOutOfRange, static_cast<std::size_t>(stray - indices.begin()));
 
-  // A corner is what it is by its vertex and its UV, of which −0 is 0.
+  // Two corners are the same if their vertices and UVs are equal; −0 equals 0.
   struct Corner {
     std::uint32_t vertex;
     float u, v;

@@ -14,9 +14,10 @@ namespace {
 constexpr float kMaxProportion = 1e8f;
 /// Greatest coordinate: distances between any two positions still fit a float.
 constexpr float kMaxCoordinate = 0x1p125f;
-/// A ray may begin at a point that no float represents; it is rounded by a share of its distance from the origin of
-/// coordinates. This share of that distance counts as the scene's size, if it is larger.
+/// A ray may begin at a point that no float represents; it is rounded by some of its distance from the origin of
+/// coordinates. This much of that distance counts as the scene's size, if it is larger.
 constexpr float kRestReach = 0.5f;
+
 struct Box {
   float low[4];  ///< x, y, z; the fourth is of no use.
   float high[4];
@@ -95,6 +96,13 @@ std::uint32_t highestOf(std::span<const std::uint32_t> indices) {
   return most;
 }
 
+/// The place of the first index that is too large; the number of indices if none is.
+std::size_t firstStray(std::span<const std::uint32_t> indices, std::size_t limit) {
+  if (highestOf(indices) < limit) return indices.size();
+  const auto isStray = [=](std::uint32_t index) { return index >= limit; };
+  return static_cast<std::size_t>(std::find_if(indices.begin(), indices.end(), isStray) - indices.begin());
+}
+
 Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
   const auto fault = [argument](Code code, std::size_t at = 0) {
     return Status{code, argument, static_cast<std::uint32_t>(std::min<std::size_t>(at, UINT32_MAX))};
@@ -113,12 +121,8 @@ Status checkMesh(const MeshView& mesh, Argument argument, Box& box) {
 
   if (!bound(mesh.positions, box)) return fault(Code::nonFinitePosition, firstNonFinite(mesh.positions));
   if (!areFinite(mesh.uvs)) return fault(Code::nonFiniteUv, firstNonFinite(mesh.uvs));
-  if (highestOf(mesh.indices) >= vertices) {
-    std::size_t first = 0;
-    while (mesh.indices[first] < vertices) ++first;
-    return fault(Code::indexOutOfRange, first);
-  }
-  return {};
+  const std::size_t stray = firstStray(mesh.indices, vertices);
+  return stray < mesh.indices.size() ? fault(Code::indexOutOfRange, stray) : Status{};
 }
 
 /// The place of the first coordinate that is farther from the origin than a limit; there must be one.
@@ -129,6 +133,27 @@ std::size_t firstTooLarge(std::span<const float> positions, double limit) {
 }
 
 }  // namespace
+
+Status checkProjection(const ProjectionView& projection, std::span<const std::uint32_t> indices) noexcept {
+  const auto fault = [](Code code, std::size_t at) {
+    return Status{code, Argument::target, static_cast<std::uint32_t>(at)};
+  };
+  const auto& [zones, segments, stats, recovery, shares] = projection;
+  if (indices.size() % 3 != 0) return fault(Code::indicesNotTriples, indices.size());
+  const std::size_t stray = firstStray(indices, zones.size());
+  if (stray < indices.size()) return fault(Code::indexOutOfRange, stray);
+  const std::size_t segmentCount = stats.size();
+  const auto isTwin = [=](const SegmentStats& of) { return of.twinOf < segmentCount; };
+  // A cage has fewer holes than triangles.
+  const auto isShare = [=](const HoleShare& of) { return of.segment < segmentCount && of.hole < kMaxTriangles; };
+  const bool isWhole = segments.size() == zones.size() && firstStray(segments, segmentCount) == segments.size() &&
+                       (recovery.empty() || recovery.size() == zones.size()) &&
+                       std::all_of(stats.begin(), stats.end(), isTwin) &&
+                       std::all_of(shares.begin(), shares.end(), isShare) &&
+                       std::is_sorted(shares.begin(), shares.end(),
+                                      [](const HoleShare& a, const HoleShare& b) { return a.hole < b.hole; });
+  return isWhole ? Status{} : fault(Code::resultMismatch, zones.size());
+}
 
 Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) noexcept {
   Box cageBox;

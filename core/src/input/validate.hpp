@@ -11,9 +11,13 @@
 
 namespace cagecast {
 
-/// Checks the meshes of a call. After that, nothing but memory can fail.
+/// Checks the meshes of a call. (What is found only later: a cage without any area, a `weldTolerance` that is too large
+/// for the target.)
 /// @param[out] units  Valid if the status is ok.
 Status checkMeshes(const MeshView& cage, const MeshView& target, Units& units) noexcept;
+
+/// Checks that a projection is whole, and of a target with these indices.
+Status checkProjection(const ProjectionView& projection, std::span<const std::uint32_t> indices) noexcept;
 
 /// The stages of the method that read options.
 enum class Stage : std::uint8_t { project, classify };
@@ -25,7 +29,7 @@ Status checkOptions(const TransferOptions& options) noexcept;
 
 /// Finds the lock of every segment.
 /// @param[out] out  1 per segment; empty if there are no locks at all.
-/// @return badOption for a segment or group that does not exist.
+/// @return badOption for a segment or group that does not exist, or a lock that is none of the three.
 /// Cost: the number of segments for every lock by group.
 Status resolveLocks(const Locks& locks, std::span<const SegmentStats> stats, Array<Lock>& out) noexcept;
 

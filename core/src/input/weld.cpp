@@ -17,7 +17,7 @@ namespace {
 
 using simd::f32x4;
 
-/// A vertex below the place of its cell on the curve.
+/// A vertex in the lower half; in the upper half its key, the place of its cell on the Hilbert curve.
 using Placed = std::uint64_t;
 std::uint32_t keyOf(Placed placed) { return static_cast<std::uint32_t>(placed >> 32); }
 std::uint32_t vertexOf(Placed placed) { return static_cast<std::uint32_t>(placed); }

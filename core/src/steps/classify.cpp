@@ -9,7 +9,7 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, section 5″. V and U are the areas at one hole, E, C, U_s and H_s those of one segment there.
+/// docs/method.md, section 5‴. V and U are the areas at one hole, E, C, U_s and H_s those of one segment there.
 /// A hole is explained if the exposed area of culled segments there, V, is at least this share of the uncovered area of
 /// the other segments there, U.
 constexpr double kExplaining = 0.02;
@@ -22,7 +22,7 @@ constexpr double kUncoveredOfSegment = 0.15;
 /// The previous rule applies only if the segment has at least this share of the uncovered area at the hole, U.
 constexpr double kUncoveredOfHole = 0.25;
 
-/// docs/method.md, section 5‴: twins with scores within this factor of 1 are judged together.
+/// docs/method.md, section 5″: twins with scores within this factor of 1 are judged together.
 constexpr double kDoubt = 2;
 
 /// How many times what it needs something has.
@@ -106,7 +106,7 @@ class Scoring {
   double allCovered_ = 0;  ///< K of docs/method.md.
 };
 
-/// Steps 5″ and 7: what the holes mean, given which segments are culled.
+/// Steps 5‴ and 7: what the holes mean, given which segments are culled.
 class HoleJudge {
  public:
   HoleJudge(const ProjectionView& projection, Zones& out) noexcept
@@ -167,7 +167,7 @@ class HoleJudge {
   Zones& out_;
 };
 
-/// Steps 5 and 5″: which segments are culled, and which holes that explains.
+/// Steps 5 and 5‴: which segments are culled, and which holes that explains.
 Status cullSegments(const ProjectionView& projection, const TransferOptions& options, Zones& out) {
   const std::span<const SegmentStats> stats = projection.segmentStats;
   Array<Lock> locks;
@@ -237,6 +237,7 @@ void markCosmetic(const Array<Zone>& zones, std::span<const std::uint32_t> indic
 Status classify(const ProjectionView& projection, std::span<const std::uint32_t> indices,
                 const TransferOptions& options, Zones& out) noexcept {
   if (const Status status = checkOptions(options, Stage::classify); !status.ok()) return status;
+  if (const Status status = checkProjection(projection, indices); !status.ok()) return status;
   const std::size_t segmentCount = projection.segmentStats.size();
   const std::span<const HoleShare> shares = projection.holeShares;
   if (!out.zones.reset(projection.zones.size()) || !out.cosmeticTriangles.reset(indices.size() / 3) ||

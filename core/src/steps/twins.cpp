@@ -9,7 +9,7 @@
 namespace cagecast {
 namespace {
 
-/// docs/method.md, section 5‴: twins have equally many points; the area of the larger exceeds that of the smaller by no
+/// docs/method.md, section 5″: twins have equally many points; the area of the larger exceeds that of the smaller by no
 /// more than this share,
 constexpr double kAreaTolerance = 0.01;
 /// and their extents differ by no more than this share.

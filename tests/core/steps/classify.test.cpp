@@ -58,6 +58,38 @@ TEST_CASE("twins are judged together if the scores of both are from a half to le
   CHECK(judged(0.9, 1.2, [](TransferOptions& to) { to.steps.floor = Floor::none; }) == Verdicts{kCulled, kKept});
 }
 
+TEST_CASE("a projection that is not whole, or not of this target, is an error", "[classify]") {
+  const std::vector<std::uint32_t> indices{0, 1, 2};
+  struct Parts {
+    std::vector<Zone> zones{3, Zone::cosmetic};
+    std::vector<std::uint32_t> segments{0, 0, 1}, recovery{0, 1, 2};
+    std::vector<SegmentStats> stats{2};
+    std::vector<HoleShare> shares{{0, 1}, {2, 0}};
+    Status classify(std::span<const std::uint32_t> of) const {
+      Zones out;
+      return cagecast::classify({zones, segments, stats, recovery, shares}, of, {}, out);
+    }
+  };
+  CHECK(Parts{}.classify(indices).ok());
+  CHECK(Parts{}.classify(std::vector<std::uint32_t>{0, 1, 2, 0}).code == Code::indicesNotTriples);
+  const Status stray = Parts{}.classify(std::vector<std::uint32_t>{0, 1, 3});
+  CHECK(stray.code == Code::indexOutOfRange);
+  CHECK(stray.at == 2);
+  const auto isMismatch = [&](auto change) {
+    Parts parts;
+    change(parts);
+    const Status status = parts.classify(indices);
+    return status.code == Code::resultMismatch && status.argument == Argument::target;
+  };
+  CHECK(isMismatch([](Parts& of) { of.segments.pop_back(); }));
+  CHECK(isMismatch([](Parts& of) { of.segments[1] = 2; }));
+  CHECK(isMismatch([](Parts& of) { of.recovery.pop_back(); }));
+  CHECK(isMismatch([](Parts& of) { of.stats[0].twinOf = 2; }));
+  CHECK(isMismatch([](Parts& of) { of.shares[0].segment = 2; }));
+  CHECK(isMismatch([](Parts& of) { of.shares[0].hole = 3; }));
+  CHECK(isMismatch([](Parts& of) { of.shares[1].hole = UINT32_MAX; }));
+}
+
 TEST_CASE("a small part is culled where the hole is meant for it, by the numbers of the method", "[classify]") {
   /// Whether a small part is culled.
   const auto isCulled = [](double uncovered, double hidden, double uncoveredOfOthers, double covered = 0.5,

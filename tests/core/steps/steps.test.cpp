@@ -186,6 +186,36 @@ TEST_CASE("equal positions are one point, minus zero too, except across groups",
   CHECK(ungrouped.projection.segmentStats[0].points == 7);
 }
 
+TEST_CASE("the weld tolerance is a distance in double precision", "[weld]") {
+  scenes::Random random(firstSeed());
+  const scenes::Mesh cage = square(2, 2);
+  std::size_t wrong = 0, joined = 0;
+  for (int i = 0; i < 4000; ++i) {
+    TransferOptions options = TransferOptions::paper();
+    options.weldTolerance = random.between(0.005f, 0.01f);
+    // Two vertices on either side of 0, as far from each other as floats allow to the tolerance.
+    const double tolerance = static_cast<double>(options.weldTolerance) * std::sqrt(12.0);
+    const float left = -random.between(0, 1) * static_cast<float>(tolerance);
+    auto right = static_cast<float>(static_cast<double>(left) + tolerance);
+    for (std::uint64_t steps = random.below(3); steps-- > 0;) right = std::nextafter(right, -1.0f);
+    scenes::Mesh target;
+    for (const scenes::Point p : {scenes::Point{-1, -1, -1}, {1, 1, 1}, {left, 0, 0}, {right, 0, 0}})
+      target.addVertex(p);
+    target.addTriangle(0, 1, 2);
+    target.addTriangle(0, 1, 3);
+    const TransferResult result = transferred(cage.view(), target.view(), options);
+    std::size_t points = 0;
+    for (const SegmentStats& segment : result.projection.segmentStats) points += segment.points;
+    const double distance = static_cast<double>(right) - static_cast<double>(left);
+    wrong += (points == 3) != (distance < tolerance);
+    joined += points == 3;
+  }
+  INFO("CAGECAST_SEED=" << firstSeed());
+  CHECK(wrong == 0);
+  CHECK(joined > 400);
+  CHECK(joined < 3600);
+}
+
 TEST_CASE("the weld tolerance joins what is nearer than its share of the diagonal", "[weld]") {
   scenes::Mesh target;
   const auto triangle = [&](float x, float shift) {
@@ -316,6 +346,35 @@ TEST_CASE("of equally near cage vertices the nearest-vertex baseline takes the l
   CHECK(copied(result.projection.uvs) == std::vector<float>{-1, -1, 1, -1, 1, 1, -1, 1});
   CHECK(copied(result.projection.triangles) == std::vector<std::uint32_t>{0, 0, 0, 1});
   CHECK(result.projection.distances[0] == Approx(std::sqrt(3.0)));
+}
+
+TEST_CASE("cage vertices are as near to the nearest-vertex baseline as in double precision", "[nearestVertex]") {
+  // Over the middles between the vertices of a grid, at heights that no float's square is exact for.
+  TransferOptions options = TransferOptions::paper();
+  options.steps.projection = ProjectionMode::nearestVertex;
+  scenes::Random random(firstSeed());
+  for (int i = 0; i < 200; ++i) {
+    scenes::Mesh cage, target;
+    const float height = random.between(0.001f, 0.1f);
+    const auto addGrid = [](scenes::Mesh& mesh, std::uint32_t cells, float z) {
+      const auto side = static_cast<float>(cells);
+      for (std::uint32_t v = 0; v < (cells + 1) * (cells + 1); ++v) {
+        const float x = static_cast<float>(v % (cells + 1)) / side, y = static_cast<float>(v / (cells + 1)) / side;
+        mesh.addVertex({x, y, z}, x, y);
+      }
+      for (std::uint32_t y = 0; y < cells; ++y) {
+        for (std::uint32_t x = 0; x < cells; ++x) {
+          const std::uint32_t a = y * (cells + 1) + x, b = a + cells + 1;
+          mesh.addTriangle(a, a + 1, b + 1);
+          mesh.addTriangle(a, b + 1, b);
+        }
+      }
+    };
+    addGrid(cage, 4, height);
+    addGrid(target, 8, 0);
+    INFO("height " << height << ", CAGECAST_SEED=" << firstSeed());
+    requireSameAsReference("grids", cage.view(), target.view(), options);
+  }
 }
 
 TEST_CASE("timings add up and memory is reported", "[transfer]") {

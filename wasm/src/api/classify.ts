@@ -31,8 +31,8 @@ const wrong = (text: string, at = 0) =>
   new CagecastError('badArgument', `classify: projection${text}; pass what project() returned`, at);
 
 /**
- * Checks that `projection` is complete and consistent, because it is plain data that may have been stored or sent, and the core
- * does not check it.
+ * Checks that `projection` is complete and consistent, because it is plain data that may have been stored or sent. (The core checks
+ * it as well, but cannot say which number is wrong.)
  * @returns the projection in the form that the core takes.
  */
 function checkProjection(projection: Projection): CoreProjection {

@@ -12,7 +12,7 @@ export interface Timings {
   occluded: number;
   /** Step 3: cage intersection. */
   covered: number;
-  /** Steps 4, 5′ and 5‴: connected components, their areas and twins. */
+  /** Steps 4, 5′ and 5″: connected components, their areas and twins. */
   segments: number;
   /** Step 6: more rays from occluded points. */
   secondLook: number;

@@ -33,7 +33,7 @@ export function transfer(cage: Mesh, target: Mesh, options?: TransferOptions & R
 }
 
 /**
- * Does the costly part of `transfer`: steps 1 to 4, 5′, 6, 7 and 9 of the method, and the twins of 5‴. The result does not depend on
+ * Does the costly part of `transfer`: steps 1 to 4, 5′, 6, 7 and 9 of the method, and the twins of 5″. The result does not depend on
  * threshold, floor or locks. Pass it to `classify`, once for each threshold that you want to try.
  * @param options  With `reuse`, an earlier projection is overwritten and returned.
  * @throws {CagecastError} as `transfer` does.

@@ -29,9 +29,12 @@ export type CoreCode =
    * size of the target or for distances to fit a float (`at` is its position in `positions`).
    */
   | 'tooLarge'
-  /** The value of `option` is out of its range, or a lock names a segment or a group that does not exist (`at`). */
+  /**
+   * The value of `option` is out of its range, or a lock (`at`) names a segment or a group that does not exist, or is
+   * none of the three.
+   */
   | 'badOption'
-  /** The given zones or segments do not belong to this target; `at` is the number of zones. */
+  /** The given zones, segments or holes do not belong together or to this target; `at` is the number of zones. */
   | 'resultMismatch'
   /**
    * Cutting borders takes more than its limit, which follows from the number of triangles and of border edges of the

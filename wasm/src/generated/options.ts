@@ -57,7 +57,7 @@ export interface ProjectSteps {
    */
   farLoops?: boolean | undefined;
   /**
-   * Step 5′: counts covered area less the deeper it lies under the cage. Also finds the twins of 5‴: segments of the
+   * Step 5′: counts covered area less the deeper it lies under the cage. Also finds the twins of 5″: segments of the
    * same shape. True or false. Default: `true`; in the preset `paper`: `false`.
    */
   depthWeighting?: boolean | undefined;
@@ -102,12 +102,12 @@ export interface ClassifySteps {
    */
   maxUncovered?: number | undefined;
   /**
-   * Step 5‴: judges twins with scores near 1 together; needs depthWeighting, and a floor other than none. True or
+   * Step 5″: judges twins with scores near 1 together; needs depthWeighting, and a floor other than none. True or
    * false. Default: `true`; in the preset `paper`: `false`.
    */
   twins?: boolean | undefined;
   /**
-   * Step 5″: culls a small segment if a hole of the cage is meant for it; needs holes. True or false. Default: `true`;
+   * Step 5‴: culls a small segment if a hole of the cage is meant for it; needs holes. True or false. Default: `true`;
    * in the preset `paper`: `false`.
    */
   holeContents?: boolean | undefined;
