@@ -295,7 +295,7 @@ const score = () => {
 
 const holeContents = () =>
   figure(700, 240, 'A small part that a hole of the cage is meant for', [
-    title(20, '5″ · Bare: the cage is a little aside'),
+    title(20, '5‴ · Bare: the cage is a little aside'),
     curve(at('20,150 80,108 150,90'), cage, { width: 3 }),
     curve(at('222,88 270,104 330,150'), cage, { width: 3 }),
     dot([150, 90], cage, 4),
@@ -324,7 +324,7 @@ const holeContents = () =>
       ['Mostly covered, but more than 0.15 of it lies', 'bare under a hole that no other part explains.'],
       small,
     ),
-    title(380, '5″ · Hidden: behind glasses'),
+    title(380, '5‴ · Hidden: behind glasses'),
     curve(at('400,150 450,108 490,94'), cage, { width: 3 }),
     curve(at('590,94 630,108 680,150'), cage, { width: 3 }),
     dot([490, 94], cage, 4),

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
@@ -27,9 +27,19 @@ function build(source: string, folder: string, ...options: string[]): string {
   return out;
 }
 
+/** Builds the example with the sources, as a project with flags and folders of its own would. */
+const buildWithSources = () =>
+  build(
+    'examples/native',
+    'example-sources',
+    '-DCMAKE_DISABLE_FIND_PACKAGE_cagecast=ON',
+    '-DCMAKE_CXX_FLAGS=-fno-exceptions -fno-rtti -ffast-math -Wconversion',
+    '-DCMAKE_INSTALL_INCLUDEDIR=headers',
+  );
+
 describe('examples/native', () => {
-  test('uses the sources, by add_subdirectory', () => {
-    const out = build('examples/native', 'example-sources', '-DCMAKE_DISABLE_FIND_PACKAGE_cagecast=ON');
+  test('uses the sources, by add_subdirectory, in a project without exceptions and with fast-math', () => {
+    const out = buildWithSources();
     assert.match(run(join(out, 'example')), expected);
     // What a consumer does not ask for is not built.
     const targets = run('cmake', '--build', out, '--target', 'help');
@@ -37,9 +47,12 @@ describe('examples/native', () => {
   });
 
   test('uses the installed library, by find_package', () => {
-    const sources = join('build', 'example-sources');
-    build('examples/native', 'example-sources', '-DCMAKE_DISABLE_FIND_PACKAGE_cagecast=ON');
+    const sources = buildWithSources();
     run('cmake', '--install', join(sources, 'cagecast'), '--component', 'cagecast', '--prefix', prefix);
+    const headers = readdirSync(join(prefix, 'headers', 'cagecast'));
+    assert.ok(headers.includes('transfer.hpp'));
+    // Of a library that is not installed.
+    assert.ok(!headers.includes('cages.hpp'));
     const out = build('examples/native', 'example-installed', `-DCMAKE_PREFIX_PATH=${prefix}`, '--fresh');
     assert.ok(readFileSync(join(out, 'CMakeCache.txt'), 'utf8').includes(`cagecast_DIR:PATH=${prefix}`));
     assert.match(run(join(out, 'example')), expected);

@@ -274,11 +274,11 @@ std::vector<Range> depthWeights(const Scene& scene, const std::vector<Sample>& s
 }
 
 /// The first of the segments that each is a copy of: as many points, nearly the same area, nearly the same extent.
-/// Taken by points, area and number, a segment belongs to the latest of the last few runs whose first it is like; else
+/// Taken by points, area and number, a segment belongs to the latest of the last few kinds whose first it is like; else
 /// it begins one.
 std::vector<std::uint32_t> findTwins(const Scene& scene, const State& state, const std::vector<SegmentStats>& stats) {
   constexpr double kSameArea = 0.01, kSameExtent = 0.02;
-  constexpr std::size_t kRuns = 8;  // Parts of equal area and another shape may lie between twins; not many do.
+  constexpr std::size_t kKinds = 8;  // Parts of equal area and another shape may lie between twins; not many do.
   std::vector<Vec> centres(state.segmentCount);
   std::vector<double> extents(state.segmentCount, 0.0);  // Sum of squared distances of the points from their mean.
   for (std::size_t p = 0; p < state.segments.size(); ++p)
@@ -293,16 +293,16 @@ std::vector<std::uint32_t> findTwins(const Scene& scene, const State& state, con
   std::sort(order.begin(), order.end(), [&](std::uint32_t s, std::uint32_t t) {
     return std::tie(stats[s].points, stats[s].area, s) < std::tie(stats[t].points, stats[t].area, t);
   });
-  std::vector<std::uint32_t> runs;  // By their first.
+  std::vector<std::uint32_t> kinds;  // By their first.
   for (const std::uint32_t s : order) {
     const auto isLike = [&](std::uint32_t first) {
       return stats[s].points == stats[first].points && stats[s].area <= (1 + kSameArea) * stats[first].area &&
              std::abs(extents[s] - extents[first]) <= kSameExtent * extents[first];
     };
-    const auto oldest = runs.rbegin() + static_cast<std::ptrdiff_t>(std::min(kRuns, runs.size()));
-    const auto run = std::find_if(runs.rbegin(), oldest, isLike);
-    twins[s] = run == oldest ? s : *run;
-    if (run == oldest) runs.push_back(s);
+    const auto oldest = kinds.rbegin() + static_cast<std::ptrdiff_t>(std::min(kKinds, kinds.size()));
+    const auto kind = std::find_if(kinds.rbegin(), oldest, isLike);
+    twins[s] = kind == oldest ? s : *kind;
+    if (kind == oldest) kinds.push_back(s);
   }
   return twins;
 }
@@ -339,9 +339,8 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
             std::vector<SegmentStats>& stats) {
   // Three times: as it is, and with every sample at its worst and at its best.
   std::vector<Tally> is(state.segmentCount), worst(state.segmentCount), best(state.segmentCount);
-  const bool weighsDepth = options.floor == Floor::depth;
   const std::vector<Range> weights =
-      weighsDepth ? depthWeights(scene, samples) : std::vector<Range>(samples.size(), {1, 1, 1});
+      options.depthWeighting ? depthWeights(scene, samples) : std::vector<Range>(samples.size(), {1, 1, 1});
   Range all;  // The covered area of all segments.
   for (std::uint32_t s = 0; s < state.segmentCount; ++s) is[s] = worst[s] = best[s] = {stats[s].area, 0, 0, 0, 1};
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -373,11 +372,11 @@ void decide(const Scene& scene, const Options& options, const std::vector<Sample
   constexpr double kDoubt = 2;
   std::vector<bool> unsureDoubt(state.segmentCount, false);
   std::vector<std::uint32_t> twins;
-  if (weighsDepth) {
+  if (options.depthWeighting) {
     twins = findTwins(scene, state, stats);
     for (std::uint32_t s = 0; s < state.segmentCount; ++s) stats[s].twinOf = twins[s];
   }
-  if (options.twins) {
+  if (options.twins && options.depthWeighting && options.floor != Floor::none) {
     const auto inDoubt = [](double score) { return score >= 1 / kDoubt && score < kDoubt; };
     std::vector<Tally> sums(state.segmentCount), worstSums(state.segmentCount), bestSums(state.segmentCount);
     std::vector<bool> doubted(state.segmentCount), unsureSum(state.segmentCount, false);
@@ -514,7 +513,7 @@ Verdict isSeen(const Scene& scene, const Options& options, Vec p, const Outlook&
 }
 
 /// Step 6: the occluded points of passing, covered segments that are seen from elsewhere. Begins at the loop of what is
-/// occluded; a restored point brings its neighbours in, a rejected one does not.
+/// occluded; a recovered point brings its neighbours in, a rejected one does not.
 std::vector<Verdict> secondLook(const Scene& scene, const Options& options, const State& state) {
   const std::size_t count = scene.points.count();
   std::vector<bool> firm;
@@ -694,9 +693,9 @@ unsigned outcomes(Zone found, const Verdict& passes, const Verdict& seen, const 
   if (!passes.must) zones |= bit(found == Zone::cosmetic ? Zone::culled : found);
   if (!passes.might) return zones;
   const Verdict always{true, true, true};
-  const Verdict& restored = found == Zone::occluded ? seen : found == Zone::uncovered ? underHole : always;
-  if (restored.might) zones |= bit(Zone::cosmetic);
-  if (!restored.must) zones |= bit(found);
+  const Verdict& recovered = found == Zone::occluded ? seen : found == Zone::uncovered ? underHole : always;
+  if (recovered.might) zones |= bit(Zone::cosmetic);
+  if (!recovered.must) zones |= bit(found);
   return zones;
 }
 
@@ -808,7 +807,8 @@ Options Options::standard() {
   Options options;
   options.endOfSelfRay = options.pokes = options.interiorSamples = options.farLoops = true;
   options.floor = Floor::depth;
-  options.twins = options.holeContents = options.secondLook = options.bothSides = options.exposedSide = true;
+  options.depthWeighting = options.twins = options.holeContents = true;
+  options.secondLook = options.bothSides = options.exposedSide = true;
   options.holes = options.partialTriangles = options.seams = true;
   return options;
 }
@@ -816,7 +816,8 @@ Options Options::standard() {
 Options Options::earlier() {
   Options options = standard();
   options.floor = Floor::area;
-  options.twins = options.holeContents = options.bothSides = options.farLoops = options.exposedSide = false;
+  options.depthWeighting = options.twins = options.holeContents = false;
+  options.bothSides = options.farLoops = options.exposedSide = false;
   return options;
 }
 
@@ -922,6 +923,7 @@ Result transfer(const MeshView& cage, const MeshView& target, const TransferOpti
   options.minCovered = static_cast<double>(library.minCovered);
   options.minOfAll = static_cast<double>(library.steps.minOfAll);
   options.maxUncovered = static_cast<double>(library.steps.maxUncovered);
+  options.depthWeighting = library.steps.depthWeighting;
   options.twins = library.steps.twins;
   options.holeContents = library.steps.holeContents;
   options.secondLook = library.steps.secondLook;
