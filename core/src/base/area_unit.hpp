@@ -14,18 +14,16 @@ class AreaUnit {
   explicit AreaUnit(std::uint32_t triangleCount)
       : perArea_(std::ldexp(1.0, 60 - static_cast<int>(std::bit_width(triangleCount)))) {}
   /// What a triangle gives to each of its corners.
-  [[nodiscard]] std::int64_t third(double doubleArea) const {
-    return static_cast<std::int64_t>(doubleArea / 6 * perArea_);
-  }
+  [[nodiscard]] std::int64_t third(double doubleArea) const { return rounded(doubleArea / 6); }
   /// What a triangle gives to each of its four interior samples.
-  [[nodiscard]] std::int64_t quarter(double doubleArea) const {
-    return static_cast<std::int64_t>(doubleArea / 8 * perArea_);
-  }
+  [[nodiscard]] std::int64_t quarter(double doubleArea) const { return rounded(doubleArea / 8); }
   [[nodiscard]] double area(std::int64_t units) const { return static_cast<double>(units) * size_; }
   /// The area cut to so few bits that sums of such areas in doubles are exact.
   [[nodiscard]] double summableArea(std::int64_t units) const { return area(units >> kCutBits << kCutBits); }
 
  private:
+  [[nodiscard]] std::int64_t rounded(double area) const { return static_cast<std::int64_t>(area * perArea_ + 0.5); }
+
   static constexpr int kCutBits = 10;
   double perArea_;
   double size_ = 1 / perArea_;  ///< Exact: a power of two.

@@ -242,6 +242,19 @@ TEST_CASE("the weld tolerance joins what is nearer than its share of the diagona
   CHECK(segmentsWith(1e-4f) == 3);
 }
 
+TEST_CASE("areas of many triangles add up without a bias", "[segments]") {
+  const scenes::Scene scene = scenes::strewn(firstSeed(), 8000);
+  const TransferResult result = transferred(scene.cage.view(), scene.target.view());
+  double area = 0, exact = 0;
+  for (const SegmentStats& segment : result.projection.segmentStats) area += segment.area;
+  const reference::Result expected = reference::transfer(scene.cage.view(), scene.target.view());
+  for (const SegmentStats& segment : expected.segmentStats) exact += segment.area;
+  // A tenth of what result.hpp promises for a single segment, and a box of 2 has a larger diagonal.
+  const auto triangles = static_cast<double>(scene.target.triangleCount());
+  INFO("CAGECAST_SEED=" << firstSeed() << ", off by " << area - exact);
+  CHECK(std::abs(area - exact) <= 0.1 * triangles * triangles * 0x1p-58 * 4);
+}
+
 TEST_CASE("a segment below the threshold is culled, one at it is not", "[classify]") {
   // Three of four equal corners covered... of a square whose corners have 2/6, 1/6, 2/6, 1/6 of its area.
   scenes::Mesh target = square(1, 0);
