@@ -23,7 +23,10 @@ const kSizes = [
   { name: 'tablet', width: 768, height: 1024 },
   { name: 'desk', width: 1440, height: 900 },
   { name: 'phone, large text', width: 390, height: 844, text: 24 },
+  { name: 'phone, largest text', width: 390, height: 844, text: 32 },
+  { name: 'small desk, large text', width: 1000, height: 700, text: 24 },
   { name: 'desk, large text', width: 1440, height: 900, text: 24 },
+  { name: 'desk, largest text', width: 1280, height: 800, text: 32 },
 ];
 
 /** Everything that is pressed or moved; for a box hidden behind its label, the label. */
