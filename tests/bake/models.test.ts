@@ -9,7 +9,7 @@ import { init } from 'cagecast';
 import type { Image } from 'cagecast/bake';
 import { type BakeReport, bake, cagecast as cagecastTransform, type ImageCodec } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
-import { cagecast, unpackGlb, validate } from '../js/glb.js';
+import { cagecast, packGlb, unpackGlb, validate } from '../js/glb.js';
 import { islandAt, islandCage, texturedBox } from '../support/models';
 import { picture } from './reference.js';
 
@@ -460,6 +460,59 @@ test('what follows the end of a PNG is not part of it, as in viewers', async () 
   const { status, stderr } = cagecast('bake', at('padded.glb'), at('cage.glb'), at('padded.png'), '-o', at('out.glb'));
   assert.deepEqual([status, stderr], [0, '']);
   assertPainted(imageOf(materialOf(await io.read(at('out.glb'))).getBaseColorTexture()));
+});
+
+test('no file that was read is overwritten, whoever names it', async () => {
+  const { json, bin } = unpackGlb(readFileSync(at('box.glb')));
+  delete json.images![0]!.bufferView;
+  json.images![0]!.uri = 'skin.png';
+  writeFileSync(at('named.glb'), packGlb({ json, bin }));
+  writeFileSync(at('mask.png'), pngOf(picture(4, () => [0, 0, 0, 255])));
+  writeFileSync(at('own.json'), '{ "neverMask": "mask.png" }');
+  for (const [args, path] of [
+    [[at('named.glb')], at('skin.png')],
+    [[at('box.glb'), '--config', at('own.json')], at('mask.png')],
+  ] as const) {
+    writeFileSync(at('skin.png'), pngOf(own));
+    const before = readFileSync(path);
+    const [target, ...more] = args;
+    const { status, stderr } = cagecast('bake', target, at('cage.glb'), at('red.png'), ...more, '-o', path);
+    assert.equal(status, 1);
+    assert.match(stderr, /^cagecast: .*\.png: would be overwritten, but is read by this command[^\n]*\n$/);
+    assert.deepEqual(readFileSync(path), before);
+  }
+});
+
+test('another size keeps the colours under an alpha of 0, and the longer side is as long as asked', async () => {
+  const clear = picture(64, (x) => [10 + x, 20, 200, 0]);
+  const tall = { width: 32, height: 64, data: clear.data.subarray(0, 4 * 32 * 64) };
+  writeFileSync(at('clear.glb'), (await texturedBox(pngOf(tall))).buffer);
+  const bakeTo = (out: string, ...more: string[]) =>
+    cagecast('bake', at('clear.glb'), at('cage.glb'), ...more, '-o', at(out));
+  assert.equal(bakeTo('clear-out.glb', at('red.png'), '--size', '32').status, 0);
+  const image = imageOf(materialOf(await io.read(at('clear-out.glb'))).getBaseColorTexture());
+  assert.deepEqual([image.width, image.height], [16, 32]);
+  const blues = Array.from({ length: 16 * 32 }, (_, i) => image.data[4 * i + 2]!);
+  assert.ok(Math.min(...blues) >= 40, 'none is black');
+  assert.match(bakeTo('clear.png', at('red.png'), '--size', '32').stdout, /: 16 × 32, for /);
+  // The way back shows what an opaque material does.
+  assert.equal(bakeTo('back.png', '--back').status, 0);
+  const back = PNG.sync.read(readFileSync(at('back.png')));
+  assert.ok(back.data.some((byte, i) => i % 4 === 3 && byte === 255));
+});
+
+test('what is optional in a file stays so', async () => {
+  const { json, bin } = unpackGlb(readFileSync(at('box.glb')));
+  const image = json.images!.push({ ...json.images![0]! }) - 1;
+  // A second texture, which is not painted, has another image for viewers that know it.
+  json.textures!.push({ source: 0, extensions: { EXT_texture_webp: { source: image } } });
+  json.materials!.push({ name: 'eye', pbrMetallicRoughness: { baseColorTexture: { index: 1 } } });
+  json.extensionsUsed = ['EXT_texture_webp'];
+  writeFileSync(at('optional.glb'), packGlb({ json, bin }));
+  const { status } = cagecast('bake', at('optional.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
+  assert.equal(status, 0);
+  const { json: after } = unpackGlb(readFileSync(at('out.glb')));
+  assert.deepEqual([after.extensionsUsed, after.extensionsRequired], [['EXT_texture_webp'], undefined]);
 });
 
 test('overlapping UVs are told by the command', () => {

@@ -1,12 +1,22 @@
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import {
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { cagecast, glbOf, unpackGlb } from '../js/glb.js';
+import { PNG } from 'pngjs';
+import { cagecast, glbOf, packGlb, unpackGlb } from '../js/glb.js';
 import { head } from '../js/scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-batch-'));
@@ -144,12 +154,44 @@ test('a batch that cannot be right does not begin', () => {
       /0\.gltf: is written beside a file of its name that this batch reads/,
     ],
   ];
+  // What the batch itself reads and writes.
+  const manifest = at('clash.jsonl');
+  const line = `{"target": "beside/0.glb", "cage": "cage.glb"}\n`;
+  writeFileSync(manifest, line);
+  const config = at('clash.config.json');
+  writeFileSync(config, '{}');
+  const one = ['batch', at('beside/0.glb'), ...cage];
+  cases.push(
+    [['batch', '--manifest', manifest, '--report', manifest], 1, /clash\.jsonl: is read and written by this batch/],
+    [['batch', '--manifest', manifest, '--results', manifest], 1, /clash\.jsonl: is read by this batch/],
+    [[...one, '--results', at('cage.glb')], 1, /cage\.glb: is read by this batch/],
+    [[...one, '--config', config, '--report', config], 1, /clash\.config\.json: is read and written by this batch/],
+    [[...one, '--results', at('r.json'), '--report', at('r.json')], 1, /r\.json: is written for the results and /],
+    [[...one, '-o', '-'], 2, /the standard output has its lines/],
+  );
   for (const [args, code, message] of cases) {
     const { status, stdout, stderr } = cagecast(...args);
     assert.deepEqual([status, stdout], [code, ''], args.join(' '));
     assert.match(stderr, message);
     assert.match(stderr, /^cagecast: [^\n]+\n$/);
   }
+  assert.equal(readFileSync(manifest, 'utf8'), line);
+  assert.equal(readFileSync(config, 'utf8'), '{}');
+  assert.deepEqual(readFileSync(at('cage.glb')), Buffer.from(glbOf(scene.cage)));
+});
+
+test('patterns follow links to folders, and ** does not go round in circles', () => {
+  mkdirSync(at('linked/own'), { recursive: true });
+  mkdirSync(at('far'));
+  writeFileSync(at('far/a.glb'), target);
+  writeFileSync(at('linked/own/b.glb'), target);
+  symlinkSync(at('far'), at('linked/link'));
+  symlinkSync(at('linked'), at('linked/own/round'));
+  symlinkSync('self', at('linked/self'));
+  const targets = (pattern: string) =>
+    linesOf(cagecast('batch', at(pattern), '--cage', at('cage.glb')).stdout).map((line) => line.target);
+  assert.deepEqual(targets('linked/*/a.glb'), [at('linked/link/a.glb')]);
+  assert.deepEqual(targets('linked/**/*.glb'), [at('linked/own/b.glb')]);
 });
 
 test('results that cannot be written end the batch at once; their folder is made', () => {
@@ -245,8 +287,22 @@ test('--resume minds what a glTF has beside it, as it is read and as it is writt
     assert.equal(batch(), '2 jobs: 1 done, 1 failed', read);
   }
   assert.equal(batch(), '2 jobs: 0 done, 1 failed, 1 done before');
+  // A GLB may name files, too.
+  const { json, bin } = unpackGlb(target);
+  json.images = [{ uri: 'skin.png' }];
+  writeFileSync(at('text/named.glb'), packGlb({ json, bin }));
+  const skin = (red: number) => {
+    const png = Object.assign(new PNG({ width: 1, height: 1 }), { data: Buffer.from([red, 0, 0, 255]) });
+    writeFileSync(at('text/skin.png'), PNG.sync.write(png));
+  };
+  skin(1);
+  names[1] = at('text/named.glb');
+  assert.equal(batch(), '2 jobs: 1 done, 0 failed, 1 done before');
+  assert.equal(batch(), '2 jobs: 0 done, 0 failed, 2 done before');
+  skin(2);
+  assert.equal(batch(), '2 jobs: 1 done, 0 failed, 1 done before');
   rmSync(at('text/out/head.bin'));
-  assert.equal(batch(), '2 jobs: 1 done, 1 failed');
+  assert.equal(batch(), '2 jobs: 1 done, 0 failed, 1 done before');
   assert.ok(existsSync(at('text/out/head.bin')));
 });
 

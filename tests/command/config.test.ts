@@ -4,6 +4,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSyn
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { PNG } from 'pngjs';
 import { cagecast, glbOf } from '../js/glb.js';
 import { head } from '../js/scenes.js';
 
@@ -70,6 +71,27 @@ test('masks are paths from the folder of the file; flags about masks replace the
   set({ alwaysMask: 'gone.png' });
   assert.match(cagecast('transfer', ada, ...cage).stderr, new RegExp(`${at('gone.png')}: no such file`));
   assert.match(cagecast('transfer', ada, ...cage, '--never-mask', at('other.png')).stderr, /other\.png: no such file/);
+});
+
+test('masks of a character and of a line of a manifest are added to those of the file', () => {
+  const mask = (name: string, level: number) => {
+    const png = Object.assign(new PNG({ width: 1, height: 1 }), { data: Buffer.from([level, level, level, 255]) });
+    writeFileSync(at(name), PNG.sync.write(png));
+  };
+  mask('white.png', 255);
+  mask('black.png', 0);
+  const counts = (text: string) => (JSON.parse(text) as { counts: { cosmetic: number } }).counts.cosmetic;
+  const transferred = () => counts(cagecast('transfer', ada, ...cage, '--json').stdout);
+  set({});
+  const all = transferred();
+  set({ neverMask: 'white.png' });
+  const masked = transferred(); // A vertex that no triangle has is beyond all masks.
+  assert.ok(masked < all / 4);
+  set({ neverMask: 'white.png', characters: { 'a*': { alwaysMask: 'black.png' } } });
+  assert.equal(transferred(), masked);
+  set({ neverMask: 'white.png' });
+  writeFileSync(at('masks.jsonl'), JSON.stringify({ target: ada, cage: 'cage.glb', alwaysMask: 'black.png' }));
+  assert.equal(counts(cagecast('batch', '--manifest', at('masks.jsonl')).stdout), masked);
 });
 
 test('a file that was found may be a stranger’s: it is a regular file, and its masks are regular files beside it', () => {

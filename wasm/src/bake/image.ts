@@ -68,9 +68,12 @@ export function checkImage(fn: string, name: string, image: unknown): Image {
   return image as Image;
 }
 
+/** Stands for an alpha of 0 where colours are weighted by it: opaque materials show them too. */
+const kFaint = 1e-6;
+
 /**
  * Resizes an image: every pixel is the mean of the area that it covers. Colours are averaged as they are stored, weighted by
- * alpha.
+ * alpha; where all of it is 0, plainly.
  * @throws {CagecastError} `badArgument` for a size that is not 1 to 8192.
  */
 export function resize(image: Image, width: number, height: number): Image {
@@ -87,7 +90,7 @@ export function resize(image: Image, width: number, height: number): Image {
         for (const [column, across] of columns[x]!) {
           const at = 4 * (row * from.width + column);
           const share = down * across;
-          const weight = share * from.data[at + 3]!;
+          const weight = share * (from.data[at + 3]! || kFaint);
           r += weight * from.data[at]!;
           g += weight * from.data[at + 1]!;
           b += weight * from.data[at + 2]!;
@@ -95,7 +98,7 @@ export function resize(image: Image, width: number, height: number): Image {
           sum += share;
         }
       }
-      data.set(a > 0 ? [r / a, g / a, b / a, a / sum] : [0, 0, 0, 0], 4 * (y * width + x));
+      data.set([r / a, g / a, b / a, a / sum], 4 * (y * width + x));
     }
   }
   return { width, height, data };

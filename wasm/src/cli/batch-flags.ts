@@ -1,4 +1,5 @@
 import { type Command, InvalidArgumentError, Option } from 'commander';
+import { standard } from '../gltf/files.js';
 import { forms } from '../gltf/glb-writer.js';
 import { batchCommand, describeBatch } from './batch-command.js';
 import { jobsOfManifest, jobsOfPatterns } from './batch-jobs.js';
@@ -44,7 +45,10 @@ export function addBatchCommand(program: Command, progress: Progress): void {
             addCageAreaFlags(
               program
                 .command('batch')
-                .argument('[TARGETS...]', 'GLB, glTF or VRM; * in a name matches any text, ** any folders'),
+                .argument(
+                  '[TARGETS...]',
+                  'GLB, glTF or VRM; * in a name matches any text, ** any folders but linked ones',
+                ),
             ),
           ),
         ),
@@ -101,11 +105,8 @@ Examples:
     );
   command.action(async (targets: string[], flags: BatchFlags) => {
     const { manifest, results, resume = false, failOn, workers, texture, output, report, cage } = flags;
-    const wrong = (text: string) => command.error(text, { exitCode: wrongUsage });
-    if (targets.length > 0 === (manifest !== undefined)) wrong('give either TARGETS or --manifest');
-    if (resume && results === undefined) wrong('--resume needs --results, which says what is done');
-    if (manifest === undefined && cage === undefined) wrong('TARGETS need --cage');
-    if (texture !== undefined && output === undefined && manifest === undefined) wrong('--texture needs -o OUT.glb');
+    const fault = faultOf(targets, flags);
+    if (fault !== undefined) command.error(fault, { exitCode: wrongUsage });
     if (flags.quiet) progress.silence();
     const defaults = {
       cage,
@@ -115,6 +116,7 @@ Examples:
       regions: flags.region,
       output,
       report,
+      results,
       inspects: failOn === undefined ? undefined : true,
       settled: settler(command, flags),
       reading: readingOf(flags),
@@ -129,4 +131,17 @@ Examples:
     if (!flags.quiet) process.stderr.write(`${flags.json ? JSON.stringify(summary) : describeBatch(summary)}\n`);
     process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
   });
+}
+
+/** What is wrong with the arguments together, if anything is. */
+function faultOf(
+  targets: readonly string[],
+  { manifest, results, resume, cage, texture, output, report }: BatchFlags,
+): string | undefined {
+  if (targets.length > 0 === (manifest !== undefined)) return 'give either TARGETS or --manifest';
+  if (resume && results === undefined) return '--resume needs --results, which says what is done';
+  if (manifest === undefined && cage === undefined) return 'TARGETS need --cage';
+  if (texture !== undefined && output === undefined && manifest === undefined) return '--texture needs -o OUT.glb';
+  if (output === standard || report === standard) return 'a batch writes files; the standard output has its lines';
+  return undefined;
 }

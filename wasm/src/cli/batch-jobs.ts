@@ -5,7 +5,7 @@ import { readBytes, standard } from '../gltf/files.js';
 import { firstLine, InputError } from '../gltf/input-error.js';
 import { filesBeside, filesReadBy } from './beside.js';
 import type { Settled } from './config/config-flags.js';
-import { isObject, parseObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
+import { isObject, mergeMasks, parseObject, refuseUnknown, settingNames, settingsOf } from './config/settings.js';
 import { filesOf } from './glob.js';
 import { placeOf } from './output.js';
 import { areBounds, boundsText } from './paint/cage-area.js';
@@ -24,6 +24,8 @@ export interface Job {
 /** What jobs have in common, from the command line and configuration files. */
 export interface JobDefaults extends Omit<TransferCommand, 'target' | 'cage' | keyof Settled> {
   cage?: string | undefined;
+  /** Where the batch writes its results, if in a file. */
+  results?: string | undefined;
   settled: (target: string) => Promise<Settled>;
 }
 
@@ -44,6 +46,7 @@ export async function jobsOfPatterns(patterns: readonly string[], defaults: JobD
         }
       }),
     ),
+    defaults,
   );
 }
 
@@ -72,6 +75,8 @@ export async function jobsOfManifest(path: string, defaults: JobDefaults): Promi
           }
         }),
     ),
+    defaults,
+    path,
   );
 }
 
@@ -132,7 +137,13 @@ async function jobLine(line: string, folder: string, { settled }: JobDefaults): 
       preset: preset ?? rules.preset,
       keep: keep ?? rules.keep,
       exclude: exclude ?? rules.exclude,
-      ...(masks && { masks, maskFolder: undefined }),
+      ...(masks && {
+        masks: mergeMasks(rules.masks, masks)!,
+        maskFolders: {
+          ...(masks.never === undefined && { never: rules.maskFolders?.never }),
+          ...(masks.always === undefined && { always: rules.maskFolders?.always }),
+        },
+      }),
       single: { ...rules.single, ...single },
     },
   };
@@ -152,7 +163,7 @@ type JobNames = Pick<TransferCommand, 'target' | 'referenceCage' | 'texture' | '
 };
 
 /** Fills in a job's own names. `{name}` in a path is the target's name without its ending, `{dir}` its folder. */
-function jobOf({ settled: _, ...given }: JobDefaults & JobNames & Settled): Job {
+function jobOf({ settled: _, results: __, ...given }: JobDefaults & JobNames & Settled): Job {
   const { target, cage, output, report } = given;
   if (cage === undefined)
     throw new InputError('has no cage; give one with --cage, or as "cage" in the manifest').in(target);
@@ -180,15 +191,24 @@ function sizeAndTime(path: string): (number | undefined)[] {
   }
 }
 
-/** @throws {InputError} if two jobs write the same file, or one writes what another reads. */
-function refuseClashes(jobs: Job[]): Job[] {
-  const read = new Set(jobs.flatMap(({ command }) => filesReadBy(command).map((path) => placeOf(path))));
+/**
+ * @throws {InputError} if two jobs write the same file, or one writes what another reads, or what the batch itself reads and writes.
+ */
+function refuseClashes(jobs: Job[], { results }: JobDefaults, manifest?: string): Job[] {
+  const named = (path: string | undefined) => (path === undefined || path === standard ? [] : [path]);
+  const readByJob = ({ command }: Job) => [...filesReadBy(command), ...named(command.rules.config)];
+  const read = new Set([...jobs.flatMap(readByJob), ...named(manifest)].map((path) => placeOf(path)));
   // What a `.gltf` has beside it is named after it.
   const kBeside = /(\.bin|-image\d+\.\w+)$/;
   const readBeside = new Set(
     [...read].filter((place) => kBeside.test(place)).map((place) => place.replace(kBeside, '.gltf')),
   );
   const written = new Map<string, string>();
+  if (results !== undefined) {
+    if (read.has(placeOf(results)))
+      throw new InputError('is read by this batch; choose another file for results').in(results);
+    written.set(placeOf(results), 'the results');
+  }
   for (const { command, error } of jobs) {
     for (const path of error === undefined ? [command.output, command.report] : []) {
       if (path === undefined) continue;

@@ -1,13 +1,16 @@
-import { readFileSync, statSync } from 'node:fs';
+import { closeSync, openSync, readSync, statSync } from 'node:fs';
 import { dirname } from 'node:path';
 import type { GLTF } from '@gltf-transform/core';
-import { defaultReading, isOutside, localFile, type ReadOptions } from '../gltf/files.js';
+import { defaultReading, isOutside, localFile, type ReadOptions, standard } from '../gltf/files.js';
+import { InputError } from '../gltf/input-error.js';
 import { parseGltf } from '../gltf/parse.js';
 import { filesOf } from './glob.js';
+import { placeOf } from './output.js';
 import { tilePath } from './paint/read-paint.js';
-import type { TransferCommand } from './transfer-command.js';
+import type { Run, Sources } from './run.js';
+import type { Region } from './transfer-command.js';
 
-/** Files with more hold their buffers themselves, as a rule; parsing them would take long. */
+/** Files with more JSON hold their buffers in it, as a rule; parsing them would take long. */
 const mostBytes = 2 ** 23;
 
 /** The files that the JSON of a glTF in a folder names. */
@@ -15,23 +18,47 @@ export const filesNamedIn = ({ buffers = [], images = [] }: GLTF.IGLTF, folder: 
   [...buffers, ...images].flatMap(({ uri }) => (uri === undefined ? [] : (localFile(uri, folder) ?? [])));
 
 /**
- * The files that a `.gltf` names and may be read with, whether they exist or not. None if it cannot be read: what opens it says what
- * is wrong.
+ * The files that a glTF or GLB names and may be read with, whether they exist or not. None if it cannot be read: what opens it says
+ * what is wrong.
  */
 export function filesBeside(path: string, { limits, allowOutside }: ReadOptions = defaultReading): string[] {
-  if (!/\.gltf$/i.test(path)) return [];
+  if (!/\.(gltf|glb|vrm)$/i.test(path)) return [];
   try {
-    const found = statSync(path);
-    if (!found.isFile() || found.size > mostBytes) return [];
-    const files = filesNamedIn(parseGltf(readFileSync(path), limits).json, dirname(path));
-    return files.filter((file) => allowOutside || !isOutside(file, dirname(path)));
+    const json = parseGltf(withoutBinary(path), limits).json;
+    return filesNamedIn(json, dirname(path)).filter((file) => allowOutside || !isOutside(file, dirname(path)));
   } catch {
     return [];
   }
 }
 
+/** A glTF, or a GLB that ends after its JSON. Empty if that is too long. */
+function withoutBinary(path: string): Uint8Array {
+  const found = statSync(path);
+  if (!found.isFile()) return new Uint8Array();
+  const { size } = found;
+  const file = openSync(path, 'r');
+  try {
+    const start = Buffer.alloc(20);
+    const isGlb = readSync(file, start, 0, 20, 0) === 20 && start.toString('latin1', 0, 4) === 'glTF';
+    const length = isGlb ? 20 + start.readUInt32LE(12) : size;
+    if (length > Math.min(size, mostBytes)) return new Uint8Array();
+    const bytes = Buffer.alloc(length);
+    readSync(file, bytes, 0, length, 0);
+    if (isGlb) bytes.writeUInt32LE(length, 8);
+    return bytes;
+  } finally {
+    closeSync(file);
+  }
+}
+
+/** What a command reads. */
+export interface Reads extends Sources {
+  texture?: string | undefined;
+  regions?: readonly Region[] | undefined;
+}
+
 /** What a transfer reads, as it is named. */
-const readBy = ({ target, cage, referenceCage, texture, rules, regions = [] }: TransferCommand): string[] =>
+const readBy = ({ target, cage, referenceCage, texture, rules, regions = [] }: Reads): string[] =>
   [
     target,
     cage,
@@ -42,8 +69,35 @@ const readBy = ({ target, cage, referenceCage, texture, rules, regions = [] }: T
     ...regions.flatMap((region) => [region.cage, region.texture]),
   ].filter((path) => path !== undefined);
 
-/** All files that a transfer reads, tiles of textures and what is beside a `.gltf` included. */
-export const filesReadBy = (command: TransferCommand): string[] =>
+/** All files that a transfer reads but its configuration, tiles of textures and what is beside a glTF included. */
+export const filesReadBy = (command: Reads): string[] =>
   readBy(command)
     .flatMap((path) => filesOf(tilePath(path, '*')))
     .flatMap((path) => [path, ...filesBeside(path, command.reading)]);
+
+/**
+ * Checks what a command is about to write, once its models are read.
+ * @param more  What it reads besides the files of `command`.
+ * @throws {InputError} if a file would overwrite one that is read, or another one that is written.
+ */
+export function refuseOverwriting(
+  command: Reads,
+  { targetFile, cageFile }: Pick<Run, 'targetFile' | 'cageFile'>,
+  written: readonly string[],
+  more: readonly (string | undefined)[] = [],
+): void {
+  const paths = [
+    ...filesReadBy(command),
+    ...filesNamedIn(targetFile.json, dirname(command.target)),
+    ...filesNamedIn(cageFile.json, dirname(command.cage)),
+    ...[command.rules.config, ...more].filter((path) => path !== undefined),
+  ];
+  const read = new Set(paths.filter((path) => path !== standard).map(placeOf));
+  const places = written.map(placeOf);
+  for (const [i, path] of written.entries()) {
+    if (read.has(places[i]!))
+      throw new InputError('would be overwritten, but is read by this command; choose another output').in(path);
+    if (places.indexOf(places[i]!) !== i)
+      throw new InputError('would be written twice by this command; choose another output').in(path);
+  }
+}

@@ -1,4 +1,4 @@
-import { existsSync } from 'node:fs';
+import { statSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { cageGlb } from '../cages/glb.js';
 import { templateNames } from '../cages/template-names.js';
@@ -103,7 +103,8 @@ export async function fitCommand(command: FitCommand, progress: Progress): Promi
 
 /** The file of a template: of one that comes with the package if its name is given, and no file is called so. */
 function templateFile(path: string): string {
-  if (existsSync(path) || /[./\\]/.test(path)) return path;
+  const isFolder = statSync(path, { throwIfNoEntry: false })?.isDirectory();
+  if (isFolder === false || /[./\\]/.test(path)) return path;
   if (!(templateNames as readonly string[]).includes(path))
     throw new InputError(`no such file, and no template of the package: there are ${templateNames.join(', ')}`).in(
       path,

@@ -1,9 +1,10 @@
-import { type Dirent, readdirSync } from 'node:fs';
+import { readdirSync, statSync } from 'node:fs';
 import { matcher } from './options.js';
 
 /**
  * The files that a pattern names, in order: `*` matches any text within a name, `**` any folders. Names that begin with a dot are
- * only matched by patterns that do. A pattern without `*` is returned as it is.
+ * only matched by patterns that do. Links to folders are followed, except by `**`, which could go round in circles. A pattern without
+ * `*` is returned as it is.
  */
 export function filesOf(pattern: string): string[] {
   if (!pattern.includes('*')) return [pattern];
@@ -17,21 +18,44 @@ function walk(folder: string, isAbsolute: boolean, [segment = '', ...rest]: stri
   const at = (name: string) => (folder === '' && !isAbsolute ? name : `${folder}/${name}`);
   const entries = list(place);
   const inside = (names: string[], segments: string[]) => names.flatMap((name) => walk(at(name), isAbsolute, segments));
-  const folders = entries.filter((entry) => entry.isDirectory()).map(({ name }) => name);
+  const folders = entries.filter(({ isFolder }) => isFolder);
   if (segment === '**') {
-    const shown = folders.filter((name) => !name.startsWith('.'));
+    const shown = folders.filter(({ name, isLink }) => !isLink && !name.startsWith('.')).map(({ name }) => name);
     return [...walk(folder, isAbsolute, rest), ...inside(shown, [segment, ...rest])];
   }
   const matches = matcher(segment);
   const fits = (name: string) => matches(name) && (segment.startsWith('.') || !name.startsWith('.'));
-  if (rest.length > 0) return inside(folders.filter(fits), rest);
-  return entries.filter((entry) => !entry.isDirectory() && fits(entry.name)).map(({ name }) => at(name));
+  const names = (some: Entry[]) => some.map(({ name }) => name).filter(fits);
+  if (rest.length > 0) return inside(names(folders), rest);
+  return names(entries.filter(({ isFolder }) => !isFolder)).map(at);
 }
 
-function list(folder: string): Dirent[] {
+interface Entry {
+  name: string;
+  isFolder: boolean;
+  isLink: boolean;
+}
+
+function list(folder: string): Entry[] {
   try {
-    return readdirSync(folder, { withFileTypes: true }).sort((a, b) => (a.name < b.name ? -1 : 1));
+    const entries = readdirSync(folder, { withFileTypes: true }).map((entry) => {
+      const isLink = entry.isSymbolicLink();
+      return {
+        name: entry.name,
+        isFolder: isLink ? leadsToFolder(`${folder}/${entry.name}`) : entry.isDirectory(),
+        isLink,
+      };
+    });
+    return entries.sort((a, b) => (a.name < b.name ? -1 : 1));
   } catch {
     return [];
+  }
+}
+
+function leadsToFolder(link: string): boolean {
+  try {
+    return statSync(link).isDirectory();
+  } catch {
+    return false; // It leads nowhere, or to itself.
   }
 }

@@ -26,8 +26,8 @@ export interface Rules {
   /** Those of both that may match nothing. */
   optional?: string[];
   masks?: MaskFiles;
-  /** Where files of masks have to be, if that is not left to whoever names them. */
-  maskFolder?: string | undefined;
+  /** Where a mask's file has to be, if that is not left to whoever names it. */
+  maskFolders?: Pick<MaskFiles, 'never' | 'always'>;
   /** The configuration file that some of it comes from. */
   config?: string;
 }

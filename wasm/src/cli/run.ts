@@ -73,12 +73,15 @@ export async function run(
 /** The masks of a target. @throws {InputError} that names the file at fault. */
 async function readMasks(
   { file, extracted }: ReadModel,
-  { masks, maskFolder }: Rules,
+  { masks, maskFolders = {} }: Rules,
   reading: ReadOptions,
 ): Promise<Masks | undefined> {
   if (!masks) return undefined;
   const [never, always] = await Promise.all(
-    [masks.never, masks.always].map((path) => (path === undefined ? undefined : readImage(path, reading, maskFolder))),
+    (['never', 'always'] as const).map((kind) => {
+      const path = masks[kind];
+      return path === undefined ? undefined : readImage(path, reading, maskFolders[kind]);
+    }),
   );
   try {
     const images = never || always ? { never, always } : undefined;

@@ -1,7 +1,6 @@
 import { basename, dirname, join } from 'node:path';
 import { dracoOf, meshoptView } from '../gltf/check.js';
 import { placeOf } from '../gltf/extract.js';
-import { standard } from '../gltf/files.js';
 import type { Form } from '../gltf/glb-writer.js';
 import { InputError } from '../gltf/input-error.js';
 import { diagonal, zoneAttribute } from '../gltf/overlay.js';
@@ -9,10 +8,10 @@ import { type Added, writeTransfer } from '../gltf/write.js';
 import type { CutTarget } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import type { Finding, Verdict } from '../inspect/index.js';
-import { filesNamedIn, filesReadBy } from './beside.js';
+import { refuseOverwriting } from './beside.js';
 import { inspectionReport } from './inspect-command.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
-import { placeOf as fileOf, writeFiles } from './output.js';
+import { writeFiles } from './output.js';
 import { isTiled, readPaint, readTiles } from './paint/read-paint.js';
 import { type Stretch, stretchOf } from './paint/stretch.js';
 import type { Progress } from './progress.js';
@@ -77,7 +76,11 @@ export async function transferCommand(
     files.push({ path: output, data }, ...others);
   }
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
-  refuseOverwriting(command, first.done, files);
+  refuseOverwriting(
+    command,
+    first.done,
+    files.map(({ path }) => path),
+  );
   writeFiles(files);
   return { text: summary(command, report), report, done: first.done };
 }
@@ -159,23 +162,6 @@ function compressionOf({ targetFile: { json } }: Run): Form | undefined {
 /** The form of an output that several regions are written to: as the target was, if it is to be kept. */
 const finalForm = ({ compress }: TransferCommand, first: Run): Form =>
   compress === 'keep' ? (compressionOf(first) ?? 'keep') : compress;
-
-/** @throws {InputError} if a file would overwrite one that is read, or another one that is written. */
-function refuseOverwriting(command: TransferCommand, { targetFile, cageFile }: Run, files: { path: string }[]): void {
-  const beside = [
-    ...filesNamedIn(targetFile.json, dirname(command.target)),
-    ...filesNamedIn(cageFile.json, dirname(command.cage)),
-  ];
-  const paths = [...filesReadBy(command), ...beside].filter((path) => path !== standard);
-  const read = new Set(paths.map((path) => fileOf(path)));
-  const written = files.map(({ path }) => fileOf(path));
-  for (const [i, { path }] of files.entries()) {
-    if (read.has(written[i]!))
-      throw new InputError('would be overwritten, but is read by this command; choose another output').in(path);
-    if (written.indexOf(written[i]!) !== i)
-      throw new InputError('would be written twice by this command; choose another output').in(path);
-  }
-}
 
 /** The JSON report of a transfer. Areas are in squared units of the target; lengths in its units. */
 export interface Report {

@@ -43,8 +43,11 @@ export function takeOverlays(writer: GlbWriter, meshes: Iterable<GLTF.IMesh>): n
     (number) => names(json.textures, /^source$/, number) || names(json.extensions, /^thumbnailImage$/, number),
   );
   for (const extension of Object.values(imageExtensions))
-    if (textures.some(({ extensions }) => extensions?.[extension]))
-      writer.needs(extension, json.textures?.some(({ extensions }) => extensions?.[extension]) ?? false);
+    if (
+      textures.some(({ extensions }) => extensions?.[extension]) &&
+      !json.textures?.some(({ extensions }) => extensions?.[extension])
+    )
+      writer.needs(extension, false);
   return taken.length;
 }
 

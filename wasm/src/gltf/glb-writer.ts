@@ -1,6 +1,7 @@
 import { dirname } from 'node:path';
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
+import { show } from '../api/error.js';
 import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
 import { type ReadOptions, readUri } from './files.js';
 import { imageType } from './image.js';
@@ -20,6 +21,8 @@ export const imageExtensions: Readonly<Record<string, string>> = {
   'image/webp': 'EXT_texture_webp',
   'image/ktx2': 'KHR_texture_basisu',
 };
+/** Those of images that extensions bring, beside another one for viewers that do not know them. */
+const typesByEnding: Readonly<Record<string, string>> = { dds: 'image/vnd-ms.dds', avif: 'image/avif' };
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 
 export type AttributeArray = Float32Array | Int8Array | Uint8Array | Int16Array | Uint16Array | Uint32Array;
@@ -138,8 +141,10 @@ export class GlbWriter {
     for (const [i, image] of (this.json.images ?? []).entries()) {
       if (image.uri === undefined) continue;
       const bytes = await readUri(`images[${i}]`, image.uri, folder, reading);
-      const mimeType = image.mimeType ?? imageType(bytes) ?? /^data:([^;,]+)/.exec(image.uri)?.[1];
-      if (mimeType === undefined) throw new InputError(`images[${i}] is not an image that a GLB can contain`);
+      const [, named, ending = ''] = /^data:([^;,]+)|\.(\w+)$/.exec(image.uri) ?? [];
+      const mimeType = image.mimeType ?? imageType(bytes) ?? named ?? typesByEnding[ending.toLowerCase()];
+      if (mimeType === undefined)
+        throw new InputError(`images[${i}] (${show(image.uri)}) is of an unknown type; give it a mimeType`);
       delete image.uri;
       image.mimeType = mimeType;
       image.bufferView = this.addView(bytes);
@@ -267,7 +272,7 @@ export class GlbWriter {
     return (json.textures ??= []).push({ ...texture, extensions: { [extension]: { source } } }) - 1;
   }
 
-  /** Lists an extension as one that the file needs, or does not list it. */
+  /** Lists an extension as one without which the file cannot be shown, or does not list it. What is optional in a file stays so. */
   needs(name: string, isNeeded: boolean): void {
     const { json } = this;
     for (const list of ['extensionsUsed', 'extensionsRequired'] as const) {
@@ -340,8 +345,9 @@ export class GlbWriter {
       (visit) => eachView(json, visit),
     );
     for (const name of meshoptExtensions) {
-      const isUsed = json.bufferViews?.some((view) => view.extensions?.[name]) ?? false;
-      if (isUsed || all.some((view) => view.extensions?.[name])) this.needs(name, isUsed);
+      const users = json.bufferViews?.filter((view) => view.extensions?.[name]) ?? [];
+      if (users.some((view) => this.#added.has(view))) this.needs(name, true);
+      else if (users.length === 0 && all.some((view) => view.extensions?.[name])) this.needs(name, false);
     }
     // The buffer that stands for uncompressed views goes with the last of them.
     if (

@@ -6,6 +6,7 @@ import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
+import { refuseOverwriting } from '../beside.js';
 import { matcher, noSuchName, quoted } from '../options.js';
 import { writeFiles } from '../output.js';
 import type { Found } from '../print.js';
@@ -56,13 +57,16 @@ function inTarget(error: unknown, path: string): unknown {
   return error instanceof InputError ? error.in(path) : error;
 }
 
+/** Writes the output. @throws {InputError} if it would overwrite what was read. */
+function write(command: BakeCommand, done: Run, data: Uint8Array): void {
+  const { output, paint, normal, orm } = command;
+  refuseOverwriting(command, done, [output], [paint, normal, orm]);
+  writeFiles([{ path: output, data }]);
+}
+
 /** Writes the model with the paint in its textures. */
-async function bakeFile(
-  { output, target, size }: BakeCommand,
-  done: Run,
-  cut: CutTarget | undefined,
-  paints: Paints,
-): Promise<Found> {
+async function bakeFile(command: BakeCommand, done: Run, cut: CutTarget | undefined, paints: Paints): Promise<Found> {
+  const { output, target, size } = command;
   const writer = await GlbWriter.from(done.targetFile, 'keep').catch((error) => {
     throw inTarget(error, target);
   });
@@ -86,7 +90,7 @@ async function bakeFile(
       first ? `nothing can be baked: ${quoted(first.part)}: ${first.reason}` : 'nothing of it may be painted',
     ).in(target);
   }
-  writeFiles([{ path: output, data: writer.finish() }]);
+  write(command, done, writer.finish());
   const text = summary(output, report) + (overlays > 0 ? `\n${takenAway(overlays)}` : '');
   return { text, report: { output, ...report, replacedOverlays: overlays } };
 }
@@ -119,22 +123,21 @@ const overlapText = ({ texels, lost, parts }: Baked['overlap']): string =>
 /** Writes the paint alone in the model's UVs, or what is painted on the model in the cage's. */
 async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | undefined, color?: Image): Promise<Found> {
   const { output, target, size, back } = command;
-  const writer = await GlbWriter.from(done.targetFile, 'keep');
-  const model = new FileModel(done.targetFile, done.target.parts, writer);
   try {
+    const writer = await GlbWriter.from(done.targetFile, 'keep');
+    const model = new FileModel(done.targetFile, done.target.parts, writer);
     const { parts, texture } = oneTexture(model, done, command.part);
     const file = texture === undefined ? undefined : await model.imageOf(texture);
-    const own = file && (back || size === undefined) ? await decodeImage(file.bytes) : undefined;
+    const own = file && (await decodeImage(file.bytes));
     const ownCount = done.target.mesh.positions.length / 3;
     const found = { result: done.result, cut: cut && { target: cut, ownCount } };
     const layouts = parts.map((part) => layoutOf(model, part, useOf(model, part), found));
     if (back && !own) throw new InputError('its painted parts have no texture to take the paint from');
-    const wide = size ?? (back ? kSide : (own?.width ?? kSide));
-    const high = size ?? (back ? kSide : (own?.height ?? kSide));
+    const [wide, high] = back || !own ? [size ?? kSide, size ?? kSide] : scaledTo(own, size);
     const baked = back
-      ? pictureOfCage(layouts, own!, wide)
+      ? pictureOfCage(layouts, parts.every((part) => isOpaque(model, part)) ? withoutAlpha(own!) : own!, wide)
       : fill('bake', layouts, color!, { width: wide, height: high });
-    writeFiles([{ path: output, data: await encodePng(baked) }]);
+    write(command, done, await encodePng(baked));
     const names = parts.map(({ name }) => name);
     const { overlap } = baked;
     return {
@@ -144,6 +147,24 @@ async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | und
   } catch (error) {
     throw inTarget(error, target);
   }
+}
+
+/** Width and height of an image whose longer side is scaled to a size, if one is given. */
+function scaledTo({ width, height }: Image, size = Math.max(width, height)): [number, number] {
+  const scaled = (side: number) => Math.max(1, Math.round((size * side) / Math.max(width, height)));
+  return [scaled(width), scaled(height)];
+}
+
+/** An image of which all is opaque, as the materials have it that show it. */
+const withoutAlpha = (image: Image): Image => ({
+  ...image,
+  data: image.data.map((byte, i) => (i % 4 === 3 ? 255 : byte)),
+});
+
+/** Whether a part's material pays no heed to the alpha of its texture. */
+function isOpaque(model: FileModel, part: Part): boolean {
+  const material = model.materialOf(part);
+  return material !== undefined && model.isOpaque(material);
 }
 
 /** What is painted on a model, in the cage's UVs. */

@@ -2,8 +2,16 @@ import { existsSync } from 'node:fs';
 import { basename, dirname, extname, join, relative, resolve } from 'node:path';
 import { type ReadOptions, readBeside, readBytes, standard } from '../../gltf/files.js';
 import { InputError } from '../../gltf/input-error.js';
-import { matcher } from '../options.js';
-import { isObject, parseObject, refuseUnknown, type Settings, settingNames, settingsOf } from './settings.js';
+import { matcher, type Rules } from '../options.js';
+import {
+  isObject,
+  mergeMasks,
+  parseObject,
+  refuseUnknown,
+  type Settings,
+  settingNames,
+  settingsOf,
+} from './settings.js';
 
 /** The name under which configuration files are found. */
 export const configName = 'cagecast.config.json';
@@ -20,7 +28,7 @@ export interface ConfigSettings extends Settings {
   /** The file. */
   path: string;
   /** Where masks have to be, if nobody named the file: like a model, it may be a stranger's. */
-  maskFolder?: string;
+  maskFolders?: NonNullable<Rules['maskFolders']>;
 }
 
 /** Finds the configuration files of targets, and reads each once. */
@@ -38,7 +46,7 @@ export class Configuration {
 
   /**
    * What the file says of a target; `undefined` if there is no file. Later characters win over earlier ones, which win over what
-   * holds for all; their lists of names are joined.
+   * holds for all, each setting and each mask by itself; their lists of names are joined.
    * @throws {InputError} that names the file, the member and its value.
    */
   async settingsFor(target: string): Promise<ConfigSettings | undefined> {
@@ -49,14 +57,16 @@ export class Configuration {
     const name = basename(target);
     const own = file.characters.filter(({ matches }) => matches(name) || matches(basename(name, extname(name))));
     const all = [file.common, ...own.map(({ settings }) => settings)];
+    const masks = mergeMasks(...all.map((settings) => settings.masks));
     const joined = (list: 'keep' | 'exclude') => [...new Set(all.flatMap((settings) => settings[list] ?? []))];
     return {
       ...Object.assign({}, ...all),
       single: Object.assign({}, ...all.map(({ single }) => single)),
       keep: joined('keep'),
       exclude: joined('exclude'),
+      ...(masks && { masks }),
       path: file.path,
-      ...(this.#given === undefined && { maskFolder: dirname(path) }),
+      ...(this.#given === undefined && { maskFolders: { never: dirname(path), always: dirname(path) } }),
     } as ConfigSettings;
   }
 

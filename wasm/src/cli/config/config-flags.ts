@@ -40,7 +40,7 @@ export function settler(
     if (found === undefined) return { rules: own, borders, compress };
     const pick = <Value>(name: string, value: Value, other: Value | undefined) =>
       isGiven(name) ? value : (other ?? value);
-    const { path, single, masks, maskFolder } = found;
+    const { path, single, masks, maskFolders } = found;
     const [keep, exclude] = [pick('keep', own.keep, found.keep), pick('exclude', own.exclude, found.exclude)];
     return {
       rules: {
@@ -49,7 +49,7 @@ export function settler(
         keep,
         exclude,
         // Flags about masks replace all of those in the file.
-        ...(own.masks ? { masks: own.masks } : masks && { masks, maskFolder }),
+        ...(own.masks ? { masks: own.masks } : masks && { masks, ...(maskFolders && { maskFolders }) }),
         config: path,
         // A file speaks of many models, and not each of them has every part.
         optional: [...(isGiven('keep') ? [] : keep), ...(isGiven('exclude') ? [] : exclude)],

@@ -83,6 +83,12 @@ export function settingsOf(given: Readonly<Record<string, unknown>>, folder: str
   return { ...settings, single } as Settings;
 }
 
+/** Masks of which later ones win, each by itself; `undefined` if there are none. */
+export function mergeMasks(...all: (MaskFiles | undefined)[]): MaskFiles | undefined {
+  const given = all.flatMap((masks) => Object.entries(masks ?? {}).filter(([, value]) => value !== undefined));
+  return given.length > 0 ? Object.fromEntries(given) : undefined;
+}
+
 /** @throws {InputError} for a member that is not among the known ones. */
 export function refuseUnknown(given: object, known: readonly string[]): void {
   const unknown = Object.keys(given).find((name) => !known.includes(name));

@@ -100,6 +100,11 @@ export class FileModel implements BakeModel<number, number> {
     return [baseColorFactor[0]!, baseColorFactor[1]!, baseColorFactor[2]!];
   }
 
+  /** Whether the alpha of its texture does not count. */
+  isOpaque(material: number): boolean {
+    return (this.#material(material).alphaMode ?? 'OPAQUE') === 'OPAQUE';
+  }
+
   hasOcclusion(material: number): boolean {
     return this.#material(material).occlusionTexture !== undefined;
   }
@@ -143,11 +148,7 @@ export class FileModel implements BakeModel<number, number> {
         before.source = source;
       }
       for (const extension of imageExtensions)
-        if (json.extensionsUsed?.includes(extension))
-          writer.needs(
-            extension,
-            json.textures!.some((texture) => texture.extensions?.[extension]),
-          );
+        if (!json.textures!.some((texture) => texture.extensions?.[extension])) writer.needs(extension, false);
     }
     for (const material of materials) {
       lay(this.#material(material), slot, number);
