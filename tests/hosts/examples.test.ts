@@ -33,6 +33,10 @@ function orange(picture: Buffer): number {
   return count;
 }
 
+/** The sum of all colours. */
+const brightness = (picture: Buffer): number =>
+  PNG.sync.read(picture).data.reduce((sum, byte, i) => (i % 4 === 3 ? sum : sum + byte), 0);
+
 let browser: Browser;
 const sites: Awaited<ReturnType<typeof serve>>[] = [];
 
@@ -237,6 +241,14 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.notDeepEqual(await picture(), before);
     await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
     assert.deepEqual(await picture(), before);
+    // Two in quick succession, too.
+    await page.evaluate(`(async () => {
+      viewer.setAttribute("paint", "paint-war-paint.png");
+      await Promise.resolve();
+      viewer.setAttribute("paint", "paint-tiger.png");
+      return next();
+    })()`);
+    assert.deepEqual(await picture(), before);
     assert.equal(await page.evaluate('steps'), 0);
   });
 
@@ -264,6 +276,65 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.match(told as string, /^error .*none\.glb/);
     // The exporter numbers what it writes.
     assert.ok(Math.abs(after.length - before.length) < 100, `${after.length}, ${before.length}`);
+  });
+
+  test('goes on telling that the model cannot be loaded when another paint comes', async () => {
+    const before = await picture();
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    const set = (name: string, value: string) =>
+      page.evaluate<string>(`viewer.setAttribute(${JSON.stringify(name)}, ${JSON.stringify(value)}); next()`);
+    assert.match(await set('target', 'none.glb'), /^error .*none\.glb/);
+    assert.match(await set('paint', 'paint-war-paint.png'), /^error .*none\.glb/);
+    assert.equal(await set('target', target), 'load');
+    assert.equal(await set('paint', 'paint-tiger.png'), 'load');
+    assert.deepEqual(await picture(), before);
+  });
+
+  test('exports what is shown, even if its paint changes meanwhile', async () => {
+    const exported = await bytesOf(`(async () => {
+      const done = viewer.exportGlb();
+      viewer.setAttribute("paint", "paint-war-paint.png");
+      await next();
+      const glb = await done;
+      viewer.setAttribute("paint", "paint-tiger.png");
+      await next();
+      return text(new Blob([glb]));
+    })()`);
+    assert.match(exported.toString('latin1'), /"images":\[/);
+  });
+
+  test('takes a model from an object URL', async () => {
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    const told = await page.evaluate(
+      `(async () => {
+        const file = await (await fetch(${JSON.stringify(target)})).blob();
+        viewer.setAttribute('target', URL.createObjectURL(file));
+        return next();
+      })()`,
+    );
+    assert.equal(told, 'load');
+    await page.evaluate(`viewer.setAttribute('target', ${JSON.stringify(target)}); next()`);
+  });
+
+  test('shows half-transparent paint as it is', async () => {
+    const before = await picture();
+    const told = await page.evaluate(
+      `(async () => {
+        const canvas = new OffscreenCanvas(4, 4);
+        const context = canvas.getContext('2d');
+        context.fillStyle = 'rgb(255 255 255 / 0.25)';
+        context.fillRect(0, 0, 4, 4);
+        viewer.setAttribute('paint', URL.createObjectURL(await canvas.convertToBlob()));
+        return next();
+      })()`,
+    );
+    assert.equal(told, 'load');
+    const light = brightness(await picture());
+    await page.evaluate('viewer.removeAttribute("paint"); next()');
+    const bare = brightness(await picture());
+    await page.evaluate('viewer.setAttribute("paint", "paint-tiger.png"); next()');
+    assert.deepEqual(await picture(), before);
+    assert.ok(light > bare, `a veil of white makes the model lighter: ${light}, ${bare}`);
   });
 
   test('does not show a paint that comes after a later one', async () => {

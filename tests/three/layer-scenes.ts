@@ -122,6 +122,41 @@ export const layerScenes: Record<string, () => unknown> = {
     return { styles, all, moved, undone, fewer, back, count, width, errors };
   },
 
+  /** Changes in quick succession, of layers with one name, and what undo takes back. */
+  quickSteps() {
+    const layers = createLayers({ renderer, size: 256 });
+    const back = () => {
+      layers.undo();
+      return layers.list.length;
+    };
+    const add = (name?: string) => layers.add(flat(0xdd3311), { name });
+    for (let i = 0; i < 3; ++i) add('star');
+    const added = [back(), back(), back()];
+    const [a, b] = [add('star'), add('star')];
+    layers.remove(b);
+    layers.remove(a);
+    const removed = [back(), back()];
+    const opacities = () => layers.list.map(({ opacity }) => opacity);
+    layers.set(a, { opacity: 0.5 });
+    layers.set(b, { opacity: 0.2 });
+    layers.undo();
+    const restyled = [opacities()];
+    layers.undo();
+    restyled.push(opacities());
+    for (const opacity of [0.9, 0.8, 0.7]) layers.set(a, { opacity });
+    layers.undo();
+    const slid = opacities()[0];
+    layers.remove(a);
+    layers.remove(b);
+    const first = add();
+    add();
+    layers.remove(first);
+    add();
+    const names = layers.list.map(({ name }) => name);
+    layers.dispose();
+    return { added, removed, restyled, slid, names };
+  },
+
   /** A layer whose options are there, but undefined. */
   undefinedStyle() {
     const layers = createLayers({ renderer, size: 256 });

@@ -255,6 +255,24 @@ describe('paint of cagecast/three, drawn by Chromium', () => {
     assert.deepEqual(await run('replaced'), [green, green, bare, green]);
   });
 
+  test('a transfer shows its paint again when the one that replaced it is disposed of', async () => {
+    assert.deepEqual(await run('preview'), [false, false, true]);
+  });
+
+  test('the material of two models goes on showing the paint of each, whichever transfers end', async () => {
+    const [red, green, blue, none] = [0, 1, 2, -1];
+    // What was replaced ends first, then what replaced it; green has gone by then.
+    assert.notEqual(green, blue);
+    assert.deepEqual(await run('replacedOnShared'), {
+      looks: [
+        [red, blue],
+        [red, blue],
+        [red, none],
+      ],
+      isOriginal: true,
+    });
+  });
+
   test('paint that comes and goes leaves nothing on the GPU', async () => {
     for (const [what, counts] of Object.entries(await run<Record<string, number[]>>('leaks')))
       assert.deepEqual(new Set(counts).size, 1, `${what}: ${counts}`);
@@ -409,6 +427,19 @@ describe('cagecast/three/layers, drawn by Chromium', () => {
     assert.deepEqual(await run('undefinedStyle'), {
       added: [0xdd, 0x33, 0x11, 255],
       style: { opacity: 0.5, tint: '#ff0000', blend: 'normal', visible: true },
+    });
+  });
+
+  test('adding, removing and other layers are steps of their own, and names are not given twice', async () => {
+    assert.deepEqual(await run('quickSteps'), {
+      added: [2, 1, 0],
+      removed: [1, 2],
+      restyled: [
+        [0.5, 1],
+        [1, 1],
+      ],
+      slid: 1,
+      names: ['Layer 2', 'Layer 1'],
     });
   });
 

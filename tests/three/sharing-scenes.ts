@@ -160,6 +160,31 @@ export const sharingScenes: Record<string, () => unknown> = {
     return looks;
   },
 
+  /** A preview over a look ends, and the look gets another colour. */
+  preview() {
+    const model = modelOf(white());
+    const look = applyTransfer(model, cage(), { texture: red() });
+    applyTransfer(model, cage(), { texture: green() }).dispose();
+    look.setTexture(blue());
+    return seen(model).map((count) => count > 100);
+  },
+
+  /** Of two models with one material, one gets another paint; then its first transfer is disposed of, then its second. */
+  replacedOnShared() {
+    const shared = white();
+    const [a, b] = [modelOf(shared), modelOf(shared)];
+    applyTransfer(a, cage(), { texture: red() });
+    const first = applyTransfer(b, cage(), { texture: green() });
+    const second = applyTransfer(b, cage(), { texture: blue() });
+    const look = () => [a, b].map((model) => seen(model).findIndex((count) => count > 100));
+    const looks = [look()];
+    first.dispose();
+    looks.push(look());
+    second.dispose();
+    looks.push(look());
+    return { looks, isOriginal: (b.children[0] as Mesh).material === shared };
+  },
+
   /** Programs and textures on the GPU, while paint comes and goes. */
   leaks() {
     const model = modelOf(white());

@@ -1,11 +1,11 @@
-import { BufferAttribute, BufferGeometry, type Material, type Mesh, type Texture } from 'three';
+import { Box3, BufferAttribute, BufferGeometry, type Material, type Mesh, type Texture, Vector3 } from 'three';
 import { CagecastError, type Classification } from '../index.js';
 import type { PartRange, Prepared } from '../parts/prepare.js';
 import { type Extracted, isTurned, nameOf, type Part } from './extract.js';
 import { type Applied, type ApplyOptions, checkLengths } from './options.js';
 import { removeOverlay, removeOverlays } from './overlay.js';
 import { Place, paintAttribute } from './paint.js';
-import { canBePainted, makePainting, type Painting, paintOn, unpaint } from './painted-materials.js';
+import { canBePainted, isPainted, makePainting, type Painting, paintOn, unpaint } from './painted-materials.js';
 import { type ShownPart, showMaterial, showPaint, writePaint, writeZones, zoneAttribute } from './shown-parts.js';
 import { type Remade, remake, replace } from './split.js';
 
@@ -34,7 +34,7 @@ function freeChannel(parts: readonly Part[]): 1 | 2 | 3 {
   if (free === undefined)
     throw new CagecastError(
       'badArgument',
-      'cagecast/three: target has uv1, uv2 and uv3 of its own; choose the one to overwrite with options.channel',
+      'cagecast/three: target has uv1, uv2 and uv3 of its own; choose the one to overwrite: options.channel',
     );
   return free;
 }
@@ -86,7 +86,7 @@ function checkMaterials(parts: readonly Part[]): void {
     if (![mesh?.material].flat().some((material) => (material as { isNodeMaterial?: true })?.isNodeMaterial)) continue;
     throw new CagecastError(
       'badOption',
-      `cagecast/three: "${name}" has a node material, on which options.texture cannot be shown; give options.material, a material of yours that shows it`,
+      `cagecast/three: "${name}" has a node material, which cannot show options.texture; give options.material, one of yours that can`,
     );
   }
 }
@@ -248,7 +248,8 @@ class Shown implements Applied {
       return;
     }
     const shown = this.#current;
-    if (texture && !this.#hasPaint) {
+    const isShown = shown.every(({ part }) => shownPaintings.get(part.geometry) === this.#painting);
+    if (texture && !(this.#hasPaint && isShown)) {
       writePaint(shown, feather, feather > 0 ? diagonal(this.#target.positions) : 1);
       for (const { part } of shown) shownPaintings.set(part.geometry, this.#painting);
       this.#hasPaint = true;
@@ -267,6 +268,7 @@ class Shown implements Applied {
     this.#isDisposed = true;
     for (const material of this.#painted) unpaint(material, this.#painting);
     for (const [material, copy] of this.#copies) {
+      if (isPainted(copy)) continue; // By a later transfer, which puts the original back.
       for (const { part } of this.#shown) showInstead(part.mesh, copy, material);
       copy.dispose();
     }
@@ -286,20 +288,10 @@ class Shown implements Applied {
 }
 
 function showInstead(mesh: Mesh | undefined, was: Material, now: Material): void {
-  if (mesh)
-    mesh.material = Array.isArray(mesh.material)
-      ? mesh.material.map((m) => (m === was ? now : m))
-      : mesh.material === was
-        ? now
-        : mesh.material;
+  const change = (m: Material) => (m === was ? now : m);
+  if (mesh) mesh.material = Array.isArray(mesh.material) ? mesh.material.map(change) : change(mesh.material);
 }
 
 /** The diagonal of the points' box. */
-function diagonal(positions: Float32Array): number {
-  const [low, high] = [new Float64Array(3).fill(Infinity), new Float64Array(3).fill(-Infinity)];
-  for (let i = 0; i < positions.length; ++i) {
-    low[i % 3] = Math.min(low[i % 3]!, positions[i]!);
-    high[i % 3] = Math.max(high[i % 3]!, positions[i]!);
-  }
-  return Math.hypot(...high.map((value, k) => value - low[k]!)) || 1;
-}
+const diagonal = (positions: Float32Array): number =>
+  new Box3().setFromArray(positions).getSize(new Vector3()).length() || 1;

@@ -59,6 +59,12 @@ export function canBePainted(material: Material): boolean {
   return kBuiltIn.some((kind) => kinds[kind] === true);
 }
 
+/** What a material was copied from, to show another painting. */
+export const originals = new WeakMap<Material, Material>();
+
+/** Whether a material shows a painting. */
+export const isPainted = (material: Material): boolean => patches.get(material)?.painting !== undefined;
+
 /**
  * Makes a material show a painting. A material that shows another painting on other meshes is left to them.
  * @returns the material, or a copy of it that shows the painting.
@@ -67,6 +73,7 @@ export function paintOn(material: Material, painting: Painting, alone = false): 
   const shown = patches.get(material)?.painting;
   if (shown && shown !== painting && uses(shown.meshes, material).some((mesh) => !painting.meshes.has(mesh))) {
     const copy = material.clone();
+    originals.set(copy, material);
     const { own } = patches.get(material)!;
     // A class that sets these has set them for the copy.
     if (own.onBeforeCompile && !Object.hasOwn(copy, 'onBeforeCompile')) Object.assign(copy, own);

@@ -8,7 +8,7 @@ import { paintedVertices, separatePaint, withCopies } from '../parts/separate-pa
 import type { Part } from './extract.js';
 import { makeOverlay, overlayMaterial, showTriangles } from './overlay.js';
 import { paintAttribute } from './paint.js';
-import { canBePainted, type Painting, paintOn } from './painted-materials.js';
+import { canBePainted, originals, type Painting, paintOn } from './painted-materials.js';
 import { atOnce, remake, replace } from './split.js';
 
 /** The attribute with the `Zone` of each vertex. GLTFLoader gives `_NCZ` the same name. */
@@ -167,7 +167,8 @@ export function showPaint(
   const painted = materials.map((material, m) => {
     if (!material || isBlind[m]) return material;
     const one = paintOn(copies.get(material) ?? material, painting);
-    if (one !== material) copies.set(material, one);
+    const original = originals.get(one);
+    if (original) copies.set(original, one);
     return one;
   });
   if (Array.isArray(mesh.material))

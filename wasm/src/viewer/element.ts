@@ -11,7 +11,7 @@ import {
   extract,
   serialize,
 } from '../three/index.js';
-import { disposeModel, loadModel, loadPaint } from './load.js';
+import { copyOf, disposeModel, loadModel, loadPaint } from './load.js';
 import { defaultOrbit, type Orbit, Stage } from './stage.js';
 
 /** The `detail` of the event `verdict`. */
@@ -66,6 +66,8 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   #hasBadOpacity = false;
   #stage: Stage | undefined;
   #shown: Shown | undefined;
+  /** Whether the attributes name another model than the one that is shown, which could not be loaded, or not yet. */
+  #isOutdated = true;
   /** Ends the loading under way. */
   #loading: AbortController | undefined;
   /** The attributes that have changed since the last update. */
@@ -118,13 +120,14 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
    */
   async exportGlb(): Promise<ArrayBuffer> {
     const { address, applied, paint } = this.#get('exportGlb');
-    const [{ GLTFExporter }, { scene, animations }] = await Promise.all([
+    // The paint may change meanwhile.
+    const [{ GLTFExporter }, { scene, animations }, map] = await Promise.all([
       import('three/addons/exporters/GLTFExporter.js'),
       loadModel(this.loader, 'target', address, new AbortController().signal),
+      paint && copyOf(paint),
     ]);
     try {
-      if (applied && paint) {
-        const map = paint.clone();
+      if (applied && map) {
         map.channel = applied.channel;
         const material = new MeshStandardMaterial({ map, transparent: true, opacity: this.#options().opacity ?? 1 });
         applyTransfer(scene, undefined, { saved: deserialize(serialize(applied)), channel: applied.channel, material });
@@ -132,6 +135,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
       return (await new GLTFExporter().parseAsync(scene, { binary: true, animations })) as ArrayBuffer;
     } finally {
       disposeModel(scene);
+      map?.dispose();
     }
   }
 
@@ -164,7 +168,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     if (changed.has('camera-orbit') && this.#shown) this.#stage?.place(this.#orbit());
     if (changed.has('opacity')) this.#setOpacity();
     // A paint alone needs no other transfer; but one under way is begun anew.
-    const isOther = changed.has('paint') && (this.#loading !== undefined || !this.#shown);
+    const isOther = changed.has('paint') && this.#isOutdated;
     // What could not be loaded may have failed for its opacity.
     const isAgain = changed.has('opacity') && !this.#loading && !this.#shown;
     if (isOther || isAgain || changed.has('check') || kOfTransfer.some((name) => changed.has(name)))
@@ -215,6 +219,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   }
 
   async #loadAll(signal: AbortSignal): Promise<void> {
+    this.#isOutdated = true;
     const [target, cage, paint] = ['target', 'cage', 'paint'].map((name) => this.getAttribute(name) ?? '');
     this.#tell('progress', { share: 0, stage: 'files' });
     const [gltf, around, texture] = await Promise.all([
@@ -233,6 +238,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     signal.throwIfAborted();
     this.#drop();
     this.#shown = { address: target!, gltf, applied, paint: texture };
+    this.#isOutdated = false;
     this.#poster.hidden = true;
     this.#stage!.show(gltf.scene, this.#orbit());
     this.#setOpacity(); // It may have changed since.
@@ -305,6 +311,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#shown?.paint?.dispose();
     if (this.#shown) disposeModel(this.#shown.gltf.scene);
     this.#shown = undefined;
+    this.#isOutdated = true;
   }
 
   #free(): void {

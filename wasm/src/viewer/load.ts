@@ -24,7 +24,9 @@ export async function loadModel(
   const bytes = await response.arrayBuffer();
   try {
     checkCost(new Uint8Array(bytes));
-    return await loader.parseAsync(bytes, new URL('.', response.url).href);
+    // Beside a blob or a data address there is nothing.
+    const folder = /^(blob|data):/.test(response.url) ? '' : new URL('.', response.url).href;
+    return await loader.parseAsync(bytes, folder);
   } catch (cause) {
     throw new Error(`${attribute}: ${response.url} cannot be read (${(cause as Error).message})`, { cause });
   }
@@ -42,13 +44,25 @@ function checkCost(bytes: Uint8Array): void {
   }
 }
 
+/** As three.js wants pictures: not multiplied by their alpha, and without a change of colours. */
+const asStored: ImageBitmapOptions = { premultiplyAlpha: 'none', colorSpaceConversion: 'none' };
+
 /** Loads a picture as a texture as glTF has them. @throws Error that names the attribute and the address. */
 export async function loadPaint(address: string, signal: AbortSignal): Promise<Texture> {
   const response = await fetchFile('paint', address, signal);
   // Not as an image element, whose addresses may not be allowed to be those of blobs.
-  const picture = await createImageBitmap(await response.blob()).catch((cause: unknown) => {
+  const picture = await createImageBitmap(await response.blob(), asStored).catch((cause: unknown) => {
     throw new Error(`paint: ${response.url} is not a picture (${(cause as Error).message})`, { cause });
   });
+  return textureOf(picture);
+}
+
+/** Makes a texture as glTF has them, of a copy of its picture: it stays when the other is disposed of. */
+export const copyOf = async (texture: Texture): Promise<Texture> =>
+  textureOf(await createImageBitmap(texture.image as ImageBitmap, asStored));
+
+/** A texture that closes its picture when it is disposed of. */
+function textureOf(picture: ImageBitmap): Texture {
   const texture = new Texture(picture);
   texture.flipY = false;
   texture.colorSpace = SRGBColorSpace;

@@ -2,14 +2,14 @@ import type { Command, History } from './history.js';
 import { areSame, type Layer } from './layer.js';
 import type { LayerStack } from './stack.js';
 
-const kOneGo = 600; // milliseconds: equal edits in quick succession, such as a held key, become one step
+const kOneGo = 600; // milliseconds: equal edits of a layer in quick succession, such as by a held key, become one step
 
 /** Records changes of the layers in the undo history. */
 export class Edits {
   readonly #stack: LayerStack;
   readonly #history: History;
   #before: readonly Layer[] | undefined;
-  #last: { step: Step; at: number } | undefined;
+  #last: { step: Step; at: number; edited: string | undefined } | undefined;
 
   constructor(stack: LayerStack, history: History) {
     this.#stack = stack;
@@ -30,13 +30,15 @@ export class Edits {
     const [before, after] = [this.#close(), this.#stack.layers];
     if (!before || (!sideEffect && areSame(before, after))) return;
     const [last, at] = [this.#last, performance.now()];
-    if (!sideEffect && last && last.step === this.#history.last && last.step.name === name && at - last.at < kOneGo) {
+    const edited = sideEffect ? undefined : editedIn(before, after);
+    const isMore = edited !== undefined && last?.edited === edited && last.step.name === name;
+    if (isMore && last.step === this.#history.last && at - last.at < kOneGo) {
       last.step.after = after;
       last.at = at;
       return;
     }
     const step = new Step(name, this.#stack, before, after, sideEffect);
-    this.#last = sideEffect ? undefined : { step, at };
+    this.#last = { step, at, edited };
     this.#history.add(step);
   }
 
@@ -77,6 +79,12 @@ export class Edits {
     }
   }
 }
+
+/** Which layers have other properties than before; `undefined` if some were added or removed. */
+const editedIn = (before: readonly Layer[], after: readonly Layer[]): string | undefined =>
+  before.length === after.length
+    ? after.flatMap((layer) => (before.includes(layer) ? [] : layer.id)).join()
+    : undefined;
 
 /** What a step does besides changing the stack. */
 type SideEffect = Omit<Command, 'name'>;

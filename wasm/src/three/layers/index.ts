@@ -8,6 +8,6 @@ export { type ActiveStroke, Composite, maxCompositeSize } from './composite.js';
 export { Edits } from './edits.js';
 export { Emitter } from './emitter.js';
 export { type Command, History } from './history.js';
-export { type Blend, blendModes, type Layer, plainStyle, type Sheet, type Style } from './layer.js';
+export { type Blend, blendModes, freeName, type Layer, plainStyle, type Sheet, type Style } from './layer.js';
 export { createLayers, Layers, type LayersOptions, type NewLayer } from './layers.js';
 export { LayerStack, maxLayers, type StackEvents } from './stack.js';

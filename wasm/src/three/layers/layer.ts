@@ -50,6 +50,13 @@ export function readStyle(style: Partial<Style>): Partial<Style> {
 const describe = (value: unknown): string =>
   typeof value === 'string' ? `"${value}"` : typeof value === 'object' && value ? 'an object' : String(value);
 
+/** A name that no layer has: a kind and a number. */
+export function freeName(kind: string, layers: readonly Layer[]): string {
+  let number = 1;
+  while (layers.some(({ name }) => name === `${kind} ${number}`)) number++;
+  return `${kind} ${number}`;
+}
+
 /** @throws {CagecastError} `badArgument` if a value is not a texture. */
 export function checkTexture(texture: Texture, argument: string): void {
   if (texture?.isTexture !== true)

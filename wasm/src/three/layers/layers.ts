@@ -5,7 +5,7 @@ import { Composite, maxCompositeSize } from './composite.js';
 import { Edits } from './edits.js';
 import { Emitter } from './emitter.js';
 import { History } from './history.js';
-import { checkTexture, type Layer, type Style } from './layer.js';
+import { checkTexture, freeName, type Layer, type Style } from './layer.js';
 import { LayerStack } from './stack.js';
 
 /** Options of `createLayers`. */
@@ -75,7 +75,7 @@ export class Layers extends Emitter<{
    */
   add(texture: Texture, { name, place, ...style }: NewLayer = {}): Layer {
     checkTexture(texture, 'texture');
-    const title = name ?? (texture.name || `Layer ${this.list.length + 1}`);
+    const title = name ?? (texture.name || freeName('Layer', this.list));
     return this.edits.do(`adding ${title}`, () => {
       const premultiplied = texture.premultiplyAlpha;
       const layer = this.stack.add(title, { texture, premultiplied }, style);
@@ -84,7 +84,7 @@ export class Layers extends Emitter<{
     });
   }
 
-  /** Changes opacity, tint, blend mode or visibility. Equal changes in quick succession, as of a slider, are one step. */
+  /** Changes opacity, tint, blend mode or visibility. Equal changes of a layer in quick succession, as by a slider, are one step. */
   set(layer: Pick<Layer, 'id'>, style: Partial<Style>): void {
     this.edits.do(`changing ${Object.keys(style).join(', ')} of ${this.#nameOf(layer)}`, () =>
       this.stack.restyle(layer, style),

@@ -1,7 +1,7 @@
 import type { Vector3, WebGLRenderer } from 'three';
 import { CagecastError } from '../../index.js';
 import { type Rect, toShares } from '../gpu/index.js';
-import { type Composite, type Edits, Emitter, type Layer, type LayerStack } from '../layers/index.js';
+import { type Composite, type Edits, Emitter, freeName, type Layer, type LayerStack } from '../layers/index.js';
 import { type CageMesh, CageTexels, type Capsule, type SurfacePoint } from './cage-texels.js';
 import { PaintedSheet, type PaintingSize, paintingSizes } from './painted-sheet.js';
 import { StickersSheet } from './placed-stickers.js';
@@ -167,9 +167,7 @@ export class LayerPainter extends Emitter<LayerPainterEvents> {
     const { stack } = this.#layers;
     const sheet = new PaintedSheet(this.size);
     this.keep(sheet);
-    let number = 1;
-    while (stack.layers.some(({ name }) => name === `Painting ${number}`)) number++;
-    return stack.add(`Painting ${number}`, sheet);
+    return stack.add(freeName('Painting', stack.layers), sheet);
   }
 
   /** Uploads a sheet too, after the graphics context was lost. */
