@@ -476,6 +476,10 @@ test('no file that was read is overwritten, whoever names it', async () => {
     writeFileSync(at('skin.png'), pngOf(own));
     const before = readFileSync(path);
     const [target, ...more] = args;
+    if (more.length > 0) {
+      const used = cagecast('bake', target, at('cage.glb'), at('red.png'), ...more, '-o', at('out.glb'));
+      assert.match(used.stdout, /\nsettings from .*own\.json\n$/);
+    }
     const { status, stderr } = cagecast('bake', target, at('cage.glb'), at('red.png'), ...more, '-o', path);
     assert.equal(status, 1);
     assert.match(stderr, /^cagecast: .*\.png: would be overwritten, but is read by this command[^\n]*\n$/);
@@ -499,6 +503,28 @@ test('another size keeps the colours under an alpha of 0, and the longer side is
   assert.equal(bakeTo('back.png', '--back').status, 0);
   const back = PNG.sync.read(readFileSync(at('back.png')));
   assert.ok(back.data.some((byte, i) => i % 4 === 3 && byte === 255));
+});
+
+test('avatars show the paint where their own materials name the texture, even if others go on using it', async () => {
+  const { json, bin } = unpackGlb(readFileSync(at('box.glb')));
+  const [material] = json.materials!;
+  const texture = material!.pbrMetallicRoughness!.baseColorTexture!.index;
+  material!.emissiveTexture = { index: texture }; // so it is not painted in its place
+  material!.extensions = { VRMC_materials_mtoon: { specVersion: '1.0', shadeMultiplyTexture: { index: texture } } };
+  const properties = { textureProperties: { _MainTex: texture, _ShadeTexture: texture } };
+  json.extensions = { VRM: { materialProperties: [properties] } };
+  json.extensionsUsed = ['VRM', 'VRMC_materials_mtoon'];
+  writeFileSync(at('avatar.glb'), packGlb({ json, bin }));
+  assert.equal(cagecast('bake', at('avatar.glb'), at('cage.glb'), at('red.png'), '-o', at('out.vrm')).status, 0);
+  const { json: after } = unpackGlb(readFileSync(at('out.vrm')));
+  const [painted] = after.materials!;
+  const now = painted!.pbrMetallicRoughness!.baseColorTexture!.index;
+  assert.notEqual(now, painted!.emissiveTexture!.index);
+  assert.deepEqual(after.extensions!['VRM'], {
+    materialProperties: [{ textureProperties: { _MainTex: now, _ShadeTexture: now } }],
+  });
+  const mtoon = painted!.extensions!['VRMC_materials_mtoon'] as { shadeMultiplyTexture: { index: number } };
+  assert.equal(mtoon.shadeMultiplyTexture.index, now);
 });
 
 test('what is optional in a file stays so', async () => {

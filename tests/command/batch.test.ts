@@ -180,6 +180,26 @@ test('a batch that cannot be right does not begin', () => {
   assert.deepEqual(readFileSync(at('cage.glb')), Buffer.from(glbOf(scene.cage)));
 });
 
+test('a job with a wrong output, or none where it writes something, fails', () => {
+  const jobs = [
+    { output: 'o.fbx' },
+    { texture: 'paint.png' },
+    { borders: 'cut' },
+    { regions: [{ cage: 'cage.glb', texture: 'paint.png' }] },
+  ];
+  const lines = jobs.map((job) => JSON.stringify({ target: 'in/0.glb', cage: 'cage.glb', ...job }));
+  writeFileSync(at('wrong.jsonl'), lines.join('\n'));
+  const { status, stdout } = cagecast('batch', '--manifest', at('wrong.jsonl'));
+  assert.equal(status, 1);
+  assert.deepEqual(
+    linesOf(stdout).map(({ error }) => error?.replace(/^.*0\.glb: /, '').replace(/ \/.*\//, ' ')),
+    [
+      'its output o.fbx does not end in .glb, .vrm or .gltf',
+      ...Array<string>(3).fill('has no output, where its texture or its cut target would be written'),
+    ],
+  );
+});
+
 test('patterns follow links to folders, and ** does not go round in circles', () => {
   mkdirSync(at('linked/own'), { recursive: true });
   mkdirSync(at('far'));

@@ -1191,6 +1191,44 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(answer(path), expected());
   });
 
+  test('names, animations and materials of another shape are errors that name the element', () => {
+    const { json, bin } = unpackGlb(glbOf(head(5, 8).target));
+    const cases: [(broken: typeof json) => void, string][] = [
+      [(to) => Object.assign(to, { animations: {} }), 'animations is not an array of objects'],
+      [(to) => Object.assign(to, { animations: [null] }), 'animations is not an array of objects'],
+      [
+        (to) => Object.assign(to, { animations: [{ channels: {} }] }),
+        'animations[0].channels is not an array of objects',
+      ],
+      [(to) => Object.assign(to.nodes![0]!, { name: 5 }), 'nodes[0].name is not a string'],
+      [
+        (to) => Object.assign(to.nodes![0]!, { extensions: { EXT_mesh_gpu_instancing: null } }),
+        'nodes[0].extensions.EXT_mesh_gpu_instancing is not an object',
+      ],
+      [
+        (to) =>
+          Object.assign(to.meshes![0]!.primitives[0]!, { extensions: { KHR_materials_variants: { mappings: {} } } }),
+        'meshes[0].primitives[0]: mappings of KHR_materials_variants is not an array of objects',
+      ],
+      [
+        (to) => Object.assign(to.meshes![0]!.primitives[0]!, { mode: '4' }),
+        'meshes[0].primitives[0].mode is not a whole number',
+      ],
+      [
+        (to) => Object.assign(to, { materials: [{ pbrMetallicRoughness: { baseColorFactor: null } }] }),
+        'materials[0].pbrMetallicRoughness.baseColorFactor is not an array of numbers',
+      ],
+    ];
+    for (const [change, message] of cases) {
+      const broken = structuredClone(json);
+      change(broken);
+      const path = at('shape.glb');
+      writeFileSync(path, packGlb({ json: broken, bin }));
+      const { status, stderr } = cagecast('transfer', path, '--cage', path);
+      assert.deepEqual([status, stderr], [1, `cagecast: ${path}: ${message}\n`]);
+    }
+  });
+
   test('instances with broken references are errors', () => {
     for (const [TRANSLATION, says] of [
       [99, /nodes\[0\]: TRANSLATION of EXT_mesh_gpu_instancing is 99, not one of 2 accessors/],

@@ -172,6 +172,10 @@ function jobOf({ settled: _, results: __, ...given }: JobDefaults & JobNames & S
     path?.replace(/\{name\}|\{dir\}/g, (found) =>
       found === '{dir}' ? dirname(target) : basename(target, extname(target)),
     );
+  if (output === undefined && (given.texture !== undefined || given.regions?.length || given.borders === 'cut'))
+    throw new InputError('has no output, where its texture or its cut target would be written').in(target);
+  if (output !== undefined && !/\.(glb|vrm|gltf)$/i.test(output))
+    throw new InputError(`its output ${output} does not end in .glb, .vrm or .gltf`).in(target);
   const command: TransferCommand = { ...given, cage, output: fill(output), report: fill(report) };
   const read = filesReadBy(command).map(sizeAndTime);
   const key = createHash('sha256')

@@ -68,7 +68,8 @@ export function checkLists(json: GLTF.IGLTF): void {
   json.scenes?.forEach((scene, s) => listOf(`scenes[${s}].nodes`, scene.nodes, Number.isInteger, 'numbers'));
 }
 
-function listOf(name: string, value: unknown, fits: (item: unknown) => boolean, what: string): void {
+/** @throws {InputError} if a value is there, but no array of what fits. */
+export function listOf(name: string, value: unknown, fits: (item: unknown) => boolean, what: string): void {
   if (value !== undefined && !(Array.isArray(value) && value.every(fits)))
     throw new InputError(`${name} is not an array of ${what}`);
 }

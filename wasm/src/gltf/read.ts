@@ -3,6 +3,7 @@ import { type Document, type GLTF, type JSONDocument, Logger, NodeIO } from '@gl
 import { EXTMeshoptCompression, KHRDracoMeshCompression, KHRMeshQuantization } from '@gltf-transform/extensions';
 import { MeshoptDecoder } from 'meshoptimizer/decoder';
 import { checkGeometry, dracoOf, meshoptView } from './check.js';
+import { checkRest } from './check-rest.js';
 import { createDracoDecoder } from './draco.js';
 import { defaultReading, type ReadOptions, readBytes, readUri } from './files.js';
 import { firstLine, InputError } from './input-error.js';
@@ -43,6 +44,7 @@ export async function readGltf(
     const buffers = await readBuffers(json, binary, dirname(path), reading);
     const sizes = buffers.map((buffer) => buffer?.byteLength);
     checkGeometry(json, sizes);
+    checkRest(json);
     const all = sizes.reduce<number>((sum, size) => sum + (size ?? 0), content.byteLength - (binary?.byteLength ?? 0));
     checkLimits(json, all, reading.limits);
     return { path, json, buffers, geometry: await decode(json, buffers), reading };

@@ -7,7 +7,7 @@ import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
 import { refuseOverwriting } from '../beside.js';
-import { matcher, noSuchName, quoted } from '../options.js';
+import { configLine, matcher, noSuchName, quoted } from '../options.js';
 import { writeFiles } from '../output.js';
 import type { Found } from '../print.js';
 import type { Progress } from '../progress.js';
@@ -91,8 +91,12 @@ async function bakeFile(command: BakeCommand, done: Run, cut: CutTarget | undefi
     ).in(target);
   }
   write(command, done, writer.finish());
-  const text = summary(output, report) + (overlays > 0 ? `\n${takenAway(overlays)}` : '');
-  return { text, report: { output, ...report, replacedOverlays: overlays } };
+  const { config } = command.rules;
+  const lines = [summary(output, report), overlays > 0 ? takenAway(overlays) : '', configLine(config)];
+  return {
+    text: lines.filter(Boolean).join('\n'),
+    report: { output, ...report, replacedOverlays: overlays, config: config ?? null },
+  };
 }
 
 function summary(output: string, { textures, left }: BakeReport): string {
@@ -140,9 +144,11 @@ async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | und
     write(command, done, await encodePng(baked));
     const names = parts.map(({ name }) => name);
     const { overlap } = baked;
+    const { config } = command.rules;
+    const wrote = `wrote ${output}: ${wide} × ${high}, ${back ? 'of' : 'for'} ${list(names)}${back ? '' : overlapText(overlap)}`;
     return {
-      text: `wrote ${output}: ${wide} × ${high}, ${back ? 'of' : 'for'} ${list(names)}${back ? '' : overlapText(overlap)}`,
-      report: { output, parts: names, width: wide, height: high, overlap },
+      text: [wrote, configLine(config)].filter(Boolean).join('\n'),
+      report: { output, parts: names, width: wide, height: high, overlap, config: config ?? null },
     };
   } catch (error) {
     throw inTarget(error, target);

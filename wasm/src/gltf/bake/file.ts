@@ -151,9 +151,23 @@ export class FileModel implements BakeModel<number, number> {
         if (!json.textures!.some((texture) => texture.extensions?.[extension])) writer.needs(extension, false);
     }
     for (const material of materials) {
+      if (isOwn && slot === 'color') this.#followInExtensions(material, use.texture, number);
       lay(this.#material(material), slot, number);
       resetFactors(this.#material(material), slot);
     }
+  }
+
+  /** Makes the materials of avatars, which name their textures once more, show a new one, too. */
+  #followInExtensions(material: number, before: number, now: number): void {
+    const vrm = this.#json.extensions?.['VRM'] as
+      | { materialProperties?: { textureProperties?: Record<string, number> }[] }
+      | undefined;
+    const textures = vrm?.materialProperties?.[material]?.textureProperties ?? {};
+    for (const [name, texture] of Object.entries(textures)) if (texture === before) textures[name] = now;
+    const mtoon = this.#material(material).extensions?.['VRMC_materials_mtoon'] as
+      | { shadeMultiplyTexture?: GLTF.ITextureInfo }
+      | undefined;
+    if (mtoon?.shadeMultiplyTexture?.index === before) mtoon.shadeMultiplyTexture.index = now;
   }
 
   /** Whether the standard materials use a texture in no other way. */
