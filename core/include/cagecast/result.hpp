@@ -41,8 +41,8 @@ struct Timings {
 };
 
 /// The properties of one segment: a connected component of the welded target. Areas are in squared units of the input,
-/// and exact to diagonal² · triangles² · 2^-58 of the target, because that of each triangle is rounded to a whole number
-/// of tiny units: what is left of slivers that are 1e12 times longer than wide is rounding.
+/// and exact to diagonal² · triangles² · 2^-58 of the target, because that of each triangle is rounded to a whole
+/// number of tiny units: what is left of slivers that are 1e12 times longer than wide is rounding.
 struct SegmentStats {
   std::uint32_t points = 0;  ///< Number of welded points.
   std::uint32_t group = 0;   ///< The group of its first vertex; 0 if the target has no groups.

@@ -22,6 +22,7 @@ class AreaUnit {
   [[nodiscard]] double summableArea(std::int64_t units) const { return area(units >> kCutBits << kCutBits); }
 
  private:
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): areas are not negative, and `lround` is a call.
   [[nodiscard]] std::int64_t rounded(double area) const { return static_cast<std::int64_t>(area * perArea_ + 0.5); }
 
   static constexpr int kCutBits = 10;
