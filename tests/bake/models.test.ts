@@ -10,6 +10,7 @@ import type { Image } from 'cagecast/bake';
 import { type BakeReport, bake, cagecast as cagecastTransform, type ImageCodec } from 'cagecast/gltf';
 import { PNG } from 'pngjs';
 import { cagecast, packGlb, unpackGlb, validate } from '../js/glb.js';
+import { ktx2Of } from '../support/ktx2';
 import { islandAt, islandCage, texturedBox } from '../support/models';
 import { picture } from './reference.js';
 
@@ -499,6 +500,15 @@ test('another size keeps the colours under an alpha of 0, and the longer side is
   const blues = Array.from({ length: 16 * 32 }, (_, i) => image.data[4 * i + 2]!);
   assert.ok(Math.min(...blues) >= 40, 'none is black');
   assert.match(bakeTo('clear.png', at('red.png'), '--size', '32').stdout, /: 16 × 32, for /);
+  // Of a texture that cannot be read, nothing is needed.
+  const { json, bin } = unpackGlb(readFileSync(at('clear.glb')));
+  delete json.images![0]!.bufferView;
+  json.images![0]!.uri = `data:image/ktx2;base64,${Buffer.from(ktx2Of(1, 2, 3)).toString('base64')}`;
+  writeFileSync(at('packed.glb'), packGlb({ json, bin }));
+  const packed = (...more: string[]) =>
+    cagecast('bake', at('packed.glb'), at('cage.glb'), at('red.png'), ...more, '-o', at('packed.png'));
+  assert.match(packed('--size', '32').stdout, /: 32 × 32, for /);
+  assert.match(packed().stderr, /packed\.glb: is a KTX2 image, which cannot be baked/);
   // The way back shows what an opaque material does.
   assert.equal(bakeTo('back.png', '--back').status, 0);
   const back = PNG.sync.read(readFileSync(at('back.png')));

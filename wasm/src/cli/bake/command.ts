@@ -132,7 +132,12 @@ async function bakePicture(command: BakeCommand, done: Run, cut: CutTarget | und
     const model = new FileModel(done.targetFile, done.target.parts, writer);
     const { parts, texture } = oneTexture(model, done, command.part);
     const file = texture === undefined ? undefined : await model.imageOf(texture);
-    const own = file && (await decodeImage(file.bytes));
+    const own =
+      file &&
+      (await decodeImage(file.bytes).catch((error: unknown) => {
+        if (back || size === undefined) throw error;
+        return undefined; // Only its proportions were asked for.
+      }));
     const ownCount = done.target.mesh.positions.length / 3;
     const found = { result: done.result, cut: cut && { target: cut, ownCount } };
     const layouts = parts.map((part) => layoutOf(model, part, useOf(model, part), found));
