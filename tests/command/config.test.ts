@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { PNG } from 'pngjs';
-import { cagecast, glbOf } from '../js/glb.js';
+import { cagecast, glbOf, unpackGlb } from '../js/glb.js';
 import { head } from '../js/scenes.js';
 
 const folder = mkdtempSync(join(tmpdir(), 'cagecast-config-'));
@@ -71,6 +71,25 @@ test('masks are paths from the folder of the file; flags about masks replace the
   set({ alwaysMask: 'gone.png' });
   assert.match(cagecast('transfer', ada, ...cage).stderr, new RegExp(`${at('gone.png')}: no such file`));
   assert.match(cagecast('transfer', ada, ...cage, '--never-mask', at('other.png')).stderr, /other\.png: no such file/);
+});
+
+test('where a part is both kept and excluded, what is said later counts', () => {
+  const { json } = unpackGlb(readFileSync(ada));
+  const part = json.nodes!.find(({ mesh }) => mesh !== undefined)!.name!;
+  const painted = (...args: string[]) => {
+    const { status, stdout, stderr } = cagecast('transfer', ada, ...cage, '--json', ...args);
+    assert.deepEqual([status, stderr], [0, '']);
+    return (JSON.parse(stdout) as { counts: { cosmetic: number } }).counts.cosmetic > 0;
+  };
+  set({ keep: [part] });
+  assert.deepEqual([painted(), painted('--exclude', part)], [true, false]);
+  set({ exclude: ['*'], characters: { 'a*': { keep: [part] } } });
+  assert.ok(painted());
+  set({ keep: [part], exclude: ['*'] });
+  assert.match(cagecast('transfer', ada, ...cage).stderr, new RegExp(`both match "${part}" \\(in ${config}\\)\n$`));
+  set({ keep: [part] });
+  writeFileSync(at('later.jsonl'), JSON.stringify({ target: ada, cage: 'cage.glb', exclude: [part] }));
+  assert.match(cagecast('batch', '--manifest', at('later.jsonl')).stdout, /"cosmetic":0,/);
 });
 
 test('masks of a character and of a line of a manifest are added to those of the file', () => {

@@ -137,6 +137,10 @@ async function jobLine(line: string, folder: string, { settled }: JobDefaults): 
       preset: preset ?? rules.preset,
       keep: keep ?? rules.keep,
       exclude: exclude ?? rules.exclude,
+      ranks: {
+        keep: keep ? keep.map(() => 1) : (rules.ranks?.keep ?? []),
+        exclude: exclude ? exclude.map(() => 1) : (rules.ranks?.exclude ?? []),
+      },
       ...(masks && {
         masks: mergeMasks(rules.masks, masks)!,
         maskFolders: {

@@ -23,6 +23,8 @@ export interface Rules {
   keep: string[];
   /** The same for parts that are never painted. */
   exclude: string[];
+  /** How late each of these patterns is said, which decides where both match: below 0 in a file, 0 by a flag, 1 in a manifest. */
+  ranks?: Record<'keep' | 'exclude', number[]>;
   /** Those of both that may match nothing. */
   optional?: string[];
   masks?: MaskFiles;
@@ -134,32 +136,34 @@ export const configLine = (config: string | null | undefined): string => (config
 
 /**
  * The options of `transfer`. Names of parts become locks by group, because each part is a group.
- * @throws {InputError} if nothing has a given name, or a part is both kept and excluded.
+ * @throws {InputError} if nothing has a given name, or a part is both kept and excluded in one place.
  */
 export function transferOptions(
-  { preset, single, keep, exclude, optional = [] }: Rules,
+  { preset, single, keep, exclude, ranks, optional = [], config }: Rules,
   { parts }: Extracted,
 ): TransferOptions {
-  const groups: Record<number, Lock> = {};
-  const saidBy = new Map<number, string>();
+  const saidOf = new Map<number, { lock: Lock; pattern: string; rank: number }>();
   for (const [lock, patterns] of [
     ['keep', keep],
     ['exclude', exclude],
   ] as const) {
-    for (const pattern of patterns) {
+    for (const [i, pattern] of patterns.entries()) {
+      const rank = ranks?.[lock][i] ?? 0;
       const matches = matcher(pattern);
       const found = [...parts.keys()].filter((p) => parts[p]!.vertexCount > 0 && parts[p]!.aliases.some(matches));
       if (found.length === 0 && !optional.includes(pattern)) throw noSuchName(`--${lock} ${pattern}`, parts);
       for (const p of found) {
-        if (groups[p] !== undefined && groups[p] !== lock)
-          throw new InputError(
-            `--${groups[p]} ${saidBy.get(p)} and --${lock} ${pattern} both match ${quoted(parts[p]!.name)}`,
-          );
-        groups[p] = lock;
-        saidBy.set(p, pattern);
+        const said = saidOf.get(p);
+        if (said && said.lock !== lock && said.rank === rank) {
+          const place = rank < 0 ? ` (in ${config})` : '';
+          const name = quoted(parts[p]!.name);
+          throw new InputError(`--${said.lock} ${said.pattern} and --${lock} ${pattern} both match ${name}${place}`);
+        }
+        if (!said || rank >= said.rank) saidOf.set(p, { lock, pattern, rank });
       }
     }
   }
+  const groups = Object.fromEntries([...saidOf].map(([p, { lock }]) => [p, lock]));
   return { preset, ...single, locks: { groups } };
 }
 

@@ -27,6 +27,7 @@ interface ConfigFile {
 export interface ConfigSettings extends Settings {
   /** The file. */
   path: string;
+  ranks: NonNullable<Rules['ranks']>;
   /** Where masks have to be, if nobody named the file: like a model, it may be a stranger's. */
   maskFolders?: NonNullable<Rules['maskFolders']>;
 }
@@ -58,12 +59,16 @@ export class Configuration {
     const own = file.characters.filter(({ matches }) => matches(name) || matches(basename(name, extname(name))));
     const all = [file.common, ...own.map(({ settings }) => settings)];
     const masks = mergeMasks(...all.map((settings) => settings.masks));
-    const joined = (list: 'keep' | 'exclude') => [...new Set(all.flatMap((settings) => settings[list] ?? []))];
+    /** The names of a list, and how late each is said. */
+    const joined = (list: 'keep' | 'exclude') =>
+      new Map(all.flatMap((settings, i) => (settings[list] ?? []).map((name) => [name, i - all.length] as const)));
+    const [keep, exclude] = [joined('keep'), joined('exclude')];
     return {
       ...Object.assign({}, ...all),
       single: Object.assign({}, ...all.map(({ single }) => single)),
-      keep: joined('keep'),
-      exclude: joined('exclude'),
+      keep: [...keep.keys()],
+      exclude: [...exclude.keys()],
+      ranks: { keep: [...keep.values()], exclude: [...exclude.values()] },
       ...(masks && { masks }),
       path: file.path,
       ...(this.#given === undefined && { maskFolders: { never: dirname(path), always: dirname(path) } }),

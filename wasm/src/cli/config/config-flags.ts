@@ -40,7 +40,7 @@ export function settler(
     if (found === undefined) return { rules: own, borders, compress };
     const pick = <Value>(name: string, value: Value, other: Value | undefined) =>
       isGiven(name) ? value : (other ?? value);
-    const { path, single, masks, maskFolders } = found;
+    const { path, single, masks, maskFolders, ranks } = found;
     const [keep, exclude] = [pick('keep', own.keep, found.keep), pick('exclude', own.exclude, found.exclude)];
     return {
       rules: {
@@ -48,6 +48,10 @@ export function settler(
         single: { ...single, ...own.single },
         keep,
         exclude,
+        ranks: {
+          keep: isGiven('keep') ? keep.map(() => 0) : ranks.keep,
+          exclude: isGiven('exclude') ? exclude.map(() => 0) : ranks.exclude,
+        },
         // Flags about masks replace all of those in the file.
         ...(own.masks ? { masks: own.masks } : masks && { masks, ...(maskFolders && { maskFolders }) }),
         config: path,
