@@ -40,7 +40,8 @@ struct Cloud {
 /// would seem to be.
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
-/// What a search finds is kept by a class like these two: newer versions of nanoflann also call `sort` at its end.
+/// What keeps the points that a search finds. nanoflann wants all of this; `DistanceType` and `sort` from version 1.6
+/// on.
 class Found {
  public:
   using DistanceType = double;

@@ -80,7 +80,7 @@ export const filesReadBy = (command: Reads): string[] =>
  * @param more  What it reads besides the files of `command`.
  * @throws {InputError} if a file would overwrite one that is read, or another one that is written.
  */
-export function refuseOverwriting(
+export function refuseOverwritingRead(
   command: Reads,
   { targetFile, cageFile }: Pick<Run, 'targetFile' | 'cageFile'>,
   written: readonly string[],

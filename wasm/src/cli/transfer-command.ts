@@ -8,7 +8,7 @@ import { type Added, writeTransfer } from '../gltf/write.js';
 import type { CutTarget } from '../index.js';
 import { vertexAreas } from '../inspect/geometry.js';
 import type { Finding, Verdict } from '../inspect/index.js';
-import { refuseOverwriting } from './beside.js';
+import { refuseOverwritingRead } from './beside.js';
 import { inspectionReport } from './inspect-command.js';
 import { configLine, type EffectiveOptions, effectiveOptions } from './options.js';
 import { writeFiles } from './output.js';
@@ -76,7 +76,7 @@ export async function transferCommand(
     files.push({ path: output, data }, ...others);
   }
   if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
-  refuseOverwriting(
+  refuseOverwritingRead(
     command,
     first.done,
     files.map(({ path }) => path),

@@ -21,7 +21,7 @@ export const imageExtensions: Readonly<Record<string, string>> = {
   'image/webp': 'EXT_texture_webp',
   'image/ktx2': 'KHR_texture_basisu',
 };
-/** Those of images that extensions bring, beside another one for viewers that do not know them. */
+/** Media types of images that textures can have by extensions, by the endings of their files. */
 const typesByEnding: Readonly<Record<string, string>> = { dds: 'image/vnd-ms.dds', avif: 'image/avif' };
 const types = { 1: 'SCALAR', 2: 'VEC2', 3: 'VEC3', 4: 'VEC4' } as const;
 

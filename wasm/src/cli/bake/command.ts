@@ -6,7 +6,7 @@ import type { Part } from '../../gltf/extract.js';
 import { GlbWriter } from '../../gltf/glb-writer.js';
 import { InputError } from '../../gltf/input-error.js';
 import { CagecastError, type CutTarget } from '../../index.js';
-import { refuseOverwriting } from '../beside.js';
+import { refuseOverwritingRead } from '../beside.js';
 import { configLine, matcher, noSuchName, quoted } from '../options.js';
 import { writeFiles } from '../output.js';
 import type { Found } from '../print.js';
@@ -60,7 +60,7 @@ function inTarget(error: unknown, path: string): unknown {
 /** Writes the output. @throws {InputError} if it would overwrite what was read. */
 function write(command: BakeCommand, done: Run, data: Uint8Array): void {
   const { output, paint, normal, orm } = command;
-  refuseOverwriting(command, done, [output], [paint, normal, orm]);
+  refuseOverwritingRead(command, done, [output], [paint, normal, orm]);
   writeFiles([{ path: output, data }]);
 }
 

@@ -27,6 +27,7 @@ interface ConfigFile {
 export interface ConfigSettings extends Settings {
   /** The file. */
   path: string;
+  /** As in `Rules`. */
   ranks: NonNullable<Rules['ranks']>;
   /** Where masks have to be, if nobody named the file: like a model, it may be a stranger's. */
   maskFolders?: NonNullable<Rules['maskFolders']>;
