@@ -360,6 +360,30 @@ describe('files stay lean', () => {
     assertSamePicture(shown(document), await plainPicture(), 0.01);
   });
 
+  test('what Draco has rounded before stays where it was, and attributes of an own name keep their values', async () => {
+    await converted('draco-ids.glb', async (document) => {
+      document.createExtension(KHRDracoMeshCompression).setEncoderOptions({ quantizationBits: { GENERIC: 0 } });
+      const [primitive] = document.getRoot().listMeshes()[0]!.listPrimitives();
+      const ids = Float32Array.from({ length: target.positions.length / 3 }, (_, i) => 100_003 * i);
+      primitive!.setAttribute('_ID', document.createAccessor().setArray(ids));
+    });
+    const positionsById = (document: Document): Map<number, number[]> => {
+      const [primitive] = document.getRoot().listMeshes()[0]!.listPrimitives();
+      const [ids, positions] = ['_ID', 'POSITION'].map((semantic) => primitive!.getAttribute(semantic)!);
+      return new Map(
+        Array.from(ids!.getArray() as Float32Array, (id, i): [number, number[]] => [id, positions!.getElement(i, [])]),
+      );
+    };
+    const before = positionsById(await io.read(at('draco-ids.glb')));
+    const after = positionsById((await written('draco-ids.glb')).document);
+    assert.deepEqual([...after.keys()].sort(), [...before.keys()].sort());
+    for (const [id, position] of after)
+      position.forEach((x, k) => {
+        const moved = Math.abs(x - before.get(id)![k]!);
+        assert.ok(moved < 1e-6, `vertex ${id} moved by ${moved}`);
+      });
+  });
+
   test('what Draco cannot compress is stored as it is', async () => {
     const maker = new GlbMaker();
     maker.node({ mesh: maker.mesh(target) });

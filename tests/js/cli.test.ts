@@ -1499,7 +1499,7 @@ describe('several parts', () => {
     assert.notEqual(document.getRoot().listNodes()[0]!.getMesh(), document.getRoot().listNodes()[1]!.getMesh());
   });
 
-  test('what animates a mesh animates its copies; what only another scene shows stays as it is', () => {
+  test('what animates a mesh, or is an expression of it, does so with its copies; what only another scene shows stays as it is', () => {
     const maker = new GlbMaker();
     const small = ball([0, 0, 0], () => 0.2, 8, 12);
     const mesh = maker.mesh(small, {
@@ -1515,7 +1515,13 @@ describe('several parts', () => {
     maker.json.animations = [
       { samplers: [{ input, output }], channels: [{ sampler: 0, target: target as GLTF.IAnimationChannelTarget }] },
     ];
-    maker.json.extensionsUsed = ['KHR_animation_pointer'];
+    maker.json.extensionsUsed = ['KHR_animation_pointer', 'VRM'];
+    maker.json.extensions = {
+      VRM: {
+        blendShapeMaster: { blendShapeGroups: [{ name: 'A', binds: [{ mesh, index: 0, weight: 100 }] }, null] },
+        firstPerson: { meshAnnotations: [{ mesh, firstPersonFlag: 'Auto' }] },
+      },
+    };
     report(
       write('moved-twins.glb', maker.finish()),
       at('cage.glb'),
@@ -1543,6 +1549,13 @@ describe('several parts', () => {
       pointers.sort(),
       [0, 1, 2].map((number) => `/meshes/${number}/weights`),
     );
+    const all = [0, 1, 2];
+    assert.deepEqual(json.extensions!['VRM'], {
+      blendShapeMaster: {
+        blendShapeGroups: [{ name: 'A', binds: all.map((number) => ({ mesh: number, index: 0, weight: 100 })) }, null],
+      },
+      firstPerson: { meshAnnotations: all.map((number) => ({ mesh: number, firstPersonFlag: 'Auto' })) },
+    });
   });
 });
 

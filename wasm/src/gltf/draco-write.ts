@@ -25,8 +25,9 @@ export function unmarkDraco(primitives: readonly GLTF.IMeshPrimitive[]): void {
 }
 
 /**
- * Compresses those primitives again that were compressed by Draco and have been added to. Positions get 14 bits, normals 10; UVs and
- * zones keep theirs. Vertices and triangles may change their order, except in primitives with morph targets.
+ * Compresses those primitives again that were compressed by Draco and have been added to. Positions get 14 bits, normals 10, as is
+ * usual: what was rounded so before stays as it is. Integers, such as the UVs and zones of a transfer, keep their values, and so do
+ * attributes with names of an application's own. Vertices and triangles may change their order, except in primitives with morph targets.
  */
 export async function packDraco(writer: GlbWriter, file: GltfFile): Promise<void> {
   const all = (writer.json.meshes ?? []).flatMap((mesh) => mesh.primitives);
@@ -92,12 +93,18 @@ function withoutView({ bufferView: _, byteOffset: __, ...accessor }: GLTF.IAcces
 /** A document of one primitive. */
 function documentOf(writer: GlbWriter, file: GltfFile, primitive: GLTF.IMeshPrimitive): Document {
   const document = new Document().setLogger(silent);
-  document.createExtension(KHRDracoMeshCompression).setRequired(true);
+  const values = (accessor: number): TypedArray =>
+    writer.stored(accessor)?.values ?? file.geometry.getRoot().listAccessors()[accessor]!.getArray()!;
+  const compression = document.createExtension(KHRDracoMeshCompression).setRequired(true);
+  // These may be numbers of things. With 0 bits, they are not rounded.
+  const isOwn = ([semantic, accessor]: [string, number]) =>
+    semantic.startsWith('_') && values(accessor) instanceof Float32Array;
+  if (Object.entries(primitive.attributes).some(isOwn))
+    compression.setEncoderOptions({ quantizationBits: { GENERIC: 0 } });
   const buffer = document.createBuffer();
   const accessorOf = (accessor: number): Accessor => {
     const { type, normalized = false } = writer.json.accessors![accessor]!;
-    const values = writer.stored(accessor)?.values ?? file.geometry.getRoot().listAccessors()[accessor]!.getArray()!;
-    const own = values.slice() as TypedArray;
+    const own = values(accessor).slice() as TypedArray;
     return document.createAccessor().setType(type).setNormalized(normalized).setArray(own).setBuffer(buffer);
   };
   const made = document.createPrimitive();

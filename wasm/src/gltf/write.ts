@@ -9,6 +9,7 @@ import { takeAttributes, takeOverlays } from './earlier-transfer.js';
 import type { Extracted, Part } from './extract.js';
 import { type Form, GlbWriter } from './glb-writer.js';
 import type { NamedFile } from './output/pack.js';
+import { separateMeshes } from './output/separate-meshes.js';
 import {
   cornersIn,
   cosmeticCorners,
@@ -230,47 +231,6 @@ function boundsOf(values: ArrayLike<number>, size: number): { min: number[]; max
     max[i % size] = Math.max(max[i % size]!, values[i]!);
   }
   return { min, max };
-}
-
-/**
- * Gives every node of the transfer a mesh of its own. Other nodes, such as those of other scenes, share an unchanged copy. The first
- * node with a mesh keeps the original. Animations of a mesh are repeated for its copies.
- * @returns the mesh of each node.
- */
-function separateMeshes(json: GLTF.IGLTF, parts: Part[]): Map<number, number> {
-  const copy = (mesh: number): number => {
-    const number = json.meshes!.push(structuredClone(json.meshes![mesh]!)) - 1;
-    for (const { channels } of json.animations ?? []) {
-      for (const channel of [...(channels ?? [])]) {
-        const pointerOf = ({ target }: GLTF.IAnimationChannel) =>
-          target?.extensions?.['KHR_animation_pointer'] as { pointer?: unknown } | undefined;
-        const pointer = pointerOf(channel)?.pointer;
-        const place = `/meshes/${mesh}/`;
-        if (typeof pointer !== 'string' || !pointer.startsWith(place)) continue;
-        const twin = structuredClone(channel);
-        pointerOf(twin)!.pointer = `/meshes/${number}/${pointer.slice(place.length)}`;
-        channels.push(twin);
-      }
-    }
-    return number;
-  };
-  const meshOfNode = new Map<number, number>();
-  const taken = new Set<number>();
-  for (const { node, mesh } of parts) {
-    if (meshOfNode.has(node)) continue;
-    meshOfNode.set(node, taken.has(mesh) ? copy(mesh) : mesh);
-    taken.add(mesh);
-  }
-  const untouched = new Map<number, number>();
-  json.nodes?.forEach((node, n) => {
-    const own = meshOfNode.get(n);
-    if (own !== undefined) node.mesh = own;
-    else if (node.mesh !== undefined && taken.has(node.mesh)) {
-      if (!untouched.has(node.mesh)) untouched.set(node.mesh, copy(node.mesh));
-      node.mesh = untouched.get(node.mesh)!;
-    }
-  });
-  return meshOfNode;
 }
 
 /** Makes the overlays that show a texture. */
