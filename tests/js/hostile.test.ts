@@ -274,6 +274,13 @@ describe('names', () => {
     const { stderr } = inspect('--keep', 'nothing');
     assert.match(stderr, /^cagecast: [^\n]+there are: \\u009b31m[^\n]+\n$/);
     assert.doesNotMatch(stderr, commands);
+    const report = cagecast('transfer', target, '--cage', at('cage.glb'), '--report', '-').stdout;
+    assert.doesNotMatch(report, commands);
+    assert.equal(JSON.parse(report).segments[0].part, name);
+    const odd = write(named(), 'named\u009b\u202e.glb');
+    const line = cagecast('batch', odd, '--cage', at('cage.glb')).stdout;
+    assert.doesNotMatch(line, commands);
+    assert.equal(JSON.parse(line).target, odd);
     inspect('--html', at('page.html'));
     assert.doesNotMatch(readFileSync(at('page.html'), 'utf8'), /<script>alert/);
   });

@@ -8,7 +8,7 @@ import type { Verdict } from '../inspect/index.js';
 import { isWritten, type Job, writtenBy } from './batch-jobs.js';
 import type { Outcome } from './batch-worker.js';
 import { placeOf } from './output.js';
-import { oneLine } from './print.js';
+import { jsonText, oneLine } from './print.js';
 import type { Progress } from './progress.js';
 import type { TransferCommand } from './transfer-command.js';
 
@@ -66,7 +66,7 @@ export async function batchCommand(
     const line: ResultLine = { target, output, ...(report && { report }), key: job.key, ...outcome };
     ++summary[line.status];
     if (failOn && 'verdict' in line && verdicts.indexOf(line.verdict!) <= verdicts.indexOf(failOn)) ++summary.misfits;
-    const text = `${JSON.stringify(line)}\n`;
+    const text = jsonText(line);
     if (results === undefined) write(text);
     // A job that was done before has its line, but another one may stand below it.
     else if (line.status !== 'skipped' || before.last.get(target) !== job.key) append(results, text);

@@ -8,7 +8,7 @@ import { borderKinds } from './config/settings.js';
 import { addRuleFlags, type RuleFlags } from './options.js';
 import { writeStandard } from './output.js';
 import { addCageAreaFlags, addRegionFlag, type CageFlags } from './paint/paint-flags.js';
-import { addPrintFlags, type PrintFlags } from './print.js';
+import { addPrintFlags, jsonText, type PrintFlags } from './print.js';
 import type { Progress } from './progress.js';
 import { addReadFlags, type ReadFlags, readingOf } from './read-flags.js';
 import type { Region, TransferCommand } from './transfer-command.js';
@@ -128,7 +128,7 @@ Examples:
       flags.quiet ? () => {} : writeStandard,
       progress,
     );
-    if (!flags.quiet) process.stderr.write(`${flags.json ? JSON.stringify(summary) : describeBatch(summary)}\n`);
+    if (!flags.quiet) process.stderr.write(flags.json ? jsonText(summary) : `${describeBatch(summary)}\n`);
     process.exitCode = summary.failed > 0 ? unusable : summary.misfits > 0 ? unfit : 0;
   });
 }

@@ -15,6 +15,10 @@ export function oneLine(text: string): string {
   return harmless(text).replace(/[\t\n\u2028\u2029]/g, escaped);
 }
 
+/** A value as JSON that is harmless to print, a line of its own. @param indent  Spaces per level. Default: all on one line */
+export const jsonText = (value: unknown, indent?: number): string =>
+  `${harmless(JSON.stringify(value, null, indent))}\n`;
+
 const escaped = (character: string): string => `\\u${character.charCodeAt(0).toString(16).padStart(4, '0')}`;
 
 /** The flags that say what is printed, as commander parses them. */
@@ -43,7 +47,7 @@ export function print(
   outputs: readonly (string | undefined)[] = [],
 ): void {
   if (quiet) return;
-  const found = `${harmless(json ? JSON.stringify(report, null, 2) : text)}\n`;
+  const found = json ? jsonText(report, 2) : `${harmless(text)}\n`;
   if (outputs.includes(standard)) process.stderr.write(found);
   else writeStandard(found);
 }

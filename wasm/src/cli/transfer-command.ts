@@ -14,6 +14,7 @@ import { configLine, type EffectiveOptions, effectiveOptions } from './options.j
 import { writeFiles } from './output.js';
 import { isTiled, readPaint, readTiles } from './paint/read-paint.js';
 import { type Stretch, stretchOf } from './paint/stretch.js';
+import { jsonText } from './print.js';
 import type { Progress } from './progress.js';
 import { cutTarget, type Models, type Run, readModel, run, type Sources } from './run.js';
 import { integer, percent, table, takenAway } from './table.js';
@@ -75,7 +76,7 @@ export async function transferCommand(
     const others = beside.map(({ name, data }) => ({ path: join(dirname(output), name), data }));
     files.push({ path: output, data }, ...others);
   }
-  if (command.report !== undefined) files.push({ path: command.report, data: `${JSON.stringify(report, null, 2)}\n` });
+  if (command.report !== undefined) files.push({ path: command.report, data: jsonText(report, 2) });
   refuseOverwritingRead(
     command,
     first.done,
