@@ -26,6 +26,10 @@ constexpr int kNudges = 16;
 // How far a ray that is turned is moved as well: a point on an edge of the cage is on either side of it.
 constexpr double kAside = 1e-7;
 
+// Which share of both is still far more than rounding: a triangle may be so narrow that a ray turned as far passes it
+// by.
+constexpr double kHardly = 1e-5;
+
 // Sums of areas that differ by less than this share may differ only by the order of adding.
 constexpr double kSumNoise = 1e-12;
 
@@ -94,17 +98,21 @@ Outcome outcomeOf(const Scene& scene, const Options& options, const Sight& sight
 unsigned bit(Zone zone) { return 1u << static_cast<unsigned>(zone); }
 bool single(unsigned zones) { return (zones & (zones - 1)) == 0; }
 
-/// The rays beside a ray.
+/// The rays beside a ray: as far aside as counts, and hardly, for a ray through an edge of a very narrow triangle.
 std::vector<Ray> nudged(const Scene& scene, const Ray& ray) {
   std::vector<Ray> rays;
   const Vec n = ray.direction;
   const Vec u = unit(cross(n, std::abs(n.x) < 0.9 ? Vec{1, 0, 0} : Vec{0, 1, 0}));
   const Vec v = cross(n, u);
-  for (int k = 0; k < kNudges; ++k) {
-    const double angle = 2 * std::numbers::pi * k / kNudges;
-    const Vec side = u * std::cos(angle) + v * std::sin(angle);
-    rays.push_back({ray.origin + side * (kAside * scene.diag), n + side * kRayNudge});
-  }
+  const auto turn = [&](double share, int sides) {
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      const Vec side = (u * std::cos(angle) + v * std::sin(angle)) * share;
+      rays.push_back({ray.origin + side * (kAside * scene.diag), n + side * kRayNudge});
+    }
+  };
+  turn(1, kNudges);
+  turn(kHardly, kNudges / 4);
   return rays;
 }
 

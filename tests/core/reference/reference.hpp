@@ -55,11 +55,11 @@ struct Result {
   std::vector<float> cornerUvs;                 ///< 6 per target triangle, with `seams`; else empty.
   /// 1 per target vertex: 0 where the method itself has no firm answer, so that another may be right as well.
   ///
-  /// Each ray that has a say is turned by `kRayNudge`, and moved by 1e-7 of the diagonal, to sixteen sides, and what
-  /// may come of it is followed to the end: to the verdict over its segment, to the neighbours that a second look
-  /// brings in, to the hole that a failing segment explains. A vertex is unstable if it may then end up in more than
-  /// one zone; or if that hangs on the last bits of the sums. Nothing else is unstable: the nearest triangle and its
-  /// ties are decided by tolerances of their own.
+  /// Each ray that has a say is turned by `kRayNudge`, and moved by 1e-7 of the diagonal, to sixteen sides, and by a
+  /// hundred-thousandth of both to four, and what may come of it is followed to the end: to the verdict over its
+  /// segment, to the neighbours that a second look brings in, to the hole that a failing segment explains. A vertex is
+  /// unstable if it may then end up in more than one zone; or if that hangs on the last bits of the sums. Nothing else
+  /// is unstable: the nearest triangle and its ties are decided by tolerances of their own.
   std::vector<std::uint8_t> stable;
   /// 1 per target triangle, with `seams`: 0 where which corner's patch serves it is decided by rounding.
   std::vector<std::uint8_t> stableCorners;
