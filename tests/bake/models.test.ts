@@ -463,6 +463,19 @@ test('what follows the end of a PNG is not part of it, as in viewers', async () 
   assertPainted(imageOf(materialOf(await io.read(at('out.glb'))).getBaseColorTexture()));
 });
 
+test('an image that is painted keeps its name and what applications know of it', () => {
+  const { json, bin } = unpackGlb(readFileSync(at('box.glb')));
+  delete json.images![0]!.bufferView;
+  Object.assign(json.images![0]!, { uri: 'skin.png', extras: { licence: 'own' } });
+  delete json.images![0]!.name;
+  writeFileSync(at('named.glb'), packGlb({ json, bin }));
+  writeFileSync(at('skin.png'), pngOf(own));
+  const { status } = cagecast('bake', at('named.glb'), at('cage.glb'), at('red.png'), '-o', at('out.glb'));
+  assert.equal(status, 0);
+  const [image] = unpackGlb(readFileSync(at('out.glb'))).json.images!;
+  assert.deepEqual([image!.name, image!.extras], ['skin', { licence: 'own' }]);
+});
+
 test('no file that was read is overwritten, whoever names it', async () => {
   const { json, bin } = unpackGlb(readFileSync(at('box.glb')));
   delete json.images![0]!.bufferView;

@@ -1361,7 +1361,8 @@ describe('the same mesh in other forms gives the same answer', () => {
     writeFileSync(at('loose dir/mesh data.bin'), bin);
     copyFileSync(at('paint.png'), at('loose dir/skin.png'));
     json.buffers![0]!.uri = 'mesh%20data.bin';
-    json.images = [{ uri: 'skin.png' }];
+    copyFileSync(at('paint.png'), at('loose dir/own name.png'));
+    json.images = [{ uri: 'skin.png' }, { uri: 'own%20name.png', name: 'other' }];
     json.textures = [{ source: 0 }];
     json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
     json.meshes![0]!.primitives[0]!.material = 0;
@@ -1371,6 +1372,10 @@ describe('the same mesh in other forms gives the same answer', () => {
     assert.deepEqual(await validate(at('packed.glb')), []);
     const document = await new NodeIO().read(at('packed.glb'));
     assert.deepEqual(Buffer.from(document.getRoot().listTextures()[0]!.getImage()!), paint());
+    assert.deepEqual(
+      unpackGlb(readFileSync(at('packed.glb'))).json.images!.map(({ name }) => name),
+      ['skin', 'other'],
+    );
   });
 
   test('buffers and images may be in data URIs of any kind', async () => {

@@ -1,9 +1,9 @@
-import { dirname } from 'node:path';
+import { dirname, parse } from 'node:path';
 import type { Accessor, GLTF } from '@gltf-transform/core';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 import { show } from '../api/error.js';
 import { type MeshoptView, meshoptExtensions, meshoptView } from './check.js';
-import { type ReadOptions, readUri } from './files.js';
+import { localFile, type ReadOptions, readUri } from './files.js';
 import { imageType } from './image.js';
 import { InputError } from './input-error.js';
 import { type Contents, imageFile, type NamedFile, packGlb, packGltf, whole } from './output/pack.js';
@@ -145,6 +145,9 @@ export class GlbWriter {
       const mimeType = image.mimeType ?? imageType(bytes) ?? named ?? typesByEnding[ending.toLowerCase()];
       if (mimeType === undefined)
         throw new InputError(`images[${i}] (${show(image.uri)}) is of an unknown type; give it a mimeType`);
+      const file = localFile(image.uri, folder);
+      // As in the glTF, where it is known by its file.
+      if (file !== undefined) image.name ??= parse(file).name;
       delete image.uri;
       image.mimeType = mimeType;
       image.bufferView = this.addView(bytes);

@@ -144,7 +144,8 @@ export class FileModel implements BakeModel<number, number> {
       if (before.extensions && Object.keys(before.extensions).length === 0) delete before.extensions;
       if (isShared) before.source = json.images!.push(image) - 1;
       else {
-        json.images![source] = { ...image, name: json.images![source]!.name ?? name };
+        const { name: own = name, extras } = json.images![source]!;
+        json.images![source] = { ...image, name: own, ...(extras && { extras }) };
         before.source = source;
       }
       for (const extension of imageExtensions)
