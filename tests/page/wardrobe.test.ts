@@ -89,10 +89,10 @@ test('figures dropped together get the template of the first; a stroke is on all
   const broken = glb('broken.glb', Buffer.from('this is no model'));
   const names = ['one', 'two', 'three', 'four', 'five', 'six'];
   await drop(page, [...names.slice(0, 2).map(figure), broken, ...names.slice(2).map(figure)]);
-  const before = await avatars(page, 6);
+  const dropped = await avatars(page, 6);
   assert.match(await shownError(page), /^broken\.glb: this is not a GLB or glTF file/);
-  assert.match(before[0]!, /^one, /);
-  for (const label of before.slice(1)) assert.match(label, /, no cage$/);
+  assert.match(dropped[0]!, /^one, /);
+  for (const label of dropped.slice(1)) assert.match(label, /, no cage$/);
   await page.locator('#alert-close').click();
 
   await page.locator('#template-select').selectOption('human-body');
@@ -102,6 +102,25 @@ test('figures dropped together get the template of the first; a stroke is on all
   });
   for (const label of await avatars(page, 6)) assert.match(label, /, \d+ % paintable, (good|with reservations)$/);
   assert.ok(await page.getByTestId('wardrobe-note').isHidden(), 'the paint fits all');
+  assert.match(
+    (await page.locator('#tools label:has(:checked)').textContent())!,
+    /Turn/,
+    'no tool for one model alone',
+  );
+  const pictures = () => page.locator('.avatars img').evaluateAll((images) => images.map((image) => image.src));
+  const before = (await pictures())[0]!;
+  await page.locator('#landmark-show').click();
+  await page.locator('label', { hasText: 'Zones' }).click();
+  await page.waitForFunction(
+    (before) => document.querySelector<HTMLImageElement>('.avatars img')!.src !== before,
+    before,
+  );
+  const [first, second] = (await pictures()).map(
+    (url) => PNG.sync.read(Buffer.from(url.split(',')[1]!, 'base64')).data,
+  );
+  const differing = first!.filter((value, i) => Math.abs(value - second![i]!) > 24).length;
+  assert.ok(differing < 100, `${differing}: the first has no landmarks in its picture, as the second has none`);
+  await page.locator('label', { hasText: 'Result' }).click();
   assert.deepEqual(await faults(page), []);
 
   await page.locator('#tools label', { hasText: 'Brush' }).click();

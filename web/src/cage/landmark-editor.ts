@@ -117,8 +117,8 @@ export class LandmarkEditor {
     this.#size = box.getSize(new Vector3()).length();
     box.getCenter(this.#middle);
     this.#write();
-    // What was brought back takes no other tool out of the hand.
-    if (isNew && fitting === this.#maker.latest) this.#tools.choose(this.#offer);
+    // What was brought back takes no other tool out of the hand; and beside other models, landmarks are too near each other.
+    if (isNew && fitting === this.#maker.latest && !this.#viewer.showsCrowd) this.#tools.choose(this.#offer);
     if (this.#tools.chosen === this.#offer && Object.keys(this.#spots).length < kLeastLandmarks) this.#askForNext();
     this.#viewer.redraw();
   }

@@ -274,6 +274,11 @@ export class Viewer {
     return { x: left + width / 2, y: top + (height + this.#free.top - this.#free.bottom) / 2 };
   }
 
+  /** Whether other models are shown beside the one on the stage. */
+  get showsCrowd(): boolean {
+    return this.#crowd !== undefined;
+  }
+
   /** Shows other models beside the one on the stage; undefined shows it alone. Call it again when the crowd has changed. */
   setCrowd(crowd: Crowd | undefined): void {
     const isOther = crowd !== this.#crowd;
@@ -296,6 +301,7 @@ export class Viewer {
     const ratio = this.renderer.getPixelRatio();
     if (this.#crowd) this.#crowd.object.visible = false;
     this.#cage?.show(false);
+    this.marks.visible = false;
     this.#studio.showFloor(false);
     stage.position.copy(this.#place0);
     this.renderer.setScissorTest(false);
@@ -303,6 +309,7 @@ export class Viewer {
     const pictures = sitters.map((sitter) => this.#takePicture(sitter, pixels));
     this.renderer.setViewport(0, 0, clientWidth, clientHeight);
     stage.visible = true;
+    this.marks.visible = true;
     if (this.#crowd) this.#crowd.object.visible = true;
     this.#studio.showFloor(!this.#crowd);
     this.#draw(); // now, or what was drawn for the pictures would be seen
