@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { cagecast, GlbMaker, glbOf, packGlb, unpackGlb, validate } from './glb.js';
 import { ball } from './scenes.js';
@@ -209,6 +210,16 @@ describe('cagecast fit', () => {
     assert.ok(Object.keys(report.landmarks.used).length > 12);
     assert.deepEqual(Object.keys(report.landmarks.confidence), Object.keys(report.landmarks.used));
     assert.ok(Array.isArray(report.landmarks.missing));
+  });
+
+  test('a folder with the name of a template does not hide it', () => {
+    mkdirSync(at('human-head'));
+    const { status, stderr } = spawnSync(
+      process.execPath,
+      [resolve('dist/cli.js'), 'fit', 'human-head', resolve(target), '-o', at('beside-folder.glb'), '--quiet'],
+      { cwd: folder, encoding: 'utf8' },
+    );
+    assert.deepEqual([status, stderr], [0, '']);
   });
 
   test('errors are one line that names the file, and write nothing', () => {

@@ -1378,6 +1378,25 @@ describe('the same mesh in other forms gives the same answer', () => {
     );
   });
 
+  test('images of kinds that only an extension admits are known by the endings of their names', () => {
+    const { json, bin } = unpackGlb(glbOf(scene.target));
+    json.images = [{ uri: 'skin.avif' }, { uri: 'skin.DDS' }, { uri: 'skin.bmp', mimeType: 'image/bmp' }];
+    for (const { uri } of json.images) write(uri!, 'image');
+    json.textures = [{ extensions: { EXT_texture_avif: { source: 0 } } }];
+    json.extensionsUsed = ['EXT_texture_avif'];
+    report(write('avif.glb', packGlb({ json, bin })), at('cage.glb'), '-o', at('avif-out.glb'));
+    const { images } = unpackGlb(readFileSync(at('avif-out.glb'))).json;
+    assert.deepEqual(
+      images!.map(({ mimeType }) => mimeType),
+      ['image/avif', 'image/vnd-ms.dds', 'image/bmp'],
+    );
+    delete json.images[2]!.mimeType;
+    write('unknown.glb', packGlb({ json, bin }));
+    const { status, stderr } = cagecast('transfer', at('unknown.glb'), '--cage', at('cage.glb'), '-o', at('none.glb'));
+    assert.equal(status, 1);
+    assert.match(stderr, /unknown\.glb: images\[2\] \("?skin\.bmp"?\) is of an unknown type; give it a mimeType\n$/);
+  });
+
   test('buffers and images may be in data URIs of any kind', async () => {
     const { json, bin } = unpackGlb(glbOf(scene.target));
     const base64 = (bytes: Uint8Array) => Buffer.from(bytes).toString('base64');
