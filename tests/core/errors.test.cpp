@@ -263,4 +263,14 @@ TEST_CASE("a weld tolerance that nearly all vertices lie within is an error that
         "average; use a smaller one");
   call.options.weldTolerance = 1e-5f;
   CHECK(transferred().ok());
+
+  // Two crowds, each as near as that: exactly as many as may be near, and one more.
+  call.options.weldTolerance = 0.01f;
+  for (const std::uint32_t size : {2001u, 2002u}) {
+    call.target = {};
+    for (const float place : {0.0f, 1.0f})
+      for (std::uint32_t i = 0; i < size; ++i) call.target.addVertex({place + 1e-6f * static_cast<float>(i), 0, 0});
+    call.target.addTriangle(0, 1, size);
+    CHECK(transferred().ok() == (size == 2001));
+  }
 }
