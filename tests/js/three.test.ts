@@ -521,6 +521,8 @@ describe('applyTransfer', () => {
     painted.dispose();
     const { overlays } = show({ texture: new Texture() });
     assert.deepEqual(target.children, overlays);
+    other.update(other.result);
+    assert.deepEqual(target.children, overlays, 'what is replaced does not come back');
   });
 
   test('an update frees the triangles that an overlay had, but not what is of its base', () => {

@@ -244,7 +244,7 @@ class Shown implements Applied {
     if (this.#isDisposed) return;
     const { texture, feather, place } = this.#painting;
     if (this.#material) {
-      for (const one of this.#shown) showMaterial(one, this.#material);
+      for (const one of this.#current) showMaterial(one, this.#material);
       return;
     }
     const shown = this.#current;
