@@ -182,6 +182,16 @@ for (const borders of ['triangle', 'cut'])
     assert.equal(second!.primitive.getAttribute('TEXCOORD_0'), base.getAttribute('TEXCOORD_1'));
   });
 
+test('the files of a region may be in folders with = in their names', () => {
+  mkdirSync(at('run=3'));
+  for (const name of ['cage.glb', 'other.png']) writeFileSync(at('run=3', name), readFileSync(at(name)));
+  const region = ['--region', `${at('run=3', 'cage.glb')}=${at('run=3', 'other.png')}`];
+  const report = reportOf('--cage', at('front.glb'), ...region, '-o', at('of-folders.glb'));
+  assert.equal(report.regions[0]!.cage, at('run=3', 'cage.glb'));
+  for (const wrong of [at('cage.glb'), `${at('cage.glb')}=`, '=paint.png'])
+    assert.match(cagecast('transfer', target, ...cage, '--region', wrong).stderr, /with = between them/);
+});
+
 test('regions keep the compression of the file', async () => {
   const region = ['--region', `${at('cage.glb')}=${at('other.png')}`];
   for (const [form, extension] of [

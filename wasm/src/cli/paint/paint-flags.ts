@@ -34,8 +34,9 @@ export const addRegionFlag = (command: Command): Command =>
   );
 
 function regionOf(text: string, before: Region[]): Region[] {
-  const at = text.indexOf('=');
-  if (at <= 0 || at === text.length - 1)
+  // Names of folders may have a = in them, such as run=3.
+  const [, cage, texture] = /^(.+?\.(?:glb|gltf|vrm)|[^=]+)=(.+)$/i.exec(text) ?? [];
+  if (cage === undefined || texture === undefined)
     throw new InvalidArgumentError('It is not the file of a cage and that of a texture, with = between them.');
-  return [...before, { cage: text.slice(0, at), texture: text.slice(at + 1) }];
+  return [...before, { cage, texture }];
 }
