@@ -150,10 +150,8 @@ std::vector<const Triangle*> Surface::near(Vec p, double slack) const {
 }
 
 Nearest nearestOn(const Triangle& triangle, Vec p) {
-  Nearest best;
-  const auto consider = [&](std::array<double, 3> weights) {
-    const double distance = length(p - blend(triangle, weights));
-    if (distance < best.distance) best = {distance, weights};
+  const auto nearest = [&](const std::array<double, 3>& weights) {
+    return Nearest{length(p - blend(triangle, weights)), weights};
   };
   // Inside, if the foot of p on the plane is inside; else on one of the edges.
   const auto& [a, b, c] = triangle.corners;
@@ -161,10 +159,11 @@ Nearest nearestOn(const Triangle& triangle, Vec p) {
   const double whole = dot(n, n);
   const std::array<double, 3> inside{dot(cross(c - b, p - b), n) / whole, dot(cross(a - c, p - c), n) / whole,
                                      dot(cross(b - a, p - a), n) / whole};
-  if (inside[0] > 0 && inside[1] > 0 && inside[2] > 0) {
-    consider(inside);
-    return best;
-  }
+  if (inside[0] > 0 && inside[1] > 0 && inside[2] > 0) return nearest(inside);
+  // The nearest to the foot: from p, the edges at a sharp corner are equally far but for rounding.
+  const Vec foot = p - n * (dot(p - a, n) / whole);
+  std::array<double, 3> best{};
+  double least = kInfinity;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t l = (k + 1) % 3;
     const Vec edge = triangle.corners[l] - triangle.corners[k];
@@ -172,9 +171,10 @@ Nearest nearestOn(const Triangle& triangle, Vec p) {
     std::array<double, 3> weights{};
     weights[k] = 1 - share;
     weights[l] = share;
-    consider(weights);
+    const double distance = length(foot - blend(triangle, weights));
+    if (distance < least) least = distance, best = weights;
   }
-  return best;
+  return nearest(best);
 }
 
 Vec blend(const Triangle& triangle, const std::array<double, 3>& weights) {
