@@ -70,6 +70,19 @@ function paintedBall(model: Object3D = modelOf(white()), layers?: Layers): Paint
   return { model, applied, painter, look, spots };
 }
 
+/** Loses the graphics context, and gets it back. */
+async function loseContext(): Promise<void> {
+  // It cannot be restored before the event has ended.
+  const told = (name: string) =>
+    new Promise((done) => renderer.domElement.addEventListener(name, () => setTimeout(done), { once: true }));
+  const lost = told('webglcontextlost');
+  renderer.forceContextLoss();
+  await lost;
+  const restored = told('webglcontextrestored');
+  renderer.forceContextRestore();
+  await restored;
+}
+
 /** Texels with paint. */
 function filled(painter: Painter): { texels: number; most: number } {
   const { data } = painter.layers.toImageData();
@@ -307,18 +320,25 @@ export const layerScenes: Record<string, () => unknown> = {
     });
     const picture = await createImageBitmap(context.canvas);
     const [before, again] = [lay(picture), lay(picture)];
-    // It cannot be restored before the event has ended.
-    const told = (name: string) =>
-      new Promise((done) => renderer.domElement.addEventListener(name, () => setTimeout(done), { once: true }));
-    const lost = told('webglcontextlost');
-    renderer.forceContextLoss();
-    await lost;
-    const restored = told('webglcontextrestored');
-    renderer.forceContextRestore();
-    await restored;
+    await loseContext();
     const after = lay(picture);
     painter.dispose();
     return { canvas, picture: [before, again, after] };
+  },
+
+  /** Layers after the graphics context was lost, whose painter had been disposed of. */
+  async paintedBefore() {
+    const { painter, look, spots } = paintedBall();
+    const { layers } = painter;
+    painter.stroke(spots([32, 32]), { size: 0.2, hardness: 1 });
+    painter.dispose();
+    let changes = 0;
+    layers.on('change', () => changes++);
+    const before = pixelAt(look(), 32, 32);
+    await loseContext();
+    const after = pixelAt(look(), 32, 32);
+    layers.dispose();
+    return { before, after, changes };
   },
 
   /** A model that was moved, turned and posed since it was painted. */

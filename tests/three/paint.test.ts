@@ -514,6 +514,15 @@ describe('cagecast/three/paint, drawn by Chromium', () => {
     assert.deepEqual(await run('stickersAnew'), { canvas: ['red', 'blue'], picture: ['blue', 'blue', 'blue'] });
   });
 
+  test('what was painted outlives its painter, and the graphics context', async () => {
+    const { before, after, changes } = await run<{ before: number[]; after: number[]; changes: number }>(
+      'paintedBefore',
+    );
+    assert.ok(before[0]! > 2 * before[2]!, before.join());
+    assert.deepEqual(after, before);
+    assert.ok(changes > 0, 'who draws on demand is told');
+  });
+
   test('models that were moved, turned and posed are painted where they are seen', async () => {
     const seen =
       await run<{ surface: number[]; right: number[]; scale: number; pixel: number[]; missed: boolean }[]>('posed');

@@ -12,11 +12,13 @@ export interface Recipe {
   hasVideo: boolean;
 }
 
-// All four are separable blend modes of “Compositing and Blending Level 1” (W3C), in linear light, with colours
+// `stored` says how colours are stored: 0 straight, 1 premultiplied, 2 straight and in sRGB. `spread` is for a sheet of another size:
+// bilinear, with premultiplied colours, so that transparent texels add no colour.
+//
+// All four of `join` are separable blend modes of “Compositing and Blending Level 1” (W3C), in linear light, with colours
 // multiplied by alpha: layer·(1 − α below) + below·(1 − α layer) + α layer·α below·B, where B is, of the colours proper,
 // normal: layer, multiply: layer·below, screen: layer + below − layer·below, add: min(1, layer + below).
 const kFunctions = /* glsl */ `
-// How colours are stored: 0 straight, 1 premultiplied, 2 straight and in sRGB.
 vec4 texel(sampler2D sheet, ivec2 at, int stored) {
   vec4 found = texelFetch(sheet, at, 0);
 #ifdef HAS_VIDEO
@@ -30,7 +32,6 @@ vec4 whole(sampler2D sheet, int stored) {
   return texel(sheet, ivec2(gl_FragCoord.xy), stored);
 }
 
-// For a sheet of another size: bilinear, with premultiplied colours, so that transparent texels add no colour.
 vec4 spread(sampler2D sheet, int stored) {
   ivec2 sides = textureSize(sheet, 0);
   vec2 at = gl_FragCoord.xy / float(size) * vec2(sides) - 0.5;
@@ -65,9 +66,10 @@ export function fragmentShader({ takes, stroke, hasBelow, hasVideo }: Recipe): s
   layer *= vec4(tints[${index}].rgb, 1.0) * tints[${index}].a;
   color = join(layer, color, blends[${index}]);`,
   );
+  // A tint's alpha is the opacity.
   return /* glsl */ `${hasVideo ? '#define HAS_VIDEO' : ''}
 uniform sampler2D sheets[${most}];
-uniform vec4 tints[${most}]; // and the opacity
+uniform vec4 tints[${most}];
 uniform int blends[${most}];
 uniform int stored[${most}];
 uniform sampler2D stroke;

@@ -29,6 +29,8 @@ export interface NewLayer extends Partial<Style> {
 export class Layers extends Emitter<{
   /** The texture will change with the next `update`: draw a frame. */
   change: undefined;
+  /** The graphics context was lost and is back: what was painted has to be uploaded again. For painters. */
+  restored: undefined;
 }> {
   /** The layers by themselves, with their events; what is changed here cannot be undone. */
   readonly stack = new LayerStack();
@@ -36,7 +38,11 @@ export class Layers extends Emitter<{
   readonly edits = new Edits(this.stack, this.history);
   readonly composite: Composite;
   readonly renderer: WebGLRenderer;
-  readonly #restored = (): void => this.composite.set(this.stack.layers);
+  readonly #restored = (): void => {
+    this.emit('restored', undefined);
+    this.composite.set(this.stack.layers);
+    this.announce();
+  };
 
   constructor({ renderer, size }: LayersOptions) {
     super();

@@ -75,10 +75,6 @@ export class Painter {
   /** What is on the sheet, unless that may have changed since. */
   #drawn: unknown;
   readonly #stops = new Set<() => void>();
-  readonly #restored = (): void => {
-    this.#sheet.dispose(); // its texture is empty; it is drawn again when it is needed
-    this.#painter.restore();
-  };
 
   constructor({ layers, renderer, texture, applied, cage, size }: PainterOptions) {
     this.#models = [applied].flat();
@@ -98,7 +94,12 @@ export class Painter {
     this.#painter.setCage(mesh);
     this.#painter.on('change', () => this.layers.announce());
     for (const model of this.#models) model.setTexture(this.layers.texture);
-    this.layers.renderer.domElement.addEventListener('webglcontextrestored', this.#restored);
+    const [painter, sheet] = [this.#painter, this.#sheet];
+    // Also after `dispose`, as the layers stay.
+    this.layers.on('restored', () => {
+      painter.restore();
+      sheet.dispose(); // its texture is empty; it is drawn again when it is needed
+    });
   }
 
   /** All layers in one, for further models. */
@@ -190,7 +191,6 @@ export class Painter {
   /** Frees what is its own. The layers stay, with what was painted. */
   dispose(): void {
     for (const stop of this.#stops) stop();
-    this.layers.renderer.domElement.removeEventListener('webglcontextrestored', this.#restored);
     this.#painter.dispose();
     this.#sheet.dispose();
   }
