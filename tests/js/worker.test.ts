@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { before, describe, test } from 'node:test';
+import { Worker } from 'node:worker_threads';
 import * as direct from 'cagecast';
 import { CagecastError } from 'cagecast';
 import * as slim from 'cagecast/slim';
@@ -89,6 +90,44 @@ describe('the worker', () => {
     // What was moved away cannot be sent again.
     const error = await failure(transfer(cage, target, { move: true }));
     assert.ok(error instanceof CagecastError, String(error));
+  });
+
+  test('calls that wait have the arguments as they were', async () => {
+    const scratch = structuredClone(scene.target);
+    const sizes = [1, 0.5, 0.25];
+    const scaled = (size: number) => scene.target.positions.map((x) => size * x) as Float32Array;
+    const calls = sizes.map((size) => {
+      (scratch.positions as Float32Array).set(scaled(size));
+      return transfer(scene.cage, scratch);
+    });
+    const moved = structuredClone(scene);
+    calls.push(transfer(moved.cage, moved.target, { move: true }));
+    assert.equal(moved.target.positions.length, 0, 'moved at once');
+    const results = await Promise.all(calls);
+    for (const [i, size] of [...sizes, 1].entries()) {
+      const expected = direct.transfer(scene.cage, { ...scene.target, positions: scaled(size) });
+      assert.deepEqual(results[i]!.distances, expected.distances, `call ${i}`);
+    }
+  });
+
+  test('one signal cancels all calls that wait, without a worker for each', async () => {
+    const { terminate: end } = Worker.prototype;
+    let ended = 0;
+    Worker.prototype.terminate = function () {
+      ended++;
+      return end.call(this);
+    };
+    try {
+      const abort = new AbortController();
+      const { signal } = abort;
+      const calls = Array.from({ length: 8 }, () => failure(transfer(large.cage, large.target, { signal })));
+      abort.abort('enough');
+      assert.deepEqual(await Promise.all(calls), Array(8).fill('enough'));
+      assert.ok((await transfer(scene.cage, scene.target)).zones.length > 0);
+      assert.equal(ended, 1);
+    } finally {
+      Worker.prototype.terminate = end;
+    }
   });
 
   test('many calls that cannot be sent are refused one after the other, and the next one works', async () => {

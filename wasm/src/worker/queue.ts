@@ -16,6 +16,8 @@ export type OnProgress = (share: number, stage: string) => void;
 interface Job {
   request: Request;
   move: boolean;
+  /** Why it cannot be sent, if that is known. */
+  failure: CagecastError | undefined;
   onProgress: OnProgress | undefined;
   settle(): void;
   resolve(result: unknown): void;
@@ -54,10 +56,21 @@ export class WorkerQueue {
   ): Promise<T> {
     return new Promise<T>((resolve, reject) => {
       if (signal?.aborted) return reject(signal.reason);
+      let failure: CagecastError | undefined;
+      if (this.#jobs.length > 0) {
+        // It waits; what is sent later is what the arguments are now.
+        try {
+          args = structuredClone(args, { transfer: move ? buffersOf(args) : [] });
+          move = true;
+        } catch (cause) {
+          failure = unsendable(fn, cause);
+        }
+      }
       const giveUp = () => this.#giveUp(job, signal?.reason);
       const job: Job = {
         request: { id: ++this.#lastId, fn, args },
         move,
+        failure,
         onProgress,
         settle: () => signal?.removeEventListener('abort', giveUp),
         resolve: (result) => resolve(result as T),
@@ -89,7 +102,8 @@ export class WorkerQueue {
   }
 
   /** Hands a job to the worker. @returns why that cannot be, if so. */
-  #send({ request, move }: Job): CagecastError | undefined {
+  #send({ request, move, failure }: Job): CagecastError | undefined {
+    if (failure) return failure;
     try {
       this.#thread ??= this.#start();
     } catch (cause) {
@@ -101,9 +115,7 @@ export class WorkerQueue {
       this.#thread.post(request, move ? buffersOf(request.args) : []);
       return undefined;
     } catch (cause) {
-      // An argument cannot be sent, such as a function or an array that was transferred before.
-      const message = `${request.fn}: the arguments cannot be sent to the worker (${String(cause)})`;
-      return new CagecastError('badArgument', message, 0, { cause });
+      return unsendable(request.fn, cause);
     }
   }
 
@@ -156,7 +168,10 @@ export class WorkerQueue {
     if (place > 0) return;
     // A call into WebAssembly cannot be interrupted, but its worker can be ended.
     this.#stop();
-    this.#next();
+    // One signal may cancel those that wait as well, one after the other.
+    queueMicrotask(() => {
+      if (!this.#thread) this.#next();
+    });
   }
 
   #finish(job: Job, error: CagecastError | undefined, result?: unknown): void {
@@ -171,6 +186,12 @@ export class WorkerQueue {
     this.#thread = undefined;
   }
 }
+
+/** The error for an argument that cannot be sent, such as a function or an array that was transferred before. */
+const unsendable = (fn: string, cause: unknown): CagecastError =>
+  new CagecastError('badArgument', `${fn}: the arguments cannot be sent to the worker (${String(cause)})`, 0, {
+    cause,
+  });
 
 function buffersOf(args: unknown[]): ArrayBuffer[] {
   const values = args.flatMap((arg) =>
