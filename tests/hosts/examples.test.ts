@@ -252,6 +252,66 @@ describe('<cagecast-viewer>, under a strict Content-Security-Policy', () => {
     assert.equal(await page.evaluate('steps'), 0);
   });
 
+  test('loads what could not be loaded for its opacity once that is right', async () => {
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    const said = await page.evaluate(
+      'viewer.setAttribute("opacity", "2"); viewer.setAttribute("target", "cage.glb"); next()',
+    );
+    assert.match(said as string, /^error .*\b2 is not a number from 0 to 1/);
+    assert.equal(await page.evaluate('viewer.setAttribute("opacity", "1"); next()'), 'load');
+    assert.ok(await page.isHidden('cagecast-viewer [role=alert]'));
+    await page.evaluate(`viewer.removeAttribute("opacity"); viewer.setAttribute("target", "${target}"); next()`);
+  });
+
+  test('stays as it is where it is moved, even if its address leads nowhere by now', async () => {
+    const target = await page.evaluate<string>('viewer.getAttribute("target")');
+    await page.evaluate(`(async () => {
+      const address = URL.createObjectURL(await (await fetch("${target}")).blob());
+      viewer.setAttribute("target", address);
+      await next();
+      URL.revokeObjectURL(address);
+      viewer.focus();
+    })()`);
+    await page.keyboard.press('ArrowRight');
+    const before = await picture();
+    const told = await page.evaluate(`(async () => {
+      told.length = 0;
+      viewer.parentNode.append(viewer);
+      await new Promise((done) => setTimeout(done, 300));
+      return told;
+    })()`);
+    assert.deepEqual(told, []);
+    assert.deepEqual(await picture(), before);
+    const exported = await bytesOf('viewer.exportGlb().then((glb) => text(new Blob([glb])))');
+    assert.match(exported.toString('latin1'), /"images":\[/);
+    await page.evaluate(`viewer.setAttribute("target", "${target}"); next()`);
+  });
+
+  test('shows all of the model where it is narrow, also if it was wide or hidden before', async () => {
+    const resized = (width: string) =>
+      page.evaluate(`(async () => {
+        viewer.style.width = "${width}";
+        const frame = () => new Promise((done) => requestAnimationFrame(done));
+        await frame();
+        await frame();
+      })()`);
+    const at = async (width: string) => {
+      await resized(width);
+      return picture();
+    };
+    const plain = orange(await picture());
+    const narrow = orange(await at('120px'));
+    await page.evaluate('viewer.setAttribute("camera-orbit", "20deg 80deg 100%")');
+    await page.evaluate('viewer.removeAttribute("camera-orbit")');
+    const placed = orange(await picture());
+    assert.ok(
+      Math.abs(narrow - placed) < 0.02 * placed,
+      `${narrow}, as if it was placed when it was narrow: ${placed}`,
+    );
+    const wide = orange(await at(''));
+    assert.ok(Math.abs(wide - plain) < 0.02 * plain, `${wide}, as before: ${plain}`);
+  });
+
   test('tells of an opacity that is no number until it is one', async () => {
     const before = await picture();
     const error = () => page.evaluate<string>('part(".error").hidden ? "" : part(".error").textContent');

@@ -11,7 +11,7 @@ import {
   extract,
   serialize,
 } from '../three/index.js';
-import { copyOf, disposeModel, loadModel, loadPaint } from './load.js';
+import { copyOf, disposeModel, type Fetched, fetchFile, loadPaint, readModel } from './load.js';
 import { defaultOrbit, type Orbit, Stage } from './stage.js';
 
 /** The `detail` of the event `verdict`. */
@@ -33,7 +33,7 @@ const kStyle = `
 /** What is shown. */
 interface Shown {
   /** Of the model. */
-  address: string;
+  file: Fetched;
   gltf: GLTF;
   applied: Applied | undefined;
   paint: Texture | undefined;
@@ -72,6 +72,8 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   #loading: AbortController | undefined;
   /** The attributes that have changed since the last update. */
   #changed = new Set<string>();
+  /** The values of the attributes at the last update. */
+  #used = new Map<string, string | null>();
 
   constructor() {
     super();
@@ -88,7 +90,9 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
   }
 
   connectedCallback(): void {
-    for (const name of CagecastViewer.observedAttributes) this.#change(name);
+    // One that was moved within the page still shows what it did.
+    for (const name of CagecastViewer.observedAttributes)
+      if (!this.#stage || this.getAttribute(name) !== this.#used.get(name)) this.#change(name);
   }
 
   disconnectedCallback(): void {
@@ -119,11 +123,11 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
    * @throws Error if nothing is shown yet.
    */
   async exportGlb(): Promise<ArrayBuffer> {
-    const { address, applied, paint } = this.#get('exportGlb');
-    // The paint may change meanwhile.
+    const { file, applied, paint } = this.#get('exportGlb');
+    // Of the file as it was: its address may lead nowhere by now. The paint may change meanwhile.
     const [{ GLTFExporter }, { scene, animations }, map] = await Promise.all([
       import('three/addons/exporters/GLTFExporter.js'),
-      loadModel(this.loader, 'target', address, new AbortController().signal),
+      readModel(this.loader, 'target', file),
       paint && copyOf(paint),
     ]);
     try {
@@ -161,6 +165,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     const changed = this.#changed;
     this.#changed = new Set();
     if (!this.isConnected) return;
+    this.#used = new Map(CagecastViewer.observedAttributes.map((name) => [name, this.getAttribute(name)]));
     this.#canvas.setAttribute('aria-label', this.getAttribute('alt') || '3D model');
     const poster = this.getAttribute('poster');
     if (poster) this.#poster.src = poster;
@@ -170,7 +175,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     // A paint alone needs no other transfer; but one under way is begun anew.
     const isOther = changed.has('paint') && this.#isOutdated;
     // What could not be loaded may have failed for its opacity.
-    const isAgain = changed.has('opacity') && !this.#loading && !this.#shown;
+    const isAgain = changed.has('opacity') && !this.#loading && this.#isOutdated;
     if (isOther || isAgain || changed.has('check') || kOfTransfer.some((name) => changed.has(name)))
       void this.#load((signal) => this.#loadAll(signal));
     else if (changed.has('paint')) void this.#load((signal) => this.#loadPaint(signal));
@@ -222,9 +227,13 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     this.#isOutdated = true;
     const [target, cage, paint] = ['target', 'cage', 'paint'].map((name) => this.getAttribute(name) ?? '');
     this.#tell('progress', { share: 0, stage: 'files' });
-    const [gltf, around, texture] = await Promise.all([
-      loadModel(this.loader, 'target', target!, signal),
-      cage ? loadModel(this.loader, 'cage', cage, signal) : undefined,
+    const load = async (name: string, address: string) => {
+      const file = await fetchFile(name, address, signal);
+      return { file, gltf: await readModel(this.loader, name, file) };
+    };
+    const [{ file, gltf }, around, texture] = await Promise.all([
+      load('target', target!),
+      cage ? load('cage', cage).then((loaded) => loaded.gltf) : undefined,
       paint ? loadPaint(paint, signal) : undefined,
     ]);
     signal.throwIfAborted();
@@ -237,7 +246,7 @@ export class CagecastViewer extends (globalThis.HTMLElement ?? (Object as unknow
     if (signal.aborted) disposeModel(gltf.scene);
     signal.throwIfAborted();
     this.#drop();
-    this.#shown = { address: target!, gltf, applied, paint: texture };
+    this.#shown = { file, gltf, applied, paint: texture };
     this.#isOutdated = false;
     this.#poster.hidden = true;
     this.#stage!.show(gltf.scene, this.#orbit());

@@ -2,33 +2,38 @@ import { type Material, type Mesh, type Object3D, SRGBColorSpace, Texture } from
 import type { GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { checkGltf } from '../gltf/check-file.js';
 
-/** Fetches a file. @throws Error that names the attribute and the address. */
-async function fetchFile(attribute: string, address: string, signal: AbortSignal): Promise<Response> {
-  const { href } = new URL(address, document.baseURI);
-  const response = await fetch(href, { signal }).catch((cause: unknown) => {
-    signal.throwIfAborted();
-    throw new Error(`${attribute}: ${href} cannot be fetched (${(cause as Error).message})`, { cause });
-  });
-  if (!response.ok) throw new Error(`${attribute}: ${href}: ${response.status} ${response.statusText}`.trim());
-  return response;
+/** A file, and where it came from. */
+export interface Fetched {
+  url: string;
+  blob: Blob;
 }
 
-/** Loads a model. @throws Error that names the attribute and the address. */
-export async function loadModel(
-  loader: GLTFLoader,
-  attribute: string,
-  address: string,
-  signal: AbortSignal,
-): Promise<GLTF> {
-  const response = await fetchFile(attribute, address, signal);
-  const bytes = await response.arrayBuffer();
+/** Fetches a file. @throws Error that names the attribute and the address. */
+export async function fetchFile(attribute: string, address: string, signal: AbortSignal): Promise<Fetched> {
+  let response: Response;
+  let blob: Blob;
   try {
+    response = await fetch(new URL(address, document.baseURI).href, { signal });
+    blob = await response.blob();
+  } catch (cause) {
+    signal.throwIfAborted();
+    throw new Error(`${attribute}: ${address} cannot be fetched (${(cause as Error).message})`, { cause });
+  }
+  const { ok, url, status, statusText } = response;
+  if (!ok) throw new Error(`${attribute}: ${url}: ${status} ${statusText}`.trim());
+  return { url, blob };
+}
+
+/** Reads a model from its file. @throws Error that names the attribute and the address. */
+export async function readModel(loader: GLTFLoader, attribute: string, { url, blob }: Fetched): Promise<GLTF> {
+  try {
+    const bytes = await blob.arrayBuffer();
     checkCost(new Uint8Array(bytes));
     // Beside a blob or a data address there is nothing.
-    const folder = /^(blob|data):/.test(response.url) ? '' : new URL('.', response.url).href;
+    const folder = /^(blob|data):/.test(url) ? '' : new URL('.', url).href;
     return await loader.parseAsync(bytes, folder);
   } catch (cause) {
-    throw new Error(`${attribute}: ${response.url} cannot be read (${(cause as Error).message})`, { cause });
+    throw new Error(`${attribute}: ${url} cannot be read (${(cause as Error).message})`, { cause });
   }
 }
 
@@ -49,10 +54,10 @@ const asStored: ImageBitmapOptions = { premultiplyAlpha: 'none', colorSpaceConve
 
 /** Loads a picture as a texture as glTF has them. @throws Error that names the attribute and the address. */
 export async function loadPaint(address: string, signal: AbortSignal): Promise<Texture> {
-  const response = await fetchFile('paint', address, signal);
+  const { url, blob } = await fetchFile('paint', address, signal);
   // Not as an image element, whose addresses may not be allowed to be those of blobs.
-  const picture = await createImageBitmap(await response.blob(), asStored).catch((cause: unknown) => {
-    throw new Error(`paint: ${response.url} is not a picture (${(cause as Error).message})`, { cause });
+  const picture = await createImageBitmap(blob, asStored).catch((cause: unknown) => {
+    throw new Error(`paint: ${url} is not a picture (${(cause as Error).message})`, { cause });
   });
   return textureOf(picture);
 }

@@ -55,6 +55,7 @@ export class Stage {
     canvas.addEventListener('webglcontextrestored', this.draw);
     this.#sizes = new ResizeObserver(() => this.#resize());
     this.#sizes.observe(canvas);
+    this.#camera.aspect = canvas.width / canvas.height; // stays where it is not shown yet
     this.#resize();
   }
 
@@ -82,8 +83,7 @@ export class Stage {
     this.#orbit = orbit;
     const { azimuth, polar, distance } = orbit;
     const [from, down] = [MathUtils.degToRad(azimuth), MathUtils.degToRad(MathUtils.clamp(polar, 0.1, 179.9))];
-    const narrow = Math.min(1, this.#camera.aspect);
-    const place = new Spherical((this.#whole * distance) / narrow, down, from);
+    const place = new Spherical((this.#whole * distance) / this.#narrow, down, from);
     this.#camera.position.setFromSpherical(place).add(this.#controls.target);
     this.#camera.updateProjectionMatrix();
     this.#controls.update();
@@ -112,19 +112,33 @@ export class Stage {
     this.#renderer.forceContextLoss();
   }
 
+  /** How much nearer the sides of the view are than its upper and lower edge. */
+  get #narrow(): number {
+    return Math.min(1, this.#camera.aspect);
+  }
+
   #resize(): void {
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (width === 0 || height === 0) return;
     this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.#renderer.setSize(width, height, false);
+    const narrow = this.#narrow;
     this.#camera.aspect = width / height;
     this.#camera.updateProjectionMatrix();
+    // As much of the model is seen as before.
+    const { target } = this.#controls;
+    this.#camera.position
+      .sub(target)
+      .multiplyScalar(narrow / this.#narrow)
+      .add(target);
+    this.#controls.update();
     // What was drawn is gone; the observer runs before the frame is shown.
     this.drawNow();
   }
 
   #turn(event: KeyboardEvent): void {
-    const { key } = event;
+    const { key, ctrlKey, metaKey, altKey } = event;
+    if (ctrlKey || metaKey || altKey) return; // the browser's own
     const place = new Spherical().setFromVector3(this.#camera.position.clone().sub(this.#controls.target));
     const turn = MathUtils.degToRad(kTurn);
     if (key === 'ArrowLeft') place.theta -= turn;
