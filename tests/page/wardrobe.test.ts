@@ -107,7 +107,8 @@ test('figures dropped together get the template of the first; a stroke is on all
     /Turn/,
     'no tool for one model alone',
   );
-  const pictures = () => page.locator('.avatars img').evaluateAll((images) => images.map((image) => image.src));
+  const pictures = () =>
+    page.locator('.avatars img').evaluateAll((images) => images.map((image) => (image as HTMLImageElement).src));
   const before = (await pictures())[0]!;
   await page.locator('#landmark-show').click();
   await page.locator('label', { hasText: 'Zones' }).click();
