@@ -110,3 +110,38 @@ test('the cage can be moved, turned and scaled by handles and keys, its corners 
   assert.ok(await page.getByTestId('adjust').isHidden());
   assert.deepEqual(complaints, []);
 });
+
+test('a change of the cage waits for the one before, and none reaches the cage of another model', async () => {
+  const { page, complaints } = await site.visit();
+  const open = async () => {
+    await drop(page, [head(), glb('bust-cage.glb', asset('human', 'cage.glb'))]);
+    await ready(page);
+  };
+  await open();
+  const start = await page.locator('#sizes').textContent();
+  const undo = page.getByTestId('undo');
+  const did = async (what: string) => {
+    await page.locator(`#undo[title="Undo: ${what}"]`).waitFor();
+    await ready(page);
+  };
+  await page.getByTestId('adjust-cage').click();
+  await page.locator('#adjust input[value=hole]').check({ force: true });
+  await page.locator('#view').evaluate((view) => {
+    for (let i = 0; i < 2; i++) view.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter' }));
+  });
+  await did('opening a hole');
+  await undo.click();
+  await ready(page);
+  assert.equal(await page.locator('#sizes').textContent(), start);
+  assert.ok(await undo.isDisabled(), 'one change is one step');
+
+  await page.locator('#adjust input[value=corner]').check({ force: true });
+  await page.locator('#view').press('Enter');
+  await dragBy(page, page.locator('[data-handle=corner]'), 40, 60);
+  await did('moving a corner');
+  await open();
+  await page.waitForTimeout(1000);
+  await ready(page);
+  assert.ok(await undo.isDisabled(), 'nothing was done to the cage that came');
+  assert.deepEqual(complaints, []);
+});

@@ -205,6 +205,65 @@ test('own files that give way to a sample are put aside, and brought back when a
   assert.deepEqual(complaints, []);
 });
 
+test('work that gives way to what is brought back is put aside in turn', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } });
+  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await stroke(page);
+  await kept(page);
+  const line = page.getByTestId('kept');
+  const back = page.getByRole('button', { name: 'Bring it back' });
+  await page.getByTestId('sample-select').selectOption('car');
+  await line.filter({ hasText: 'put aside' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.getByTestId('threshold').fill('0.7');
+  const other = await state(page);
+  await back.click();
+  await line.filter({ hasText: 'What was here is put aside.' }).waitFor();
+  assert.match((await page.locator('.files .name').allTextContents()).join(), /bust/);
+  await back.click();
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.deepEqual(await state(page), other);
+  assert.deepEqual(complaints, []);
+});
+
+test('starting over offers the work of this tab, although another one has later work', async () => {
+  const { page } = await site.visit({ viewport: { width: 900, height: 600 } });
+  await page.getByTestId('threshold').fill('0.7');
+  await kept(page);
+  await page.reload();
+  const line = page.getByTestId('kept');
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  const other = await page.context().newPage();
+  await other.goto(site.url);
+  assert.equal(await settled(other), 'ready', await shownError(other));
+  await other.getByTestId('threshold').fill('0.6');
+  await kept(other);
+  await Promise.all([page.waitForEvent('load'), page.getByRole('button', { name: 'Start over' }).click()]);
+  await line.filter({ hasText: 'put aside' }).waitFor();
+  await page.getByRole('button', { name: 'Bring it back' }).click();
+  await line.filter({ hasText: 'Your last work is back.' }).waitFor();
+  assert.equal(await page.getByTestId('threshold').inputValue(), '0.7');
+});
+
+/** Lets no blob be read while `window.gone` is set, as files that were changed or deleted cannot be. */
+const kGone = `
+  const { arrayBuffer } = Blob.prototype;
+  Blob.prototype.arrayBuffer = function () {
+    return window.gone ? Promise.reject(new DOMException('gone', 'NotReadableError')) : arrayBuffer.call(this);
+  }`;
+
+test('a project is not said to be saved if a file of it cannot be read any more', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 900, height: 600 } }, kGone);
+  await drop(page, [glb('bust.glb', asset('target.glb')), glb('bust-cage.glb', asset('cage.glb'))]);
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.evaluate('window.gone = true');
+  await page.getByTestId('save-project').click();
+  await page.locator('#alert').waitFor();
+  assert.match(await shownError(page), /could not be saved: bust\.glb: the file was changed or deleted/);
+  assert.deepEqual(complaints, []);
+});
+
 test('the work is back after a reload, too, when a link to it is in the address', async () => {
   const { page, complaints } = await site.visit({ permissions: ['clipboard-read', 'clipboard-write'] });
   await stroke(page);

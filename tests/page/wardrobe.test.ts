@@ -319,3 +319,28 @@ test('an avatar that leaves the stage, and one that is just being painted, follo
   assert.equal(await shownError(page), '');
   assert.deepEqual(complaints, []);
 });
+
+test('an avatar whose loading was cancelled can be chosen again; the focus stays in the strip where one is removed', async () => {
+  const { page, complaints } = await site.visit({ viewport: { width: 1000, height: 700 } }, kSlowTransfers);
+  await drop(page, ['one', 'two', 'three'].map(figure));
+  await avatars(page, 3);
+  await page.evaluate('window.delay = 3000');
+  const second = page.locator('.avatars .avatar', { hasText: 'two' });
+  await page.locator('#template-select').selectOption('human-body');
+  await page.getByTestId('fit-cage').click();
+  await page.waitForFunction(() => !/no cage/.test(document.querySelector('.avatars')!.textContent!), undefined, {
+    timeout: 60_000,
+  });
+  await avatars(page, 3);
+  await second.click();
+  await page.getByTestId('cancel').click();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.evaluate('window.delay = 0');
+  await second.click();
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'two' }).waitFor();
+  assert.equal(await settled(page), 'ready', await shownError(page));
+  await page.getByRole('button', { name: 'Remove two' }).press('Enter');
+  await page.locator('.avatars .avatar[aria-pressed=true]', { hasText: 'three' }).waitFor();
+  assert.ok(await page.evaluate(() => document.activeElement!.closest('.avatars') !== null));
+  assert.deepEqual(complaints, []);
+});

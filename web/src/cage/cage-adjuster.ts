@@ -66,6 +66,8 @@ export class CageAdjuster {
   #center = new Vector3();
   #size = 1;
   #waiting: ReturnType<typeof setTimeout> | undefined;
+  /** Whether a change is not shown yet. */
+  #isChanging = false;
 
   constructor(session: Session, viewer: Viewer, tools: Tools, maker: CageMaker, history: History) {
     this.#session = session;
@@ -104,14 +106,19 @@ export class CageAdjuster {
       this.#place();
       this.#buttons.get('corner')?.focus();
     });
-    let target: Model | undefined;
+    let { target } = session.shown ?? {};
     session.on('transfer', (shown) => {
+      this.#isChanging = false;
       if (target && target !== shown.target) {
+        this.#drop(); // or it would be done to the cage of this model
         tools.choose(undefined);
         history.forget((command) => command instanceof CageStep);
       }
       target = shown.target;
       this.#reset();
+    });
+    session.on('progress', ({ state }) => {
+      if (state !== 'working') this.#isChanging = false;
     });
   }
 
@@ -150,11 +157,24 @@ export class CageAdjuster {
     this.#reset();
   }
 
+  /** Drops what is not done to the cage yet. */
+  #drop(): void {
+    clearTimeout(this.#waiting);
+    this.#drag = this.#corner = undefined;
+    this.#matrix.identity();
+  }
+
+  /** Whether the last change is shown, so that the next one can build on it; tells if not. */
+  #isReady(): boolean {
+    if (this.#isChanging) announce('The cage is still being changed.');
+    return !this.#isChanging;
+  }
+
   /** Shows the cage as it is, with handles where it is. */
   #reset(): void {
-    clearTimeout(this.#waiting);
-    this.#drag = undefined;
-    this.#matrix.identity();
+    const corner = this.#corner;
+    this.#drop();
+    this.#corner = corner;
     this.#viewer.moveCage(this.#matrix);
     const { positions } = this.#cage;
     this.#size = diagonalOf({ positions, indices: [] });
@@ -224,7 +244,7 @@ export class CageAdjuster {
   }
 
   #down(x: number, y: number): boolean {
-    if (this.#mode === 'hole') return false;
+    if (this.#mode === 'hole' || !this.#isReady()) return false;
     if (this.#mode === 'corner') this.#corner = this.#cornerAt(x, y, kReach);
     const near = [...this.#handles]
       .map(([handle, at]) => {
@@ -308,7 +328,7 @@ export class CageAdjuster {
 
   #onKey(handle: string, event: KeyboardEvent): void {
     const step = arrowStep(event);
-    if (!step) return;
+    if (!step || !this.#isReady()) return;
     const axis = kAxes[handle as keyof typeof kAxes];
     const sign = step[0] - step[1];
     if (!axis) {
@@ -350,6 +370,7 @@ export class CageAdjuster {
   }
 
   #changeHole(x: number, y: number): void {
+    if (!this.#isReady()) return;
     const change = changeHole(this.#cage, this.#viewer.rayAt(x, y));
     if (!change) announce('The cage is not here.');
     else if ('seam' in change) announce('This hole cannot be closed: a seam of the UVs runs into it.');
@@ -360,6 +381,7 @@ export class CageAdjuster {
   #commit(): void {
     clearTimeout(this.#waiting);
     this.#drag = undefined;
+    if (this.#isChanging) return; // it is done already
     const { positions: old } = this.#cage;
     const positions = old.slice();
     const point = new Vector3();
@@ -373,6 +395,7 @@ export class CageAdjuster {
 
   #change(name: string, change: { positions?: Float32Array; indices?: Uint32Array }): void {
     const before = this.#session.shown!.cage;
+    this.#isChanging = true;
     void this.#maker.change(change).then((after) => {
       const show = (cage: Model): void => this.#session.want({ cage: Promise.resolve(cage) });
       this.#history.add(new CageStep(name, before, after, show));

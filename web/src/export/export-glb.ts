@@ -1,4 +1,5 @@
 import type { Mesh } from 'cagecast';
+import { unreadable } from '../platform/unreadable';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Model } from '../scene/load-model';
 import type { Rules, Session } from '../scene/session';
@@ -52,7 +53,7 @@ export async function exportGlb(
 
 async function read(file: File): Promise<ArrayBuffer> {
   return file.arrayBuffer().catch((cause) => {
-    throw new Error(`${file.name}: the file was changed or deleted after it was opened; open it again`, { cause });
+    throw unreadable(file.name, cause);
   });
 }
 

@@ -20,7 +20,7 @@ export function writeProject(parts: object, files: ReadonlyMap<string, Blob>): B
   return new Blob([head, text, ...files.values()], { type: 'application/octet-stream' });
 }
 
-/** Reads the file of a project; only its text, the files in it when they are used. @throws Error that says what is wrong. */
+/** Reads the file of a project; it may be overwritten afterwards, as by saving the project again. @throws Error that says what is wrong. */
 export async function readProject(file: Blob): Promise<{ parts: Record<string, unknown>; files: Files }> {
   const head = new DataView(await file.slice(0, kHead).arrayBuffer());
   const magic = String.fromCharCode(...new Uint8Array(head.buffer).subarray(0, kMagic.length));
@@ -42,7 +42,10 @@ export async function readProject(file: Blob): Promise<{ parts: Record<string, u
     if (!(Number.isSafeInteger(size) && (size as number) >= 0)) damaged('a file has no size');
     const end = at + (size as number);
     if (end > file.size) damaged('it ends too early');
-    found.set(key, new File([file.slice(at, end)], textOf(name, 'file'), { type: textOf(type, '') }));
+    found.set(
+      key,
+      new File([await file.slice(at, end).arrayBuffer()], textOf(name, 'file'), { type: textOf(type, '') }),
+    );
     at = end;
   }
   return { parts: objectOf(saved.parts, 'content'), files: filesIn(found) };

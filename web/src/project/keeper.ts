@@ -1,4 +1,4 @@
-import type { History } from 'cagecast/three/layers';
+import type { Command, History } from 'cagecast/three/layers';
 import { readLink } from '../export/link';
 import { showError } from '../platform/page';
 import type { Session } from '../scene/session';
@@ -38,6 +38,8 @@ export class Keeper {
   readonly #view: KeeperView;
   #store: Store | undefined;
   #slot = newSlot();
+  /** The last step before the work in this slot. */
+  #begin: Command | undefined;
   /** The slot before this one. */
   #aside: string | undefined;
   /** What was stored last: all of it, and the work. */
@@ -81,7 +83,7 @@ export class Keeper {
       if (!work || !isFree) return false;
       const aside = this.#reasonToWait(work);
       if (!aside) return !(await this.#show(work));
-      this.#view.offer({ text: aside, action: { title: 'Bring it back', run: () => void this.#show(work) } });
+      this.#offerBack(aside, work.slot);
     } catch (error) {
       this.#fail(error);
     } finally {
@@ -96,7 +98,6 @@ export class Keeper {
   async startOver(): Promise<void> {
     await this.save();
     flags.set('start', 'over');
-    flags.set('slot', undefined);
     location.replace(location.pathname + location.search);
   }
 
@@ -140,11 +141,16 @@ export class Keeper {
     const before = this.#kept && this.#slot;
     this.#moveTo(newSlot());
     void holdSlot(this.#slot, 0);
+    this.#begin = this.#history.last;
     this.#kept = this.#first = undefined;
     this.#touch();
-    if (!before) return;
+    if (before) this.#offerBack(text, before);
+  }
+
+  /** Offers to bring back the work of a slot. */
+  #offerBack(text: string, slot: string): void {
     const back = async (): Promise<void> => {
-      const work = (await this.#store!.works()).find(({ slot }) => slot === before);
+      const work = (await this.#store!.works()).find((one) => one.slot === slot);
       if (work) await this.#show(work);
     };
     this.#view.offer({ text, action: { title: 'Bring it back', run: () => void back() } });
@@ -181,6 +187,9 @@ export class Keeper {
   }
 
   async #show(work: Work): Promise<boolean> {
+    await this.save();
+    // What was only looked at is no work that is missed.
+    const before = this.#history.last === this.#begin ? undefined : this.#kept && this.#slot;
     // If it takes the page down, the next one does not try by itself.
     flags.set('work', 'opening');
     try {
@@ -193,13 +202,18 @@ export class Keeper {
         this.#project.know(file, key);
         found.set(key, file);
       }
-      if (!(await this.#open(work.parts, filesIn(found)))) return false;
+      if (!(await this.#open(work.parts, filesIn(found)))) {
+        this.#offerBack('Your last work is kept.', work.slot);
+        return false;
+      }
       this.#moveTo(work.slot);
       flags.set('slot', work.slot);
       const { parts, work: now } = this.#project.snapshot()!;
       this.#kept = { all: JSON.stringify(parts), work: now, fragment: work.fragment };
       const run = (): void => void this.startOver();
-      this.#view.offer({ text: 'Your last work is back.', action: { title: 'Start over', run } });
+      const text = 'Your last work is back. What was here is put aside.';
+      if (before && before !== work.slot) this.#offerBack(text, before);
+      else this.#view.offer({ text: 'Your last work is back.', action: { title: 'Start over', run } });
       this.#view.note(kKept);
       return true;
     } catch (error) {

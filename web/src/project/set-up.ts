@@ -2,6 +2,7 @@ import type { History } from 'cagecast/three/layers';
 import type { Live } from '../live/live-panel';
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';
+import { checkReadable } from '../platform/unreadable';
 import type { Viewer } from '../view/viewer';
 import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { barePart } from './bare-part';
@@ -67,7 +68,11 @@ export function setUpProjects(page: ProjectOfPage): Projects {
     try {
       const { parts, files } = project.snapshot()!;
       const made = new Map<string, Blob>();
-      for (const [key, make] of files) made.set(key, await make());
+      for (const [key, make] of files) {
+        const file = await make();
+        await checkReadable(file); // the download would fail without a word
+        made.set(key, file);
+      }
       download(writeProject(parts, made), `${session.shown!.target.name.replace(/\.\w+$/, '')}.cagecast`);
       announce('Project saved.');
     } catch (error) {

@@ -76,9 +76,10 @@ export class WardrobeStrip {
     this.#addAll(entries, instead && active.sample ? active : undefined);
   }
 
-  /** Moves the focus to the avatar on the stage. */
+  /** Moves the focus to the avatar on the stage, or to the first where that one is still to come. */
   focus(): void {
-    this.#cards.get(this.#wardrobe.active)?.querySelector('button')?.focus({ preventScroll: true });
+    const card = this.#cards.get(this.#wardrobe.active) ?? this.#list.firstElementChild;
+    card?.querySelector('button')?.focus({ preventScroll: true });
   }
 
   /** Only the model on the stage is shown from now on. */

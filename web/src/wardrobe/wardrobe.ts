@@ -59,7 +59,8 @@ export class Wardrobe extends Emitter<{ change: undefined }> {
     stack.on('change', () => this.#pictureLater(this.#avatars));
     stack.on('pictures', () => this.#pictureLater(this.#avatars));
     session.on('progress', ({ state }) => {
-      if (state === 'failed') this.#onFailure();
+      // With something still wanted, loading it was cancelled.
+      if (state === 'failed' || (state !== 'working' && this.#wanted)) this.#onFailure();
     });
     this.#onZones();
     this.#active.verdict = session.inspection?.verdict ?? '';
