@@ -122,19 +122,32 @@ TEST_CASE("rays meet what double precision says, along edges and at corners of t
       rays.add(towards + pointInCube(random, away[random.below(3)]), towards);
     }
     for (const double from : {1e-5 * reach, -1e-5 * reach}) {
-      const Hits any(tree, rays, from, RaySearch::Find::any), nearest(tree, rays, from, RaySearch::Find::nearest);
-      for (std::size_t r = 0; r < rays.rays.size(); ++r) {
+      std::vector<double> firsts;
+      for (const Ray& ray : rays.rays) {
         double first = std::numeric_limits<double>::infinity();
         for (std::uint32_t t = 0; t < 8; ++t) {
-          const double distance = tree.distance(t, rays.rays[r]);
+          const double distance = tree.distance(t, ray);
           if (distance > from) first = std::min(first, distance);
         }
-        const bool isHit = std::isfinite(first);
-        INFO("ray " << r << " from " << from << ", first hit at " << first);
-        CHECK(any.hit[r] == isHit);
-        CHECK(nearest.hit[r] == isHit);
-        CHECK(nearest.rays[r].end == first);
-        ++(isHit ? hits : misses);
+        firsts.push_back(first);
+      }
+      const auto check = [&](const Rays& ended, double share) {
+        const Hits any(tree, ended, from, RaySearch::Find::any), nearest(tree, ended, from, RaySearch::Find::nearest);
+        for (std::size_t r = 0; r < firsts.size(); ++r) {
+          const bool isHit = std::isfinite(firsts[r]) && firsts[r] <= ended.rays[r].end;
+          INFO("ray " << r << " from " << from << ", first hit at " << firsts[r] << ", which times " << share
+                      << " is its end");
+          CHECK(any.hit[r] == isHit);
+          CHECK(nearest.hit[r] == isHit);
+          if (isHit) CHECK(nearest.rays[r].end == firsts[r]);
+          ++(isHit ? hits : misses);
+        }
+      };
+      check(rays, std::numeric_limits<double>::infinity());
+      for (const double share : {0.6, 1 - 1e-7, 1.0, 1 + 1e-7, 1.7}) {
+        Rays ended = rays;
+        for (std::size_t r = 0; r < firsts.size(); ++r) ended.rays[r].end = share * firsts[r];
+        check(ended, share);
       }
     }
   }
