@@ -1,5 +1,4 @@
 import type { Mesh } from 'cagecast';
-import { unreadable } from '../platform/unreadable';
 import type { ExtractedMesh } from '../scene/extract-mesh';
 import type { Model } from '../scene/load-model';
 import type { Rules, Session } from '../scene/session';
@@ -53,7 +52,7 @@ export async function exportGlb(
 
 async function read(file: File): Promise<ArrayBuffer> {
   return file.arrayBuffer().catch((cause) => {
-    throw unreadable(file.name, cause);
+    throw new Error(`${file.name}: the file was changed or deleted after it was opened; open it again`, { cause });
   });
 }
 

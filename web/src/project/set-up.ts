@@ -2,12 +2,11 @@ import type { History } from 'cagecast/three/layers';
 import type { Live } from '../live/live-panel';
 import { download } from '../platform/download';
 import { announce, element, showError } from '../platform/page';
-import { checkReadable } from '../platform/unreadable';
 import type { Viewer } from '../view/viewer';
 import type { WardrobeOfPage } from '../wardrobe/set-up-wardrobe';
 import { barePart } from './bare-part';
 import { cagePart } from './cage-part';
-import { readProject, writeProject } from './container';
+import { nameOf, readProject, writeProject } from './container';
 import { Keeper, type Offer } from './keeper';
 import { type LayersOfPage, layersPart } from './layers-part';
 import { Project } from './project';
@@ -70,7 +69,13 @@ export function setUpProjects(page: ProjectOfPage): Projects {
       const made = new Map<string, Blob>();
       for (const [key, make] of files) {
         const file = await make();
-        await checkReadable(file); // the download would fail without a word
+        // Of one that cannot be read, the download would fail without a word.
+        await file
+          .slice(0, 1)
+          .arrayBuffer()
+          .catch(() => {
+            throw new Error(`${nameOf(file)}: the file was changed or deleted after it was opened; open it again`);
+          });
         made.set(key, file);
       }
       download(writeProject(parts, made), `${session.shown!.target.name.replace(/\.\w+$/, '')}.cagecast`);
